@@ -1,0 +1,188 @@
+// The driver board as facts: pins, clocks, timers, scales and limits.
+//
+// Nothing here knows a register. The firmware programs the chip from these facts, the virtual board wires
+// its simulated arm by them, and static_assert refuses a set that cannot work. Sections are those of
+// RM0090 (reference manual) and of the STM32F405 data sheet (tables of alternate functions).
+#pragma once
+
+#include <cstdint>
+
+namespace inkwell::board {
+
+// ---- pins ------------------------------------------------------------------------------------------
+
+struct Pin {
+  char port;            ///< 'A'..'D', 'H'
+  std::uint8_t number;  ///< 0..15
+  bool operator==(const Pin&) const = default;
+};
+
+/// A pin and the alternate function that connects it to its peripheral.
+struct PeripheralPin {
+  Pin pin;
+  std::uint8_t alternate_function;
+};
+
+struct EncoderWiring {
+  std::uint8_t timer;  ///< TIMx in encoder mode, channels 1 and 2
+  PeripheralPin a;
+  PeripheralPin b;
+};
+
+struct BridgeWiring {
+  std::uint8_t channel;  ///< same channel of TIM1 (leg A) and of TIM8 (leg B)
+  PeripheralPin leg_a;   ///< motor terminal +
+  PeripheralPin leg_b;   ///< motor terminal -
+};
+
+struct AnalogInput {
+  Pin pin;
+  std::uint8_t channel;  ///< ADC channel number
+};
+
+inline constexpr EncoderWiring encoders[3] = {
+    {5, {{'A', 0}, 2}, {{'A', 1}, 2}},
+    {3, {{'B', 4}, 2}, {{'B', 5}, 2}},
+    {4, {{'B', 6}, 2}, {{'B', 7}, 2}},
+};
+
+inline constexpr BridgeWiring bridges[3] = {
+    {1, {{'A', 8}, 1}, {{'C', 6}, 3}},
+    {2, {{'A', 9}, 1}, {{'C', 7}, 3}},
+    {3, {{'A', 10}, 1}, {{'C', 8}, 3}},
+};
+
+/// High lets the bridges switch. A pull-down on the board keeps them off through reset.
+inline constexpr Pin bridge_enable{'B', 10};
+/// Open-drain fault of the bridges, low is a fault. Both pins hang on the one wire: each switches its
+/// timer's outputs off in hardware (RM0090, "Using the break function").
+inline constexpr PeripheralPin bridge_fault_tim1{{'B', 12}, 1};
+inline constexpr PeripheralPin bridge_fault_tim8{{'A', 6}, 3};
+
+/// Motor currents: ADC n converts motor n, all three at the same instant.
+inline constexpr AnalogInput motor_current[3] = {{{'C', 0}, 10}, {{'C', 1}, 11}, {{'C', 2}, 12}};
+/// Gimbal potentiometers yaw, pitch, roll and the supply: regular sequence of ADC1.
+inline constexpr AnalogInput gimbal[3] = {{{'C', 3}, 13}, {{'C', 4}, 14}, {{'C', 5}, 15}};
+inline constexpr AnalogInput supply{{'B', 0}, 8};
+
+/// Switches close to ground; the pins have pull-ups.
+inline constexpr Pin button_1{'B', 13};
+inline constexpr Pin button_2{'B', 14};
+inline constexpr Pin inkwell_switch{'B', 15};
+
+inline constexpr Pin status_led{'C', 10};
+inline constexpr PeripheralPin usb_minus{{'A', 11}, 10};
+inline constexpr PeripheralPin usb_plus{{'A', 12}, 10};
+inline constexpr PeripheralPin console_transmit{{'A', 2}, 7};  ///< USART2, 115200 8N1
+inline constexpr PeripheralPin console_receive{{'A', 3}, 7};
+inline constexpr Pin debug_data{'A', 13};   ///< SWDIO
+inline constexpr Pin debug_clock{'A', 14};  ///< SWCLK
+
+// ---- clocks (RM0090, RCC) ----------------------------------------------------------------------------
+
+inline constexpr std::uint32_t crystal_Hz = 8'000'000;
+inline constexpr std::uint32_t pll_m = 4, pll_n = 168, pll_p = 2, pll_q = 7;
+inline constexpr std::uint32_t pll_input_Hz = crystal_Hz / pll_m;
+inline constexpr std::uint32_t pll_vco_Hz = pll_input_Hz * pll_n;
+inline constexpr std::uint32_t processor_Hz = pll_vco_Hz / pll_p;
+inline constexpr std::uint32_t usb_Hz = pll_vco_Hz / pll_q;
+inline constexpr std::uint32_t apb1_divider = 4, apb2_divider = 2;
+inline constexpr std::uint32_t apb1_Hz = processor_Hz / apb1_divider;
+inline constexpr std::uint32_t apb2_Hz = processor_Hz / apb2_divider;
+inline constexpr std::uint32_t timer_apb2_Hz = 2 * apb2_Hz;  ///< TIM1, TIM8
+inline constexpr std::uint32_t adc_divider = 4;
+inline constexpr std::uint32_t adc_Hz = apb2_Hz / adc_divider;
+inline constexpr std::uint32_t flash_wait_states = 5;
+
+static_assert(pll_input_Hz == 2'000'000, "2 MHz keeps the PLL's jitter low");
+static_assert(pll_vco_Hz >= 100'000'000 && pll_vco_Hz <= 432'000'000);
+static_assert(processor_Hz == 168'000'000 && pll_vco_Hz % pll_p == 0);
+static_assert(usb_Hz == 48'000'000 && pll_vco_Hz % pll_q == 0, "USB needs exactly 48 MHz");
+static_assert(apb1_Hz <= 42'000'000 && apb2_Hz <= 84'000'000);
+static_assert(adc_Hz <= 36'000'000, "limit of the ADC");
+
+// ---- bridges -----------------------------------------------------------------------------------------
+//
+// Both legs of a bridge switch at pwm_Hz, centre-aligned, with duties (1 + u) / 2 and (1 - u) / 2. The
+// motor then sees pulses of one sign at twice pwm_Hz, and its current crosses its mean in the middle of
+// each zero vector, which is where the timers turn round and the ADCs sample. Against locked antiphase
+// at the servo rate this divides the ripple by 12.
+
+inline constexpr std::uint32_t servo_rate_Hz = 20'000;
+inline constexpr std::uint32_t pwm_periods_per_servo_period = 3;
+inline constexpr std::uint32_t pwm_Hz = servo_rate_Hz * pwm_periods_per_servo_period;
+inline constexpr std::uint32_t pwm_top = timer_apb2_Hz / (2 * pwm_Hz);  ///< ARR, centre-aligned
+/// Update events come at both turning points, so 2 a PWM period (RM0090, repetition counter).
+inline constexpr std::uint32_t pwm_repetition = 2 * pwm_periods_per_servo_period - 1;
+static_assert(pwm_top * 2 * pwm_Hz == timer_apb2_Hz, "the servo rate must be exact");
+static_assert(pwm_top >= 1000, "at least 10 bits of duty");
+static_assert(pwm_repetition <= 255);
+
+inline constexpr float supply_nominal_V = 18.0f;
+inline constexpr float supply_minimum_V = 12.0f;
+inline constexpr float supply_maximum_V = 24.0f;
+/// The smallest motor inductance that the board is meant for (Maxon RE25 118743).
+inline constexpr float motor_inductance_H = 0.238e-3f;
+/// Peak to peak, at its worst (half duty): V / (8 f L) with unipolar switching, V / (2 f L) with locked
+/// antiphase at the servo rate.
+inline constexpr float current_ripple_A = supply_nominal_V / (8.0f * pwm_Hz * motor_inductance_H);
+inline constexpr float antiphase_ripple_A = supply_nominal_V / (2.0f * servo_rate_Hz * motor_inductance_H);
+static_assert(current_ripple_A < 0.2f, "ripple bound: a sixth of the motor's continuous current of 1.24 A");
+static_assert(antiphase_ripple_A > 1.5f, "why locked antiphase at the servo rate is no choice");
+
+/// A leg is never on for all of a period, so that bridges with a charge pump can refresh theirs.
+inline constexpr float duty_limit = 0.95f;
+/// Made by the bridge itself; the firmware does not add to it.
+inline constexpr float bridge_dead_time_s = 0.2e-6f;
+
+// ---- analogue scales ---------------------------------------------------------------------------------
+
+inline constexpr float adc_reference_V = 3.3f;
+inline constexpr std::uint32_t adc_counts = 4096;
+inline constexpr float adc_step_V = adc_reference_V / adc_counts;
+
+inline constexpr float shunt_ohm = 0.020f;
+inline constexpr float shunt_amplifier_gain = 20.0f;
+inline constexpr float shunt_amplifier_offset_V = adc_reference_V / 2;  ///< output at no current
+/// Positive current flows from leg A through the motor to leg B and raises the reading.
+inline constexpr float current_step_A = adc_step_V / (shunt_ohm * shunt_amplifier_gain);
+inline constexpr float current_range_A = shunt_amplifier_offset_V / (shunt_ohm * shunt_amplifier_gain);
+static_assert(current_range_A > 4.0f, "the range must reach beyond the largest current limit by a third");
+
+/// Supply through 100 k over 10 k.
+inline constexpr float supply_divider = 11.0f;
+inline constexpr float supply_step_V = adc_step_V * supply_divider;
+static_assert(supply_divider * adc_reference_V > supply_maximum_V + 6.0f, "over-voltage must be measurable");
+
+/// One injected conversion: 3 cycles of sampling and 12 of conversion.
+inline constexpr float injected_conversion_s = 15.0f / adc_Hz;
+static_assert(injected_conversion_s < 1e-6f);
+
+// ---- memory (RM0090, memory map) -----------------------------------------------------------------------
+
+inline constexpr std::uint32_t flash_bytes = 1024 * 1024;
+inline constexpr std::uint32_t image_bytes_maximum = 64 * 1024;
+inline constexpr std::uint32_t servo_cycles = processor_Hz / servo_rate_Hz;
+static_assert(servo_cycles == 8400);
+
+namespace detail {
+constexpr bool pins_are_distinct() {
+  const Pin pins[] = {
+      encoders[0].a.pin, encoders[0].b.pin, encoders[1].a.pin, encoders[1].b.pin, encoders[2].a.pin,
+      encoders[2].b.pin, bridges[0].leg_a.pin, bridges[0].leg_b.pin, bridges[1].leg_a.pin, bridges[1].leg_b.pin,
+      bridges[2].leg_a.pin, bridges[2].leg_b.pin, bridge_enable, bridge_fault_tim1.pin, bridge_fault_tim8.pin,
+      motor_current[0].pin, motor_current[1].pin, motor_current[2].pin, gimbal[0].pin, gimbal[1].pin,
+      gimbal[2].pin, supply.pin, button_1, button_2, inkwell_switch, status_led, usb_minus.pin, usb_plus.pin,
+      console_transmit.pin, console_receive.pin, debug_data, debug_clock};
+  for (const auto& a : pins)
+    for (const auto& b : pins)
+      if (&a != &b && a == b) return false;
+  // The LQFP64 part has ports A, B and C whole, D only pin 2 and H only pins 0 and 1.
+  for (const auto& pin : pins)
+    if (pin.port < 'A' || pin.port > 'C' || pin.number > 15) return false;
+  return true;
+}
+}  // namespace detail
+static_assert(detail::pins_are_distinct(), "two uses of one pin, or a pin that the LQFP64 part does not have");
+
+}  // namespace inkwell::board

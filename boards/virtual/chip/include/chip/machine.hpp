@@ -1,0 +1,74 @@
+// What the parts of the virtual board share: time, events, interrupt lines, peripherals, pins.
+//
+// One thread runs everything in here. Other threads (sockets) hand over work through their own queues,
+// which are emptied by events.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace inkwell::virtual_board {
+
+/// Board time. 8.4 GHz is a multiple of every clock in use (168 MHz is 50 ticks, 48 MHz 175, 16 MHz 525).
+using Ticks = std::uint64_t;
+inline constexpr Ticks ticks_per_s = 8'400'000'000;
+constexpr double seconds(Ticks ticks) { return static_cast<double>(ticks) / static_cast<double>(ticks_per_s); }
+constexpr Ticks ticks(double time_s) { return static_cast<Ticks>(time_s * static_cast<double>(ticks_per_s) + 0.5); }
+
+/// Events in the order of board time; equal times run in the order in which they were asked for.
+class Scheduler {
+ public:
+  using Id = std::uint64_t;
+  virtual ~Scheduler() = default;
+  virtual Ticks now() const = 0;
+  /// Runs `action` once when board time reaches `when` (at once, but not re-entrantly, if that has passed).
+  virtual Id at(Ticks when, std::function<void()> action) = 0;
+  virtual void cancel(Id id) = 0;
+};
+
+/// Level-sensitive inputs of the interrupt controller, by position in RM0090's vector table.
+class InterruptController {
+ public:
+  virtual ~InterruptController() = default;
+  virtual void set_level(unsigned position, bool asserted) = 0;
+};
+
+/// A block of registers on a bus. Offsets are within the block; sizes are 1, 2 or 4 bytes.
+class Peripheral {
+ public:
+  virtual ~Peripheral() = default;
+  virtual std::uint32_t read(std::uint32_t offset, unsigned size) = 0;
+  virtual void write(std::uint32_t offset, std::uint32_t value, unsigned size) = 0;
+  virtual void reset() = 0;
+};
+
+/// Says once per place that firmware touched a register that is not modelled.
+class UnmodelledLog {
+ public:
+  virtual ~UnmodelledLog() = default;
+  virtual void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) = 0;
+};
+
+enum class PinLevel : std::uint8_t { low, high, floating };
+
+/// What is soldered to the chip. Times of calls never run backward.
+class Circuit {
+ public:
+  virtual ~Circuit() = default;
+  /// The chip drives a pin (GPIO output or a timer's output), or lets go of it. `port` is 'A'..'I'.
+  virtual void output_changed(char port, unsigned pin, PinLevel level, Ticks now) = 0;
+  /// Voltage that an ADC samples at a pin, in volts. Called at the sampling instant.
+  virtual double analog_V(char port, unsigned pin, Ticks now) = 0;
+  /// Lets the circuit's own time pass; called at least once every 50 us of board time.
+  virtual void advance(Ticks now) = 0;
+};
+
+/// How a circuit drives the chip's digital inputs; edges reach GPIO, EXTI and timer inputs.
+class InputPins {
+ public:
+  virtual ~InputPins() = default;
+  virtual void drive(char port, unsigned pin, PinLevel level) = 0;
+};
+
+}  // namespace inkwell::virtual_board

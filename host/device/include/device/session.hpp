@@ -1,0 +1,62 @@
+// A client that looks after itself: connects and reconnects, keeps the host's sign of life, holds the
+// newest pose and the scope's history. Its own threads talk to the device; the caller never waits.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <device/device.hpp>
+
+namespace inkwell::device {
+
+enum class Connection : std::uint8_t { searching, connected, incompatible, no_permission };
+
+struct SessionStatus {
+  Connection connection = Connection::searching;
+  std::string message;  ///< a sentence for the user, with the remedy where there is one
+  std::optional<Information> information;
+  double pose_rate_Hz = 0;
+  std::uint64_t poses_received = 0;
+  std::uint64_t poses_lost = 0;
+  std::uint64_t scope_samples_received = 0;
+  std::uint64_t scope_samples_lost = 0;
+};
+
+class Session {
+ public:
+  /// `find` is asked again and again for the device to connect to while there is none.
+  explicit Session(std::function<std::optional<Endpoint>()> find);
+  ~Session();
+
+  SessionStatus status() const;
+  std::optional<protocol::PoseReport> newest_pose() const;
+
+  /// Queues a command; it is sent within a millisecond.
+  void send(protocol::Command command);
+  void send(protocol::Command command, const protocol::TestPulse& pulse);
+
+  /// The parameters as the device holds them; `parameters_revision` rises when they were read anew.
+  std::optional<protocol::ParameterSet> parameters() const;
+  std::uint64_t parameters_revision() const;
+  /// Queues one transaction. Changes queued before the last one was sent are merged into it.
+  void set_parameters(std::vector<ParameterChange> changes);
+  void restore_default_parameters();
+  /// The refusal of the newest transaction, if it was refused; empty once another was accepted.
+  std::optional<std::string> refusal() const;
+
+  /// Asks for these signals at every control period, from now on and after each reconnection.
+  void select_signals(std::vector<protocol::Signal> signals);
+  /// Called from the session's scope thread with every frame. Set before the first selection.
+  void on_scope(std::function<void(const ScopeSamples&)> receive);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace inkwell::device

@@ -1,0 +1,119 @@
+// States, faults and refusals: every code with its cause and its remedy, in the words a user sees.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace inkwell::protocol {
+
+/// What the device is doing. The supervisor in firmware/control moves between these states.
+enum class State : std::uint8_t {
+  starting,      ///< measures the offsets of the current sensors; bridges off
+  unreferenced,  ///< waits for the stylus to rest in the inkwell once; no force
+  ready,         ///< pose is valid, force is off
+  active,        ///< pose is valid, walls push back
+  fault,         ///< bridges off until the fault is cleared
+};
+
+struct StateInfo {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+inline constexpr auto state_table = std::to_array<StateInfo>({
+    {"starting", "The board measures its current sensors. This takes a tenth of a second."},
+    {"unreferenced", "Put the stylus into the inkwell once, so that the board knows where the arm is."},
+    {"ready", "The pose is valid. The force is off."},
+    {"active", "The pose is valid and the walls push back."},
+    {"fault", "The motors are off because of the fault shown."},
+});
+
+// clang-format off
+/// X(code, name, cause, remedy)
+#define INKWELL_FAULTS(X)                                                                                                         \
+  X(0, none, "No fault.", "Nothing to do.")                                                                                       \
+  X(1, bridge_fault, "A bridge reported over-current, over-temperature or under-voltage.", "Check the motor wiring for a short, let the bridges cool, then clear the fault.") \
+  X(2, supply_low, "The supply of the bridges is below 12 V.", "Check the 18 V supply and its fuse, then clear the fault.")       \
+  X(3, supply_high, "The supply of the bridges is above 24 V.", "Use an 18 V supply; if it rises while the arm is moved fast, add bulk capacitance. Then clear the fault.") \
+  X(4, current_sensor, "A current sensor does not read zero while its bridge is off.", "Check the shunt amplifier of that motor and its 1.65 V reference, then reset the board.") \
+  X(5, over_current, "A motor current exceeded its limit by half.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
+  X(6, over_speed, "The probe moved faster than speed_limit_m_per_s.", "Hold the stylus, lower wall_stiffness_N_per_m if it was thrown out of a wall, then clear the fault.") \
+  X(7, encoder_implausible, "A joint angle lies far beyond its stop, so encoder counts were lost or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \
+  X(8, host_silent, "The host was silent for longer than host_timeout_s while the force was on.", "Reconnect the companion and switch the force on again.") \
+  X(9, servo_overrun, "The control interrupt did not finish within its period.", "Report this with the firmware version: it is a defect of the firmware. Then clear the fault.") \
+  X(10, watchdog, "The board was restarted by its watchdog.", "Report this with the firmware version, then clear the fault.")    \
+  X(11, processor_fault, "The processor met a fault; it switched the bridges off and restarted.", "Report this with the firmware version, then clear the fault.") \
+  X(12, not_finite, "A value in the control path was not a finite number.", "Check the parameters of the arm, load the defaults, then clear the fault.")
+
+/// X(code, name, cause, remedy)
+#define INKWELL_REFUSALS(X)                                                                                                       \
+  X(0, accepted, "Accepted.", "Nothing to do.")                                                                                   \
+  X(1, wrong_version, "The transaction was written for another version of the protocol.", "Use the companion that belongs to this firmware, or flash the firmware that belongs to this companion.") \
+  X(2, wrong_length, "The transaction's length does not fit its number of entries.", "Use the companion that belongs to this firmware.") \
+  X(3, unknown_parameter, "The device has no such parameter.", "List the parameters with `inkwell parameters`.")                  \
+  X(4, not_finite, "The value is not a finite number.", "Give a number in the parameter's range.")                                \
+  X(5, out_of_range, "The value is outside the parameter's range.", "Give a number in the parameter's range.")                    \
+  X(6, not_whole, "The value must be a whole number.", "Give a whole number.")                                                    \
+  X(7, inconsistent, "The lower bound is not below the upper bound, or the box is too small for the sphere.", "Change both bounds in one transaction, the lower one below the upper one.") \
+  X(8, given_twice, "The parameter stands twice in the transaction.", "Give each parameter once.")                                \
+  X(9, unknown_operation, "The device does not know this operation.", "Use the companion that belongs to this firmware.")         \
+  X(10, busy, "The transaction before this one has not taken effect yet.", "Try again.")                                          \
+  X(11, force_is_on, "The arm's geometry cannot change while the force is on.", "Switch the force off first.")
+// clang-format on
+
+enum class Fault : std::uint16_t {
+#define X(code, name, ...) name = code,
+  INKWELL_FAULTS(X)
+#undef X
+};
+
+enum class Refusal : std::uint8_t {
+#define X(code, name, ...) name = code,
+  INKWELL_REFUSALS(X)
+#undef X
+};
+
+struct CodeInfo {
+  std::uint16_t code;
+  std::string_view name;
+  std::string_view cause;
+  std::string_view remedy;
+};
+
+inline constexpr auto fault_table = std::to_array<CodeInfo>({
+#define X(code, name, cause, remedy) {code, #name, cause, remedy},
+    INKWELL_FAULTS(X)
+#undef X
+});
+
+inline constexpr auto refusal_table = std::to_array<CodeInfo>({
+#define X(code, name, cause, remedy) {code, #name, cause, remedy},
+    INKWELL_REFUSALS(X)
+#undef X
+});
+
+inline constexpr CodeInfo unknown_code{0xFFFF, "unknown", "The device sent a code that this companion does not know.",
+                                       "Use the companion that belongs to this firmware."};
+
+namespace detail {
+template <class Table>
+constexpr const CodeInfo& look_up(const Table& table, std::uint16_t code) {
+  for (const auto& row : table)
+    if (row.code == code) return row;
+  return unknown_code;
+}
+}  // namespace detail
+
+constexpr const CodeInfo& info(Fault fault) {
+  return detail::look_up(fault_table, static_cast<std::uint16_t>(fault));
+}
+constexpr const CodeInfo& info(Refusal refusal) {
+  return detail::look_up(refusal_table, static_cast<std::uint16_t>(refusal));
+}
+constexpr const StateInfo& info(State state) {
+  const auto index = static_cast<std::size_t>(state);
+  return state_table[index < state_table.size() ? index : state_table.size() - 1];
+}
+
+}  // namespace inkwell::protocol

@@ -1,0 +1,164 @@
+// The table of parameters: the one home of every number a user can set.
+//
+// Firmware, companion, saved files, arm descriptions and documentation all read this table. A row is
+//
+//   X(id, name, kind, unit, minimum, maximum, default, group, help)
+//
+// `id` is what goes over the wire and never changes its meaning; a removed parameter's id is not used
+// again. `name` ends in its unit, as it does in files and on the command line. Defaults that belong to
+// an arm come from its description in boards/arms/ through the generated header <arm/defaults.hpp>.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include <arm/defaults.hpp>
+
+namespace inkwell::protocol {
+
+enum class ParameterKind : std::uint8_t {
+  real,    ///< any value in the range
+  whole,   ///< a whole number in the range
+  choice,  ///< a whole number, each value of which has a name in the help text
+};
+
+// clang-format off
+#define INKWELL_PARAMETERS(X)                                                                                                    \
+  X(100, box_minimum_x_m, real, "m", -0.5f, 0.5f, arm_defaults::box_minimum_x_m, "box", "Lower wall of the box along x; the free space lies above it.") \
+  X(101, box_maximum_x_m, real, "m", -0.5f, 0.5f, arm_defaults::box_maximum_x_m, "box", "Upper wall of the box along x; the free space lies below it.") \
+  X(102, box_minimum_y_m, real, "m", -0.5f, 0.5f, arm_defaults::box_minimum_y_m, "box", "Lower wall of the box along y.")         \
+  X(103, box_maximum_y_m, real, "m", -0.5f, 0.5f, arm_defaults::box_maximum_y_m, "box", "Upper wall of the box along y.")         \
+  X(104, box_minimum_z_m, real, "m", -0.5f, 0.5f, arm_defaults::box_minimum_z_m, "box", "Lower wall of the box along z.")         \
+  X(105, box_maximum_z_m, real, "m", -0.5f, 0.5f, arm_defaults::box_maximum_z_m, "box", "Upper wall of the box along z.")         \
+  X(200, sphere_radius_m, real, "m", 0.0f, 0.02f, 0.005f, "contact", "Radius of the sphere that touches the walls; 0 makes the probe a point.") \
+  X(201, wall_stiffness_N_per_m, real, "N/m", 0.0f, 3000.0f, 800.0f, "contact", "Spring constant k of the walls (paper, section 3.3).") \
+  X(202, wall_damping_Ns_per_m, real, "Ns/m", 0.0f, 20.0f, 2.0f, "contact", "Damping constant c of the walls (paper, section 3.3). It acts only in contact.") \
+  X(203, force_limit_N, real, "N", 0.0f, 8.0f, 3.3f, "contact", "Largest magnitude of the force that is asked of the motors.")    \
+  X(204, force_ramp_s, real, "s", 0.0f, 2.0f, 0.25f, "contact", "Time in which the force rises from nothing to full after it is switched on.") \
+  X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, 1.2f, "current loop", "Proportional gain of the current loops. The inductance times the wanted bandwidth in rad/s.") \
+  X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, 11000.0f, "current loop", "Integral gain of the current loops. The resistance times the wanted bandwidth in rad/s.") \
+  X(302, voltage_limit_V, real, "V", 0.0f, 24.0f, 16.0f, "current loop", "Largest voltage that a current loop may put on a motor; the supply bounds it as well.") \
+  X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Largest current asked of motor 1.") \
+  X(401, current_limit_2_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_2_A, "limits", "Largest current asked of motor 2.") \
+  X(402, current_limit_3_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_3_A, "limits", "Largest current asked of motor 3.") \
+  X(403, speed_limit_m_per_s, real, "m/s", 0.1f, 10.0f, 3.0f, "limits", "Speed of the probe above which the force is switched off with a fault.") \
+  X(404, host_timeout_s, real, "s", 0.01f, 2.0f, 0.05f, "limits", "Silence of the host after which the force is switched off.")    \
+  X(500, transmission, choice, "", 0.0f, 1.0f, arm_defaults::transmission, "arm", "How motor 3 turns link 3: 0 serial (joint 3 is relative to link 2), 1 parallelogram (joint 3 is absolute).") \
+  X(501, frame, choice, "", 0.0f, 1.0f, arm_defaults::frame, "arm", "Axes of the workspace: 0 as in the paper (x forward, y left, z up), 1 as on the Omni (x right, y up, z to the user).") \
+  X(502, link_2_m, real, "m", 0.02f, 1.0f, arm_defaults::link_2_m, "arm", "Length of link 2, shoulder to elbow (a2 of the paper's Table 1).") \
+  X(503, link_3_m, real, "m", 0.02f, 1.0f, arm_defaults::link_3_m, "arm", "Length of link 3, elbow to probe (a3 of the paper's Table 1).") \
+  X(504, elbow_offset_rad, real, "rad", -3.2f, 3.2f, arm_defaults::elbow_offset_rad, "arm", "Added to joint 3 to give the direction of link 3 in the arm's plane.") \
+  X(505, origin_x_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_x_m, "arm", "Where the shoulder is in the workspace, x.")        \
+  X(506, origin_y_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_y_m, "arm", "Where the shoulder is in the workspace, y.")        \
+  X(507, origin_z_m, real, "m", -1.0f, 1.0f, arm_defaults::origin_z_m, "arm", "Where the shoulder is in the workspace, z.")        \
+  X(510, encoder_1_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_1_counts_per_turn, "arm", "Quadrature counts (four a line) of encoder 1 in one turn of its motor.") \
+  X(511, encoder_2_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_2_counts_per_turn, "arm", "Quadrature counts (four a line) of encoder 2 in one turn of its motor.") \
+  X(512, encoder_3_counts_per_turn, whole, "counts", 4.0f, 1000000.0f, arm_defaults::encoder_3_counts_per_turn, "arm", "Quadrature counts (four a line) of encoder 3 in one turn of its motor.") \
+  X(520, gear_ratio_1, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_1, "arm", "Turns of motor 1 for one turn of joint 1.")    \
+  X(521, gear_ratio_2, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_2, "arm", "Turns of motor 2 for one turn of joint 2.")    \
+  X(522, gear_ratio_3, real, "", 0.1f, 1000.0f, arm_defaults::gear_ratio_3, "arm", "Turns of motor 3 for one turn of joint 3.")    \
+  X(530, encoder_1_reversed, choice, "", 0.0f, 1.0f, arm_defaults::encoder_1_reversed, "arm", "1 if encoder 1 counts down when joint 1 turns forward, else 0.") \
+  X(531, encoder_2_reversed, choice, "", 0.0f, 1.0f, arm_defaults::encoder_2_reversed, "arm", "1 if encoder 2 counts down when joint 2 turns forward, else 0.") \
+  X(532, encoder_3_reversed, choice, "", 0.0f, 1.0f, arm_defaults::encoder_3_reversed, "arm", "1 if encoder 3 counts down when joint 3 turns forward, else 0.") \
+  X(533, motor_1_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_1_reversed, "arm", "1 if a positive current turns joint 1 backward, else 0.") \
+  X(534, motor_2_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_2_reversed, "arm", "1 if a positive current turns joint 2 backward, else 0.") \
+  X(535, motor_3_reversed, choice, "", 0.0f, 1.0f, arm_defaults::motor_3_reversed, "arm", "1 if a positive current turns joint 3 backward, else 0.") \
+  X(540, torque_constant_1_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_1_Nm_per_A, "arm", "Torque of motor 1 for one ampere, before the gear.") \
+  X(541, torque_constant_2_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_2_Nm_per_A, "arm", "Torque of motor 2 for one ampere, before the gear.") \
+  X(542, torque_constant_3_Nm_per_A, real, "Nm/A", 0.001f, 1.0f, arm_defaults::torque_constant_3_Nm_per_A, "arm", "Torque of motor 3 for one ampere, before the gear.") \
+  X(550, joint_1_minimum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_1_minimum_rad, "arm", "Lower stop of joint 1.")        \
+  X(551, joint_1_maximum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_1_maximum_rad, "arm", "Upper stop of joint 1.")        \
+  X(552, joint_2_minimum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_2_minimum_rad, "arm", "Lower stop of joint 2.")        \
+  X(553, joint_2_maximum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::joint_2_maximum_rad, "arm", "Upper stop of joint 2.")        \
+  X(554, elbow_minimum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::elbow_minimum_rad, "arm", "Lower stop of the elbow: joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram.") \
+  X(555, elbow_maximum_rad, real, "rad", -6.3f, 6.3f, arm_defaults::elbow_maximum_rad, "arm", "Upper stop of the elbow: joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram.") \
+  X(560, inkwell_joint_1_rad, real, "rad", -6.3f, 6.3f, arm_defaults::inkwell_joint_1_rad, "arm", "Angle of joint 1 while the stylus is in the inkwell.") \
+  X(561, inkwell_joint_2_rad, real, "rad", -6.3f, 6.3f, arm_defaults::inkwell_joint_2_rad, "arm", "Angle of joint 2 while the stylus is in the inkwell.") \
+  X(562, inkwell_joint_3_rad, real, "rad", -6.3f, 6.3f, arm_defaults::inkwell_joint_3_rad, "arm", "Angle of joint 3 while the stylus is in the inkwell.") \
+  X(600, gimbal_1_square_rad, real, "rad", -10.0f, 10.0f, arm_defaults::gimbal_1_square_rad, "gimbal", "Yaw = square r^2 + slope r + offset, r the potentiometer's voltage as a part of its supply.") \
+  X(601, gimbal_1_slope_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_1_slope_rad, "gimbal", "Slope of the yaw potentiometer.") \
+  X(602, gimbal_1_offset_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_1_offset_rad, "gimbal", "Offset of the yaw potentiometer.") \
+  X(603, gimbal_2_square_rad, real, "rad", -10.0f, 10.0f, arm_defaults::gimbal_2_square_rad, "gimbal", "Square term of the pitch potentiometer.") \
+  X(604, gimbal_2_slope_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_2_slope_rad, "gimbal", "Slope of the pitch potentiometer.") \
+  X(605, gimbal_2_offset_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_2_offset_rad, "gimbal", "Offset of the pitch potentiometer.") \
+  X(606, gimbal_3_square_rad, real, "rad", -10.0f, 10.0f, arm_defaults::gimbal_3_square_rad, "gimbal", "Square term of the roll potentiometer.") \
+  X(607, gimbal_3_slope_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_3_slope_rad, "gimbal", "Slope of the roll potentiometer.") \
+  X(608, gimbal_3_offset_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_3_offset_rad, "gimbal", "Offset of the roll potentiometer.")
+// clang-format on
+
+/// Index of a parameter in the table; not what goes over the wire.
+enum class Parameter : std::uint8_t {
+#define X(id, name, ...) name,
+  INKWELL_PARAMETERS(X)
+#undef X
+};
+
+struct ParameterInfo {
+  std::uint16_t id;       ///< on the wire
+  std::string_view name;  ///< ends in its unit
+  ParameterKind kind;
+  std::string_view unit;  ///< empty for a pure number
+  float minimum;
+  float maximum;
+  float default_value;
+  std::string_view group;
+  std::string_view help;
+};
+
+inline constexpr auto parameter_table = std::to_array<ParameterInfo>({
+#define X(id, name, kind, unit, minimum, maximum, default_value, group, help) \
+  {id, #name, ParameterKind::kind, unit, minimum, maximum, default_value, group, help},
+    INKWELL_PARAMETERS(X)
+#undef X
+});
+
+inline constexpr std::size_t parameter_count = parameter_table.size();
+
+/// A value for every parameter, in the table's order.
+struct ParameterSet {
+  std::array<float, parameter_count> values;
+
+  constexpr float& operator[](Parameter parameter) { return values[static_cast<std::size_t>(parameter)]; }
+  constexpr float operator[](Parameter parameter) const { return values[static_cast<std::size_t>(parameter)]; }
+  bool operator==(const ParameterSet&) const = default;
+};
+
+constexpr ParameterSet default_parameters() {
+  ParameterSet set{};
+  for (std::size_t i = 0; i < parameter_count; ++i) set.values[i] = parameter_table[i].default_value;
+  return set;
+}
+
+constexpr std::optional<Parameter> find_parameter(std::uint16_t id) {
+  for (std::size_t i = 0; i < parameter_count; ++i)
+    if (parameter_table[i].id == id) return static_cast<Parameter>(i);
+  return std::nullopt;
+}
+
+constexpr std::optional<Parameter> find_parameter(std::string_view name) {
+  for (std::size_t i = 0; i < parameter_count; ++i)
+    if (parameter_table[i].name == name) return static_cast<Parameter>(i);
+  return std::nullopt;
+}
+
+constexpr const ParameterInfo& info(Parameter parameter) {
+  return parameter_table[static_cast<std::size_t>(parameter)];
+}
+
+namespace detail {
+constexpr bool table_is_sound() {
+  for (std::size_t i = 0; i < parameter_count; ++i) {
+    const auto& row = parameter_table[i];
+    if (!(row.minimum <= row.default_value && row.default_value <= row.maximum)) return false;
+    if (i > 0 && parameter_table[i - 1].id >= row.id) return false;
+  }
+  return true;
+}
+}  // namespace detail
+static_assert(detail::table_is_sound(), "ids must rise and each default must lie in its range");
+
+}  // namespace inkwell::protocol

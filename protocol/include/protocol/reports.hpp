@@ -1,0 +1,190 @@
+// What goes over the HID interface. All structures are packed and little-endian, as both ends are.
+//
+//   device -> host   input report    PoseReport, every millisecond
+//   host -> device   output report   CommandReport; any of them counts as a sign of life
+//   host <- device   feature report  InformationReport, ParametersReport (get), TransactionReport
+//   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include <protocol/faults.hpp>
+#include <protocol/parameters.hpp>
+#include <protocol/signals.hpp>
+
+namespace inkwell::protocol {
+
+static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
+
+/// Rises whenever a structure below, or the meaning of an id, changes.
+inline constexpr std::uint16_t protocol_version = 1;
+
+/// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
+inline constexpr std::uint32_t servo_rate_Hz = 20'000;
+inline constexpr float servo_period_s = 1.0f / servo_rate_Hz;
+inline constexpr std::uint32_t pose_rate_Hz = 1'000;
+
+enum class ReportId : std::uint8_t {
+  pose = 0x01,         ///< input
+  command = 0x02,      ///< output
+  information = 0x10,  ///< feature, get
+  parameters = 0x11,   ///< feature, get and set
+  transaction = 0x12,  ///< feature, get
+};
+
+/// Bits of PoseReport::switches.
+enum class Switch : std::uint8_t { button_1 = 1, button_2 = 2, inkwell = 4 };
+
+#pragma pack(push, 1)
+
+/// Input report, one a millisecond. A gap in `sequence` is a lost report.
+struct PoseReport {
+  ReportId report_id = ReportId::pose;
+  State state;
+  Fault fault;
+  std::uint32_t sequence;
+  std::uint32_t time_periods;  ///< control periods since the board started; wraps after 59 hours
+  float position_m[3];
+  float gimbal_rad[3];
+  float force_N[3];
+  float joint_rad[3];
+  std::uint8_t switches;       ///< bits of Switch, 1 is pressed
+  std::uint8_t servo_load;     ///< longest control interrupt of this millisecond, 255 is the whole period
+  std::uint8_t command_token;  ///< token of the last command carried out
+  std::uint8_t supply_dV;      ///< supply of the bridges in tenths of a volt
+};
+
+enum class Command : std::uint8_t {
+  heartbeat = 0,       ///< nothing but a sign of life
+  enable_force = 1,    ///< ready -> active
+  disable_force = 2,   ///< active -> ready, at once
+  clear_fault = 3,     ///< fault -> ready or unreferenced, if its cause is gone
+  select_signals = 4,  ///< starts the scope with these signals; none stops it
+  test_current = 5,    ///< in `ready`: one pulse of current in one motor, then zero for as long
+  test_voltage = 6,    ///< in `ready`: one pulse of voltage on one motor, then zero volts for as long
+};
+
+inline constexpr std::size_t scope_signals_maximum = 32;
+inline constexpr float test_duration_maximum_s = 0.5f;
+
+struct SignalSelection {
+  std::uint8_t count;  ///< 0..scope_signals_maximum
+  std::uint8_t signals[scope_signals_maximum];
+};
+
+struct TestPulse {
+  std::uint8_t motor;  ///< 1..3
+  float amplitude;     ///< A or V; bounded by the current limit or the voltage limit
+  float duration_s;    ///< 0..test_duration_maximum_s
+};
+
+/// Output report. A report of another version, length or with an unknown command is ignored and not
+/// acknowledged; `token` comes back in PoseReport::command_token when the command was carried out.
+struct CommandReport {
+  ReportId report_id = ReportId::command;
+  Command command;
+  std::uint8_t version = protocol_version;
+  std::uint8_t token;
+  union {
+    SignalSelection selection;  ///< select_signals
+    TestPulse test;             ///< test_current, test_voltage
+  };
+};
+
+/// Feature report: who the device is, and what it has counted since it started.
+struct InformationReport {
+  ReportId report_id = ReportId::information;
+  std::uint8_t reserved = 0;
+  std::uint16_t version = protocol_version;
+  std::uint8_t firmware_version[4];     ///< major, minor, patch, 0
+  std::uint32_t parameter_table_hash;   ///< protocol::parameter_table_hash of the firmware
+  std::uint32_t signal_table_hash;      ///< protocol::signal_table_hash of the firmware
+  std::uint32_t servo_rate_Hz;
+  std::uint32_t processor_clock_Hz;
+  std::uint32_t servo_cycles_longest;   ///< longest control interrupt since the start
+  std::uint32_t scope_samples_dropped;  ///< because the host did not read
+  std::uint32_t pose_reports_dropped;   ///< because the host did not poll
+  std::uint32_t servo_overruns;
+  std::uint32_t reset_cause;            ///< RCC_CSR bits 31..24 as found at start-up
+};
+
+enum class ParameterOperation : std::uint8_t {
+  set = 0,               ///< the entries take effect together, the other parameters stay
+  restore_defaults = 1,  ///< every parameter gets its default; no entries
+};
+
+struct ParameterEntry {
+  std::uint16_t id;
+  std::uint16_t reserved = 0;
+  float value;
+};
+
+inline constexpr std::size_t parameter_entries_maximum = 96;
+static_assert(parameter_count <= parameter_entries_maximum);
+
+/// Feature report. On get, `count` is parameter_count and the entries are in the table's order. On set,
+/// only the used part is sent: parameters_report_size(count) bytes.
+struct ParametersReport {
+  ReportId report_id = ReportId::parameters;
+  ParameterOperation operation;
+  std::uint16_t version = protocol_version;
+  std::uint16_t count;
+  std::uint16_t reserved = 0;
+  ParameterEntry entries[parameter_entries_maximum];
+};
+
+/// Feature report: what became of the last transaction.
+struct TransactionReport {
+  ReportId report_id = ReportId::transaction;
+  Refusal refusal;
+  std::uint16_t parameter_id;       ///< the one that was refused, else 0
+  float value;                      ///< the value that was refused, else 0
+  std::uint32_t transactions;       ///< received since the start, refused ones included
+  std::uint32_t applied_at_periods; ///< control period at which the last accepted one took effect
+};
+
+#pragma pack(pop)
+
+constexpr std::size_t parameters_report_size(std::size_t count) {
+  return offsetof(ParametersReport, entries) + count * sizeof(ParameterEntry);
+}
+
+static_assert(sizeof(PoseReport) == 64);
+static_assert(sizeof(SignalSelection) == 33 && sizeof(TestPulse) == 9);
+static_assert(sizeof(CommandReport) == 37);
+static_assert(sizeof(InformationReport) == 44);
+static_assert(sizeof(ParameterEntry) == 8);
+static_assert(sizeof(ParametersReport) == 8 + 8 * parameter_entries_maximum);
+static_assert(sizeof(TransactionReport) == 16);
+static_assert(std::is_trivially_copyable_v<PoseReport> && std::is_trivially_copyable_v<ParametersReport>);
+
+namespace detail {
+constexpr std::uint32_t fnv1a(std::uint32_t hash, std::string_view text) {
+  for (char c : text) hash = (hash ^ static_cast<std::uint8_t>(c)) * 16777619u;
+  return (hash ^ 0u) * 16777619u;
+}
+constexpr std::uint32_t hash_number(std::uint32_t hash, std::uint32_t number) {
+  for (int i = 0; i < 4; ++i, number >>= 8) hash = (hash ^ (number & 0xFFu)) * 16777619u;
+  return hash;
+}
+constexpr std::uint32_t hash_parameters() {
+  std::uint32_t hash = 2166136261u;
+  for (const auto& row : parameter_table) hash = fnv1a(fnv1a(hash_number(hash, row.id), row.name), row.unit);
+  return hash;
+}
+constexpr std::uint32_t hash_signals() {
+  std::uint32_t hash = 2166136261u;
+  for (const auto& row : signal_table)
+    hash = fnv1a(fnv1a(hash_number(hash, row.id + 256u * static_cast<std::uint32_t>(row.wire)), row.name), row.unit);
+  return hash;
+}
+}  // namespace detail
+
+/// Equal on both ends exactly if ids, names and units agree (FNV-1a of the tables).
+inline constexpr std::uint32_t parameter_table_hash = detail::hash_parameters();
+inline constexpr std::uint32_t signal_table_hash = detail::hash_signals();
+
+}  // namespace inkwell::protocol

@@ -1,0 +1,124 @@
+// The table of signals that the scope can stream at every control period: X(id, name, unit, wire, help).
+//
+// The names are also the columns of recordings. A signal goes over the wire as a float, or, where it
+// changes in every period and its source has few bits anyway, as a scaled 16-bit number.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace inkwell::protocol {
+
+/// How one value of a signal is written into a scope frame.
+enum class SignalWire : std::uint8_t {
+  float32,      ///< 4 bytes, IEEE 754 little-endian
+  current_int16,  ///< 2 bytes, in steps of `current_step_A`
+  duty_int16,     ///< 2 bytes, in steps of `duty_step`
+};
+
+inline constexpr float current_step_A = 0.0002f;        ///< +-6.5 A, finer than the ADC's 2 mA
+inline constexpr float duty_step = 1.0f / 32767.0f;     ///< +-1, finer than the timer's 1/1400
+
+// clang-format off
+#define INKWELL_SIGNALS(X)                                                                                     \
+  X(0, encoder_1_counts, "counts", float32, "Encoder 1 since the inkwell, wraps of the timer included.")       \
+  X(1, encoder_2_counts, "counts", float32, "Encoder 2 since the inkwell.")                                    \
+  X(2, encoder_3_counts, "counts", float32, "Encoder 3 since the inkwell.")                                    \
+  X(3, joint_1_rad, "rad", float32, "Joint 1, the waist.")                                                     \
+  X(4, joint_2_rad, "rad", float32, "Joint 2, the shoulder.")                                                  \
+  X(5, joint_3_rad, "rad", float32, "Joint 3, the elbow (absolute on a parallelogram arm).")                   \
+  X(6, position_x_m, "m", float32, "Probe, x.")                                                                \
+  X(7, position_y_m, "m", float32, "Probe, y.")                                                                \
+  X(8, position_z_m, "m", float32, "Probe, z.")                                                                \
+  X(9, velocity_x_m_s, "m/s", float32, "Velocity of the probe from the adaptive window, x.")                   \
+  X(10, velocity_y_m_s, "m/s", float32, "Velocity of the probe, y.")                                           \
+  X(11, velocity_z_m_s, "m/s", float32, "Velocity of the probe, z.")                                           \
+  X(12, penetration_x_m, "m", float32, "Proxy minus probe, x: points out of the wall.")                        \
+  X(13, penetration_y_m, "m", float32, "Proxy minus probe, y.")                                                \
+  X(14, penetration_z_m, "m", float32, "Proxy minus probe, z.")                                                \
+  X(15, force_x_N, "N", float32, "Force on the hand that is asked of the motors, x.")                          \
+  X(16, force_y_N, "N", float32, "Force on the hand that is asked of the motors, y.")                          \
+  X(17, force_z_N, "N", float32, "Force on the hand that is asked of the motors, z.")                          \
+  X(18, force_N, "N", float32, "Magnitude of the force.")                                                      \
+  X(19, torque_1_Nm, "Nm", float32, "Torque at joint 1 (the paper's T1z).")                                    \
+  X(20, torque_2_Nm, "Nm", float32, "Torque at joint 2 (the paper's T2x).")                                    \
+  X(21, torque_3_Nm, "Nm", float32, "Torque at joint 3 (the paper's T3x).")                                    \
+  X(22, current_reference_1_A, "A", float32, "Current asked of motor 1.")                                      \
+  X(23, current_reference_2_A, "A", float32, "Current asked of motor 2.")                                      \
+  X(24, current_reference_3_A, "A", float32, "Current asked of motor 3.")                                      \
+  X(25, current_1_A, "A", current_int16, "Measured current of motor 1.")                                       \
+  X(26, current_2_A, "A", current_int16, "Measured current of motor 2.")                                       \
+  X(27, current_3_A, "A", current_int16, "Measured current of motor 3.")                                       \
+  X(28, duty_1, "", duty_int16, "Duty of bridge 1, -1 to 1 of the supply.")                                    \
+  X(29, duty_2, "", duty_int16, "Duty of bridge 2, -1 to 1 of the supply.")                                    \
+  X(30, duty_3, "", duty_int16, "Duty of bridge 3, -1 to 1 of the supply.")                                    \
+  X(31, gimbal_1_rad, "rad", float32, "Yaw of the gimbal.")                                                    \
+  X(32, gimbal_2_rad, "rad", float32, "Pitch of the gimbal.")                                                  \
+  X(33, gimbal_3_rad, "rad", float32, "Roll of the gimbal.")                                                   \
+  X(34, joint_speed_1_rad_s, "rad/s", float32, "Speed of joint 1 from the adaptive window.")                   \
+  X(35, joint_speed_2_rad_s, "rad/s", float32, "Speed of joint 2 from the adaptive window.")                   \
+  X(36, joint_speed_3_rad_s, "rad/s", float32, "Speed of joint 3 from the adaptive window.")                   \
+  X(37, supply_V, "V", float32, "Supply of the bridges, filtered.")                                            \
+  X(38, servo_cycles, "cycles", float32, "Processor cycles of the control interrupt before this one, all stages.") \
+  X(39, stage_sample_cycles, "cycles", float32, "Cycles of stage 1: neutral duty, encoders, currents, gimbal.") \
+  X(40, stage_pose_cycles, "cycles", float32, "Cycles of stage 2: joints, velocities, position, Jacobian.")    \
+  X(41, stage_contact_cycles, "cycles", float32, "Cycles of stage 3: proxy, penetration, force.")              \
+  X(42, stage_torque_cycles, "cycles", float32, "Cycles of stage 4: torques and current references.")          \
+  X(43, stage_current_cycles, "cycles", float32, "Cycles of stage 5: current loops, duty, bridges.")           \
+  X(44, stage_report_cycles, "cycles", float32, "Cycles of stage 6: supervisor, pose and scope records.")
+// clang-format on
+
+/// Index of a signal in the table, which is also its id on the wire.
+enum class Signal : std::uint8_t {
+#define X(id, name, ...) name = id,
+  INKWELL_SIGNALS(X)
+#undef X
+};
+
+struct SignalInfo {
+  std::uint8_t id;
+  std::string_view name;
+  std::string_view unit;
+  SignalWire wire;
+  std::string_view help;
+};
+
+inline constexpr auto signal_table = std::to_array<SignalInfo>({
+#define X(id, name, unit, wire, help) {id, #name, unit, SignalWire::wire, help},
+    INKWELL_SIGNALS(X)
+#undef X
+});
+
+inline constexpr std::size_t signal_count = signal_table.size();
+
+/// The value of every signal in one control period, in the table's order.
+struct SignalValues {
+  std::array<float, signal_count> values;
+
+  constexpr float& operator[](Signal signal) { return values[static_cast<std::size_t>(signal)]; }
+  constexpr float operator[](Signal signal) const { return values[static_cast<std::size_t>(signal)]; }
+};
+
+constexpr const SignalInfo& info(Signal signal) { return signal_table[static_cast<std::size_t>(signal)]; }
+
+constexpr std::size_t wire_size(SignalWire wire) { return wire == SignalWire::float32 ? 4 : 2; }
+
+constexpr std::optional<Signal> find_signal(std::string_view name) {
+  for (const auto& row : signal_table)
+    if (row.name == name) return static_cast<Signal>(row.id);
+  return std::nullopt;
+}
+
+namespace detail {
+constexpr bool signal_ids_are_indices() {
+  for (std::size_t i = 0; i < signal_count; ++i)
+    if (signal_table[i].id != i) return false;
+  return true;
+}
+}  // namespace detail
+static_assert(detail::signal_ids_are_indices(), "a signal's id is its place in the table");
+
+}  // namespace inkwell::protocol

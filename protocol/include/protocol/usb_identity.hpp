@@ -1,0 +1,22 @@
+// How the device shows itself on USB: identifiers, interfaces and endpoints.
+#pragma once
+
+#include <cstdint>
+
+namespace inkwell::protocol::usb {
+
+/// pid.codes' vendor identifier with its product identifier for private tests.
+inline constexpr std::uint16_t vendor_id = 0x1209;
+inline constexpr std::uint16_t product_id = 0x0001;
+inline constexpr char manufacturer[] = "Inkwell";
+inline constexpr char product[] = "Inkwell haptic arm";
+
+inline constexpr std::uint8_t hid_interface = 0;
+inline constexpr std::uint8_t hid_in_endpoint = 0x81;   ///< interrupt, 64 bytes, 1 ms
+inline constexpr std::uint8_t hid_out_endpoint = 0x01;  ///< interrupt, 64 bytes, 1 ms
+inline constexpr std::uint8_t scope_interface = 1;
+inline constexpr std::uint8_t scope_in_endpoint = 0x82;  ///< bulk, 64 bytes
+
+inline constexpr std::uint16_t packet_size = 64;
+
+}  // namespace inkwell::protocol::usb
