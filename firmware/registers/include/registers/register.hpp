@@ -1,0 +1,98 @@
+// Registers and fields as types: an address is a template argument, so an access costs what a store costs.
+//
+// Headers in this folder keep one form, because tools/check_registers.py reads them and refuses any line
+// that it does not understand:
+//
+//   template <std::uint32_t base>
+//   struct Timer {
+//     struct CR1 : Register<base + 0x00> {
+//       using CEN = Field<CR1, 0, 1>;
+//     };
+//     struct CNT : Register<base + 0x24> {};
+//   };
+//   using TIM1 = Timer<0x40010000>;
+//
+// Names are those of the reference manual, so that they can be looked up.
+#pragma once
+
+#include <cstdint>
+
+namespace inkwell::registers {
+
+[[gnu::error("this value does not fit into the field")]] void value_does_not_fit_into_its_field();
+
+/// A field of register `Owner_`, and, as an object, a value for it: `TIM1::CR1::modify(TIM1::CR1::CEN(1))`.
+template <class Owner_, unsigned position_, unsigned width_>
+struct Field {
+  static_assert(width_ >= 1 && position_ + width_ <= 32);
+  using Owner = Owner_;
+  static constexpr unsigned position = position_;
+  static constexpr unsigned width = width_;
+  static constexpr std::uint32_t maximum = width == 32 ? 0xFFFF'FFFFu : (1u << width % 32) - 1u;
+  static constexpr std::uint32_t mask = maximum << position;
+
+  std::uint32_t bits;  ///< the value at its place in the register
+
+  /// A constant that is too large does not compile; a variable is cut to the field's width.
+  [[gnu::always_inline]] explicit constexpr Field(std::uint32_t value) : bits((value & maximum) << position) {
+    if (__builtin_constant_p(value > maximum) && value > maximum) value_does_not_fit_into_its_field();
+  }
+
+  static std::uint32_t read() { return from(Owner::read()); }
+  static bool is_set() { return read() != 0; }
+  /// The field's value in a word that was read from the register before.
+  static constexpr std::uint32_t from(std::uint32_t word) { return (word & mask) >> position; }
+};
+
+/// A register of 32 bits (or of the width of `Value`, where the manual asks for narrow accesses).
+template <std::uint32_t address_, class Value = std::uint32_t>
+struct Register {
+  static constexpr std::uint32_t address = address_;
+
+  static Value read() { return at(); }
+  static void write(Value value) { at() = value; }
+  /// Writes the given fields and zero to all others.
+  template <class... Fields>
+    requires(sizeof...(Fields) > 0 && (requires { typename Fields::Owner; } && ...))
+  static void write(Fields... fields) {
+    static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
+    at() = static_cast<Value>((fields.bits | ...));
+  }
+  /// Changes the given fields and keeps the others. Not for registers with flags that a one clears.
+  template <class... Fields>
+  static void modify(Fields... fields) {
+    static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
+    at() = static_cast<Value>((at() & ~(Fields::mask | ...)) | (fields.bits | ...));
+  }
+
+ private:
+  static volatile Value& at() { return *reinterpret_cast<volatile Value*>(address); }
+};
+
+/// `count` registers of one form, `stride` bytes apart. The caller keeps `index` below `count`.
+template <std::uint32_t address_, std::uint32_t stride, unsigned count_, class Value = std::uint32_t>
+struct RegisterArray {
+  static constexpr std::uint32_t address = address_;
+  static constexpr unsigned count = count_;
+
+  static Value read(unsigned index) { return at(index); }
+  static void write(unsigned index, Value value) { at(index) = value; }
+  template <class... Fields>
+    requires(sizeof...(Fields) > 0 && (requires { typename Fields::Owner; } && ...))
+  static void write(unsigned index, Fields... fields) {
+    static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
+    at(index) = static_cast<Value>((fields.bits | ...));
+  }
+  template <class... Fields>
+  static void modify(unsigned index, Fields... fields) {
+    static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
+    at(index) = static_cast<Value>((at(index) & ~(Fields::mask | ...)) | (fields.bits | ...));
+  }
+
+ private:
+  static volatile Value& at(unsigned index) {
+    return *reinterpret_cast<volatile Value*>(address + stride * index);
+  }
+};
+
+}  // namespace inkwell::registers
