@@ -1,0 +1,85 @@
+// The control socket of a virtual board: the simulated hand, the inkwell, cables, time, and the truth
+// that no real board could tell. One JSON object a line each way.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <device/link.hpp>
+
+namespace inkwell::device {
+
+using Vector3 = std::array<double, 3>;
+
+/// What the simulated hand does: it pulls the probe to `target_m` (workspace frame) as a spring and a
+/// damper would, or lets go.
+struct Hand {
+  bool holds = false;
+  Vector3 target_m{};
+  double stiffness_N_per_m = 300;
+  double damping_Ns_per_m = 3;
+};
+
+/// The hand is at `target_m` `after_s` seconds of board time after the path was given.
+struct HandWaypoint {
+  double after_s = 0;
+  Vector3 target_m{};
+};
+
+struct BoardStatus {
+  double board_time_s = 0;
+  std::string mode;
+  bool paused = false;
+  std::vector<std::string> unmodelled;  ///< accesses to registers that the virtual chip does not model
+  nlohmann::json all;                   ///< the whole reply
+};
+
+/// Rows of the true quantities, one for each control period; values[row * columns.size() + column].
+struct Trace {
+  std::vector<std::string> columns;
+  std::vector<double> values;
+  std::size_t row_count() const { return columns.empty() ? 0 : values.size() / columns.size(); }
+};
+
+/// Not for use by two threads at once: make one client for each. Every call throws Error if the board
+/// refuses it, and Disconnected if the board is gone.
+class ControlClient {
+ public:
+  ControlClient(const std::string& host, std::uint16_t port);
+  ~ControlClient();
+  ControlClient(ControlClient&&) noexcept;
+  ControlClient& operator=(ControlClient&&) noexcept;
+
+  BoardStatus status();
+  nlohmann::json truth();
+
+  void pause();
+  void run(double for_s);  ///< lets `for_s` of board time pass, then pauses; returns when it has passed
+  void resume();
+  void reset();
+  void quit();
+
+  void usb(bool connected);
+  void buttons(bool first, bool second);
+  void supply(double voltage_V);
+  void hand(const Hand& hand);
+  void hand_path(const std::vector<HandWaypoint>& path);  ///< minimum jerk between the waypoints
+  void dock(bool docked);  ///< presses the stylus into the inkwell, or takes it out
+
+  void trace_start();
+  void trace_stop();
+  Trace trace_read(std::size_t rows_maximum);  ///< the oldest rows not read yet; no rows when there are none
+
+ private:
+  nlohmann::json call(const nlohmann::json& request);
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace inkwell::device

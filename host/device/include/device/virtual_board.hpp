@@ -1,0 +1,55 @@
+// Starts the `virtual-board` program and owns it: the board ends with this object, and with this process
+// even if it is killed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <device/control_client.hpp>
+#include <device/link.hpp>
+
+namespace inkwell::device {
+
+enum class SimulationMode : std::uint8_t {
+  exact,  ///< an interrupt can come at any instruction; the same seed gives the same run
+  fast,
+};
+
+struct VirtualBoardOptions {
+  std::filesystem::path program;  ///< empty: `virtual-board` beside this executable
+  std::filesystem::path elf;      ///< empty: ../board/inkwell.elf from this executable's directory
+  std::filesystem::path arm;      ///< empty: the Omni
+  SimulationMode mode = SimulationMode::fast;
+  std::uint64_t seed = 1;
+  bool real_time = true;  ///< paces board time to the wall clock
+  bool paused = false;    ///< starts with board time standing still
+};
+
+class VirtualBoard {
+ public:
+  /// Starts the program and waits until it is ready. Throws Error with what the program said if it is not.
+  explicit VirtualBoard(const VirtualBoardOptions& options);
+  ~VirtualBoard();
+  VirtualBoard(const VirtualBoard&) = delete;
+  VirtualBoard& operator=(const VirtualBoard&) = delete;
+
+  std::uint16_t usbip_port() const;
+  std::uint16_t control_port() const;
+
+  /// The device if the board shows one on its USB, none while it starts or its cable is out.
+  std::optional<Endpoint> find() const;
+  /// A new connection to the control socket.
+  ControlClient control() const;
+  bool is_running() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// The directory of the running executable, beside which the build puts its programs.
+std::filesystem::path executable_directory();
+
+}  // namespace inkwell::device
