@@ -1,0 +1,144 @@
+// An STM32F405 for any firmware: Cortex-M4F processor, memories, and the peripherals of RM0090.
+//
+// One instruction costs one cycle of HCLK; the clock tree, timers, converters, and watchdogs run in board
+// time. `Chip` is not thread-safe: everything, the circuit included, runs in the thread that calls run_until().
+#pragma once
+
+#include <array>
+#include <chip/machine.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace inkwell::virtual_board {
+
+/// An ELF that can not be loaded, or a processor that can not be set up: a sentence that says what to do.
+class ChipError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class Mode : std::uint8_t {
+  exact,  ///< an interrupt can fall at any instruction
+  fast,   ///< interrupts fall between basic blocks; several times faster
+};
+
+struct ChipOptions {
+  Mode mode = Mode::fast;
+  std::uint32_t crystal_Hz = 8'000'000;            ///< HSE
+  std::uint32_t low_speed_crystal_Hz = 32'768;     ///< LSE
+  std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
+  std::uint32_t random_seed = 1;                   ///< of the RNG peripheral
+  /// Takes each line of the log (without a newline); by default it goes to stderr.
+  std::function<void(const std::string&)> log;
+};
+
+/// RCC_CSR's reset flags, in the order of its bits 26..31.
+enum class ResetCause : std::uint8_t { pin, power_on, software, independent_watchdog, window_watchdog, low_power };
+inline constexpr std::size_t reset_causes = 6;
+
+/// Exceptions are counted by number: 11 is SVCall, 15 is SysTick, 16 + position is an interrupt.
+inline constexpr unsigned exception_numbers = 16 + 82;
+
+struct ExceptionCounters {
+  std::uint64_t count = 0;
+  /// Instructions of the longest run from entry to return, without those of exceptions that preempted it.
+  std::uint64_t longest_instructions = 0;
+};
+
+/// Since construction, or since clear_counters().
+struct Counters {
+  std::uint64_t instructions = 0;
+  Ticks duration = 0;
+  Ticks asleep = 0;
+  std::array<ExceptionCounters, exception_numbers> exceptions{};
+  std::array<std::uint32_t, reset_causes> resets{};  ///< by ResetCause
+  double sleep_share() const { return duration == 0 ? 0.0 : static_cast<double>(asleep) / static_cast<double>(duration); }
+};
+
+/// Why run_until() came back.
+enum class Stop : std::uint8_t {
+  time_reached,
+  firmware_exit,  ///< semihosting SYS_EXIT or SYS_EXIT_EXTENDED, see exit_code()
+  locked_up,      ///< a fault inside HardFault or NMI; only reset() (or a watchdog) helps. See lockup_reason()
+  requested,      ///< request_stop()
+};
+
+/// Frequencies that firmware has set up, in Hz; 0 is a clock that stands still.
+struct Clocks {
+  std::uint32_t system_Hz, hclk_Hz, pclk1_Hz, pclk2_Hz;
+  std::uint32_t timer1_Hz;  ///< timers on APB1
+  std::uint32_t timer2_Hz;  ///< timers on APB2
+  std::uint32_t usb_Hz;     ///< PLL48CLK
+};
+
+class Chip {
+ public:
+  /// `circuit` must outlive the chip.
+  explicit Chip(Circuit& circuit, const ChipOptions& options = {});
+  ~Chip();
+  Chip(const Chip&) = delete;
+  Chip& operator=(const Chip&) = delete;
+
+  /// Erases the flash and programs the ELF's load segments by their physical addresses. Call reset() afterwards.
+  /// Throws ChipError if the file is missing, truncated, not a 32-bit ARM executable, or does not fit.
+  void load_elf(const std::filesystem::path& path);
+  /// Resets processor and peripherals as the pin NRST does (board time goes on).
+  void reset(ResetCause cause = ResetCause::pin);
+
+  /// Runs until board time reaches `when`, or the firmware exits or locks up. Calls of the circuit, of
+  /// peripherals and of scheduled events come from inside it.
+  Stop run_until(Ticks when);
+  /// From inside a callback: run_until() returns as soon as it can.
+  void request_stop();
+
+  Scheduler& scheduler();
+  InterruptController& interrupts();
+  InputPins& input_pins();
+  UnmodelledLog& unmodelled_log();
+
+  /// Puts a peripheral on the bus; `base` is a multiple of 1024 in 0x40000000..0x400803FF or
+  /// 0x50000000..0x50060BFF. It is reset with the chip. It must outlive the chip.
+  void add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral);
+
+  /// Called at the trigger of each injected sequence of the ADCs with its index since reset. ADCs that are
+  /// triggered at the same instant count once.
+  std::function<void(std::uint64_t index, Ticks when)> on_injected_sequence;
+  /// A character that semihosting writes (SYS_WRITE0, SYS_WRITEC, SYS_WRITE) or any USART sends.
+  std::function<void(std::uint8_t byte)> on_console;
+  /// A character that USART `number` (1..6) has sent, at the end of its stop bit.
+  std::function<void(unsigned number, std::uint8_t byte)> on_usart;
+  /// Called after each reset that the firmware or a watchdog causes (and those by reset()).
+  std::function<void(ResetCause cause)> on_reset;
+
+  /// A character for the receiver of USART `number` (1..6); they follow each other at the baud rate.
+  void usart_receive(unsigned number, std::uint8_t byte);
+
+  Ticks now() const;
+  Mode mode() const;
+  Clocks clocks() const;
+  const Counters& counters() const;
+  void clear_counters();
+  /// Of SYS_EXIT (0 or 1) or SYS_EXIT_EXTENDED, once run_until() returned Stop::firmware_exit.
+  int exit_code() const;
+  /// Fault and addresses in a sentence, once run_until() returned Stop::locked_up.
+  const std::string& lockup_reason() const;
+  /// Lines of unmodelled accesses so far.
+  const std::vector<std::string>& unmodelled_accesses() const;
+
+  /// Memory as a debugger sees it (flash, SRAM, CCM; no registers, no side effects). 0 outside of memory.
+  std::uint32_t memory_word(std::uint32_t address) const;
+  /// A number of all of the state that firmware can see in memory and core registers, to compare runs by.
+  std::uint64_t state_hash() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace inkwell::virtual_board
