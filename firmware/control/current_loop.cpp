@@ -1,0 +1,1 @@
+#include <control/current_loop.hpp>

@@ -1,0 +1,82 @@
+// Making raw samples trustworthy: offsets of the current sensors, supply filter, switches, inkwell reference.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <control/vector.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell::control {
+
+constexpr std::uint32_t periods_in(float time_s) {
+  return static_cast<std::uint32_t>(time_s * static_cast<float>(protocol::servo_rate_Hz) + 0.5f);
+}
+
+// ---- current sensors -----------------------------------------------------------------------------------
+
+/// Mean reading of the current sensors while the bridges are off.
+struct CurrentOffsets {
+  static constexpr std::uint32_t duration_periods = periods_in(0.1f);
+  /// An amplifier with a reference of 1 % and its own offset stays within 0.1 A; more is a broken sensor.
+  static constexpr float plausible_A = 0.25f;
+
+  Triple sum_A{};
+  Triple offset_A{};
+  std::uint32_t periods = 0;
+
+  bool measured() const { return periods >= duration_periods; }
+};
+
+/// Adds one reading; the offsets are valid once measured() is true.
+void measure_offsets(CurrentOffsets& offsets, const Triple& current_A);
+bool plausible(const CurrentOffsets& offsets);
+
+// ---- supply --------------------------------------------------------------------------------------------
+
+/// First-order low-pass of 1.6 ms, and the reciprocal that turns volts into duty.
+struct SupplyFilter {
+  static constexpr float weight = 1.0f / 32.0f;
+  /// Keeps the reciprocal finite when the supply is absent; far below any supply that is allowed to drive.
+  static constexpr float floor_V = 1.0f;
+
+  float supply_V = 0.0f;
+  float per_V = 1.0f / floor_V;
+  bool started = false;
+};
+
+void filter_supply(SupplyFilter& filter, float sample_V);
+
+// ---- switches ------------------------------------------------------------------------------------------
+
+/// Takes over what all switches have shown without change for 5 ms.
+struct SwitchFilter {
+  static constexpr std::uint32_t settle_periods = periods_in(0.005f);
+
+  std::uint8_t closed = 0;
+  std::uint8_t candidate = 0;
+  std::uint32_t stable_periods = 0;
+};
+
+void debounce(SwitchFilter& filter, std::uint8_t switches);
+
+// ---- inkwell -------------------------------------------------------------------------------------------
+
+/// Counts of the encoders in the inkwell: what joint angles are measured from.
+struct InkwellReference {
+  static constexpr std::uint32_t still_periods = periods_in(0.1f);
+  /// An encoder may dither by this while the arm counts as still.
+  static constexpr std::int32_t still_counts = 1;
+
+  std::array<std::int32_t, 3> counts{};      ///< in the inkwell, since power-up
+  std::array<std::int32_t, 3> rest_counts{}; ///< where the arm has been still
+  std::uint32_t rested_periods = 0;
+  bool valid = false;
+};
+
+/// Takes the present counts as those of the inkwell once the switch has been closed and the arm still for
+/// 0.1 s; once for each time that the stylus is put in. Returns true in the period in which that happens.
+bool update_reference(InkwellReference& reference, const std::array<std::int32_t, 3>& encoder_counts,
+                      bool inkwell_closed);
+
+}  // namespace inkwell::control

@@ -1,0 +1,41 @@
+// Contact of a sphere with the inside of a box, and the walls' force (paper, sections 3.2 and 3.3).
+#pragma once
+
+#include <control/vector.hpp>
+
+namespace inkwell::control {
+
+/// Where the sphere's centre moves freely: the box, smaller by the sphere's radius on every side.
+struct Box {
+  Vector3 minimum_m;
+  Vector3 maximum_m;
+};
+
+struct Wall {
+  float stiffness_N_per_m;
+  float damping_Ns_per_m;
+  float force_limit_N;  ///< bound of the force's magnitude
+};
+
+struct Contact {
+  Vector3 proxy_m;        ///< nearest point of the free space; on the wall while in contact
+  Vector3 penetration_m;  ///< proxy minus probe: points out of the wall, zero in free space
+};
+
+struct Force {
+  Vector3 force_N;    ///< on the hand, workspace axes
+  float magnitude_N;
+};
+
+/// Clamps the probe to the free space, axis by axis: an edge or a corner is contact on two or three axes.
+Contact find_contact(const Vector3& probe_m, const Box& box);
+
+/// F = k d e + c d' e on each axis in contact, d' the rate of the penetration. A wall never pulls: where
+/// the damper would outweigh the spring on leaving, that axis gives nothing. The magnitude is bounded by
+/// the force limit, the direction stays.
+Force wall_force(const Contact& contact, const Vector3& velocity_m_per_s, const Wall& wall);
+
+/// The force times a gain of 0..1, for ramping in.
+constexpr Force scaled(const Force& force, float gain) { return {gain * force.force_N, gain * force.magnitude_N}; }
+
+}  // namespace inkwell::control

@@ -1,0 +1,115 @@
+// The signal path of the control interrupt, and what it remembers from one period to the next.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <control/conditioning.hpp>
+#include <control/samples.hpp>
+#include <control/settings.hpp>
+#include <control/supervisor.hpp>
+#include <control/test_pulse.hpp>
+#include <control/velocity.hpp>
+#include <protocol/reports.hpp>
+#include <protocol/signals.hpp>
+
+namespace inkwell::control {
+
+/// Everything between the samples and the duties. Single-threaded: all but the constructor is called in the
+/// control interrupt, in the order carry_out / host_alive / raise, step, finish.
+class Controller {
+ public:
+  explicit Controller(const BoardLimits& board) : board_(board) {}
+
+  /// One control period. `clock.lap()` returns the processor cycles since the lap before as std::uint32_t;
+  /// its first lap in a period counts from the interrupt's entry.
+  template <class StageClock>
+  Drive step(const Samples& samples, const Settings& settings, StageClock& clock) {
+    condition_samples(samples, settings);
+    cycles_[sample] = clock.lap();
+    find_pose(settings);
+    cycles_[pose] = clock.lap();
+    render_contact(settings);
+    cycles_[contact] = clock.lap();
+    find_current_references(settings);
+    cycles_[torque] = clock.lap();
+    regulate_currents(settings);
+    cycles_[current] = clock.lap();
+    supervise(samples, settings);
+    write_signals();
+    ++periods_;
+    return drive_;
+  }
+
+  /// Ends the period's measure of time: call it last, when the bridges are written and the records are made. The
+  /// last stage and the sum of all stages are shown in the next period's signals.
+  template <class StageClock>
+  void finish(StageClock& clock) {
+    cycles_[report] = clock.lap();
+    servo_cycles_ = 0;
+    for (const std::uint32_t cycles : cycles_) servo_cycles_ += cycles;
+  }
+
+  /// Carries out a command that the link has validated, in the next step. Counts as a sign of life.
+  void carry_out(const protocol::CommandReport& command);
+  /// The host was heard: any output report came in.
+  void host_alive() { host_silence_periods_ = 0; }
+  /// Reports a fault found outside the signal path; it switches the bridges off in the next step.
+  void raise(protocol::Fault fault);
+
+  const protocol::SignalValues& signals() const { return signals_; }
+  protocol::State state() const { return supervisor_.state; }
+  protocol::Fault fault() const { return supervisor_.fault; }
+  std::uint8_t switches() const { return switches_.closed; }  ///< bits of protocol::Switch, debounced
+  std::uint32_t periods() const { return periods_; }          ///< control periods completed since the start
+  std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
+  bool force_is_on() const { return supervisor_.state == protocol::State::active; }
+
+ private:
+  enum Stage : std::uint8_t { sample, pose, contact, torque, current, report, stage_count };
+
+  void condition_samples(const Samples& samples, const Settings& settings);
+  void find_pose(const Settings& settings);
+  void render_contact(const Settings& settings);
+  void find_current_references(const Settings& settings);
+  void regulate_currents(const Settings& settings);
+  void supervise(const Samples& samples, const Settings& settings);
+  void write_signals();
+  void keep_reference(const Settings& settings);
+
+  BoardLimits board_;
+
+  // Remembered from period to period.
+  std::uint32_t periods_ = 0;
+  CurrentOffsets offsets_;
+  SupplyFilter supply_;
+  SwitchFilter switches_;
+  InkwellReference reference_;
+  std::array<SpeedEstimate, 3> speeds_{};
+  std::array<CurrentLoop, 3> loops_{};
+  TestPulse test_;
+  Supervisor supervisor_;
+  Requests requests_;
+  float force_gain_ = 0.0f;
+  std::uint32_t host_silence_periods_ = 0;
+
+  // Results of this period, in the order of the path.
+  std::array<std::int32_t, 3> encoder_counts_{};  ///< since power-up
+  Triple current_A_{};
+  Triple gimbal_rad_{};
+  Triple joint_rad_{};
+  Triple joint_speed_rad_per_s_{};
+  Pose pose_{};
+  Vector3 velocity_m_per_s_;
+  Contact contact_;
+  Force force_{};
+  Triple torque_Nm_{};
+  Triple reference_A_{};
+  Drive drive_;
+
+  std::array<std::uint32_t, stage_count> cycles_{};
+  std::uint32_t servo_cycles_ = 0;
+  protocol::SignalValues signals_{};
+};
+
+}  // namespace inkwell::control

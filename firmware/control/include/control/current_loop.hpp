@@ -1,0 +1,32 @@
+// Current control of one motor: a PI controller with anti-windup (paper, section 3.5, after Eq. 15).
+//
+// The controller's zero R/L cancels the motor's electrical pole when the integral gain is R times and the
+// proportional gain L times the wanted bandwidth. The integral is taken by the trapezoidal rule, because
+// at 50 us against L/R = 109 us either rectangle would put the discrete zero well beside the pole.
+#pragma once
+
+namespace inkwell::control {
+
+struct CurrentLoopGains {
+  float proportional_V_per_A;
+  float half_integral_V_per_A;  ///< integral gain times half a control period: the trapezoidal rule's weight
+  float voltage_limit_V;
+};
+
+/// What one loop remembers. Zero while its bridge is off.
+struct CurrentLoop {
+  float integral_V = 0.0f;
+  float error_A = 0.0f;  ///< of the period before
+};
+
+struct CurrentLoopStep {
+  CurrentLoop loop;
+  float voltage_V;
+};
+
+/// One period: the voltage for the next period, within +-voltage_bound_V. While the voltage is at its bound
+/// the integral does not grow further towards it.
+CurrentLoopStep regulate(const CurrentLoop& loop, float reference_A, float current_A, const CurrentLoopGains& gains,
+                         float voltage_bound_V);
+
+}  // namespace inkwell::control

@@ -1,0 +1,36 @@
+// From timer counts to joint angles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include <control/vector.hpp>
+
+namespace inkwell::control {
+
+/// Goes on counting where a 16-bit or 32-bit timer wraps: the count nearest to `unwrapped` that agrees
+/// with `timer_count` in the timer's bits. Right while less than half the timer's range passes between
+/// two calls; for 16 bits in 50 us that is 100 times the fastest arm.
+template <class TimerCount>
+constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
+  static_assert(std::is_unsigned_v<TimerCount> && sizeof(TimerCount) <= 4);
+  using Signed = std::make_signed_t<TimerCount>;
+  const auto step = static_cast<Signed>(static_cast<TimerCount>(timer_count - static_cast<TimerCount>(unwrapped)));
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(unwrapped) + static_cast<std::uint32_t>(step));
+}
+
+struct EncoderScale {
+  Triple rad_per_count;  ///< negative where the encoder counts down when its joint turns forward
+  Triple inkwell_rad;    ///< joint angles while the stylus is in the inkwell
+};
+
+/// Joint angles for counts since the inkwell (paper, section 3.1).
+constexpr Triple joint_angles(const std::array<std::int32_t, 3>& counts_since_inkwell, const EncoderScale& scale) {
+  Triple joint_rad{};
+  for (std::size_t i = 0; i < 3; ++i)
+    joint_rad[i] = scale.inkwell_rad[i] + static_cast<float>(counts_since_inkwell[i]) * scale.rad_per_count[i];
+  return joint_rad;
+}
+
+}  // namespace inkwell::control

@@ -1,0 +1,46 @@
+// The parameters as the control interrupt wants them: every product and reciprocal ready.
+#pragma once
+
+#include <cstdint>
+
+#include <control/contact.hpp>
+#include <control/current_loop.hpp>
+#include <control/encoders.hpp>
+#include <control/kinematics.hpp>
+#include <control/torque.hpp>
+#include <protocol/parameters.hpp>
+
+namespace inkwell::control {
+
+/// Angle = square r^2 + slope r + offset of one gimbal potentiometer.
+struct GimbalCurve {
+  float square_rad;
+  float slope_rad;
+  float offset_rad;
+};
+
+/// What makes the supervisor switch off.
+struct Limits {
+  Triple joint_minimum_rad;  ///< third entry: the elbow, relative to link 2 on every arm
+  Triple joint_maximum_rad;
+  Triple over_current_A;     ///< a measured current beyond it is a fault
+  float speed_limit_squared_m2_per_s2;
+  std::uint32_t host_timeout_periods;
+};
+
+struct Settings {
+  Arm arm;
+  EncoderScale encoders;
+  std::array<GimbalCurve, 3> gimbal;
+  Box box;                      ///< already smaller by the sphere's radius
+  Wall wall;
+  float ramp_per_period;        ///< rise of the force's gain in one control period
+  Motors motors;
+  CurrentLoopGains current_loop;
+  Limits limits;
+};
+
+/// Turns a checked set of parameters into settings. Divides and is not short: for the main loop only.
+Settings prepare(const protocol::ParameterSet& parameters);
+
+}  // namespace inkwell::control

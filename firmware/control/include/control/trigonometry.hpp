@@ -1,0 +1,23 @@
+// Sine, cosine, reciprocal and reciprocal square root in float, without libm and without a divide.
+#pragma once
+
+namespace inkwell::control {
+
+struct SineCosine {
+  float sine;
+  float cosine;
+};
+
+/// Absolute error at most 1.2e-7 for |angle| up to 20 rad.
+SineCosine sine_cosine(float angle_rad);
+
+/// 1 / value for a positive normal value below 1e37; relative error at most 2e-7.
+float reciprocal(float value);
+
+/// 1 / sqrt(value) for a positive normal value; relative error at most 3e-7.
+float reciprocal_square_root(float value);
+
+/// False for infinities and for what is not a number, also where the compiler may assume there are none.
+bool is_finite(float value);
+
+}  // namespace inkwell::control
