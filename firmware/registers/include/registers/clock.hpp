@@ -1,0 +1,82 @@
+// Reset and clock control, supply of the core, flash interface (RM0090, chapters RCC, PWR, Embedded flash).
+#pragma once
+
+#include <registers/register.hpp>
+
+namespace inkwell::registers {
+
+template <std::uint32_t base>
+struct ResetAndClockControl {
+  struct CR : Register<base + 0x00> {
+    using HSEON = Field<CR, 16, 1>;
+    using HSERDY = Field<CR, 17, 1>;
+    using CSSON = Field<CR, 19, 1>;
+    using PLLON = Field<CR, 24, 1>;
+    using PLLRDY = Field<CR, 25, 1>;
+  };
+  struct PLLCFGR : Register<base + 0x04> {
+    using PLLM = Field<PLLCFGR, 0, 6>;
+    using PLLN = Field<PLLCFGR, 6, 9>;
+    using PLLP = Field<PLLCFGR, 16, 2>;
+    using PLLSRC = Field<PLLCFGR, 22, 1>;
+    using PLLQ = Field<PLLCFGR, 24, 4>;
+  };
+  struct CFGR : Register<base + 0x08> {
+    using SW = Field<CFGR, 0, 2>;
+    using SWS = Field<CFGR, 2, 2>;
+    using HPRE = Field<CFGR, 4, 4>;
+    using PPRE1 = Field<CFGR, 10, 3>;
+    using PPRE2 = Field<CFGR, 13, 3>;
+  };
+  struct AHB1ENR : Register<base + 0x30> {
+    using GPIOAEN = Field<AHB1ENR, 0, 1>;
+    using GPIOBEN = Field<AHB1ENR, 1, 1>;
+    using GPIOCEN = Field<AHB1ENR, 2, 1>;
+    using DMA2EN = Field<AHB1ENR, 22, 1>;
+  };
+  struct AHB2ENR : Register<base + 0x34> {
+    using OTGFSEN = Field<AHB2ENR, 7, 1>;
+  };
+  struct APB1ENR : Register<base + 0x40> {
+    using TIM3EN = Field<APB1ENR, 1, 1>;
+    using TIM4EN = Field<APB1ENR, 2, 1>;
+    using TIM5EN = Field<APB1ENR, 3, 1>;
+    using USART2EN = Field<APB1ENR, 17, 1>;
+    using PWREN = Field<APB1ENR, 28, 1>;
+  };
+  struct APB2ENR : Register<base + 0x44> {
+    using TIM1EN = Field<APB2ENR, 0, 1>;
+    using TIM8EN = Field<APB2ENR, 1, 1>;
+    using ADC1EN = Field<APB2ENR, 8, 1>;
+    using ADC2EN = Field<APB2ENR, 9, 1>;
+    using ADC3EN = Field<APB2ENR, 10, 1>;
+  };
+  struct CSR : Register<base + 0x74> {
+    using RMVF = Field<CSR, 24, 1>;
+    using PORRSTF = Field<CSR, 27, 1>;
+    using SFTRSTF = Field<CSR, 28, 1>;
+    using IWDGRSTF = Field<CSR, 29, 1>;
+  };
+};
+using RCC = ResetAndClockControl<0x40023800>;
+
+template <std::uint32_t base>
+struct PowerControl {
+  struct CR : Register<base + 0x00> {
+    using VOS = Field<CR, 14, 1>;
+  };
+};
+using PWR = PowerControl<0x40007000>;
+
+template <std::uint32_t base>
+struct FlashInterface {
+  struct ACR : Register<base + 0x00> {
+    using LATENCY = Field<ACR, 0, 3>;
+    using PRFTEN = Field<ACR, 8, 1>;
+    using ICEN = Field<ACR, 9, 1>;
+    using DCEN = Field<ACR, 10, 1>;
+  };
+};
+using FLASH = FlashInterface<0x40023C00>;
+
+}  // namespace inkwell::registers

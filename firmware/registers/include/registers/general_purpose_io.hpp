@@ -1,0 +1,23 @@
+// General-purpose input and output (RM0090, chapter GPIO). The fields of a pin are made by the pin driver.
+#pragma once
+
+#include <registers/register.hpp>
+
+namespace inkwell::registers {
+
+template <std::uint32_t base>
+struct GeneralPurposeIo {
+  struct MODER : Register<base + 0x00> {};
+  struct OTYPER : Register<base + 0x04> {};
+  struct OSPEEDR : Register<base + 0x08> {};
+  struct PUPDR : Register<base + 0x0C> {};
+  struct IDR : Register<base + 0x10> {};
+  struct BSRR : Register<base + 0x18> {};
+  struct AFRL : Register<base + 0x20> {};
+  struct AFRH : Register<base + 0x24> {};
+};
+using GPIOA = GeneralPurposeIo<0x40020000>;
+using GPIOB = GeneralPurposeIo<0x40020400>;
+using GPIOC = GeneralPurposeIo<0x40020800>;
+
+}  // namespace inkwell::registers

@@ -1,0 +1,73 @@
+// What belongs to the Cortex-M4F itself (ARMv7-M Architecture Reference Manual, PM0214), the chip's debug
+// configuration (RM0090, chapter Debug support) and its unique identifier (chapter Device electronic signature).
+#pragma once
+
+#include <registers/register.hpp>
+
+namespace inkwell::registers {
+
+template <std::uint32_t base>
+struct SystemControlBlock {
+  struct VTOR : Register<base + 0x08> {};
+  struct AIRCR : Register<base + 0x0C> {
+    using SYSRESETREQ = Field<AIRCR, 2, 1>;
+    using VECTKEY = Field<AIRCR, 16, 16>;
+  };
+  struct CFSR : Register<base + 0x28> {};
+  struct HFSR : Register<base + 0x2C> {};
+  struct BFAR : Register<base + 0x38> {};
+};
+using SCB = SystemControlBlock<0xE000ED00>;
+
+template <std::uint32_t base>
+struct CoprocessorAccess {
+  struct CPACR : Register<base + 0x00> {
+    using CP = Field<CPACR, 20, 4>;
+  };
+};
+using FPU_CPACR = CoprocessorAccess<0xE000ED88>;
+
+template <std::uint32_t base>
+struct NestedVectoredInterruptController {
+  struct ISER : RegisterArray<base + 0x000, 4, 3> {};
+  struct ICER : RegisterArray<base + 0x080, 4, 3> {};
+  struct IPR : RegisterArray<base + 0x300, 1, 82, std::uint8_t> {};
+};
+using NVIC = NestedVectoredInterruptController<0xE000E100>;
+
+template <std::uint32_t base>
+struct CoreDebug {
+  struct DEMCR : Register<base + 0x0C> {
+    using TRCENA = Field<DEMCR, 24, 1>;
+  };
+};
+using CORE_DEBUG = CoreDebug<0xE000EDF0>;
+
+template <std::uint32_t base>
+struct DataWatchpointAndTrace {
+  struct CTRL : Register<base + 0x00> {
+    using CYCCNTENA = Field<CTRL, 0, 1>;
+  };
+  struct CYCCNT : Register<base + 0x04> {};
+};
+using DWT = DataWatchpointAndTrace<0xE0001000>;
+
+template <std::uint32_t base>
+struct DebugSupport {
+  struct DBGMCU_APB1_FZ : Register<base + 0x08> {
+    using DBG_IWDG_STOP = Field<DBGMCU_APB1_FZ, 12, 1>;
+  };
+  struct DBGMCU_APB2_FZ : Register<base + 0x0C> {
+    using DBG_TIM1_STOP = Field<DBGMCU_APB2_FZ, 0, 1>;
+    using DBG_TIM8_STOP = Field<DBGMCU_APB2_FZ, 1, 1>;
+  };
+};
+using DBG = DebugSupport<0xE0042000>;
+
+template <std::uint32_t base>
+struct DeviceSignature {
+  struct U_ID : RegisterArray<base + 0x00, 4, 3> {};
+};
+using SIGNATURE = DeviceSignature<0x1FFF7A10>;
+
+}  // namespace inkwell::registers

@@ -1,0 +1,25 @@
+// Universal synchronous asynchronous receiver transmitter (RM0090, chapter USART), as far as it transmits.
+#pragma once
+
+#include <registers/register.hpp>
+
+namespace inkwell::registers {
+
+template <std::uint32_t base>
+struct SerialPort {
+  struct SR : Register<base + 0x00> {
+    using TC = Field<SR, 6, 1>;
+    using TXE = Field<SR, 7, 1>;
+  };
+  struct DR : Register<base + 0x04> {
+    using DR_ = Field<DR, 0, 9>;
+  };
+  struct BRR : Register<base + 0x08> {};
+  struct CR1 : Register<base + 0x0C> {
+    using TE = Field<CR1, 3, 1>;
+    using UE = Field<CR1, 13, 1>;
+  };
+};
+using USART2 = SerialPort<0x40004400>;
+
+}  // namespace inkwell::registers
