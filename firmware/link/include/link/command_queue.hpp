@@ -1,0 +1,60 @@
+// Commands on their way from the host to the control interrupt.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <link/shared.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell::link {
+
+/// The command in an output report (from its report id on), or nothing if its length, version, command,
+/// signals, motor, amplitude or duration is not one of the protocol.
+std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report);
+
+/// Queue from the main loop to the control interrupt, which takes one command a period.
+class CommandQueue {
+ public:
+  static constexpr std::uint32_t capacity = 8;
+
+  // ---- main loop ----
+
+  /// Queues a decoded command and notes a sign of life; false if the queue is full.
+  bool push(const protocol::CommandReport& command);
+
+  /// Whether such a command waits for the interrupt.
+  bool waiting(protocol::Command command) const;
+
+  /// The host is gone: what is queued is forgotten, and the interrupt's next command is disable_force.
+  void host_gone();
+
+  // ---- control interrupt ----
+
+  /// Whether a command arrived since the last call; the controller then hears host_alive().
+  bool take_sign_of_life() {
+    const bool seen = sign_of_life_.load();
+    if (seen) sign_of_life_.store(false);
+    return seen;
+  }
+
+  /// The next command, to be carried out in this period; null if there is none. Valid until the interrupt returns.
+  const protocol::CommandReport* take();
+
+  /// Token of the last command taken, for PoseReport::command_token.
+  std::uint8_t last_token() const { return last_token_; }
+
+ private:
+  std::array<protocol::CommandReport, capacity> commands_;
+  Shared<std::uint32_t> pushed_{0};  ///< written by the main loop
+  Shared<std::uint32_t> taken_{0};   ///< written by the interrupt
+  Shared<bool> host_gone_{false};
+  Shared<bool> sign_of_life_{false};
+  std::uint8_t last_token_ = 0;
+  protocol::CommandReport disable_force_{};
+};
+
+}  // namespace inkwell::link

@@ -1,0 +1,36 @@
+// Everything that the main loop and the control interrupt hand to each other.
+//
+// Each part has one producer and one consumer and never makes the interrupt wait. In a control period:
+//
+//   settings = link.parameters.take(periods)
+//   if (link.commands.take_sign_of_life()) controller.host_alive()
+//   if (command = link.commands.take()) controller.carry_out(*command)
+//   controller.step(...)
+//   link.poses.record(controller.signals(), {...}); link.scope.record(controller.signals(), periods)
+//   link.status.record(controller.state(), cycles, overrun)
+//
+// About 68 KB, most of it scope frames: it lives in main memory, not in the core-coupled one.
+#pragma once
+
+#include <cstdint>
+
+#include <link/command_queue.hpp>
+#include <link/parameter_store.hpp>
+#include <link/pose_recorder.hpp>
+#include <link/scope_recorder.hpp>
+#include <link/servo_status.hpp>
+
+namespace inkwell::link {
+
+struct Link {
+  /// `cycles_per_period`: processor cycles of one control period.
+  explicit Link(std::uint32_t cycles_per_period) : poses(cycles_per_period) {}
+
+  ParameterStore parameters;
+  CommandQueue commands;
+  PoseRecorder poses;
+  ScopeRecorder scope;
+  ServoStatus status;
+};
+
+}  // namespace inkwell::link

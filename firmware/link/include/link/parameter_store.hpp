@@ -1,0 +1,61 @@
+// The parameters: checked and prepared in the main loop, taken whole at the start of a control period.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <control/settings.hpp>
+#include <link/parameter_check.hpp>
+#include <link/shared.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell::link {
+
+/// Holds the parameters and two buffers of prepared settings: the interrupt works with one, the main
+/// loop prepares the next transaction in the other. The interrupt alone swaps them.
+class ParameterStore {
+ public:
+  /// Starts with the defaults of the table.
+  ParameterStore();
+
+  // ---- main loop ----
+
+  /// Checks a ParametersReport and, if it is sound, offers its settings to the interrupt. A refused one
+  /// changes nothing but result(). `busy` while the transaction before has not been taken yet.
+  protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on);
+
+  /// Every parameter in the table's order; returns the bytes of the report that are used.
+  std::size_t read(protocol::ParametersReport& report) const;
+
+  /// What became of the last transaction.
+  protocol::TransactionReport result() const;
+
+  const protocol::ParameterSet& values() const { return values_; }
+
+  // ---- control interrupt ----
+
+  /// Called once at the start of a control period; swaps if there is a transaction to take.
+  const control::Settings& take(std::uint32_t periods) {
+    if (offered_.load()) {
+      active_ ^= 1u;
+      applied_at_periods_.store(periods);
+      offered_.store(false);
+    }
+    return settings_[active_];
+  }
+
+ private:
+  protocol::ParameterSet values_;
+  std::array<control::Settings, 2> settings_;
+  std::uint32_t active_ = 0;  ///< written by the interrupt, and only while `offered_`
+  Shared<bool> offered_{false};
+  Shared<std::uint32_t> applied_at_periods_{0};
+  protocol::Refusal refusal_ = protocol::Refusal::accepted;
+  std::uint16_t refused_id_ = 0;
+  float refused_value_ = 0.0f;
+  std::uint32_t transactions_ = 0;
+};
+
+}  // namespace inkwell::link

@@ -1,0 +1,93 @@
+// Endpoint 0: SETUP, data and status stages (USB 2.0, sections 8.5.3 and 9.3).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <protocol/reports.hpp>
+#include <usb/port.hpp>
+
+namespace inkwell::usb {
+
+/// The eight bytes of a SETUP packet (USB 2.0, table 9-2).
+struct SetupPacket {
+  std::uint8_t request_type;
+  std::uint8_t request;
+  std::uint16_t value;
+  std::uint16_t index;
+  std::uint16_t length;
+
+  constexpr bool device_to_host() const { return (request_type & 0x80u) != 0; }
+  constexpr std::uint8_t value_high() const { return static_cast<std::uint8_t>(value >> 8); }
+  constexpr std::uint8_t value_low() const { return static_cast<std::uint8_t>(value); }
+};
+
+/// What a request leads to.
+struct Answer {
+  enum class Kind : std::uint8_t {
+    stall,    ///< the request is not supported, or wrong
+    done,     ///< no data stage; carried out
+    send,     ///< IN data stage with `data`, cut to wLength
+    receive,  ///< OUT data stage of wLength bytes, then data_received()
+  };
+  Kind kind = Kind::stall;
+  std::span<const std::byte> data{};
+
+  static constexpr Answer stall() { return {}; }
+  static constexpr Answer done() { return {Kind::done, {}}; }
+  static constexpr Answer send(std::span<const std::byte> data) { return {Kind::send, data}; }
+  static constexpr Answer receive() { return {Kind::receive, {}}; }
+};
+
+/// Who carries the requests out.
+class ControlRequests {
+ public:
+  virtual Answer request(const SetupPacket& setup) = 0;
+  /// The whole data of an OUT data stage; false stalls the status stage.
+  virtual bool data_received(const SetupPacket& setup, std::span<const std::byte> data) = 0;
+
+ protected:
+  ~ControlRequests() = default;
+};
+
+class ControlEndpoint {
+ public:
+  /// Room for the longest report that goes over endpoint 0.
+  static constexpr std::size_t buffer_size = sizeof(protocol::ParametersReport);
+
+  ControlEndpoint(Port& port, ControlRequests& requests) : port_(port), requests_(requests) {}
+
+  void reset() { stage_ = Stage::idle; }
+  void setup(std::span<const std::byte> packet);
+  void received(std::span<const std::byte> packet);
+  void sent();
+
+  /// Where an answer may be composed; valid until the next SETUP.
+  std::span<std::byte, buffer_size> buffer() { return buffer_; }
+
+ private:
+  enum class Stage : std::uint8_t {
+    idle,        ///< waits for SETUP
+    data_in,     ///< sends `remaining_`; also takes an early status packet
+    data_out,    ///< collects wLength bytes in `buffer_`
+    status_in,   ///< an empty packet to the host ends the request
+    status_out,  ///< an empty packet from the host ends the request
+  };
+
+  void send_next_packet();
+  void stall();
+
+  Port& port_;
+  ControlRequests& requests_;
+  Stage stage_ = Stage::idle;
+  SetupPacket setup_{};
+  std::span<const std::byte> remaining_{};
+  bool end_with_empty_packet_ = false;
+  std::size_t collected_ = 0;
+  alignas(4) std::array<std::byte, buffer_size> buffer_{};
+};
+
+}  // namespace inkwell::usb

@@ -1,0 +1,90 @@
+// The board as a USB device: a HID interface for poses, commands and parameters, and a vendor interface
+// for the scope. Composed in main():
+//
+//   usb::Device device{port, link, identity};
+//   for (;;) { device.poll(); wait_for_interrupt(); }
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <link/link.hpp>
+#include <protocol/reports.hpp>
+#include <usb/control_endpoint.hpp>
+#include <usb/port.hpp>
+
+namespace inkwell::usb {
+
+/// What the device tells about itself beside the tables of the protocol.
+struct Identity {
+  std::array<char, 24> serial_number;              ///< hexadecimal digits of the chip's unique id
+  std::array<std::uint8_t, 3> firmware_version;    ///< major, minor, patch
+  std::uint32_t processor_clock_Hz;
+  std::uint32_t reset_cause;                       ///< RCC_CSR bits 31..24 as found at start-up
+};
+
+class Device final : private ControlRequests {
+ public:
+  /// All three must outlive the device. Nothing happens on the bus before the first poll().
+  Device(Port& port, link::Link& link, const Identity& identity);
+
+  /// Answers what happened on the bus and keeps the endpoints filled. Called from the main loop at least
+  /// every 50 us; takes a bounded time, of which a transaction of all parameters is the longest.
+  void poll();
+
+  bool configured() const { return configuration_ != 0; }
+  bool suspended() const { return suspended_; }
+
+ private:
+  // Requests on endpoint 0, called by control_.
+  Answer request(const SetupPacket& setup) override;
+  bool data_received(const SetupPacket& setup, std::span<const std::byte> data) override;
+
+  Answer standard_request(const SetupPacket& setup);
+  Answer get_descriptor(const SetupPacket& setup);
+  Answer get_status(const SetupPacket& setup);
+  Answer change_halt(const SetupPacket& setup, bool halted);
+  Answer set_configuration(const SetupPacket& setup);
+  Answer string_descriptor(std::uint8_t index);
+  Answer hid_request(const SetupPacket& setup);
+  Answer get_report(const SetupPacket& setup);
+  Answer vendor_request(const SetupPacket& setup);
+
+  void handle(const Event& event);
+  void bus_reset();
+  void host_gone();
+  void start_endpoints();
+  void stop_endpoints();
+  void restart(std::uint8_t endpoint_address);
+  void output_report(std::span<const std::byte> report);
+  bool accept_parameters(std::span<const std::byte> report);
+  void send_pose();
+  void send_scope();
+  protocol::InformationReport information() const;
+
+  /// One of the endpoints beside endpoint 0.
+  struct Endpoint {
+    std::uint8_t address;
+    EndpointType type;
+    bool busy = false;    ///< a transfer is running
+    bool halted = false;
+  };
+  Endpoint* find_endpoint(std::uint16_t address);
+
+  Port& port_;
+  link::Link& link_;
+  const Identity& identity_;
+  ControlEndpoint control_;
+  std::uint8_t configuration_ = 0;
+  std::uint8_t idle_rate_ = 0;
+  bool addressed_ = false;
+  bool suspended_ = false;
+  std::array<Endpoint, 3> endpoints_;
+  bool scope_frame_open_ = false;     ///< the hand-over's oldest frame is being sent
+  bool scope_wants_end_ = false;      ///< the frame's length is a multiple of 64: an empty packet ends it
+  alignas(4) protocol::PoseReport pose_{};
+};
+
+}  // namespace inkwell::usb

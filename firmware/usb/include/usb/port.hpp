@@ -1,0 +1,70 @@
+// What the USB device needs from the hardware: one full-speed port with its endpoints.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace inkwell::usb {
+
+inline constexpr std::size_t packet_size_maximum = 64;
+
+enum class EndpointType : std::uint8_t { control = 0, bulk = 2, interrupt = 3 };
+
+/// Something that happened on the bus, in the order in which it happened.
+struct Event {
+  enum class Kind : std::uint8_t {
+    reset,     ///< the host reset the bus: address 0, every endpoint but 0 closed
+    suspend,   ///< no traffic for 3 ms: the host sleeps or the cable is out
+    resume,    ///< traffic again
+    setup,     ///< eight bytes of a SETUP packet in `data`; what endpoint 0 was doing is over
+    received,  ///< an OUT packet of `length` bytes on `endpoint`; the next one waits for receive()
+    sent,      ///< the transfer given to send() on `endpoint` was taken by the host to its last packet
+  };
+
+  Kind kind = Kind::reset;
+  std::uint8_t endpoint = 0;  ///< number, without the direction bit
+  std::uint8_t length = 0;    ///< bytes of `data` that are used
+  alignas(4) std::array<std::byte, packet_size_maximum> data{};
+};
+
+/// Endpoint hardware. Endpoints go by their address, bit 7 set for IN. Every call returns at once or
+/// after a wait that is bounded to microseconds. Endpoint 0 is open from reset on and always takes SETUP.
+class Port {
+ public:
+  /// The next event; false if there is none. Also moves the running transfers on.
+  virtual bool next_event(Event& event) = 0;
+
+  /// Called when SET_ADDRESS arrives, before its status stage; the port takes the address into use when
+  /// its hardware wants it.
+  virtual void set_address(std::uint8_t address) = 0;
+
+  /// Opens an endpoint with data toggle 0, not halted, without a transfer.
+  virtual void open(std::uint8_t endpoint_address, EndpointType type) = 0;
+
+  /// Closes an endpoint; a running transfer is forgotten.
+  virtual void close(std::uint8_t endpoint_address) = 0;
+
+  /// Answers STALL from now on. On endpoint 0 until the next SETUP.
+  virtual void stall(std::uint8_t endpoint_address) = 0;
+
+  /// Forgets a running transfer, ends a stall and starts again with data toggle 0.
+  virtual void clear_stall(std::uint8_t endpoint_address) = 0;
+
+  /// Starts an IN transfer. `data` must stay as it is until `sent` or cancel(); it may be empty. It goes
+  /// out as full packets and a shorter last one; no empty packet is added. One transfer at a time. On
+  /// endpoint 0 at most one packet.
+  virtual void send(std::uint8_t endpoint_address, std::span<const std::byte> data) = 0;
+
+  /// Forgets a running IN transfer: no `sent` comes for it any more.
+  virtual void cancel(std::uint8_t endpoint_address) = 0;
+
+  /// Lets the endpoint take one OUT packet.
+  virtual void receive(std::uint8_t endpoint_address) = 0;
+
+ protected:
+  ~Port() = default;
+};
+
+}  // namespace inkwell::usb
