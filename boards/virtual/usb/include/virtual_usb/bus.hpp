@@ -1,0 +1,55 @@
+// The wire between a host controller and one full-speed device: line states and single transactions.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace inkwell::virtual_board {
+
+/// Largest data packet of a full-speed device (isochronous; other types stop at 64).
+inline constexpr std::size_t full_speed_packet_maximum = 1023;
+
+/// What the host sees come back in a transaction (USB 2.0, section 8.4.5).
+enum class Handshake : std::uint8_t {
+  ack,      ///< the data went over
+  nak,      ///< not now
+  stall,    ///< the endpoint is halted, or the request is not supported
+  nothing,  ///< no answer or a damaged one: the host counts an error and tries again
+};
+
+/// The device's answer to an IN token. `length` bytes of `data` are valid if `handshake` is `ack`.
+struct InReply {
+  Handshake handshake = Handshake::nothing;
+  bool data1 = false;
+  std::size_t length = 0;
+};
+
+/// A device's side of the cable.
+class BusDevice {
+ public:
+  virtual ~BusDevice() = default;
+
+  /// 0 while the pull-up on D+ is off; otherwise a number that differs after each time it was off.
+  virtual std::uint32_t attachment() const = 0;
+  /// The cable brings VBUS, or takes it away.
+  virtual void set_bus_power(bool present) = 0;
+
+  virtual void begin_reset() = 0;
+  virtual void end_reset() = 0;
+  virtual void start_of_frame(std::uint16_t frame_number) = 0;
+  /// The bus has been idle for 3 ms.
+  virtual void suspend() = 0;
+  /// The host drives resume signalling; frames follow.
+  virtual void resume() = 0;
+
+  virtual Handshake setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) = 0;
+  virtual Handshake out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) = 0;
+  /// The packet is on the wire until `finish_in`.
+  virtual InReply in(unsigned address, unsigned endpoint, std::span<std::byte, full_speed_packet_maximum> data) = 0;
+  /// The host acknowledges the packet of `in`. False if the device spoilt it meanwhile (FIFO flushed, reset).
+  virtual bool finish_in(unsigned endpoint) = 0;
+};
+
+}  // namespace inkwell::virtual_board

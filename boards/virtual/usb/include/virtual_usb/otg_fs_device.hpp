@@ -1,0 +1,158 @@
+// The OTG_FS core of the STM32F405 in device mode (RM0090, chapter "USB on-the-go full-speed"): registers
+// towards the processor, transactions towards the bus. Host mode, DMA and isochronous endpoints are not
+// modelled and say so in the log, as does firmware that does what the manual forbids.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <chip/machine.hpp>
+#include <virtual_usb/bus.hpp>
+#include <virtual_usb/word_fifo.hpp>
+
+namespace inkwell::virtual_board {
+
+class OtgFsDevice final : public Peripheral, public BusDevice {
+ public:
+  static constexpr std::uint32_t base = 0x5000'0000;
+  static constexpr std::uint32_t size = 0x4'0000;
+  static constexpr unsigned interrupt_position = 67;
+  static constexpr unsigned endpoint_count = 4;          ///< IN and OUT each, endpoint 0 included
+  static constexpr std::size_t packet_memory_words = 320;
+
+  OtgFsDevice(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log);
+  OtgFsDevice(const OtgFsDevice&) = delete;
+  OtgFsDevice& operator=(const OtgFsDevice&) = delete;
+
+  // Peripheral
+  std::uint32_t read(std::uint32_t offset, unsigned size_bytes) override;
+  void write(std::uint32_t offset, std::uint32_t value, unsigned size_bytes) override;
+  void reset() override;
+
+  // BusDevice
+  std::uint32_t attachment() const override { return pulled_up_ ? attachments_ : 0; }
+  void set_bus_power(bool present) override;
+  void begin_reset() override;
+  void end_reset() override;
+  void start_of_frame(std::uint16_t frame_number) override;
+  void suspend() override;
+  void resume() override;
+  Handshake setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) override;
+  Handshake out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) override;
+  InReply in(unsigned address, unsigned endpoint, std::span<std::byte, full_speed_packet_maximum> data) override;
+  bool finish_in(unsigned endpoint) override;
+
+ private:
+  /// The side of an endpoint that sends to the host.
+  struct InEndpoint {
+    std::uint32_t control = 0;        ///< DIEPCTL without the bits that only act
+    std::uint32_t interrupts = 0;     ///< DIEPINT but TXFE, which is a level
+    std::uint32_t packets = 0;        ///< PKTCNT: packets still to be acknowledged
+    std::uint32_t bytes_to_load = 0;  ///< XFRSIZ: falls as packets are written to the FIFO
+    std::uint32_t bytes_to_send = 0;  ///< falls as packets are acknowledged
+    std::uint32_t packet_words_to_load = 0;  ///< rest of the packet that firmware is writing; 0 between packets
+    std::uint32_t packet_bytes_loading = 0;
+    std::optional<std::uint32_t> bytes_on_wire;
+    bool data1 = false;
+    bool damaged = false;             ///< FIFO content has a bad CRC until it is flushed
+  };
+  /// The side of an endpoint that receives from the host.
+  struct OutEndpoint {
+    std::uint32_t control = 0;
+    std::uint32_t interrupts = 0;
+    std::uint32_t packets = 0;        ///< PKTCNT
+    std::uint32_t bytes = 0;          ///< XFRSIZ
+    bool data1 = false;
+    bool disable_pending = false;     ///< EPDIS waits for the global OUT NAK
+  };
+
+  std::uint32_t read_register(std::uint32_t offset);
+  void write_register(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t read_endpoint(std::uint32_t offset);
+  void write_endpoint(std::uint32_t offset, std::uint32_t value);
+  void reset_core();
+
+  void write_reset_control(std::uint32_t value);
+  void write_device_configuration(std::uint32_t value);
+  void write_device_control(std::uint32_t value);
+  void write_in_control(unsigned endpoint, std::uint32_t value);
+  void write_out_control(unsigned endpoint, std::uint32_t value);
+  void disable_out(OutEndpoint& endpoint);
+
+  std::uint32_t pop_receive_status();
+  std::uint32_t pop_receive_data();
+  void push_transmit_data(unsigned endpoint, std::uint32_t word);
+  void flush_transmit(unsigned number);
+  void note_memory_layout();
+
+  void push_status(unsigned endpoint, unsigned packet_status, std::size_t bytes, bool data1);
+  void push_data(std::span<const std::byte> data);
+  std::size_t receive_words_free() const;
+  void end_setup_stage();
+  void lose_setup_done_word();
+
+  unsigned in_packet_maximum(unsigned endpoint) const;
+  unsigned transmit_fifo_of(unsigned endpoint) const;
+  std::size_t transmit_depth(unsigned number) const { return transmit_size_[number] >> 16; }
+  std::size_t transmit_words_free(unsigned endpoint) const;
+  bool transmit_empty_level(unsigned endpoint) const;
+  bool answers(unsigned address, unsigned endpoint) const;
+
+  std::uint32_t interrupt_status() const;
+  std::uint32_t endpoint_interrupts() const;
+  void update_interrupt();
+  void update_pull_up();
+  void note(const char* sentence, std::uint32_t offset, bool is_write, std::uint32_t value);
+
+  Scheduler& scheduler_;
+  InterruptController& interrupts_;
+  UnmodelledLog& log_;
+
+  // Registers, by the names of RM0090 in words.
+  std::uint32_t otg_interrupts_ = 0;       // GOTGINT
+  std::uint32_t bus_configuration_ = 0;    // GAHBCFG
+  std::uint32_t usb_configuration_ = 0;    // GUSBCFG
+  std::uint32_t latched_interrupts_ = 0;   // GINTSTS, the bits that are cleared by writing 1
+  std::uint32_t interrupt_mask_ = 0;       // GINTMSK
+  std::uint32_t receive_size_ = 0;         // GRXFSIZ
+  std::array<std::uint32_t, endpoint_count> transmit_size_{};  // DIEPTXF0..3
+  std::uint32_t core_configuration_ = 0;   // GCCFG
+  std::uint32_t core_id_ = 0;              // CID
+  std::uint32_t device_configuration_ = 0; // DCFG
+  std::uint32_t device_control_ = 0;       // DCTL
+  std::uint32_t in_mask_ = 0;              // DIEPMSK
+  std::uint32_t out_mask_ = 0;             // DOEPMSK
+  std::uint32_t endpoint_mask_ = 0;        // DAINTMSK
+  std::uint32_t in_empty_mask_ = 0;        // DIEPEMPMSK
+  std::uint32_t bus_discharge_ = 0;        // DVBUSDIS
+  std::uint32_t bus_pulse_ = 0;            // DVBUSPULSE
+  std::uint32_t power_control_ = 0;        // PCGCCTL
+
+  std::array<InEndpoint, endpoint_count> in_{};
+  std::array<OutEndpoint, endpoint_count> out_{};
+  WordFifo receive_;
+  std::array<WordFifo, endpoint_count> transmit_{};
+
+  std::uint32_t receive_data_words_ = 0;    ///< data words at the head of the receive FIFO, after their status word
+  std::optional<unsigned> writing_endpoint_;  ///< the last access was a FIFO write of this endpoint
+  bool layout_changed_ = true;
+  bool global_in_nak_ = false;
+  bool global_out_nak_asked_ = false;
+  bool global_out_nak_effective_ = false;
+
+  unsigned address_ = 0;                    ///< in use on the bus; follows DCFG.DAD after a status stage
+  bool control_transfer_open_ = false;      ///< from a SETUP packet to its status stage
+  bool setup_stage_open_ = false;           ///< from a SETUP packet to the next token: setup done is not written yet
+  unsigned setup_done_unpopped_ = 0;        ///< setup packets whose setup-done word firmware has not popped yet
+  bool bus_power_ = false;
+  bool pulled_up_ = false;
+  bool suspended_ = false;
+  std::uint32_t attachments_ = 0;
+  std::uint16_t frame_number_ = 0;
+  Scheduler::Id end_of_periodic_frame_ = 0;
+  bool interrupt_asserted_ = false;
+};
+
+}  // namespace inkwell::virtual_board

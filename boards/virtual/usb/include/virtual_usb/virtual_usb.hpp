@@ -1,0 +1,41 @@
+// The board's USB connector: the OTG_FS core, a host controller at the other end of the cable, and the
+// USB/IP server that lets programs of this computer use the device.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include <chip/machine.hpp>
+#include <virtual_usb/otg_fs_device.hpp>
+
+namespace inkwell::virtual_board {
+
+class VirtualUsb {
+ public:
+  /// Listens on 127.0.0.1:`port` (0: any free port); throws std::runtime_error with a sentence if it is
+  /// taken. The cable is plugged in. All references must outlive this object.
+  VirtualUsb(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log, std::uint16_t port);
+  ~VirtualUsb();
+
+  /// The peripheral to map at OtgFsDevice::base.
+  OtgFsDevice& core();
+
+  /// The port on which the USB/IP server listens.
+  std::uint16_t port() const;
+
+  /// Plugs the cable in or out. To be called on the simulation's thread, as everything here but `port`.
+  void connect();
+  void disconnect();
+  bool connected() const;
+
+  /// The host has read the device's descriptors: programs can import it.
+  bool enumerated() const;
+  /// A program has imported the device.
+  bool imported() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace inkwell::virtual_board
