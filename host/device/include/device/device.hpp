@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,8 +12,8 @@
 #include <vector>
 
 #include <device/link.hpp>
+#include <device/scope_decoder.hpp>
 #include <protocol/reports.hpp>
-#include <protocol/scope.hpp>
 
 namespace inkwell::device {
 
@@ -25,20 +24,17 @@ struct Information {
   protocol::InformationReport report;
 };
 
+/// The device speaks another version of the protocol than this program.
+class Incompatible : public Error {
+ public:
+  using Error::Error;
+};
+
 /// A transaction was refused; the device keeps its old values.
 class Refused : public Error {
  public:
-  Refused(protocol::TransactionReport report);
+  explicit Refused(const protocol::TransactionReport& refusal);
   protocol::TransactionReport report;
-};
-
-/// Samples of consecutive control periods, decoded: values[i * signals.size() + j] is signal j of sample i.
-struct ScopeSamples {
-  std::vector<protocol::Signal> signals;
-  std::uint32_t first_period = 0;
-  std::size_t count = 0;
-  std::vector<float> values;
-  std::uint64_t lost_before = 0;  ///< control periods missing between the samples before and these
 };
 
 using ParameterChange = std::pair<protocol::Parameter, float>;
@@ -57,6 +53,9 @@ class Device {
 
   /// Sends a command and returns its token, which comes back in PoseReport::command_token.
   std::uint8_t send(protocol::Command command);
+  /// Sends a heartbeat unless a command went out in the last 10 ms of wall time and, as far as the poses read
+  /// tell, of board time (a virtual board may run faster than the clock). Belongs in the loop that reads poses.
+  void keep_alive();
   std::uint8_t send(protocol::Command command, const protocol::TestPulse& pulse);
   std::uint8_t select_signals(std::span<const protocol::Signal> signals);  ///< none stops the scope
 
@@ -67,6 +66,7 @@ class Device {
 
   /// Waits for the next scope frame; none on time-out. May be called from a second thread.
   std::optional<ScopeSamples> read_scope(std::chrono::milliseconds timeout);
+  std::uint64_t malformed_scope_frames() const;
 
  private:
   struct Implementation;

@@ -24,20 +24,33 @@ class Disconnected : public Error {
   using Error::Error;
 };
 
+/// The device answered a request with a stall: it does not know it, or does not accept it.
+class Stalled : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The device is there, but this user may not open it. `what()` holds the udev line to install.
+class NoPermission : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Where a device is.
 struct Endpoint {
   enum class Kind : std::uint8_t { usb, usbip };
   Kind kind;
   std::string serial_number;
   std::string product;
-  std::string path;        ///< hidapi's path, for `usb`
+  std::string path;        ///< hidapi's path for `usb`, bus id for `usbip`
   std::string host;        ///< for `usbip`
   std::uint16_t port = 0;  ///< for `usbip`
 };
 
 /// The arms on this computer's USB.
 std::vector<Endpoint> find_usb_devices();
-/// The arms exported by a USB/IP server such as a virtual board. Throws Error if it does not answer.
+/// The arms exported by a USB/IP server such as a virtual board. Throws Error if it does not answer. Their
+/// serial numbers are known only after open_link, because a USB/IP list of devices does not hold them.
 std::vector<Endpoint> find_usbip_devices(const std::string& host, std::uint16_t port);
 
 /// Raw reports and bulk data. Calls may come from two threads: one for reports, one for the bulk stream.
@@ -53,6 +66,8 @@ class Link {
   /// Waits for one bulk transfer of the scope. Returns its length, 0 on time-out. Enough transfers are
   /// kept under way that a reader who is late by 100 ms loses nothing.
   virtual std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) = 0;
+  /// Where this link leads, with the serial number and product name that the device told.
+  virtual const Endpoint& endpoint() const = 0;
 };
 
 std::unique_ptr<Link> open_link(const Endpoint& endpoint);

@@ -25,6 +25,7 @@ struct SessionStatus {
   std::uint64_t poses_lost = 0;
   std::uint64_t scope_samples_received = 0;
   std::uint64_t scope_samples_lost = 0;
+  std::uint64_t scope_frames_malformed = 0;
 };
 
 class Session {

@@ -27,6 +27,7 @@ struct VirtualBoardOptions {
   bool paused = false;    ///< starts with board time standing still
 };
 
+/// Make it in a thread that lives as long as the board shall: Linux ends the board when that thread ends.
 class VirtualBoard {
  public:
   /// Starts the program and waits until it is ready. Throws Error with what the program said if it is not.

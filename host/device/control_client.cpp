@@ -1,0 +1,113 @@
+#include <device/control_client.hpp>
+
+#include <array>
+#include <span>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "socket.hpp"
+
+namespace inkwell::device {
+
+using nlohmann::json;
+
+struct ControlClient::Implementation {
+  Socket socket;
+  std::string received;  ///< what came after the last line
+
+  std::string read_line() {
+    std::array<std::byte, 65536> chunk;
+    std::size_t searched = 0;
+    for (;;) {
+      const auto end = received.find('\n', searched);
+      if (end != std::string::npos) {
+        std::string line = received.substr(0, end);
+        received.erase(0, end + 1);
+        return line;
+      }
+      searched = received.size();
+      const std::size_t length = socket.receive_some(chunk);
+      received.append(reinterpret_cast<const char*>(chunk.data()), length);
+    }
+  }
+};
+
+ControlClient::ControlClient(const std::string& host, std::uint16_t port)
+    : implementation_(new Implementation{Socket(host, port), {}}) {}
+ControlClient::~ControlClient() = default;
+ControlClient::ControlClient(ControlClient&&) noexcept = default;
+ControlClient& ControlClient::operator=(ControlClient&&) noexcept = default;
+
+json ControlClient::call(const json& request) {
+  const std::string line = request.dump() + "\n";
+  implementation_->socket.send(std::as_bytes(std::span(line)));
+  json reply;
+  try {
+    reply = json::parse(implementation_->read_line());
+    if (reply.at("ok").get<bool>()) return reply;
+  } catch (const json::exception&) {
+    throw Error("What answers at the control port is not a virtual board. Give the control port that it printed.");
+  }
+  throw Error(fmt::format("The virtual board refused {}: {}", request.at("command").dump(),
+                          reply.value("error", std::string("it gave no reason."))));
+}
+
+BoardStatus ControlClient::status() {
+  BoardStatus status;
+  status.all = call({{"command", "status"}});
+  status.board_time_s = status.all.value("board_time_s", 0.0);
+  status.mode = status.all.value("mode", std::string());
+  status.paused = status.all.value("paused", false);
+  status.unmodelled = status.all.value("unmodelled", std::vector<std::string>());
+  return status;
+}
+
+json ControlClient::truth() { return call({{"command", "truth"}}); }
+void ControlClient::pause() { call({{"command", "pause"}}); }
+void ControlClient::run(double for_s) { call({{"command", "run"}, {"for_s", for_s}}); }
+void ControlClient::resume() { call({{"command", "resume"}}); }
+void ControlClient::reset() { call({{"command", "reset"}}); }
+void ControlClient::quit() { call({{"command", "quit"}}); }
+void ControlClient::usb(bool connected) { call({{"command", "usb"}, {"connected", connected}}); }
+void ControlClient::buttons(bool first, bool second) {
+  call({{"command", "buttons"}, {"pressed", {first, second}}});
+}
+void ControlClient::supply(double voltage_V) { call({{"command", "supply"}, {"voltage_V", voltage_V}}); }
+void ControlClient::dock(bool docked) { call({{"command", "dock"}, {"docked", docked}}); }
+
+void ControlClient::hand(const Hand& hand) {
+  json request{{"command", "hand"}, {"holds", hand.holds}};
+  if (hand.holds) {
+    request["target_m"] = hand.target_m;
+    request["stiffness_N_per_m"] = hand.stiffness_N_per_m;
+    request["damping_Ns_per_m"] = hand.damping_Ns_per_m;
+  }
+  call(request);
+}
+
+void ControlClient::hand_path(const std::vector<HandWaypoint>& path) {
+  json points = json::array();
+  for (const auto& waypoint : path) points.push_back({{"after_s", waypoint.after_s}, {"target_m", waypoint.target_m}});
+  call({{"command", "hand_path"}, {"points", points}});
+}
+
+void ControlClient::trace_start() { call({{"command", "trace"}, {"action", "start"}}); }
+void ControlClient::trace_stop() { call({{"command", "trace"}, {"action", "stop"}}); }
+
+Trace ControlClient::trace_read(std::size_t rows_maximum) {
+  const json reply = call({{"command", "trace"}, {"action", "read"}, {"maximum", rows_maximum}});
+  Trace trace;
+  try {
+    trace.columns = reply.at("columns").get<std::vector<std::string>>();
+    for (const auto& row : reply.at("rows")) {
+      if (row.size() != trace.columns.size()) throw Error("The virtual board sent a damaged trace. Build it again.");
+      for (const auto& value : row) trace.values.push_back(value.get<double>());
+    }
+  } catch (const json::exception&) {
+    throw Error("The virtual board sent a damaged trace. Build it again.");
+  }
+  return trace;
+}
+
+}  // namespace inkwell::device

@@ -1,0 +1,245 @@
+#include <device/device.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+
+namespace inkwell::device {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using protocol::Command;
+using protocol::ReportId;
+
+constexpr auto heartbeat_interval = 10ms;
+constexpr std::uint32_t heartbeat_periods = protocol::servo_rate_Hz / 100;
+constexpr auto transaction_timeout = 2s;
+
+std::string refusal_sentence(const protocol::TransactionReport& report) {
+  const auto& refusal = protocol::info(report.refusal);
+  const auto parameter = protocol::find_parameter(report.parameter_id);
+  if (!parameter) return fmt::format("The device refused the parameters: {} {}", refusal.cause, refusal.remedy);
+  const auto& row = info(*parameter);
+  return fmt::format("The device refused {} = {}: {} {} Its range is {} to {}{}{}.", row.name, report.value,
+                     refusal.cause, refusal.remedy, row.minimum, row.maximum, row.unit.empty() ? "" : " ", row.unit);
+}
+
+template <class Report>
+std::span<std::byte> writable_bytes(Report& report) {
+  return std::as_writable_bytes(std::span(&report, 1));
+}
+
+}  // namespace
+
+Refused::Refused(const protocol::TransactionReport& refusal) : Error(refusal_sentence(refusal)), report(refusal) {}
+
+struct Device::Implementation {
+  std::unique_ptr<Link> link;
+  std::uint8_t token = 0;
+  Clock::time_point last_command_at{};
+  std::uint32_t last_command_period = 0;
+  std::uint32_t newest_period = 0;
+  mutable std::mutex scope_mutex;  ///< the selection comes from one thread, the frames are read by another
+  ScopeDecoder decoder;
+
+  template <class Report>
+  void get(Report& report, const char* what) {
+    const std::size_t length = link->get_feature(writable_bytes(report));
+    if (length < sizeof report)
+      throw Incompatible(fmt::format("The device's {} report has {} bytes instead of {}. Flash the firmware that "
+                                     "belongs to this companion.", what, length, sizeof report));
+  }
+
+  std::uint8_t next_token() {
+    token = token == 255 ? 1 : static_cast<std::uint8_t>(token + 1);  // 0 stands for "no command yet"
+    return token;
+  }
+
+  std::uint8_t send(protocol::CommandReport& command) {
+    command.report_id = ReportId::command;
+    command.version = protocol::protocol_version;
+    link->write_report(std::as_bytes(std::span(&command, 1)));
+    last_command_at = Clock::now();
+    last_command_period = newest_period;
+    return command.token;
+  }
+
+  protocol::TransactionReport transaction_report() {
+    protocol::TransactionReport report{};
+    report.report_id = ReportId::transaction;
+    get(report, "transaction");
+    return report;
+  }
+
+  /// The report counts transactions, so it is known which one it speaks of.
+  protocol::TransactionReport wait_for_transaction(std::uint32_t transactions_before) {
+    const auto give_up_at = Clock::now() + transaction_timeout;
+    for (;;) {
+      const auto report = transaction_report();
+      if (report.transactions != transactions_before) return report;
+      if (Clock::now() > give_up_at) throw Error("The device did not take the parameters in 2 s. Reset the board.");
+      std::this_thread::sleep_for(1ms);
+    }
+  }
+
+  protocol::TransactionReport transact(const protocol::ParametersReport& report) {
+    const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::parameters_report_size(report.count));
+    const auto give_up_at = Clock::now() + transaction_timeout;
+    for (;;) {
+      const std::uint32_t before = transaction_report().transactions;
+      std::optional<Stalled> stalled;
+      try {
+        link->set_feature(bytes);
+      } catch (const Stalled& error) {
+        stalled = error;  // a device may refuse by a stall; the report below says why
+      }
+      if (stalled && transaction_report().transactions == before) throw *stalled;
+      const auto result = wait_for_transaction(before);
+      if (result.refusal == protocol::Refusal::accepted) return result;
+      if (result.refusal != protocol::Refusal::busy || Clock::now() > give_up_at) throw Refused(result);
+    }
+  }
+};
+
+std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
+  auto device = std::make_unique<Device>(open_link(endpoint));
+  const auto information = device->information();
+  const auto& report = information.report;
+  if (information.protocol_version != protocol::protocol_version)
+    throw Incompatible(fmt::format("The device speaks version {} of the protocol, this companion version {}. Flash the "
+                                   "firmware that belongs to this companion, or use the companion of firmware {}.",
+                                   information.protocol_version, protocol::protocol_version,
+                                   information.firmware_version));
+  if (report.parameter_table_hash != protocol::parameter_table_hash ||
+      report.signal_table_hash != protocol::signal_table_hash)
+    throw Incompatible(fmt::format("Firmware {} has other parameters or signals than this companion, though both speak "
+                                   "version {} of the protocol. Build both from the same source and flash again.",
+                                   information.firmware_version, protocol::protocol_version));
+  return device;
+}
+
+Device::Device(std::unique_ptr<Link> link) : implementation_(std::make_unique<Implementation>()) {
+  implementation_->link = std::move(link);
+}
+Device::~Device() = default;
+
+Information Device::information() {
+  Information information{};
+  information.report.report_id = ReportId::information;
+  implementation_->get(information.report, "information");
+  const auto& version = information.report.firmware_version;
+  information.firmware_version = fmt::format("{}.{}.{}", version[0], version[1], version[2]);
+  information.protocol_version = information.report.version;
+  information.serial_number = implementation_->link->endpoint().serial_number;
+  return information;
+}
+
+std::optional<protocol::PoseReport> Device::read_pose(std::chrono::milliseconds timeout) {
+  protocol::PoseReport pose;
+  const auto give_up_at = Clock::now() + timeout;
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(give_up_at - Clock::now());
+    const std::size_t length = implementation_->link->read_report(writable_bytes(pose), std::max(left, 0ms));
+    if (length == 0) return std::nullopt;
+    if (length != sizeof pose || pose.report_id != ReportId::pose) continue;
+    implementation_->newest_period = pose.time_periods;
+    return pose;
+  }
+}
+
+std::uint8_t Device::send(Command command) {
+  protocol::CommandReport report{};
+  report.command = command;
+  report.token = implementation_->next_token();
+  return implementation_->send(report);
+}
+
+void Device::keep_alive() {
+  const auto& self = *implementation_;
+  if (Clock::now() - self.last_command_at >= heartbeat_interval ||
+      self.newest_period - self.last_command_period >= heartbeat_periods)
+    send(Command::heartbeat);
+}
+
+std::uint8_t Device::send(Command command, const protocol::TestPulse& pulse) {
+  protocol::CommandReport report{};
+  report.command = command;
+  report.token = implementation_->next_token();
+  report.test = pulse;
+  return implementation_->send(report);
+}
+
+std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
+  if (signals.size() > protocol::scope_signals_maximum)
+    throw Error(fmt::format("{} signals are more than the scope carries. Choose at most {}.", signals.size(),
+                            protocol::scope_signals_maximum));
+  protocol::CommandReport report{};
+  report.command = Command::select_signals;
+  report.token = implementation_->next_token();
+  report.selection.count = static_cast<std::uint8_t>(signals.size());
+  for (std::size_t i = 0; i < signals.size(); ++i) report.selection.signals[i] = static_cast<std::uint8_t>(signals[i]);
+  {
+    const std::lock_guard lock(implementation_->scope_mutex);
+    implementation_->decoder.expect(report.token, {signals.begin(), signals.end()});
+  }
+  return implementation_->send(report);
+}
+
+protocol::ParameterSet Device::parameters() {
+  protocol::ParametersReport report{};
+  report.report_id = ReportId::parameters;
+  const std::size_t length = implementation_->link->get_feature(writable_bytes(report));
+  const bool is_whole = length >= protocol::parameters_report_size(protocol::parameter_count) &&
+                        report.version == protocol::protocol_version && report.count == protocol::parameter_count;
+  if (!is_whole)
+    throw Incompatible("The device's parameters do not fit this companion. Flash the firmware that belongs to it.");
+  protocol::ParameterSet set = protocol::default_parameters();
+  for (std::size_t i = 0; i < report.count; ++i)
+    if (const auto parameter = protocol::find_parameter(report.entries[i].id)) set[*parameter] = report.entries[i].value;
+  return set;
+}
+
+protocol::TransactionReport Device::set_parameters(std::span<const ParameterChange> changes) {
+  if (changes.size() > protocol::parameter_entries_maximum)
+    throw Error(fmt::format("{} parameters are too many for one transaction. Give each parameter once.",
+                            changes.size()));
+  protocol::ParametersReport report{};
+  report.report_id = ReportId::parameters;
+  report.operation = protocol::ParameterOperation::set;
+  report.version = protocol::protocol_version;
+  report.count = static_cast<std::uint16_t>(changes.size());
+  for (std::size_t i = 0; i < changes.size(); ++i) report.entries[i] = {info(changes[i].first).id, 0, changes[i].second};
+  return implementation_->transact(report);
+}
+
+protocol::TransactionReport Device::restore_default_parameters() {
+  protocol::ParametersReport report{};
+  report.report_id = ReportId::parameters;
+  report.operation = protocol::ParameterOperation::restore_defaults;
+  report.version = protocol::protocol_version;
+  return implementation_->transact(report);
+}
+
+std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout) {
+  std::array<std::byte, protocol::scope_frame_maximum> frame;
+  const auto give_up_at = Clock::now() + timeout;
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(give_up_at - Clock::now());
+    const std::size_t length = implementation_->link->read_bulk(frame, std::max(left, 0ms));
+    if (length == 0) return std::nullopt;
+    const std::lock_guard lock(implementation_->scope_mutex);
+    if (auto samples = implementation_->decoder.decode(std::span(frame).first(length))) return samples;
+  }
+}
+
+std::uint64_t Device::malformed_scope_frames() const {
+  const std::lock_guard lock(implementation_->scope_mutex);
+  return implementation_->decoder.malformed_frames();
+}
+
+}  // namespace inkwell::device

@@ -1,0 +1,50 @@
+// Turns scope frames back into samples. Pure: bytes in, samples out; trusts nothing that came over the wire.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <protocol/scope.hpp>
+#include <protocol/signals.hpp>
+
+namespace inkwell::device {
+
+/// Samples of consecutive control periods, decoded: values[i * signals.size() + j] is signal j of sample i.
+struct ScopeSamples {
+  std::vector<protocol::Signal> signals;
+  std::uint32_t first_period = 0;
+  std::size_t count = 0;
+  std::vector<float> values;
+  std::uint64_t lost_before = 0;  ///< control periods missing between the samples before and these
+};
+
+class ScopeDecoder {
+ public:
+  /// Tells what the select_signals command with this token asked for. At most scope_signals_maximum signals.
+  void expect(std::uint8_t token, std::vector<protocol::Signal> signals);
+
+  /// The samples of one frame. None if the frame is malformed (counted) or answers another selection than the
+  /// newest (a left-over of the one before, or of a program that ran earlier).
+  ///
+  /// `lost_before` counts the control periods between the last frame decoded and this one. If the very first
+  /// frames of a selection are missing nobody can know their samples; each then counts as one.
+  std::optional<ScopeSamples> decode(std::span<const std::byte> frame);
+
+  std::uint64_t malformed_frames() const { return malformed_frames_; }
+
+ private:
+  std::optional<ScopeSamples> refuse();
+  std::uint64_t lost_before(const protocol::ScopeFrameHeader& header) const;
+
+  std::vector<protocol::Signal> signals_;
+  protocol::SignalSelection selection_{};
+  std::optional<std::uint8_t> token_;
+  std::optional<std::uint32_t> next_period_;
+  std::uint64_t malformed_frames_ = 0;
+};
+
+}  // namespace inkwell::device

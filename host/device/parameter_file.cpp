@@ -1,0 +1,169 @@
+#include <device/parameter_file.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+namespace inkwell::device {
+namespace {
+
+using protocol::Parameter;
+using protocol::ParameterKind;
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+std::string range_text(Parameter parameter) {
+  const auto& row = info(parameter);
+  return fmt::format("{} to {}{}{}", format_value(parameter, row.minimum), format_value(parameter, row.maximum),
+                     row.unit.empty() ? "" : " ", row.unit);
+}
+
+}  // namespace
+
+std::string format_value(Parameter parameter, float value) {
+  std::string text = fmt::format("{}", value);
+  const bool is_real = info(parameter).kind == ParameterKind::real;
+  if (is_real && text.find_first_of(".en") == std::string::npos) text += ".0";
+  if (!is_real && text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
+
+std::string_view nearest_parameter_name(std::string_view name) {
+  return std::min_element(protocol::parameter_table.begin(), protocol::parameter_table.end(),
+                          [&](const auto& a, const auto& b) {
+                            return edit_distance(name, a.name) < edit_distance(name, b.name);
+                          })->name;
+}
+
+Parameter parameter_named(std::string_view name) {
+  if (const auto parameter = protocol::find_parameter(name)) return *parameter;
+  throw Error(fmt::format("There is no parameter {}. Did you mean {}? `inkwell parameters` lists them all.", name,
+                          nearest_parameter_name(name)));
+}
+
+void check_value(Parameter parameter, float value) {
+  const auto& row = info(parameter);
+  if (!std::isfinite(value) || value < row.minimum || value > row.maximum)
+    throw Error(fmt::format("{} = {} is outside its range. Give a number from {}.", row.name, value,
+                            range_text(parameter)));
+  if (row.kind != ParameterKind::real && value != std::round(value))
+    throw Error(fmt::format("{} = {} must be a whole number. Give a whole number from {}.", row.name, value,
+                            range_text(parameter)));
+}
+
+ParameterChange parse_change(std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == std::string_view::npos)
+    throw Error(fmt::format("`{}` is not of the form NAME=VALUE. Write for example wall_stiffness_N_per_m=900.", text));
+  const Parameter parameter = parameter_named(text.substr(0, equals));
+  const std::string_view number = text.substr(equals + 1);
+  float value = 0;
+  const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (code != std::errc{} || end != number.data() + number.size())
+    throw Error(fmt::format("`{}` is not a number. Give {} a number from {}.", number, info(parameter).name,
+                            range_text(parameter)));
+  check_value(parameter, value);
+  return {parameter, value};
+}
+
+ParameterFile parse_parameters(std::string_view toml_text, const std::string& file_name) {
+  toml::table document;
+  try {
+    document = toml::parse(toml_text, file_name);
+  } catch (const toml::parse_error& error) {
+    throw Error(fmt::format("{}, line {}: {}. Correct that line.", file_name, error.source().begin.line,
+                            error.description()));
+  }
+  const toml::table* section = document["parameters"].as_table();
+  if (section == nullptr)
+    throw Error(fmt::format("{} has no [parameters] section. Make one with `inkwell parameters save FILE`.", file_name));
+
+  ParameterFile file;
+  for (const auto& [key, node] : *section) {
+    const auto parameter = protocol::find_parameter(key.str());
+    if (!parameter) {
+      file.unknown.emplace_back(key.str());
+      continue;
+    }
+    const auto number = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!number)
+      throw Error(fmt::format("{}, line {}: {} is not a number. Give a number from {}.", file_name,
+                              node.source().begin.line, key.str(), range_text(*parameter)));
+    const auto value = static_cast<float>(*number);
+    try {
+      check_value(*parameter, value);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}, line {}: {}", file_name, node.source().begin.line, error.what()));
+    }
+    file.changes.emplace_back(*parameter, value);
+  }
+  std::sort(file.changes.begin(), file.changes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return file;
+}
+
+ParameterFile load_parameters(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (!std::filesystem::is_regular_file(file) || !stream || !(text << stream.rdbuf()))
+    throw Error(fmt::format("The file {} cannot be read. Check its name and your permission.", file.string()));
+  return parse_parameters(text.str(), file.string());
+}
+
+std::string format_parameters(const protocol::ParameterSet& parameters) {
+  std::string text = fmt::format(
+      "# Parameters of an Inkwell haptic arm. `inkwell parameters load FILE` gives them to the device.\n\n"
+      "protocol_version = {}\n\n[parameters]\n", protocol::protocol_version);
+  std::string_view group;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+    const auto parameter = static_cast<Parameter>(i);
+    const auto& row = info(parameter);
+    if (row.group != group) text += fmt::format("\n# ---- {} ----\n", row.group);
+    group = row.group;
+    const std::string entry = fmt::format("{} = {}", row.name, format_value(parameter, parameters.values[i]));
+    text += fmt::format("{:<44} # {}: {}\n", entry, range_text(parameter), row.help);
+  }
+  return text;
+}
+
+void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters) {
+  std::filesystem::path unfinished = file;
+  unfinished += ".unfinished";
+  {
+    std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+    stream << format_parameters(parameters) << std::flush;
+    if (!stream)
+      throw Error(fmt::format("The file {} cannot be written. Check the folder, your permission and the space left.",
+                              file.string()));
+  }
+  std::error_code code;
+  std::filesystem::rename(unfinished, file, code);
+  if (code) throw Error(fmt::format("The file {} cannot be replaced: {}.", file.string(), code.message()));
+}
+
+std::vector<ParameterDifference> compare(const ParameterFile& file, const protocol::ParameterSet& device) {
+  std::vector<ParameterDifference> differences;
+  for (const auto& [parameter, value] : file.changes)
+    if (device[parameter] != value) differences.push_back({parameter, value, device[parameter]});
+  return differences;
+}
+
+}  // namespace inkwell::device

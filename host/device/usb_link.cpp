@@ -1,0 +1,223 @@
+#include "links.hpp"
+
+#include <hidapi/hidapi.h>
+#include <libusb-1.0/libusb.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include <protocol/scope.hpp>
+#include <protocol/usb_identity.hpp>
+
+#include "transfer_queue.hpp"
+#include "usb_descriptors.hpp"
+
+namespace inkwell::device {
+namespace {
+
+namespace identity = protocol::usb;
+
+constexpr int bulk_transfers = 64;         // 128 KiB are more than 100 ms of a full-speed bus
+constexpr std::size_t bulk_kept = 2048;    // 4 MiB; then the oldest go, and the sequence of the frames shows it
+constexpr char unplugged[] = "The device was unplugged. Connect it again.";
+
+std::string narrow(const wchar_t* text) {
+  std::string result;
+  for (; text != nullptr && *text != 0; ++text) result += *text < 0x7F ? static_cast<char>(*text) : '?';
+  return result;
+}
+
+/// The bulk interface through libusb. The kernel keeps the HID interface, which hidapi uses.
+class BulkReader {
+ public:
+  explicit BulkReader(const std::string& serial_number) {
+    if (libusb_init(&context_) != 0) throw Error("libusb does not start. Check that /dev/bus/usb exists.");
+    try {
+      open(serial_number);
+      start();
+    } catch (...) {
+      stop();
+      throw;
+    }
+  }
+  ~BulkReader() { stop(); }
+  BulkReader(const BulkReader&) = delete;
+  BulkReader& operator=(const BulkReader&) = delete;
+
+  TransferQueue& queue() { return queue_; }
+
+ private:
+  struct Slot {
+    BulkReader* reader = nullptr;
+    libusb_transfer* transfer = nullptr;
+    std::array<unsigned char, protocol::scope_frame_maximum> buffer{};
+  };
+
+  void open(const std::string& serial_number) {
+    libusb_device** list = nullptr;
+    const ssize_t count = libusb_get_device_list(context_, &list);
+    int code = LIBUSB_ERROR_NO_DEVICE;
+    for (ssize_t i = 0; i < count && handle_ == nullptr; ++i) {
+      libusb_device_descriptor descriptor{};
+      libusb_get_device_descriptor(list[i], &descriptor);
+      if (descriptor.idVendor != identity::vendor_id || descriptor.idProduct != identity::product_id) continue;
+      libusb_device_handle* handle = nullptr;
+      const int opened = libusb_open(list[i], &handle);
+      if (opened != 0) {
+        code = opened;
+        continue;
+      }
+      std::array<unsigned char, 128> serial{};
+      const int length =
+          libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, serial.data(), serial.size());
+      const std::string found(reinterpret_cast<const char*>(serial.data()), static_cast<std::size_t>(std::max(length, 0)));
+      if (found == serial_number)
+        handle_ = handle;
+      else
+        libusb_close(handle);
+    }
+    if (list != nullptr) libusb_free_device_list(list, 1);
+    if (handle_ == nullptr && code == LIBUSB_ERROR_ACCESS) throw NoPermission(permission_message("/dev/bus/usb"));
+    if (handle_ == nullptr) throw Disconnected(unplugged);
+
+    std::array<unsigned char, 1024> descriptor{};
+    const int length =
+        libusb_get_descriptor(handle_, LIBUSB_DT_CONFIG, 0, descriptor.data(), static_cast<int>(descriptor.size()));
+    if (length < 0) throw Disconnected(unplugged);
+    layout_ = parse_configuration(std::as_bytes(std::span(descriptor.data(), static_cast<std::size_t>(length))));
+    if (libusb_claim_interface(handle_, layout_.scope_interface) != 0)
+      throw Error("The arm's scope interface is in use. Close the other program that reads it.");
+    claimed_ = true;
+  }
+
+  void start() {
+    for (auto& slot : slots_) {
+      slot.reader = this;
+      slot.transfer = libusb_alloc_transfer(0);
+      libusb_fill_bulk_transfer(slot.transfer, handle_, layout_.scope_in_endpoint, slot.buffer.data(),
+                                static_cast<int>(slot.buffer.size()), &BulkReader::on_transfer, &slot, 0);
+      if (libusb_submit_transfer(slot.transfer) != 0) throw Disconnected(unplugged);
+      ++under_way_;
+    }
+    thread_ = std::thread([this] { handle_events([this] { return !stopping_; }); });
+  }
+
+  template <class Wanted>
+  void handle_events(Wanted wanted) {
+    while (wanted()) {
+      timeval wait{0, 50'000};
+      libusb_handle_events_timeout(context_, &wait);
+    }
+  }
+
+  void stop() {
+    stopping_ = true;
+    if (thread_.joinable()) thread_.join();
+    for (auto& slot : slots_)
+      if (slot.transfer != nullptr) libusb_cancel_transfer(slot.transfer);
+    handle_events([this] { return under_way_ > 0; });
+    for (auto& slot : slots_) libusb_free_transfer(slot.transfer);
+    if (claimed_) libusb_release_interface(handle_, layout_.scope_interface);
+    if (handle_ != nullptr) libusb_close(handle_);
+    libusb_exit(context_);
+  }
+
+  static void LIBUSB_CALL on_transfer(libusb_transfer* transfer) {
+    auto& slot = *static_cast<Slot*>(transfer->user_data);
+    slot.reader->finish(*transfer);
+  }
+
+  void finish(libusb_transfer& transfer) {
+    if (transfer.status == LIBUSB_TRANSFER_COMPLETED && transfer.actual_length > 0) {
+      const auto* begin = reinterpret_cast<const std::byte*>(transfer.buffer);
+      queue_.push({begin, begin + transfer.actual_length});
+      if (queue_.size() > bulk_kept) queue_.drop_oldest();
+    }
+    const bool goes_on = transfer.status == LIBUSB_TRANSFER_COMPLETED && !stopping_;
+    if (goes_on && libusb_submit_transfer(&transfer) == 0) return;
+    --under_way_;
+    queue_.close(unplugged);
+  }
+
+  libusb_context* context_ = nullptr;
+  libusb_device_handle* handle_ = nullptr;
+  UsbLayout layout_;
+  bool claimed_ = false;
+  std::array<Slot, bulk_transfers> slots_{};
+  std::atomic<int> under_way_ = 0;
+  std::atomic<bool> stopping_ = false;
+  TransferQueue queue_;
+  std::thread thread_;
+};
+
+class UsbLink : public Link {
+ public:
+  explicit UsbLink(const Endpoint& endpoint) : endpoint_(endpoint), hid_(open_hid(endpoint.path), &hid_close) {
+    bulk_ = std::make_unique<BulkReader>(endpoint.serial_number);
+  }
+
+  std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
+    return check(hid_read_timeout(hid_.get(), data(report), report.size(), static_cast<int>(timeout.count())));
+  }
+  void write_report(std::span<const std::byte> report) override { check(hid_write(hid_.get(), data(report), report.size())); }
+  std::size_t get_feature(std::span<std::byte> report) override {
+    return check(hid_get_feature_report(hid_.get(), data(report), report.size()));
+  }
+  void set_feature(std::span<const std::byte> report) override {
+    check(hid_send_feature_report(hid_.get(), data(report), report.size()));
+  }
+  std::size_t read_bulk(std::span<std::byte> buffer, std::chrono::milliseconds timeout) override {
+    const auto transfer = bulk_->queue().pop(timeout);
+    if (!transfer) return 0;
+    const std::size_t length = std::min(transfer->size(), buffer.size());
+    std::copy_n(transfer->begin(), length, buffer.begin());
+    return length;
+  }
+  const Endpoint& endpoint() const override { return endpoint_; }
+
+ private:
+  static hid_device* open_hid(const std::string& path) {
+    if (hid_device* device = hid_open_path(path.c_str())) return device;
+    if (access(path.c_str(), R_OK | W_OK) != 0 && errno == EACCES) throw NoPermission(permission_message(path));
+    throw Disconnected(unplugged);
+  }
+  static unsigned char* data(std::span<std::byte> bytes) { return reinterpret_cast<unsigned char*>(bytes.data()); }
+  static const unsigned char* data(std::span<const std::byte> bytes) {
+    return reinterpret_cast<const unsigned char*>(bytes.data());
+  }
+  static std::size_t check(int length) {
+    if (length < 0 && errno == EPIPE)
+      throw Stalled("The device refused a USB request. Flash the firmware that belongs to this companion.");
+    if (length < 0) throw Disconnected(unplugged);
+    return static_cast<std::size_t>(length);
+  }
+
+  Endpoint endpoint_;
+  std::unique_ptr<hid_device, decltype(&hid_close)> hid_;
+  std::unique_ptr<BulkReader> bulk_;
+};
+
+}  // namespace
+
+std::unique_ptr<Link> open_usb_link(const Endpoint& endpoint) { return std::make_unique<UsbLink>(endpoint); }
+
+std::vector<Endpoint> find_usb_devices() {
+  std::vector<Endpoint> endpoints;
+  const std::unique_ptr<hid_device_info, decltype(&hid_free_enumeration)> list(
+      hid_enumerate(identity::vendor_id, identity::product_id), &hid_free_enumeration);
+  for (const hid_device_info* device = list.get(); device != nullptr; device = device->next) {
+    // The identifiers are shared by private tests of other people, so the product's name decides.
+    const std::string product = narrow(device->product_string);
+    if (product != identity::product) continue;
+    endpoints.push_back({Endpoint::Kind::usb, narrow(device->serial_number), product, device->path, "", 0});
+  }
+  return endpoints;
+}
+
+}  // namespace inkwell::device

@@ -1,0 +1,83 @@
+// An imported USB/IP device: transfers go out, a thread of its own takes the answers in.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include <device/link.hpp>
+
+#include "socket.hpp"
+#include "usb_descriptors.hpp"
+#include "usbip_wire.hpp"
+
+namespace inkwell::device {
+
+struct UsbipDevice {
+  std::string bus_id;
+  std::uint16_t vendor_id = 0;
+  std::uint16_t product_id = 0;
+};
+
+std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16_t port);
+
+class UsbipConnection {
+ public:
+  struct Completion {
+    std::int32_t status = 0;  ///< 0 or a negative errno
+    std::uint32_t length = 0;     ///< bytes that were transferred
+    std::vector<std::byte> data;  ///< of an IN transfer
+  };
+  using OnCompletion = std::function<void(Completion)>;
+
+  /// Imports the device. Throws Error if it is in use or gone. Call `start` before the first transfer.
+  UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id);
+  ~UsbipConnection();
+
+  /// `on_disconnect` is called once, from the receiving thread, with a sentence.
+  void start(std::function<void(const std::string&)> on_disconnect);
+
+  /// Completions come on the receiving thread, which may submit again from within.
+  std::uint32_t submit_in(std::uint8_t endpoint, std::uint32_t length, OnCompletion on_completion);
+  std::uint32_t submit_out(std::uint8_t endpoint, std::span<const std::byte> data, OnCompletion on_completion);
+
+  /// Control transfers wait for their end. Throw Stalled, Disconnected, or Error on time-out.
+  std::vector<std::byte> control_in(const Setup& setup);
+  void control_out(const Setup& setup, std::span<const std::byte> data);
+
+  /// Takes the transfer back; its completion is not called any more.
+  void unlink(std::uint32_t sequence);
+
+  /// Ends the connection and the receiving thread; open transfers are forgotten.
+  void close();
+
+ private:
+  struct Pending {
+    usbip::Direction direction;
+    std::uint32_t length;
+    OnCompletion on_completion;
+  };
+  std::uint32_t submit(usbip::Direction direction, std::uint8_t endpoint, const Setup* setup, std::uint32_t length,
+                       std::span<const std::byte> data, OnCompletion on_completion);
+  Completion control(usbip::Direction direction, const Setup& setup, std::span<const std::byte> data);
+  void receive_answers();
+  void receive_answer();
+
+  Socket socket_;
+  std::uint32_t device_ = 0;
+  std::mutex mutex_;  ///< guards sending, the sequence and what is pending
+  std::uint32_t sequence_ = 0;
+  std::unordered_map<std::uint32_t, Pending> pending_;
+  std::unordered_map<std::uint32_t, std::uint32_t> unlinks_;  ///< sequence of the unlink to that of its transfer
+  bool closed_ = false;
+  std::function<void(const std::string&)> on_disconnect_;
+  std::thread receiver_;
+};
+
+}  // namespace inkwell::device

@@ -1,0 +1,179 @@
+#include "links.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+
+#include <fmt/format.h>
+
+#include <protocol/scope.hpp>
+#include <protocol/usb_identity.hpp>
+
+#include "transfer_queue.hpp"
+#include "usbip_connection.hpp"
+
+namespace inkwell::device {
+namespace {
+
+using namespace std::chrono_literals;
+namespace identity = protocol::usb;
+
+constexpr char unplugged[] = "The device was unplugged. Connect it again.";
+constexpr int report_transfers = 32;
+constexpr int bulk_transfers = 64;              // 128 KiB are more than 100 ms of a full-speed bus
+constexpr std::size_t reports_kept = 1024;      // a second; then the oldest go, and the sequence shows it
+constexpr std::size_t bulk_kept = 2048;         // 4 MiB; then the device has to wait, and it counts what it drops
+constexpr std::size_t writes_under_way = 16;
+
+class UsbipLink : public Link {
+ public:
+  explicit UsbipLink(const Endpoint& endpoint)
+      : endpoint_(endpoint), connection_(endpoint.host, endpoint.port, endpoint.path) {
+    connection_.start([this](const std::string& reason) { lose(reason); });
+    try {
+      configure();
+      for (int i = 0; i < report_transfers; ++i) ask_for_report();
+      for (int i = 0; i < bulk_transfers; ++i) ask_for_bulk();
+    } catch (...) {
+      close();
+      throw;
+    }
+  }
+
+  ~UsbipLink() override { close(); }
+
+  std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
+    return read(reports_, report, timeout);
+  }
+
+  void write_report(std::span<const std::byte> report) override {
+    std::unique_lock lock(writes_mutex_);
+    const bool free = writes_changed_.wait_for(lock, 1s, [&] { return writes_ < writes_under_way || lost_; });
+    if (!free) throw Error("The device takes no commands. Reset the board, or let a paused virtual board run.");
+    if (lost_) throw Disconnected(unplugged);
+    ++writes_;
+    lock.unlock();
+    connection_.submit_out(layout_.hid_out_endpoint, report, [this](UsbipConnection::Completion completion) {
+      const std::lock_guard done(writes_mutex_);
+      --writes_;
+      writes_changed_.notify_one();
+      if (completion.status != 0) lost_ = true;
+    });
+  }
+
+  std::size_t get_feature(std::span<std::byte> report) override {
+    const auto id = std::to_integer<std::uint8_t>(report[0]);
+    const auto data = connection_.control_in(
+        setup::get_feature_report(layout_.hid_interface, id, static_cast<std::uint16_t>(report.size())));
+    std::copy_n(data.begin(), std::min(data.size(), report.size()), report.begin());
+    return data.size();
+  }
+
+  void set_feature(std::span<const std::byte> report) override {
+    const auto id = std::to_integer<std::uint8_t>(report[0]);
+    connection_.control_out(
+        setup::set_feature_report(layout_.hid_interface, id, static_cast<std::uint16_t>(report.size())), report);
+  }
+
+  std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) override {
+    const std::size_t length = read(bulk_, transfer, timeout);
+    const std::lock_guard lock(bulk_mutex_);
+    for (; bulk_owed_ > 0 && bulk_.size() < bulk_kept; --bulk_owed_) ask_for_bulk();
+    return length;
+  }
+
+  const Endpoint& endpoint() const override { return endpoint_; }
+
+ private:
+  void configure() {
+    using setup::DescriptorType;
+    const auto device = connection_.control_in(setup::get_descriptor(DescriptorType::device, 0, 18));
+    if (device.size() != 18) throw Error("The device's USB descriptor is damaged. Flash its firmware again.");
+    const auto index_of_string = [&](std::size_t i) { return std::to_integer<std::uint8_t>(device[i]); };
+    const auto text = [&](std::uint8_t index) {
+      return parse_string(connection_.control_in(setup::get_descriptor(DescriptorType::string, index, 255)));
+    };
+    endpoint_.product = text(index_of_string(15));
+    endpoint_.serial_number = text(index_of_string(16));
+    layout_ = parse_configuration(
+        connection_.control_in(setup::get_descriptor(DescriptorType::configuration, 0, 1024)));
+    connection_.control_out(setup::set_configuration(layout_.configuration), {});
+  }
+
+  void ask_for_report() {
+    connection_.submit_in(layout_.hid_in_endpoint, identity::packet_size, [this](UsbipConnection::Completion done) {
+      if (done.status != 0) return lose(unplugged);
+      if (!done.data.empty()) reports_.push(std::move(done.data));
+      if (reports_.size() > reports_kept) reports_.drop_oldest();
+      ask_again([this] { ask_for_report(); });
+    });
+  }
+
+  void ask_for_bulk() {
+    connection_.submit_in(layout_.scope_in_endpoint, protocol::scope_frame_maximum,
+                          [this](UsbipConnection::Completion done) {
+                            if (done.status != 0) return lose(unplugged);
+                            if (!done.data.empty()) bulk_.push(std::move(done.data));
+                            const std::lock_guard lock(bulk_mutex_);
+                            if (bulk_.size() < bulk_kept)
+                              ask_again([this] { ask_for_bulk(); });
+                            else
+                              ++bulk_owed_;
+                          });
+  }
+
+  /// Submitting from the receiving thread fails when the connection just broke; `lose` is called for that anyway.
+  template <class Ask>
+  void ask_again(Ask ask) {
+    try {
+      ask();
+    } catch (const Disconnected&) {
+    }
+  }
+
+  static std::size_t read(TransferQueue& queue, std::span<std::byte> buffer, std::chrono::milliseconds timeout) {
+    const auto transfer = queue.pop(timeout);
+    if (!transfer) return 0;
+    const std::size_t length = std::min(transfer->size(), buffer.size());
+    std::copy_n(transfer->begin(), length, buffer.begin());
+    return length;
+  }
+
+  void lose(const std::string& reason) {
+    reports_.close(reason);
+    bulk_.close(reason);
+    const std::lock_guard lock(writes_mutex_);
+    lost_ = true;
+    writes_changed_.notify_all();
+  }
+
+  void close() {
+    lose("The connection was closed.");
+    connection_.close();
+  }
+
+  Endpoint endpoint_;
+  UsbLayout layout_;
+  TransferQueue reports_, bulk_;
+  std::mutex bulk_mutex_;
+  int bulk_owed_ = 0;  ///< transfers not under way because the reader is behind
+  std::mutex writes_mutex_;
+  std::condition_variable writes_changed_;
+  std::size_t writes_ = 0;
+  bool lost_ = false;
+  UsbipConnection connection_;  ///< last: its thread uses all of the above
+};
+
+}  // namespace
+
+std::unique_ptr<Link> open_usbip_link(const Endpoint& endpoint) { return std::make_unique<UsbipLink>(endpoint); }
+
+std::vector<Endpoint> find_usbip_devices(const std::string& host, std::uint16_t port) {
+  std::vector<Endpoint> endpoints;
+  for (const auto& device : list_usbip_devices(host, port)) {
+    if (device.vendor_id != identity::vendor_id || device.product_id != identity::product_id) continue;
+    endpoints.push_back({Endpoint::Kind::usbip, "", identity::product, device.bus_id, host, port});
+  }
+  return endpoints;
+}
+
+}  // namespace inkwell::device

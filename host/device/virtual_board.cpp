@@ -1,0 +1,186 @@
+#include <device/virtual_board.hpp>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace inkwell::device {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto start_timeout = 30s;
+constexpr auto stop_timeout = 2s;
+constexpr std::size_t log_kept = 4096;
+
+struct Pipe {
+  int read_end = -1, write_end = -1;
+  Pipe() {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) throw Error("No pipe to the virtual board can be made: too many files are open.");
+    read_end = ends[0];
+    write_end = ends[1];
+  }
+  ~Pipe() {
+    close_write_end();
+    close(read_end);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  void close_write_end() {
+    if (write_end >= 0) close(write_end);
+    write_end = -1;
+  }
+};
+
+std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const std::filesystem::path& program,
+                                      const std::filesystem::path& elf) {
+  std::vector<std::string> arguments{program.string(), "--elf", elf.string(), "--mode",
+                                     options.mode == SimulationMode::exact ? "exact" : "fast",
+                                     "--seed", std::to_string(options.seed)};
+  if (!options.arm.empty()) arguments.insert(arguments.end(), {"--arm", options.arm.string()});
+  if (options.real_time) arguments.push_back("--real-time");
+  if (options.paused) arguments.push_back("--paused");
+  return arguments;
+}
+
+}  // namespace
+
+std::filesystem::path executable_directory() {
+  std::error_code code;
+  const auto executable = std::filesystem::read_symlink("/proc/self/exe", code);
+  return code ? std::filesystem::current_path() : executable.parent_path();
+}
+
+struct VirtualBoard::Implementation {
+  Pipe output, log;
+  pid_t process = -1;
+  std::uint16_t usbip_port = 0, control_port = 0;
+  std::thread drain;
+  mutable std::mutex mutex;
+  std::string newest_log;  ///< the last few kilobytes, for error messages
+  bool exited = false;
+  int exit_status = 0;
+
+  void start(const std::vector<std::string>& arguments) {
+    std::vector<char*> pointers;
+    for (const auto& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
+    pointers.push_back(nullptr);
+    const pid_t parent = getpid();
+    process = fork();
+    if (process < 0) throw Error("The virtual board cannot be started: the system allows no more processes.");
+    if (process == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (getppid() != parent) _exit(1);  // the parent died before the line above
+      dup2(output.write_end, STDOUT_FILENO);
+      dup2(log.write_end, STDERR_FILENO);
+      execv(pointers[0], pointers.data());
+      _exit(127);
+    }
+    output.close_write_end();
+    log.close_write_end();
+    drain = std::thread([this] { read_log(); });
+  }
+
+  /// A full pipe would stop the board, so its log is read for as long as it runs.
+  void read_log() {
+    std::array<char, 4096> chunk;
+    for (;;) {
+      const ssize_t length = read(log.read_end, chunk.data(), chunk.size());
+      if (length < 0 && errno == EINTR) continue;
+      if (length <= 0) return;
+      const std::lock_guard lock(mutex);
+      newest_log.append(chunk.data(), static_cast<std::size_t>(length));
+      if (newest_log.size() > log_kept) newest_log.erase(0, newest_log.size() - log_kept);
+    }
+  }
+
+  std::string read_ready_line() {
+    std::string line;
+    const auto give_up_at = Clock::now() + start_timeout;
+    while (Clock::now() < give_up_at) {
+      pollfd descriptor{output.read_end, POLLIN, 0};
+      if (poll(&descriptor, 1, 100) <= 0) continue;
+      char character;
+      if (read(output.read_end, &character, 1) != 1 || character == '\n') break;
+      line += character;
+    }
+    return line;
+  }
+
+  bool has_exited(int options) {
+    const std::lock_guard lock(mutex);
+    if (!exited && waitpid(process, &exit_status, options) == process) exited = true;
+    return exited;
+  }
+
+  void stop() {
+    if (process < 0) return;
+    if (!has_exited(WNOHANG)) kill(process, SIGTERM);
+    const auto give_up_at = Clock::now() + stop_timeout;
+    while (!has_exited(WNOHANG) && Clock::now() < give_up_at) std::this_thread::sleep_for(5ms);
+    if (!has_exited(WNOHANG)) {
+      kill(process, SIGKILL);
+      while (!has_exited(WNOHANG)) std::this_thread::sleep_for(5ms);
+    }
+    if (drain.joinable()) drain.join();
+  }
+
+  ~Implementation() { stop(); }
+};
+
+VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_(std::make_unique<Implementation>()) {
+  const auto directory = executable_directory();
+  const auto program = options.program.empty() ? directory / "virtual-board" : options.program;
+  const auto elf = options.elf.empty() ? (directory / "../board/inkwell.elf").lexically_normal() : options.elf;
+  if (access(program.c_str(), X_OK) != 0)
+    throw Error(fmt::format("The program {} is missing. Build it with tools/build.", program.string()));
+  if (access(elf.c_str(), R_OK) != 0)
+    throw Error(fmt::format("The firmware {} is missing. Build it with tools/build, or name one with --elf.",
+                            elf.string()));
+  auto& self = *implementation_;
+  self.start(arguments_of(options, program, elf));
+  const std::string line = self.read_ready_line();
+  unsigned usbip = 0, control = 0;
+  if (std::sscanf(line.c_str(), "ready usbip=%u control=%u", &usbip, &control) != 2) {
+    self.stop();
+    const auto end = self.newest_log.find_last_not_of('\n');
+    const std::string said = end == std::string::npos ? "It said nothing." : self.newest_log.substr(0, end + 1);
+    throw Error(fmt::format("The virtual board did not start. {}", said));
+  }
+  self.usbip_port = static_cast<std::uint16_t>(usbip);
+  self.control_port = static_cast<std::uint16_t>(control);
+}
+
+VirtualBoard::~VirtualBoard() = default;
+
+std::uint16_t VirtualBoard::usbip_port() const { return implementation_->usbip_port; }
+std::uint16_t VirtualBoard::control_port() const { return implementation_->control_port; }
+
+std::optional<Endpoint> VirtualBoard::find() const {
+  const auto endpoints = find_usbip_devices("127.0.0.1", usbip_port());
+  return endpoints.empty() ? std::nullopt : std::optional(endpoints.front());
+}
+
+ControlClient VirtualBoard::control() const { return {"127.0.0.1", control_port()}; }
+
+bool VirtualBoard::is_running() const { return !implementation_->has_exited(WNOHANG); }
+
+}  // namespace inkwell::device
