@@ -1,0 +1,139 @@
+#include <drivers/analog_inputs.hpp>
+
+#include <drivers/cycle_counter.hpp>
+#include <drivers/pins.hpp>
+#include <registers/analog_converter.hpp>
+#include <registers/direct_memory_access.hpp>
+
+namespace inkwell::drivers {
+namespace {
+
+using registers::ADC1;
+using registers::ADC2;
+using registers::ADC3;
+using registers::ADC_COMMON;
+using registers::DMA2;
+
+/// JEXTSEL and JEXTEN (RM0090, ADC_CR2).
+constexpr std::uint32_t trigger_tim1_trgo = 0b0001, rising_edge = 0b01;
+
+/// Cycles that a channel is sampled for, as a code of ADC_SMPRx. The shunt amplifiers are fast and low in
+/// impedance; potentiometers of 10 k and the supply's divider are neither.
+constexpr std::uint32_t sample_3_cycles = 0b000, sample_144_cycles = 0b110;
+static_assert(4.0f * (144 + 12) / board::adc_Hz < 0.8f / board::servo_rate_Hz,
+              "the slow conversions must be over when the next injected ones come");
+
+constexpr std::uint32_t slow_channels = 4;
+
+/// Place of a channel's sampling time in SMPR2 (channels 0 to 9) or SMPR1 (10 to 18).
+constexpr std::uint32_t sampling(std::uint8_t channel, std::uint32_t code) { return code << channel % 10 * 3; }
+
+constexpr bool in_first_register(const board::AnalogInput& input) { return input.channel >= 10; }
+static_assert(in_first_register(board::motor_current[0]) && in_first_register(board::motor_current[1]) &&
+              in_first_register(board::motor_current[2]) && in_first_register(board::gimbal[0]) &&
+              in_first_register(board::gimbal[1]) && in_first_register(board::gimbal[2]) &&
+              !in_first_register(board::supply));
+
+constexpr std::uint32_t adc1_control =
+    ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits |
+    ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
+
+template <class Converter>
+void set_up_injected(const board::AnalogInput& input) {
+  Converter::SMPR1::write(sampling(input.channel, sample_3_cycles));
+  // A sequence of one takes its channel from the last place.
+  Converter::JSQR::write(typename Converter::JSQR::JL(0), typename Converter::JSQR::JSQ4(input.channel));
+}
+
+template <class Converter>
+float take_current_A() {
+  const auto counts = static_cast<std::int32_t>(Converter::JDR1::JDATA::read());
+  Converter::SR::write(~(Converter::SR::JEOC::mask | Converter::SR::JSTRT::mask));
+  return static_cast<float>(counts) * board::current_step_A - board::current_range_A;
+}
+
+void set_up_slow_sequence() {
+  ADC1::SMPR1::write(sampling(board::motor_current[0].channel, sample_3_cycles) |
+                     sampling(board::gimbal[0].channel, sample_144_cycles) |
+                     sampling(board::gimbal[1].channel, sample_144_cycles) |
+                     sampling(board::gimbal[2].channel, sample_144_cycles));
+  ADC1::SMPR2::write(sampling(board::supply.channel, sample_144_cycles));
+  ADC1::SQR1::write(ADC1::SQR1::L(slow_channels - 1));
+  ADC1::SQR3::write(ADC1::SQR3::SQ1(board::gimbal[0].channel), ADC1::SQR3::SQ2(board::gimbal[1].channel),
+                    ADC1::SQR3::SQ3(board::gimbal[2].channel), ADC1::SQR3::SQ4(board::supply.channel));
+  ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
+}
+
+void set_up_memory_access(const volatile std::uint16_t* destination) {
+  constexpr std::uint32_t channel_adc1 = 0, half_word = 0b01, from_peripheral = 0b00;
+  DMA2::S0PAR::write(ADC1::DR::address);
+  DMA2::S0M0AR::write(reinterpret_cast<std::uint32_t>(destination));
+  DMA2::S0NDTR::write(slow_channels);
+  DMA2::LIFCR::write(DMA2::LIFCR::CFEIF0(1), DMA2::LIFCR::CDMEIF0(1), DMA2::LIFCR::CTEIF0(1), DMA2::LIFCR::CHTIF0(1),
+                     DMA2::LIFCR::CTCIF0(1));
+  const auto control = DMA2::S0CR::CHSEL(channel_adc1).bits | DMA2::S0CR::DIR(from_peripheral).bits |
+                       DMA2::S0CR::PSIZE(half_word).bits | DMA2::S0CR::MSIZE(half_word).bits |
+                       DMA2::S0CR::MINC(1).bits | DMA2::S0CR::CIRC(1).bits;
+  DMA2::S0CR::write(control);
+  DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
+}
+
+/// 3 us after switching on the converters are accurate (data sheet, ADC characteristics, t_STAB); waits for 10.
+void wait_until_stable() {
+  const std::uint32_t from = CycleCounter::now();
+  while (CycleCounter::now() - from < board::processor_Hz / 100'000) {
+  }
+}
+
+}  // namespace
+
+void AnalogInputs::start() {
+  connect_analog<board::motor_current[0].pin>();
+  connect_analog<board::motor_current[1].pin>();
+  connect_analog<board::motor_current[2].pin>();
+  connect_analog<board::gimbal[0].pin>();
+  connect_analog<board::gimbal[1].pin>();
+  connect_analog<board::gimbal[2].pin>();
+  connect_analog<board::supply.pin>();
+
+  using registers::RCC;
+  RCC::AHB1ENR::modify(RCC::AHB1ENR::DMA2EN(1));
+  RCC::APB2ENR::modify(RCC::APB2ENR::ADC1EN(1), RCC::APB2ENR::ADC2EN(1), RCC::APB2ENR::ADC3EN(1));
+  static_cast<void>(RCC::APB2ENR::read());
+
+  static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
+                board::adc_divider == 8);
+  ADC_COMMON::CCR::write(ADC_COMMON::CCR::ADCPRE(board::adc_divider / 2 - 1));
+  set_up_injected<ADC1>(board::motor_current[0]);
+  set_up_injected<ADC2>(board::motor_current[1]);
+  set_up_injected<ADC3>(board::motor_current[2]);
+  set_up_slow_sequence();
+  set_up_memory_access(slow_.data());
+
+  ADC1::CR2::write(ADC1::CR2::ADON(1));
+  ADC2::CR2::write(ADC2::CR2::ADON(1));
+  ADC3::CR2::write(ADC3::CR2::ADON(1));
+  wait_until_stable();
+}
+
+void AnalogInputs::arm() {
+  ADC3::CR2::write(ADC3::CR2::ADON(1), ADC3::CR2::JEXTSEL(trigger_tim1_trgo), ADC3::CR2::JEXTEN(rising_edge));
+  ADC2::CR2::write(ADC2::CR2::ADON(1), ADC2::CR2::JEXTSEL(trigger_tim1_trgo), ADC2::CR2::JEXTEN(rising_edge));
+  ADC1::CR2::write(adc1_control);
+}
+
+std::array<float, 3> AnalogInputs::take_currents_A() {
+  return {take_current_A<ADC1>(), take_current_A<ADC2>(), take_current_A<ADC3>()};
+}
+
+void AnalogInputs::start_slow_conversions() { ADC1::CR2::write(adc1_control | ADC1::CR2::SWSTART::mask); }
+
+std::array<float, 3> AnalogInputs::gimbal_ratio() const {
+  constexpr float per_count = 1.0f / (board::adc_counts - 1);
+  return {static_cast<float>(slow_[0]) * per_count, static_cast<float>(slow_[1]) * per_count,
+          static_cast<float>(slow_[2]) * per_count};
+}
+
+float AnalogInputs::supply_V() const { return static_cast<float>(slow_[3]) * board::supply_step_V; }
+
+}  // namespace inkwell::drivers

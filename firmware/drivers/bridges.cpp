@@ -1,0 +1,140 @@
+#include <drivers/bridges.hpp>
+
+#include <board/omni_driver.hpp>
+#include <drivers/bridges_off.hpp>
+#include <drivers/cycle_counter.hpp>
+#include <drivers/leg_compares.hpp>
+#include <drivers/pins.hpp>
+#include <registers/clock.hpp>
+#include <registers/processor.hpp>
+
+namespace inkwell::drivers {
+namespace {
+
+using registers::TIM1;
+using registers::TIM8;
+using Enable = DigitalOutput<board::bridge_enable>;
+
+/// Master mode of TIM1: what its trigger output shows (RM0090, TIMx_CR2, MMS).
+constexpr std::uint32_t trigger_on_enable = 0b001;
+constexpr std::uint32_t trigger_on_update = 0b010;
+
+/// Sets a timer up, compare values neutral, outputs off, counter at rest at 0.
+template <class Timer>
+void set_up() {
+  constexpr std::uint32_t centre_aligned = 0b01;
+  constexpr std::uint32_t high_below_compare = 0b110;
+  // Preload everywhere. URS: only the counter itself raises the update flag, not the software's UG.
+  Timer::CR1::write(typename Timer::CR1::CMS(centre_aligned), typename Timer::CR1::ARPE(1),
+                    typename Timer::CR1::URS(1));
+  Timer::PSC::write(0);
+  Timer::ARR::write(board::pwm_top);
+  Timer::RCR::write(typename Timer::RCR::REP(board::pwm_repetition));
+  Timer::CCMR1::write(typename Timer::CCMR1::OC1M(high_below_compare), typename Timer::CCMR1::OC1PE(1),
+                      typename Timer::CCMR1::OC2M(high_below_compare), typename Timer::CCMR1::OC2PE(1));
+  Timer::CCMR2::write(typename Timer::CCMR2::OC3M(high_below_compare), typename Timer::CCMR2::OC3PE(1));
+  for (const auto& bridge : board::bridges) Timer::CCR::write(bridge.channel - 1u, board::pwm_top / 2);
+  Timer::BDTR::write(outputs_off);
+  Timer::CCER::write(typename Timer::CCER::CC1E(1), typename Timer::CCER::CC2E(1), typename Timer::CCER::CC3E(1));
+  // Loads the repetition counter as well, so the events are counted from here: with an odd repetition value and
+  // the counter starting upward from 0, every sixth turning point is one at the bottom (RM0090, "Repetition counter").
+  Timer::EGR::write(typename Timer::EGR::UG(1));
+}
+
+/// Starts both counters together: TIM8 waits for the trigger output of TIM1, which is its internal trigger 0
+/// (RM0090, "TIMx internal trigger connection"). It comes some two cycles late, 12 ns, by which the legs of a
+/// bridge stay apart; the bridge's own dead time is 17 times that.
+void start_together() {
+  constexpr std::uint32_t start_on_trigger = 0b110, internal_trigger_0 = 0b000, no_slave = 0b000;
+  TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_enable));
+  // The trigger is chosen while the slave mode is off, as the manual asks (TIMx_SMCR, TS).
+  TIM8::SMCR::write(TIM8::SMCR::TS(internal_trigger_0));
+  TIM8::SMCR::write(TIM8::SMCR::TS(internal_trigger_0), TIM8::SMCR::SMS(start_on_trigger));
+  TIM1::CR1::modify(TIM1::CR1::CEN(1));
+  // Reading TIM1 back gives TIM8 the time to see the trigger before it stops listening.
+  static_cast<void>(TIM1::CR1::read());
+  static_cast<void>(TIM1::CR1::read());
+  TIM8::SMCR::write(TIM8::SMCR::SMS(no_slave));
+  TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_update));
+}
+
+void connect_pins() {
+  // At 60 kHz nothing asks for fast edges, and slow ones disturb the shunt amplifiers less. The pull-downs hold the
+  // legs low if the timer should ever let go of them.
+  connect<board::bridges[0].leg_a>(Pull::down, Speed::medium);
+  connect<board::bridges[1].leg_a>(Pull::down, Speed::medium);
+  connect<board::bridges[2].leg_a>(Pull::down, Speed::medium);
+  connect<board::bridges[0].leg_b>(Pull::down, Speed::medium);
+  connect<board::bridges[1].leg_b>(Pull::down, Speed::medium);
+  connect<board::bridges[2].leg_b>(Pull::down, Speed::medium);
+  // Open drain: the board has the strong pull-up, this one only keeps a bench without bridges from floating.
+  connect<board::bridge_fault_tim1>(Pull::up, Speed::low);
+  connect<board::bridge_fault_tim8>(Pull::up, Speed::low);
+}
+
+}  // namespace
+
+void Bridges::start() {
+  Enable::start();
+  using ClockEnable = registers::RCC::APB2ENR;
+  ClockEnable::modify(ClockEnable::TIM1EN(1), ClockEnable::TIM8EN(1));
+  static_cast<void>(ClockEnable::read());
+  // A debugger that halts the processor stops both timers, and with them their outputs.
+  using Freeze = registers::DBG::DBGMCU_APB2_FZ;
+  Freeze::modify(Freeze::DBG_TIM1_STOP(1), Freeze::DBG_TIM8_STOP(1));
+
+  set_up<TIM1>();
+  set_up<TIM8>();
+  connect_pins();
+  start_together();
+}
+
+void Bridges::write_neutral() {
+  for (const auto& bridge : board::bridges) {
+    TIM1::CCR::write(bridge.channel - 1u, neutral_legs.leg_a);
+    TIM8::CCR::write(bridge.channel - 1u, neutral_legs.leg_b);
+  }
+}
+
+void Bridges::write(const std::array<float, 3>& duty) {
+  for (std::size_t i = 0; i < duty.size(); ++i) {
+    const LegCompares legs = leg_compares(duty[i]);
+    TIM1::CCR::write(board::bridges[i].channel - 1u, legs.leg_a);
+    TIM8::CCR::write(board::bridges[i].channel - 1u, legs.leg_b);
+  }
+}
+
+void Bridges::enable() {
+  if (enabled_) return;
+  enabled_ = true;
+  // A flag is cleared by writing 0 to it; writing 1 to the others leaves them alone.
+  TIM1::SR::write(~TIM1::SR::BIF::mask);
+  TIM8::SR::write(~TIM8::SR::BIF::mask);
+  TIM1::BDTR::write(outputs_off | TIM1::BDTR::MOE::mask);
+  TIM8::BDTR::write(outputs_off | TIM8::BDTR::MOE::mask);
+  Enable::set_high();
+}
+
+void Bridges::disable() {
+  enabled_ = false;
+  Enable::set_low();
+  TIM1::BDTR::write(outputs_off);
+  TIM8::BDTR::write(outputs_off);
+}
+
+bool Bridges::fault() const {
+  const bool low_now = !DigitalInput<board::bridge_fault_tim1.pin>::is_high();
+  return low_now || (enabled_ && (TIM1::SR::BIF::is_set() || TIM8::SR::BIF::is_set()));
+}
+
+void Bridges::begin_period() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
+
+bool Bridges::wait_for_update() {
+  begin_period();
+  const std::uint32_t from = CycleCounter::now();
+  while (!period_is_over())
+    if (CycleCounter::now() - from > 2 * board::servo_cycles) return false;
+  return TIM8::CR1::CEN::is_set();
+}
+
+}  // namespace inkwell::drivers

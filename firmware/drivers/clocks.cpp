@@ -1,0 +1,67 @@
+#include <drivers/clocks.hpp>
+
+#include <board/omni_driver.hpp>
+#include <registers/clock.hpp>
+
+namespace inkwell::drivers {
+namespace {
+
+using registers::FLASH;
+using registers::PWR;
+using registers::RCC;
+
+constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
+/// A turn of a waiting loop takes four cycles or more, so this is a tenth of a second or more.
+constexpr std::uint32_t wait_turns = internal_oscillator_Hz / 10 / 4;
+
+/// Code of a bus divider of 1, 2, 4, 8 or 16 (RCC_CFGR, PPREx).
+constexpr std::uint32_t bus_divider_code(std::uint32_t divider) {
+  std::uint32_t code = 0;
+  while (divider > 1) {
+    divider /= 2;
+    code = code == 0 ? 0b100 : code + 1;
+  }
+  return code;
+}
+static_assert(bus_divider_code(1) == 0 && bus_divider_code(2) == 0b100 && bus_divider_code(16) == 0b111);
+
+template <class Condition>
+bool wait_for(Condition condition) {
+  for (std::uint32_t turn = 0; turn < wait_turns; ++turn)
+    if (condition()) return true;
+  return false;
+}
+
+}  // namespace
+
+bool start_clocks() {
+  // 168 MHz needs voltage scale 1. It is the default, but a boot loader may have changed it.
+  RCC::APB1ENR::modify(RCC::APB1ENR::PWREN(1));
+  static_cast<void>(RCC::APB1ENR::read());
+  PWR::CR::modify(PWR::CR::VOS(1));
+
+  RCC::CR::modify(RCC::CR::HSEON(1));
+  if (!wait_for([] { return RCC::CR::HSERDY::is_set(); })) return false;
+
+  RCC::PLLCFGR::write(RCC::PLLCFGR::PLLM(board::pll_m), RCC::PLLCFGR::PLLN(board::pll_n),
+                      RCC::PLLCFGR::PLLP(board::pll_p / 2 - 1), RCC::PLLCFGR::PLLQ(board::pll_q),
+                      RCC::PLLCFGR::PLLSRC(1));
+  RCC::CR::modify(RCC::CR::PLLON(1));
+  if (!wait_for([] { return RCC::CR::PLLRDY::is_set(); })) return false;
+
+  // Wait states before speed, and bus dividers before it too, so that no part is ever over its limit.
+  FLASH::ACR::write(FLASH::ACR::LATENCY(board::flash_wait_states), FLASH::ACR::PRFTEN(1), FLASH::ACR::ICEN(1),
+                    FLASH::ACR::DCEN(1));
+  if (!wait_for([] { return FLASH::ACR::LATENCY::read() == board::flash_wait_states; })) return false;
+  RCC::CFGR::modify(RCC::CFGR::PPRE1(bus_divider_code(board::apb1_divider)),
+                    RCC::CFGR::PPRE2(bus_divider_code(board::apb2_divider)));
+  constexpr std::uint32_t from_pll = 0b10;
+  RCC::CFGR::modify(RCC::CFGR::SW(from_pll));
+  if (!wait_for([] { return RCC::CFGR::SWS::read() == from_pll; })) return false;
+
+  // A dead crystal would leave the last duty on the motors: the security system turns it into a fault.
+  RCC::CR::modify(RCC::CR::CSSON(1));
+  return true;
+}
+
+}  // namespace inkwell::drivers

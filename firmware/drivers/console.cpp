@@ -1,0 +1,39 @@
+#include <drivers/console.hpp>
+
+#include <drivers/pins.hpp>
+#include <registers/serial_port.hpp>
+
+namespace inkwell::drivers {
+namespace {
+
+using registers::USART2;
+
+constexpr std::uint32_t baud_Hz = 115'200;
+/// More turns than a character takes, so that a port that does not run cannot stop the board.
+constexpr int wait_turns = 20'000;
+
+void write_character(char character) {
+  for (int turn = 0; turn < wait_turns && !USART2::SR::TXE::is_set(); ++turn) {
+  }
+  USART2::DR::write(static_cast<std::uint8_t>(character));
+}
+
+}  // namespace
+
+void Console::start() {
+  registers::RCC::APB1ENR::modify(registers::RCC::APB1ENR::USART2EN(1));
+  static_cast<void>(registers::RCC::APB1ENR::read());
+  connect<board::console_transmit>(Pull::up, Speed::low);
+  USART2::BRR::write((board::apb1_Hz + baud_Hz / 2) / baud_Hz);
+  USART2::CR1::write(USART2::CR1::UE(1), USART2::CR1::TE(1));
+}
+
+void Console::write(std::string_view text) {
+  for (const char character : text) write_character(character);
+}
+
+void Console::write_hexadecimal(std::uint32_t word) {
+  for (int shift = 28; shift >= 0; shift -= 4) write_character("0123456789abcdef"[word >> shift & 0xF]);
+}
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,39 @@
+// Everything analogue. One driver, because ADC1 serves two of the roles:
+//
+//   motor currents      ADC1, ADC2, ADC3 together, injected by the update of TIM1; ADC1 interrupts at their end
+//   gimbal and supply   regular sequence of ADC1, started in every control period, stored by DMA2 stream 0
+//
+// From the update to the middle of the sampling window there are at most 0.2 us. In that time, at 1 A, resistance
+// alone changes the current by 2 mA in the smallest motor, one step of the ADC: the instant needs no correction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace inkwell::drivers {
+
+class AnalogInputs {
+ public:
+  /// Switches the converters on and sets their sequences up. They do not listen to TIM1 yet.
+  void start();
+
+  /// Lets TIM1 trigger the converters. Call it well before an update, so that all three hear the same one first.
+  void arm();
+
+  /// Currents at the last update, from leg A to leg B of each bridge, offsets of the amplifiers included.
+  /// Acknowledges the interrupt.
+  std::array<float, 3> take_currents_A();
+
+  /// Starts the conversion of gimbal and supply, which takes 30 us; call it once in a control period.
+  void start_slow_conversions();
+
+  /// Voltage of the gimbal's potentiometers over that of their supply, 0..1, at most one control period old.
+  std::array<float, 3> gimbal_ratio() const;
+  float supply_V() const;
+
+ private:
+  /// Written by the DMA controller, which reaches the main RAM only.
+  std::array<volatile std::uint16_t, 4> slow_{};
+};
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,53 @@
+// The three motor bridges: TIM1 drives legs A, TIM8 legs B, synchronised and centre-aligned.
+//
+// Counter and events of both timers in one control period (three PWM periods):
+//
+//   top   /\    /\    /\     |  each leg is high while the counter is below its compare value
+//        /  \  /  \  /  \    |
+//   0   /    \/    \/    \/  |
+//       |                 |
+//       update            update: preloaded compare values of all six legs become active, ADCs sample
+//
+// The update comes at a turning point, in the middle of a zero vector, where the ripple current crosses its mean.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <registers/timer.hpp>
+
+namespace inkwell::drivers {
+
+class Bridges {
+ public:
+  /// Sets up both timers and lets them run with all outputs off. Their update triggers the ADCs from now on.
+  void start();
+
+  /// Preloads no voltage for all motors: what the motors get if the control interrupt does not finish in time.
+  void write_neutral();
+
+  /// Preloads duties of -1..1, which become active with the next update.
+  void write(const std::array<float, 3>& duty);
+
+  /// Lets the bridges switch. Does nothing if they do already, so that a fault cannot be cleared by accident.
+  void enable();
+
+  /// All six legs low and the bridges' enable wire low, at once.
+  void disable();
+
+  /// The fault wire has been low since the bridges were enabled, or is low now.
+  bool fault() const;
+
+  /// An update came since the last call of begin_period(): called at the end of the control interrupt, it tells
+  /// that the interrupt took longer than its period.
+  bool period_is_over() const { return registers::TIM1::SR::UIF::is_set(); }
+  void begin_period();
+
+  /// Waits for the next update, at most two control periods. False if one of the timers does not run.
+  [[nodiscard]] bool wait_for_update();
+
+ private:
+  bool enabled_ = false;
+};
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,26 @@
+// The three stores that switch the motors off, for code that may trust neither stack nor memory.
+#pragma once
+
+#include <board/omni_driver.hpp>
+#include <registers/general_purpose_io.hpp>
+#include <registers/timer.hpp>
+
+namespace inkwell::drivers {
+
+/// TIMx_BDTR while the bridges are off. Idle outputs are driven low (OSSI, OSSR), the break input is active low,
+/// and lock level 1 keeps a stray store from taking the break input away.
+inline constexpr std::uint32_t outputs_off =
+    registers::TIM1::BDTR::LOCK(1).bits | registers::TIM1::BDTR::OSSI(1).bits | registers::TIM1::BDTR::OSSR(1).bits |
+    registers::TIM1::BDTR::BKE(1).bits;
+
+struct Store {
+  std::uint32_t address;
+  std::uint32_t value;
+};
+
+static_assert(board::bridge_enable.port == 'B');
+inline constexpr Store bridge_enable_low{registers::GPIOB::BSRR::address, 1u << (board::bridge_enable.number + 16)};
+inline constexpr Store legs_a_off{registers::TIM1::BDTR::address, outputs_off};
+inline constexpr Store legs_b_off{registers::TIM8::BDTR::address, outputs_off};
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,11 @@
+// The clock tree: crystal, PLL, buses, flash (RM0090, chapters RCC and Embedded flash).
+#pragma once
+
+namespace inkwell::drivers {
+
+/// Brings the processor from the internal 16 MHz oscillator to the board's clocks, with the accelerator of the
+/// flash on and the crystal supervised: if it stops later, the chip raises the non-maskable interrupt.
+/// False if the crystal or the PLL does not start within a tenth of a second; the chip then stays at 16 MHz.
+[[nodiscard]] bool start_clocks();
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,17 @@
+// One line of text after each start, on USART2 at 115200 8N1: for the bench, before USB speaks.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace inkwell::drivers {
+
+/// Waits for each character to leave, about 0.1 ms: for start-up only.
+class Console {
+ public:
+  void start();
+  void write(std::string_view text);
+  void write_hexadecimal(std::uint32_t word);
+};
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,15 @@
+// The independent watchdog (RM0090, chapter IWDG): resets the chip unless it is fed.
+#pragma once
+
+namespace inkwell::drivers {
+
+class IndependentWatchdog {
+ public:
+  /// Once started it cannot be stopped. It bites after 20 ms, 14 to 38 ms over the spread of its oscillator. A
+  /// debugger that halts the processor halts it too.
+  void start();
+
+  void feed();
+};
+
+}  // namespace inkwell::drivers

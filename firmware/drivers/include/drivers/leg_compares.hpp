@@ -1,0 +1,42 @@
+// From a duty to the compare values of a bridge's two legs. No register here.
+#pragma once
+
+#include <cstdint>
+
+#include <board/omni_driver.hpp>
+
+namespace inkwell::drivers {
+
+/// Counts of the timers at which the legs of one bridge switch.
+struct LegCompares {
+  std::uint16_t leg_a;
+  std::uint16_t leg_b;
+  bool operator==(const LegCompares&) const = default;
+};
+
+/// Legs of (1 + u) / 2 and (1 - u) / 2. The difference of the legs is what the motor sees, so it is rounded and
+/// not each leg: the motor gets steps of 1 / pwm_top. A duty beyond the board's limit is bounded to it, and one
+/// that is not a number gives no voltage.
+constexpr LegCompares leg_compares(float duty) {
+  constexpr float limit = board::duty_limit;
+  const float bounded = duty > limit ? limit : duty < -limit ? -limit : duty == duty ? duty : 0.0f;
+  constexpr auto top = static_cast<std::int32_t>(board::pwm_top);
+  // Rounds to nearest: what is converted is positive, where a conversion rounds down.
+  const auto difference = static_cast<std::int32_t>(bounded * top + (top + 0.5f)) - top;
+  const std::int32_t leg_a = (top + difference) / 2;
+  return {static_cast<std::uint16_t>(leg_a), static_cast<std::uint16_t>(leg_a - difference)};
+}
+
+inline constexpr LegCompares neutral_legs = leg_compares(0.0f);
+
+static_assert(neutral_legs == LegCompares{board::pwm_top / 2, board::pwm_top / 2});
+static_assert(leg_compares(0.5f) == LegCompares{board::pwm_top * 3 / 4, board::pwm_top / 4});
+static_assert(leg_compares(-0.5f) == LegCompares{board::pwm_top / 4, board::pwm_top * 3 / 4});
+static_assert(leg_compares(1.0f / board::pwm_top).leg_a == leg_compares(1.0f / board::pwm_top).leg_b + 1);
+static_assert(leg_compares(-1.0f / board::pwm_top).leg_a + 1 == leg_compares(-1.0f / board::pwm_top).leg_b);
+static_assert(leg_compares(7.0f) == leg_compares(board::duty_limit));
+static_assert(leg_compares(7.0f).leg_a < board::pwm_top && leg_compares(7.0f).leg_b > 0);
+static_assert(leg_compares(-7.0f) == leg_compares(-board::duty_limit));
+static_assert(leg_compares(__builtin_nanf("")) == neutral_legs);
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,93 @@
+// Pins of the chip by the board's facts (RM0090, chapter GPIO). A pin is a template argument, so that setting
+// one up is a few stores.
+#pragma once
+
+#include <type_traits>
+
+#include <board/omni_driver.hpp>
+#include <registers/clock.hpp>
+#include <registers/general_purpose_io.hpp>
+
+namespace inkwell::drivers {
+
+enum class Pull : std::uint8_t { none = 0, up = 1, down = 2 };
+enum class Speed : std::uint8_t { low = 0, medium = 1, fast = 2, high = 3 };
+
+namespace detail {
+
+enum class Mode : std::uint8_t { input = 0, output = 1, alternate = 2, analog = 3 };
+
+template <char letter>
+struct Port;
+template <>
+struct Port<'A'> {
+  using Registers = registers::GPIOA;
+};
+template <>
+struct Port<'B'> {
+  using Registers = registers::GPIOB;
+};
+template <>
+struct Port<'C'> {
+  using Registers = registers::GPIOC;
+};
+
+template <board::Pin pin>
+using Registers = typename Port<pin.port>::Registers;
+
+/// The field of `width` bits that belongs to a pin in a register with one such field for each pin.
+template <class Register, board::Pin pin, unsigned width>
+using PinField = registers::Field<Register, pin.number % (32 / width) * width, width>;
+
+template <board::Pin pin>
+void configure(Mode mode, Pull pull, Speed speed) {
+  using Io = Registers<pin>;
+  Io::PUPDR::modify(PinField<typename Io::PUPDR, pin, 2>(static_cast<std::uint32_t>(pull)));
+  Io::OSPEEDR::modify(PinField<typename Io::OSPEEDR, pin, 2>(static_cast<std::uint32_t>(speed)));
+  Io::MODER::modify(PinField<typename Io::MODER, pin, 2>(static_cast<std::uint32_t>(mode)));
+}
+
+}  // namespace detail
+
+/// Clocks the ports; call it before anything else in this file.
+inline void start_pins() {
+  using Enable = registers::RCC::AHB1ENR;
+  Enable::modify(Enable::GPIOAEN(1), Enable::GPIOBEN(1), Enable::GPIOCEN(1));
+  // Erratum "Delay after an RCC peripheral clock enabling": read back before the first access.
+  static_cast<void>(Enable::read());
+}
+
+/// Connects a pin to its peripheral.
+template <board::PeripheralPin wiring>
+void connect(Pull pull, Speed speed) {
+  using Io = detail::Registers<wiring.pin>;
+  using Function = std::conditional_t<(wiring.pin.number < 8), typename Io::AFRL, typename Io::AFRH>;
+  Function::modify(detail::PinField<Function, wiring.pin, 4>(wiring.alternate_function));
+  detail::configure<wiring.pin>(detail::Mode::alternate, pull, speed);
+}
+
+/// Frees a pin from its digital circuits, for an ADC.
+template <board::Pin pin>
+void connect_analog() {
+  detail::configure<pin>(detail::Mode::analog, Pull::none, Speed::low);
+}
+
+template <board::Pin pin>
+struct DigitalInput {
+  static void start(Pull pull) { detail::configure<pin>(detail::Mode::input, pull, Speed::low); }
+  static bool is_high() { return (detail::Registers<pin>::IDR::read() >> pin.number & 1u) != 0; }
+};
+
+template <board::Pin pin>
+struct DigitalOutput {
+  /// Drives the pin low from the first moment.
+  static void start() {
+    set_low();
+    detail::configure<pin>(detail::Mode::output, Pull::none, Speed::low);
+  }
+  static void set_high() { detail::Registers<pin>::BSRR::write(1u << pin.number); }
+  static void set_low() { detail::Registers<pin>::BSRR::write(1u << (pin.number + 16)); }
+  static void set(bool high) { high ? set_high() : set_low(); }
+};
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,34 @@
+// The status LED: what it shows can be told apart without counting.
+#pragma once
+
+#include <cstdint>
+
+#include <drivers/pins.hpp>
+
+namespace inkwell::drivers {
+
+enum class LedPattern : std::uint8_t {
+  slow_blink,  ///< once a second: waits for the inkwell
+  steady,      ///< pose is valid
+  fast_blink,  ///< five times a second: fault
+};
+
+class StatusLed {
+ public:
+  void start() { Output::start(); }
+  void set(bool on) { Output::set(on); }
+
+  /// Call it often; `time_periods` is in control periods.
+  void show(LedPattern pattern, std::uint32_t time_periods) {
+    set(pattern == LedPattern::steady || time_periods % period(pattern) < period(pattern) / 2);
+  }
+
+ private:
+  using Output = DigitalOutput<board::status_led>;
+
+  static constexpr std::uint32_t period(LedPattern pattern) {
+    return pattern == LedPattern::fast_blink ? board::servo_rate_Hz / 5 : board::servo_rate_Hz;
+  }
+};
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,35 @@
+#include <drivers/independent_watchdog.hpp>
+
+#include <registers/processor.hpp>
+#include <registers/watchdog.hpp>
+
+namespace inkwell::drivers {
+namespace {
+
+using registers::IWDG;
+
+constexpr std::uint32_t key_start = 0xCCCC, key_unlock = 0x5555, key_feed = 0xAAAA;
+constexpr std::uint32_t oscillator_Hz = 32'000;  // 17 to 47 kHz by the data sheet
+constexpr std::uint32_t timeout_ms = 20;
+constexpr std::uint32_t divider = 4, divider_code = 0;
+constexpr std::uint32_t reload = oscillator_Hz / divider * timeout_ms / 1000 - 1;
+
+}  // namespace
+
+void IndependentWatchdog::start() {
+  using Freeze = registers::DBG::DBGMCU_APB1_FZ;
+  Freeze::modify(Freeze::DBG_IWDG_STOP(1));
+  // Starting it first starts its oscillator, without which the new values would never be taken over.
+  IWDG::KR::write(key_start);
+  IWDG::KR::write(key_unlock);
+  IWDG::PR::write(IWDG::PR::PR_(divider_code));
+  IWDG::RLR::write(IWDG::RLR::RL(reload));
+  // Five of its cycles; if they never end, the default timeout of half a second holds, which is safe as well.
+  for (int turn = 0; turn < 100'000 && IWDG::SR::read() != 0; ++turn) {
+  }
+  feed();
+}
+
+void IndependentWatchdog::feed() { IWDG::KR::write(key_feed); }
+
+}  // namespace inkwell::drivers
