@@ -1,0 +1,118 @@
+// How fast the virtual board runs the firmware, and what each stage of its control interrupt costs.
+#include <atomic>
+#include <cstdio>
+#include <thread>
+
+#include <benchmark/benchmark.h>
+
+#include <board/omni_driver.hpp>
+#include <device/device.hpp>
+#include <device/virtual_board.hpp>
+
+namespace {
+
+using namespace inkwell;
+using namespace std::chrono_literals;
+using protocol::Signal;
+
+/// A board with a host that reads every pose and 14 signals, which is what the window does.
+class BusyBoard {
+ public:
+  explicit BusyBoard(device::SimulationMode mode)
+      : board_(options(mode)), control_(board_.control()), device_(open(board_, control_)) {
+    control_.resume();
+    device_->select_signals(signals);
+    control_.pause();
+    pose_reader_ = std::thread([this] {
+      while (!stop_) device_->read_pose(10ms);
+    });
+    scope_reader_ = std::thread([this] {
+      while (!stop_)
+        if (const auto samples = device_->read_scope(10ms)) keep_longest(*samples);
+    });
+  }
+  ~BusyBoard() {
+    stop_ = true;
+    pose_reader_.join();
+    scope_reader_.join();
+  }
+
+  void run(double time_s) { control_.run(time_s); }
+  float longest_cycles(std::size_t signal) const { return longest_[signal]; }
+  std::uint32_t longest_interrupt_cycles() {
+    control_.resume();
+    return device_->information().report.servo_cycles_longest;
+  }
+
+  static constexpr std::array signals{
+      Signal::servo_cycles,         Signal::stage_sample_cycles,  Signal::stage_pose_cycles,
+      Signal::stage_contact_cycles, Signal::stage_torque_cycles,  Signal::stage_current_cycles,
+      Signal::stage_report_cycles,  Signal::position_x_m,         Signal::position_y_m,
+      Signal::position_z_m,         Signal::force_N,              Signal::torque_1_Nm,
+      Signal::torque_2_Nm,          Signal::torque_3_Nm};
+
+ private:
+  static device::VirtualBoardOptions options(device::SimulationMode mode) {
+    device::VirtualBoardOptions options;
+    options.mode = mode;
+    options.real_time = false;
+    options.paused = true;
+    return options;
+  }
+  static std::unique_ptr<device::Device> open(device::VirtualBoard& board, device::ControlClient& control) {
+    control.resume();
+    std::optional<device::Endpoint> endpoint;
+    while (!endpoint) endpoint = board.find();
+    auto device = device::Device::open(*endpoint);
+    control.pause();
+    return device;
+  }
+  void keep_longest(const device::ScopeSamples& samples) {
+    for (std::size_t i = 0; i < samples.values.size(); ++i) {
+      auto& longest = longest_[i % signals.size()];
+      longest = std::max(longest, samples.values[i]);
+    }
+  }
+
+  device::VirtualBoard board_;
+  device::ControlClient control_;
+  std::unique_ptr<device::Device> device_;
+  std::array<float, signals.size()> longest_{};
+  std::atomic<bool> stop_ = false;
+  std::thread pose_reader_, scope_reader_;
+};
+
+void virtual_board(benchmark::State& state, device::SimulationMode mode) {
+  BusyBoard board(mode);
+  board.run(0.5);
+  double board_s = 0;
+  for (auto _ : state) {
+    board.run(1.0);
+    board_s += 1.0;
+  }
+  state.counters["times_real_time"] = benchmark::Counter(board_s, benchmark::Counter::kIsRate);
+}
+BENCHMARK_CAPTURE(virtual_board, fast, device::SimulationMode::fast)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(5);
+BENCHMARK_CAPTURE(virtual_board, exact, device::SimulationMode::exact)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(5);
+
+void print_stages() {
+  BusyBoard board(device::SimulationMode::exact);
+  board.run(1.0);
+  std::printf("Control interrupt on the virtual board (simulation), longest of 20000, one cycle an instruction:\n");
+  for (std::size_t i = 1; i < BusyBoard::signals.size(); ++i) {
+    const auto& row = protocol::info(BusyBoard::signals[i]);
+    if (row.unit == "cycles") std::printf("  %-22s %6.0f\n", row.name.data(), static_cast<double>(board.longest_cycles(i)));
+  }
+  std::printf("  %-22s %6.0f\n", "all stages", static_cast<double>(board.longest_cycles(0)));
+  std::printf("  since the start        %6u of %u\n\n", board.longest_interrupt_cycles(), board::servo_cycles);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  print_stages();
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -1,0 +1,157 @@
+// The device as a host sees it: enumeration, identity, parameters, streams, unplugging.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <board/omni_driver.hpp>
+
+#include "program.hpp"
+#include "rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using protocol::Parameter;
+using namespace std::chrono_literals;
+
+TEST_CASE("the device enumerates within a second of board time and says who it is") {
+  Rig rig;  // refuses to start if the device is not there by then
+  const auto information = rig.call([](device::Device& arm) { return arm.information(); });
+  CHECK(information.protocol_version == protocol::protocol_version);
+  CHECK(information.report.parameter_table_hash == protocol::parameter_table_hash);
+  CHECK(information.report.signal_table_hash == protocol::signal_table_hash);
+  CHECK(information.report.servo_rate_Hz == protocol::servo_rate_Hz);
+  CHECK(information.report.processor_clock_Hz == board::processor_Hz);
+  CHECK(information.serial_number.size() == 24);
+  const auto status = rig.control.status();
+  INFO("registers that the virtual chip does not model: ", status.all.at("unmodelled").dump());
+  CHECK(status.unmodelled.empty());
+}
+
+TEST_CASE("the device holds the table's defaults, takes a transaction whole, and gives the defaults back") {
+  Rig rig;
+  const auto before = rig.call([](device::Device& arm) { return arm.parameters(); });
+  auto expected = protocol::default_parameters();
+  expected[Parameter::host_timeout_s] = 2.0f;  // the rig's own
+  CHECK(before == expected);
+
+  rig.set({{Parameter::wall_stiffness_N_per_m, 432.0f}, {Parameter::wall_damping_Ns_per_m, 1.5f},
+           {Parameter::box_minimum_z_m, -0.05f}});
+  const auto after = rig.call([](device::Device& arm) { return arm.parameters(); });
+  CHECK(after[Parameter::wall_stiffness_N_per_m] == 432.0f);
+  CHECK(after[Parameter::wall_damping_Ns_per_m] == 1.5f);
+  CHECK(after[Parameter::box_minimum_z_m] == -0.05f);
+
+  rig.call([](device::Device& arm) { arm.restore_default_parameters(); });
+  CHECK(rig.call([](device::Device& arm) { return arm.parameters(); }) == protocol::default_parameters());
+}
+
+TEST_CASE("a refused transaction says which value and why, and changes nothing") {
+  Rig rig;
+  const auto before = rig.call([](device::Device& arm) { return arm.parameters(); });
+  const auto refused_with = [&](std::vector<device::ParameterChange> changes) {
+    return rig.call([&](device::Device& arm) {
+      try {
+        arm.set_parameters(changes);
+      } catch (const device::Refused& refused) {
+        CHECK(std::string(refused.what()).size() > 20);
+        return refused.report.refusal;
+      }
+      return protocol::Refusal::accepted;
+    });
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const device::ParameterChange good{Parameter::wall_stiffness_N_per_m, 100.0f};
+  CHECK(refused_with({good, {Parameter::wall_damping_Ns_per_m, nan}}) == protocol::Refusal::not_finite);
+  CHECK(refused_with({good, {Parameter::wall_damping_Ns_per_m, infinity}}) == protocol::Refusal::not_finite);
+  CHECK(refused_with({good, {Parameter::wall_damping_Ns_per_m, -1.0f}}) == protocol::Refusal::out_of_range);
+  CHECK(refused_with({good, {Parameter::transmission, 0.5f}}) == protocol::Refusal::not_whole);
+  CHECK(refused_with({good, {Parameter::box_minimum_x_m, 0.2f}}) == protocol::Refusal::inconsistent);
+  CHECK(refused_with({good, good}) == protocol::Refusal::given_twice);
+  CHECK(rig.call([](device::Device& arm) { return arm.parameters(); }) == before);
+  CHECK(refused_with({good}) == protocol::Refusal::accepted);
+}
+
+TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for a minute, none lost") {
+  Rig rig;
+  std::vector<protocol::Signal> signals;
+  for (std::uint8_t id = 3; signals.size() < 14; ++id)
+    if (protocol::signal_table[id].wire == protocol::SignalWire::float32)
+      signals.push_back(static_cast<protocol::Signal>(id));
+  rig.call([&](device::Device& arm) { arm.select_signals(signals); });
+
+  std::uint64_t samples = 0, lost = 0;
+  std::optional<std::uint32_t> first_period;
+  const auto first_pose = rig.poses().size();
+  constexpr int seconds = 60;
+  for (int slice = 0; slice < seconds * 50; ++slice) {
+    rig.run(0.02);
+    while (const auto frame = rig.device->read_scope(0ms)) {
+      if (!first_period)
+        first_period = frame->first_period;
+      else
+        lost += frame->lost_before;
+      samples += frame->count;
+    }
+  }
+  const auto& poses = rig.poses();
+  std::uint64_t gaps = 0;
+  for (std::size_t i = first_pose + 1; i < poses.size(); ++i) gaps += poses[i].sequence - poses[i - 1].sequence - 1;
+  const double board_s = (poses.back().time_periods - poses[first_pose].time_periods) * 50e-6;
+  MESSAGE("simulation: ", poses.size() - first_pose, " poses and ", samples, " samples in ", board_s, " s of board time");
+  CHECK(gaps == 0);
+  CHECK(lost == 0);
+  CHECK(board_s >= seconds - 0.1);
+  CHECK((poses.size() - first_pose - 1) / board_s == doctest::Approx(1000).epsilon(0.001));
+  CHECK(samples >= static_cast<std::uint64_t>((seconds - 0.2) * protocol::servo_rate_Hz));
+  const auto information = rig.call([](device::Device& arm) { return arm.information(); });
+  CHECK(information.report.scope_samples_dropped == 0);
+  CHECK(information.report.servo_overruns == 0);
+}
+
+TEST_CASE("a host that does not read the scope loses the oldest samples, counted, and nothing else") {
+  Rig rig;
+  rig.call([&](device::Device& arm) {
+    arm.select_signals(std::vector{protocol::Signal::position_x_m, protocol::Signal::force_N});
+  });
+  rig.run(30.0);  // far longer than all buffers on the way hold
+  const auto longest = rig.call([](device::Device& arm) { return arm.information(); }).report;
+  CHECK(longest.scope_samples_dropped > 20'000);
+  CHECK(longest.servo_overruns == 0);
+  std::uint64_t gaps = 0;
+  for (std::size_t i = 1; i < rig.poses().size(); ++i)
+    gaps += rig.poses()[i].sequence - rig.poses()[i - 1].sequence - 1;
+  CHECK(gaps == 0);
+}
+
+TEST_CASE("pulling the USB cable ends the connection, plugging it in brings the device back") {
+  Rig rig;
+  rig.make_active();
+  rig.control.usb(false);
+  rig.control.resume();
+  CHECK_THROWS_AS(
+      [&] {
+        for (int i = 0; i < 1000; ++i) rig.device->read_pose(10ms);
+      }(),
+      device::Disconnected);
+  rig.device.reset();
+  rig.control.pause();
+  rig.control.run(0.2);
+  CHECK_FALSE(rig.board.find().has_value());
+
+  rig.control.usb(true);
+  std::optional<device::Endpoint> endpoint;
+  for (int i = 0; i < 100 && !endpoint; ++i) {
+    rig.control.run(0.01);
+    endpoint = rig.board.find();
+  }
+  REQUIRE(endpoint.has_value());
+  rig.control.resume();
+  auto again = device::Device::open(*endpoint);
+  const auto pose = again->read_pose(5000ms);
+  REQUIRE(pose.has_value());
+  // The cable took the force with it; the arm still knows where it is.
+  CHECK(pose->state != protocol::State::active);
+  CHECK(pose->state != protocol::State::unreferenced);
+}

@@ -1,0 +1,37 @@
+// Runs one of the built programs and keeps what it said.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace inkwell::tests {
+
+struct ProgramResult {
+  int exit_code;  ///< -1 if the program was ended by a signal or by the time limit
+  std::string out;
+  std::string err;
+};
+
+/// Runs build/pc/`program` with the arguments. Ends it after `limit`, which no healthy run reaches.
+ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments,
+                          std::chrono::seconds limit = std::chrono::seconds(120));
+
+/// The directory of this executable: build/pc.
+std::string build_directory();
+
+/// A new empty directory that goes away with this object.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory();
+  ~TemporaryDirectory();
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+  std::string file(const std::string& name) const { return path_ + "/" + name; }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace inkwell::tests

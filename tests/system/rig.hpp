@@ -1,0 +1,60 @@
+// A virtual board with the firmware that would be flashed, and a host on its USB. Board time stands still
+// except inside `run` and `call`, so that a slow test machine changes nothing.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <device/control_client.hpp>
+#include <device/device.hpp>
+#include <device/virtual_board.hpp>
+
+namespace inkwell::tests {
+
+class Rig {
+ public:
+  /// Starts the board, docked in its inkwell, and opens the device.
+  explicit Rig(device::SimulationMode mode = device::SimulationMode::fast, std::uint64_t seed = 1);
+
+  /// Lets board time pass in slices of 10 ms, collects every pose report, keeps the host's sign of life.
+  void run(double time_s);
+  /// Lets board time run freely while the host talks to the device.
+  template <class Action>
+  auto call(Action action) {
+    struct Running {
+      device::ControlClient& control;
+      explicit Running(device::ControlClient& client) : control(client) { control.resume(); }
+      ~Running() { control.pause(); }
+    } running(control);
+    return action(*device);
+  }
+  void set(std::initializer_list<device::ParameterChange> changes);
+  void command(protocol::Command command);
+  /// Runs until the newest pose fulfils the condition; fails the test after `limit_s` of board time.
+  void run_until(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s = 3.0);
+
+  /// Takes the stylus out of the inkwell by the hand and brings it to a point of the workspace.
+  void take_to(device::Vector3 target_m, double duration_s = 0.6);
+  /// Waits for the reference, then switches the force on.
+  void make_active();
+
+  const protocol::PoseReport& pose() const { return poses_.back(); }
+  const std::vector<protocol::PoseReport>& poses() const { return poses_; }
+  double board_time_s() { return control.status().board_time_s; }
+
+  device::VirtualBoard board;
+  device::ControlClient control;
+  std::unique_ptr<device::Device> device;
+
+ private:
+  std::size_t collect(std::chrono::milliseconds timeout);
+  std::vector<protocol::PoseReport> poses_;
+};
+
+/// The middle of the default arm's box, within its reach.
+inline constexpr device::Vector3 free_point_m{0.0, 0.0, -0.03};
+
+}  // namespace inkwell::tests
