@@ -1,1 +1,59 @@
 #include <control/conditioning.hpp>
+
+#include <control/trigonometry.hpp>
+
+namespace inkwell::control {
+
+void measure_offsets(CurrentOffsets& offsets, const Triple& current_A) {
+  constexpr float per_reading = 1.0f / static_cast<float>(CurrentOffsets::duration_periods);
+  ++offsets.periods;
+  for (std::size_t i = 0; i < 3; ++i) offsets.sum_A[i] += current_A[i];
+  if (!offsets.measured()) return;
+  for (std::size_t i = 0; i < 3; ++i) offsets.offset_A[i] = offsets.sum_A[i] * per_reading;
+}
+
+bool plausible(const CurrentOffsets& offsets) {
+  for (const float offset_A : offsets.offset_A)
+    if (!(offset_A > -CurrentOffsets::plausible_A && offset_A < CurrentOffsets::plausible_A)) return false;
+  return true;
+}
+
+void filter_supply(SupplyFilter& filter, float sample_V) {
+  if (!filter.started || !is_finite(filter.supply_V)) filter.supply_V = sample_V;
+  filter.started = true;
+  filter.supply_V += SupplyFilter::weight * (sample_V - filter.supply_V);
+  filter.per_V = reciprocal(filter.supply_V > SupplyFilter::floor_V ? filter.supply_V : SupplyFilter::floor_V);
+}
+
+void debounce(SwitchFilter& filter, std::uint8_t switches) {
+  if (switches != filter.candidate) {
+    filter.candidate = switches;
+    filter.stable_periods = 0;
+    return;
+  }
+  if (filter.stable_periods < SwitchFilter::settle_periods) ++filter.stable_periods;
+  if (filter.stable_periods == SwitchFilter::settle_periods) filter.closed = filter.candidate;
+}
+
+bool update_reference(InkwellReference& reference, const std::array<std::int32_t, 3>& encoder_counts,
+                      bool inkwell_closed) {
+  bool still = inkwell_closed;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int32_t moved = encoder_counts[i] - reference.rest_counts[i];
+    still = still && moved <= InkwellReference::still_counts && moved >= -InkwellReference::still_counts;
+  }
+  // While the switch stays closed after a reference the time stays full, so that it is taken once.
+  const bool taken = inkwell_closed && reference.rested_periods > InkwellReference::still_periods;
+  if (taken) return false;
+  if (!still) {
+    reference.rest_counts = encoder_counts;
+    reference.rested_periods = 0;
+    return false;
+  }
+  if (++reference.rested_periods <= InkwellReference::still_periods) return false;
+  reference.counts = encoder_counts;
+  reference.valid = true;
+  return true;
+}
+
+}  // namespace inkwell::control

@@ -1,1 +1,190 @@
 #include <control/controller.hpp>
+
+#include <control/trigonometry.hpp>
+
+namespace inkwell::control {
+
+namespace {
+
+using protocol::Command;
+using protocol::Fault;
+using protocol::Signal;
+using protocol::State;
+
+bool is_closed(std::uint8_t switches, protocol::Switch which) {
+  return (switches & static_cast<std::uint8_t>(which)) != 0;
+}
+
+bool beyond(const Triple& values, const Triple& bounds) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (values[i] > bounds[i] || values[i] < -bounds[i]) return true;
+  return false;
+}
+
+bool joints_implausible(const Triple& joint_rad, Transmission transmission, const Limits& limits) {
+  const Triple at_stops_rad{joint_rad[0], joint_rad[1], elbow_rad(joint_rad, transmission)};
+  for (std::size_t i = 0; i < 3; ++i)
+    if (at_stops_rad[i] < limits.joint_minimum_rad[i] || at_stops_rad[i] > limits.joint_maximum_rad[i]) return true;
+  return false;
+}
+
+float sum(const Triple& values) { return values[0] + values[1] + values[2]; }
+float sum(const Vector3& vector) { return vector.x + vector.y + vector.z; }
+
+/// Writes consecutive rows of the signal table.
+void put(protocol::SignalValues& signals, Signal first, const Triple& values) {
+  for (std::size_t i = 0; i < 3; ++i) signals.values[static_cast<std::size_t>(first) + i] = values[i];
+}
+void put(protocol::SignalValues& signals, Signal first, const Vector3& vector) {
+  put(signals, first, Triple{vector.x, vector.y, vector.z});
+}
+
+}  // namespace
+
+void Controller::carry_out(const protocol::CommandReport& command) {
+  host_alive();
+  switch (command.command) {
+    case Command::enable_force: requests_.enable_force = true; break;
+    case Command::disable_force: requests_.disable_force = true; break;
+    case Command::clear_fault: requests_.clear_fault = true; break;
+    case Command::test_current:
+    case Command::test_voltage:
+      if (supervisor_.state == State::ready)
+        test_ = start_test_pulse(command.test, command.command == Command::test_current
+                                                   ? TestPulse::Quantity::current
+                                                   : TestPulse::Quantity::voltage);
+      break;
+    case Command::heartbeat:
+    case Command::select_signals: break;
+  }
+}
+
+void Controller::raise(Fault fault) {
+  if (requests_.raised == Fault::none) requests_.raised = fault;
+}
+
+void Controller::condition_samples(const Samples& samples, const Settings& settings) {
+  if (periods_ == 0)
+    for (std::size_t i = 0; i < 3; ++i) speeds_[i] = start_speed_estimate(samples.encoder_counts[i], periods_);
+  // The bridges are off until the offsets are known, so what the sensors read is their offset.
+  if (!offsets_.measured()) measure_offsets(offsets_, samples.current_A);
+  debounce(switches_, samples.switches);
+  filter_supply(supply_, samples.supply_V);
+  encoder_counts_ = samples.encoder_counts;
+  for (std::size_t i = 0; i < 3; ++i) {
+    current_A_[i] = samples.current_A[i] - offsets_.offset_A[i];
+    const float ratio = samples.gimbal_ratio[i];
+    const GimbalCurve& curve = settings.gimbal[i];
+    gimbal_rad_[i] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
+  }
+  // While walls push, a new reference would move the probe under the hand.
+  if (!force_is_on())
+    update_reference(reference_, encoder_counts_, is_closed(switches_.closed, protocol::Switch::inkwell));
+}
+
+void Controller::find_pose(const Settings& settings) {
+  constexpr auto periods_per_s = static_cast<float>(protocol::servo_rate_Hz);
+  for (std::size_t i = 0; i < 3; ++i) {
+    update(speeds_[i], encoder_counts_[i], periods_);
+    joint_speed_rad_per_s_[i] =
+        speeds_[i].counts_per_period * settings.encoders.rad_per_count[i] * periods_per_s;
+  }
+  joint_rad_ = joint_angles(counts_since_inkwell(), settings.encoders);
+  pose_ = forward_kinematics(joint_rad_, settings.arm);
+  velocity_m_per_s_ = probe_velocity(pose_.jacobian, joint_speed_rad_per_s_);
+}
+
+void Controller::render_contact(const Settings& settings) {
+  contact_ = find_contact(pose_.position_m, settings.box);
+  if (!force_is_on()) {
+    force_ = {};
+    force_gain_ = 0.0f;
+    return;
+  }
+  force_gain_ = clamp(force_gain_ + settings.ramp_per_period, 0.0f, 1.0f);
+  force_ = scaled(wall_force(contact_, velocity_m_per_s_, settings.wall), force_gain_);
+}
+
+void Controller::find_current_references(const Settings& settings) {
+  torque_Nm_ = joint_torques(pose_.jacobian, force_.force_N);
+  reference_A_ = current_references(torque_Nm_, settings.motors);
+  if (!test_.runs() || test_.quantity != TestPulse::Quantity::current) return;
+  const float limit_A = settings.motors.current_limit_A[test_.motor];
+  reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
+}
+
+void Controller::regulate_currents(const Settings& settings) {
+  drive_ = {};
+  if (!force_is_on() && !test_.runs()) {
+    loops_ = {};
+    return;
+  }
+  const float supply_bound_V = board_.duty_limit * supply_.supply_V;
+  const float bound_V = clamp(settings.current_loop.voltage_limit_V, 0.0f, supply_bound_V);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const CurrentLoopStep step = regulate(loops_[i], reference_A_[i], current_A_[i], settings.current_loop, bound_V);
+    const bool voltage_test = test_.runs() && test_.quantity == TestPulse::Quantity::voltage && test_.motor == i;
+    const float voltage_V = voltage_test ? clamp(test_.value(), -bound_V, bound_V) : step.voltage_V;
+    loops_[i] = voltage_test ? CurrentLoop{} : step.loop;
+    drive_.duty[i] = clamp(voltage_V * supply_.per_V, -board_.duty_limit, board_.duty_limit);
+  }
+  drive_.enabled = true;
+}
+
+void Controller::supervise(const Samples& samples, const Settings& settings) {
+  ++host_silence_periods_;
+  const float sum_of_all = sum(pose_.position_m) + sum(velocity_m_per_s_) + sum(force_.force_N) + sum(torque_Nm_) +
+                           sum(reference_A_) + sum(current_A_) + sum(drive_.duty) + supply_.supply_V;
+  const Conditions conditions{
+      .offsets_measured = offsets_.measured(),
+      .offsets_plausible = plausible(offsets_),
+      .referenced = reference_.valid,
+      .not_finite = !is_finite(sum_of_all),
+      .supply_low = supply_.supply_V < board_.supply_minimum_V,
+      .supply_high = supply_.supply_V > board_.supply_maximum_V,
+      .bridge_fault = samples.bridge_fault,
+      .over_current = beyond(current_A_, settings.limits.over_current_A),
+      .encoder_implausible = joints_implausible(joint_rad_, settings.arm.transmission, settings.limits),
+      .over_speed = dot(velocity_m_per_s_, velocity_m_per_s_) > settings.limits.speed_limit_squared_m2_per_s2,
+      .host_silent = host_silence_periods_ > settings.limits.host_timeout_periods};
+  const Supervisor before = supervisor_;
+  supervisor_ = advance(before, conditions, requests_);
+  requests_ = {};
+
+  // Counts were lost, so the reference is void: only the inkwell can tell again where the arm is.
+  if (supervisor_.fault == Fault::encoder_implausible && before.fault != supervisor_.fault) reference_ = {};
+  if (supervisor_.state != State::ready) test_ = {};
+  if (test_.runs()) --test_.remaining_periods;
+  // A change of state switches off in the period in which it is decided, not one later.
+  if (supervisor_.state != before.state) drive_ = {};
+}
+
+std::array<std::int32_t, 3> Controller::counts_since_inkwell() const {
+  std::array<std::int32_t, 3> counts{};
+  for (std::size_t i = 0; i < 3; ++i) counts[i] = encoder_counts_[i] - reference_.counts[i];
+  return counts;
+}
+
+void Controller::write_signals() {
+  const std::array<std::int32_t, 3> counts = counts_since_inkwell();
+  put(signals_, Signal::encoder_1_counts,
+      Triple{static_cast<float>(counts[0]), static_cast<float>(counts[1]), static_cast<float>(counts[2])});
+  put(signals_, Signal::joint_1_rad, joint_rad_);
+  put(signals_, Signal::position_x_m, pose_.position_m);
+  put(signals_, Signal::velocity_x_m_s, velocity_m_per_s_);
+  put(signals_, Signal::penetration_x_m, contact_.penetration_m);
+  put(signals_, Signal::force_x_N, force_.force_N);
+  signals_[Signal::force_N] = force_.magnitude_N;
+  put(signals_, Signal::torque_1_Nm, torque_Nm_);
+  put(signals_, Signal::current_reference_1_A, reference_A_);
+  put(signals_, Signal::current_1_A, current_A_);
+  put(signals_, Signal::duty_1, drive_.duty);
+  put(signals_, Signal::gimbal_1_rad, gimbal_rad_);
+  put(signals_, Signal::joint_speed_1_rad_s, joint_speed_rad_per_s_);
+  signals_[Signal::supply_V] = supply_.supply_V;
+  signals_[Signal::servo_cycles] = static_cast<float>(servo_cycles_);
+  for (std::size_t i = 0; i < stage_count; ++i)
+    signals_.values[static_cast<std::size_t>(Signal::stage_sample_cycles) + i] = static_cast<float>(cycles_[i]);
+}
+
+}  // namespace inkwell::control

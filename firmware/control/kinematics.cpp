@@ -1,1 +1,82 @@
 #include <control/kinematics.hpp>
+
+#include <control/trigonometry.hpp>
+
+namespace inkwell::control {
+
+namespace {
+
+struct LinkDirections {
+  SineCosine waist;
+  SineCosine link_2;  ///< phi2
+  SineCosine link_3;  ///< phi3
+};
+
+LinkDirections link_directions(const Triple& joint_rad, const Arm& arm) {
+  const float relative_to_rad = arm.transmission == Transmission::serial ? joint_rad[1] : 0.0f;
+  return {sine_cosine(joint_rad[0]), sine_cosine(joint_rad[1]),
+          sine_cosine(relative_to_rad + joint_rad[2] + arm.elbow_offset_rad)};
+}
+
+/// A direction given along forward, side and up, in workspace axes.
+Vector3 in_workspace(Frame frame, float forward, float side, float up) {
+  return frame == Frame::paper ? Vector3{forward, side, up} : Vector3{-side, up, forward};
+}
+
+/// A point in the arm's plane, seen from the shoulder.
+Vector3 from_plane(Frame frame, const SineCosine& waist, float reach_m, float height_m) {
+  return in_workspace(frame, reach_m * waist.cosine, reach_m * waist.sine, height_m);
+}
+
+}  // namespace
+
+Pose forward_kinematics(const Triple& joint_rad, const Arm& arm) {
+  const LinkDirections direction = link_directions(joint_rad, arm);
+  const float reach_2_m = arm.link_2_m * direction.link_2.cosine;
+  const float height_2_m = arm.link_2_m * direction.link_2.sine;
+  const float reach_3_m = arm.link_3_m * direction.link_3.cosine;
+  const float height_3_m = arm.link_3_m * direction.link_3.sine;
+  const float reach_m = reach_2_m + reach_3_m;
+  const SineCosine& waist = direction.waist;
+
+  const Vector3 along_waist =
+      in_workspace(arm.frame, -reach_m * waist.sine, reach_m * waist.cosine, 0.0f);
+  // A link that turns in its plane moves its end at right angles to itself.
+  const Vector3 along_link_2 = from_plane(arm.frame, waist, -height_2_m, reach_2_m);
+  const Vector3 along_link_3 = from_plane(arm.frame, waist, -height_3_m, reach_3_m);
+  const bool link_2_carries_link_3 = arm.transmission == Transmission::serial;
+
+  return {arm.origin_m + from_plane(arm.frame, waist, reach_m, height_2_m + height_3_m),
+          {{along_waist, link_2_carries_link_3 ? along_link_2 + along_link_3 : along_link_2, along_link_3}}};
+}
+
+LinkEnds link_ends(const Triple& joint_rad, const Arm& arm) {
+  const LinkDirections direction = link_directions(joint_rad, arm);
+  const Vector3 elbow_m =
+      arm.origin_m + from_plane(arm.frame, direction.waist, arm.link_2_m * direction.link_2.cosine,
+                                arm.link_2_m * direction.link_2.sine);
+  return {arm.origin_m, elbow_m,
+          elbow_m + from_plane(arm.frame, direction.waist, arm.link_3_m * direction.link_3.cosine,
+                               arm.link_3_m * direction.link_3.sine)};
+}
+
+Vector3 probe_velocity(const Jacobian& jacobian, const Triple& joint_speed_rad_per_s) {
+  return joint_speed_rad_per_s[0] * jacobian.column[0] + joint_speed_rad_per_s[1] * jacobian.column[1] +
+         joint_speed_rad_per_s[2] * jacobian.column[2];
+}
+
+Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N) {
+  return {dot(jacobian.column[0], force_N), dot(jacobian.column[1], force_N), dot(jacobian.column[2], force_N)};
+}
+
+Triple paper_torques(const LinkEnds& ends, const Vector3& force_N) {
+  const Vector3 link_2_m = ends.elbow_m - ends.shoulder_m;
+  const Vector3 link_3_m = ends.probe_m - ends.elbow_m;
+  return {cross(link_2_m + link_3_m, force_N).z, cross(link_2_m + link_3_m, force_N).x, cross(link_3_m, force_N).x};
+}
+
+float elbow_rad(const Triple& joint_rad, Transmission transmission) {
+  return transmission == Transmission::serial ? joint_rad[2] : joint_rad[2] - joint_rad[1];
+}
+
+}  // namespace inkwell::control

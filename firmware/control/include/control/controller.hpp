@@ -75,7 +75,7 @@ class Controller {
   void regulate_currents(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void write_signals();
-  void keep_reference(const Settings& settings);
+  std::array<std::int32_t, 3> counts_since_inkwell() const;
 
   BoardLimits board_;
 

@@ -3,9 +3,12 @@
 
 #include <cstdint>
 
+#include <control/conditioning.hpp>
+#include <protocol/reports.hpp>
+
 namespace inkwell::control {
 
-/// A pulse under way: `amplitude` for half of the time, then zero for as long, so that the decay is seen too.
+/// A pulse under way: `amplitude`, then zero for as long, so that the decay is seen too.
 struct TestPulse {
   enum class Quantity : std::uint8_t { current, voltage };
 
@@ -19,5 +22,14 @@ struct TestPulse {
   /// What is asked of the motor in this period.
   float value() const { return remaining_periods > pulse_periods ? amplitude : 0.0f; }
 };
+
+/// The pulse that a command asks for; none for a motor that there is not or for a time that is not positive.
+constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPulse::Quantity quantity) {
+  if (wanted.motor < 1 || wanted.motor > 3 || !(wanted.duration_s > 0.0f)) return {};
+  const float duration_s =
+      wanted.duration_s < protocol::test_duration_maximum_s ? wanted.duration_s : protocol::test_duration_maximum_s;
+  const std::uint32_t periods = periods_in(duration_s);
+  return {quantity, static_cast<std::uint8_t>(wanted.motor - 1), wanted.amplitude, periods, 2 * periods};
+}
 
 }  // namespace inkwell::control
