@@ -48,11 +48,13 @@ class ScopeRecorder {
   using Frame = std::array<std::byte, protocol::scope_frame_maximum>;
 
   void change_plan();
-  void begin_frame(std::uint32_t periods);
+  void open_frame(std::uint32_t frame);
   void finish_frame();
+  std::uint8_t pop_backlog();
+  std::uint8_t drop_oldest();
   void hand_over();
-  void write_full(const protocol::SignalValues& signals);
-  void write_changes(const protocol::SignalValues& signals);
+  void write_full(const ScopePlan& plan, const protocol::SignalValues& signals);
+  void write_changes(const ScopePlan& plan, const protocol::SignalValues& signals);
 
   alignas(4) std::array<Frame, frame_count> frames_;
 

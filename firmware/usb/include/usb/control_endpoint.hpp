@@ -77,7 +77,10 @@ class ControlEndpoint {
     status_out,  ///< an empty packet from the host ends the request
   };
 
+  void begin_data_in(std::span<const std::byte> data);
   void send_next_packet();
+  void collect(std::span<const std::byte> packet);
+  void send_status();
   void stall();
 
   Port& port_;

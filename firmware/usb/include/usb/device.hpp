@@ -48,6 +48,7 @@ class Device final : private ControlRequests {
   Answer change_halt(const SetupPacket& setup, bool halted);
   Answer set_configuration(const SetupPacket& setup);
   Answer string_descriptor(std::uint8_t index);
+  Answer send_byte(std::uint8_t value);
   Answer hid_request(const SetupPacket& setup);
   Answer get_report(const SetupPacket& setup);
   Answer vendor_request(const SetupPacket& setup);
@@ -57,9 +58,7 @@ class Device final : private ControlRequests {
   void host_gone();
   void start_endpoints();
   void stop_endpoints();
-  void restart(std::uint8_t endpoint_address);
   void output_report(std::span<const std::byte> report);
-  bool accept_parameters(std::span<const std::byte> report);
   void send_pose();
   void send_scope();
   protocol::InformationReport information() const;
@@ -71,7 +70,10 @@ class Device final : private ControlRequests {
     bool busy = false;    ///< a transfer is running
     bool halted = false;
   };
+  /// Null for endpoint 0, an unknown one, and while the device is not configured.
   Endpoint* find_endpoint(std::uint16_t address);
+  /// Data toggle 0, no halt, and the report or frame that was on its way from its first byte.
+  void restart(Endpoint& endpoint);
 
   Port& port_;
   link::Link& link_;
@@ -79,7 +81,6 @@ class Device final : private ControlRequests {
   ControlEndpoint control_;
   std::uint8_t configuration_ = 0;
   std::uint8_t idle_rate_ = 0;
-  bool addressed_ = false;
   bool suspended_ = false;
   std::array<Endpoint, 3> endpoints_;
   bool scope_frame_open_ = false;     ///< the hand-over's oldest frame is being sent

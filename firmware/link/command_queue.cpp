@@ -1,0 +1,86 @@
+#include <link/command_queue.hpp>
+
+#include <cmath>
+#include <cstring>
+
+namespace inkwell::link {
+
+namespace {
+
+using protocol::Command;
+
+bool sound(const protocol::SignalSelection& selection) {
+  if (selection.count > protocol::scope_signals_maximum) return false;
+  for (std::size_t i = 0; i < selection.count; ++i)
+    if (selection.signals[i] >= protocol::signal_count) return false;
+  return true;
+}
+
+bool sound(const protocol::TestPulse& test) {
+  const float amplitude = test.amplitude;
+  const float duration_s = test.duration_s;
+  return test.motor >= 1 && test.motor <= 3 && std::isfinite(amplitude) && duration_s >= 0.0f &&
+         duration_s <= protocol::test_duration_maximum_s;
+}
+
+}  // namespace
+
+std::optional<protocol::CommandReport> decode_command(std::span<const std::byte> report) {
+  if (report.size() != sizeof(protocol::CommandReport)) return std::nullopt;
+  protocol::CommandReport command;
+  std::memcpy(&command, report.data(), sizeof command);
+  if (command.report_id != protocol::ReportId::command || command.version != protocol::protocol_version)
+    return std::nullopt;
+  switch (command.command) {
+    case Command::heartbeat:
+    case Command::enable_force:
+    case Command::disable_force:
+    case Command::clear_fault: return command;
+    case Command::select_signals: return sound(command.selection) ? std::optional(command) : std::nullopt;
+    case Command::test_current:
+    case Command::test_voltage: return sound(command.test) ? std::optional(command) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+bool CommandQueue::push(const protocol::CommandReport& command) {
+  sign_of_life_.store(true);
+  const std::uint32_t pushed = pushed_.load();
+  if (pushed - taken_.load() == capacity) return false;
+  commands_[pushed % capacity] = command;
+  pushed_.store(pushed + 1);
+  return true;
+}
+
+bool CommandQueue::waiting(protocol::Command command) const {
+  // What the interrupt takes meanwhile may be reported as waiting; nothing that waits is missed.
+  const std::uint32_t pushed = pushed_.load();
+  for (std::uint32_t i = taken_.load(); i != pushed; ++i)
+    if (commands_[i % capacity].command == command) return true;
+  return false;
+}
+
+void CommandQueue::host_gone() {
+  sign_of_life_.store(false);
+  host_gone_.store(true);
+}
+
+const protocol::CommandReport* CommandQueue::take() {
+  const std::uint32_t taken = taken_.load();
+  if (host_gone_.load()) {
+    host_gone_.store(false);
+    taken_.store(pushed_.load());
+    disable_force_ = {};
+    disable_force_.command = Command::disable_force;
+    disable_force_.token = last_token_;  // the host asked for nothing, so nothing new is acknowledged
+    return &disable_force_;
+  }
+  if (taken == pushed_.load()) return nullptr;
+  const protocol::CommandReport& command = commands_[taken % capacity];
+  last_token_ = command.token;
+  // The main loop can not run, and so not reuse the place, before the interrupt returns.
+  taken_.store(taken + 1);
+  return &command;
+}
+
+}  // namespace inkwell::link

@@ -1,0 +1,161 @@
+#include <link/parameter_check.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+namespace inkwell::link {
+
+namespace {
+
+using protocol::Parameter;
+using protocol::parameter_count;
+using protocol::ParameterKind;
+using protocol::ParameterSet;
+using protocol::Refusal;
+
+/// The columns of the table that a check needs; the texts stay out of the image.
+struct Limits {
+  std::uint16_t id;
+  bool whole;
+  bool arm;
+  float minimum;
+  float maximum;
+};
+
+constexpr std::array<Limits, parameter_count> limits = [] {
+  std::array<Limits, parameter_count> rows{};
+  for (std::size_t i = 0; i < parameter_count; ++i) {
+    const protocol::ParameterInfo& row = protocol::parameter_table[i];
+    rows[i] = {row.id, row.kind != ParameterKind::real, row.group == "arm", row.minimum, row.maximum};
+  }
+  return rows;
+}();
+
+constexpr ParameterSet defaults = protocol::default_parameters();
+
+/// The table's ids rise.
+std::optional<std::size_t> find(std::uint16_t id) {
+  std::size_t first = 0, end = parameter_count;
+  while (first < end) {
+    const std::size_t middle = (first + end) / 2;
+    if (limits[middle].id == id) return middle;
+    if (limits[middle].id < id)
+      first = middle + 1;
+    else
+      end = middle;
+  }
+  return std::nullopt;
+}
+
+struct Bounds {
+  Parameter minimum;
+  Parameter maximum;
+  bool holds_sphere;  ///< the distance must be more than the sphere's diameter
+};
+
+constexpr Bounds bounds[] = {
+    {Parameter::box_minimum_x_m, Parameter::box_maximum_x_m, true},
+    {Parameter::box_minimum_y_m, Parameter::box_maximum_y_m, true},
+    {Parameter::box_minimum_z_m, Parameter::box_maximum_z_m, true},
+    {Parameter::joint_1_minimum_rad, Parameter::joint_1_maximum_rad, false},
+    {Parameter::joint_2_minimum_rad, Parameter::joint_2_maximum_rad, false},
+    {Parameter::elbow_minimum_rad, Parameter::elbow_maximum_rad, false},
+};
+
+/// The first pair of bounds that contradict each other, or null.
+constexpr const Bounds* find_contradiction(const ParameterSet& set) {
+  for (const Bounds& pair : bounds) {
+    const float room = pair.holds_sphere ? 2.0f * set[Parameter::sphere_radius_m] : 0.0f;
+    if (!(set[pair.maximum] - set[pair.minimum] > room)) return &pair;
+  }
+  return nullptr;
+}
+static_assert(find_contradiction(defaults) == nullptr, "the arm's defaults contradict each other");
+
+ParameterCheck refuse(Refusal refusal, std::uint16_t id = 0, float value = 0.0f) { return {refusal, id, value, {}}; }
+
+Refusal check_value(std::size_t index, float value, float current, bool force_is_on) {
+  const Limits& row = limits[index];
+  if (!std::isfinite(value)) return Refusal::not_finite;
+  if (!(row.minimum <= value && value <= row.maximum)) return Refusal::out_of_range;
+  // Every whole parameter's range lies far inside that of an int32.
+  if (row.whole && static_cast<float>(static_cast<std::int32_t>(value)) != value) return Refusal::not_whole;
+  if (row.arm && force_is_on && value != current) return Refusal::force_is_on;
+  return Refusal::accepted;
+}
+
+using Given = std::array<bool, parameter_count>;
+
+/// Which of the parameters in a contradiction the transaction is to blame for.
+Parameter blamed(const Bounds& pair, const Given& given) {
+  if (given[static_cast<std::size_t>(pair.minimum)]) return pair.minimum;
+  if (given[static_cast<std::size_t>(pair.maximum)]) return pair.maximum;
+  return Parameter::sphere_radius_m;  // what was accepted before had no contradiction
+}
+
+ParameterCheck check_whole(const ParameterSet& set, const Given& given) {
+  if (const Bounds* pair = find_contradiction(set)) {
+    const Parameter parameter = blamed(*pair, given);
+    return refuse(Refusal::inconsistent, limits[static_cast<std::size_t>(parameter)].id, set[parameter]);
+  }
+  return {Refusal::accepted, 0, 0.0f, set};
+}
+
+ParameterCheck restore_defaults(const ParameterSet& current, bool force_is_on) {
+  if (force_is_on)
+    for (std::size_t i = 0; i < parameter_count; ++i)
+      if (limits[i].arm && defaults.values[i] != current.values[i])
+        return refuse(Refusal::force_is_on, limits[i].id, defaults.values[i]);
+  return {Refusal::accepted, 0, 0.0f, defaults};
+}
+
+protocol::ParameterEntry entry_at(std::span<const std::byte> report, std::size_t i) {
+  protocol::ParameterEntry entry;
+  std::memcpy(&entry, report.data() + protocol::parameters_report_size(i), sizeof entry);
+  return entry;
+}
+
+}  // namespace
+
+ParameterCheck check_transaction(std::span<const std::byte> report, const ParameterSet& current, bool force_is_on) {
+  constexpr std::size_t header_size = protocol::parameters_report_size(0);
+  if (report.size() < header_size || report.size() > sizeof(protocol::ParametersReport))
+    return refuse(Refusal::wrong_length);
+  struct Header {
+    protocol::ReportId report_id;
+    protocol::ParameterOperation operation;
+    std::uint16_t version;
+    std::uint16_t count;
+    std::uint16_t reserved;
+  } header;
+  static_assert(sizeof header == header_size);
+  std::memcpy(&header, report.data(), sizeof header);
+
+  if (header.version != protocol::protocol_version) return refuse(Refusal::wrong_version);
+  if (header.count > protocol::parameter_entries_maximum) return refuse(Refusal::wrong_length);
+  if (report.size() != protocol::parameters_report_size(header.count) &&
+      report.size() != sizeof(protocol::ParametersReport))
+    return refuse(Refusal::wrong_length);
+
+  if (header.operation == protocol::ParameterOperation::restore_defaults)
+    return header.count == 0 ? restore_defaults(current, force_is_on) : refuse(Refusal::wrong_length);
+  if (header.operation != protocol::ParameterOperation::set) return refuse(Refusal::unknown_operation);
+
+  ParameterSet set = current;
+  Given given{};
+  for (std::size_t i = 0; i < header.count; ++i) {
+    const protocol::ParameterEntry entry = entry_at(report, i);
+    const std::optional<std::size_t> index = find(entry.id);
+    if (!index) return refuse(Refusal::unknown_parameter, entry.id, entry.value);
+    if (given[*index]) return refuse(Refusal::given_twice, entry.id, entry.value);
+    const Refusal refusal = check_value(*index, entry.value, current.values[*index], force_is_on);
+    if (refusal != Refusal::accepted) return refuse(refusal, entry.id, entry.value);
+    given[*index] = true;
+    set.values[*index] = entry.value;
+  }
+  return check_whole(set, given);
+}
+
+}  // namespace inkwell::link

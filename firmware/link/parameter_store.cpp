@@ -1,0 +1,63 @@
+#include <link/parameter_store.hpp>
+
+#include <cstddef>
+
+namespace inkwell::link {
+
+namespace {
+
+constexpr std::array<std::uint16_t, protocol::parameter_count> parameter_ids = [] {
+  std::array<std::uint16_t, protocol::parameter_count> ids{};
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = protocol::parameter_table[i].id;
+  return ids;
+}();
+
+constexpr protocol::ParameterSet defaults = protocol::default_parameters();
+
+}  // namespace
+
+ParameterStore::ParameterStore()
+    : values_(defaults), settings_{control::prepare(defaults), control::Settings{}} {}
+
+protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on) {
+  ++transactions_;
+  ParameterCheck check;
+  if (offered_.load())
+    check.refusal = protocol::Refusal::busy;
+  else
+    check = check_transaction(report, values_, force_is_on);
+
+  refusal_ = check.refusal;
+  refused_id_ = check.parameter_id;
+  refused_value_ = check.value;
+  if (refusal_ == protocol::Refusal::accepted) {
+    values_ = check.set;
+    settings_[active_ ^ 1u] = control::prepare(values_);
+    offered_.store(true);
+  }
+  return refusal_;
+}
+
+std::size_t ParameterStore::read(protocol::ParametersReport& report) const {
+  report.report_id = protocol::ReportId::parameters;
+  report.operation = protocol::ParameterOperation::set;
+  report.version = protocol::protocol_version;
+  report.count = protocol::parameter_count;
+  report.reserved = 0;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    report.entries[i] = {parameter_ids[i], 0, values_.values[i]};
+  return protocol::parameters_report_size(protocol::parameter_count);
+}
+
+protocol::TransactionReport ParameterStore::result() const {
+  protocol::TransactionReport report;
+  report.report_id = protocol::ReportId::transaction;
+  report.refusal = refusal_;
+  report.parameter_id = refused_id_;
+  report.value = refused_value_;
+  report.transactions = transactions_;
+  report.applied_at_periods = applied_at_periods_.load();
+  return report;
+}
+
+}  // namespace inkwell::link

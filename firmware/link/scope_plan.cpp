@@ -1,0 +1,42 @@
+#include <link/scope_plan.hpp>
+
+namespace inkwell::link {
+
+namespace {
+
+/// The columns of the table of signals that recording needs; the texts stay out of the image.
+constexpr std::array<protocol::SignalWire, protocol::signal_count> wires = [] {
+  std::array<protocol::SignalWire, protocol::signal_count> rows{};
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = protocol::signal_table[i].wire;
+  return rows;
+}();
+
+constexpr float steps_per_unit(protocol::SignalWire wire) {
+  switch (wire) {
+    case protocol::SignalWire::current_int16: return 1.0f / protocol::current_step_A;
+    case protocol::SignalWire::duty_int16: return 1.0f / protocol::duty_step;
+    case protocol::SignalWire::float32: break;
+  }
+  return 0.0f;
+}
+
+}  // namespace
+
+ScopePlan prepare(const protocol::SignalSelection& selection, std::uint8_t token) {
+  ScopePlan plan;
+  plan.count = selection.count;
+  plan.token = token;
+  std::uint32_t size = 0;
+  for (std::size_t i = 0; i < selection.count; ++i) {
+    const protocol::SignalWire wire = wires[selection.signals[i]];
+    plan.items[i] = {selection.signals[i], wire != protocol::SignalWire::float32, steps_per_unit(wire)};
+    size += static_cast<std::uint32_t>(protocol::wire_size(wire));
+  }
+  // As protocol::encoding_for says, from the columns at hand.
+  const bool full = size <= protocol::scope_full_sample_maximum;
+  plan.encoding = full ? protocol::ScopeEncoding::full : protocol::ScopeEncoding::changes;
+  plan.sample_size_maximum = full ? size : size + static_cast<std::uint32_t>(sizeof(std::uint32_t));
+  return plan;
+}
+
+}  // namespace inkwell::link

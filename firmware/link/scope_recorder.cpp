@@ -1,0 +1,175 @@
+#include <link/scope_recorder.hpp>
+
+#include <cmath>
+#include <cstring>
+
+namespace inkwell::link {
+
+namespace {
+
+/// Nearest step, saturated; a value that is not a number becomes the lowest step.
+std::int16_t to_steps(float value, float steps_per_unit) {
+  const float steps = value * steps_per_unit;
+  if (!(std::fabs(steps) <= 32767.0f)) [[unlikely]]
+    return steps > 0.0f ? std::int16_t{32767} : std::int16_t{-32768};
+  // Made positive first, so that the conversion's cut towards zero rounds to the nearest.
+  return static_cast<std::int16_t>(static_cast<std::int32_t>(steps + 32768.5f) - 32768);
+}
+
+template <class Value>
+[[gnu::always_inline]] inline void append(std::byte*& cursor, Value value) {
+  std::memcpy(cursor, &value, sizeof value);
+  cursor += sizeof value;
+}
+
+[[gnu::always_inline]] inline std::uint32_t bits_of(const float& value) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+}  // namespace
+
+ScopeRecorder::ScopeRecorder() {
+  for (std::uint32_t i = 1; i < frame_count; ++i) free_[free_count_++] = static_cast<std::uint8_t>(i);
+  open_frame(0);
+}
+
+void ScopeRecorder::select(const protocol::SignalSelection& selection, std::uint8_t token) {
+  plan_offered_.store(false);  // from here on the interrupt does not swap, so the spare plan is ours
+  plans_[active_plan_ ^ 1u] = prepare(selection, token);
+  plan_offered_.store(true);
+}
+
+std::span<const std::byte> ScopeRecorder::oldest_frame() const {
+  const std::uint32_t released = released_.load();
+  if (handed_over_.load() == released) return {};
+  const Frame& frame = frames_[handed_[released % hand_over_places]];
+  protocol::ScopeFrameHeader header;
+  std::memcpy(&header, frame.data(), sizeof header);
+  return {frame.data(), header.length};
+}
+
+void ScopeRecorder::release() { released_.store(released_.load() + 1); }
+
+void ScopeRecorder::record(const protocol::SignalValues& signals, std::uint32_t periods) {
+  if (plan_offered_.load()) change_plan();
+  const ScopePlan& plan = plans_[active_plan_];
+  if (plan.count != 0) {
+    if (sample_count_ == 0) first_period_ = periods;
+    if (plan.encoding == protocol::ScopeEncoding::full)
+      write_full(plan, signals);
+    else
+      write_changes(plan, signals);
+    ++sample_count_;
+    if (cursor_ + plan.sample_size_maximum > frames_[writing_].data() + sizeof(Frame)) finish_frame();
+  }
+  hand_over();
+}
+
+void ScopeRecorder::write_full(const ScopePlan& plan, const protocol::SignalValues& signals) {
+  std::byte* cursor = cursor_;
+  const ScopePlan::Item* const end = plan.items.data() + plan.count;
+  for (const ScopePlan::Item* item = plan.items.data(); item != end; ++item) {
+    const float& value = signals.values[item->index];
+    if (item->narrow)
+      append(cursor, to_steps(value, item->steps_per_unit));
+    else
+      append(cursor, bits_of(value));
+  }
+  cursor_ = cursor;
+}
+
+void ScopeRecorder::write_changes(const ScopePlan& plan, const protocol::SignalValues& signals) {
+  std::byte* const mask_place = cursor_;
+  std::byte* cursor = mask_place + sizeof(std::uint32_t);
+  std::uint32_t mask = 0;
+  const bool first = sample_count_ == 0;
+  std::uint32_t* previous = previous_.data();
+  const ScopePlan::Item* item = plan.items.data();
+  const std::uint32_t end = plan.count;
+  for (std::uint32_t i = 0; i != end; ++i, ++item, ++previous) {
+    const float& value = signals.values[item->index];
+    if (item->narrow) {
+      const std::int16_t steps = to_steps(value, item->steps_per_unit);
+      const auto bits = static_cast<std::uint32_t>(steps);
+      if (bits == *previous && !first) continue;
+      *previous = bits;
+      append(cursor, steps);
+    } else {
+      const std::uint32_t bits = bits_of(value);
+      if (bits == *previous && !first) continue;
+      *previous = bits;
+      append(cursor, bits);
+    }
+    mask |= 1u << i;
+  }
+  std::memcpy(mask_place, &mask, sizeof mask);
+  cursor_ = cursor;
+}
+
+void ScopeRecorder::change_plan() {
+  if (sample_count_ != 0) finish_frame();
+  active_plan_ ^= 1u;
+  plan_offered_.store(false);
+  if (plans_[active_plan_].count == 0) return;
+  // Nobody waits for the samples of the selection before.
+  while (backlog_count_ != 0) free_[free_count_++] = pop_backlog();
+  sequence_ = 0;
+}
+
+void ScopeRecorder::open_frame(std::uint32_t frame) {
+  writing_ = frame;
+  cursor_ = frames_[frame].data() + sizeof(protocol::ScopeFrameHeader);
+  sample_count_ = 0;
+}
+
+std::uint8_t ScopeRecorder::pop_backlog() {
+  const std::uint8_t frame = backlog_[backlog_first_ % frame_count];
+  ++backlog_first_;
+  --backlog_count_;
+  return frame;
+}
+
+void ScopeRecorder::finish_frame() {
+  const ScopePlan& plan = plans_[active_plan_];
+  std::byte* const start = frames_[writing_].data();
+  protocol::ScopeFrameHeader header;
+  header.sequence = sequence_++;
+  header.first_period = first_period_;
+  header.samples_dropped = samples_dropped_.load();
+  header.length = static_cast<std::uint16_t>(cursor_ - start);
+  header.sample_count = static_cast<std::uint16_t>(sample_count_);
+  header.encoding = plan.encoding;
+  header.signal_count = static_cast<std::uint8_t>(plan.count);
+  header.selection_token = plan.token;
+  std::memcpy(start, &header, sizeof header);
+
+  backlog_[(backlog_first_ + backlog_count_) % frame_count] = static_cast<std::uint8_t>(writing_);
+  ++backlog_count_;
+  open_frame(free_count_ != 0 ? free_[--free_count_] : drop_oldest());
+}
+
+std::uint8_t ScopeRecorder::drop_oldest() {
+  // The backlog can not be empty here: only one frame is written and at most two are handed over.
+  const std::uint8_t frame = pop_backlog();
+  protocol::ScopeFrameHeader header;
+  std::memcpy(&header, frames_[frame].data(), sizeof header);
+  samples_dropped_.store(samples_dropped_.load() + header.sample_count);
+  return frame;
+}
+
+void ScopeRecorder::hand_over() {
+  // One frame each way a period is far more than the bus can carry.
+  if (reclaimed_ != released_.load()) {
+    free_[free_count_++] = handed_[reclaimed_ % hand_over_places];
+    ++reclaimed_;
+  }
+  const std::uint32_t handed_over = handed_over_.load();
+  if (backlog_count_ != 0 && handed_over - reclaimed_ < hand_over_places) {
+    handed_[handed_over % hand_over_places] = pop_backlog();
+    handed_over_.store(handed_over + 1);
+  }
+}
+
+}  // namespace inkwell::link

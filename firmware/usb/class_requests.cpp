@@ -1,0 +1,105 @@
+// Requests of the HID class (HID 1.11, section 7.2) and of Windows.
+#include <cstring>
+#include <new>
+
+#include <protocol/usb_identity.hpp>
+#include <usb/device.hpp>
+
+#include "descriptors.hpp"
+
+namespace inkwell::usb {
+
+namespace {
+
+using protocol::ReportId;
+
+enum HidRequest : std::uint8_t { get_report_request = 1, get_idle_request = 2, set_report_request = 9, set_idle_request = 10 };
+enum ReportType : std::uint8_t { input_report = 1, output_report_type = 2, feature_report = 3 };
+
+constexpr std::uint8_t class_interface_out = 0x21, class_interface_in = 0xA1, vendor_device_in = 0xC0;
+
+/// wValue of GET_REPORT and SET_REPORT.
+constexpr std::uint16_t report_value(ReportType type, ReportId id) {
+  return static_cast<std::uint16_t>(type << 8 | static_cast<std::uint8_t>(id));
+}
+
+}  // namespace
+
+Answer Device::hid_request(const SetupPacket& setup) {
+  if (!configured() || setup.index != protocol::usb::hid_interface) return Answer::stall();
+  if (setup.request_type == class_interface_in) {
+    if (setup.request == get_report_request) return get_report(setup);
+    if (setup.request == get_idle_request) return send_byte(idle_rate_);
+  } else if (setup.request_type == class_interface_out) {
+    if (setup.request == set_report_request) {
+      const bool known = setup.value == report_value(output_report_type, ReportId::command) ||
+                         setup.value == report_value(feature_report, ReportId::parameters);
+      return known && setup.length != 0 ? Answer::receive() : Answer::stall();
+    }
+    if (setup.request == set_idle_request && setup.length == 0) {
+      idle_rate_ = setup.value_high();  // poses come every millisecond, so there is never an idle time to fill
+      return Answer::done();
+    }
+  }
+  return Answer::stall();  // SET_PROTOCOL and GET_PROTOCOL are for boot devices
+}
+
+Answer Device::get_report(const SetupPacket& setup) {
+  const std::span<std::byte> buffer = control_.buffer();
+  const auto send = [&](const auto& report) {
+    std::memcpy(buffer.data(), &report, sizeof report);
+    return Answer::send(buffer.first(sizeof report));
+  };
+  switch (setup.value) {
+    case report_value(input_report, ReportId::pose): {
+      protocol::PoseReport pose;
+      return link_.poses.newest(pose) ? send(pose) : Answer::stall();
+    }
+    case report_value(feature_report, ReportId::information): return send(information());
+    case report_value(feature_report, ReportId::transaction): return send(link_.parameters.result());
+    case report_value(feature_report, ReportId::parameters): {
+      static_assert(alignof(protocol::ParametersReport) == 1);
+      auto* report = new (buffer.data()) protocol::ParametersReport;
+      return Answer::send(buffer.first(link_.parameters.read(*report)));
+    }
+    default: return Answer::stall();
+  }
+}
+
+bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> data) {
+  if (data[0] != static_cast<std::byte>(setup.value_low())) return false;  // the report's id, once more
+  if (setup.value == report_value(output_report_type, ReportId::command)) {
+    output_report(data);
+    return true;
+  }
+  // What is wrong with a transaction is told by the TransactionReport, not by a stall.
+  // In this order: were the state read first, the interrupt could take the command in between.
+  const bool force_is_on = link_.commands.waiting(protocol::Command::enable_force) ||
+                           link_.status.state() == protocol::State::active;
+  link_.parameters.accept(data, force_is_on);
+  return true;
+}
+
+protocol::InformationReport Device::information() const {
+  protocol::InformationReport report{};
+  std::memcpy(report.firmware_version, identity_.firmware_version.data(), identity_.firmware_version.size());
+  report.parameter_table_hash = protocol::parameter_table_hash;
+  report.signal_table_hash = protocol::signal_table_hash;
+  report.servo_rate_Hz = protocol::servo_rate_Hz;
+  report.processor_clock_Hz = identity_.processor_clock_Hz;
+  report.servo_cycles_longest = link_.status.longest_cycles();
+  report.scope_samples_dropped = link_.scope.samples_dropped();
+  report.pose_reports_dropped = link_.poses.dropped();
+  report.servo_overruns = link_.status.overruns();
+  report.reset_cause = identity_.reset_cause;
+  return report;
+}
+
+Answer Device::vendor_request(const SetupPacket& setup) {
+  if (setup.request_type == vendor_device_in && setup.request == microsoft_request &&
+      setup.index == microsoft_descriptor_index && setup.value == 0)
+    return Answer::send(microsoft_descriptor_set());
+  return Answer::stall();
+}
+
+}  // namespace inkwell::usb

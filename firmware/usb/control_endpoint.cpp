@@ -1,0 +1,113 @@
+#include <usb/control_endpoint.hpp>
+
+#include <algorithm>
+#include <cstring>
+
+namespace inkwell::usb {
+
+namespace {
+
+constexpr std::uint8_t control_out = 0x00;
+constexpr std::uint8_t control_in = 0x80;
+
+}  // namespace
+
+void ControlEndpoint::setup(std::span<const std::byte> packet) {
+  // A SETUP ends whatever was going on (USB 2.0, section 5.5.5).
+  if (stage_ == Stage::data_in || stage_ == Stage::status_in) port_.cancel(control_in);
+  stage_ = Stage::idle;
+  if (packet.size() != sizeof setup_) return;
+  std::memcpy(&setup_, packet.data(), sizeof setup_);
+
+  const Answer answer = requests_.request(setup_);
+  switch (answer.kind) {
+    case Answer::Kind::stall: stall(); break;
+    case Answer::Kind::done: send_status(); break;
+    case Answer::Kind::send:
+      // Without a data stage the status stage goes to the host, whatever the direction bit says.
+      if (setup_.length == 0)
+        send_status();
+      else
+        begin_data_in(answer.data);
+      break;
+    case Answer::Kind::receive:
+      if (setup_.device_to_host() || setup_.length == 0 || setup_.length > buffer_size) {
+        stall();
+      } else {
+        stage_ = Stage::data_out;
+        collected_ = 0;
+        port_.receive(control_out);
+      }
+      break;
+  }
+}
+
+void ControlEndpoint::received(std::span<const std::byte> packet) {
+  switch (stage_) {
+    case Stage::data_out: collect(packet); break;
+    case Stage::data_in:  // the host has seen enough and goes on to the status stage
+      port_.cancel(control_in);
+      stage_ = Stage::idle;
+      break;
+    case Stage::status_out: stage_ = Stage::idle; break;
+    case Stage::idle:
+    case Stage::status_in: break;
+  }
+}
+
+void ControlEndpoint::sent() {
+  if (stage_ == Stage::status_in) {
+    stage_ = Stage::idle;
+  } else if (stage_ == Stage::data_in) {
+    if (!remaining_.empty() || end_with_empty_packet_)
+      send_next_packet();
+    else
+      stage_ = Stage::status_out;
+  }
+}
+
+void ControlEndpoint::begin_data_in(std::span<const std::byte> data) {
+  // Less than was asked for ends with a short packet, an empty one if need be (USB 2.0, section 8.5.3.2).
+  end_with_empty_packet_ = data.size() < setup_.length && data.size() % packet_size_maximum == 0;
+  remaining_ = data.first(std::min<std::size_t>(data.size(), setup_.length));
+  stage_ = Stage::data_in;
+  port_.receive(control_out);
+  send_next_packet();
+}
+
+void ControlEndpoint::send_next_packet() {
+  const std::span<const std::byte> packet = remaining_.first(std::min(remaining_.size(), packet_size_maximum));
+  remaining_ = remaining_.subspan(packet.size());
+  if (packet.empty()) end_with_empty_packet_ = false;
+  port_.send(control_in, packet);
+}
+
+void ControlEndpoint::collect(std::span<const std::byte> packet) {
+  const std::size_t wanted = setup_.length - collected_;
+  if (packet.size() > wanted) return stall();
+  std::copy(packet.begin(), packet.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(collected_));
+  collected_ += packet.size();
+  if (collected_ == setup_.length) {
+    if (requests_.data_received(setup_, std::span(buffer_).first(collected_)))
+      send_status();
+    else
+      stall();
+  } else if (packet.size() < packet_size_maximum) {
+    stall();  // the data ended before wLength
+  } else {
+    port_.receive(control_out);
+  }
+}
+
+void ControlEndpoint::send_status() {
+  stage_ = Stage::status_in;
+  port_.send(control_in, {});
+}
+
+void ControlEndpoint::stall() {
+  stage_ = Stage::idle;
+  port_.stall(control_in);
+  port_.stall(control_out);
+}
+
+}  // namespace inkwell::usb

@@ -1,0 +1,169 @@
+#include "descriptors.hpp"
+
+#include <array>
+#include <string_view>
+
+#include <protocol/reports.hpp>
+#include <protocol/usb_identity.hpp>
+#include <usb/port.hpp>
+
+namespace inkwell::usb {
+
+namespace {
+
+namespace identity = protocol::usb;
+using protocol::ReportId;
+
+// ---- building blocks -----------------------------------------------------------------------------
+
+template <std::size_t... sizes>
+constexpr auto join(const std::array<std::uint8_t, sizes>&... parts) {
+  std::array<std::uint8_t, (sizes + ...)> whole{};
+  std::size_t at = 0;
+  const auto append = [&](const auto& part) {
+    for (const std::uint8_t byte : part) whole[at++] = byte;
+  };
+  (append(parts), ...);
+  return whole;
+}
+
+template <class... Numbers>
+constexpr std::array<std::uint8_t, sizeof...(Numbers)> bytes(Numbers... numbers) {
+  return {static_cast<std::uint8_t>(numbers)...};
+}
+
+constexpr std::uint8_t low(std::size_t number) { return static_cast<std::uint8_t>(number); }
+constexpr std::uint8_t high(std::size_t number) { return static_cast<std::uint8_t>(number >> 8); }
+
+/// Text as UTF-16, with `zeros` zero characters behind it.
+template <std::size_t zeros, std::size_t size>
+constexpr auto utf16(const char (&text)[size]) {
+  std::array<std::uint8_t, 2 * (size - 1 + zeros)> wide{};
+  for (std::size_t i = 0; i + 1 < size; ++i) wide[2 * i] = static_cast<std::uint8_t>(text[i]);
+  return wide;
+}
+
+constexpr std::uint8_t type(DescriptorType type) { return static_cast<std::uint8_t>(type); }
+constexpr std::uint8_t string(StringIndex index) { return static_cast<std::uint8_t>(index); }
+
+// ---- HID report descriptor (HID 1.11, section 6.2.2) -----------------------------------------------
+//
+// Every report is a row of bytes of a vendor's own usage page: what they mean is in protocol/reports.hpp.
+
+constexpr std::uint8_t input_item = 0x81, output_item = 0x91, feature_item = 0xB1;
+constexpr std::uint8_t data_variable_absolute = 0x02;
+
+/// A report with its id and, behind it, `size` - 1 bytes.
+constexpr auto report(ReportId id, std::uint8_t usage, std::uint8_t item, std::size_t size) {
+  const std::size_t count = size - 1;
+  return bytes(0x85, static_cast<std::uint8_t>(id),  // report id
+               0x09, usage,                          // usage
+               0x96, low(count), high(count),        // report count, 16 bits
+               item, data_variable_absolute);
+}
+
+constexpr auto report_descriptor = join(
+    bytes(0x06, 0x00, 0xFF,  // usage page: vendor
+          0x09, 0x01,        // usage
+          0xA1, 0x01,        // application collection
+          0x15, 0x00,        // logical minimum 0
+          0x26, 0xFF, 0x00,  // logical maximum 255
+          0x75, 0x08),       // report size, 8 bits
+    report(ReportId::pose, 2, input_item, sizeof(protocol::PoseReport)),
+    report(ReportId::command, 3, output_item, sizeof(protocol::CommandReport)),
+    report(ReportId::information, 4, feature_item, sizeof(protocol::InformationReport)),
+    report(ReportId::parameters, 5, feature_item, sizeof(protocol::ParametersReport)),
+    report(ReportId::transaction, 6, feature_item, sizeof(protocol::TransactionReport)),
+    bytes(0xC0));  // end of the collection
+
+// ---- device and configuration (USB 2.0, section 9.6) -----------------------------------------------
+
+/// 2.01 tells that there is a binary object store.
+constexpr std::size_t usb_version = 0x0201;
+constexpr std::size_t device_version = 0x0100;
+
+constexpr auto device = bytes(
+    18, type(DescriptorType::device), low(usb_version), high(usb_version),
+    0, 0, 0,  // class, subclass and protocol stand in the interfaces
+    packet_size_maximum, low(identity::vendor_id), high(identity::vendor_id), low(identity::product_id),
+    high(identity::product_id), low(device_version), high(device_version), string(StringIndex::manufacturer),
+    string(StringIndex::product), string(StringIndex::serial_number), 1);
+
+constexpr auto hid = bytes(9, type(DescriptorType::hid), 0x11, 0x01,  // HID 1.11
+                           0, 1,                                      // no country; one descriptor follows
+                           type(DescriptorType::hid_report), low(report_descriptor.size()),
+                           high(report_descriptor.size()));
+
+constexpr auto interface(std::uint8_t number, std::uint8_t endpoints, std::uint8_t class_code, StringIndex name) {
+  return bytes(9, type(DescriptorType::interface), number, 0, endpoints, class_code, 0, 0, string(name));
+}
+
+constexpr auto endpoint(std::uint8_t address, EndpointType endpoint_type, std::uint8_t interval_ms) {
+  return bytes(7, type(DescriptorType::endpoint), address, static_cast<std::uint8_t>(endpoint_type),
+               low(identity::packet_size), high(identity::packet_size), interval_ms);
+}
+
+constexpr std::uint8_t hid_class = 0x03, vendor_class = 0xFF;
+
+constexpr auto interfaces =
+    join(interface(identity::hid_interface, 2, hid_class, StringIndex::hid), hid,
+         endpoint(identity::hid_in_endpoint, EndpointType::interrupt, 1),
+         endpoint(identity::hid_out_endpoint, EndpointType::interrupt, 1),
+         interface(identity::scope_interface, 1, vendor_class, StringIndex::scope),
+         endpoint(identity::scope_in_endpoint, EndpointType::bulk, 0));
+
+constexpr std::size_t configuration_size = 9 + interfaces.size();
+constexpr std::uint8_t self_powered = 0xC0;
+constexpr std::uint8_t bus_current_2mA = 50;  ///< the logic may take 100 mA from the bus, the motors none
+
+constexpr auto configuration =
+    join(bytes(9, type(DescriptorType::configuration), low(configuration_size), high(configuration_size),
+               interface_count, configuration_value, 0, self_powered, bus_current_2mA),
+         interfaces);
+
+// ---- Microsoft OS 2.0 descriptors: Windows binds WinUSB to the scope's interface by itself -----------
+
+constexpr auto windows_8_1 = bytes(0x00, 0x00, 0x03, 0x06);
+
+constexpr auto property_name = utf16<1>("DeviceInterfaceGUIDs");
+constexpr auto property_value = utf16<2>("{5A1E7D6B-3C0F-4E59-9B7C-0D2B6C1F8A44}");
+
+constexpr auto registry_property = [] {
+  constexpr std::size_t size = 10 + property_name.size() + property_value.size();
+  constexpr std::uint8_t multiple_strings = 7;
+  return join(bytes(low(size), high(size), 4, 0, multiple_strings, 0, low(property_name.size()), 0), property_name,
+              bytes(low(property_value.size()), 0), property_value);
+}();
+
+constexpr auto compatible_id = bytes(20, 0, 3, 0, 'W', 'I', 'N', 'U', 'S', 'B', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
+
+constexpr auto microsoft_set = [] {
+  constexpr std::size_t function_size = 8 + compatible_id.size() + registry_property.size();
+  constexpr std::size_t subset_size = 8 + function_size;
+  constexpr std::size_t size = 10 + subset_size;
+  return join(bytes(10, 0, 0, 0), windows_8_1, bytes(low(size), high(size)),
+              bytes(8, 0, 1, 0, 0, 0, low(subset_size), high(subset_size)),  // first configuration
+              bytes(8, 0, 2, 0, identity::scope_interface, 0, low(function_size), high(function_size)),
+              compatible_id, registry_property);
+}();
+
+/// Platform capability with the identifier that Microsoft gave to its OS 2.0 descriptors.
+constexpr auto object_store = [] {
+  constexpr std::size_t capability_size = 28, size = 5 + capability_size;
+  constexpr std::uint8_t platform = 5;
+  return join(bytes(5, type(DescriptorType::binary_object_store), size, 0, 1),
+              bytes(capability_size, type(DescriptorType::device_capability), platform, 0),
+              bytes(0xDF, 0x60, 0xDD, 0xD8, 0x89, 0x45, 0xC7, 0x4C, 0x9C, 0xD2, 0x65, 0x9D, 0x9E, 0x64, 0x8A, 0x9F),
+              windows_8_1, bytes(low(microsoft_set.size()), high(microsoft_set.size()), microsoft_request, 0));
+}();
+
+}  // namespace
+
+std::span<const std::byte> device_descriptor() { return std::as_bytes(std::span(device)); }
+std::span<const std::byte> configuration_descriptor() { return std::as_bytes(std::span(configuration)); }
+std::span<const std::byte> binary_object_store() { return std::as_bytes(std::span(object_store)); }
+std::span<const std::byte> hid_descriptor() { return std::as_bytes(std::span(hid)); }
+std::span<const std::byte> hid_report_descriptor() { return std::as_bytes(std::span(report_descriptor)); }
+std::span<const std::byte> microsoft_descriptor_set() { return std::as_bytes(std::span(microsoft_set)); }
+
+}  // namespace inkwell::usb

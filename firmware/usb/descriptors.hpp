@@ -1,0 +1,39 @@
+// What the device says about itself: USB 2.0 section 9.6, HID 1.11 section 6.2, Microsoft OS 2.0 descriptors.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace inkwell::usb {
+
+enum class DescriptorType : std::uint8_t {
+  device = 1,
+  configuration = 2,
+  string = 3,
+  interface = 4,
+  endpoint = 5,
+  binary_object_store = 15,
+  device_capability = 16,
+  hid = 0x21,
+  hid_report = 0x22,
+};
+
+enum class StringIndex : std::uint8_t { languages = 0, manufacturer, product, serial_number, hid, scope };
+
+inline constexpr std::uint8_t configuration_value = 1;
+inline constexpr std::uint8_t interface_count = 2;
+
+/// bRequest with which Windows asks for the Microsoft OS 2.0 descriptor set; ours to choose.
+inline constexpr std::uint8_t microsoft_request = 0x20;
+/// wIndex of that request.
+inline constexpr std::uint16_t microsoft_descriptor_index = 7;
+
+std::span<const std::byte> device_descriptor();
+std::span<const std::byte> configuration_descriptor();
+std::span<const std::byte> binary_object_store();
+std::span<const std::byte> hid_descriptor();
+std::span<const std::byte> hid_report_descriptor();
+std::span<const std::byte> microsoft_descriptor_set();
+
+}  // namespace inkwell::usb

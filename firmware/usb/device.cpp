@@ -1,0 +1,159 @@
+#include <usb/device.hpp>
+
+#include <protocol/usb_identity.hpp>
+
+#include "descriptors.hpp"
+
+namespace inkwell::usb {
+
+namespace {
+
+namespace identity = protocol::usb;
+
+/// More than the bus can bring in 50 us, so that nothing is left behind, yet a bound.
+constexpr int events_per_poll = 8;
+
+constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2;  // places in endpoints_
+
+}  // namespace
+
+Device::Device(Port& port, link::Link& link, const Identity& identity)
+    : port_(port),
+      link_(link),
+      identity_(identity),
+      control_(port, *this),
+      endpoints_{{{identity::hid_in_endpoint, EndpointType::interrupt},
+                  {identity::hid_out_endpoint, EndpointType::interrupt},
+                  {identity::scope_in_endpoint, EndpointType::bulk}}} {}
+
+void Device::poll() {
+  Event event;
+  for (int i = 0; i < events_per_poll && port_.next_event(event); ++i) handle(event);
+  if (configured() && !suspended_) {
+    send_pose();
+    send_scope();
+  }
+}
+
+void Device::handle(const Event& event) {
+  const auto data = std::span<const std::byte>(event.data).first(event.length);
+  switch (event.kind) {
+    case Event::Kind::reset: bus_reset(); break;
+    case Event::Kind::suspend:
+      suspended_ = true;
+      host_gone();
+      break;
+    case Event::Kind::resume:
+      suspended_ = false;
+      link_.poses.discard();  // nobody could have read what was recorded meanwhile
+      break;
+    case Event::Kind::setup: control_.setup(data); break;
+    case Event::Kind::received:
+      if (event.endpoint == 0) {
+        control_.received(data);
+      } else if (event.endpoint == identity::hid_out_endpoint && configured()) {
+        output_report(data);
+        port_.receive(identity::hid_out_endpoint);
+      }
+      break;
+    case Event::Kind::sent:
+      if (event.endpoint == 0) {
+        control_.sent();
+      } else if (Endpoint* endpoint = find_endpoint(0x80u | event.endpoint)) {
+        endpoint->busy = false;
+      }
+      break;
+  }
+}
+
+void Device::bus_reset() {
+  for (Endpoint& endpoint : endpoints_) endpoint.busy = endpoint.halted = false;
+  scope_frame_open_ = scope_wants_end_ = false;
+  configuration_ = 0;
+  idle_rate_ = 0;
+  suspended_ = false;
+  control_.reset();
+  host_gone();
+}
+
+void Device::host_gone() {
+  link_.commands.host_gone();
+  link_.scope.select({}, 0);
+}
+
+void Device::start_endpoints() {
+  link_.poses.discard();
+  for (Endpoint& endpoint : endpoints_) {
+    endpoint.busy = endpoint.halted = false;
+    port_.open(endpoint.address, endpoint.type);
+  }
+  scope_frame_open_ = scope_wants_end_ = false;
+  port_.receive(identity::hid_out_endpoint);
+}
+
+void Device::stop_endpoints() {
+  for (Endpoint& endpoint : endpoints_) {
+    endpoint.busy = endpoint.halted = false;
+    port_.close(endpoint.address);
+  }
+  scope_frame_open_ = scope_wants_end_ = false;
+}
+
+Device::Endpoint* Device::find_endpoint(std::uint16_t address) {
+  if (!configured()) return nullptr;
+  for (Endpoint& endpoint : endpoints_)
+    if (endpoint.address == address) return &endpoint;
+  return nullptr;
+}
+
+void Device::restart(Endpoint& endpoint) {
+  port_.clear_stall(endpoint.address);
+  const bool was_busy = endpoint.busy;
+  endpoint.busy = endpoint.halted = false;
+  if (&endpoint == &endpoints_[hid_out]) {
+    port_.receive(endpoint.address);
+  } else if (&endpoint == &endpoints_[scope_in]) {
+    scope_frame_open_ = scope_wants_end_ = false;  // the frame starts again from its first byte
+  } else if (was_busy) {
+    endpoint.busy = true;
+    port_.send(endpoint.address, std::as_bytes(std::span(&pose_, 1)));
+  }
+}
+
+void Device::send_pose() {
+  Endpoint& endpoint = endpoints_[hid_in];
+  if (endpoint.busy || endpoint.halted || !link_.poses.take(pose_)) return;
+  endpoint.busy = true;
+  port_.send(endpoint.address, std::as_bytes(std::span(&pose_, 1)));
+}
+
+void Device::send_scope() {
+  Endpoint& endpoint = endpoints_[scope_in];
+  if (endpoint.busy || endpoint.halted) return;
+  if (scope_wants_end_) {
+    scope_wants_end_ = false;
+    endpoint.busy = true;
+    port_.send(endpoint.address, {});
+    return;
+  }
+  if (scope_frame_open_) {
+    link_.scope.release();
+    scope_frame_open_ = false;
+  }
+  const std::span<const std::byte> frame = link_.scope.oldest_frame();
+  if (frame.empty()) return;
+  scope_frame_open_ = true;
+  scope_wants_end_ = frame.size() % packet_size_maximum == 0;
+  endpoint.busy = true;
+  port_.send(endpoint.address, frame);
+}
+
+void Device::output_report(std::span<const std::byte> report) {
+  const std::optional<protocol::CommandReport> command = link::decode_command(report);
+  if (!command) return;
+  // Selected before the command is queued, so that its acknowledgement never comes too early.
+  if (command->command == protocol::Command::select_signals) link_.scope.select(command->selection, command->token);
+  link_.commands.push(*command);
+}
+
+}  // namespace inkwell::usb
