@@ -1,5 +1,6 @@
 #include <arms/description.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <span>

@@ -1,0 +1,63 @@
+// The arm as a rigid body: kinematics and the terms of its equation of motion, from its energies.
+//
+// Two sets of coordinates. Joints q = (q1, q2, q3) are what the encoders see: q3 is relative to link 2 on a
+// serial arm and absolute on a parallelogram. Links u = (q1, a, b) are the directions of links 2 and 3 in the
+// arm's plane against the horizontal, in which the energies of both transmissions are the same:
+//
+//   kinetic energy    (M11(a, b) q1'^2 + J2 a'^2 + J3 b'^2 + 2 H cos(a - b) a' b') / 2
+//                     with M11 = I + J2 cos^2 a + J3 cos^2 b + 2 H cos a cos b
+//   potential energy  g (S2 sin a + S3 sin b)
+//
+// J2, J3, H, S2, S3 lump the masses of links and probe, I is the turret. The rotors turn with the joints by
+// their gears. The rods of the parallelogram count as parts of link 2 and link 3.
+#pragma once
+
+#include <Eigen/Core>
+#include <arms/description.hpp>
+
+namespace inkwell::virtual_board {
+
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+
+class ArmDynamics {
+ public:
+  explicit ArmDynamics(const arms::Description& arm);
+
+  /// Terms of M(q) q'' + coriolis(q, q') + gravity(q) = torque, and the Jacobian of the probe.
+  struct Terms {
+    Matrix3 mass_matrix;  ///< kg m^2, rotors included
+    Vector3 coriolis_Nm;  ///< centrifugal and Coriolis torques
+    Vector3 gravity_Nm;
+    Vector3 position_m;  ///< of the probe in the workspace
+    Matrix3 jacobian_m;  ///< d position / d joints
+  };
+  Terms terms(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
+
+  Vector3 position_m(const Vector3& joints_rad) const;
+  double kinetic_energy_J(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
+  double potential_energy_J(const Vector3& joints_rad) const;
+  /// Joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram: what the elbow's stops act on.
+  double elbow_rad(const Vector3& joints_rad) const { return parallelogram_ ? joints_rad[2] - joints_rad[1] : joints_rad[2]; }
+  bool is_parallelogram() const { return parallelogram_; }
+
+ private:
+  struct Links {
+    double cos_1, sin_1;      ///< waist
+    double cos_a, sin_a, cos_b, sin_b;
+  };
+  Links links(const Vector3& joints_rad) const;
+  Vector3 workspace_m(const Links& links) const;
+
+  bool parallelogram_;
+  bool omni_frame_;
+  double link_2_m_, link_3_m_, elbow_offset_rad_;
+  Vector3 origin_m_;
+  double turret_kg_m2_;                    ///< I
+  double link_2_kg_m2_, link_3_kg_m2_;     ///< J2, J3
+  double coupling_kg_m2_;                  ///< H
+  double weight_2_Nm_, weight_3_Nm_;       ///< g S2, g S3
+  Vector3 rotors_kg_m2_;                   ///< seen at the joints
+};
+
+}  // namespace inkwell::virtual_board

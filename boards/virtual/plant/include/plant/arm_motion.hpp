@@ -1,0 +1,46 @@
+// The arm's motion: friction that holds at rest, joint stops, and what pulls at the probe, step by step.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include <plant/arm_dynamics.hpp>
+#include <plant/hand.hpp>
+
+namespace inkwell::virtual_board {
+
+class ArmMotion {
+ public:
+  ArmMotion(const arms::Description& arm, const Vector3& joints_rad);
+
+  /// One step with the motors' torques at the joints and the couplings at the probe. Position Verlet (the
+  /// forces are those half a step on, so energy does not drift); damping is implicit; Coulomb friction is the
+  /// impulse that stops a joint if it lies within its cone (time stepping after Moreau), so that a held arm
+  /// comes to rest instead of creeping.
+  void step(double duration_s, const Vector3& torque_Nm, std::span<const Coupling> couplings);
+
+  const Vector3& joints_rad() const { return joints_rad_; }
+  const Vector3& joint_speeds_rad_s() const { return speeds_rad_s_; }
+  void place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s);
+  const ArmDynamics& dynamics() const { return dynamics_; }
+  /// Torques of the stops at these joints.
+  Vector3 stop_torque_Nm(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
+
+ private:
+  struct Stop {
+    double minimum_rad, maximum_rad;
+  };
+  Vector3 slide(const Matrix3& inverse_mass, const Vector3& free_speeds_rad_s, double duration_s);
+
+  ArmDynamics dynamics_;
+  std::array<Stop, 3> stops_;  ///< joint 1, joint 2, elbow
+  double stop_stiffness_Nm_per_rad_, stop_damping_Nms_per_rad_;
+  Vector3 coulomb_Nm_, viscous_Nms_per_rad_;
+
+  Vector3 joints_rad_;
+  Vector3 speeds_rad_s_ = Vector3::Zero();
+  Vector3 speed_change_rad_s_ = Vector3::Zero();    ///< of the last step, to foresee the middle of the next
+  Vector3 friction_impulse_Nms_ = Vector3::Zero();  ///< of the last step: where the search for the next starts
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,83 @@
+// What touches the probe: the user's hand and the inkwell, each a spring and a damper to a moving point.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <chip/machine.hpp>
+#include <plant/arm_dynamics.hpp>
+
+namespace inkwell::virtual_board {
+
+/// Pulls the probe with stiffness (target - probe) + damping (target velocity - probe velocity).
+struct Coupling {
+  double stiffness_N_per_m = 0.0;
+  double damping_Ns_per_m = 0.0;
+  Vector3 target_m = Vector3::Zero();
+  Vector3 target_velocity_m_s = Vector3::Zero();
+
+  Vector3 force_N(const Vector3& position_m, const Vector3& velocity_m_s) const {
+    return stiffness_N_per_m * (target_m - position_m) + damping_Ns_per_m * (target_velocity_m_s - velocity_m_s);
+  }
+};
+
+struct Waypoint {
+  double after_s;  ///< rising, counted from when the path is given
+  Vector3 target_m;
+};
+
+/// The hand: an impedance whose target stands still or moves from point to point with minimum jerk
+/// (Flash and Hogan 1985), as people move theirs.
+class Hand {
+ public:
+  static constexpr double stiffness_maximum_N_per_m = 5000.0;
+  static constexpr double damping_maximum_Ns_per_m = 100.0;
+
+  bool holds() const { return holds_; }
+  void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
+  void release();
+  /// Moves the target along the waypoints, starting at `now` where it is. A hand that does not hold takes
+  /// hold at `probe_m` with its last stiffness and damping.
+  void follow(const std::vector<Waypoint>& waypoints, const Vector3& probe_m, Ticks now);
+
+  double stiffness_N_per_m() const { return stiffness_N_per_m_; }
+  double damping_Ns_per_m() const { return damping_Ns_per_m_; }
+  bool is_moving(Ticks now) const { return holds_ && !path_.empty() && now < path_.back().at; }
+  /// Where it pulls to; no force if it does not hold.
+  Coupling coupling(Ticks now) const;
+
+ private:
+  struct Node {
+    Ticks at;
+    Vector3 target_m;
+  };
+  bool holds_ = false;
+  double stiffness_N_per_m_ = 300.0;
+  double damping_Ns_per_m_ = 3.0;
+  Vector3 target_m_ = Vector3::Zero();
+  std::vector<Node> path_;            ///< the first node is the start
+  mutable std::size_t segment_ = 0;   ///< where the last look-up ended; time does not run backward
+};
+
+/// The inkwell: a socket that guides the stylus in, holds it until it is pulled out, and closes a switch.
+class Inkwell {
+ public:
+  Inkwell(const Vector3& position_m, bool seated) : position_m_(position_m), guide_m_(position_m), seated_(seated) {}
+
+  bool seated() const { return seated_; }
+  const Vector3& position_m() const { return position_m_; }
+  /// Takes the stylus if it is in the funnel; true if it is seated then.
+  bool capture(const Vector3& probe_m);
+  void eject() { seated_ = false; }
+  /// One step: the funnel guides the stylus home, and a pull beyond the socket's grip takes it out.
+  void advance(double duration_s, const Vector3& probe_m);
+  bool switch_closed(const Vector3& probe_m) const;
+  Coupling coupling() const;
+
+ private:
+  Vector3 position_m_;
+  Vector3 guide_m_;
+  bool seated_;
+};
+
+}  // namespace inkwell::virtual_board

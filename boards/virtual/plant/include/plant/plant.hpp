@@ -1,0 +1,112 @@
+// Everything around the chip: bridges and motors, sensors, the arm, the inkwell and the user's hand, wired as
+// board/omni_driver.hpp says.
+//
+// Currents are exact between the edges of the bridges; the arm, the supply and the back-EMF take fixed steps
+// of 16.7 us (a third of a control period) with the mean of the true currents. Pins of the chip move only
+// inside advance(), so that a chip may call output_changed() and analog_V() from anywhere.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <random>
+
+#include <chip/machine.hpp>
+#include <plant/arm_motion.hpp>
+#include <plant/hand.hpp>
+#include <plant/imperfections.hpp>
+#include <plant/motor_drive.hpp>
+#include <plant/quadrature_encoder.hpp>
+#include <plant/supply.hpp>
+#include <plant/truth.hpp>
+
+namespace inkwell::virtual_board {
+
+struct PlantOptions {
+  std::uint64_t seed = 1;  ///< of all noise
+  Imperfections imperfections{};
+};
+
+/// Starts docked: the stylus rests in the inkwell, the supply is on, buttons are open, no hand.
+class Plant final : public Circuit {
+ public:
+  static constexpr Ticks step_ticks = ticks_per_s / 60'000;
+
+  explicit Plant(const arms::Description& arm, const PlantOptions& options = {});
+
+  /// Solders the chip in: from here on the plant drives its inputs, with their present levels to begin with.
+  void connect(InputPins& pins);
+
+  void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
+  double analog_V(char port, unsigned pin, Ticks now) override;
+  void advance(Ticks now) override;
+
+  // ---- what a person does to it, from the time of the last call of the chip on ----
+  void press_buttons(bool first, bool second) { buttons_ = {first, second}; }
+  void set_supply_V(double volts) { supply_.set_source_V(volts); }
+  void set_bridge_fault(bool fault);
+  /// Turns the gimbal, as the hand does with the stylus: yaw, pitch, roll.
+  void turn_gimbal(const Vector3& gimbal_rad) { gimbal_rad_ = gimbal_rad; }
+  void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
+  void let_go();
+  void follow(const std::vector<Waypoint>& waypoints);
+  /// Carries the stylus to the inkwell and lets it rest there, or takes it out.
+  void dock(bool docked);
+  /// Puts the arm somewhere at once, for tests.
+  void place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s);
+
+  Truth truth(Ticks now);
+  const ArmMotion& arm() const { return arm_; }
+  const Inkwell& inkwell() const { return inkwell_; }
+
+ private:
+  enum class Role : std::uint8_t { none, leg_a, leg_b, enable };
+  struct Wire {
+    Role role = Role::none;
+    std::uint8_t motor = 0;
+  };
+  static constexpr unsigned wire_index(char port, unsigned pin) { return static_cast<unsigned>(port - 'A') * 16 + pin; }
+
+  void run_until(Ticks now);
+  void step();
+  void update_docking();
+  void show_inputs();
+  void show(char port, unsigned pin, PinLevel level, PinLevel& shown);
+  void update_legs(unsigned motor, Ticks now);
+  double noise(double rms) { return rms * normal_(random_); }
+  double gimbal_V(unsigned axis);
+
+  std::array<Wire, 16 * 9> wires_{};  ///< ports A to I
+
+  // Electrical
+  Imperfections imperfections_;
+  std::array<MotorDrive, 3> motors_;
+  std::array<std::array<PinLevel, 2>, 3> leg_pins_;
+  bool bridges_enabled_ = false, bridge_fault_ = false;
+  Supply supply_;
+
+  // Mechanical
+  std::array<double, 3> torque_per_A_;      ///< at the joint, sign of the wiring included
+  ArmMotion arm_;
+  Hand hand_;
+  Inkwell inkwell_;
+  bool docking_ = false;                    ///< the hand carries the stylus to the inkwell
+  Vector3 torque_Nm_ = Vector3::Zero();
+
+  // Inputs of the chip
+  InputPins* pins_ = nullptr;
+  std::array<QuadratureEncoder, 3> encoders_;
+  std::array<QuadratureEncoder::Levels, 3> encoder_levels_{};
+  std::array<bool, 2> buttons_{};
+  std::array<PinLevel, 5> shown_{};         ///< buttons, inkwell switch, two pins of the fault wire
+
+  // Gimbal: joint angles and the inverse of the potentiometers' characteristic
+  std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope, offset of each
+  Vector3 gimbal_rad_;
+
+  Ticks now_ = 0;
+  Ticks next_step_ = step_ticks;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_{0.0, 1.0};
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,25 @@
+// The supply of the bridges: a source that delivers but does not take back, its resistance, and the bulk
+// capacitor, which is why the bus rises while the arm is braked.
+#pragma once
+
+#include <plant/imperfections.hpp>
+
+namespace inkwell::virtual_board {
+
+class Supply {
+ public:
+  Supply(const Imperfections& imperfections, double source_V);
+
+  void set_source_V(double volts) { source_V_ = volts; }
+  double source_V() const { return source_V_; }
+  double bus_V() const { return bus_V_; }
+
+  /// One step of `duration_s` in which the bridges drew `charge_As` (negative while they feed back).
+  void advance(double duration_s, double charge_As);
+
+ private:
+  double source_conductance_S_, quiescent_conductance_S_, capacitance_F_;
+  double source_V_, bus_V_;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,69 @@
+// What no real board could tell: every true quantity at an instant, and its record over time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string_view>
+#include <vector>
+
+#include <chip/machine.hpp>
+#include <plant/arm_dynamics.hpp>
+
+namespace inkwell::virtual_board {
+
+struct Truth {
+  Ticks at = 0;
+  Vector3 position_m, velocity_m_s;     ///< probe, workspace
+  Vector3 joints_rad, joint_speeds_rad_s;
+  Vector3 current_A;                    ///< motor currents, ripple included
+  Vector3 torque_Nm;                    ///< of the motors at the joints
+  Vector3 hand_force_N;                 ///< of the hand on the probe
+  Vector3 hand_target_m;                ///< where the hand pulls to; the probe if it does not hold
+  double supply_V = 0.0;
+  std::array<std::int64_t, 3> encoder_counts{};
+  bool hand_holds = false, docked = false, inkwell_switch = false, bridge_fault = false;
+  std::array<bool, 2> buttons{};
+};
+
+/// Names and values of what a trace records, in one order.
+inline constexpr std::array<std::string_view, 25> traced_quantities = {
+    "true_position_x_m",     "true_position_y_m",     "true_position_z_m",
+    "true_velocity_x_m_s",   "true_velocity_y_m_s",   "true_velocity_z_m_s",
+    "true_joint_1_rad",      "true_joint_2_rad",      "true_joint_3_rad",
+    "true_joint_speed_1_rad_s", "true_joint_speed_2_rad_s", "true_joint_speed_3_rad_s",
+    "true_current_1_A",      "true_current_2_A",      "true_current_3_A",
+    "true_torque_1_Nm",      "true_torque_2_Nm",      "true_torque_3_Nm",
+    "hand_force_x_N",        "hand_force_y_N",        "hand_force_z_N",
+    "hand_target_x_m",       "hand_target_y_m",       "hand_target_z_m",
+    "true_supply_V"};
+std::array<double, traced_quantities.size()> traced_values(const Truth& truth);
+
+/// Rows of true quantities, one for each control period. Bounded: when it is full the oldest rows are dropped
+/// and counted.
+class Trace {
+ public:
+  struct Row {
+    std::uint64_t period;  ///< index of the injected sequence since reset
+    Ticks at;
+    std::array<double, traced_quantities.size()> values;
+  };
+  static constexpr std::size_t rows_maximum = 1'200'000;  // one minute
+
+  void start();
+  void stop() { running_ = false; }
+  bool is_running() const { return running_; }
+  void record(std::uint64_t period, const Truth& truth);
+  /// Takes out the oldest rows, at most `maximum`.
+  std::vector<Row> read(std::size_t maximum);
+  std::size_t waiting() const { return rows_.size(); }
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  std::deque<Row> rows_;
+  std::uint64_t dropped_ = 0;
+  bool running_ = false;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,113 @@
+#include <plant/motor_drive.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace inkwell::virtual_board {
+
+MotorDrive::MotorDrive(const MotorConstants& motor, const Imperfections& imperfections, double dead_time_s)
+    : resistance_ohm_(motor.resistance_ohm + 2.0 * imperfections.leg_resistance_ohm),
+      time_constant_s_(motor.inductance_H / resistance_ohm_),
+      inverse_resistance_(1.0 / resistance_ohm_),
+      diode_drop_V_(imperfections.diode_drop_V),
+      amplifier_time_constant_s_(1.0 / (2.0 * std::numbers::pi * imperfections.amplifier_bandwidth_Hz)),
+      dead_time_(ticks(dead_time_s)) {
+  // Equal time constants would make the closed form of the amplifier singular; a thousandth apart is as good.
+  double ratio = amplifier_time_constant_s_ / time_constant_s_;
+  if (std::abs(1.0 - ratio) < 1e-3) {
+    ratio = 1.0 - 1e-3;
+    amplifier_time_constant_s_ = ratio * time_constant_s_;
+  }
+  amplifier_lead_ = 1.0 / (1.0 - ratio);
+  dead_time_decay_ = std::exp(-seconds(dead_time_) / time_constant_s_);
+  dead_time_amplifier_decay_ = std::exp(-seconds(dead_time_) / amplifier_time_constant_s_);
+}
+
+void MotorDrive::set_leg(unsigned leg, Leg level, Ticks now) {
+  advance(now);
+  LegState& state = legs_[leg];
+  if (state.wanted == level) return;
+  state.wanted = level;
+  // Switching off is immediate; switching on waits until the other switch of the leg is surely off.
+  state.actual = dead_time_ == 0 ? level : Leg::floating;
+  state.settles_at = now + dead_time_;
+}
+
+void MotorDrive::advance(Ticks now) {
+  while (now_ < now) {
+    Ticks next = now;
+    for (const LegState& leg : legs_)
+      if (leg.actual != leg.wanted && leg.settles_at < next) next = leg.settles_at;
+    if (next > now_) integrate(next - now_);
+    now_ = next;
+    for (LegState& leg : legs_)
+      if (leg.settles_at <= now_) leg.actual = leg.wanted;
+  }
+}
+
+MotorDrive::Charges MotorDrive::take_charges() {
+  const Charges taken = charges_;
+  charges_ = {};
+  return taken;
+}
+
+// A floating leg is pulled to a rail by the diode that the current flows through: out of leg A or into leg B
+// for a positive current.
+MotorDrive::Branch MotorDrive::branch() const {
+  const Leg a = legs_[0].actual;
+  const Leg b = legs_[1].actual;
+  const bool floating = a == Leg::floating || b == Leg::floating;
+  const auto with_sign = [&](bool positive) {
+    const bool a_top = a == Leg::high || (a == Leg::floating && !positive);
+    const bool b_top = b == Leg::high || (b == Leg::floating && positive);
+    const double drop = positive ? diode_drop_V_ : -diode_drop_V_;
+    const double a_V = (a_top ? bus_V_ : 0.0) - (a == Leg::floating ? drop : 0.0);
+    const double b_V = (b_top ? bus_V_ : 0.0) + (b == Leg::floating ? drop : 0.0);
+    return Branch{a_V - b_V, static_cast<double>(a_top) - static_cast<double>(b_top), true, floating};
+  };
+  if (!floating || current_A_ > 0.0) return with_sign(true);
+  if (current_A_ < 0.0) return with_sign(false);
+  // No current: it starts only if the back-EMF and the driven leg overcome the diodes.
+  if (const Branch forward = with_sign(true); forward.voltage_V > back_emf_V_) return forward;
+  if (const Branch backward = with_sign(false); backward.voltage_V < back_emf_V_) return backward;
+  return {back_emf_V_, 0.0, false, false};
+}
+
+void MotorDrive::integrate(Ticks duration) {
+  double left_s = seconds(duration);
+  double decay, amplifier_decay;
+  if (duration == dead_time_) {
+    decay = dead_time_decay_;
+    amplifier_decay = dead_time_amplifier_decay_;
+  } else {
+    decay = std::exp(-left_s / time_constant_s_);
+    amplifier_decay = std::exp(-left_s / amplifier_time_constant_s_);
+  }
+  const Branch first = branch();
+  const double final_A = (first.voltage_V - back_emf_V_) * inverse_resistance_;
+  const double end_A = final_A + (current_A_ - final_A) * decay;
+  if (!first.holds_at_zero || current_A_ == 0.0 || end_A * current_A_ > 0.0) {
+    run(left_s, decay, amplifier_decay, first);
+    return;
+  }
+  const double to_zero_s = time_constant_s_ * std::log((current_A_ - final_A) / -final_A);
+  run(to_zero_s, std::exp(-to_zero_s / time_constant_s_), std::exp(-to_zero_s / amplifier_time_constant_s_), first);
+  current_A_ = 0.0;
+  left_s -= to_zero_s;
+  if (left_s > 0.0)
+    run(left_s, std::exp(-left_s / time_constant_s_), std::exp(-left_s / amplifier_time_constant_s_), branch());
+}
+
+void MotorDrive::run(double duration_s, double decay, double amplifier_decay, const Branch& path) {
+  const double final_A = path.conducts ? (path.voltage_V - back_emf_V_) * inverse_resistance_ : 0.0;
+  const double transient_A = current_A_ - final_A;
+  const double charge_As = final_A * duration_s + transient_A * time_constant_s_ * (1.0 - decay);
+  charges_.motor_As += charge_As;
+  charges_.supply_As += path.supply_share * charge_As;
+  // First-order amplifier driven by the current's exponential: the forced part lags it, the rest dies out.
+  const double forced_A = amplifier_lead_ * transient_A;
+  amplifier_A_ = final_A + forced_A * decay + (amplifier_A_ - final_A - forced_A) * amplifier_decay;
+  current_A_ = final_A + transient_A * decay;
+}
+
+}  // namespace inkwell::virtual_board

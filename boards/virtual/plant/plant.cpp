@@ -1,0 +1,305 @@
+#include <plant/plant.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <board/omni_driver.hpp>
+
+namespace inkwell::virtual_board {
+namespace {
+
+using protocol::Parameter;
+
+static_assert(ticks_per_s % 60'000 == 0, "the mechanical step must be exact");
+
+/// The parameter for motor 1, 2 or 3 of a row of three.
+Parameter of_motor(Parameter first, unsigned motor) {
+  return static_cast<Parameter>(static_cast<unsigned>(first) + motor);
+}
+static_assert(static_cast<unsigned>(Parameter::gear_ratio_3) == static_cast<unsigned>(Parameter::gear_ratio_1) + 2);
+static_assert(static_cast<unsigned>(Parameter::gimbal_2_square_rad) ==
+              static_cast<unsigned>(Parameter::gimbal_1_square_rad) + 3);
+
+Vector3 inkwell_joints_rad(const arms::Description& arm) {
+  const auto& p = arm.parameters;
+  return {p[Parameter::inkwell_joint_1_rad], p[Parameter::inkwell_joint_2_rad], p[Parameter::inkwell_joint_3_rad]};
+}
+
+MotorDrive motor_drive(const arms::Description& arm, const Imperfections& imperfections) {
+  const double shunt_ohm = static_cast<double>(board::shunt_ohm);
+  return {{arm.motor.resistance_ohm + shunt_ohm, arm.motor.inductance_H},
+          imperfections,
+          static_cast<double>(board::bridge_dead_time_s)};
+}
+
+double torque_per_A(const arms::Description& arm, unsigned motor) {
+  const auto& p = arm.parameters;
+  const double sign = p[of_motor(Parameter::motor_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
+  return sign * static_cast<double>(p[of_motor(Parameter::gear_ratio_1, motor)]) *
+         static_cast<double>(p[of_motor(Parameter::torque_constant_1_Nm_per_A, motor)]);
+}
+
+QuadratureEncoder encoder(const arms::Description& arm, unsigned motor) {
+  const auto& p = arm.parameters;
+  const double sign = p[of_motor(Parameter::encoder_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
+  const double counts_per_rad = static_cast<double>(p[of_motor(Parameter::gear_ratio_1, motor)]) *
+                                static_cast<double>(p[of_motor(Parameter::encoder_1_counts_per_turn, motor)]) /
+                                (2.0 * std::numbers::pi);
+  return QuadratureEncoder(sign * counts_per_rad, inkwell_joints_rad(arm)[motor]);
+}
+
+std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) {
+  const auto first = static_cast<unsigned>(Parameter::gimbal_1_square_rad) + 3 * axis;
+  std::array<double, 3> terms;
+  for (unsigned i = 0; i < 3; ++i) terms[i] = arm.parameters[static_cast<Parameter>(first + i)];
+  return terms;
+}
+
+PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
+/// A contact to ground, or an open-drain output: the pull-up makes the high level.
+PinLevel pulled_down(bool closed) { return closed ? PinLevel::low : PinLevel::floating; }
+
+}  // namespace
+
+Plant::Plant(const arms::Description& arm, const PlantOptions& options)
+    : imperfections_(options.imperfections),
+      motors_{motor_drive(arm, imperfections_), motor_drive(arm, imperfections_), motor_drive(arm, imperfections_)},
+      supply_(imperfections_, static_cast<double>(board::supply_nominal_V)),
+      torque_per_A_{torque_per_A(arm, 0), torque_per_A(arm, 1), torque_per_A(arm, 2)},
+      arm_(arm, inkwell_joints_rad(arm)),
+      inkwell_(arm_.dynamics().position_m(inkwell_joints_rad(arm)), true),
+      encoders_{encoder(arm, 0), encoder(arm, 1), encoder(arm, 2)},
+      gimbal_terms_{gimbal_terms(arm, 0), gimbal_terms(arm, 1), gimbal_terms(arm, 2)},
+      random_(options.seed) {
+  for (auto& legs : leg_pins_) legs.fill(PinLevel::floating);
+  const auto wire = [&](board::Pin pin, Role role, unsigned motor) {
+    wires_[wire_index(pin.port, pin.number)] = {role, static_cast<std::uint8_t>(motor)};
+  };
+  for (unsigned i = 0; i < 3; ++i) {
+    wire(board::bridges[i].leg_a.pin, Role::leg_a, i);
+    wire(board::bridges[i].leg_b.pin, Role::leg_b, i);
+    motors_[i].set_bus_V(supply_.bus_V());
+    // The wipers start in the middle of their tracks.
+    const auto& [square, slope, offset] = gimbal_terms_[i];
+    gimbal_rad_[i] = 0.25 * square + 0.5 * slope + offset;
+  }
+  wire(board::bridge_enable, Role::enable, 0);
+}
+
+void Plant::connect(InputPins& pins) {
+  pins_ = &pins;
+  for (unsigned i = 0; i < 3; ++i) {
+    encoder_levels_[i] = QuadratureEncoder::levels(encoders_[i].shown());
+    pins.drive(board::encoders[i].a.pin.port, board::encoders[i].a.pin.number, level_of(encoder_levels_[i].a));
+    pins.drive(board::encoders[i].b.pin.port, board::encoders[i].b.pin.number, level_of(encoder_levels_[i].b));
+  }
+  shown_.fill(PinLevel::high);  // which no contact ever shows, so that each is driven now
+  show_inputs();
+}
+
+// ---- the chip's calls ----------------------------------------------------------------------------------
+
+void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
+  const unsigned index = wire_index(port, pin);
+  if (index >= wires_.size() || wires_[index].role == Role::none) return;
+  run_until(now);
+  const Wire wire = wires_[index];
+  if (wire.role == Role::enable) {
+    bridges_enabled_ = level == PinLevel::high;  // the board's pull-down keeps a floating pin low
+    for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
+  } else {
+    leg_pins_[wire.motor][wire.role == Role::leg_a ? 0 : 1] = level;
+    update_legs(wire.motor, now);
+  }
+}
+
+void Plant::update_legs(unsigned motor, Ticks now) {
+  for (unsigned leg = 0; leg < 2; ++leg) {
+    const PinLevel pin = leg_pins_[motor][leg];
+    const bool off = !bridges_enabled_ || bridge_fault_ || pin == PinLevel::floating;
+    motors_[motor].set_leg(leg, off ? Leg::floating : pin == PinLevel::high ? Leg::high : Leg::low, now);
+  }
+}
+
+double Plant::analog_V(char port, unsigned pin, Ticks now) {
+  constexpr double reference_V = static_cast<double>(board::adc_reference_V);
+  const board::Pin wanted{port, static_cast<std::uint8_t>(pin)};
+  run_until(now);
+  for (unsigned i = 0; i < 3; ++i) {
+    if (board::motor_current[i].pin == wanted) {
+      motors_[i].advance(now);
+      constexpr double V_per_A = static_cast<double>(board::shunt_ohm * board::shunt_amplifier_gain);
+      const double volts = static_cast<double>(board::shunt_amplifier_offset_V) + imperfections_.amplifier_offset_V[i] +
+                           V_per_A * (1.0 + imperfections_.amplifier_gain_error[i]) * motors_[i].amplifier_A() +
+                           noise(imperfections_.amplifier_noise_V);
+      return std::clamp(volts, 0.0, reference_V);
+    }
+    if (board::gimbal[i].pin == wanted)
+      return std::clamp(gimbal_V(i) + noise(imperfections_.wiper_noise_V), 0.0, reference_V);
+  }
+  if (board::supply.pin == wanted) {
+    const double volts = supply_.bus_V() / static_cast<double>(board::supply_divider);
+    return std::clamp(volts + noise(imperfections_.supply_reading_noise_V), 0.0, reference_V);
+  }
+  return 0.0;  // nothing is wired there; the board's ground plane is near
+}
+
+double Plant::gimbal_V(unsigned axis) {
+  // angle = square r^2 + slope r + offset, for the r that lies on the track
+  const auto& [square, slope, offset] = gimbal_terms_[axis];
+  const double constant = offset - gimbal_rad_[axis];
+  double ratio = -constant / slope;
+  if (square != 0.0) {
+    const double root = std::sqrt(std::max(slope * slope - 4.0 * square * constant, 0.0));
+    ratio = -2.0 * constant / (slope + std::copysign(root, slope));  // the root that the line above goes over into
+  }
+  return std::clamp(ratio, 0.0, 1.0) * static_cast<double>(board::adc_reference_V);
+}
+
+void Plant::advance(Ticks now) {
+  run_until(now);
+  show_inputs();
+}
+
+// ---- time ----------------------------------------------------------------------------------------------
+
+void Plant::run_until(Ticks now) {
+  while (next_step_ <= now) {
+    step();
+    next_step_ += step_ticks;
+  }
+  now_ = std::max(now_, now);
+}
+
+void Plant::step() {
+  constexpr double duration_s = seconds(step_ticks);
+  double supply_charge_As = 0.0;
+  for (unsigned i = 0; i < 3; ++i) {
+    motors_[i].advance(next_step_);
+    const auto charges = motors_[i].take_charges();
+    torque_Nm_[i] = torque_per_A_[i] * charges.motor_As / duration_s;
+    supply_charge_As += charges.supply_As;
+  }
+  const std::array<Coupling, 2> couplings = {hand_.coupling(next_step_), inkwell_.coupling()};
+  arm_.step(duration_s, torque_Nm_, couplings);
+  inkwell_.advance(duration_s, arm_.dynamics().position_m(arm_.joints_rad()));
+  if (docking_) update_docking();
+  supply_.advance(duration_s, supply_charge_As);
+  for (unsigned i = 0; i < 3; ++i) {
+    motors_[i].set_back_emf_V(torque_per_A_[i] * arm_.joint_speeds_rad_s()[i]);
+    motors_[i].set_bus_V(supply_.bus_V());
+  }
+}
+
+void Plant::update_docking() {
+  // The funnel takes over where the hand's path ends; a hand on its way may pass through it.
+  if (hand_.is_moving(next_step_)) return;
+  if (!inkwell_.capture(arm_.dynamics().position_m(arm_.joints_rad()))) return;
+  docking_ = false;
+  hand_.release();
+}
+
+// ---- the chip's inputs -----------------------------------------------------------------------------------
+
+void Plant::show(char port, unsigned pin, PinLevel level, PinLevel& shown) {
+  if (level == shown) return;
+  shown = level;
+  pins_->drive(port, pin, level);
+}
+
+void Plant::show_inputs() {
+  if (pins_ == nullptr) return;
+  for (unsigned i = 0; i < 3; ++i) {
+    const auto& wiring = board::encoders[i];
+    encoders_[i].follow(arm_.joints_rad()[i], [&](QuadratureEncoder::Levels levels) {
+      // Neighbouring counts differ in one pin, so each edge is one call.
+      if (levels.a != encoder_levels_[i].a) pins_->drive(wiring.a.pin.port, wiring.a.pin.number, level_of(levels.a));
+      if (levels.b != encoder_levels_[i].b) pins_->drive(wiring.b.pin.port, wiring.b.pin.number, level_of(levels.b));
+      encoder_levels_[i] = levels;
+    });
+  }
+  const bool inkwell_closed = inkwell_.switch_closed(arm_.dynamics().position_m(arm_.joints_rad()));
+  show(board::button_1.port, board::button_1.number, pulled_down(buttons_[0]), shown_[0]);
+  show(board::button_2.port, board::button_2.number, pulled_down(buttons_[1]), shown_[1]);
+  show(board::inkwell_switch.port, board::inkwell_switch.number, pulled_down(inkwell_closed), shown_[2]);
+  show(board::bridge_fault_tim1.pin.port, board::bridge_fault_tim1.pin.number, pulled_down(bridge_fault_), shown_[3]);
+  show(board::bridge_fault_tim8.pin.port, board::bridge_fault_tim8.pin.number, pulled_down(bridge_fault_), shown_[4]);
+}
+
+// ---- what a person does ----------------------------------------------------------------------------------
+
+void Plant::set_bridge_fault(bool fault) {
+  bridge_fault_ = fault;
+  for (unsigned i = 0; i < 3; ++i) update_legs(i, now_);
+}
+
+void Plant::hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m) {
+  docking_ = false;
+  hand_.hold(target_m, stiffness_N_per_m, damping_Ns_per_m);
+}
+
+void Plant::let_go() {
+  docking_ = false;
+  hand_.release();
+}
+
+void Plant::follow(const std::vector<Waypoint>& waypoints) {
+  docking_ = false;
+  hand_.follow(waypoints, arm_.dynamics().position_m(arm_.joints_rad()), now_);
+}
+
+void Plant::dock(bool docked) {
+  if (!docked) {
+    docking_ = false;
+    inkwell_.eject();
+    return;
+  }
+  if (inkwell_.seated()) return;
+  constexpr double speed_m_s = 0.2;
+  constexpr double shortest_s = 0.1;
+  constexpr double stiffness_N_per_m = 800.0;  // sags by less than the funnel's radius under the arm's weight
+  constexpr double damping_Ns_per_m = 8.0;
+  const Vector3 probe_m = arm_.dynamics().position_m(arm_.joints_rad());
+  const double distance_m = (inkwell_.position_m() - probe_m).norm();
+  hand_.hold(probe_m, stiffness_N_per_m, damping_Ns_per_m);
+  hand_.follow({{std::max(shortest_s, distance_m / speed_m_s), inkwell_.position_m()}}, probe_m, now_);
+  docking_ = true;
+}
+
+void Plant::place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) {
+  docking_ = false;
+  inkwell_.eject();
+  arm_.place(joints_rad, joint_speeds_rad_s);
+}
+
+Truth Plant::truth(Ticks now) {
+  run_until(now);
+  // Between two steps the arm moves on at its speed.
+  const double since_step_s = seconds(now_ + step_ticks - next_step_);
+  Truth t;
+  t.at = now_;
+  t.joint_speeds_rad_s = arm_.joint_speeds_rad_s();
+  t.joints_rad = arm_.joints_rad() + since_step_s * t.joint_speeds_rad_s;
+  const auto terms = arm_.dynamics().terms(t.joints_rad, t.joint_speeds_rad_s);
+  t.position_m = terms.position_m;
+  t.velocity_m_s = terms.jacobian_m * t.joint_speeds_rad_s;
+  for (unsigned i = 0; i < 3; ++i) {
+    motors_[i].advance(now_);
+    t.current_A[i] = motors_[i].current_A();
+    t.torque_Nm[i] = torque_per_A_[i] * t.current_A[i];
+    t.encoder_counts[i] = encoders_[i].count_at(arm_.joints_rad()[i]);
+  }
+  const Coupling hand = hand_.coupling(now_);
+  t.hand_holds = hand_.holds();
+  t.hand_force_N = hand.force_N(t.position_m, t.velocity_m_s);
+  t.hand_target_m = t.hand_holds ? hand.target_m : t.position_m;
+  t.supply_V = supply_.bus_V();
+  t.docked = inkwell_.seated();
+  t.inkwell_switch = inkwell_.switch_closed(t.position_m);
+  t.bridge_fault = bridge_fault_;
+  t.buttons = buttons_;
+  return t;
+}
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,27 @@
+#include <plant/supply.hpp>
+
+#include <algorithm>
+
+namespace inkwell::virtual_board {
+
+Supply::Supply(const Imperfections& imperfections, double source_V)
+    : source_conductance_S_(1.0 / imperfections.source_resistance_ohm),
+      quiescent_conductance_S_(1.0 / imperfections.quiescent_resistance_ohm),
+      capacitance_F_(imperfections.bulk_capacitance_F),
+      source_V_(source_V),
+      bus_V_(source_V) {}
+
+void Supply::advance(double duration_s, double charge_As) {
+  // Implicit Euler: stable for any source resistance and capacitor.
+  const auto next_V = [&](double source_S) {
+    const double charge = capacitance_F_ * bus_V_ - charge_As + duration_s * source_S * source_V_;
+    return charge / (capacitance_F_ + duration_s * (source_S + quiescent_conductance_S_));
+  };
+  const double fed_V = next_V(source_conductance_S_);
+  // Above its own voltage the source blocks.
+  bus_V_ = fed_V <= source_V_ ? fed_V : std::max(source_V_, next_V(0.0));
+  // Below ground the diodes of the bridges conduct.
+  bus_V_ = std::max(bus_V_, 0.0);
+}
+
+}  // namespace inkwell::virtual_board
