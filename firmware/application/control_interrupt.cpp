@@ -1,0 +1,72 @@
+// The control interrupt: 20 000 times a second, from the sensors to the bridges.
+#include <control/encoders.hpp>
+#include <drivers/cycle_counter.hpp>
+
+#include "handlers.hpp"
+#include "memory.hpp"
+#include "parts.hpp"
+
+namespace inkwell::application {
+namespace {
+
+INKWELL_CORE_COUPLED drivers::CycleCounter clock;
+INKWELL_CORE_COUPLED std::array<std::int32_t, 3> encoder_counts;
+
+std::uint8_t switch_bits(const drivers::SwitchContacts& contacts) {
+  const auto bit = [](bool closed, protocol::Switch which) { return closed ? static_cast<unsigned>(which) : 0u; };
+  return static_cast<std::uint8_t>(bit(contacts.button_1, protocol::Switch::button_1) |
+                                   bit(contacts.button_2, protocol::Switch::button_2) |
+                                   bit(contacts.inkwell, protocol::Switch::inkwell));
+}
+
+control::Samples read_samples() {
+  const auto timer_counts = encoders.read();
+  for (std::size_t i = 0; i < timer_counts.size(); ++i)
+    encoder_counts[i] = control::unwrap(encoder_counts[i], timer_counts[i]);
+  const control::Samples samples{.encoder_counts = encoder_counts,
+                                 .current_A = analog_inputs.take_currents_A(),
+                                 .gimbal_ratio = analog_inputs.gimbal_ratio(),
+                                 .supply_V = analog_inputs.supply_V(),
+                                 .switches = switch_bits(switches.read()),
+                                 .bridge_fault = bridges.fault()};
+  analog_inputs.start_slow_conversions();
+  return samples;
+}
+
+void write_bridges(const control::Drive& drive) {
+  if (!drive.enabled) return bridges.disable();
+  bridges.write(drive.duty);
+  bridges.enable();
+}
+
+}  // namespace
+
+extern "C" void control_interrupt() {
+  clock.begin();
+  bridges.begin_period();
+  bridges.write_neutral();  // an interrupt that does not finish in time leaves the motors without voltage
+
+  const std::uint32_t period = controller.periods();
+  const control::Samples samples = read_samples();
+  const control::Settings& settings = host_link.parameters.take(period);
+  if (host_link.commands.take_sign_of_life()) controller.host_alive();
+  if (const auto* command = host_link.commands.take()) controller.carry_out(*command);
+
+  write_bridges(controller.step(samples, settings, clock));
+
+  host_link.poses.record(controller.signals(), {.state = controller.state(),
+                                           .fault = controller.fault(),
+                                           .switches = controller.switches(),
+                                           .command_token = host_link.commands.last_token(),
+                                           .periods = period,
+                                           .servo_cycles = controller.servo_cycles()});
+  host_link.scope.record(controller.signals(), period);
+  controller.finish(clock);
+
+  const bool overrun = bridges.period_is_over();
+  if (overrun) controller.raise(protocol::Fault::servo_overrun);
+  host_link.status.record(controller.state(), controller.servo_cycles(), overrun);
+  completed_periods.store(controller.periods());
+}
+
+}  // namespace inkwell::application

@@ -1,0 +1,15 @@
+// The functions that the processor itself calls.
+#pragma once
+
+namespace inkwell::application {
+
+extern "C" {
+/// First instruction after a reset.
+[[noreturn]] void reset_handler();
+/// Every fault, the non-maskable interrupt and every interrupt that nobody asked for.
+[[noreturn]] void fault_handler();
+/// End of the injected conversions: once every control period.
+void control_interrupt();
+}
+
+}  // namespace inkwell::application

@@ -1,0 +1,17 @@
+// Where things lie; see boards/omni_driver/omni_driver.ld, which defines the symbols.
+#pragma once
+
+#include <cstdint>
+
+/// Puts a zero-initialised object, or one with a constructor that runs at start-up, into the core-coupled memory.
+#define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
+
+extern "C" {
+extern std::uint32_t stack_bottom[], stack_top[];
+extern std::uint32_t data_begin[], data_end[], zero_begin[], zero_end[];
+extern std::uint32_t core_coupled_data_begin[], core_coupled_data_end[], core_coupled_zero_begin[],
+    core_coupled_zero_end[];
+extern const std::uint32_t data_image[], core_coupled_data_image[];
+extern void (*const constructors_begin[])();
+extern void (*const constructors_end[])();
+}

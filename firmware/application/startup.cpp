@@ -1,0 +1,43 @@
+// From reset to main(): floating-point unit, memory, constructors.
+#include <algorithm>
+
+#include <registers/processor.hpp>
+
+#include "handlers.hpp"
+#include "memory.hpp"
+#include "vectors.hpp"
+
+namespace inkwell::application {
+namespace {
+
+void copy(const std::uint32_t* image, std::uint32_t* begin, const std::uint32_t* end) {
+  std::copy_n(image, end - begin, begin);
+}
+
+}  // namespace
+
+extern "C" void reset_handler() {
+  using registers::FPU_CPACR;
+  using registers::SCB;
+  // Before any instruction on a float, among them those that save registers on entry to an interrupt. That the
+  // processor saves them lazily is its default (FPCCR) and stays.
+  constexpr std::uint32_t full_access_to_both = 0b1111;
+  FPU_CPACR::CPACR::modify(FPU_CPACR::CPACR::CP(full_access_to_both));
+  // A boot loader leaves the table pointing to itself.
+  SCB::VTOR::write(reinterpret_cast<std::uint32_t>(&vectors));
+  asm volatile("dsb\n isb" ::: "memory");
+
+  copy(data_image, data_begin, data_end);
+  copy(core_coupled_data_image, core_coupled_data_begin, core_coupled_data_end);
+  std::fill(zero_begin, zero_end, 0u);
+  std::fill(core_coupled_zero_begin, core_coupled_zero_end, 0u);
+  for (auto constructor = constructors_begin; constructor != constructors_end; ++constructor) (*constructor)();
+
+  asm volatile("bl main");  // C++ does not let itself call main()
+  __builtin_trap();
+}
+
+}  // namespace inkwell::application
+
+/// Called where a virtual function is not there yet or no more: a defect, so it ends in the fault handler.
+extern "C" [[noreturn]] void __cxa_pure_virtual() { __builtin_trap(); }

@@ -1,0 +1,25 @@
+#include "vectors.hpp"
+
+#include <drivers/system.hpp>
+
+#include "handlers.hpp"
+#include "memory.hpp"
+
+namespace inkwell::application {
+namespace {
+
+constexpr VectorTable make_vectors() {
+  VectorTable table{};
+  table.initial_stack = stack_top;
+  table.exceptions.fill(fault_handler);
+  table.exceptions[0] = reset_handler;
+  table.interrupts.fill(fault_handler);
+  table.interrupts[static_cast<std::size_t>(drivers::Interrupt::analog_converters)] = control_interrupt;
+  return table;
+}
+
+}  // namespace
+
+[[gnu::section(".vectors"), gnu::used]] constinit const VectorTable vectors = make_vectors();
+
+}  // namespace inkwell::application
