@@ -70,8 +70,10 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
 
   std::uint32_t read_register(std::uint32_t offset);
   void write_register(std::uint32_t offset, std::uint32_t value);
-  std::uint32_t read_endpoint(std::uint32_t offset);
-  void write_endpoint(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t read_in_endpoint(std::uint32_t offset);
+  std::uint32_t read_out_endpoint(std::uint32_t offset);
+  void write_in_endpoint(std::uint32_t offset, std::uint32_t value);
+  void write_out_endpoint(std::uint32_t offset, std::uint32_t value);
   void reset_core();
 
   void write_reset_control(std::uint32_t value);
@@ -80,6 +82,8 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void write_in_control(unsigned endpoint, std::uint32_t value);
   void write_out_control(unsigned endpoint, std::uint32_t value);
   void disable_out(OutEndpoint& endpoint);
+  void check_in_transfer(unsigned endpoint);
+  void check_out_transfer(unsigned endpoint);
 
   std::uint32_t pop_receive_status();
   std::uint32_t pop_receive_data();
@@ -95,12 +99,15 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
 
   unsigned in_packet_maximum(unsigned endpoint) const;
   unsigned transmit_fifo_of(unsigned endpoint) const;
-  std::size_t transmit_depth(unsigned number) const { return transmit_size_[number] >> 16; }
+  std::size_t receive_depth() const;
+  std::size_t transmit_depth(unsigned number) const;
   std::size_t transmit_words_free(unsigned endpoint) const;
   bool transmit_empty_level(unsigned endpoint) const;
   bool answers(unsigned address, unsigned endpoint) const;
+  unsigned programmed_address() const;
 
   std::uint32_t interrupt_status() const;
+  std::uint32_t in_interrupts(unsigned endpoint) const;
   std::uint32_t endpoint_interrupts() const;
   void update_interrupt();
   void update_pull_up();
@@ -145,7 +152,9 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   unsigned address_ = 0;                    ///< in use on the bus; follows DCFG.DAD after a status stage
   bool control_transfer_open_ = false;      ///< from a SETUP packet to its status stage
   bool setup_stage_open_ = false;           ///< from a SETUP packet to the next token: setup done is not written yet
-  unsigned setup_done_unpopped_ = 0;        ///< setup packets whose setup-done word firmware has not popped yet
+  bool setup_done_unpopped_ = false;        ///< from a SETUP packet until firmware pops its setup-done word
+  bool setup_done_lost_ = false;            ///< CNAK came in between: the word will not be seen
+  unsigned setup_packets_allowed_ = 0;      ///< DOEPTSIZ0.STUPCNT
   bool bus_power_ = false;
   bool pulled_up_ = false;
   bool suspended_ = false;

@@ -1,6 +1,7 @@
 // A FIFO of 32-bit words in the OTG core's packet memory.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +25,7 @@ class WordFifo {
     return word;
   }
   void drop(std::size_t words) {
+    words = std::min(words, count_);
     first_ = (first_ + words) % storage_words;
     count_ -= words;
   }

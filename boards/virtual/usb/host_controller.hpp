@@ -1,0 +1,109 @@
+// A full-speed host controller with one device on its bus: frames, transactions, transfers.
+//
+// Each frame of 1 ms of board time has the order of USB 2.0, section 5: start of frame, interrupt endpoints
+// that are due, then control, then bulk in turn, one transaction after the other at the times they take on a
+// 12 Mbit/s bus. A transaction that no longer fits waits for the next frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+
+#include <chip/machine.hpp>
+#include <virtual_usb/bus.hpp>
+
+#include "descriptors.hpp"
+#include "urb.hpp"
+
+namespace inkwell::virtual_board {
+
+class HostController {
+ public:
+  /// Who uses the controller. Called on the simulation's thread.
+  class Client {
+   public:
+    virtual ~Client() = default;
+    /// Between transactions: the moment to submit and to unlink.
+    virtual void between_transactions() = 0;
+    /// Every millisecond, before the start of frame.
+    virtual void frame() = 0;
+    virtual void completed(Urb&& urb, std::int32_t status) = 0;
+  };
+
+  HostController(Scheduler& scheduler, BusDevice& device, Client& client);
+  ~HostController();
+  HostController(const HostController&) = delete;
+  HostController& operator=(const HostController&) = delete;
+
+  /// Frames run while true; after 3 ms without them the device is told to suspend.
+  void run_frames(bool run);
+  /// The address that tokens carry, and the packet size of endpoint 0.
+  void address_device(unsigned address, std::uint16_t control_packet_maximum);
+  /// The endpoints of these interfaces become usable, all toggles start at DATA0.
+  void configure(const ConfigurationDescription* configuration);
+  void select_alternate(const ConfigurationDescription& configuration, std::uint8_t interface, std::uint8_t alternate);
+  /// After CLEAR_FEATURE(ENDPOINT_HALT).
+  void reset_toggle(std::uint8_t endpoint_address);
+
+  void submit(Urb&& urb);
+  /// Takes a transfer back. False if it is not there (any more).
+  bool unlink(std::uint32_t sequence);
+  /// Forgets all transfers without completing them.
+  void cancel_all();
+
+ private:
+  struct Pipe {
+    bool open = false;
+    TransferType type = TransferType::control;
+    std::uint16_t packet_maximum = 0;
+    unsigned interval_frames = 1;
+    bool data1 = false;
+    std::deque<Urb> urbs;
+    Ticks retry_at = 0;
+    Ticks retry_after = 0;
+    std::uint64_t due_frame = 0;
+    unsigned errors = 0;
+  };
+  enum class Token : std::uint8_t { setup, out, in };
+  struct Transaction {
+    unsigned pipe;
+    Token token;
+    InReply reply;       ///< of an IN
+    bool abandoned = false;  ///< its transfer was unlinked meanwhile
+  };
+  static constexpr unsigned pipe_count = 32;  ///< 0..15 OUT and control, 16..31 IN
+
+  void step();
+  void begin_frame();
+  void start_next_transaction();
+  bool start(unsigned pipe_index);
+  void finish_transaction();
+  void handle_in(unsigned pipe_index, Urb& urb, const InReply& reply);
+  void handle_out(unsigned pipe_index, Urb& urb, Token token);
+  void handle_refusal(unsigned pipe_index, Handshake handshake);
+  void complete(unsigned pipe_index, std::int32_t status);
+  void close(Pipe& pipe);
+  void open(const EndpointDescription& endpoint);
+  static Token next_token(const Urb& urb, TransferType type);
+  static std::uint32_t next_out_length(const Pipe& pipe, const Urb& urb, Token token);
+
+  Scheduler& scheduler_;
+  BusDevice& device_;
+  Client& client_;
+  Scheduler::Id event_ = 0;
+  std::array<Pipe, pipe_count> pipes_{};
+  std::uint32_t busy_pipes_ = 0;  ///< bit i: pipe i has transfers
+  unsigned next_bulk_pipe_ = 0;
+  unsigned address_ = 0;
+  bool frames_run_ = false;
+  unsigned frames_idle_ = 0;
+  std::uint64_t frame_ = 0;
+  Ticks frame_begin_ = 0;
+  Ticks bus_free_at_ = 0;
+  std::optional<Transaction> transaction_;
+  std::array<std::byte, full_speed_packet_maximum> packet_{};
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,224 @@
+// The OTG_FS core towards the bus: line states and transactions.
+#include <algorithm>
+#include <cstring>
+
+#include <virtual_usb/otg_fs_device.hpp>
+
+#include "otg_fs_registers.hpp"
+
+namespace inkwell::virtual_board {
+
+using namespace otg;
+
+namespace {
+/// Words of the receive FIFO that data packets never take: ten for SETUP packets, one for the global OUT
+/// NAK (RM0090, "Peripheral FIFO architecture").
+constexpr std::size_t reserved_receive_words = 11;
+constexpr Ticks frame_ticks = ticks_per_s / 1000;
+}  // namespace
+
+void OtgFsDevice::set_bus_power(bool present) {
+  const bool sensed = (core_configuration_ & (gccfg::vbusbsen | gccfg::novbussens)) == gccfg::vbusbsen;
+  if (sensed && bus_power_ && !present) otg_interrupts_ |= gotgint::sedet;
+  if (sensed && !bus_power_ && present) latched_interrupts_ |= gint::srqint;
+  bus_power_ = present;
+  update_pull_up();
+  update_interrupt();
+}
+
+void OtgFsDevice::begin_reset() {
+  suspended_ = false;
+  latched_interrupts_ |= gint::usbrst;
+  for (unsigned i = 0; i < endpoint_count; ++i) {
+    const std::uint32_t cleared = epctl::epena | epctl::stall | (i == 0 ? 0 : epctl::usbaep);
+    in_[i].control = (in_[i].control & ~cleared) | epctl::naksts;
+    out_[i].control = (out_[i].control & ~cleared) | epctl::naksts;
+    out_[i].disable_pending = false;
+    in_[i].bytes_on_wire.reset();
+  }
+  setup_stage_open_ = false;
+  setup_done_unpopped_ = setup_done_lost_ = false;
+  control_transfer_open_ = false;
+  address_ = programmed_address();
+  update_interrupt();
+}
+
+void OtgFsDevice::end_reset() {
+  latched_interrupts_ |= gint::enumdne;
+  update_interrupt();
+}
+
+void OtgFsDevice::start_of_frame(std::uint16_t frame_number) {
+  suspended_ = false;
+  frame_number_ = frame_number;
+  latched_interrupts_ |= gint::sof;
+  if ((interrupt_mask_ & gint::eopf) != 0) {
+    const Ticks length = frame_ticks * dcfg::periodic_frame_per_mille(device_configuration_) / 1000;
+    end_of_periodic_frame_ = scheduler_.at(scheduler_.now() + length, [this] {
+      latched_interrupts_ |= gint::eopf;
+      update_interrupt();
+    });
+  } else {
+    latched_interrupts_ |= gint::eopf;  // nobody waits for its moment
+  }
+  update_interrupt();
+}
+
+void OtgFsDevice::suspend() {
+  suspended_ = true;
+  latched_interrupts_ |= gint::esusp | gint::usbsusp;
+  update_interrupt();
+}
+
+void OtgFsDevice::resume() {
+  suspended_ = false;
+  latched_interrupts_ |= gint::wkupint;
+  update_interrupt();
+}
+
+bool OtgFsDevice::answers(unsigned address, unsigned endpoint) const {
+  const bool addressed = address == address_ || (control_transfer_open_ && address == programmed_address());
+  return pulled_up_ && addressed && endpoint < endpoint_count;
+}
+
+std::size_t OtgFsDevice::receive_depth() const { return std::min<std::size_t>(receive_size_, packet_memory_words); }
+
+std::size_t OtgFsDevice::receive_words_free() const {
+  return receive_depth() - std::min(receive_depth(), receive_.count());
+}
+
+void OtgFsDevice::push_status(unsigned endpoint, unsigned packet_status, std::size_t bytes, bool data1) {
+  receive_.push(endpoint | static_cast<std::uint32_t>(bytes) << 4 | (data1 ? 2u : 0u) << 15 | packet_status << 17 |
+                (frame_number_ & 0xFu) << 21);
+}
+
+void OtgFsDevice::push_data(std::span<const std::byte> data) {
+  for (std::size_t i = 0; i < data.size(); i += 4) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, data.data() + i, std::min<std::size_t>(4, data.size() - i));
+    receive_.push(word);
+  }
+}
+
+// SETUP packets are always taken, whatever NAK and STALL say; they put NAK on both sides of endpoint 0.
+Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) {
+  if (endpoint != 0 || !answers(address, endpoint)) return Handshake::nothing;
+  constexpr std::size_t words = 1 + 2;
+  if (receive_words_free() < words) {
+    note("a SETUP packet found no room in the receive FIFO", offset::grxfsiz, false, receive_size_);
+    return Handshake::nothing;
+  }
+  if (control_transfer_open_) address_ = address;
+  control_transfer_open_ = true;
+  push_status(0, pktsts::setup_data, request.size(), false);
+  push_data(request);
+  setup_stage_open_ = true;
+  setup_done_unpopped_ = true;
+  setup_done_lost_ = false;
+  if (setup_packets_allowed_ > 0)
+    --setup_packets_allowed_;
+  else
+    out_[0].interrupts |= epint::b2bstup;
+  in_[0].control = (in_[0].control & ~epctl::stall) | epctl::naksts;
+  out_[0].control = (out_[0].control & ~epctl::stall) | epctl::naksts;
+  in_[0].data1 = out_[0].data1 = true;
+  in_[0].bytes_on_wire.reset();
+  update_interrupt();
+  return Handshake::ack;
+}
+
+// The core knows that no further SETUP packet follows when it sees the next token.
+void OtgFsDevice::end_setup_stage() {
+  if (!setup_stage_open_) return;
+  setup_stage_open_ = false;
+  out_[0].control &= ~epctl::epena;
+  if (setup_done_lost_)
+    setup_done_lost_ = setup_done_unpopped_ = false;
+  else
+    push_status(0, pktsts::setup_done, 0, false);
+  update_interrupt();
+}
+
+Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::span<const std::byte> data) {
+  if (!answers(address, number)) return Handshake::nothing;
+  OutEndpoint& endpoint = out_[number];
+  if ((endpoint.control & epctl::usbaep) == 0) return Handshake::nothing;
+  if (number == 0) end_setup_stage();
+  if ((endpoint.control & epctl::stall) != 0) return Handshake::stall;
+  const bool enabled = (endpoint.control & epctl::epena) != 0;
+  if (!enabled && number == 0) {
+    endpoint.interrupts |= epint::otepdis;
+    update_interrupt();
+  }
+  if (!enabled || (endpoint.control & epctl::naksts) != 0 || endpoint.packets == 0 || global_out_nak_asked_)
+    return Handshake::nak;
+  const std::size_t words = 1 + words_for(data.size()) + 1;  // status, data, and a transfer-complete status
+  if (receive_words_free() < words + reserved_receive_words) return Handshake::nak;
+  if (data1 != endpoint.data1) return Handshake::ack;  // a repetition: our acknowledgement was lost
+
+  const std::size_t maximum = number == 0 ? in_packet_maximum(0) : endpoint.control & epctl::mpsiz;
+  if (data.size() > maximum) return Handshake::nothing;
+  if (data.size() > endpoint.bytes)
+    note("an OUT packet is larger than the rest of its transfer", offset::out_endpoints, false, endpoint.bytes);
+  push_status(number, pktsts::out_data, data.size(), endpoint.data1);
+  push_data(data);
+  endpoint.data1 = !endpoint.data1;
+  --endpoint.packets;
+  endpoint.bytes -= static_cast<std::uint32_t>(std::min<std::size_t>(endpoint.bytes, data.size()));
+  if (endpoint.packets == 0 || data.size() < maximum) {
+    endpoint.control = (endpoint.control & ~epctl::epena) | epctl::naksts;
+    push_status(number, pktsts::out_done, 0, false);
+  }
+  update_interrupt();
+  return Handshake::ack;
+}
+
+InReply OtgFsDevice::in(unsigned address, unsigned number, std::span<std::byte, full_speed_packet_maximum> data) {
+  if (!answers(address, number)) return {};
+  InEndpoint& endpoint = in_[number];
+  if ((endpoint.control & epctl::usbaep) == 0) return {};
+  if (number == 0) end_setup_stage();
+  if ((endpoint.control & epctl::stall) != 0) return {Handshake::stall};
+
+  const WordFifo& fifo = transmit_[transmit_fifo_of(number)];
+  const std::uint32_t bytes = std::min<std::uint32_t>(endpoint.bytes_to_send, in_packet_maximum(number));
+  const bool enabled = (endpoint.control & epctl::epena) != 0 && endpoint.packets != 0;
+  const bool held = (endpoint.control & epctl::naksts) != 0 || global_in_nak_;
+  if (!enabled || held || fifo.count() < words_for(bytes)) {
+    if (fifo.empty() && (!enabled || bytes != 0)) {
+      endpoint.interrupts |= epint::ittxfe;
+      update_interrupt();
+    }
+    return {Handshake::nak};
+  }
+  if (endpoint.damaged) return {};
+  for (std::uint32_t i = 0; i < bytes; i += 4) {
+    const std::uint32_t word = fifo.at(i / 4);
+    std::memcpy(data.data() + i, &word, std::min<std::uint32_t>(4, bytes - i));
+  }
+  endpoint.bytes_on_wire = bytes;
+  return {Handshake::ack, endpoint.data1, bytes};
+}
+
+bool OtgFsDevice::finish_in(unsigned number) {
+  InEndpoint& endpoint = in_[number];
+  if (!endpoint.bytes_on_wire) return false;
+  const std::uint32_t bytes = *endpoint.bytes_on_wire;
+  endpoint.bytes_on_wire.reset();
+  transmit_[transmit_fifo_of(number)].drop(words_for(bytes));
+  endpoint.bytes_to_send -= bytes;
+  --endpoint.packets;
+  endpoint.data1 = !endpoint.data1;
+  if (endpoint.packets == 0) {
+    endpoint.control &= ~epctl::epena;
+    endpoint.interrupts |= epint::xfrc;
+  }
+  if (number == 0 && bytes == 0) {  // the status stage of a request without data to the host
+    control_transfer_open_ = false;
+    address_ = programmed_address();
+  }
+  update_interrupt();
+  return true;
+}
+
+}  // namespace inkwell::virtual_board
