@@ -181,10 +181,11 @@ void Plant::step() {
     torque_Nm_[i] = torque_per_A_[i] * charges.motor_As / duration_s;
     supply_charge_As += charges.supply_As;
   }
-  const std::array<Coupling, 2> couplings = {hand_.coupling(next_step_), inkwell_.coupling()};
+  const std::array<Coupling, 3> couplings = {hand_.coupling(next_step_), carrier_.coupling(next_step_),
+                                             inkwell_.coupling()};
   arm_.step(duration_s, torque_Nm_, couplings);
   inkwell_.advance(duration_s, arm_.dynamics().position_m(arm_.joints_rad()));
-  if (docking_) update_docking();
+  if (carrier_.holds()) finish_docking();
   supply_.advance(duration_s, supply_charge_As);
   for (unsigned i = 0; i < 3; ++i) {
     motors_[i].set_back_emf_V(torque_per_A_[i] * arm_.joint_speeds_rad_s()[i]);
@@ -192,12 +193,10 @@ void Plant::step() {
   }
 }
 
-void Plant::update_docking() {
-  // The funnel takes over where the hand's path ends; a hand on its way may pass through it.
-  if (hand_.is_moving(next_step_)) return;
-  if (!inkwell_.capture(arm_.dynamics().position_m(arm_.joints_rad()))) return;
-  docking_ = false;
-  hand_.release();
+void Plant::finish_docking() {
+  // The funnel takes over where the way ends, not wherever the way happens to cross it.
+  if (carrier_.is_moving(next_step_)) return;
+  if (inkwell_.capture(arm_.dynamics().position_m(arm_.joints_rad()))) carrier_.release();
 }
 
 // ---- the chip's inputs -----------------------------------------------------------------------------------
@@ -235,26 +234,24 @@ void Plant::set_bridge_fault(bool fault) {
 }
 
 void Plant::hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m) {
-  docking_ = false;
+  carrier_.release();
   hand_.hold(target_m, stiffness_N_per_m, damping_Ns_per_m);
 }
 
-void Plant::let_go() {
-  docking_ = false;
-  hand_.release();
-}
+void Plant::let_go() { hand_.release(); }
 
 void Plant::follow(const std::vector<Waypoint>& waypoints) {
-  docking_ = false;
+  carrier_.release();
   hand_.follow(waypoints, arm_.dynamics().position_m(arm_.joints_rad()), now_);
 }
 
 void Plant::dock(bool docked) {
+  carrier_.release();
   if (!docked) {
-    docking_ = false;
     inkwell_.eject();
     return;
   }
+  hand_.release();
   if (inkwell_.seated()) return;
   constexpr double speed_m_s = 0.2;
   constexpr double shortest_s = 0.1;
@@ -262,13 +259,12 @@ void Plant::dock(bool docked) {
   constexpr double damping_Ns_per_m = 8.0;
   const Vector3 probe_m = arm_.dynamics().position_m(arm_.joints_rad());
   const double distance_m = (inkwell_.position_m() - probe_m).norm();
-  hand_.hold(probe_m, stiffness_N_per_m, damping_Ns_per_m);
-  hand_.follow({{std::max(shortest_s, distance_m / speed_m_s), inkwell_.position_m()}}, probe_m, now_);
-  docking_ = true;
+  carrier_.hold(probe_m, stiffness_N_per_m, damping_Ns_per_m);
+  carrier_.follow({{std::max(shortest_s, distance_m / speed_m_s), inkwell_.position_m()}}, probe_m, now_);
 }
 
 void Plant::place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) {
-  docking_ = false;
+  carrier_.release();
   inkwell_.eject();
   arm_.place(joints_rad, joint_speeds_rad_s);
 }

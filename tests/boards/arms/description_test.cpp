@@ -11,9 +11,9 @@ namespace {
 using namespace inkwell;
 using protocol::Parameter;
 
-/// Arms of the repository, found from this file.
+/// Arms of the repository.
 const std::filesystem::path arms_directory =
-    std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / "boards" / "arms";
+    std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards" / "arms";
 
 std::string omni() {
   std::ifstream stream(arms_directory / "omni.toml");

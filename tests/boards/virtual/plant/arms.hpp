@@ -8,7 +8,7 @@
 namespace inkwell::test {
 
 inline arms::Description arm(const char* name) {
-  const auto directory = std::filesystem::path(__FILE__).parent_path() / ".." / ".." / ".." / ".." / "boards" / "arms";
+  const auto directory = std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards" / "arms";
   return arms::read(directory / name);
 }
 

@@ -49,7 +49,7 @@ class Plant final : public Circuit {
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
   void let_go();
   void follow(const std::vector<Waypoint>& waypoints);
-  /// Carries the stylus to the inkwell and lets it rest there, or takes it out.
+  /// Carries the stylus to the inkwell and leaves it there (the hand lets go), or takes it out of the socket.
   void dock(bool docked);
   /// Puts the arm somewhere at once, for tests.
   void place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s);
@@ -68,7 +68,7 @@ class Plant final : public Circuit {
 
   void run_until(Ticks now);
   void step();
-  void update_docking();
+  void finish_docking();
   void show_inputs();
   void show(char port, unsigned pin, PinLevel level, PinLevel& shown);
   void update_legs(unsigned motor, Ticks now);
@@ -88,8 +88,8 @@ class Plant final : public Circuit {
   std::array<double, 3> torque_per_A_;      ///< at the joint, sign of the wiring included
   ArmMotion arm_;
   Hand hand_;
+  Hand carrier_;                            ///< holds while it carries the stylus to the inkwell
   Inkwell inkwell_;
-  bool docking_ = false;                    ///< the hand carries the stylus to the inkwell
   Vector3 torque_Nm_ = Vector3::Zero();
 
   // Inputs of the chip
