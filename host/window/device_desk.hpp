@@ -1,0 +1,71 @@
+// The window's side of the device: which one is wanted, and what is known of it in this frame.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <device/session.hpp>
+
+namespace inkwell::window {
+
+/// One frame's view of the device; it does not change while the frame is drawn.
+struct DeviceView {
+  device::SessionStatus status;
+  std::optional<protocol::PoseReport> pose;  ///< the newest; none while not connected
+  std::optional<protocol::ParameterSet> parameters;
+  std::uint64_t parameters_revision = 0;
+  std::optional<std::string> refusal;
+  std::vector<device::Endpoint> listed;      ///< devices found the last time one looked
+  std::string list_error;
+
+  bool connected() const { return status.connection == device::Connection::connected; }
+  protocol::State state() const { return pose ? pose->state : protocol::State::starting; }
+};
+
+class DeviceDesk {
+ public:
+  DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number);
+  ~DeviceDesk();
+
+  /// Call at the start of a frame.
+  const DeviceView& refresh();
+  const DeviceView& view() const { return view_; }
+  device::Session& session() { return *session_; }
+
+  /// Connects to another device; the session with the present one ends.
+  void choose(const std::string& serial_number);
+  const std::string& wanted_serial_number() const { return wanted_; }
+  /// Looks for devices while this is true, for the list that is open.
+  void keep_looking(bool looking) { looking_ = looking; }
+
+  /// Signals to be streamed, and where the samples go; kept for the next device too.
+  void select_signals(std::vector<protocol::Signal> signals);
+  /// Frames that came since the last call.
+  std::vector<device::ScopeSamples> take_scope();
+
+ private:
+  void open_session();
+  std::vector<device::Endpoint> look();
+
+  std::function<std::vector<device::Endpoint>()> list_devices_;
+  std::string wanted_;
+  DeviceView view_;
+  std::vector<protocol::Signal> signals_;
+
+  std::mutex mutex_;  // of what follows
+  std::vector<device::Endpoint> listed_;
+  std::string list_error_;
+  std::vector<device::ScopeSamples> scope_;
+
+  std::atomic<bool> looking_ = false;
+  std::unique_ptr<device::Session> session_;
+  std::jthread looker_;
+};
+
+}  // namespace inkwell::window

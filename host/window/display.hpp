@@ -1,0 +1,53 @@
+// The window of the operating system and its OpenGL context.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+struct GLFWwindow;
+
+namespace inkwell::window {
+
+/// The window cannot be opened; `what()` says why and what to do.
+class DisplayError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Display {
+ public:
+  /// Throws DisplayError if there is no display or no OpenGL 3.3.
+  Display(int width, int height, const std::string& title);
+  ~Display();
+  Display(const Display&) = delete;
+  Display& operator=(const Display&) = delete;
+
+  GLFWwindow* handle() const { return window_; }
+  float content_scale() const;  ///< pixels of text for one point, 1 on an ordinary display
+  double refresh_rate_Hz() const;
+
+  /// `pressed(key)` is called for every key that goes down, before the panes see it.
+  void on_key(std::function<void(int key, bool down)> pressed) { on_key_ = std::move(pressed); }
+
+ private:
+  GLFWwindow* window_ = nullptr;
+  std::function<void(int, bool)> on_key_;
+};
+
+/// Writes the whole framebuffer as it stands. Throws DisplayError.
+void write_screenshot(const std::filesystem::path& path, int width, int height);
+
+/// Sleeps so that frames come at a steady rate where the display does not hold them back itself.
+class FramePacer {
+ public:
+  explicit FramePacer(double frames_per_second) : period_s_(1.0 / frames_per_second) {}
+  void wait();
+
+ private:
+  double period_s_;
+  double next_s_ = 0.0;
+};
+
+}  // namespace inkwell::window

@@ -1,0 +1,118 @@
+// Every colour of the window. Hues are from Okabe and Ito's palette ("Color Universal Design", 2008), which
+// people with any of the common colour deficiencies can tell apart; nothing is told by hue alone.
+//
+// With WindowOptions::flat_colours the scene's solid parts (sphere, proxy, frames of the walls, force arrow)
+// have exactly these colours on the screen, so a test can look for them. They are the same in both themes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <window/window.hpp>
+
+namespace inkwell::window {
+
+struct Colour {
+  std::uint8_t red, green, blue, alpha = 255;
+  bool operator==(const Colour&) const = default;
+
+  constexpr Colour with_alpha(std::uint8_t new_alpha) const { return {red, green, blue, new_alpha}; }
+};
+
+namespace scene_colours {
+inline constexpr Colour probe{230, 159, 0};           ///< the sphere: orange
+inline constexpr Colour proxy{86, 180, 233};          ///< where it would be without the wall: sky blue
+inline constexpr Colour wall_touched{213, 94, 0};     ///< frame and glow of a wall that pushes back: vermilion
+inline constexpr Colour wall_idle{110, 132, 160};     ///< frame and grid of a wall that does not
+inline constexpr Colour force{213, 94, 0};            ///< the arrow belongs to the wall that pushes
+inline constexpr Colour hand{0, 158, 115};            ///< the simulated hand and its spring: bluish green
+inline constexpr Colour axis_x{204, 121, 167};        ///< reddish purple
+inline constexpr Colour axis_y{0, 158, 115};
+inline constexpr Colour axis_z{86, 180, 233};
+}  // namespace scene_colours
+
+/// Lines of the scope, in this order.
+inline constexpr std::array<Colour, 6> line_colours_dark{{
+    {86, 180, 233}, {230, 159, 0}, {0, 178, 130}, {219, 140, 182}, {240, 228, 66}, {226, 110, 40}}};
+inline constexpr std::array<Colour, 6> line_colours_light{{
+    {0, 114, 178}, {213, 94, 0}, {0, 140, 102}, {184, 88, 140}, {150, 118, 0}, {60, 60, 70}}};
+
+/// The surfaces, lines and texts of one theme.
+struct Palette {
+  Colour ground;         ///< behind everything
+  Colour panel;
+  Colour raised;         ///< fields, buttons
+  Colour raised_hover;
+  Colour raised_active;
+  Colour line;           ///< between panes, around fields
+  Colour text;
+  Colour text_quiet;     ///< units, captions
+  Colour accent;         ///< what is on, what is selected
+  Colour good;
+  Colour caution;
+  Colour danger;         ///< stop, faults
+  Colour on_danger;      ///< text on danger
+  Colour plot_ground;
+  Colour plot_grid;
+  Colour sky_top;        ///< background of the scene
+  Colour sky_bottom;
+  Colour floor_line;
+  Colour shadow;
+  Colour metal;          ///< links of the arm
+  Colour metal_dark;     ///< its base and joints
+  std::array<Colour, 6> lines;
+};
+
+inline constexpr Palette dark_palette{
+    .ground = {17, 20, 25},
+    .panel = {24, 28, 34},
+    .raised = {37, 43, 52},
+    .raised_hover = {47, 55, 66},
+    .raised_active = {58, 68, 82},
+    .line = {44, 51, 61},
+    .text = {230, 234, 240},
+    .text_quiet = {147, 158, 173},
+    .accent = {86, 160, 220},
+    .good = {0, 168, 122},
+    .caution = {230, 159, 0},
+    .danger = {201, 62, 48},
+    .on_danger = {255, 255, 255},
+    .plot_ground = {19, 22, 28},
+    .plot_grid = {38, 44, 53},
+    .sky_top = {33, 39, 48},
+    .sky_bottom = {20, 23, 29},
+    .floor_line = {62, 71, 84},
+    .shadow = {0, 0, 0, 110},
+    .metal = {176, 184, 194},
+    .metal_dark = {74, 83, 95},
+    .lines = line_colours_dark,
+};
+
+inline constexpr Palette light_palette{
+    .ground = {226, 230, 235},
+    .panel = {246, 247, 249},
+    .raised = {228, 232, 237},
+    .raised_hover = {217, 223, 230},
+    .raised_active = {203, 211, 220},
+    .line = {208, 214, 221},
+    .text = {27, 33, 41},
+    .text_quiet = {92, 103, 117},
+    .accent = {24, 105, 172},
+    .good = {0, 128, 92},
+    .caution = {176, 104, 0},
+    .danger = {196, 50, 36},
+    .on_danger = {255, 255, 255},
+    .plot_ground = {255, 255, 255},
+    .plot_grid = {229, 233, 238},
+    .sky_top = {240, 243, 246},
+    .sky_bottom = {216, 222, 229},
+    .floor_line = {182, 190, 200},
+    .shadow = {40, 48, 60, 80},
+    .metal = {150, 159, 170},
+    .metal_dark = {92, 101, 113},
+    .lines = line_colours_light,
+};
+
+constexpr const Palette& palette(Theme theme) { return theme == Theme::dark ? dark_palette : light_palette; }
+
+}  // namespace inkwell::window

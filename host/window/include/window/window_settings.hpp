@@ -1,0 +1,32 @@
+// What the window remembers from one time to the next: a TOML file in the user's configuration directory.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <window/scope_layout.hpp>
+#include <window/trigger.hpp>
+#include <window/window.hpp>
+
+namespace inkwell::window {
+
+struct WindowSettings {
+  Theme theme = Theme::dark;
+  float tuning_width = 330.0f;  ///< in points, before scaling
+  float scope_height = 270.0f;
+  bool scope_is_shown = true;
+  double scope_span_s = 2.0;
+  TriggerSettings trigger;
+  ScopeLayout layout = built_in_layout("contact");
+  std::filesystem::path parameters_file;  ///< the one loaded or saved last
+  bool operator==(const WindowSettings&) const = default;
+};
+
+/// $XDG_CONFIG_HOME/inkwell/window.toml, or the same below ~/.config; empty if neither is known.
+std::filesystem::path window_settings_path();
+
+std::string format_settings(const WindowSettings& settings);
+/// What cannot be read, or makes no sense, keeps its default: a damaged file of settings must not keep the window shut.
+WindowSettings parse_settings(const std::string& text);
+
+}  // namespace inkwell::window

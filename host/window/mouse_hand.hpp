@@ -1,0 +1,60 @@
+// The simulated hand of a virtual board, moved by the mouse. Talks to the board in a thread of its own, so that
+// the window never waits for it.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <glm/glm.hpp>
+
+namespace inkwell::window {
+
+/// A person's hand on the stylus is about this stiff, and does not press harder than a few newtons.
+inline constexpr double hand_stiffness_N_per_m = 150.0;
+inline constexpr double hand_damping_Ns_per_m = 2.0;
+inline constexpr float hand_pull_maximum_N = 2.8f;
+
+/// The hand's target for a wish: as far from the probe as the hand's strength reaches.
+glm::vec3 within_reach(glm::vec3 probe_m, glm::vec3 wanted_m);
+
+class MouseHand {
+ public:
+  explicit MouseHand(std::uint16_t control_port);
+  ~MouseHand();
+
+  /// Takes the stylus (out of the inkwell, if it is there) and pulls it to a place of the workspace.
+  void pull_to(glm::vec3 target_m);
+  void let_go();
+  void put_into_inkwell();
+  void press_buttons(bool first, bool second);
+
+  /// Where the hand pulls to, while it holds the stylus.
+  std::optional<glm::vec3> target_m() const;
+  bool is_docked() const;
+  std::string error() const;  ///< empty while the board answers
+
+ private:
+  struct Wish {
+    bool docked = true;  ///< the virtual board starts with the stylus in the inkwell
+    std::optional<glm::vec3> target_m;
+    bool first_button = false;
+    bool second_button = false;
+    bool operator==(const Wish&) const = default;
+  };
+
+  void run(const std::stop_token& stop);
+  void change(const Wish& wish);
+
+  std::uint16_t port_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  Wish wish_;
+  std::string error_;
+  std::jthread thread_;
+};
+
+}  // namespace inkwell::window

@@ -1,0 +1,69 @@
+// Draws the scene with OpenGL 3.3 core.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <epoxy/gl.h>
+
+#include <window/camera.hpp>
+#include <window/mesh.hpp>
+#include <window/palette.hpp>
+#include <window/scene_model.hpp>
+
+#include "scene_solids.hpp"
+#include "shader.hpp"
+
+namespace inkwell::window {
+
+/// Part of the framebuffer in pixels, origin bottom left as in OpenGL.
+struct Viewport {
+  int x, y, width, height;
+};
+
+struct SceneLook {
+  const Palette& palette;
+  bool flat_colours;                ///< no lighting, frames of the walls opaque
+  std::optional<int> marked_wall;   ///< under the mouse: index into SceneModel::walls
+};
+
+class Renderer {
+ public:
+  Renderer();
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Draws into the part of the window's framebuffer, smoothed by multisampling in a buffer of its own.
+  void draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera, const SceneLook& look,
+            const Viewport& viewport);
+
+ private:
+  struct Body {
+    GLuint vertex_array, vertices, indices;
+    GLsizei count;
+  };
+
+  static Body upload(const Mesh& mesh);
+  void size_target(int width, int height);
+  void draw_solids(const std::vector<Solid>& solids, bool opaque, const Camera& camera, const SceneLook& look) const;
+  void draw_floor(const std::vector<Solid>& solids, const SceneModel& scene, const SceneLook& look) const;
+  void draw_walls(const SceneModel& scene, const Camera& camera, const SceneLook& look) const;
+
+  std::array<Body, 5> bodies_;  // in the order of Shape
+  GLuint no_vertices_ = 0;
+  GLuint target_ = 0;
+  std::array<GLuint, 2> target_buffers_{};  // colour, depth with stencil
+  int target_width_ = 0;
+  int target_height_ = 0;
+  glm::mat4 to_clip_{1.0f};
+  ShaderProgram sky_;
+  ShaderProgram solid_;
+  ShaderProgram shadow_;
+  ShaderProgram wall_;
+  ShaderProgram floor_;
+};
+
+}  // namespace inkwell::window

@@ -1,0 +1,56 @@
+// Fonts, colours and spacing of ImGui, and the few widgets that it lacks.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <imgui.h>
+
+#include <window/palette.hpp>
+
+namespace inkwell::window {
+
+struct Fonts {
+  ImFont* body;
+  ImFont* strong;   ///< headings, state
+  ImFont* caption;  ///< units, axes
+};
+
+struct Style {
+  const Palette* palette;
+  Fonts fonts;
+  float scale;  ///< pixels for one point
+
+  float points(float count) const { return count * scale; }
+};
+
+/// Inter if it is installed, else DejaVu, else ImGui's own font.
+Fonts load_fonts(float scale);
+
+void apply_theme(const Palette& palette, float scale);
+
+constexpr ImU32 packed(Colour colour) { return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha); }
+ImVec4 vector(Colour colour);
+
+/// Text in another colour or font.
+void text(Colour colour, std::string_view content);
+void text(ImFont* font, Colour colour, std::string_view content);
+void wrapped_text(Colour colour, std::string_view content);
+/// Text whose right end is at the cursor's x plus `width`.
+void right_text(Colour colour, std::string_view content, float width);
+
+/// Explains the last item after the mouse has rested on it.
+void help_on_hover(std::string_view title, std::string_view help, const Style& style);
+
+/// A button without a frame until the mouse is over it.
+bool quiet_button(const char* label, const Style& style);
+/// A button in a colour of its own, such as the stop button.
+bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec2 size);
+/// A button that shows that it is on.
+bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size = {0, 0});
+
+/// A window that fills a rectangle and can be neither moved nor closed.
+bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
+void end_pane();
+
+}  // namespace inkwell::window

@@ -1,0 +1,124 @@
+#include <window/window_settings.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+#include <toml++/toml.h>
+
+namespace inkwell::window {
+
+namespace {
+
+constexpr std::array<std::string_view, 2> theme_names{"dark", "light"};
+constexpr std::array<std::string_view, 3> pane_kind_names{"time", "spectrum", "xy"};
+constexpr std::array<std::string_view, 3> trigger_mode_names{"off", "normal", "single"};
+constexpr std::array<std::string_view, 2> trigger_edge_names{"rising", "falling"};
+
+template <class Enumeration, std::size_t count>
+std::string_view name_of(Enumeration value, const std::array<std::string_view, count>& names) {
+  return names[static_cast<std::size_t>(value)];
+}
+
+template <class Enumeration, std::size_t count>
+void read_name(toml::node_view<const toml::node> node, const std::array<std::string_view, count>& names,
+               Enumeration& value) {
+  const auto found = std::ranges::find(names, node.value_or(std::string_view{}));
+  if (found != names.end()) value = static_cast<Enumeration>(found - names.begin());
+}
+
+template <class Number>
+void read_number(toml::node_view<const toml::node> node, Number minimum, Number maximum, Number& value) {
+  if (const auto number = node.value<double>(); number && *number >= minimum && *number <= maximum)
+    value = static_cast<Number>(*number);
+}
+
+toml::table to_toml(const Pane& pane) {
+  toml::array signals;
+  for (protocol::Signal signal : pane.signals) signals.push_back(protocol::info(signal).name);
+  return toml::table{{"kind", name_of(pane.kind, pane_kind_names)}, {"title", pane.title}, {"signals", std::move(signals)}};
+}
+
+std::optional<Pane> pane_from(const toml::table& table) {
+  Pane pane;
+  read_name(toml::node_view<const toml::node>(table["kind"]), pane_kind_names, pane.kind);
+  pane.title = table["title"].value_or(std::string{});
+  if (const toml::array* signals = table["signals"].as_array())
+    for (const auto& each : *signals)
+      if (const auto signal = protocol::find_signal(each.value_or(std::string_view{}))) pane.signals.push_back(*signal);
+  if (pane.signals.empty()) return std::nullopt;
+  return pane;
+}
+
+}  // namespace
+
+std::filesystem::path window_settings_path() {
+  if (const char* configuration = std::getenv("XDG_CONFIG_HOME"); configuration != nullptr && *configuration == '/')
+    return std::filesystem::path(configuration) / "inkwell" / "window.toml";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+    return std::filesystem::path(home) / ".config" / "inkwell" / "window.toml";
+  return {};
+}
+
+std::string format_settings(const WindowSettings& settings) {
+  toml::array panes;
+  for (const Pane& pane : settings.layout.panes) panes.push_back(to_toml(pane));
+  const toml::table file{
+      {"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
+                             {"tuning_width", settings.tuning_width},
+                             {"scope_height", settings.scope_height},
+                             {"scope_is_shown", settings.scope_is_shown},
+                             {"parameters_file", settings.parameters_file.string()}}},
+      {"scope", toml::table{{"name", settings.layout.name},
+                            {"columns", settings.layout.columns},
+                            {"span_s", settings.scope_span_s},
+                            {"panes", std::move(panes)}}},
+      {"trigger", toml::table{{"mode", name_of(settings.trigger.mode, trigger_mode_names)},
+                              {"signal", protocol::info(settings.trigger.signal).name},
+                              {"edge", name_of(settings.trigger.edge, trigger_edge_names)},
+                              {"level", settings.trigger.level},
+                              {"pre_trigger", settings.trigger.pre_trigger}}}};
+  std::ostringstream text;
+  text << file << '\n';
+  return text.str();
+}
+
+WindowSettings parse_settings(const std::string& text) {
+  WindowSettings settings;
+  toml::table file;
+  try {
+    file = toml::parse(text);
+  } catch (const toml::parse_error&) {
+    return settings;
+  }
+  const toml::table& root = file;
+  const auto window = root["window"];
+  read_name(window["theme"], theme_names, settings.theme);
+  read_number(window["tuning_width"], 260.0f, 700.0f, settings.tuning_width);
+  read_number(window["scope_height"], 120.0f, 1200.0f, settings.scope_height);
+  settings.scope_is_shown = window["scope_is_shown"].value_or(settings.scope_is_shown);
+  settings.parameters_file = window["parameters_file"].value_or(std::string{});
+
+  const auto scope = root["scope"];
+  read_number(scope["span_s"], 0.001, 100.0, settings.scope_span_s);
+  if (const toml::array* panes = scope["panes"].as_array()) {
+    ScopeLayout layout{scope["name"].value_or(std::string{}), 2, {}};
+    read_number(scope["columns"], 1, 4, layout.columns);
+    for (const auto& each : *panes)
+      if (const toml::table* table = each.as_table())
+        if (auto pane = pane_from(*table)) layout.panes.push_back(std::move(*pane));
+    if (!layout.panes.empty()) settings.layout = std::move(layout);
+  }
+
+  const auto trigger = root["trigger"];
+  read_name(trigger["mode"], trigger_mode_names, settings.trigger.mode);
+  read_name(trigger["edge"], trigger_edge_names, settings.trigger.edge);
+  if (const auto signal = protocol::find_signal(trigger["signal"].value_or(std::string_view{})))
+    settings.trigger.signal = *signal;
+  read_number(trigger["level"], -1e6f, 1e6f, settings.trigger.level);
+  read_number(trigger["pre_trigger"], 0.0f, 1.0f, settings.trigger.pre_trigger);
+  return settings;
+}
+
+}  // namespace inkwell::window
