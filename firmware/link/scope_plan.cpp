@@ -29,7 +29,9 @@ ScopePlan prepare(const protocol::SignalSelection& selection, std::uint8_t token
   std::uint32_t size = 0;
   for (std::size_t i = 0; i < selection.count; ++i) {
     const protocol::SignalWire wire = wires[selection.signals[i]];
-    plan.items[i] = {selection.signals[i], wire != protocol::SignalWire::float32, steps_per_unit(wire)};
+    plan.items[i] = selection.signals[i];
+    if (wire != protocol::SignalWire::float32) plan.items[i] |= ScopePlan::narrow;
+    plan.steps_per_unit[i] = steps_per_unit(wire);
     size += static_cast<std::uint32_t>(protocol::wire_size(wire));
   }
   // As protocol::encoding_for says, from the columns at hand.

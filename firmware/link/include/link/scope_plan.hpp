@@ -10,14 +10,12 @@
 namespace inkwell::link {
 
 struct ScopePlan {
-  /// One selected signal: its place in SignalValues, and the steps of one unit where it goes as int16.
-  struct Item {
-    std::uint16_t index = 0;
-    std::uint16_t narrow = 0;      ///< 1 if it goes as a 16-bit number
-    float steps_per_unit = 0.0f;
-  };
+  /// Flag in an item of a signal that goes as a 16-bit number; below it stands the place in SignalValues.
+  static constexpr std::uint8_t narrow = 0x80;
+  static_assert(protocol::signal_count <= narrow);
 
-  std::array<Item, protocol::scope_signals_maximum> items{};
+  std::array<std::uint8_t, protocol::scope_signals_maximum> items{};
+  std::array<float, protocol::scope_signals_maximum> steps_per_unit{};  ///< of the narrow items
   std::uint32_t count = 0;                ///< 0: the scope is off
   std::uint32_t sample_size_maximum = 0;  ///< bytes, the mask of a `changes` sample included
   protocol::ScopeEncoding encoding = protocol::ScopeEncoding::full;

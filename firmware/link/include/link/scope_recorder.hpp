@@ -76,6 +76,7 @@ class ScopeRecorder {
   std::uint32_t active_plan_ = 0;
   std::uint32_t writing_ = 0;                        ///< frame that is written
   std::byte* cursor_ = nullptr;                      ///< next byte of it
+  const std::byte* frame_end_ = nullptr;
   std::uint32_t sample_count_ = 0;                   ///< in it
   std::uint32_t first_period_ = 0;
   std::uint32_t sequence_ = 0;

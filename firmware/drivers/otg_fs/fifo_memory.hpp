@@ -1,0 +1,38 @@
+// How the 320 words of FIFO memory are divided, and how FIFOs are flushed (RM0090, "Peripheral FIFO
+// architecture").
+//
+//   word   0 +----------------------------------+
+//            | receive             56           |  SETUP packets 13 (4 each for three, 1 for control), global
+//            |                                  |  NAK 1, two packets of 64 bytes with their status 2 x 17,
+//            |                                  |  transfer complete 2 x 4 (two OUT endpoints)
+//         56 +----------------------------------+
+//            | endpoint 0 IN       16           |  one packet of 64 bytes
+//         72 +----------------------------------+
+//            | endpoint 1 IN, HID  16           |  one report
+//         88 +----------------------------------+
+//            | endpoint 2 IN, scope 232         |  14 packets, 0.75 ms of the bus
+//        320 +----------------------------------+
+#pragma once
+
+#include <cstdint>
+
+namespace inkwell::drivers::fifo_memory {
+
+inline constexpr std::uint32_t memory_words = 320;
+inline constexpr std::uint32_t receive_words = 13 + 1 + 2 * 17 + 2 * 4;
+inline constexpr std::uint32_t control_words = 16;
+inline constexpr std::uint32_t hid_words = 16;
+inline constexpr std::uint32_t control_start = receive_words;
+inline constexpr std::uint32_t hid_start = control_start + control_words;
+inline constexpr std::uint32_t scope_start = hid_start + hid_words;
+inline constexpr std::uint32_t scope_words = memory_words - scope_start;
+static_assert(receive_words == 56 && scope_words == 232);
+
+/// TXFNUM that means every transmit FIFO.
+inline constexpr std::uint32_t all_transmit_fifos = 0x10;
+
+void lay_out();
+void flush_transmit(std::uint32_t number);
+void flush_receive();
+
+}  // namespace inkwell::drivers::fifo_memory

@@ -1,0 +1,76 @@
+// The OTG_FS core in device mode as the port of the USB device (RM0090, chapter OTG_FS).
+//
+//   drivers::OtgFs port;
+//   usb::Device device{port, link, identity};
+//   port.start();                                             // the host sees the device from here on
+//   for (;;) { device.poll(); wait_for_interrupt(); }
+//   extern "C" void OTG_FS_IRQHandler() { drivers::OtgFs::wake(); }
+//
+// Everything happens in poll(). The core's interrupt comes only when a transfer of the scope is complete,
+// and only wakes the main loop, so that the next one starts at once: at 17.8 packets a millisecond of 19 the
+// bus leaves no time to sleep between two frames.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <usb/port.hpp>
+
+namespace inkwell::drivers {
+
+class OtgFs final : public usb::Port {
+ public:
+  static constexpr unsigned interrupt_position = 67;  ///< RM0090, "Vector table for STM32F405xx"
+
+  /// Sets pins, clock and core up and connects the pull-up of D+. Takes 25 ms. The 48 MHz clock runs already
+  /// (clocks.hpp). False if the core does not answer.
+  [[nodiscard]] bool start();
+
+  /// To be called by the interrupt OTG_FS: switches the interrupt off until the main loop has polled. Touches
+  /// no register of the core, because it may come in the middle of a packet that is written into a FIFO.
+  static void wake();
+
+  bool next_event(usb::Event& event) override;
+  void set_address(std::uint8_t address) override;
+  void open(std::uint8_t endpoint_address, usb::EndpointType type) override;
+  void close(std::uint8_t endpoint_address) override;
+  void stall(std::uint8_t endpoint_address) override;
+  void clear_stall(std::uint8_t endpoint_address) override;
+  void send(std::uint8_t endpoint_address, std::span<const std::byte> data) override;
+  void cancel(std::uint8_t endpoint_address) override;
+  void receive(std::uint8_t endpoint_address) override;
+
+ private:
+  static constexpr unsigned in_endpoints = 3;   ///< 0 control, 1 HID, 2 scope
+  static constexpr unsigned out_endpoints = 2;  ///< 0 control, 1 HID
+
+  struct InTransfer {
+    std::span<const std::byte> remaining{};  ///< not yet in the FIFO
+    bool running = false;
+  };
+  struct OutPacket {
+    std::array<std::byte, usb::packet_size_maximum> data{};
+    std::uint8_t length = 0;
+  };
+
+  void bus_reset();
+  bool next_sent(usb::Event& event);
+  bool next_received(usb::Event& event);
+  bool take_received_word(usb::Event& event);
+  bool next_suspend_or_resume(usb::Event& event, std::uint32_t interrupts);
+  void begin_control_transfers();
+  void begin_send(unsigned endpoint);
+  void begin_receive(unsigned endpoint);
+  void fill(unsigned endpoint);
+  void stop_in(unsigned endpoint);
+
+  std::array<InTransfer, in_endpoints> in_{};
+  std::array<OutPacket, out_endpoints> out_{};
+  std::array<std::byte, 8> setup_{};
+  bool control_send_waits_ = false;
+  bool control_receive_waits_ = false;
+  bool suspended_ = false;
+};
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,317 @@
+// Events and transfers of the OTG_FS core (RM0090, "Device programming model").
+#include <drivers/otg_fs.hpp>
+
+#include <algorithm>
+#include <cstring>
+
+#include <registers/otg_fs.hpp>
+#include <registers/processor.hpp>
+
+#include "fifo_memory.hpp"
+#include "waiting.hpp"
+
+namespace inkwell::drivers {
+
+namespace {
+
+using Core = registers::OTG_FS_GLOBAL;
+using Device = registers::OTG_FS_DEVICE;
+using Fifo = registers::OTG_FS_FIFO;
+using usb::Event;
+using usb::packet_size_maximum;
+
+constexpr unsigned number_of(std::uint8_t endpoint_address) { return endpoint_address & 0x0Fu; }
+constexpr bool is_in(std::uint8_t endpoint_address) { return (endpoint_address & 0x80u) != 0; }
+constexpr std::size_t words_for(std::size_t bytes) { return (bytes + 3) / 4; }
+
+/// PKTSTS of a word in the receive FIFO.
+enum PacketStatus : std::uint32_t { out_data = 2, out_done = 3, setup_done = 4, setup_data = 6 };
+
+/// The words of one packet follow each other with no other access to the core in between: one such access
+/// has been seen to spoil the packet and the endpoint with it. Nothing that interrupts touches the core.
+void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
+  const std::byte* from = packet.data();
+  std::size_t left = packet.size();
+  for (; left >= 4; left -= 4, from += 4) {
+    std::uint32_t word;
+    std::memcpy(&word, from, 4);
+    Fifo::DFIFO::write(endpoint, word);
+  }
+  if (left != 0) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, from, left);
+    Fifo::DFIFO::write(endpoint, word);
+  }
+}
+
+/// Takes a packet of `size` bytes out of the receive FIFO and keeps what fits into `target`.
+void read_packet(std::span<std::byte> target, std::size_t size) {
+  for (std::size_t i = 0; i < size; i += 4) {
+    const std::uint32_t word = Fifo::DFIFO::read(0);
+    if (i < target.size()) std::memcpy(target.data() + i, &word, std::min<std::size_t>({4, size - i, target.size() - i}));
+  }
+}
+
+/// Makes endpoint 0 ready for three SETUP packets in a row and one OUT packet.
+void write_control_out_size() {
+  using Size = Device::DOEPTSIZ;
+  Size::write(0, Size::STUPCNT(3), Size::PKTCNT(1), Size::XFRSIZ(packet_size_maximum));
+}
+
+}  // namespace
+
+// ---- events ------------------------------------------------------------------------------------------
+
+bool OtgFs::next_event(Event& event) {
+  const std::uint32_t interrupts = Core::GINTSTS::read();
+  if (Core::GINTSTS::USBRST::from(interrupts)) {
+    bus_reset();
+    event.kind = Event::Kind::reset;
+    event.length = 0;
+    return true;
+  }
+  if (Core::GINTSTS::ENUMDNE::from(interrupts)) {
+    Core::GINTSTS::write(Core::GINTSTS::ENUMDNE(1));
+    Device::DIEPCTL::modify(0, Device::DIEPCTL::MPSIZ(0));  // code of 64 bytes on endpoint 0
+    Device::DCTL::modify(Device::DCTL::CGINAK(1));
+  }
+  // What was sent comes before what was received: the host goes on only after it has the packet.
+  if (next_sent(event) || next_received(event) || next_suspend_or_resume(event, interrupts)) return true;
+  begin_control_transfers();
+  registers::NVIC::ISER::write(interrupt_position / 32, 1u << interrupt_position % 32);
+  return false;
+}
+
+void OtgFs::bus_reset() {
+  Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
+  for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) Device::DOEPCTL::modify(i, Device::DOEPCTL::SNAK(1));
+  for (unsigned i = 0; i < in_endpoints; ++i) stop_in(i);
+  for (unsigned i = 1; i < in_endpoints; ++i) Device::DIEPCTL::modify(i, Device::DIEPCTL::USBAEP(0));
+  fifo_memory::lay_out();
+  fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);
+  fifo_memory::flush_receive();
+  control_receive_waits_ = false;
+  suspended_ = false;
+  set_address(0);
+  write_control_out_size();
+}
+
+bool OtgFs::next_sent(Event& event) {
+  for (unsigned i = 0; i < in_endpoints; ++i) {
+    if (!in_[i].running || (i == 0 && control_send_waits_)) continue;
+    if (Device::DIEPINT::XFRC::from(Device::DIEPINT::read(i))) {
+      Device::DIEPINT::write(i, Device::DIEPINT::XFRC(1));
+      in_[i].running = false;
+      event.kind = Event::Kind::sent;
+      event.endpoint = static_cast<std::uint8_t>(i);
+      event.length = 0;
+      return true;
+    }
+    fill(i);
+  }
+  return false;
+}
+
+bool OtgFs::next_received(Event& event) {
+  // Three SETUP packets, their end, and an OUT packet with its end are what can wait here.
+  constexpr int words_at_once = 8;
+  for (int i = 0; i < words_at_once && Core::GINTSTS::RXFLVL::is_set(); ++i)
+    if (take_received_word(event)) return true;
+  return false;
+}
+
+bool OtgFs::take_received_word(Event& event) {
+  const std::uint32_t status = Core::GRXSTSP::read();
+  const std::uint32_t endpoint = Core::GRXSTSP::EPNUM::from(status);
+  const std::size_t size = Core::GRXSTSP::BCNT::from(status);
+  event.endpoint = static_cast<std::uint8_t>(endpoint);
+  switch (Core::GRXSTSP::PKTSTS::from(status)) {
+    case setup_data:
+      read_packet(setup_, size);
+      return false;
+    case setup_done:
+      // Only now is it known that no other SETUP follows, and only now may NAK be cleared again.
+      Device::DOEPINT::write(0, ~0u);
+      write_control_out_size();
+      control_receive_waits_ = false;
+      event.kind = Event::Kind::setup;
+      event.endpoint = 0;
+      event.length = static_cast<std::uint8_t>(setup_.size());
+      std::copy(setup_.begin(), setup_.end(), event.data.begin());
+      return true;
+    case out_data:
+      if (endpoint >= out_endpoints) {  // the core has been seen to name endpoints that it does not have
+        read_packet({}, size);
+        return false;
+      }
+      read_packet(out_[endpoint].data, size);
+      out_[endpoint].length = static_cast<std::uint8_t>(std::min(size, packet_size_maximum));
+      return false;
+    case out_done:
+      if (endpoint >= out_endpoints) return false;
+      Device::DOEPINT::write(endpoint, ~0u);
+      event.kind = Event::Kind::received;
+      event.length = out_[endpoint].length;
+      event.data = out_[endpoint].data;
+      return true;
+    default: return false;
+  }
+}
+
+bool OtgFs::next_suspend_or_resume(Event& event, std::uint32_t interrupts) {
+  using Status = Core::GINTSTS;
+  event.length = 0;
+  if (Status::USBSUSP::from(interrupts)) {
+    Status::write(Status::USBSUSP(1), Status::SOF(1), Status::WKUPINT(1));
+    suspended_ = true;
+    event.kind = Event::Kind::suspend;
+    return true;
+  }
+  if (suspended_ && (Status::WKUPINT::from(interrupts) || Status::SOF::from(interrupts))) {
+    Status::write(Status::SOF(1), Status::WKUPINT(1));
+    suspended_ = false;
+    event.kind = Event::Kind::resume;
+    return true;
+  }
+  return false;
+}
+
+// ---- transfers ---------------------------------------------------------------------------------------
+
+// DAD has been seen to read back wrong, so the whole register is written.
+void OtgFs::set_address(std::uint8_t address) {
+  constexpr std::uint32_t full_speed_internal_phy = 3;
+  Device::DCFG::write(Device::DCFG::DSPD(full_speed_internal_phy), Device::DCFG::DAD(address));
+}
+
+void OtgFs::send(std::uint8_t endpoint_address, std::span<const std::byte> data) {
+  const unsigned endpoint = number_of(endpoint_address);
+  in_[endpoint] = {data, true};
+  if (endpoint == 0) {
+    control_send_waits_ = true;
+    begin_control_transfers();
+  } else {
+    begin_send(endpoint);
+  }
+}
+
+void OtgFs::receive(std::uint8_t endpoint_address) {
+  const unsigned endpoint = number_of(endpoint_address);
+  if (endpoint == 0) {
+    control_receive_waits_ = true;
+    begin_control_transfers();
+  } else {
+    begin_receive(endpoint);
+  }
+}
+
+// Endpoint 0 is not let go while something waits in the receive FIFO: it may be a SETUP packet, which makes
+// the transfer stale, and clearing NAK before its setup-done word is popped loses that word.
+void OtgFs::begin_control_transfers() {
+  if ((!control_send_waits_ && !control_receive_waits_) || Core::GINTSTS::RXFLVL::is_set()) return;
+  if (control_receive_waits_) begin_receive(0);
+  if (control_send_waits_) begin_send(0);
+  control_receive_waits_ = control_send_waits_ = false;
+}
+
+void OtgFs::begin_send(unsigned endpoint) {
+  using Size = Device::DIEPTSIZ;
+  const std::size_t size = in_[endpoint].remaining.size();
+  const std::size_t packets = std::max<std::size_t>(1, (size + packet_size_maximum - 1) / packet_size_maximum);
+  Size::write(endpoint, Size::PKTCNT(static_cast<std::uint32_t>(packets)), Size::XFRSIZ(static_cast<std::uint32_t>(size)));
+  Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::EPENA(1), Device::DIEPCTL::CNAK(1));
+  fill(endpoint);
+}
+
+void OtgFs::fill(unsigned endpoint) {
+  std::span<const std::byte>& remaining = in_[endpoint].remaining;
+  while (!remaining.empty()) {
+    const std::size_t size = std::min(remaining.size(), packet_size_maximum);
+    if (Device::DTXFSTS::INEPTFSAV::from(Device::DTXFSTS::read(endpoint)) < words_for(size)) return;
+    write_packet(endpoint, remaining.first(size));
+    remaining = remaining.subspan(size);
+  }
+}
+
+void OtgFs::begin_receive(unsigned endpoint) {
+  using Control = Device::DOEPCTL;
+  // An endpoint that was stalled or reopened may still be enabled; its size then stands.
+  if (!Control::EPENA::from(Control::read(endpoint))) {
+    if (endpoint == 0)
+      write_control_out_size();
+    else
+      Device::DOEPTSIZ::write(endpoint, Device::DOEPTSIZ::PKTCNT(1), Device::DOEPTSIZ::XFRSIZ(packet_size_maximum));
+  }
+  Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
+}
+
+void OtgFs::cancel(std::uint8_t endpoint_address) { stop_in(number_of(endpoint_address)); }
+
+void OtgFs::stop_in(unsigned endpoint) {
+  using Control = Device::DIEPCTL;
+  using Flags = Device::DIEPINT;
+  if (!in_[endpoint].running) return;
+  in_[endpoint] = {};
+  if (endpoint == 0 && control_send_waits_) {
+    control_send_waits_ = false;
+    return;
+  }
+  if (Control::EPENA::from(Control::read(endpoint))) {
+    Control::modify(endpoint, Control::SNAK(1));
+    static_cast<void>(wait_for([=] { return Flags::INEPNE::from(Flags::read(endpoint)) != 0; }));
+    Control::modify(endpoint, Control::SNAK(1), Control::EPDIS(1));
+    static_cast<void>(wait_for([=] { return Flags::EPDISD::from(Flags::read(endpoint)) != 0; }));
+  }
+  fifo_memory::flush_transmit(endpoint);
+  Flags::write(endpoint, Flags::XFRC(1), Flags::EPDISD(1), Flags::INEPNE(1));
+}
+
+// ---- endpoints ---------------------------------------------------------------------------------------
+
+void OtgFs::open(std::uint8_t endpoint_address, usb::EndpointType type) {
+  const unsigned endpoint = number_of(endpoint_address);
+  if (is_in(endpoint_address)) {
+    using Control = Device::DIEPCTL;
+    stop_in(endpoint);
+    Control::write(endpoint, Control::MPSIZ(packet_size_maximum), Control::USBAEP(1),
+                   Control::EPTYP(static_cast<std::uint32_t>(type)), Control::TXFNUM(endpoint), Control::SD0PID(1),
+                   Control::SNAK(1));
+  } else {
+    using Control = Device::DOEPCTL;
+    Control::write(endpoint, Control::MPSIZ(packet_size_maximum), Control::USBAEP(1),
+                   Control::EPTYP(static_cast<std::uint32_t>(type)), Control::SD0PID(1), Control::SNAK(1));
+  }
+}
+
+void OtgFs::close(std::uint8_t endpoint_address) {
+  const unsigned endpoint = number_of(endpoint_address);
+  if (is_in(endpoint_address)) {
+    stop_in(endpoint);
+    Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::USBAEP(0), Device::DIEPCTL::SNAK(1));
+  } else {
+    Device::DOEPCTL::modify(endpoint, Device::DOEPCTL::USBAEP(0), Device::DOEPCTL::SNAK(1));
+  }
+}
+
+void OtgFs::stall(std::uint8_t endpoint_address) {
+  const unsigned endpoint = number_of(endpoint_address);
+  if (is_in(endpoint_address)) {
+    stop_in(endpoint);
+    Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::STALL(1));
+  } else {
+    if (endpoint == 0) control_receive_waits_ = false;
+    Device::DOEPCTL::modify(endpoint, Device::DOEPCTL::STALL(1));
+  }
+}
+
+void OtgFs::clear_stall(std::uint8_t endpoint_address) {
+  const unsigned endpoint = number_of(endpoint_address);
+  if (is_in(endpoint_address)) {
+    stop_in(endpoint);
+    Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::STALL(0), Device::DIEPCTL::SD0PID(1));
+  } else {
+    Device::DOEPCTL::modify(endpoint, Device::DOEPCTL::STALL(0), Device::DOEPCTL::SD0PID(1));
+  }
+}
+
+}  // namespace inkwell::drivers
