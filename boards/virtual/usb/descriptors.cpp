@@ -1,4 +1,4 @@
-#include "descriptors.hpp"
+#include <virtual_usb/descriptors.hpp>
 
 #include <algorithm>
 

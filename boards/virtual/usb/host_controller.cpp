@@ -1,4 +1,4 @@
-#include "host_controller.hpp"
+#include <virtual_usb/host_controller.hpp>
 
 #include <algorithm>
 

@@ -14,8 +14,8 @@
 #include <chip/machine.hpp>
 #include <virtual_usb/bus.hpp>
 
-#include "descriptors.hpp"
-#include "urb.hpp"
+#include <virtual_usb/descriptors.hpp>
+#include <virtual_usb/urb.hpp>
 
 namespace inkwell::virtual_board {
 

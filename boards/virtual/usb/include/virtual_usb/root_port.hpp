@@ -1,0 +1,97 @@
+// The port the cable is plugged into: connection, reset, enumeration, import, suspend.
+//
+//   detached -> debouncing -> resetting -> ... descriptors read ... -> suspended
+//   suspended -> (import) resetting, addressing -> in use -> (release) suspended
+//
+// USB/IP has no word for bus reset and address: whoever imports a device expects it freshly reset and
+// addressed, so both happen here at each import.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <virtual_usb/host_controller.hpp>
+
+namespace inkwell::virtual_board {
+
+class RootPort final : private HostController::Client {
+ public:
+  /// Who uses the device on this port. Called on the simulation's thread.
+  class Client {
+   public:
+    virtual ~Client() = default;
+    virtual void between_transactions() = 0;
+    virtual void enumerated(const DeviceDescription& description) = 0;
+    virtual void detached() = 0;
+    virtual void completed(Urb&& urb, std::int32_t status) = 0;
+  };
+
+  RootPort(Scheduler& scheduler, BusDevice& device, Client& client);
+
+  void plug(bool in);
+  bool plugged() const { return plugged_; }
+  bool enumerated() const { return state_ >= State::suspended; }
+  bool imported() const { return state_ > State::suspended; }
+
+  /// Resets and addresses the device for a new user. Only while `enumerated` and not `imported`.
+  void import();
+  /// The user is gone: its transfers are forgotten and the bus falls silent.
+  void release();
+  void submit(Urb&& urb);
+  bool unlink(std::uint32_t sequence);
+
+ private:
+  enum class State : std::uint8_t {
+    detached,
+    debouncing,
+    first_reset,
+    first_recovery,
+    reading_packet_size,
+    second_reset,
+    second_recovery,
+    addressing,
+    address_recovery,
+    reading_device,
+    reading_configuration_length,
+    reading_configuration,
+    // from here on enumerated
+    suspended,
+    // from here on imported
+    import_reset,
+    import_recovery,
+    import_addressing,
+    import_address_recovery,
+    in_use,
+  };
+
+  void between_transactions() override;
+  void frame() override;
+  void completed(Urb&& urb, std::int32_t status) override;
+
+  void enter(State state, unsigned frames);
+  void begin_reset(State state);
+  void end_reset(State recovery);
+  void ask(std::uint8_t request_type, std::uint8_t request, std::uint16_t value, std::uint16_t length);
+  void ask_for_descriptor(std::uint8_t type, std::uint8_t index, std::uint16_t length);
+  void time_over();
+  void answered(const Urb& urb);
+  void detach();
+  void follow_standard_request(const Urb& urb);
+
+  BusDevice& device_;
+  Client& client_;
+  bool plugged_ = false;
+  std::uint32_t attachment_ = 0;
+  State state_ = State::detached;
+  unsigned frames_left_ = 0;  ///< 0: the state has no end in time
+  bool bus_in_reset_ = false;
+  DeviceDescription description_{};
+  const ConfigurationDescription* configuration_ = nullptr;
+  std::uint16_t control_packet_maximum_ = 8;
+  std::vector<Urb> held_;     ///< of the importer, until the device has its address
+  HostController controller_;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,323 @@
+#include "usbip_server.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "usbip_protocol.hpp"
+
+namespace inkwell::virtual_board {
+
+namespace {
+constexpr std::size_t connections_maximum = 16;
+constexpr std::size_t receive_bytes = 256 * 1024;
+/// A client that lets more than this wait is not reading; it is disconnected.
+constexpr std::size_t unsent_maximum = 64u << 20;
+constexpr std::size_t pending_urbs_maximum = 4096;
+constexpr std::uint64_t pending_bytes_maximum = 64u << 20;
+
+std::runtime_error cannot_listen(std::uint16_t port) {
+  const std::string where = "port " + std::to_string(port) + " of 127.0.0.1";
+  if (errno == EADDRINUSE)
+    return std::runtime_error("The USB/IP server cannot use " + where +
+                              ": another program listens there. Give another port, or 0 for any free one.");
+  return std::runtime_error("The USB/IP server cannot listen on " + where + ": " + std::strerror(errno) + ".");
+}
+}  // namespace
+
+UsbIpServer::Descriptor::Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+UsbIpServer::Descriptor& UsbIpServer::Descriptor::operator=(Descriptor&& other) noexcept {
+  std::swap(number_, other.number_);
+  return *this;
+}
+UsbIpServer::Descriptor::~Descriptor() {
+  if (number_ >= 0) ::close(number_);
+}
+
+UsbIpServer::UsbIpServer(std::uint16_t port)
+    : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)),
+      wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (listener_.number() < 0 || wake_.number() < 0) throw cannot_listen(port);
+  const int yes = 1;
+  ::setsockopt(listener_.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (::bind(listener_.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(listener_.number(), connections_maximum) != 0)
+    throw cannot_listen(port);
+  socklen_t length = sizeof address;
+  ::getsockname(listener_.number(), reinterpret_cast<sockaddr*>(&address), &length);
+  port_ = ntohs(address.sin_port);
+  thread_ = std::thread([this] { run(); });
+}
+
+UsbIpServer::~UsbIpServer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  wake();
+  thread_.join();
+}
+
+// --- The simulation's side --------------------------------------------------------------------------------
+
+void UsbIpServer::take(std::vector<Order>& orders) {
+  if (!orders_waiting_.load(std::memory_order_acquire)) return;
+  const std::lock_guard lock(mutex_);
+  std::move(orders_.begin(), orders_.end(), std::back_inserter(orders));
+  orders_.clear();
+  orders_waiting_.store(false, std::memory_order_release);
+}
+
+void UsbIpServer::answer(Result&& result) {
+  bool first = false;
+  {
+    const std::lock_guard lock(mutex_);
+    first = results_.empty();
+    results_.push_back(std::move(result));
+  }
+  if (first) wake();
+}
+
+void UsbIpServer::offer(const DeviceDescription& device) {
+  const std::lock_guard lock(mutex_);
+  offered_ = device;
+}
+
+void UsbIpServer::withdraw() {
+  {
+    const std::lock_guard lock(mutex_);
+    offered_.reset();
+    withdrawn_ = true;
+  }
+  wake();
+}
+
+// --- The server's side ------------------------------------------------------------------------------------
+
+void UsbIpServer::wake() {
+  const std::uint64_t one = 1;
+  // A full counter means that the thread is about to wake anyway.
+  [[maybe_unused]] const auto written = ::write(wake_.number(), &one, sizeof one);
+}
+
+void UsbIpServer::give(Order&& order) {
+  const std::lock_guard lock(mutex_);
+  orders_.push_back(std::move(order));
+  orders_waiting_.store(true, std::memory_order_release);
+}
+
+void UsbIpServer::run() {
+  std::vector<pollfd> descriptors;
+  while (true) {
+    descriptors.clear();
+    descriptors.push_back({wake_.number(), POLLIN, 0});
+    descriptors.push_back({listener_.number(), POLLIN, 0});
+    for (const Connection& connection : connections_) {
+      const bool unsent = connection.sent < connection.to_send.size();
+      descriptors.push_back({connection.socket.number(), static_cast<short>(POLLIN | (unsent ? POLLOUT : 0)), 0});
+    }
+    if (::poll(descriptors.data(), descriptors.size(), -1) < 0) continue;
+    if (descriptors[0].revents != 0) {
+      std::uint64_t count = 0;
+      [[maybe_unused]] const auto read = ::read(wake_.number(), &count, sizeof count);
+      const std::lock_guard lock(mutex_);
+      if (stop_) return;
+    }
+    deliver_results();
+    std::size_t index = 2;
+    for (Connection& connection : connections_) {
+      const short events = descriptors[index++].revents;
+      if ((events & (POLLIN | POLLHUP | POLLERR)) != 0 && !connection.dead) receive(connection);
+      send(connection);
+    }
+    remove_dead();
+    if (descriptors[1].revents != 0) accept_connections();
+  }
+}
+
+void UsbIpServer::accept_connections() {
+  while (true) {
+    Descriptor socket(::accept4(listener_.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (socket.number() < 0) return;
+    if (connections_.size() >= connections_maximum) continue;  // closes it
+    const int yes = 1;
+    ::setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    connections_.emplace_back().socket = std::move(socket);
+  }
+}
+
+void UsbIpServer::receive(Connection& connection) {
+  std::array<std::byte, receive_bytes> buffer;
+  const ssize_t count = ::recv(connection.socket.number(), buffer.data(), buffer.size(), 0);
+  if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) {
+    connection.dead = true;
+    return;
+  }
+  if (count < 0 || connection.closing) return;
+  connection.received.insert(connection.received.end(), buffer.begin(), buffer.begin() + count);
+  try {
+    handle_received(connection);
+  } catch (const std::exception& error) {
+    std::cerr << "USB/IP: a client is disconnected because " << error.what() << ".\n";
+    connection.dead = true;
+  }
+}
+
+void UsbIpServer::send(Connection& connection) {
+  while (!connection.dead && connection.sent < connection.to_send.size()) {
+    const ssize_t count = ::send(connection.socket.number(), connection.to_send.data() + connection.sent,
+                                 connection.to_send.size() - connection.sent, MSG_NOSIGNAL);
+    if (count < 0) {
+      if (errno != EAGAIN && errno != EINTR) connection.dead = true;
+      break;
+    }
+    connection.sent += static_cast<std::size_t>(count);
+  }
+  if (connection.sent == connection.to_send.size()) {
+    connection.to_send.clear();
+    connection.sent = 0;
+    if (connection.closing) connection.dead = true;
+  } else if (connection.to_send.size() - connection.sent > unsent_maximum) {
+    std::cerr << "USB/IP: a client is disconnected because it does not read.\n";
+    connection.dead = true;
+  }
+}
+
+void UsbIpServer::handle_received(Connection& connection) {
+  bool complete = true;
+  while (complete && !connection.closing) {
+    const std::span<const std::byte> rest = std::span(connection.received).subspan(connection.consumed);
+    complete = connection.importer ? handle_command(connection, rest) : handle_operation(connection, rest);
+  }
+  // Shift rarely: only when most of the buffer is used up.
+  if (connection.consumed * 2 >= connection.received.size()) {
+    connection.received.erase(connection.received.begin(),
+                              connection.received.begin() + static_cast<std::ptrdiff_t>(connection.consumed));
+    connection.consumed = 0;
+  }
+}
+
+bool UsbIpServer::handle_operation(Connection& connection, std::span<const std::byte> bytes) {
+  if (bytes.size() < usbip::operation_bytes) return false;
+  const usbip::OperationHeader header = usbip::read_operation(bytes.first<usbip::operation_bytes>());
+  if (header.version != usbip::version) throw std::runtime_error("it speaks another version of USB/IP than 1.1.1");
+  const std::unique_lock lock(mutex_);
+  const DeviceDescription* device = offered_ && !withdrawn_ ? &*offered_ : nullptr;
+  if (header.code == static_cast<std::uint16_t>(usbip::Operation::list_devices)) {
+    connection.consumed += usbip::operation_bytes;
+    usbip::append_device_list(connection.to_send, device);
+    return true;
+  }
+  if (header.code != static_cast<std::uint16_t>(usbip::Operation::import))
+    throw std::runtime_error("it asks for an unknown operation");
+  if (bytes.size() < usbip::operation_bytes + usbip::bus_id_bytes) return false;
+  connection.consumed += usbip::operation_bytes + usbip::bus_id_bytes;
+
+  const std::string bus_id = usbip::read_bus_id(bytes.subspan<usbip::operation_bytes, usbip::bus_id_bytes>());
+  const bool busy = std::any_of(connections_.begin(), connections_.end(),
+                                [](const Connection& other) { return other.importer && !other.dead; });
+  if (device == nullptr || bus_id != usbip::bus_id || busy) {
+    const bool known = device != nullptr && bus_id == usbip::bus_id;
+    usbip::append_import_refused(connection.to_send,
+                                 known ? usbip::ImportStatus::busy : usbip::ImportStatus::no_device);
+    connection.closing = true;
+    return true;
+  }
+  usbip::append_imported(connection.to_send, *device);
+  connection.importer = true;
+  ++session_;
+  orders_.push_back({Order::Kind::import, session_, {}});
+  orders_waiting_.store(true, std::memory_order_release);
+  return true;
+}
+
+bool UsbIpServer::handle_command(Connection& connection, std::span<const std::byte> bytes) {
+  if (bytes.size() < usbip::header_bytes) return false;
+  usbip::CommandHeader header = usbip::read_command(bytes.first<usbip::header_bytes>());
+  if (header.isochronous) throw std::runtime_error("it submits an isochronous transfer, which is not modelled");
+  if (bytes.size() < usbip::header_bytes + header.data_bytes) return false;
+  connection.consumed += usbip::header_bytes + header.data_bytes;
+
+  if (header.command == usbip::Command::unlink) {
+    give({Order::Kind::unlink, session_, std::move(header.urb), header.unlink_sequence});
+    return true;
+  }
+  if (!pending_.emplace(header.urb.sequence, header.urb.length).second)
+    throw std::runtime_error("it uses a sequence number again before the first one was answered");
+  pending_bytes_ += header.urb.length;
+  if (pending_.size() > pending_urbs_maximum || pending_bytes_ > pending_bytes_maximum)
+    throw std::runtime_error("it submits more transfers at a time than the server holds");
+  const auto data = bytes.subspan(usbip::header_bytes, header.data_bytes);
+  header.urb.data.assign(data.begin(), data.end());
+  give({Order::Kind::submit, session_, std::move(header.urb)});
+  return true;
+}
+
+void UsbIpServer::deliver_results() {
+  std::vector<Result> results;
+  bool withdrawn = false;
+  {
+    const std::lock_guard lock(mutex_);
+    results.swap(results_);
+    withdrawn = std::exchange(withdrawn_, false);
+  }
+  const auto importer = std::find_if(connections_.begin(), connections_.end(),
+                                     [](const Connection& one) { return one.importer && !one.dead; });
+  if (importer == connections_.end()) return;
+  for (const Result& result : results) {
+    if (result.session != session_) continue;
+    if (result.kind == Result::Kind::submitted) {
+      forget_pending(result.urb.sequence);
+      usbip::append_submitted(importer->to_send, result.urb, result.status);
+    } else {
+      if (result.status == transfer_status::unlinked) forget_pending(result.unlink_sequence);
+      usbip::append_unlinked(importer->to_send, result.urb.sequence, result.status);
+    }
+  }
+  if (withdrawn) {
+    send(*importer);  // as much as goes without waiting
+    importer->dead = true;
+  }
+}
+
+void UsbIpServer::forget_pending(std::uint32_t sequence) {
+  const auto found = pending_.find(sequence);
+  if (found == pending_.end()) return;
+  pending_bytes_ -= found->second;
+  pending_.erase(found);
+}
+
+void UsbIpServer::remove_dead() {
+  for (auto connection = connections_.begin(); connection != connections_.end();) {
+    if (!connection->dead) {
+      ++connection;
+      continue;
+    }
+    if (connection->importer) {
+      give({Order::Kind::release, session_, {}});
+      pending_.clear();
+      pending_bytes_ = 0;
+    }
+    connection = connections_.erase(connection);
+  }
+}
+
+}  // namespace inkwell::virtual_board

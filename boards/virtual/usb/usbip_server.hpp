@@ -1,0 +1,115 @@
+// Exports the one device by USB/IP on a loopback TCP port.
+//
+// The server's own thread does all that can wait. The simulation's thread exchanges orders and results with
+// it through two queues and never waits for a socket.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include <virtual_usb/descriptors.hpp>
+#include <virtual_usb/urb.hpp>
+
+namespace inkwell::virtual_board {
+
+class UsbIpServer {
+ public:
+  /// What the importer asks of the bus. `session` counts imports, so that late answers find nobody.
+  struct Order {
+    enum class Kind : std::uint8_t { import, release, submit, unlink };
+    Kind kind;
+    std::uint32_t session;
+    Urb urb;                            ///< of a submit; its `sequence` is also that of an unlink
+    std::uint32_t unlink_sequence = 0;
+  };
+  struct Result {
+    enum class Kind : std::uint8_t { submitted, unlinked };
+    Kind kind;
+    std::uint32_t session;
+    Urb urb;
+    std::int32_t status;
+    std::uint32_t unlink_sequence = 0;
+  };
+
+  /// Listens on 127.0.0.1:`port` (0: any free one). Throws std::runtime_error with a sentence if it can not.
+  explicit UsbIpServer(std::uint16_t port);
+  ~UsbIpServer();
+  UsbIpServer(const UsbIpServer&) = delete;
+  UsbIpServer& operator=(const UsbIpServer&) = delete;
+
+  std::uint16_t port() const { return port_; }
+
+  // For the simulation's thread.
+  /// Appends the orders that came in to `orders`; costs next to nothing if there are none.
+  void take(std::vector<Order>& orders);
+  void answer(Result&& result);
+  /// Offers a device for import.
+  void offer(const DeviceDescription& device);
+  /// The device is gone: its importer is disconnected.
+  void withdraw();
+
+ private:
+  class Descriptor {
+   public:
+    explicit Descriptor(int number = -1) : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept;
+    Descriptor& operator=(Descriptor&& other) noexcept;
+    ~Descriptor();
+    int number() const { return number_; }
+
+   private:
+    int number_;
+  };
+  struct Connection {
+    Descriptor socket;
+    std::vector<std::byte> received;
+    std::size_t consumed = 0;
+    std::vector<std::byte> to_send;
+    std::size_t sent = 0;
+    bool importer = false;
+    bool closing = false;  ///< once everything is sent
+    bool dead = false;
+  };
+
+  void run();
+  void accept_connections();
+  void receive(Connection& connection);
+  void send(Connection& connection);
+  void handle_received(Connection& connection);
+  bool handle_operation(Connection& connection, std::span<const std::byte> bytes);
+  bool handle_command(Connection& connection, std::span<const std::byte> bytes);
+  void deliver_results();
+  void remove_dead();
+  void forget_pending(std::uint32_t sequence);
+  void give(Order&& order);
+  void wake();
+
+  Descriptor listener_;
+  Descriptor wake_;  // eventfd
+  std::uint16_t port_ = 0;
+
+  std::mutex mutex_;  // guards the next five
+  std::vector<Order> orders_;
+  std::vector<Result> results_;
+  std::optional<DeviceDescription> offered_;
+  bool withdrawn_ = false;
+  bool stop_ = false;
+  std::atomic<bool> orders_waiting_ = false;
+
+  // Only for the server's thread.
+  std::list<Connection> connections_;
+  std::uint32_t session_ = 0;
+  std::unordered_map<std::uint32_t, std::uint32_t> pending_;  ///< lengths of transfers without an answer, by sequence
+  std::uint64_t pending_bytes_ = 0;
+
+  std::thread thread_;
+};
+
+}  // namespace inkwell::virtual_board
