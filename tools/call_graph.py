@@ -1,0 +1,158 @@
+"""Functions of an ARM Thumb image, their stack and who calls whom, read from its disassembly.
+
+The linked image itself is read, so that what the compiler inlined, split or took from a library is seen as it is.
+"""
+
+import dataclasses
+import re
+import struct
+import subprocess
+
+
+class Unreadable(Exception):
+    """The image holds something that the analysis does not understand; the message says what and where."""
+
+
+@dataclasses.dataclass
+class Function:
+    name: str
+    address: int
+    stack_bytes: int = 0
+    calls: set[str] = dataclasses.field(default_factory=set)  # direct ones, jumps into other functions included
+    virtual_slots: set[int] = dataclasses.field(default_factory=set)  # byte offsets into a table of virtual functions
+    calls_any_pointer: bool = False  # through a pointer of unknown origin
+    moves_stack: bool = False  # by an amount that is not a constant
+    divides: list[str] = dataclasses.field(default_factory=list)  # addresses of divisions and square roots
+
+
+@dataclasses.dataclass
+class Image:
+    functions: dict[str, Function]
+    virtual_tables: list[list[str]]  # functions of each class's table, in the order of its slots
+    constructors: list[str]  # run by the start-up code
+    symbols: dict[str, int]
+
+    def targets(self, function: Function) -> tuple[set[str], set[str]]:
+        """What a function may call: certainly, and through pointers."""
+        indirect = {table[slot // 4] for slot in function.virtual_slots for table in self.virtual_tables
+                    if slot // 4 < len(table)}
+        if function.calls_any_pointer:
+            indirect.update(name for table in self.virtual_tables for name in table)
+            indirect.update(self.constructors)
+        return function.calls, indirect & self.functions.keys()
+
+    def reachable(self, start: str) -> set[str]:
+        found, waiting = set(), [start]
+        while waiting:
+            name = waiting.pop()
+            if name not in found:
+                found.add(name)
+                waiting.extend(set.union(*self.targets(self.functions[name])))
+        return found
+
+
+def run(*command: str) -> str:
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+# ---- stack of one instruction ----------------------------------------------------------------------------------
+
+
+def listed_registers(text: str) -> int:
+    """Bytes of a register list such as {r4, r5, lr} or {d8-d10}."""
+    total = 0
+    for part in text.strip("{}").replace(" ", "").split(","):
+        first, _, last = part.partition("-")
+        count = int(last[1:]) - int(first[1:]) + 1 if last else 1
+        total += count * (8 if first.startswith("d") else 4)
+    return total
+
+
+PUSH = re.compile(r"(?:v?push|(?:v?stmdb)\tsp!,)\s*(\{.*\})")
+SUBTRACT = re.compile(r"sub(?:\.w|w)?\tsp, (?:sp, )?#(\d+)")
+STORE_DOWN = re.compile(r"strd?(?:\.w)?\t.*\[sp, #-(\d+)\]!")
+STACK_BY_REGISTER = re.compile(r"(?:sub(?:\.w)?\tsp, (?:sp, )?r\d+|mov\tsp, r\d+|msr\tMSP)")
+
+
+def stack_of(instruction: str) -> int:
+    if match := PUSH.match(instruction):
+        return listed_registers(match[1])
+    if match := SUBTRACT.match(instruction):
+        return int(match[1])
+    if match := STORE_DOWN.match(instruction):
+        return int(match[1])
+    return 0
+
+
+# ---- functions -------------------------------------------------------------------------------------------------
+
+HEADING = re.compile(r"^([0-9a-f]{8}) <(.+)>:$")
+INSTRUCTION = re.compile(r"^ *([0-9a-f]+):\t(.*?)(?:\s+@.*)?$")
+BRANCH = re.compile(r"(?:bl?|b[a-z]{2})(?:\.[nw])?\t[0-9a-f]+ <([^>+]+)(\+0x[0-9a-f]+)?>|cbn?z\t\w+, [0-9a-f]+ <([^>+]+)")
+INDIRECT = re.compile(r"(?:blx|bx)\t(r\d+|ip|fp|sl|sb)|mov\tpc, (\w+)")
+LOAD = re.compile(r"ldr(?:\.w)?\t(\w+), \[(\w+)(?:, #(\d+))?\]")
+DIVIDE = re.compile(r"(?:v?sqrt|vdiv|vsqrt|[su]div)\b")
+
+
+def read_functions(elf: str) -> dict[str, Function]:
+    functions: dict[str, Function] = {}
+    aliases: dict[int, Function] = {}
+    function: Function | None = None
+    loads: dict[str, int] = {}  # register -> offset of the last load into it in this function
+    for line in run("arm-none-eabi-objdump", "-d", "--no-show-raw-insn", elf).splitlines():
+        if heading := HEADING.match(line):
+            address = int(heading[1], 16)
+            function = functions[heading[2]] = aliases.setdefault(address, Function(heading[2], address))
+            loads = {}
+            continue
+        instruction = INSTRUCTION.match(line)
+        if function is None or instruction is None or instruction[2].startswith(".word"):
+            continue
+        text = instruction[2]
+        function.stack_bytes += stack_of(text)
+        if STACK_BY_REGISTER.match(text):
+            function.moves_stack = True
+        if DIVIDE.match(text):
+            function.divides.append(f"{instruction[1]}: {text}".replace("\t", " "))
+        if load := LOAD.fullmatch(text):
+            loads[load[1]] = int(load[3] or 0)
+        if branch := BRANCH.match(text):
+            target = branch[1] or branch[3]
+            if target != function.name and not branch[2]:
+                function.calls.add(target)
+        elif indirect := INDIRECT.match(text):
+            register = indirect[1] or indirect[2]
+            if register in loads:
+                function.virtual_slots.add(loads[register])
+            else:
+                function.calls_any_pointer = True
+    return functions
+
+
+def read_words(elf: str, address: int, count: int) -> list[int]:
+    """Words of the image at an address in the flash."""
+    with open(elf, "rb") as file:
+        data = file.read()
+    header_offset, = struct.unpack_from("<I", data, 28)
+    header_size, header_count = struct.unpack_from("<HH", data, 42)
+    for i in range(header_count):
+        _, offset, _, physical, size = struct.unpack_from("<5I", data, header_offset + i * header_size)
+        if physical <= address and address + 4 * count <= physical + size:
+            return list(struct.unpack_from(f"<{count}I", data, offset + address - physical))
+    raise Unreadable(f"0x{address:08x} is not in the image")
+
+
+def read_image(elf: str) -> Image:
+    functions = read_functions(elf)
+    by_address = {function.address: name for name, function in functions.items()}
+    symbols, tables = {}, []
+    for line in run("arm-none-eabi-nm", "-S", elf).splitlines():
+        parts = line.split()
+        symbols[parts[-1]] = int(parts[0], 16)
+        if parts[-1].startswith("_ZTV") and len(parts) == 4:
+            # Two words before the first slot: offset to the top, type information.
+            words = read_words(elf, int(parts[0], 16), int(parts[1], 16) // 4)[2:]
+            tables.append([by_address.get(word & ~1, "") for word in words])
+    begin, end = symbols["constructors_begin"], symbols["constructors_end"]
+    constructors = [by_address[word & ~1] for word in read_words(elf, begin, (end - begin) // 4)] if end > begin else []
+    return Image(functions, tables, constructors, symbols)

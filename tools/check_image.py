@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Checks what the firmware's image must be and must not hold: size, heap, double precision, divisions.
+
+    tools/check_image.py build/board/inkwell.elf --facts boards/omni_driver/include/board/omni_driver.hpp
+
+Prints the size of the image. Exit code 1 with one line for each thing that is wrong.
+"""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+
+from call_graph import Image, Unreadable, read_image, run
+
+# What an embedded image of ours never needs, and what brings it in. Patterns of whole symbol names.
+FORBIDDEN = {
+    r"_?(malloc|calloc|realloc|free)(_r)?|_sbrk(_r)?": "the heap",
+    r"_Zn[wa].*|_Zd[la].*": "operator new or delete",
+    r"__aeabi_(d|l2d|ul2d|i2d|ui2d|f2d|cd|cdr)\w*": "double precision in software",
+    r"__cxa_(throw|rethrow|begin_catch|allocate_exception)|_Unwind_\w+": "exceptions",
+    r"__cxa_guard_\w+": "thread-safe initialisation of local variables",
+    r"_ZTI.*|__dynamic_cast": "run-time type information",
+    r"(sin|cos|tan|a?sin|acos|atan2?|exp|log|pow|fmod|sqrt|cbrt|hypot)f?l?": "the mathematical library",
+    r"_?(v?f?n?printf|puts|_vfprintf_r)": "formatted printing",
+}
+
+
+def image_limit_bytes(facts: pathlib.Path) -> int:
+    """The board's image_bytes_maximum, from its facts."""
+    match = re.search(r"image_bytes_maximum = (\d+) \* (\d+);", facts.read_text())
+    if match is None:
+        raise Unreadable(f"{facts} does not say image_bytes_maximum = ... * ...;")
+    return int(match[1]) * int(match[2])
+
+
+def section_bytes(elf: str) -> dict[str, tuple[int, int]]:
+    """Size and address of each section that takes memory."""
+    rows = re.findall(r"^(\.\S+)\s+(\d+)\s+(\d+)$", run("arm-none-eabi-size", "-A", elf), re.MULTILINE)
+    return {name: (int(size), int(address)) for name, size, address in rows if int(address) != 0}
+
+
+def forbidden_symbols(image: Image) -> list[str]:
+    return [
+        f"the image holds {name}: {meaning}"
+        for name in sorted(image.symbols)
+        for pattern, meaning in FORBIDDEN.items()
+        if re.fullmatch(pattern, name)
+    ]
+
+
+def divisions_in_interrupt(image: Image) -> list[str]:
+    """They take 14 cycles each and their results could have been prepared outside."""
+    return [
+        f"division in the control interrupt, in {name} at {place}"
+        for name in sorted(image.reachable("control_interrupt"))
+        for place in image.functions[name].divides
+    ]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Checks the firmware's image.")
+    parser.add_argument("elf", help="the linked image")
+    parser.add_argument("--facts", type=pathlib.Path, required=True, help="header with the board's facts")
+    arguments = parser.parse_args()
+    try:
+        image = read_image(arguments.elf)
+        sections = section_bytes(arguments.elf)
+        limit = image_limit_bytes(arguments.facts)
+    except (OSError, subprocess.CalledProcessError, Unreadable, KeyError) as error:
+        print(f"cannot read {arguments.elf} as the firmware's image: {error}", file=sys.stderr)
+        return 2
+
+    in_flash = sum(sections.get(name, (0, 0))[0] for name in (".vectors", ".text", ".data", ".data.ccm"))
+    core_coupled = sum(size for size, address in sections.values() if address >> 16 == 0x1000)
+    ram = sum(size for size, address in sections.values() if address >> 24 == 0x20)
+    print(f"image: {in_flash} of {limit} bytes; core-coupled memory {core_coupled}, main memory {ram}")
+
+    problems = forbidden_symbols(image) + divisions_in_interrupt(image)
+    if in_flash > limit:
+        problems.append(f"the image takes {in_flash} bytes, more than the board's {limit}")
+    for problem in problems:
+        print(f"ERROR: {problem}", file=sys.stderr)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
