@@ -1,0 +1,90 @@
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include <control/conditioning.hpp>
+
+namespace {
+
+using namespace inkwell::control;
+
+TEST_CASE("the offsets are the mean of a tenth of a second") {
+  CurrentOffsets offsets;
+  for (std::uint32_t i = 0; i < CurrentOffsets::duration_periods; ++i) {
+    CHECK_FALSE(offsets.measured());
+    const float noise = i % 2 == 0 ? 0.01f : -0.01f;
+    measure_offsets(offsets, {0.05f + noise, -0.02f - noise, noise});
+  }
+  CHECK(offsets.measured());
+  CHECK(CurrentOffsets::duration_periods == 2'000);
+  CHECK(offsets.offset_A[0] == doctest::Approx(0.05f).epsilon(1e-4));
+  CHECK(offsets.offset_A[1] == doctest::Approx(-0.02f).epsilon(1e-4));
+  CHECK(offsets.offset_A[2] == doctest::Approx(0.0f).scale(1).epsilon(1e-5));
+  CHECK(plausible(offsets));
+}
+
+TEST_CASE("an offset beyond what an amplifier can have is a broken sensor") {
+  CHECK_FALSE(plausible({.offset_A = {0.0f, -4.1f, 0.0f}}));
+  CHECK_FALSE(plausible({.offset_A = {0.0f, 0.0f, 0.3f}}));
+  CHECK_FALSE(plausible({.offset_A = {std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f}}));
+  CHECK(plausible({.offset_A = {0.2f, -0.2f, 0.0f}}));
+}
+
+TEST_CASE("the supply is filtered, and its reciprocal is ready and finite even without a supply") {
+  SupplyFilter filter;
+  filter_supply(filter, 18.0f);
+  CHECK(filter.supply_V == 18.0f);
+  CHECK(filter.per_V == doctest::Approx(1.0 / 18.0).epsilon(1e-6));
+  filter_supply(filter, 12.0f);
+  CHECK(filter.supply_V == doctest::Approx(18.0 - 6.0 / 32));
+  for (int i = 0; i < 320; ++i) filter_supply(filter, 0.0f);
+  CHECK(filter.supply_V < 0.01f);
+  CHECK(filter.per_V == doctest::Approx(1.0));
+  filter_supply(filter, std::numeric_limits<float>::quiet_NaN());
+  filter_supply(filter, 17.0f);
+  CHECK(filter.supply_V == 17.0f);
+}
+
+TEST_CASE("switches count after 5 ms without change") {
+  SwitchFilter filter;
+  for (int i = 0; i < 1'000; ++i) debounce(filter, i % 50 < 25 ? 1 : 0);
+  CHECK(filter.closed == 0);
+  debounce(filter, 5);
+  for (std::uint32_t i = 0; i < SwitchFilter::settle_periods - 1; ++i) debounce(filter, 5);
+  CHECK(filter.closed == 0);
+  debounce(filter, 5);
+  CHECK(filter.closed == 5);
+  debounce(filter, 0);
+  CHECK(filter.closed == 5);
+}
+
+TEST_CASE("the inkwell gives its reference once the arm has been still in it for 0.1 s") {
+  InkwellReference reference;
+  std::array<std::int32_t, 3> counts{100, -20, 7};
+  for (int i = 0; i < 5'000; ++i) CHECK_FALSE(update_reference(reference, counts, false));
+  CHECK_FALSE(reference.valid);
+
+  // Moving while the switch is closed: no reference.
+  for (int i = 0; i < 3'000; ++i) {
+    if (i % 1'000 == 0) counts[1] += 2;
+    CHECK_FALSE(update_reference(reference, counts, true));
+  }
+  // Still but for a dither of one count.
+  int taken = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    counts[2] = 7 + i % 2;
+    if (update_reference(reference, counts, true)) ++taken;
+  }
+  CHECK(taken == 1);
+  CHECK(reference.valid);
+  CHECK(reference.counts[0] == 100);
+  CHECK(reference.counts[1] == -14);
+
+  // Out, moved, in again: a new reference.
+  update_reference(reference, counts, false);
+  counts[0] = 104;
+  for (std::uint32_t i = 0; i < InkwellReference::still_periods + 2; ++i) update_reference(reference, counts, true);
+  CHECK(reference.counts[0] == 104);
+}
+
+}  // namespace

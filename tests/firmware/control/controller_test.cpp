@@ -1,0 +1,340 @@
+// The whole signal path, from samples to duties.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <firmware/control/arms.hpp>
+#include <firmware/control/simulated_arm.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::Controller;
+using control::Drive;
+using control::Samples;
+using control::Settings;
+using protocol::Command;
+using protocol::Fault;
+using protocol::Signal;
+using protocol::State;
+
+/// The paper's arm with a box in which the inkwell's pose is 2 mm inside the upper x wall, without damping.
+Settings settings_near_wall() {
+  using enum protocol::Parameter;
+  protocol::ParameterSet set = tests::paper_parameters();
+  set[inkwell_joint_1_rad] = 0.0f;
+  set[inkwell_joint_2_rad] = 0.9f;
+  set[inkwell_joint_3_rad] = -2.0f;
+  const Settings plain = control::prepare(set);
+  const control::Vector3 inkwell_m = control::forward_kinematics({0.0f, 0.9f, -2.0f}, plain.arm).position_m;
+  set[sphere_radius_m] = 0.0f;
+  set[box_minimum_x_m] = 0.05f;
+  set[box_maximum_x_m] = inkwell_m.x + 0.002f;
+  set[box_minimum_y_m] = -0.2f;
+  set[box_maximum_y_m] = 0.2f;
+  set[box_minimum_z_m] = -0.2f;
+  set[box_maximum_z_m] = 0.2f;
+  set[wall_stiffness_N_per_m] = 800.0f;
+  set[force_ramp_s] = 0.1f;
+  return control::prepare(set);
+}
+
+/// Joint 2 back and joint 3 up, so that the probe goes out along x, in steps slow enough for the speed limit.
+void push_into_wall(Controller& controller, Samples& samples, const Settings& settings) {
+  for (int i = 0; i < 150; ++i) {
+    if (i % 2 == 0) --samples.encoder_counts[1];
+    ++samples.encoder_counts[2];
+    controller.host_alive();
+    tests::run(controller, samples, settings, 20);
+  }
+}
+
+void run_with_host(Controller& controller, const Samples& samples, const Settings& settings, int periods) {
+  for (int i = 0; i < periods; ++i) {
+    controller.host_alive();
+    tests::run(controller, samples, settings, 1);
+  }
+}
+
+TEST_CASE("from power-up through the inkwell to force, with the bridges off until it is on") {
+  const Settings settings = settings_near_wall();
+  Controller controller{tests::board_limits};
+  Samples samples = tests::samples_at_rest();
+  CHECK(controller.state() == State::starting);
+  CHECK_FALSE(tests::run(controller, samples, settings, 1'000).enabled);
+  CHECK(controller.state() == State::starting);
+  CHECK_FALSE(tests::run(controller, samples, settings, 1'100).enabled);
+  CHECK(controller.state() == State::unreferenced);
+  controller.carry_out(tests::command(Command::enable_force));
+  CHECK_FALSE(tests::run(controller, samples, settings, 10).enabled);
+  CHECK(controller.state() == State::unreferenced);
+  samples.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
+  tests::run(controller, samples, settings, 2'200);
+  CHECK(controller.state() == State::ready);
+  CHECK(controller.switches() == samples.switches);
+  controller.carry_out(tests::command(Command::enable_force));
+  CHECK_FALSE(tests::run(controller, samples, settings, 1).enabled);
+  CHECK(controller.state() == State::active);
+  CHECK(tests::run(controller, samples, settings, 1).enabled);
+  CHECK(controller.periods() == 4'312);
+}
+
+TEST_CASE("the reference is where the stylus was in the inkwell, whatever the counts were") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::started_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  samples.encoder_counts = {500, -70'000, 123'456};
+  samples.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
+  tests::run(controller, samples, settings, 2'200);
+  samples.encoder_counts[1] += 10;
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.signals()[Signal::encoder_1_counts] == 0.0f);
+  CHECK(controller.signals()[Signal::encoder_2_counts] == 10.0f);
+  CHECK(controller.signals()[Signal::joint_1_rad] == 0.0f);
+  CHECK(controller.signals()[Signal::joint_2_rad] ==
+        doctest::Approx(0.9f + 10.0f * settings.encoders.rad_per_count[1]));
+  CHECK(controller.signals()[Signal::joint_3_rad] == -2.0f);
+}
+
+TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, and T1z is zero") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::active_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  run_with_host(controller, samples, settings, 4'000);
+  CHECK(controller.signals()[Signal::force_N] == 0.0f);
+  push_into_wall(controller, samples, settings);
+  run_with_host(controller, samples, settings, 12'000);  // at rest, speed zero
+
+  const protocol::SignalValues& signals = controller.signals();
+  REQUIRE(controller.state() == State::active);
+  const float depth_m = -signals[Signal::penetration_x_m];
+  CHECK(depth_m > 0.0005f);
+  CHECK(signals[Signal::force_x_N] == doctest::Approx(-800.0f * depth_m).epsilon(1e-4));
+  CHECK(signals[Signal::force_N] == doctest::Approx(800.0f * depth_m).epsilon(1e-4));
+  CHECK(signals[Signal::force_y_N] == 0.0f);
+  CHECK(signals[Signal::torque_1_Nm] == 0.0f);
+  const control::Triple joints{signals[Signal::joint_1_rad], signals[Signal::joint_2_rad], signals[Signal::joint_3_rad]};
+  const control::Triple torque = control::joint_torques(control::forward_kinematics(joints, settings.arm).jacobian,
+                                                        {signals[Signal::force_x_N], 0.0f, 0.0f});
+  CHECK(signals[Signal::torque_2_Nm] == torque[1]);
+  CHECK(signals[Signal::torque_3_Nm] == torque[2]);
+  CHECK(signals[Signal::current_reference_3_A] == doctest::Approx(torque[2] * settings.motors.ampere_per_Nm[2]));
+  CHECK(signals[Signal::velocity_x_m_s] == 0.0f);
+  // No current flows in this rig, so the loops push with all the voltage that they may, in the reference's direction.
+  CHECK(signals[Signal::duty_2] * signals[Signal::current_reference_2_A] > 0.0f);
+  CHECK(std::abs(signals[Signal::duty_2]) == doctest::Approx(16.0f / 18.0f).epsilon(1e-3));
+  CHECK(signals[Signal::duty_1] == doctest::Approx(0.0f));
+}
+
+TEST_CASE("the force ramps in over force_ramp_s and goes off at once") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  push_into_wall(controller, samples, settings);
+  tests::run(controller, samples, settings, 12'000);
+  const float depth_m = -controller.signals()[Signal::penetration_x_m];
+  REQUIRE(depth_m > 0.0005f);
+  CHECK(controller.signals()[Signal::force_N] == 0.0f);
+
+  controller.carry_out(tests::command(Command::enable_force));
+  tests::run(controller, samples, settings, 1);
+  float before = 0.0f;
+  float largest_rise = 0.0f;
+  for (int i = 0; i < 1'000; ++i) {
+    run_with_host(controller, samples, settings, 1);
+    largest_rise = std::max(largest_rise, controller.signals()[Signal::force_N] - before);
+    before = controller.signals()[Signal::force_N];
+  }
+  CHECK(before == doctest::Approx(0.5f * 800.0f * depth_m).epsilon(0.01));
+  CHECK(largest_rise < 800.0f * depth_m / 1'900.0f);
+  run_with_host(controller, samples, settings, 1'100);
+  CHECK(controller.signals()[Signal::force_N] == doctest::Approx(800.0f * depth_m).epsilon(1e-3));
+
+  controller.carry_out(tests::command(Command::disable_force));
+  const Drive drive = tests::run(controller, samples, settings, 1);
+  CHECK_FALSE(drive.enabled);
+  CHECK(drive.duty == control::Triple{});
+  CHECK(controller.state() == State::ready);
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.signals()[Signal::force_N] == 0.0f);
+}
+
+TEST_CASE("a silent host switches the force off after host_timeout_s, and not while it speaks") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::active_controller(settings);
+  for (int i = 0; i < 20; ++i) {
+    tests::run(controller, tests::samples_at_rest(), settings, 900);
+    controller.host_alive();
+  }
+  CHECK(controller.state() == State::active);
+  tests::run(controller, tests::samples_at_rest(), settings, 1'000);
+  CHECK(controller.state() == State::active);
+  CHECK_FALSE(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
+  CHECK(controller.fault() == Fault::host_silent);
+  controller.carry_out(tests::command(Command::clear_fault));
+  tests::run(controller, tests::samples_at_rest(), settings, 1);
+  CHECK(controller.state() == State::ready);
+}
+
+/// Samples that must switch an active controller off in the very period in which they come.
+struct BadSample {
+  Fault fault;
+  void (*spoil)(Samples&);
+  std::uint32_t periods;
+};
+
+TEST_CASE("what the samples can show wrong switches the bridges off with the right fault") {
+  const BadSample cases[] = {
+      {Fault::bridge_fault, [](Samples& s) { s.bridge_fault = true; }, 1},
+      {Fault::over_current, [](Samples& s) { s.current_A[2] = -3.8f; }, 1},
+      {Fault::supply_low, [](Samples& s) { s.supply_V = 9.0f; }, 60},
+      {Fault::supply_high, [](Samples& s) { s.supply_V = 27.0f; }, 60},
+      {Fault::not_finite, [](Samples& s) { s.current_A[0] = std::numeric_limits<float>::quiet_NaN(); }, 1},
+      {Fault::not_finite, [](Samples& s) { s.supply_V = std::numeric_limits<float>::infinity(); }, 1},
+      {Fault::encoder_implausible, [](Samples& s) { s.encoder_counts[0] += 12'000; }, 1},
+  };
+  for (const BadSample& row : cases) {
+    CAPTURE(static_cast<int>(row.fault));
+    const Settings settings = settings_near_wall();
+    Controller controller = tests::active_controller(settings);
+    Samples samples = tests::samples_at_rest();
+    CHECK(tests::run(controller, samples, settings, 5).enabled);
+    row.spoil(samples);
+    const Drive drive = tests::run(controller, samples, settings, row.periods);
+    CHECK(controller.state() == State::fault);
+    CHECK(controller.fault() == row.fault);
+    CHECK_FALSE(drive.enabled);
+    CHECK(drive.duty == control::Triple{});
+
+    samples = tests::samples_at_rest();
+    tests::run(controller, samples, settings, 400);
+    CHECK(controller.state() == State::fault);
+    controller.carry_out(tests::command(Command::clear_fault));
+    tests::run(controller, samples, settings, 1);
+    CHECK(controller.state() == (row.fault == Fault::encoder_implausible ? State::unreferenced : State::ready));
+  }
+}
+
+TEST_CASE("a probe beyond its speed limit is let go") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::active_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  for (int i = 0; i < 60 && controller.state() == State::active; ++i) {
+    samples.encoder_counts[0] += 80;  // 0.5 rad/ms at the waist
+    tests::run(controller, samples, settings, 1);
+  }
+  CHECK(controller.fault() == Fault::over_speed);
+}
+
+TEST_CASE("offsets of the current sensors are taken off, and a broken sensor is found") {
+  const Settings settings = settings_near_wall();
+  Samples samples = tests::samples_at_rest();
+  samples.current_A = {0.05f, -0.03f, 0.0f};
+  Controller controller{tests::board_limits};
+  tests::run(controller, samples, settings, 2'100);
+  CHECK(controller.state() == State::unreferenced);
+  CHECK(std::abs(controller.signals()[Signal::current_1_A]) < 1e-4f);
+  CHECK(std::abs(controller.signals()[Signal::current_2_A]) < 1e-4f);
+
+  Controller broken{tests::board_limits};
+  samples.current_A[1] = -4.1f;
+  tests::run(broken, samples, settings, 2'100);
+  CHECK(broken.fault() == Fault::current_sensor);
+  broken.carry_out(tests::command(Command::clear_fault));
+  tests::run(broken, samples, settings, 10);
+  CHECK(broken.fault() == Fault::current_sensor);
+}
+
+TEST_CASE("a raised fault is shown, and one from before the start leads back to starting") {
+  const Settings settings = settings_near_wall();
+  Controller controller{tests::board_limits};
+  controller.raise(Fault::watchdog);
+  controller.raise(Fault::servo_overrun);
+  tests::run(controller, tests::samples_at_rest(), settings, 1);
+  CHECK(controller.fault() == Fault::watchdog);
+  controller.carry_out(tests::command(Command::clear_fault));
+  tests::run(controller, tests::samples_at_rest(), settings, 1);
+  CHECK(controller.state() == State::starting);
+}
+
+protocol::CommandReport pulse(Command which, std::uint8_t motor, float amplitude, float duration_s) {
+  protocol::CommandReport report = tests::command(which);
+  report.test = {motor, amplitude, duration_s};
+  return report;
+}
+
+TEST_CASE("a test pulse of current: its motor only, its time, its limit, then zero for as long") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::ready_controller(settings);
+  controller.carry_out(pulse(Command::test_current, 2, 99.0f, 0.01f));
+  for (int i = 0; i < 200; ++i) {
+    CHECK(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
+    CHECK(controller.signals()[Signal::current_reference_2_A] == settings.motors.current_limit_A[1]);
+    CHECK(controller.signals()[Signal::current_reference_1_A] == 0.0f);
+  }
+  for (int i = 0; i < 200; ++i) {
+    CHECK(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
+    CHECK(controller.signals()[Signal::current_reference_2_A] == 0.0f);
+  }
+  CHECK_FALSE(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
+  CHECK(controller.state() == State::ready);
+}
+
+TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  samples.current_A[2] = -0.4f;
+  controller.carry_out(pulse(Command::test_voltage, 3, -1.8f, 0.005f));
+  Drive drive = tests::run(controller, samples, settings, 100);
+  CHECK(drive.duty[2] == doctest::Approx(-0.1f).epsilon(1e-4));
+  drive = tests::run(controller, samples, settings, 100);
+  CHECK(drive.enabled);
+  CHECK(drive.duty[2] == 0.0f);
+  controller.carry_out(pulse(Command::test_voltage, 1, 1000.0f, 0.005f));
+  drive = tests::run(controller, samples, settings, 1);
+  CHECK(drive.duty[0] == doctest::Approx(16.0f / 18.0f).epsilon(1e-4));
+}
+
+TEST_CASE("test pulses run in `ready` only, and not for motors or times that make no sense") {
+  const Settings settings = settings_near_wall();
+  const auto enabled_after = [&](Controller controller, const protocol::CommandReport& command) {
+    controller.carry_out(command);
+    return tests::run(controller, tests::samples_at_rest(), settings, 2).enabled;
+  };
+  CHECK(enabled_after(tests::ready_controller(settings), pulse(Command::test_voltage, 1, 1.0f, 0.1f)));
+  CHECK_FALSE(enabled_after(tests::started_controller(settings), pulse(Command::test_voltage, 1, 1.0f, 0.1f)));
+  CHECK_FALSE(enabled_after(tests::ready_controller(settings), pulse(Command::test_voltage, 0, 1.0f, 0.1f)));
+  CHECK_FALSE(enabled_after(tests::ready_controller(settings), pulse(Command::test_current, 4, 1.0f, 0.1f)));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  CHECK_FALSE(enabled_after(tests::ready_controller(settings), pulse(Command::test_current, 1, 1.0f, nan)));
+  CHECK_FALSE(enabled_after(tests::ready_controller(settings), pulse(Command::test_current, 1, nan, 0.1f)));
+  CHECK_FALSE(enabled_after(tests::ready_controller(settings), pulse(Command::test_current, 1, 1.0f, -1.0f)));
+}
+
+TEST_CASE("every signal of the table is written, stage times of this period and of the one before") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  samples.gimbal_ratio = {0.25f, 0.5f, 1.0f};
+  tests::FakeClock clock;
+  controller.step(samples, settings, clock);
+  controller.finish(clock);
+  controller.step(samples, settings, clock);
+  const protocol::SignalValues& signals = controller.signals();
+  CHECK(signals[Signal::servo_cycles] == 1 + 2 + 3 + 4 + 5 + 6);
+  CHECK(controller.servo_cycles() == 21);
+  CHECK(signals[Signal::stage_sample_cycles] == 7.0f);
+  CHECK(signals[Signal::stage_current_cycles] == 11.0f);
+  CHECK(signals[Signal::stage_report_cycles] == 6.0f);
+  CHECK(signals[Signal::supply_V] == doctest::Approx(18.0f));
+  for (int i = 0; i < 3; ++i) {
+    const control::GimbalCurve& curve = settings.gimbal[static_cast<std::size_t>(i)];
+    const float r = samples.gimbal_ratio[static_cast<std::size_t>(i)];
+    CHECK(signals.values[static_cast<std::size_t>(Signal::gimbal_1_rad) + static_cast<std::size_t>(i)] ==
+          doctest::Approx(curve.square_rad * r * r + curve.slope_rad * r + curve.offset_rad));
+  }
+}
+
+}  // namespace

@@ -1,0 +1,122 @@
+// The current loop with the default gains on a motor with resistance, inductance and back EMF: the values of
+// the Maxon RE25 118743 that the gains are designed for.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include <control/current_loop.hpp>
+#include <control/torque.hpp>
+#include <firmware/control/arms.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::CurrentLoop;
+using control::CurrentLoopGains;
+
+constexpr double resistance_ohm = 2.18;
+constexpr double inductance_H = 0.238e-3;
+
+struct Motor {
+  double current_A = 0;
+
+  /// Exact for a constant voltage over the time.
+  void run(double voltage_V, double time_s) {
+    const double settled_A = voltage_V / resistance_ohm;
+    current_A = settled_A + (current_A - settled_A) * std::exp(-time_s * resistance_ohm / inductance_H);
+  }
+};
+
+struct Rig {
+  Motor motor;
+  CurrentLoop loop;
+  CurrentLoopGains gains = control::prepare(tests::omni_parameters()).current_loop;
+  double next_V = 0;  ///< what the controller asked for takes effect one period later
+
+  /// One control period; returns the current that the controller saw.
+  double step(double reference_A, double back_emf_V = 0, double bound_V = 16) {
+    const double seen_A = motor.current_A;
+    const control::CurrentLoopStep result =
+        control::regulate(loop, static_cast<float>(reference_A), static_cast<float>(seen_A), gains,
+                          static_cast<float>(bound_V));
+    loop = result.loop;
+    motor.run(next_V - back_emf_V, protocol::servo_period_s);
+    next_V = static_cast<double>(result.voltage_V);
+    return seen_A;
+  }
+};
+
+TEST_CASE("a step of current: 63 % within 0.3 ms, overshoot under 10 %, no steady error") {
+  for (const double step_A : {0.05, 1.0, -2.0}) {
+    CAPTURE(step_A);
+    Rig rig;
+    int periods_to_63 = -1;
+    double peak = 0, seen = 0;
+    for (int period = 0; period < 400; ++period) {
+      seen = rig.step(step_A) / step_A;
+      peak = std::max(peak, seen);
+      if (periods_to_63 < 0 && seen >= 0.632) periods_to_63 = period;
+    }
+    MESSAGE("63 % after " << periods_to_63 * 0.05 << " ms, overshoot " << 100 * (peak - 1) << " %");
+    REQUIRE(periods_to_63 > 0);
+    CHECK(periods_to_63 * 50e-6 <= 0.3e-3);
+    CHECK(peak < 1.1);
+    CHECK(std::abs(seen - 1) < 1e-4);
+  }
+}
+
+TEST_CASE("back EMF of a fast and of an accelerating hand is compensated") {
+  Rig rig;
+  for (int period = 0; period < 100; ++period) rig.step(1.0);
+  // 10 rad/s at the joint is 133 rad/s and 3.1 V at the motor.
+  for (int period = 0; period < 100; ++period) rig.step(1.0, 3.1);
+  CHECK(rig.motor.current_A == doctest::Approx(1.0).epsilon(1e-3));
+  // 40 rad/s^2 at the joint: the integral follows a ramp with a steady error of slope / integral gain.
+  double seen = 0;
+  for (int period = 0; period < 2'000; ++period) seen = rig.step(1.0, 3.1 - 12.4 * period / 20'000.0);
+  CHECK(std::abs(seen - 1.0) < 0.002);
+}
+
+TEST_CASE("the voltage is bounded, and the integral does not wind up meanwhile") {
+  Rig rig;
+  for (int period = 0; period < 2'000; ++period) {
+    rig.step(10.0, 0, 4.0);
+    CHECK(std::abs(rig.next_V) <= 4.0);
+  }
+  CHECK(rig.motor.current_A == doctest::Approx(4.0 / resistance_ohm).epsilon(1e-3));
+  int periods = 0;
+  while (std::abs(rig.step(0.5, 0, 4.0) - 0.5) > 0.05 && periods < 1'000) ++periods;
+  CHECK(periods * 50e-6 <= 0.6e-3);
+  double lowest = 1;
+  for (int period = 0; period < 100; ++period) lowest = std::min(lowest, rig.step(0.5, 0, 4.0));
+  CHECK(lowest > 0.4);
+}
+
+TEST_CASE("a motor with 30 % less inductance or half more resistance stays stable") {
+  for (const double scale : {0.7, 1.5}) {
+    Rig rig;
+    rig.gains.proportional_V_per_A *= static_cast<float>(scale);
+    rig.gains.half_integral_V_per_A *= static_cast<float>(scale);
+    double peak = 0;
+    for (int period = 0; period < 200; ++period) peak = std::max(peak, rig.step(1.0));
+    CHECK(peak < 1.35);
+    CHECK(rig.motor.current_A == doctest::Approx(1.0).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("torque becomes current through gear and torque constant, with direction and limit") {
+  using enum protocol::Parameter;
+  protocol::ParameterSet set = tests::omni_parameters();
+  set[gear_ratio_1] = 10.0f;
+  set[torque_constant_1_Nm_per_A] = 0.02f;
+  set[motor_2_reversed] = 1.0f;
+  set[current_limit_3_A] = 0.5f;
+  const control::Motors motors = control::prepare(set).motors;
+  const control::Triple reference_A = control::current_references({0.2f, 0.1f, -9.0f}, motors);
+  CHECK(reference_A[0] == doctest::Approx(1.0f));
+  CHECK(reference_A[1] == doctest::Approx(-0.1f / (set[gear_ratio_2] * set[torque_constant_2_Nm_per_A])));
+  CHECK(reference_A[2] == -0.5f);
+}
+
+}  // namespace

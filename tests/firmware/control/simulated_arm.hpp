@@ -1,0 +1,68 @@
+// What several tests of the controller need: a clock, samples, and a controller brought into a state.
+#pragma once
+
+#include <control/controller.hpp>
+
+namespace inkwell::tests {
+
+/// Every stage takes as many cycles as its number says: 1, 2, 3, ...
+struct FakeClock {
+  std::uint32_t laps = 0;
+  std::uint32_t lap() { return ++laps; }
+};
+
+inline constexpr control::BoardLimits board_limits{.supply_minimum_V = 12.0f, .supply_maximum_V = 24.0f, .duty_limit = 0.95f};
+
+inline control::Samples samples_at_rest() {
+  return {.encoder_counts = {},
+          .current_A = {},
+          .gimbal_ratio = {0.5f, 0.5f, 0.5f},
+          .supply_V = 18.0f,
+          .switches = 0,
+          .bridge_fault = false};
+}
+
+inline protocol::CommandReport command(protocol::Command which) {
+  protocol::CommandReport report{};
+  report.command = which;
+  return report;
+}
+
+/// Steps with unchanged samples.
+inline control::Drive run(control::Controller& controller, const control::Samples& samples,
+                          const control::Settings& settings, std::uint32_t periods) {
+  FakeClock clock;
+  control::Drive drive;
+  for (std::uint32_t i = 0; i < periods; ++i) {
+    drive = controller.step(samples, settings, clock);
+    controller.finish(clock);
+  }
+  return drive;
+}
+
+/// Past the measurement of the offsets: state `unreferenced`.
+inline control::Controller started_controller(const control::Settings& settings) {
+  control::Controller controller{board_limits};
+  run(controller, samples_at_rest(), settings, control::CurrentOffsets::duration_periods + 1);
+  return controller;
+}
+
+/// Referenced at counts of zero, stylus out of the inkwell: state `ready`.
+inline control::Controller ready_controller(const control::Settings& settings) {
+  control::Controller controller = started_controller(settings);
+  control::Samples samples = samples_at_rest();
+  samples.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
+  run(controller, samples, settings,
+      control::InkwellReference::still_periods + control::SwitchFilter::settle_periods + 10);
+  run(controller, samples_at_rest(), settings, control::SwitchFilter::settle_periods + 10);
+  return controller;
+}
+
+inline control::Controller active_controller(const control::Settings& settings) {
+  control::Controller controller = ready_controller(settings);
+  controller.carry_out(command(protocol::Command::enable_force));
+  run(controller, samples_at_rest(), settings, 1);
+  return controller;
+}
+
+}  // namespace inkwell::tests

@@ -1,0 +1,159 @@
+// The adaptive window against motions whose speed is known. Speeds are in counts a period; on the Omni one
+// count is about 0.05 mm at the probe, so that one count a period is 1.1 m/s.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include <control/velocity.hpp>
+#include <protocol/reports.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::SpeedEstimate;
+
+constexpr double rate_Hz = protocol::servo_rate_Hz;
+constexpr double pi = 3.14159265358979;
+
+std::int32_t counts_at(double position) { return static_cast<std::int32_t>(std::floor(position)); }
+
+struct Quality {
+  double rms;             ///< of the estimate's error, counts a second
+  double raw_rms;         ///< of the error of the raw difference of two samples
+  double lag_s;           ///< time shift that a sine's phase stands for
+  double amplitude_ratio; ///< estimate's sine against the true one
+};
+
+/// Estimates the speed of `amplitude_counts` sin(2 pi f t) over whole periods, after one to settle.
+Quality follow_sine(double amplitude_counts, double frequency_Hz) {
+  const double omega = 2 * pi * frequency_Hz;
+  const auto turn = static_cast<std::uint32_t>(rate_Hz / frequency_Hz);
+  const std::uint32_t turns = turn < 20'000 ? 4 : 2;
+  SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+  double square = 0, raw_square = 0, in_phase = 0, quadrature = 0;
+  std::int32_t before = 0;
+  for (std::uint32_t period = 1; period <= turns * turn; ++period) {
+    const double t = period / rate_Hz;
+    const std::int32_t counts = counts_at(amplitude_counts * std::sin(omega * t) + 0.37);
+    control::update(estimate, counts, period);
+    const double truth = amplitude_counts * omega * std::cos(omega * t);
+    const double value = estimate.counts_per_period * rate_Hz;
+    const double raw = (counts - before) * rate_Hz;
+    before = counts;
+    if (period <= turn) continue;
+    square += (value - truth) * (value - truth);
+    raw_square += (raw - truth) * (raw - truth);
+    in_phase += value * std::cos(omega * t);
+    quadrature += value * std::sin(omega * t);
+  }
+  const double samples = static_cast<double>((turns - 1) * turn);
+  const double size = 2 * std::hypot(in_phase, quadrature) / samples;
+  return {std::sqrt(square / samples), std::sqrt(raw_square / samples), std::atan2(quadrature, in_phase) / omega,
+          size / (amplitude_counts * omega)};
+}
+
+TEST_CASE("a hand's sine of 2 Hz and 16 mm: small error, little lag, far better than a difference") {
+  const Quality quality = follow_sine(300, 2);
+  const double peak = 300 * 2 * pi * 2;
+  MESSAGE("RMS error " << 100 * quality.rms / peak << " % of the peak speed (raw difference "
+                       << 100 * quality.raw_rms / peak << " %), lag " << 1e3 * quality.lag_s << " ms");
+  CHECK(quality.rms < 0.03 * peak);
+  CHECK(quality.rms < 0.05 * quality.raw_rms);
+  CHECK(quality.lag_s < 3e-3);
+  CHECK(quality.lag_s > 0);
+  CHECK(quality.amplitude_ratio == doctest::Approx(1.0).epsilon(0.02));
+}
+
+TEST_CASE("a fast shake of 20 Hz and 5 mm") {
+  const Quality quality = follow_sine(100, 20);
+  const double peak = 100 * 2 * pi * 20;
+  MESSAGE("RMS error " << 100 * quality.rms / peak << " % of the peak speed (raw difference "
+                       << 100 * quality.raw_rms / peak << " %), lag " << 1e3 * quality.lag_s << " ms");
+  CHECK(quality.rms < 0.08 * peak);
+  CHECK(quality.rms < 0.15 * quality.raw_rms);
+  CHECK(quality.lag_s < 1e-3);
+}
+
+TEST_CASE("constant speeds from 0.5 mm/s to 3 m/s") {
+  for (const double counts_per_s : {10.0, 37.0, 200.0, 1'234.0, 9'000.0, 20'000.0, 33'333.0, 60'000.0}) {
+    CAPTURE(counts_per_s);
+    for (const double sign : {1.0, -1.0}) {
+      SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+      const auto periods = static_cast<std::uint32_t>(std::max(4'000.0, 40 * rate_Hz / counts_per_s));
+      double worst = 0;
+      for (std::uint32_t period = 1; period <= periods; ++period) {
+        control::update(estimate, counts_at(sign * counts_per_s * period / rate_Hz), period);
+        if (period > periods / 2)
+          worst = std::max(worst, std::abs(estimate.counts_per_period * rate_Hz - sign * counts_per_s) / counts_per_s);
+      }
+      // One count of uncertainty over a window of 56 to 64 periods, one period over a longer one.
+      CHECK(worst < std::max(0.002, 1.0 / 56 / std::max(1.0, counts_per_s / rate_Hz)));
+    }
+  }
+}
+
+TEST_CASE("at rest it is exactly zero, also after motion and while a count dithers") {
+  SpeedEstimate estimate = control::start_speed_estimate(1'000, 0);
+  std::uint32_t period = 1;
+  for (; period < 100; ++period) control::update(estimate, 1'000, period);
+  CHECK(estimate.counts_per_period == 0.0f);
+  for (std::int32_t i = 0; i < 50; ++i, period += 10) control::update(estimate, 1'000 + i, period);
+  CHECK(estimate.counts_per_period == doctest::Approx(0.1f));
+  for (std::uint32_t i = 0; i < SpeedEstimate::rest_periods; ++i) control::update(estimate, 1'049, ++period);
+  CHECK(estimate.counts_per_period == 0.0f);
+  for (int i = 0; i < 100; ++i) {
+    control::update(estimate, 1'049 + i % 2, period += 7);
+    CHECK(estimate.counts_per_period == 0.0f);
+  }
+}
+
+TEST_CASE("after a sudden stop the speed is bounded by one count in the time of silence") {
+  SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+  std::uint32_t period = 0;
+  for (std::int32_t counts = 1; counts < 200; ++counts) control::update(estimate, counts, period += 4);
+  CHECK(estimate.counts_per_period == doctest::Approx(0.25f));
+  for (std::uint32_t silent = 1; silent < 1'000; ++silent) {
+    control::update(estimate, 199, ++period);
+    CHECK(estimate.counts_per_period <= 0.25001f);
+    CHECK(estimate.counts_per_period <= 1.0625f / static_cast<float>(silent) + 1e-6f);
+    CHECK(estimate.counts_per_period > 0.0f);
+  }
+}
+
+TEST_CASE("between edges the value rests: it changes in few of the periods") {
+  SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+  int changes = 0;
+  float before = 0.0f;
+  constexpr std::uint32_t periods = 20'000;
+  for (std::uint32_t period = 1; period <= periods; ++period) {
+    // 500 counts a second, slowing down and standing still for the second half.
+    const double t = std::min(period / rate_Hz, 0.5);
+    control::update(estimate, counts_at(500 * t - 250 * t * t), period);
+    if (estimate.counts_per_period != before) ++changes;
+    before = estimate.counts_per_period;
+  }
+  CHECK(changes < 320);
+  CHECK(changes > 50);
+}
+
+TEST_CASE("the period counter may wrap") {
+  SpeedEstimate estimate = control::start_speed_estimate(0, 0xFFFFFF00u);
+  std::uint32_t period = 0xFFFFFF00u;
+  for (std::int32_t counts = 1; counts < 100; ++counts) {
+    control::update(estimate, counts, period += 5);
+    if (counts > 2) CHECK(estimate.counts_per_period == doctest::Approx(0.2f));
+  }
+}
+
+TEST_CASE("lost or garbled counts give numbers, not nonsense") {
+  SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+  std::int32_t counts = 0;
+  for (std::uint32_t period = 1; period < 2'000; ++period) {
+    counts += period % 97 == 0 ? 30'000 : 1;
+    control::update(estimate, counts, period);
+    CHECK(estimate.counts_per_period >= 0.0f);
+    CHECK(estimate.counts_per_period <= 30'001.0f);
+  }
+}
+
+}  // namespace

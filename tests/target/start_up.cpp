@@ -1,0 +1,43 @@
+// Start-up of a test image on a bare Cortex-M4F, and what happens when a test crashes it.
+#include <cstdint>
+#include <cstdlib>
+
+#include "semihosting.hpp"
+
+extern "C" {
+
+extern std::uint32_t bss_start, bss_end, stack_top;
+void __libc_init_array();
+int main();
+
+[[noreturn]] void reset() {
+  // Full access to the floating-point unit (PM0214, "CPACR").
+  auto& coprocessor_access = *reinterpret_cast<volatile std::uint32_t*>(0xE000ED88);
+  coprocessor_access = coprocessor_access | (0xFu << 20);
+  asm volatile("dsb\n isb");
+  for (std::uint32_t* word = &bss_start; word != &bss_end; ++word) *word = 0;
+  __libc_init_array();
+  std::exit(main());
+}
+
+[[noreturn]] void processor_fault() {
+  inkwell::semihosting::write("The test image met a processor fault.\n");
+  inkwell::semihosting::exit(99);
+}
+
+// Called by __libc_init_array; all constructors are in the init array.
+void _init() {}
+void _fini() {}
+
+using Handler = void (*)();
+struct VectorTable {
+  std::uint32_t* stack;
+  Handler handlers[15];
+};
+
+[[gnu::section(".vectors"), gnu::used]] extern const VectorTable vectors;
+const VectorTable vectors{&stack_top,
+                          {reset, processor_fault, processor_fault, processor_fault, processor_fault, processor_fault,
+                           processor_fault, processor_fault, processor_fault, processor_fault, processor_fault,
+                           processor_fault, processor_fault, processor_fault, processor_fault}};
+}
