@@ -3,8 +3,8 @@
 
     tools/stack_bound.py build/board/inkwell.elf
 
-The bound is the deepest path from the reset handler, plus the control interrupt on top of it, plus the frame of a
-fault on top of that (whose handler then uses a place of its own). It holds as long as nothing recurses, which is
+The bound is the deepest path from the reset handler, plus every interrupt on top of it, one in another, plus the frame
+of a fault on top of that (whose handler then uses a place of its own). It holds as long as nothing recurses, which is
 checked for direct calls; without recursion every real chain of calls is a path that visits a function once, and the
 deepest such path is looked for. A virtual call may go to any function in that slot of any class.
 """
@@ -95,20 +95,20 @@ def main() -> int:
     problems = []
     bound = EXCEPTION_FRAME_BYTES  # of a fault
     print("stack, in bytes:")
-    for start, title in (("reset_handler", "main loop"), ("control_interrupt", "control interrupt")):
+    for start in ("reset_handler", *image.interrupts):
         if cycle := find_direct_cycle(image, start):
             problems.append("recursion: " + " -> ".join(readable(cycle)))
             continue
         used, path = deepest_path(image, start)
         bound += used + (EXCEPTION_FRAME_BYTES if start != "reset_handler" else 0)
-        print(f"  {title}: {used}, by")
+        print(f"  {start}: {used}, by")
         for name, shown in zip(path, readable(path)):
             print(f"    {image.functions[name].stack_bytes:5}  {shown}")
         for name in sorted(image.reachable(start) - MAY_SET_STACK):
             if image.functions[name].moves_stack:
                 problems.append(f"{readable([name])[0]} moves the stack by an amount that is not a constant")
     room = image.symbols["stack_top"] - image.symbols["stack_bottom"]
-    print(f"  bound with two exception frames of {EXCEPTION_FRAME_BYTES}: {bound} of {room}")
+    print(f"  bound with {len(image.interrupts) + 1} exception frames of {EXCEPTION_FRAME_BYTES}: {bound} of {room}")
     if bound > room:
         problems.append(f"the stack needs {bound} bytes, but boards/omni_driver/omni_driver.ld gives {room}")
     for problem in problems:

@@ -5,9 +5,12 @@
 #include <drivers/crash_record.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/independent_watchdog.hpp>
+#include <drivers/otg_fs.hpp>
 #include <drivers/status_led.hpp>
 #include <drivers/system.hpp>
+#include <usb/device.hpp>
 
+#include "handlers.hpp"
 #include "parts.hpp"
 
 namespace inkwell::application {
@@ -16,6 +19,8 @@ namespace {
 drivers::StatusLed status_led;
 drivers::Console console;
 drivers::IndependentWatchdog watchdog;
+drivers::OtgFs usb_port;
+static_assert(drivers::OtgFs::interrupt_position == static_cast<unsigned>(drivers::Interrupt::usb));
 
 /// The board cannot work, and its bridges are off: blinks ten times a second until it is switched off.
 [[noreturn]] void give_up(std::uint32_t processor_Hz) {
@@ -68,6 +73,9 @@ void feed_watchdog() {
 }
 
 }  // namespace
+
+extern "C" void usb_interrupt() { drivers::OtgFs::wake(); }
+
 }  // namespace inkwell::application
 
 int main() {
@@ -94,10 +102,18 @@ int main() {
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up(board::processor_Hz);
   analog_inputs.arm();
-  drivers::enable(drivers::Interrupt::analog_converters);
+  drivers::enable_first(drivers::Interrupt::analog_converters);
+
+  const usb::Identity identity{.serial_number = drivers::unique_identifier(),
+                               .firmware_version = {INKWELL_VERSION_NUMBERS},
+                               .processor_clock_Hz = board::processor_Hz,
+                               .reset_cause = reset_cause.flags >> 24};
+  usb::Device usb_device{usb_port, host_link, identity};
+  if (!usb_port.start()) give_up(board::processor_Hz);
   watchdog.start();
 
   for (;;) {
+    usb_device.poll();
     feed_watchdog();
     status_led.show(led_pattern(host_link.status.state()), completed_periods.load());
     drivers::wait_for_interrupt();

@@ -10,10 +10,10 @@
 namespace inkwell::drivers {
 
 /// Position in the vector table (RM0090, "Vector table for STM32F405xx").
-enum class Interrupt : std::uint8_t { analog_converters = 18 };
+enum class Interrupt : std::uint8_t { analog_converters = 18, usb = 67 };
 
-/// The control interrupt is the only one, so it has the highest priority.
-inline void enable(Interrupt interrupt) {
+/// With the highest priority: for the control interrupt. That of USB only wakes the main loop and has the lowest.
+inline void enable_first(Interrupt interrupt) {
   const auto position = static_cast<unsigned>(interrupt);
   registers::NVIC::IPR::write(position, 0);
   registers::NVIC::ISER::write(position / 32, 1u << position % 32);
