@@ -57,6 +57,7 @@ class Plant final : public Circuit {
   Truth truth(Ticks now);
   const ArmMotion& arm() const { return arm_; }
   const Inkwell& inkwell() const { return inkwell_; }
+  const Hand& hand() const { return hand_; }
 
  private:
   enum class Role : std::uint8_t { none, leg_a, leg_b, enable };

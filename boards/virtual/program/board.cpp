@@ -1,0 +1,67 @@
+#include "board.hpp"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "log.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+std::string_view name_of(ResetCause cause) {
+  switch (cause) {
+    case ResetCause::pin: return "the reset pin";
+    case ResetCause::power_on: return "power-on";
+    case ResetCause::software: return "software";
+    case ResetCause::independent_watchdog: return "the independent watchdog";
+    case ResetCause::window_watchdog: return "the window watchdog";
+    case ResetCause::low_power: return "low-power management";
+  }
+  return "an unknown cause";
+}
+
+}  // namespace
+
+Board::Board(const Options& options)
+    : plant_(arms::read(options.arm), {.seed = options.seed}),
+      chip_(plant_, {.mode = options.mode,
+                     .random_seed = static_cast<std::uint32_t>(options.seed),
+                     .log = [](const std::string& line) { log_line(line); }}),
+      usb_(chip_.scheduler(), chip_.interrupts(), chip_.unmodelled_log(), options.usbip_port) {
+  chip_.load_elf(options.elf);
+  chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_.core());
+  chip_.on_injected_sequence = [this](std::uint64_t index, Ticks when) {
+    if (trace_.is_running()) trace_.record(index, plant_.truth(when));
+  };
+  chip_.on_console = [this](std::uint8_t byte) { console(byte); };
+  plant_.connect(chip_.input_pins());
+  chip_.reset(ResetCause::power_on);
+  chip_.on_reset = [this](ResetCause cause) {
+    locked_up_ = false;
+    if (trace_.is_running()) trace_.start();  // control periods count from 0 again
+    log_line(chip_.now(), fmt::format("the chip was reset by {}", name_of(cause)));
+  };
+}
+
+Stop Board::run_until(Ticks when) {
+  const Stop stop = chip_.run_until(when);
+  if (stop == Stop::locked_up && !locked_up_) {
+    locked_up_ = true;
+    log_line(chip_.now(), fmt::format("the processor locked up: {}", chip_.lockup_reason()));
+  }
+  return stop;
+}
+
+void Board::reset() { chip_.reset(ResetCause::pin); }
+
+void Board::console(std::uint8_t byte) {
+  constexpr std::size_t longest_line = 400;  // firmware that never ends its line must not fill the memory
+  if (byte == '\r') return;
+  if (byte != '\n') console_line_ += byte >= 32 && byte < 127 ? static_cast<char>(byte) : '?';
+  if (byte != '\n' && console_line_.size() < longest_line) return;
+  log_line(chip_.now(), "firmware: " + console_line_);
+  console_line_.clear();
+}
+
+}  // namespace inkwell::virtual_board

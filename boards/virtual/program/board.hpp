@@ -1,0 +1,43 @@
+// The board as a whole: chip, plant and USB wired together. It lives on the simulation's thread.
+#pragma once
+
+#include <string>
+
+#include <chip/chip.hpp>
+#include <plant/plant.hpp>
+#include <virtual_usb/virtual_usb.hpp>
+
+#include "options.hpp"
+
+namespace inkwell::virtual_board {
+
+class Board {
+ public:
+  /// Reads the arm, programs the flash and switches the power on.
+  /// @throws std::runtime_error with a sentence if the arm, the ELF or the USB/IP port is refused.
+  explicit Board(const Options& options);
+
+  /// Runs until board time `when`, or until the firmware ends or locks up.
+  Stop run_until(Ticks when);
+  /// Presses the board's reset button.
+  void reset();
+
+  Chip& chip() { return chip_; }
+  Plant& plant() { return plant_; }
+  VirtualUsb& usb() { return usb_; }
+  Trace& trace() { return trace_; }
+  Truth truth() { return plant_.truth(chip_.now()); }
+  bool locked_up() const { return locked_up_; }
+
+ private:
+  void console(std::uint8_t byte);
+
+  Plant plant_;
+  Chip chip_;
+  VirtualUsb usb_;
+  Trace trace_;
+  std::string console_line_;
+  bool locked_up_ = false;
+};
+
+}  // namespace inkwell::virtual_board

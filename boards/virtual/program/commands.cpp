@@ -1,0 +1,290 @@
+#include "commands.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "simulation.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+using nlohmann::json;
+
+/// A command that is refused; what() is the sentence for the client.
+class Refused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// ---- arguments: each accessor says what it wants ------------------------------------------------------------
+
+const json& at(const json& request, const char* key, const char* what) {
+  const auto found = request.find(key);
+  if (found == request.end()) throw Refused(fmt::format("\"{}\" is missing: {}", key, what));
+  return *found;
+}
+
+bool truth_value(const json& request, const char* key) {
+  const json& value = at(request, key, "true or false");
+  if (!value.is_boolean()) throw Refused(fmt::format("\"{}\" must be true or false", key));
+  return value.get<bool>();
+}
+
+double checked_number(const json& value, const char* key, double minimum, double maximum) {
+  if (!value.is_number()) throw Refused(fmt::format("\"{}\" must hold numbers only", key));
+  const double number = value.get<double>();
+  if (!(number >= minimum && number <= maximum))
+    throw Refused(fmt::format("\"{}\" holds {}, which is outside {} to {}", key, number, minimum, maximum));
+  return number;
+}
+
+double number(const json& request, const char* key, double minimum, double maximum) {
+  return checked_number(at(request, key, "a number"), key, minimum, maximum);
+}
+
+double number_or(const json& request, const char* key, double otherwise, double minimum, double maximum) {
+  return request.contains(key) ? number(request, key, minimum, maximum) : otherwise;
+}
+
+Vector3 vector(const json& request, const char* key, double largest) {
+  const json& value = at(request, key, "a list of three numbers");
+  if (!value.is_array() || value.size() != 3) throw Refused(fmt::format("\"{}\" must be a list of three numbers", key));
+  Vector3 result;
+  for (int i = 0; i < 3; ++i) result[i] = checked_number(value[static_cast<std::size_t>(i)], key, -largest, largest);
+  return result;
+}
+
+constexpr double reach_m = 2.0;  // farther away than any arm of the descriptions' ranges
+
+// ---- commands -------------------------------------------------------------------------------------------------
+
+json status(const json&, Simulation& simulation) {
+  Board& board = simulation.board();
+  const Chip& chip = board.chip();
+  const Counters& counters = chip.counters();
+  std::uint32_t resets = 0;
+  for (const auto count : counters.resets) resets += count;
+  unsigned longest = 16;
+  for (unsigned exception = 16; exception < exception_numbers; ++exception)
+    if (counters.exceptions[exception].longest_instructions > counters.exceptions[longest].longest_instructions)
+      longest = exception;
+  const auto of = [&](ResetCause cause) { return counters.resets[static_cast<std::size_t>(cause)]; };
+  json reply{
+      {"board_time_s", seconds(chip.now())},
+      {"mode", chip.mode() == Mode::exact ? "exact" : "fast"},
+      {"paused", simulation.paused()},
+      {"real_time", simulation.options().real_time},
+      {"time_dropped_s", simulation.time_dropped_s()},
+      {"seed", simulation.options().seed},
+      {"instructions", counters.instructions},
+      {"sleep_share", counters.sleep_share()},
+      {"processor_clock_Hz", chip.clocks().hclk_Hz},
+      {"resets", resets},
+      {"watchdog_resets", of(ResetCause::independent_watchdog) + of(ResetCause::window_watchdog)},
+      {"unmodelled", chip.unmodelled_accesses()},
+      {"longest_interrupt",
+       {{"exception", longest}, {"instructions", counters.exceptions[longest].longest_instructions}}},
+      {"usb",
+       {{"connected", board.usb().connected()},
+        {"enumerated", board.usb().enumerated()},
+        {"imported", board.usb().imported()}}},
+      {"trace", {{"running", board.trace().is_running()}, {"rows", board.trace().waiting()}, {"dropped", board.trace().dropped()}}},
+  };
+  if (board.locked_up()) reply["locked_up"] = chip.lockup_reason();
+  return reply;
+}
+
+json pause(const json&, Simulation& simulation) {
+  simulation.pause();
+  return {{"board_time_s", seconds(simulation.board().chip().now())}};
+}
+
+json run(const json& request, Simulation& simulation) {
+  if (simulation.is_running_for()) throw Refused("another run is under way; wait for its reply or pause it");
+  if (simulation.board().locked_up()) throw Refused("the processor is locked up; reset it first");
+  simulation.run_for(number(request, "for_s", 0.0, 1e6));
+  return {};
+}
+
+json resume(const json&, Simulation& simulation) {
+  if (simulation.is_running_for()) throw Refused("a run is under way; wait for its reply or pause it");
+  if (simulation.board().locked_up()) throw Refused("the processor is locked up; reset it first");
+  simulation.resume();
+  return {};
+}
+
+json reset(const json&, Simulation& simulation) {
+  simulation.board().reset();
+  return {};
+}
+
+json quit(const json&, Simulation& simulation) {
+  simulation.quit();
+  return {};
+}
+
+json usb(const json& request, Simulation& simulation) {
+  if (truth_value(request, "connected")) simulation.board().usb().connect();
+  else simulation.board().usb().disconnect();
+  return {};
+}
+
+json buttons(const json& request, Simulation& simulation) {
+  const json& pressed = at(request, "pressed", "a list of two, true or false");
+  if (!pressed.is_array() || pressed.size() != 2 || !pressed[0].is_boolean() || !pressed[1].is_boolean())
+    throw Refused("\"pressed\" must be a list of two, true or false");
+  simulation.board().plant().press_buttons(pressed[0].get<bool>(), pressed[1].get<bool>());
+  return {};
+}
+
+json supply(const json& request, Simulation& simulation) {
+  simulation.board().plant().set_supply_V(number(request, "voltage_V", 0.0, 36.0));
+  return {};
+}
+
+json bridge_fault(const json& request, Simulation& simulation) {
+  simulation.board().plant().set_bridge_fault(truth_value(request, "fault"));
+  return {};
+}
+
+json hand(const json& request, Simulation& simulation) {
+  Plant& plant = simulation.board().plant();
+  if (!truth_value(request, "holds")) {
+    plant.let_go();
+    return {};
+  }
+  const Hand& now = plant.hand();
+  const Vector3 target_m = vector(request, "target_m", reach_m);
+  const double stiffness = number_or(request, "stiffness_N_per_m", now.stiffness_N_per_m(), 0.0, Hand::stiffness_maximum_N_per_m);
+  const double damping = number_or(request, "damping_Ns_per_m", now.damping_Ns_per_m(), 0.0, Hand::damping_maximum_Ns_per_m);
+  plant.hold(target_m, stiffness, damping);
+  return {};
+}
+
+json hand_path(const json& request, Simulation& simulation) {
+  const json& points = at(request, "points", "a list of {\"after_s\":time,\"target_m\":[x,y,z]}");
+  if (!points.is_array() || points.empty()) throw Refused("\"points\" must be a list of at least one point");
+  std::vector<Waypoint> path;
+  for (const json& point : points) {
+    if (!point.is_object()) throw Refused("each of \"points\" must be {\"after_s\":time,\"target_m\":[x,y,z]}");
+    const double earliest_s = path.empty() ? 0.0 : path.back().after_s;
+    path.push_back({number(point, "after_s", earliest_s, 1e6), vector(point, "target_m", reach_m)});
+  }
+  simulation.board().plant().follow(path);
+  return {};
+}
+
+json gimbal(const json& request, Simulation& simulation) {
+  simulation.board().plant().turn_gimbal(vector(request, "angles_rad", 20.0));
+  return {};
+}
+
+json dock(const json& request, Simulation& simulation) {
+  simulation.board().plant().dock(truth_value(request, "docked"));
+  return {};
+}
+
+json truth(const json&, Simulation& simulation) {
+  const Truth t = simulation.board().truth();
+  json reply{{"board_time_s", seconds(t.at)},
+             {"encoder_counts", t.encoder_counts},
+             {"hand_holds", t.hand_holds},
+             {"docked", t.docked},
+             {"inkwell_switch", t.inkwell_switch},
+             {"bridge_fault", t.bridge_fault},
+             {"buttons", t.buttons}};
+  const auto values = traced_values(t);
+  for (std::size_t i = 0; i < values.size(); ++i) reply[std::string(traced_quantities[i])] = values[i];
+  return reply;
+}
+
+json trace(const json& request, Simulation& simulation) {
+  Trace& trace = simulation.board().trace();
+  const json& action = at(request, "action", "\"start\", \"stop\" or \"read\"");
+  if (action == "start") {
+    trace.start();
+  } else if (action == "stop") {
+    trace.stop();
+  } else if (action == "read") {
+    const auto maximum = static_cast<std::size_t>(number_or(request, "maximum", 10'000, 0, Trace::rows_maximum));
+    json columns{"period", "board_time_s"};
+    for (const auto name : traced_quantities) columns.push_back(name);
+    json rows = json::array();
+    for (const Trace::Row& row : trace.read(maximum)) {
+      json cells{row.period, seconds(row.at)};
+      for (const double value : row.values) cells.push_back(value);
+      rows.push_back(std::move(cells));
+    }
+    return {{"columns", std::move(columns)}, {"rows", std::move(rows)}, {"dropped", trace.dropped()}};
+  } else {
+    throw Refused("\"action\" must be \"start\", \"stop\" or \"read\"");
+  }
+  return {};
+}
+
+struct Command {
+  std::string_view name;
+  json (*carry_out)(const json& request, Simulation& simulation);
+  std::vector<std::string_view> keys;  ///< that it knows besides "command"
+};
+
+const std::vector<Command>& commands() {
+  static const std::vector<Command> table = {
+      {"status", status, {}},
+      {"pause", pause, {}},
+      {"run", run, {"for_s"}},
+      {"resume", resume, {}},
+      {"reset", reset, {}},
+      {"quit", quit, {}},
+      {"usb", usb, {"connected"}},
+      {"buttons", buttons, {"pressed"}},
+      {"supply", supply, {"voltage_V"}},
+      {"bridge_fault", bridge_fault, {"fault"}},
+      {"hand", hand, {"holds", "target_m", "stiffness_N_per_m", "damping_Ns_per_m"}},
+      {"hand_path", hand_path, {"points"}},
+      {"gimbal", gimbal, {"angles_rad"}},
+      {"dock", dock, {"docked"}},
+      {"truth", truth, {}},
+      {"trace", trace, {"action", "maximum"}},
+  };
+  return table;
+}
+
+json carry_out_checked(const std::string& line, Simulation& simulation) {
+  const json request = json::parse(line, nullptr, false);
+  if (request.is_discarded() || !request.is_object())
+    throw Refused("a command is one JSON object in one line, such as {\"command\":\"status\"}");
+  const json& name = at(request, "command", "the name of a command, such as \"status\"");
+  const auto command = std::ranges::find_if(commands(), [&](const Command& c) { return name == c.name; });
+  if (command == commands().end()) {
+    std::vector<std::string_view> names;
+    for (const Command& c : commands()) names.push_back(c.name);
+    throw Refused(fmt::format("there is no command {}; known are {}", name.dump(), fmt::join(names, ", ")));
+  }
+  for (const auto& [key, value] : request.items())
+    if (key != "command" && std::ranges::find(command->keys, key) == command->keys.end())
+      throw Refused(fmt::format("\"{}\" does not know the key \"{}\"; it knows {}", command->name, key,
+                                command->keys.empty() ? "none" : fmt::format("{}", fmt::join(command->keys, ", "))));
+  return command->carry_out(request, simulation);
+}
+
+}  // namespace
+
+json carry_out(const std::string& line, Simulation& simulation) {
+  try {
+    json reply = carry_out_checked(line, simulation);
+    reply["ok"] = true;
+    return reply;
+  } catch (const Refused& refused) {
+    return {{"ok", false}, {"error", refused.what()}};
+  }
+}
+
+}  // namespace inkwell::virtual_board

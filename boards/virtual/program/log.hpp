@@ -1,0 +1,13 @@
+// The program's log: lines on stderr, each with its board time once there is one.
+#pragma once
+
+#include <string>
+
+#include <chip/machine.hpp>
+
+namespace inkwell::virtual_board {
+
+void log_line(const std::string& text);
+void log_line(Ticks now, const std::string& text);
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,46 @@
+// virtual-board: runs the firmware that would be flashed on a board made of software.
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "board.hpp"
+#include "control_server.hpp"
+#include "log.hpp"
+#include "options.hpp"
+#include "simulation.hpp"
+
+namespace {
+
+std::atomic<bool> end_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "it is set by a signal");
+
+void request_end(int) { end_requested = true; }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace inkwell::virtual_board;
+  const CommandLine command_line = read_command_line(argc, argv);
+  if (!command_line.options) return command_line.exit_code;
+  const Options& options = *command_line.options;
+
+  struct sigaction action {};
+  action.sa_handler = request_end;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+
+  try {
+    Board board(options);
+    ControlServer server(options.control_port);
+    fmt::print("ready usbip={} control={}\n", board.usb().port(), server.port());
+    std::fflush(stdout);
+    return Simulation(options, board, server).run(end_requested);
+  } catch (const std::exception& error) {
+    log_line(error.what());
+    return 1;
+  }
+}

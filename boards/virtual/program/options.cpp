@@ -1,0 +1,67 @@
+#include "options.hpp"
+
+#include <cstdlib>
+#include <iostream>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace inkwell::virtual_board {
+namespace {
+
+std::filesystem::path default_arm() {
+  if (const char* directory = std::getenv("INKWELL_ARMS")) return std::filesystem::path(directory) / "omni.toml";
+  std::error_code error;
+  const auto executable = std::filesystem::read_symlink("/proc/self/exe", error);
+  return (executable.parent_path() / "../../boards/arms/omni.toml").lexically_normal();
+}
+
+}  // namespace
+
+CommandLine read_command_line(int argc, char** argv) {
+  Options options;
+  options.arm = default_arm();
+  CLI::App app{
+      "Runs the ELF of an STM32F405 on a board made of software: the chip, bridges, motors and sensors, an arm and a\n"
+      "hand. Its USB device is exported by the USB/IP protocol; a control socket moves the hand, presses buttons, runs\n"
+      "and stops the time, and tells what no real board could. Both listen on 127.0.0.1 only.\n"
+      "When it is ready it prints one line: ready usbip=PORT control=PORT. Its log goes to stderr."};
+  app.name("virtual-board");
+  app.get_formatter()->column_width(30);
+  app.add_option("--elf", options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
+  app.add_option("--arm", options.arm, "arm description (default: omni.toml from $INKWELL_ARMS or ../../boards/arms)")
+      ->type_name("FILE");
+  app.add_option("--usbip", options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")->type_name("PORT");
+  app.add_option("--control", options.control_port, "TCP port of the control socket; 0 is any free one")
+      ->type_name("PORT");
+  std::string mode = "fast";
+  app.add_option("--mode", mode, "exact: interrupts come at any instruction; fast: between blocks of instructions")
+      ->check(CLI::IsMember({"exact", "fast"}))
+      ->type_name("exact|fast")
+      ->capture_default_str();
+  app.add_flag("--real-time", options.real_time, "keep board time from running ahead of the clock on the wall");
+  app.add_option("--seed", options.seed, "of all noise; the same seed and commands give the same run")
+      ->type_name("N")
+      ->capture_default_str();
+  double seconds = 0.0;
+  auto* seconds_option = app.add_option("--seconds", seconds, "end after this much board time")
+                             ->check(CLI::PositiveNumber)
+                             ->type_name("T");
+  app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
+  app.footer(
+      "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options; firmware that ends by\n"
+      "semihosting passes its own exit code on.\n"
+      "Control socket: one JSON object a line each way, such as {\"command\":\"status\"}. Commands: status, pause, run,\n"
+      "resume, reset, quit, usb, buttons, supply, bridge_fault, hand, hand_path, gimbal, dock, truth, trace.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
+  }
+  options.mode = mode == "exact" ? Mode::exact : Mode::fast;
+  if (*seconds_option) options.seconds = seconds;
+  return {options, 0};
+}
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,32 @@
+// The command line of virtual-board.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include <chip/chip.hpp>
+
+namespace inkwell::virtual_board {
+
+struct Options {
+  std::filesystem::path elf;
+  std::filesystem::path arm;
+  std::uint16_t usbip_port = 0;    ///< 0 is any free port
+  std::uint16_t control_port = 0;
+  Mode mode = Mode::fast;
+  bool real_time = false;
+  std::uint64_t seed = 1;
+  std::optional<double> seconds;   ///< of board time, after which the program ends
+  bool paused = false;
+};
+
+/// The options, or the exit code if the program is to end now: 0 after --help, 2 after a wrong option, which
+/// has been explained on stderr.
+struct CommandLine {
+  std::optional<Options> options;
+  int exit_code = 0;
+};
+CommandLine read_command_line(int argc, char** argv);
+
+}  // namespace inkwell::virtual_board

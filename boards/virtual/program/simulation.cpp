@@ -1,0 +1,115 @@
+#include "simulation.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "log.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Ticks slice = ticks_per_s / 1000;
+constexpr auto attention = 50ms;  // how soon a paused board notices a signal
+constexpr double debt_maximum_s = 0.1;
+
+}  // namespace
+
+Simulation::Simulation(const Options& options, Board& board, ControlServer& server)
+    : options_(options), board_(board), server_(server), paused_(options.paused) {
+  start_pacing();
+}
+
+int Simulation::run(const std::atomic<bool>& end_requested) {
+  const Ticks end = options_.seconds ? ticks(*options_.seconds) : std::numeric_limits<Ticks>::max();
+  while (!quit_ && !end_requested && !firmware_exit_code_ && board_.chip().now() < end) {
+    if (auto request = server_.take(paused_ ? Clock::now() + attention : Clock::time_point::min()))
+      serve(std::move(*request));
+    else if (!paused_)
+      advance();
+  }
+  end_run("the virtual board ends");
+  return firmware_exit_code_.value_or(0);
+}
+
+void Simulation::serve(ControlRequest request) {
+  nlohmann::json reply = carry_out(request.line, *this);
+  if (run_asked_s_) {
+    run_ = Run{board_.chip().now() + ticks(*std::exchange(run_asked_s_, std::nullopt)), std::move(request.reply)};
+    resume();
+    return;
+  }
+  request.reply.set_value(std::move(reply));
+}
+
+void Simulation::advance() {
+  Ticks target = board_.chip().now() + slice;
+  if (run_) target = std::min(target, run_->end);
+  if (options_.seconds) target = std::min(target, ticks(*options_.seconds));
+  switch (board_.run_until(target)) {
+    case Stop::time_reached:
+    case Stop::requested:
+      break;
+    case Stop::locked_up:
+      pause();
+      end_run("the processor locked up: " + board_.chip().lockup_reason());
+      return;
+    case Stop::firmware_exit:
+      firmware_exit_code_ = board_.chip().exit_code();
+      log_line(board_.chip().now(), fmt::format("the firmware ended with exit code {}", *firmware_exit_code_));
+      end_run("the firmware ended");
+      return;
+  }
+  if (run_ && board_.chip().now() >= run_->end) {
+    paused_ = true;
+    run_->reply.set_value({{"ok", true}, {"board_time_s", seconds(board_.chip().now())}});
+    run_.reset();
+    return;
+  }
+  if (options_.real_time) pace();
+}
+
+void Simulation::start_pacing() {
+  pace_wall_ = Clock::now();
+  pace_board_ = board_.chip().now();
+}
+
+// Sleeps while board time is ahead. If it is far behind, the debt is dropped and counted: catching up would
+// show the user a burst of motion that never was.
+void Simulation::pace() {
+  const double board_s = seconds(board_.chip().now() - pace_board_);
+  const double wall_s = std::chrono::duration<double>(Clock::now() - pace_wall_).count();
+  if (wall_s - board_s > debt_maximum_s) {
+    time_dropped_s_ += wall_s - board_s;
+    start_pacing();
+    return;
+  }
+  const auto due = pace_wall_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(board_s));
+  while (Clock::now() < due && !quit_)
+    if (auto request = server_.take(due)) serve(std::move(*request));
+}
+
+void Simulation::pause() {
+  paused_ = true;
+  end_run(fmt::format("the run was paused at {:.6f} s of board time", seconds(board_.chip().now())));
+}
+
+void Simulation::resume() {
+  paused_ = false;
+  start_pacing();
+}
+
+void Simulation::run_for(double duration_s) { run_asked_s_ = duration_s; }
+
+void Simulation::end_run(const std::string& error) {
+  if (!run_) return;
+  run_->reply.set_value({{"ok", false}, {"error", error}});
+  run_.reset();
+}
+
+}  // namespace inkwell::virtual_board
