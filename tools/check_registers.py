@@ -5,10 +5,10 @@
 
 Every register's address, every field's position and width is looked up in the SVD. Both sides are read strictly: a
 line of a header that is not of the map's form is an error, so nothing escapes the check. SVD files have errors and
-gaps of their own; what is known of them stands below, each with its reason, and is printed as such. An exception that
-is not needed any more is an error too.
+gaps of their own; what is known of them stands below, each with its reason, and is printed as such. A known difference
+that does not occur any more is an error too.
 
-Exit code 0: all agree or are known exceptions. 1: differences, one line each. 2: the input cannot be read.
+Exit code 0: all agree, or differ as known. 1: differences, one line each. 2: the input cannot be read.
 """
 
 import argparse
@@ -20,41 +20,66 @@ import xml.etree.ElementTree
 
 # ---- what is known of the SVD of the STM32F405 ---------------------------------------------------------------
 
-# Peripherals whose name in the SVD differs from ours.
-PERIPHERAL_NAMES = {"ADC_COMMON": "C_ADC"}
 
-# Whole peripherals that the SVD does not have: name -> reason.
-PERIPHERALS_ABSENT = {
-    "SIGNATURE": "the SVD leaves the device signature out; RM0090, \"Unique device ID register\", has it at 0x1FFF7A10",
-    "CORE_DEBUG": "debug registers of the core, ARMv7-M Architecture Reference Manual, C1.6: DEMCR at 0xE000EDFC",
-    "DWT": "debug registers of the core, ARMv7-M Architecture Reference Manual, C1.8: DWT_CTRL at 0xE0001000",
-}
+@dataclasses.dataclass
+class Known:
+    """A difference that is the SVD's, or that has a reason. Patterns match whole names of our map, fields may be None
+    for a whole register and registers for a whole peripheral. `svd_name` is what the SVD has instead; None: nothing
+    that could be compared."""
 
-# Registers that go by another name in the SVD: (peripheral, our name) -> (its name, reason).
-REGISTER_NAMES = {
-    ("TIM1", "CCMR1"): ("CCMR1_Output", "the SVD has one view of it for output and one for input"),
-    ("TIM1", "CCMR2"): ("CCMR2_Output", "the SVD has one view of it for output and one for input"),
-    ("TIM8", "CCMR1"): ("CCMR1_Output", "the SVD has one view of it for output and one for input"),
-    ("TIM8", "CCMR2"): ("CCMR2_Output", "the SVD has one view of it for output and one for input"),
-    ("TIM3", "CCMR1"): ("CCMR1_Input", "the SVD has one view of it for output and one for input"),
-    ("TIM4", "CCMR1"): ("CCMR1_Input", "the SVD has one view of it for output and one for input"),
-    ("TIM5", "CCMR1"): ("CCMR1_Input", "the SVD has one view of it for output and one for input"),
-    ("SCB", "CFSR"): ("CFSR_UFSR_BFSR_MMFSR", "the SVD spells out the three status registers in it"),
-}
+    peripheral: str
+    register: str | None
+    field: str | None
+    svd_name: str | None
+    reason: str
+    uses: int = 0
 
-# Fields that go by another name: (peripheral, register, our name) -> (its name, reason).
-FIELD_NAMES = {
-    ("RCC", "CSR", "IWDGRSTF"): ("WDGRSTF", "RM0090 calls the independent watchdog's flag IWDGRSTF"),
-    ("DBG", "DBGMCU_APB1_FZ", "DBG_IWDG_STOP"): ("DBG_IWDEG_STOP", "a misspelling in the SVD"),
-    ("IWDG", "PR", "PR_"): ("PR", "a field cannot have its register's name in C++"),
-    ("USART2", "DR", "DR_"): ("DR", "a field cannot have its register's name in C++"),
-}
+    def applies(self, *names: str) -> bool:
+        patterns = [pattern for pattern in (self.peripheral, self.register, self.field) if pattern is not None]
+        return len(patterns) == len(names) and all(map(re.fullmatch, patterns, names))
 
-# Fields that the SVD lacks or has wrong: (peripheral, register, field) -> reason.
-FIELDS_NOT_COMPARABLE = {
-    ("PWR", "CR", "VOS"): "the SVD leaves it out; RM0090, PWR_CR of the STM32F405: bit 14",
-    ("SCB", "AIRCR", "VECTKEY"): "the SVD has its name for reading, VECTKEYSTAT, at the same place",
-}
+    def rename(self, name: str) -> str:
+        """The SVD's name; `{}` in it stands for ours."""
+        return self.svd_name.format(name)
+
+
+FS_PREFIX = "the SVD puts FS_ before most names of this core"
+VIEWS = "the SVD has one view of it for output and one for input"
+IN_CPP = "a field cannot have its register's name in C++"
+ENDPOINT_0 = "endpoint 0 has a narrower field (packet size as a code, few packets); the driver writes no more to it"
+NOT_ON_0 = "endpoint 0 has no data toggle to set; the driver does not set it there"
+
+
+def known_differences() -> list[Known]:
+    return [
+        Known("ADC_COMMON", None, None, "C_ADC", "the SVD's name for what the three converters share"),
+        Known("SIGNATURE", None, None, None, 'not in the SVD; RM0090, "Unique device ID register": 0x1FFF7A10'),
+        Known("CORE_DEBUG", None, None, None, "not in the SVD; ARMv7-M Architecture Reference Manual: DEMCR at 0xE000EDFC"),
+        Known("DWT", None, None, None, "not in the SVD; ARMv7-M Architecture Reference Manual: DWT_CTRL at 0xE0001000"),
+        Known("OTG_FS_FIFO", None, None, None, 'not in the SVD; RM0090, "Data FIFO (DFIFO) access register map": 0x50001000'),
+        Known("TIM[18]", "CCMR[12]", None, "{}_Output", VIEWS),
+        Known("TIM[345]", "CCMR1", None, "{}_Input", VIEWS),
+        Known("SCB", "CFSR", None, "CFSR_UFSR_BFSR_MMFSR", "the SVD spells out the three status registers in it"),
+        Known("NVIC", "IPR20", None, None, "the SVD ends with interrupt 79; RM0090's vector table with 81"),
+        Known("OTG_FS_GLOBAL", "G(?!RXSTSP).*|DIEPTXF[12]", None, "FS_{}", FS_PREFIX),
+        Known("OTG_FS_GLOBAL", "GRXSTSP", None, None, "the SVD has only GRXSTSR, which does not pop; RM0090: 0x50000020"),
+        Known("OTG_FS_GLOBAL", "DIEPTXF0", None, "FS_GNPTXFSIZ_Device", "the SVD has its name in host mode"),
+        Known("OTG_FS_DEVICE", "DCFG|DCTL|DIEPMSK|DAINTMSK|DIEPCTL0", None, "FS_{}", FS_PREFIX),
+        Known("OTG_FS_PWRCLK", "PCGCCTL", None, "FS_{}", FS_PREFIX),
+        Known("RCC", "CSR", "IWDGRSTF", "WDGRSTF", "RM0090 calls the independent watchdog's flag IWDGRSTF"),
+        Known("DBG", "DBGMCU_APB1_FZ", "DBG_IWDG_STOP", "DBG_IWDEG_STOP", "a misspelling in the SVD"),
+        Known("IWDG", "PR", "PR_", "PR", IN_CPP),
+        Known("USART2", "DR", "DR_", "DR", IN_CPP),
+        Known("PWR", "CR", "VOS", None, "not in the SVD; RM0090, PWR_CR of the STM32F405: bit 14"),
+        Known("SCB", "AIRCR", "VECTKEY", "VECTKEYSTAT", "the SVD has the name for reading"),
+        Known("OTG_FS_GLOBAL", "GCCFG", "NOVBUSSENS", None, "not in the SVD; RM0090, OTG_FS_GCCFG: bit 21"),
+        Known("OTG_FS_DEVICE", "DIEPCTL[1-3]|DOEPCTL[0-3]", "STALL", "Stall", "the SVD has it in small letters"),
+        Known("OTG_FS_DEVICE", "D[IO]EPCTL[1-3]", "SD0PID", "SD0PID_SEVNFRM", "the SVD has both its meanings"),
+        Known("OTG_FS_DEVICE", "DOEPTSIZ[1-3]", "STUPCNT", "RXDPID_STUPCNT", "the SVD has both its meanings"),
+        Known("OTG_FS_DEVICE", "D[IO]EPCTL0", "SD0PID", None, NOT_ON_0),
+        Known("OTG_FS_DEVICE", "D[IO]EPCTL0", "MPSIZ", None, ENDPOINT_0),
+        Known("OTG_FS_DEVICE", "D[IO]EPTSIZ0", "XFRSIZ|PKTCNT", None, ENDPOINT_0),
+    ]
 
 
 # ---- reading our map -------------------------------------------------------------------------------------------
@@ -217,18 +242,25 @@ def read_svd(path: pathlib.Path) -> dict[str, tuple[int, list[SvdRegister]]]:
 class Comparison:
     def __init__(self, svd):
         self.svd = svd
+        self.known = known_differences()
         self.differences: list[str] = []
-        self.exceptions: dict[tuple, str] = {}
         self.registers = 0
         self.fields = 0
 
+    def svd_name(self, *names: str) -> str | None:
+        """Name in the SVD of the peripheral, register or field that `names` lead to; None: not comparable."""
+        for known in self.known:
+            if known.applies(*names):
+                known.uses += 1
+                return None if known.svd_name is None else known.rename(names[-1])
+        return names[-1]
+
     def compare(self, peripheral: Peripheral) -> None:
-        name = PERIPHERAL_NAMES.get(peripheral.name, peripheral.name)
+        name = self.svd_name(peripheral.name)
+        if name is None:
+            return
         if name not in self.svd:
-            if reason := PERIPHERALS_ABSENT.get(peripheral.name):
-                self.exceptions[(peripheral.name,)] = reason
-            else:
-                self.differences.append(f"{peripheral.where}: the SVD has no peripheral {name}")
+            self.differences.append(f"{peripheral.where}: the SVD has no peripheral {name}")
             return
         base, registers = self.svd[name]
         if base != peripheral.base:
@@ -237,53 +269,43 @@ class Comparison:
             )
             return
         for register in peripheral.registers:
-            if register.stride and register.size_bits == 32:
-                for index in range(register.count):
+            for index in range(register.count):
+                # An array of bytes is four to a register of the SVD, which has only the whole one.
+                if register.size_bits == 32 or index * register.stride % 4 == 0:
                     self.compare_register(peripheral, register, registers, index)
-            else:
-                self.compare_register(peripheral, register, registers, None)
 
     def compare_register(self, peripheral, register, svd_registers, index) -> None:
-        label = f"{peripheral.name}.{register.name}" + ("" if index is None else f"[{index}]")
-        address = peripheral.base + register.offset + register.stride * (index or 0)
-        wanted = self.register_names(peripheral.name, register.name, index)
-        found = next((candidate for candidate in svd_registers if candidate.name in wanted), None)
+        name = register.name
+        if register.stride:
+            # CCR[0] is CCR1 in the timers; elsewhere, as ISER[0] is ISER0, the count begins with 0.
+            name += str(index * register.stride // 4 if register.size_bits != 32 else index + (name == "CCR"))
+        label = f"{peripheral.name}.{name}"
+        address = peripheral.base + register.offset + register.stride * index
+        wanted = self.svd_name(peripheral.name, name)
+        if wanted is None:
+            return
+        found = next((candidate for candidate in svd_registers if candidate.name == wanted), None)
         if found is None:
-            self.differences.append(f"{label}: the SVD has no register {' or '.join(sorted(wanted))} in {peripheral.name}")
+            self.differences.append(f"{label}: the SVD has no register {wanted} in {peripheral.name}")
             return
         self.registers += 1
         if found.address != address:
             self.differences.append(f"{label} is at 0x{address:08X}, in the SVD at 0x{found.address:08X}")
             return
         for field in register.fields:
-            self.compare_field(peripheral.name, register.name, label, field, found)
+            self.compare_field(peripheral.name, name, field, found)
 
-    def register_names(self, peripheral: str, register: str, index: int | None) -> set[str]:
-        if entry := REGISTER_NAMES.get((peripheral, register)):
-            self.exceptions[(peripheral, register)] = entry[1]
-            return {entry[0]}
-        if index is not None:
-            # CCR[0] is CCR1 in the timers, ISER[0] is ISER0 in the NVIC: the address tells which count is meant.
-            first = 1 if register == "CCR" else 0
-            return {f"{register}{index + first}"}
-        # An array of bytes is checked by its first register of 32 bits.
-        return {register, f"{register}0"} if peripheral == "NVIC" else {register}
-
-    def compare_field(self, peripheral: str, register: str, label: str, field: Field, found: SvdRegister) -> None:
-        key = (peripheral, register, field.name)
-        if reason := FIELDS_NOT_COMPARABLE.get(key):
-            self.exceptions[key] = reason
+    def compare_field(self, peripheral: str, register: str, field: Field, found: SvdRegister) -> None:
+        name = self.svd_name(peripheral, register, field.name)
+        if name is None:
             return
-        name = field.name
-        if entry := FIELD_NAMES.get(key):
-            name, self.exceptions[key] = entry
         self.fields += 1
         place = found.fields.get(name) or gathered(found.fields, name)
         if place is None:
-            self.differences.append(f"{label}: the SVD has no field {name} there")
+            self.differences.append(f"{peripheral}.{register}: the SVD has no field {name} there")
         elif place != (field.position, field.width):
             self.differences.append(
-                f"{label}.{field.name} is at bit {field.position}, {field.width} wide; "
+                f"{peripheral}.{register}.{field.name} is at bit {field.position}, {field.width} wide; "
                 f"in the SVD at bit {place[0]}, {place[1]} wide"
             )
 
@@ -298,15 +320,13 @@ def gathered(fields: dict[str, tuple[int, int]], name: str) -> tuple[int, int] |
     return bits[0][0], len(bits)
 
 
-def unused_exceptions(comparison: Comparison, peripherals: list[Peripheral]) -> list[str]:
-    """Exceptions for what is in our map, but was not needed: the SVD or the map has changed."""
-    mapped = {peripheral.name for peripheral in peripherals}
-    known = [(name,) for name in PERIPHERALS_ABSENT] + list(REGISTER_NAMES) + list(FIELD_NAMES)
-    known += list(FIELDS_NOT_COMPARABLE)
+def unused(comparison: Comparison, peripherals: list[Peripheral]) -> list[str]:
+    """Known differences of peripherals in our map that did not occur: the SVD or the map has changed."""
     return [
-        f"the exception for {'.'.join(key)} is not needed; remove it from {pathlib.Path(__file__).name}"
-        for key in known
-        if key[0] in mapped and key not in comparison.exceptions
+        f"the known difference of {known.peripheral} {known.register or ''} {known.field or ''} does not occur; "
+        f"remove it from {pathlib.Path(__file__).name}"
+        for known in comparison.known
+        if known.uses == 0 and any(re.fullmatch(known.peripheral, peripheral.name) for peripheral in peripherals)
     ]
 
 
@@ -324,14 +344,16 @@ def main() -> int:
         return 2
     for peripheral in peripherals:
         comparison.compare(peripheral)
-    for key, reason in comparison.exceptions.items():
-        print(f"known: {'.'.join(key)}: {reason}")
-    problems = comparison.differences + unused_exceptions(comparison, peripherals)
+    used = [known for known in comparison.known if known.uses]
+    for known in used:
+        place = ".".join(pattern for pattern in (known.peripheral, known.register, known.field) if pattern)
+        print(f"known: {place}: {known.reason}")
+    problems = comparison.differences + unused(comparison, peripherals)
     for problem in problems:
         print(f"DIFFERS: {problem}")
     print(
         f"{len(peripherals)} peripherals, {comparison.registers} registers and {comparison.fields} fields compared: "
-        f"{len(problems)} differences, {len(comparison.exceptions)} known exceptions"
+        f"{len(problems)} differences, {len(used)} known ones"
     )
     return 1 if problems else 0
 

@@ -82,7 +82,7 @@ class CheckRegisters(unittest.TestCase):
 
     def test_wrong_stride_is_found(self):
         output = self.planted("<base + 0x10, 0x08, 2>", "<base + 0x10, 0x04, 2>")
-        self.assertIn("LAMP.CHANNEL[1] is at 0x40001014, in the SVD at 0x40001018", output)
+        self.assertIn("LAMP.CHANNEL1 is at 0x40001014, in the SVD at 0x40001018", output)
 
     def test_wrong_position_and_width_are_found(self):
         self.assertIn("LAMP.CR.ON is at bit 1, 1 wide", self.planted("<CR, 0, 1>", "<CR, 1, 1>"))
