@@ -1,0 +1,331 @@
+#include <experiment/wall_experiment.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include <arm/defaults.hpp>
+#include <arms/description.hpp>
+#include <protocol/reports.hpp>
+
+#include "rig.hpp"
+
+namespace inkwell::experiment {
+namespace {
+
+using device::Vector3;
+using protocol::Command;
+using protocol::Parameter;
+using protocol::ParameterSet;
+using protocol::State;
+
+// The simulated hand: a relaxed human hand and arm, damped so that it does not swing.
+constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
+constexpr double push_N = 2.4, push_part_of_limit = 0.75;  // what the hand presses with, within the force limit
+constexpr double clear_m = 0.005;                          // distance from the wall before and after the push
+constexpr double touch_m = 0.002;                          // how far the hand is beyond the wall when the push begins
+constexpr double drag_m = 0.015;                           // along the wall, in the arm's plane
+
+// The times of the hand's path, from the start of the recording.
+constexpr double approached_s = 0.7, touched_s = 1.1, pushed_s = 1.9, held_s = 2.6, dragged_s = 3.2, released_s = 3.6,
+                 returned_s = 4.1, end_s = 4.2;
+constexpr double settling_s = 0.15;  // after the push stops growing, before the hold counts as steady
+
+constexpr float test_amplitude_A = 0.5f, test_duration_s = 0.04f;
+constexpr double test_spacing_s = 0.12;
+
+constexpr double user_limit_s = 120, push_limit_s = 30;
+
+/// Where the probe is when the sphere touches the wall.
+double contact_m(const ParameterSet& parameters, Wall wall) {
+  return wall_position_m(parameters, wall) - wall.side * static_cast<double>(parameters[Parameter::sphere_radius_m]);
+}
+
+Vector3 middle_of_box_m(const ParameterSet& parameters) {
+  Vector3 middle{};
+  for (int axis = 0; axis < 3; ++axis)
+    middle[static_cast<std::size_t>(axis)] =
+        (wall_position_m(parameters, {axis, 1}) + wall_position_m(parameters, {axis, -1})) / 2;
+  return middle;
+}
+
+/// The vertical axis, or along the arm's plane where the wall is horizontal.
+std::size_t drag_axis(const ParameterSet& parameters, Wall wall) {
+  const std::size_t vertical = parameters[Parameter::frame] == 1.0f ? 1 : 2;
+  return static_cast<int>(vertical) != wall.axis ? vertical : static_cast<std::size_t>(forward_wall(parameters).axis);
+}
+
+std::vector<device::HandWaypoint> hand_path(const ParameterSet& parameters, Wall wall) {
+  const double force_N =
+      std::min(push_N, push_part_of_limit * static_cast<double>(parameters[Parameter::force_limit_N]));
+  const double stiffness = std::max(1.0, static_cast<double>(parameters[Parameter::wall_stiffness_N_per_m]));
+  const double push_m = force_N / hand_stiffness_N_per_m + force_N / stiffness;
+  const Vector3 middle = middle_of_box_m(parameters);
+  const auto beyond = [&](double distance_m, double along_m) {
+    Vector3 target = middle;
+    target[static_cast<std::size_t>(wall.axis)] = contact_m(parameters, wall) + wall.side * distance_m;
+    target[drag_axis(parameters, wall)] += along_m;
+    return target;
+  };
+  return {{0.0, middle},
+          {approached_s, beyond(-clear_m, 0)},
+          {touched_s, beyond(touch_m, 0)},
+          {pushed_s, beyond(push_m, 0)},
+          {held_s, beyond(push_m, 0)},
+          {dragged_s, beyond(push_m, drag_m)},
+          {released_s, beyond(-2 * clear_m, drag_m)},
+          {returned_s, middle},
+          {end_s, middle}};
+}
+
+std::vector<device::ParameterChange> arm_parameters(const arms::Description& arm) {
+  std::vector<device::ParameterChange> changes;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    if (arms::belongs_to_arm(protocol::parameter_table[i]))
+      changes.emplace_back(static_cast<Parameter>(i), arm.parameters.values[i]);
+  return changes;
+}
+
+arms::Description read_arm(const std::filesystem::path& file) {
+  try {
+    return arms::read(file);
+  } catch (const arms::DescriptionError& error) {
+    throw device::Error(error.what());
+  }
+}
+
+std::size_t samples_of(double time_s) { return static_cast<std::size_t>(std::lround(time_s * protocol::servo_rate_Hz)); }
+
+/// One pulse of current in each motor while the stylus rests in the inkwell.
+Recording record_current_steps(Rig& rig, device::Device& device) {
+  ScopeCapture capture(device);
+  rig.select_signals(recorded_signals());
+  for (std::uint8_t motor = 1; motor <= 3; ++motor) {
+    rig.test_current({motor, test_amplitude_A, test_duration_s});
+    rig.pass(test_spacing_s);
+  }
+  const auto scope = capture.take(capture.size());
+  rig.select_signals({});
+  return make_recording(scope, nullptr);
+}
+
+std::vector<CurrentStep> current_steps(const Recording& recording) {
+  std::vector<CurrentStep> steps;
+  for (int motor = 1; motor <= 3; ++motor)
+    steps.push_back(current_step(recording.values_of(fmt::format("current_reference_{}_A", motor)),
+                                 recording.values_of(fmt::format("current_{}_A", motor)),
+                                 1.0 / protocol::servo_rate_Hz));
+  return steps;
+}
+
+void switch_force_on(Rig& rig, const ParameterSet& parameters) {
+  rig.command(Command::enable_force);
+  rig.wait_until([](const auto& pose) { return pose.state == State::active; }, 1.0,
+                 "The device did not switch the force on. Look at its state with `inkwell watch`.");
+  rig.pass(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
+}
+
+struct Push {
+  Recording recording;
+  std::optional<Interval> hold;
+  std::uint64_t samples_lost = 0;
+};
+
+device::Trace read_trace(device::ControlClient& control) {
+  constexpr std::size_t rows_at_once = 4000;
+  device::Trace whole = control.trace_read(rows_at_once);
+  for (;;) {
+    const device::Trace part = control.trace_read(rows_at_once);
+    if (part.row_count() == 0) return whole;
+    whole.values.insert(whole.values.end(), part.values.begin(), part.values.end());
+  }
+}
+
+// ---- with a virtual board -------------------------------------------------------------------------------
+
+void take_to_middle(Rig& rig, device::ControlClient& control, const ParameterSet& parameters) {
+  const auto& here = rig.pose().position_m;
+  const Vector3 here_m{static_cast<double>(here[0]), static_cast<double>(here[1]), static_cast<double>(here[2])};
+  control.hand({true, here_m, hand_stiffness_N_per_m, hand_damping_Ns_per_m});
+  control.dock(false);
+  constexpr double duration_s = 0.8;
+  control.hand_path({{0.0, here_m}, {duration_s, middle_of_box_m(parameters)}});
+  rig.pass(duration_s + 0.2);
+}
+
+Push push_by_simulated_hand(Rig& rig, device::Device& device, device::ControlClient& control,
+                            const ParameterSet& parameters, Wall wall, const Progress& progress) {
+  progress("The hand takes the stylus to the middle of the box.", 0.25);
+  take_to_middle(rig, control, parameters);
+  switch_force_on(rig, parameters);
+
+  ScopeCapture capture(device);
+  control.trace_start();
+  rig.select_signals(recorded_signals());
+  const std::uint32_t path_begins_at = rig.pose().time_periods;
+  control.hand_path(hand_path(parameters, wall));
+  constexpr double step_s = 0.1;
+  for (double passed_s = 0; passed_s < end_s; passed_s += step_s) {
+    progress(fmt::format("The hand pushes into the wall {}: {:.1f} of {:.1f} s of board time.", wall_name(wall),
+                         passed_s, end_s), 0.3 + 0.5 * passed_s / end_s);
+    rig.pass(step_s);
+  }
+  rig.pass(step_s);
+  const auto scope = capture.take(samples_of(end_s));
+  control.trace_stop();
+  rig.select_signals({});
+  rig.command(Command::disable_force);
+
+  progress("The simulation's own values are read.", 0.82);
+  const auto truth = read_trace(control);
+  const double offset_s = static_cast<double>(static_cast<std::int32_t>(path_begins_at - scope.first_period)) /
+                          protocol::servo_rate_Hz;
+  return {make_recording(scope, &truth), Interval{offset_s + pushed_s + settling_s, offset_s + held_s - 0.01},
+          scope.lost_samples};
+}
+
+device::Endpoint wait_for_endpoint(const device::VirtualBoard& board) {
+  using namespace std::chrono_literals;
+  for (int attempts = 0; attempts < 500; ++attempts) {
+    if (const auto endpoint = board.find()) return *endpoint;
+    std::this_thread::sleep_for(20ms);
+  }
+  throw device::Error("The virtual board shows no USB device. Check that --elf names Inkwell's firmware.");
+}
+
+/// Board time runs freely until the host is connected. From a whole second on it stands still whenever the host
+/// works, so that the same seed gives the same experiment however fast this computer is.
+void stop_at_whole_second(device::ControlClient& control) {
+  control.pause();
+  const double now_s = control.status().board_time_s;
+  control.run(std::ceil(now_s + 0.5) - now_s);
+}
+
+// ---- with a real device ---------------------------------------------------------------------------------
+
+bool is_clear(const protocol::PoseReport& pose, const ParameterSet& parameters) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double position_m = static_cast<double>(pose.position_m[axis]);
+    if (position_m > contact_m(parameters, {axis, 1}) - clear_m || position_m < contact_m(parameters, {axis, -1}) + clear_m)
+      return false;
+  }
+  return true;
+}
+
+Push push_by_user(Rig& rig, device::Device& device, const ParameterSet& parameters, Wall wall, const Progress& progress) {
+  progress("Take the stylus out of the inkwell to the middle of the box. The force will come on there.", 0.25);
+  const auto in_the_middle = [&](const auto& pose) {
+    return is_clear(pose, parameters) && (pose.switches & static_cast<std::uint8_t>(protocol::Switch::inkwell)) == 0;
+  };
+  rig.wait_until(in_the_middle, user_limit_s, "The stylus did not come to the middle of the box. Run the experiment again.");
+  switch_force_on(rig, parameters);
+
+  ScopeCapture capture(device);
+  rig.select_signals(recorded_signals());
+  progress(fmt::format("Push into the wall {}, harder and harder, hold still for a second, then let go.", wall_name(wall)), 0.4);
+  const auto beyond_m = [&](const protocol::PoseReport& pose) {
+    return wall.side * (static_cast<double>(pose.position_m[wall.axis]) - contact_m(parameters, wall));
+  };
+  const std::string too_late = "The push into the wall was not finished in 30 s. Run the experiment again.";
+  rig.wait_until([&](const auto& pose) { return beyond_m(pose) > 0; }, push_limit_s, too_late);
+  rig.wait_until([&](const auto& pose) { return beyond_m(pose) < -clear_m; }, push_limit_s, too_late);
+  rig.pass(0.2);
+  const auto scope = capture.take(capture.size());
+  rig.select_signals({});
+  rig.command(Command::disable_force);
+  return {make_recording(scope, nullptr), std::nullopt, scope.lost_samples};
+}
+
+// ---- both -----------------------------------------------------------------------------------------------
+
+void write_summary(const nlohmann::ordered_json& summary, const std::filesystem::path& file) {
+  std::ofstream stream(file, std::ios::trunc);
+  stream << summary.dump(2) << '\n' << std::flush;
+  if (!stream) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
+}
+
+}  // namespace
+
+nlohmann::ordered_json run_wall_experiment(const WallOptions& options, const Progress& progress) {
+  const auto& directory = options.output_directory;
+  std::error_code code;
+  std::filesystem::create_directories(directory, code);
+  if (!std::filesystem::is_directory(directory))
+    throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with --out.", directory.string(),
+                                    code.message()));
+
+  Circumstances circumstances;
+  circumstances.arm = arm_defaults::name;
+  std::vector<device::ParameterChange> changes;
+  std::optional<device::VirtualBoard> board;
+  std::optional<device::ControlClient> control;
+  device::Endpoint endpoint;
+  if (options.virtual_board) {
+    circumstances.simulation = true;
+    circumstances.seed = options.virtual_board->seed;
+    circumstances.mode = options.virtual_board->mode == device::SimulationMode::exact ? "exact" : "fast";
+    if (!options.virtual_board->arm.empty()) {
+      const auto arm = read_arm(options.virtual_board->arm);
+      circumstances.arm = arm.name;
+      changes = arm_parameters(arm);
+    }
+    progress("The virtual board starts.", 0.0);
+    board.emplace(*options.virtual_board);
+    control.emplace(board->control());
+    control->resume();
+    endpoint = wait_for_endpoint(*board);
+  } else if (options.endpoint) {
+    endpoint = *options.endpoint;
+  } else {
+    throw device::Error("No arm was found. Plug one in, or give --virtual.");
+  }
+
+  const auto device = device::Device::open(endpoint);
+  if (!changes.empty()) device->set_parameters(changes);
+  circumstances.parameters = device->parameters();
+  const auto information = device->information();
+  circumstances.firmware_version = information.firmware_version;
+  circumstances.serial_number = information.serial_number;
+  circumstances.wall = options.wall.value_or(forward_wall(circumstances.parameters));
+  if (control) stop_at_whole_second(*control);
+
+  Rig rig(*device, control ? &*control : nullptr);
+  progress("Waiting for the stylus to rest in the inkwell.", 0.1);
+  rig.wait_until([](const auto& pose) { return pose.state == State::ready || pose.state == State::active; },
+                 control ? 3.0 : user_limit_s,
+                 "The arm was not put into its inkwell, so the board does not know where it is. Put the stylus in.");
+  if (rig.pose().state == State::active) rig.command(Command::disable_force);
+
+  progress("The current loops are tested with a pulse in each motor. Leave the stylus in the inkwell.", 0.15);
+  const auto steps_recording = record_current_steps(rig, *device);
+  const auto steps = current_steps(steps_recording);
+
+  const Push push = control ? push_by_simulated_hand(rig, *device, *control, circumstances.parameters,
+                                                     circumstances.wall, progress)
+                            : push_by_user(rig, *device, circumstances.parameters, circumstances.wall, progress);
+  circumstances.poses_received = rig.poses_received();
+  circumstances.poses_lost = rig.poses_lost();
+  circumstances.samples_lost = push.samples_lost;
+  const auto result = evaluate(push.recording, circumstances.parameters, circumstances.wall, push.hold);
+  if (!result.contact)
+    throw device::Error(fmt::format("The sphere never touched the wall {}. Choose another with --wall.",
+                                    wall_name(circumstances.wall)));
+
+  progress("The recording is written.", 0.88);
+  write_csv(steps_recording, directory / "current-step.csv");
+  write_csv(push.recording, directory / "recording.csv");
+  progress("The figures are drawn.", 0.94);
+  constexpr double margin_s = 0.25;
+  const Interval shown{std::max(0.0, result.contact->from_s - margin_s),
+                       std::min(static_cast<double>(result.samples) / protocol::servo_rate_Hz, result.contact->to_s + margin_s)};
+  draw_figures(push.recording, {circumstances.simulation, circumstances.arm, circumstances.wall, circumstances.parameters, shown},
+               directory);
+  const auto summary = summary_json(circumstances, result, steps);
+  write_summary(summary, directory / "summary.json");
+  progress("Done.", 1.0);
+  return summary;
+}
+
+}  // namespace inkwell::experiment
