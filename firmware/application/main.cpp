@@ -87,7 +87,7 @@ int main() {
   drivers::start_pins();
   drivers::CycleCounter::start();
   status_led.start();
-  if (!drivers::start_clocks()) give_up(16'000'000);
+  if (!drivers::start_clocks()) give_up(drivers::internal_oscillator_Hz);
   report_start(reset_cause, crash);
 
   bridges.start();

@@ -34,9 +34,10 @@ static_assert(in_first_register(board::motor_current[0]) && in_first_register(bo
               in_first_register(board::gimbal[1]) && in_first_register(board::gimbal[2]) &&
               !in_first_register(board::supply));
 
-constexpr std::uint32_t adc1_control =
-    ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits |
-    ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
+/// ADC_CR2 of ADC1 before and after it listens to TIM1.
+constexpr std::uint32_t adc1_unarmed = ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits;
+constexpr std::uint32_t adc1_armed =
+    adc1_unarmed | ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
 
 template <class Converter>
 void set_up_injected(const board::AnalogInput& input) {
@@ -78,12 +79,14 @@ void set_up_memory_access(const volatile std::uint16_t* destination) {
   DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
 }
 
-/// 3 us after switching on the converters are accurate (data sheet, ADC characteristics, t_STAB); waits for 10.
-void wait_until_stable() {
+void wait(std::uint32_t cycles) {
   const std::uint32_t from = CycleCounter::now();
-  while (CycleCounter::now() - from < board::processor_Hz / 100'000) {
+  while (CycleCounter::now() - from < cycles) {
   }
 }
+
+/// 3 us after switching on, the converters are accurate (data sheet, ADC characteristics, t_STAB).
+constexpr std::uint32_t stabilisation_cycles = board::processor_Hz / 100'000;
 
 }  // namespace
 
@@ -110,23 +113,26 @@ void AnalogInputs::start() {
   set_up_slow_sequence();
   set_up_memory_access(slow_.data());
 
-  ADC1::CR2::write(ADC1::CR2::ADON(1));
+  ADC1::CR2::write(adc1_unarmed);
   ADC2::CR2::write(ADC2::CR2::ADON(1));
   ADC3::CR2::write(ADC3::CR2::ADON(1));
-  wait_until_stable();
+  wait(stabilisation_cycles);
+  // The first control period finds gimbal and supply measured already.
+  ADC1::CR2::write(adc1_unarmed | ADC1::CR2::SWSTART::mask);
+  wait(board::servo_cycles);
 }
 
 void AnalogInputs::arm() {
   ADC3::CR2::write(ADC3::CR2::ADON(1), ADC3::CR2::JEXTSEL(trigger_tim1_trgo), ADC3::CR2::JEXTEN(rising_edge));
   ADC2::CR2::write(ADC2::CR2::ADON(1), ADC2::CR2::JEXTSEL(trigger_tim1_trgo), ADC2::CR2::JEXTEN(rising_edge));
-  ADC1::CR2::write(adc1_control);
+  ADC1::CR2::write(adc1_armed);
 }
 
 std::array<float, 3> AnalogInputs::take_currents_A() {
   return {take_current_A<ADC1>(), take_current_A<ADC2>(), take_current_A<ADC3>()};
 }
 
-void AnalogInputs::start_slow_conversions() { ADC1::CR2::write(adc1_control | ADC1::CR2::SWSTART::mask); }
+void AnalogInputs::start_slow_conversions() { ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask); }
 
 std::array<float, 3> AnalogInputs::gimbal_ratio() const {
   constexpr float per_count = 1.0f / (board::adc_counts - 1);

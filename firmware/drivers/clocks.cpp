@@ -10,7 +10,6 @@ using registers::FLASH;
 using registers::PWR;
 using registers::RCC;
 
-constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
 /// A turn of a waiting loop takes four cycles or more, so this is a tenth of a second or more.
 constexpr std::uint32_t wait_turns = internal_oscillator_Hz / 10 / 4;
 
@@ -32,9 +31,23 @@ bool wait_for(Condition condition) {
   return false;
 }
 
+/// Runs from the internal oscillator with the PLL off, as after a reset. The boot loader in the chip starts programs
+/// without one, and a running PLL cannot be changed.
+bool return_to_internal_oscillator() {
+  constexpr std::uint32_t internal = 0b00;
+  RCC::CR::modify(RCC::CR::HSION(1));
+  if (!wait_for([] { return RCC::CR::HSIRDY::is_set(); })) return false;
+  RCC::CFGR::modify(RCC::CFGR::SW(internal));
+  if (!wait_for([] { return RCC::CFGR::SWS::read() == internal; })) return false;
+  RCC::CR::modify(RCC::CR::PLLON(0));
+  return wait_for([] { return !RCC::CR::PLLRDY::is_set(); });
+}
+
 }  // namespace
 
 bool start_clocks() {
+  if (!return_to_internal_oscillator()) return false;
+
   // 168 MHz needs voltage scale 1. It is the default, but a boot loader may have changed it.
   RCC::APB1ENR::modify(RCC::APB1ENR::PWREN(1));
   static_cast<void>(RCC::APB1ENR::read());

@@ -14,7 +14,8 @@ namespace inkwell::drivers {
 
 class AnalogInputs {
  public:
-  /// Switches the converters on and sets their sequences up. They do not listen to TIM1 yet.
+  /// Switches the converters on, sets their sequences up and measures gimbal and supply once. The converters do not
+  /// listen to TIM1 yet.
   void start();
 
   /// Lets TIM1 trigger the converters. Call it well before an update, so that all three hear the same one first.

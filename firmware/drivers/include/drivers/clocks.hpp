@@ -1,7 +1,12 @@
 // The clock tree: crystal, PLL, buses, flash (RM0090, chapters RCC and Embedded flash).
 #pragma once
 
+#include <cstdint>
+
 namespace inkwell::drivers {
+
+/// Clock of the processor before start_clocks(), and after it if it failed (RM0090, HSI).
+inline constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
 
 /// Brings the processor from the internal 16 MHz oscillator to the board's clocks, with the accelerator of the
 /// flash on and the crystal supervised: if it stops later, the chip raises the non-maskable interrupt.

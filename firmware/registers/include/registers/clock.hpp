@@ -8,6 +8,8 @@ namespace inkwell::registers {
 template <std::uint32_t base>
 struct ResetAndClockControl {
   struct CR : Register<base + 0x00> {
+    using HSION = Field<CR, 0, 1>;
+    using HSIRDY = Field<CR, 1, 1>;
     using HSEON = Field<CR, 16, 1>;
     using HSERDY = Field<CR, 17, 1>;
     using CSSON = Field<CR, 19, 1>;
