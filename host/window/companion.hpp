@@ -1,0 +1,63 @@
+// The window's parts put together: one frame of the companion.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <window/parameter_editor.hpp>
+#include <window/window.hpp>
+#include <window/window_settings.hpp>
+
+#include "device_desk.hpp"
+#include "mouse_hand.hpp"
+#include "scene_pane.hpp"
+#include "scope_panel.hpp"
+#include "status_bar.hpp"
+#include "style.hpp"
+#include "tuning_panel.hpp"
+
+namespace inkwell::window {
+
+class Companion {
+ public:
+  Companion(const WindowOptions& options, const WindowSettings& settings, float scale);
+
+  /// Lays out and draws every pane; ImGui's frame is open.
+  void draw(ImVec2 size, double now_s);
+  /// The picture under the panes; the framebuffer is bound. `pixels_per_unit`: framebuffer over screen coordinates.
+  void draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool flat_colours) const;
+
+  /// A key went down or up, whatever has the focus. The space bar stops at once.
+  void key(int key, bool down);
+  const Palette& colours() const { return *style_.palette; }
+  /// As they stand now, to be remembered.
+  WindowSettings settings() const;
+
+ private:
+  void follow_device(double now_s);
+  void keyboard_shortcuts(double now_s);
+  void use_theme(Theme theme);
+  void carry_out(const StatusBarOutcome& outcome);
+  float splitter(const char* name, ImVec2 place, ImVec2 size, bool vertical) const;
+  void stop();
+
+  WindowOptions options_;
+  WindowSettings settings_;
+  Style style_;
+  DeviceDesk desk_;
+  std::optional<MouseHand> hand_;
+  ParameterEditor editor_;
+  StatusBar status_bar_;
+  ScenePane scene_pane_;
+  TuningPanel tuning_panel_;
+  ScopePanel scope_panel_;
+  std::uint64_t seen_revision_ = 0;
+  std::string seen_refusal_;
+  bool file_is_to_be_sent_;
+  ImVec2 scene_place_{0, 0};
+  ImVec2 scene_size_{1, 1};
+  bool button_1_ = false;
+  bool button_2_ = false;
+};
+
+}  // namespace inkwell::window

@@ -1,0 +1,79 @@
+// The scope: panes of signals against time, against each other, or as spectra.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <window/analysis.hpp>
+#include <window/plot_axis.hpp>
+#include <window/scope_layout.hpp>
+#include <window/signal_history.hpp>
+#include <window/trigger.hpp>
+#include <window/window_settings.hpp>
+
+#include "plot.hpp"
+#include "style.hpp"
+
+namespace inkwell::window {
+
+class ScopePanel {
+ public:
+  explicit ScopePanel(const WindowSettings& settings);
+
+  void draw(ImVec2 place, ImVec2 size, const Style& style);
+  /// Samples from the device; while paused they are let go, so that what is looked at stays.
+  void receive(const device::ScopeSamples& samples);
+  /// What has to be streamed for the panes and the trigger.
+  std::vector<protocol::Signal> signals() const;
+  void store(WindowSettings& settings) const;
+
+ private:
+  /// The stretch of the history that all time panes show, in samples; `zero` is where their axis says 0.
+  struct Stretch {
+    double first;
+    double last;
+    double zero;
+    double span() const { return last - first; }
+  };
+  /// What a pane remembers from frame to frame.
+  struct PaneMemory {
+    SteadyRange y;
+    SteadyRange x;
+    std::vector<Statistics> statistics;
+    std::vector<Spectrum> spectra;
+    double computed_at_s = -1.0;
+  };
+
+  Stretch stretch();
+  void pause(bool paused);
+  void choose_layout(const ScopeLayout& layout);
+
+  void draw_toolbar(const Style& style);
+  void draw_trigger_tools(const Style& style);
+  void draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const Stretch& stretch, const Style& style);
+  void draw_pane_menu(std::size_t index, const Style& style);
+  void draw_legend(std::size_t index, ImVec2 place, float width, const Stretch& stretch, const Style& style) const;
+  void draw_time(std::size_t index, PlotArea area, const Stretch& stretch, const Style& style);
+  void draw_spectrum(std::size_t index, PlotArea area, const Stretch& stretch, const Style& style);
+  void draw_xy(std::size_t index, PlotArea area, const Stretch& stretch, const Style& style);
+  void draw_cursors(const PlotArea& area, const Style& style);
+  void handle_mouse(const PlotArea& area, const Stretch& stretch);
+
+  SignalHistory history_;
+  Trigger trigger_;
+  TriggerSettings trigger_settings_;
+  ScopeLayout layout_;
+  std::vector<PaneMemory> memory_;
+  double span_s_;
+  bool paused_ = false;
+  double paused_last_ = 0.0;               // right end of the picture while paused
+  bool cursors_are_shown_ = false;
+  std::array<double, 2> cursors_{-0.66, -0.33};  // in parts of the span, from the right end
+  int dragged_cursor_ = -1;
+  bool statistics_are_shown_ = false;
+  std::optional<std::size_t> removed_pane_;
+};
+
+}  // namespace inkwell::window

@@ -1,0 +1,129 @@
+#include <window/window.hpp>
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include <epoxy/gl.h>
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <window/parameter_file.hpp>
+
+#include "companion.hpp"
+#include "display.hpp"
+#include "renderer.hpp"
+
+namespace inkwell::window {
+
+namespace {
+
+/// ImGui with its two back ends, for as long as the window is open.
+class ImGuiScope {
+ public:
+  explicit ImGuiScope(GLFWwindow* window) {
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // the layout is ours, and so is the file of settings
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+  }
+  ~ImGuiScope() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  ImGuiScope(const ImGuiScope&) = delete;
+  ImGuiScope& operator=(const ImGuiScope&) = delete;
+};
+
+WindowSettings remembered_settings(const WindowOptions& options) {
+  WindowSettings settings;
+  if (const auto path = window_settings_path(); options.persist_settings && !path.empty()) {
+    std::ifstream stream(path);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    settings = parse_settings(text.str());
+  }
+  if (options.theme) settings.theme = *options.theme;
+  if (!options.layout.empty()) settings.layout = built_in_layout(options.layout);
+  return settings;
+}
+
+void remember_settings(const WindowSettings& settings) {
+  const auto path = window_settings_path();
+  if (path.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(path.parent_path(), error);
+  try {
+    save_text(path, format_settings(settings));
+  } catch (const device::Error& failure) {
+    fmt::print(stderr, "The window's settings were not kept: {}\n", failure.what());
+  }
+}
+
+void run(const WindowOptions& options) {
+  Display display(options.width, options.height, "Inkwell");
+  const ImGuiScope imgui(display.handle());
+  const float scale = options.scale > 0.0f ? options.scale : display.content_scale();
+  const WindowSettings settings = remembered_settings(options);
+  Companion companion(options, settings, scale);
+  display.on_key([&companion](int key, bool down) { companion.key(key, down); });
+  Renderer renderer;
+  // A little faster than the display, which then sets the pace; without a display that does, it is the pace.
+  FramePacer pacer(1.02 * display.refresh_rate_Hz());
+
+  const double started_s = glfwGetTime();
+  std::uint64_t frames = 0;
+  double drawing_s = 0.0;
+  while (glfwWindowShouldClose(display.handle()) == 0) {
+    pacer.wait();
+    const double now_s = glfwGetTime();
+    glfwPollEvents();
+    int width = 0;
+    int height = 0;
+    glfwGetFramebufferSize(display.handle(), &width, &height);
+    if (width == 0 || height == 0) continue;  // shrunk to an icon
+
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    companion.draw(size, now_s);
+    ImGui::Render();
+    companion.draw_scene(renderer, static_cast<float>(width) / size.x, height, options.flat_colours);
+    glViewport(0, 0, width, height);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    ++frames;
+    const bool is_last = !options.screenshot.empty() && now_s - started_s >= options.after_seconds;
+    if (is_last) write_screenshot(options.screenshot, width, height);
+    drawing_s += glfwGetTime() - now_s;
+    glfwSwapBuffers(display.handle());
+    if (is_last) break;
+  }
+  if (options.frames_report) {
+    const double elapsed_s = glfwGetTime() - started_s;
+    const auto count = static_cast<double>(frames);
+    fmt::print("{:.1f} frames per second over {:.1f} s, {:.1f} ms to draw one\n", count / elapsed_s, elapsed_s,
+               1000.0 * drawing_s / count);
+    std::fflush(stdout);
+  }
+  if (options.persist_settings) remember_settings(companion.settings());
+}
+
+}  // namespace
+
+int run_window(const WindowOptions& options) {
+  try {
+    run(options);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace inkwell::window
