@@ -1,0 +1,123 @@
+#include "formats.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace inkwell::recording {
+namespace {
+
+std::optional<double> number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+class CsvReader {
+ public:
+  explicit CsvReader(const std::filesystem::path& file) : name_(file.string()), stream_(file) {
+    recording_.complete = false;
+  }
+
+  Recording read() {
+    std::string line;
+    while (std::getline(stream_, line)) {
+      ++line_number_;
+      // The last line of a program that was killed may stop anywhere: what lacks its end is left out.
+      if (stream_.eof()) break;
+      if (line.starts_with("# "))
+        comment(std::string_view(line).substr(2));
+      else if (!columns_known_)
+        column_names(line);
+      else
+        sample(line);
+    }
+    if (!is_recording_) fail(fmt::format("does not start with \"# {}\", so it is no recording", format_name));
+    if (!columns_known_) fail("has no line of column names");
+    return std::move(recording_);
+  }
+
+ private:
+  void comment(std::string_view text) {
+    const auto equals = text.find(" = ");
+    const auto key = text.substr(0, equals);
+    const auto value = equals == text.npos ? std::string_view{} : text.substr(equals + 3);
+    auto& about = recording_.information;
+    if (key == format_name) {
+      is_recording_ = true;
+      if (number(value).value_or(0) > format_version)
+        recording_.remarks.push_back(fmt::format("{} was written by a newer version of this program.", name_));
+    } else if (key == "created_utc") about.created_utc = value;
+    else if (key == "firmware_version") about.firmware_version = value;
+    else if (key == "protocol_version") about.protocol_version = static_cast<std::uint16_t>(number(value).value_or(0));
+    else if (key == "serial_number") about.serial_number = value;
+    else if (key == "arm") about.arm = value;
+    else if (key == "simulation") about.simulation = value == "1";
+    else if (key == "complete") recording_.complete = value == "1";
+    else if (key.starts_with("mark "))
+      recording_.marks.push_back({static_cast<std::uint32_t>(number(key.substr(5)).value_or(0)), std::string(value)});
+    else if (key.starts_with("parameter ")) parameter(key.substr(10), value);
+  }
+  void parameter(std::string_view name, std::string_view text) {
+    const auto known = protocol::find_parameter(name);
+    const auto value = number(text);
+    if (known && value)
+      recording_.information.parameters[*known] = static_cast<float>(*value);
+    else
+      recording_.remarks.push_back(fmt::format("The parameter {} of {} is not known here; it was left out.", name, name_));
+  }
+  void column_names(std::string_view line) {
+    columns_known_ = true;
+    if (!line.starts_with("time_s")) fail("has no column time_s in front");
+    for (line.remove_prefix(6); !line.empty();) {
+      line.remove_prefix(1);
+      const auto name = line.substr(0, line.find(','));
+      const auto signal = protocol::find_signal(name);
+      if (!signal)
+        recording_.remarks.push_back(fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
+      else
+        recording_.information.signals.push_back(*signal);
+      known_.push_back(signal.has_value());
+      line.remove_prefix(name.size());
+    }
+    recording_.columns.resize(recording_.information.signals.size());
+  }
+  void sample(std::string_view line) {
+    const auto next = [&]() -> double {
+      const auto cell = line.substr(0, line.find(','));
+      const auto value = number(cell);
+      if (!value) fail(fmt::format("is damaged in line {}: \"{}\" is no number", line_number_, cell));
+      line.remove_prefix(std::min(line.size(), cell.size() + 1));
+      return *value;
+    };
+    recording_.periods.push_back(static_cast<std::uint32_t>(std::llround(next() * protocol::servo_rate_Hz)));
+    std::size_t column = 0;
+    for (const bool known : known_) {
+      const double value = next();
+      if (known) recording_.columns[column++].push_back(static_cast<float>(value));
+    }
+    if (!line.empty()) fail(fmt::format("is damaged in line {}: it has more values than columns", line_number_));
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw device::Error(fmt::format("{} {}. Nothing was loaded.", name_, what));
+  }
+
+  std::string name_;
+  std::ifstream stream_;
+  Recording recording_;
+  std::vector<bool> known_;  ///< for each column after the time
+  std::size_t line_number_ = 0;
+  bool is_recording_ = false;
+  bool columns_known_ = false;
+};
+
+}  // namespace
+
+Recording read_csv(const std::filesystem::path& file) { return CsvReader(file).read(); }
+
+}  // namespace inkwell::recording

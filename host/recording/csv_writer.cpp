@@ -1,0 +1,88 @@
+// CSV recordings: lines "# key = value" about the recording, a line of column names, a line for each sample.
+#include "formats.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include <fmt/format.h>
+
+namespace inkwell::recording {
+namespace {
+
+class CsvWriter final : public Writer {
+ public:
+  CsvWriter(const std::filesystem::path& file, const Information& information)
+      : name_(file.string()), file_(std::fopen(file.c_str(), "wbx")) {
+    if (!file_) fail();
+    write_head(information);
+    flush();
+  }
+  ~CsvWriter() override {
+    if (file_) std::fclose(file_);
+  }
+
+  void append(const device::ScopeSamples& samples) override {
+    const std::size_t width = samples.signals.size();
+    for (std::size_t i = 0; i < samples.count; ++i) {
+      const std::uint32_t period = samples.first_period + static_cast<std::uint32_t>(i);
+      fmt::format_to(std::back_inserter(text_), "{:.5f}", static_cast<double>(period) / protocol::servo_rate_Hz);
+      for (std::size_t j = 0; j < width; ++j)
+        fmt::format_to(std::back_inserter(text_), ",{}", samples.values[i * width + j]);
+      text_.push_back('\n');
+    }
+    if (text_.size() > 1 << 20) write_text();
+  }
+  void mark(const Mark& mark) override {
+    std::string one_line = mark.text;
+    for (char& c : one_line)
+      if (c == '\n' || c == '\r') c = ' ';
+    fmt::format_to(std::back_inserter(text_), "# mark {} = {}\n", mark.period, one_line);
+  }
+  void flush() override {
+    write_text();
+    if (std::fflush(file_) != 0) fail();
+  }
+  void finish() override {
+    fmt::format_to(std::back_inserter(text_), "# complete = 1\n");
+    flush();
+    if (std::fclose(std::exchange(file_, nullptr)) != 0) fail();
+  }
+
+ private:
+  void write_head(const Information& about) {
+    auto out = std::back_inserter(text_);
+    fmt::format_to(out, "# {} = {}\n# created_utc = {}\n# firmware_version = {}\n# protocol_version = {}\n", format_name,
+                   format_version, about.created_utc, about.firmware_version, about.protocol_version);
+    fmt::format_to(out, "# serial_number = {}\n# arm = {}\n# simulation = {}\n", about.serial_number, about.arm,
+                   about.simulation ? 1 : 0);
+    for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+      fmt::format_to(out, "# parameter {} = {}\n", protocol::parameter_table[i].name, about.parameters.values[i]);
+    fmt::format_to(out, "# unit time_s = s\n");
+    for (const auto signal : about.signals)
+      fmt::format_to(out, "# unit {} = {}\n", protocol::info(signal).name, protocol::info(signal).unit);
+    fmt::format_to(out, "time_s");
+    for (const auto signal : about.signals) fmt::format_to(out, ",{}", protocol::info(signal).name);
+    fmt::format_to(out, "\n");
+  }
+  void write_text() {
+    if (text_.size() != 0 && std::fwrite(text_.data(), 1, text_.size(), file_) != text_.size()) fail();
+    text_.clear();
+  }
+  [[noreturn]] void fail() const {
+    throw device::Error(fmt::format("{} cannot be written: {}. Free some space or choose another place.", name_,
+                                    std::strerror(errno)));
+  }
+
+  std::string name_;
+  std::FILE* file_;
+  fmt::memory_buffer text_;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information) {
+  return std::make_unique<CsvWriter>(file, information);
+}
+
+}  // namespace inkwell::recording

@@ -1,0 +1,61 @@
+#include "hdf5_file.hpp"
+
+#include <device/link.hpp>
+
+namespace inkwell::recording {
+namespace {
+
+std::recursive_mutex& hdf5_mutex() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+Handle text_type(std::size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), length == 0 ? 1 : length);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  return type;
+}
+
+void write_attribute(hid_t object, const char* name, hid_t type, const void* value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(H5Acreate2(object, name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!attribute || H5Awrite(attribute.id(), type, value) < 0)
+    throw device::Error("The head of the recording could not be written. Free some space or choose another place.");
+}
+
+}  // namespace
+
+QuietHdf5::QuietHdf5() : lock_(hdf5_mutex()) {
+  H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+QuietHdf5::~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+void write_attribute(hid_t object, const char* name, const std::string& text) {
+  write_attribute(object, name, text_type(text.size()).id(), text.c_str());
+}
+
+void write_attribute(hid_t object, const char* name, std::int64_t number) {
+  write_attribute(object, name, H5T_NATIVE_INT64, &number);
+}
+
+std::string read_text_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return {};
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0) return {};
+  std::string text(H5Tget_size(type.id()), '\0');
+  if (H5Aread(attribute.id(), type.id(), text.data()) < 0) return {};
+  return text.substr(0, text.find('\0'));
+}
+
+std::int64_t read_number_attribute(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return 0;
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  std::int64_t number = 0;
+  return H5Aread(attribute.id(), H5T_NATIVE_INT64, &number) < 0 ? 0 : number;
+}
+
+}  // namespace inkwell::recording

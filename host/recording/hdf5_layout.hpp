@@ -1,0 +1,21 @@
+// How a recording lies in an HDF5 file:
+//
+//   /                    attributes: format, format_version, created_utc, firmware_version, protocol_version,
+//                        serial_number, arm, simulation, servo_rate_Hz
+//   /parameters/NAME     scalar float, attributes unit and help
+//   /period              uint32[N], control period of each sample
+//   /time_s              float64[N]
+//   /signals/NAME        float32[N], attributes unit and help
+//   /marks/period        uint32[M]
+//   /marks/text          fixed-length UTF-8 text[M]
+//   /samples             uint64, how many samples are whole on the disk; a column may be longer after a crash
+//   /complete            int32, 1 once the end was written
+#pragma once
+
+#include <cstddef>
+
+namespace inkwell::recording {
+
+inline constexpr std::size_t mark_text_bytes = 120;
+
+}  // namespace inkwell::recording

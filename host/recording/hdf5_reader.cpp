@@ -1,0 +1,143 @@
+#include "formats.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "hdf5_file.hpp"
+#include "hdf5_layout.hpp"
+
+namespace inkwell::recording {
+namespace {
+
+class Hdf5Reader {
+ public:
+  explicit Hdf5Reader(const std::filesystem::path& file) : name_(file.string()) {
+    // A file that its writer did not close says so until someone clears the mark; readers of the
+    // single-writer mode may open it all the same.
+    file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!file_) file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), H5Fclose);
+    if (!file_) fail("is damaged: HDF5 cannot open it");
+    if (read_text_attribute(file_.id(), "format") != format_name) fail("is an HDF5 file, but no recording");
+  }
+
+  Recording read() {
+    read_information();
+    std::uint64_t samples = 0;
+    read_scalar("/samples", H5T_NATIVE_UINT64, &samples);
+    std::size_t whole = std::min<std::size_t>(samples, length("/period"));
+    for (const auto& path : columns_) whole = std::min(whole, length(path));
+    recording_.periods.resize(whole);
+    read_values("/period", H5T_NATIVE_UINT32, whole, recording_.periods.data());
+    for (const auto& path : columns_) {
+      auto& column = recording_.columns.emplace_back(whole);
+      read_values(path, H5T_NATIVE_FLOAT, whole, column.data());
+    }
+    read_marks();
+    std::int32_t complete = 0;
+    read_scalar("/complete", H5T_NATIVE_INT32, &complete);
+    recording_.complete = complete == 1 && whole == samples;
+    return std::move(recording_);
+  }
+
+ private:
+  void read_information() {
+    auto& about = recording_.information;
+    const hid_t root = file_.id();
+    if (read_number_attribute(root, "format_version") > format_version)
+      recording_.remarks.push_back(fmt::format("{} was written by a newer version of this program.", name_));
+    about.created_utc = read_text_attribute(root, "created_utc");
+    about.firmware_version = read_text_attribute(root, "firmware_version");
+    about.protocol_version = static_cast<std::uint16_t>(read_number_attribute(root, "protocol_version"));
+    about.serial_number = read_text_attribute(root, "serial_number");
+    about.arm = read_text_attribute(root, "arm");
+    about.simulation = read_number_attribute(root, "simulation") != 0;
+    for (const auto& name : names("/parameters")) {
+      const auto parameter = protocol::find_parameter(name);
+      if (!parameter) {
+        recording_.remarks.push_back(fmt::format("The parameter {} of {} is not known here; it was left out.", name, name_));
+        continue;
+      }
+      read_scalar("/parameters/" + name, H5T_NATIVE_FLOAT, &about.parameters[*parameter]);
+    }
+    for (const auto& name : names("/signals")) {
+      if (const auto signal = protocol::find_signal(name)) {
+        about.signals.push_back(*signal);
+        columns_.push_back("/signals/" + name);
+      } else {
+        recording_.remarks.push_back(fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
+      }
+    }
+  }
+  void read_marks() {
+    const std::size_t count = std::min(length("/marks/period"), length("/marks/text"));
+    if (count == 0) return;
+    std::vector<std::uint32_t> periods(count);
+    std::vector<char> texts(count * mark_text_bytes);
+    read_values("/marks/period", H5T_NATIVE_UINT32, count, periods.data());
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.id(), mark_text_bytes);
+    H5Tset_cset(type.id(), H5T_CSET_UTF8);
+    read_values("/marks/text", type.id(), count, texts.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string_view text(texts.data() + i * mark_text_bytes, mark_text_bytes);
+      recording_.marks.push_back({periods[i], std::string(text.substr(0, text.find('\0')))});
+    }
+  }
+  std::vector<std::string> names(const char* group_name) {
+    const Handle group(H5Gopen2(file_.id(), group_name, H5P_DEFAULT), H5Gclose);
+    H5G_info_t about{};
+    if (!group || H5Gget_info(group.id(), &about) < 0) fail(fmt::format("is damaged: it has no {}", group_name));
+    std::vector<std::string> found;
+    for (hsize_t i = 0; i < about.nlinks; ++i) {
+      char name[128] = {};
+      H5Lget_name_by_idx(group.id(), ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name, H5P_DEFAULT);
+      found.emplace_back(name);
+    }
+    return found;
+  }
+  Handle open(const std::string& path) {
+    Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!dataset) fail(fmt::format("is damaged: {} cannot be read", path));
+    return dataset;
+  }
+  std::size_t length(const std::string& path) {
+    const Handle dataset = open(path);
+    const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+    const auto count = H5Sget_simple_extent_npoints(space.id());
+    return count < 0 ? 0 : static_cast<std::size_t>(count);
+  }
+  void read_scalar(const std::string& path, hid_t type, void* value) {
+    const Handle dataset = open(path);
+    if (H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) < 0)
+      fail(fmt::format("is damaged: {} cannot be read", path));
+  }
+  void read_values(const std::string& path, hid_t type, std::size_t count, void* values) {
+    if (count == 0) return;
+    const Handle dataset = open(path);
+    const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+    const hsize_t from = 0, size = count;
+    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &from, nullptr, &size, nullptr);
+    const Handle memory(H5Screate_simple(1, &size, nullptr), H5Sclose);
+    if (H5Dread(dataset.id(), type, memory.id(), space.id(), H5P_DEFAULT, values) < 0)
+      fail(fmt::format("is damaged: {} cannot be read", path));
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw device::Error(fmt::format("{} {}. Nothing was loaded.", name_, what));
+  }
+
+  std::string name_;
+  Handle file_;
+  Recording recording_;
+  std::vector<std::string> columns_;
+};
+
+}  // namespace
+
+Recording read_hdf5(const std::filesystem::path& file) {
+  const QuietHdf5 quiet;
+  return Hdf5Reader(file).read();
+}
+
+}  // namespace inkwell::recording

@@ -1,0 +1,196 @@
+// HDF5 recordings. They are written in HDF5's single-writer-multiple-reader mode, which orders its writes so
+// that the file can be read at any moment, also after this process was killed.
+#include "formats.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "hdf5_file.hpp"
+#include "hdf5_layout.hpp"
+
+namespace inkwell::recording {
+namespace {
+
+constexpr hsize_t chunk_samples = 4096;
+constexpr hsize_t chunk_marks = 16;
+
+class Hdf5Writer final : public Writer {
+ public:
+  Hdf5Writer(const std::filesystem::path& file, const Information& information) : name_(file.string()) {
+    const QuietHdf5 quiet;
+    lay_out(information);
+    open_for_writing(information);
+  }
+  ~Hdf5Writer() override {
+    // Closing writes what is left, which fails again on a full disk: nothing more can be done about it here.
+    const QuietHdf5 quiet;
+    close();
+  }
+
+  void append(const device::ScopeSamples& samples) override {
+    const QuietHdf5 quiet;
+    const std::size_t width = samples.signals.size();
+    std::vector<std::uint32_t> periods(samples.count);
+    std::vector<double> times_s(samples.count);
+    for (std::size_t i = 0; i < samples.count; ++i) {
+      periods[i] = samples.first_period + static_cast<std::uint32_t>(i);
+      times_s[i] = static_cast<double>(periods[i]) / protocol::servo_rate_Hz;
+    }
+    extend(period_, size_, samples.count, H5T_NATIVE_UINT32, periods.data());
+    extend(time_, size_, samples.count, H5T_NATIVE_DOUBLE, times_s.data());
+    std::vector<float> column(samples.count);
+    for (std::size_t j = 0; j < width; ++j) {
+      for (std::size_t i = 0; i < samples.count; ++i) column[i] = samples.values[i * width + j];
+      extend(signals_[j], size_, samples.count, H5T_NATIVE_FLOAT, column.data());
+    }
+    size_ += samples.count;
+  }
+  void mark(const Mark& mark) override {
+    const QuietHdf5 quiet;
+    std::array<char, mark_text_bytes> text{};
+    std::copy_n(mark.text.begin(), std::min(mark.text.size(), mark_text_bytes), text.begin());
+    extend(mark_period_, mark_count_, 1, H5T_NATIVE_UINT32, &mark.period);
+    extend(mark_text_, mark_count_, 1, mark_type().id(), text.data());
+    ++mark_count_;
+  }
+  void flush() override {
+    const QuietHdf5 quiet;
+    if (H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) < 0) fail();
+    // Only now are the samples known to be on the disk: a column may have grown without its values.
+    if (H5Dwrite(samples_.id(), H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &size_) < 0) fail();
+    if (H5Dflush(samples_.id()) < 0) fail();
+  }
+  void finish() override {
+    const QuietHdf5 quiet;
+    flush();
+    const std::int32_t yes = 1;
+    if (H5Dwrite(complete_.id(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, &yes) < 0) fail();
+    if (H5Dflush(complete_.id()) < 0) fail();
+    close();
+  }
+
+ private:
+  static Handle mark_type() {
+    Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(type.id(), mark_text_bytes);
+    H5Tset_cset(type.id(), H5T_CSET_UTF8);
+    return type;
+  }
+  static Handle access() {
+    Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_libver_bounds(list.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+    return list;
+  }
+  Handle group(hid_t file, const char* name) {
+    Handle made(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+    if (!made) fail();
+    return made;
+  }
+  Handle growing(hid_t place, const std::string& name, hid_t type, hsize_t chunk) {
+    const hsize_t none = 0, unlimited = H5S_UNLIMITED;
+    const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
+    const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_chunk(properties.id(), 1, &chunk);
+    Handle made(H5Dcreate2(place, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), H5Dclose);
+    if (!made) fail();
+    return made;
+  }
+  Handle scalar(hid_t place, const std::string& name, hid_t type, const void* value) {
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    Handle made(H5Dcreate2(place, name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+    if (!made || H5Dwrite(made.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) < 0) fail();
+    return made;
+  }
+
+  /// In single-writer mode nothing can be created any more, so everything is laid out first.
+  void lay_out(const Information& about) {
+    const Handle file(H5Fcreate(name_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access().id()), H5Fclose);
+    if (!file) fail();
+    write_attribute(file.id(), "format", std::string(format_name));
+    write_attribute(file.id(), "format_version", std::int64_t{format_version});
+    write_attribute(file.id(), "created_utc", about.created_utc);
+    write_attribute(file.id(), "firmware_version", about.firmware_version);
+    write_attribute(file.id(), "protocol_version", std::int64_t{about.protocol_version});
+    write_attribute(file.id(), "serial_number", about.serial_number);
+    write_attribute(file.id(), "arm", about.arm);
+    write_attribute(file.id(), "simulation", std::int64_t{about.simulation});
+    write_attribute(file.id(), "servo_rate_Hz", std::int64_t{protocol::servo_rate_Hz});
+
+    const Handle parameters = group(file.id(), "parameters");
+    for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+      const auto& row = protocol::parameter_table[i];
+      const Handle value = scalar(parameters.id(), std::string(row.name), H5T_NATIVE_FLOAT, &about.parameters.values[i]);
+      write_attribute(value.id(), "unit", std::string(row.unit));
+      write_attribute(value.id(), "help", std::string(row.help));
+    }
+    growing(file.id(), "period", H5T_STD_U32LE, chunk_samples);
+    write_attribute(growing(file.id(), "time_s", H5T_IEEE_F64LE, chunk_samples).id(), "unit", std::string("s"));
+    const Handle signals = group(file.id(), "signals");
+    for (const auto signal : about.signals) {
+      const auto& row = protocol::info(signal);
+      const Handle column = growing(signals.id(), std::string(row.name), H5T_IEEE_F32LE, chunk_samples);
+      write_attribute(column.id(), "unit", std::string(row.unit));
+      write_attribute(column.id(), "help", std::string(row.help));
+    }
+    const Handle marks = group(file.id(), "marks");
+    growing(marks.id(), "period", H5T_STD_U32LE, chunk_marks);
+    growing(marks.id(), "text", mark_type().id(), chunk_marks);
+    const std::int32_t no = 0;
+    scalar(file.id(), "complete", H5T_NATIVE_INT32, &no);
+    const hsize_t none = 0;
+    scalar(file.id(), "samples", H5T_NATIVE_HSIZE, &none);
+  }
+  void open_for_writing(const Information& about) {
+    file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access().id()), H5Fclose);
+    if (!file_) fail();
+    const auto open = [&](const std::string& path) {
+      Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
+      if (!dataset) fail();
+      return dataset;
+    };
+    period_ = open("/period");
+    time_ = open("/time_s");
+    for (const auto signal : about.signals) signals_.push_back(open(fmt::format("/signals/{}", protocol::info(signal).name)));
+    mark_period_ = open("/marks/period");
+    mark_text_ = open("/marks/text");
+    complete_ = open("/complete");
+    samples_ = open("/samples");
+  }
+  void extend(const Handle& dataset, hsize_t at, hsize_t count, hid_t type, const void* values) {
+    const hsize_t size = at + count;
+    if (H5Dset_extent(dataset.id(), &size) < 0) fail();
+    const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+    const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, &at, nullptr, &count, nullptr);
+    if (H5Dwrite(dataset.id(), type, memory.id(), space.id(), H5P_DEFAULT, values) < 0) fail();
+  }
+  void close() {
+    signals_.clear();
+    for (Handle* handle : {&period_, &time_, &mark_period_, &mark_text_, &complete_, &samples_, &file_}) *handle = Handle();
+  }
+  [[noreturn]] void fail() const {
+    std::error_code error;
+    const auto space = std::filesystem::space(std::filesystem::absolute(name_).parent_path(), error);
+    const bool full = !error && space.available < 1'000'000;
+    throw device::Error(fmt::format("{} cannot be written: {}.", name_,
+                                    full ? "the disk is full. Free some space or choose another place"
+                                         : "the system refused it. Check that the folder exists and may be written"));
+  }
+
+  std::string name_;
+  Handle file_, period_, time_, mark_period_, mark_text_, complete_, samples_;
+  std::vector<Handle> signals_;
+  hsize_t size_ = 0;
+  hsize_t mark_count_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information) {
+  return std::make_unique<Hdf5Writer>(file, information);
+}
+
+}  // namespace inkwell::recording

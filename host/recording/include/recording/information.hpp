@@ -1,0 +1,33 @@
+// What a recording says about itself: device, firmware, arm, parameters, signals.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <device/device.hpp>
+#include <protocol/parameters.hpp>
+#include <protocol/signals.hpp>
+
+namespace inkwell::recording {
+
+/// Rises when the layout of the files changes.
+inline constexpr int format_version = 1;
+inline constexpr char format_name[] = "inkwell recording";
+
+struct Information {
+  std::string created_utc;  ///< ISO 8601
+  std::string firmware_version;
+  std::uint16_t protocol_version = protocol::protocol_version;
+  std::string serial_number;
+  std::string arm;          ///< its name, as far as it is known
+  bool simulation = false;  ///< recorded from a virtual board
+  protocol::ParameterSet parameters{};
+  std::vector<protocol::Signal> signals;
+};
+
+/// What is to be written about a recording that starts now.
+Information describe(const device::Information& device, const protocol::ParameterSet& parameters,
+                     std::vector<protocol::Signal> signals, const std::string& arm, bool simulation);
+
+}  // namespace inkwell::recording

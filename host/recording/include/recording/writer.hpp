@@ -1,0 +1,31 @@
+// Writes a recording sample by sample, so that what is on the disk can be read at any moment.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include <device/scope_decoder.hpp>
+#include <recording/information.hpp>
+#include <recording/recording.hpp>
+
+namespace inkwell::recording {
+
+/// All members throw device::Error with a sentence when the disk does not take it; what was flushed before
+/// stays readable.
+class Writer {
+ public:
+  virtual ~Writer() = default;
+  /// Samples of the signals that the recording was opened with.
+  virtual void append(const device::ScopeSamples& samples) = 0;
+  virtual void mark(const Mark& mark) = 0;
+  /// Afterwards everything appended so far survives the end of this process.
+  virtual void flush() = 0;
+  /// Flushes, notes that the recording is complete, and closes the file.
+  virtual void finish() = 0;
+};
+
+/// The ending chooses the format: .h5 and .hdf5, or .csv. An existing file is refused, not overwritten.
+std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information);
+
+}  // namespace inkwell::recording

@@ -1,0 +1,140 @@
+#include <recording/recorder.hpp>
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <variant>
+
+#include <fmt/format.h>
+
+namespace inkwell::recording {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t queue_bytes_maximum = 64u << 20;
+/// Half of what a crash may cost.
+constexpr auto flush_interval = 500ms;
+
+std::size_t size_of(const device::ScopeSamples& samples) { return samples.values.size() * sizeof(float) + sizeof samples; }
+
+}  // namespace
+
+struct Recorder::Implementation {
+  using Item = std::variant<device::ScopeSamples, Mark>;
+
+  Implementation(const std::filesystem::path& path, const Information& about)
+      : file(path), information(about), writer(create(path, about)), thread([this] { write_all(); }) {}
+
+  void write_all() {
+    auto next_flush = std::chrono::steady_clock::now() + flush_interval;
+    std::unique_lock lock(mutex);
+    for (;;) {
+      wake.wait_until(lock, next_flush, [this] { return stopping || !queue.empty(); });
+      std::deque<Item> items;
+      items.swap(queue);
+      queued_bytes = 0;
+      const bool last = stopping;
+      const bool flush_now = std::chrono::steady_clock::now() >= next_flush;
+      lock.unlock();
+      try {
+        for (const auto& item : items) write(item);
+        if (flush_now) {
+          writer->flush();
+          next_flush = std::chrono::steady_clock::now() + flush_interval;
+        }
+        if (last) writer->finish();
+      } catch (const device::Error& problem) {
+        lock.lock();
+        status.error = fmt::format("{} The recording holds everything up to the last half second before.", problem.what());
+        status.running = false;
+        return;
+      }
+      lock.lock();
+      update_sizes();
+      if (last) {
+        status.running = false;
+        return;
+      }
+    }
+  }
+  void write(const Item& item) {
+    if (const auto* mark = std::get_if<Mark>(&item)) return writer->mark(*mark);
+    writer->append(std::get<device::ScopeSamples>(item));
+  }
+  void update_sizes() {
+    std::error_code error;
+    if (const auto size = std::filesystem::file_size(file, error); !error) status.bytes = size;
+    const auto space = std::filesystem::space(std::filesystem::absolute(file).parent_path(), error);
+    if (!error) status.free_bytes = space.available;
+  }
+
+  std::filesystem::path file;
+  Information information;
+  std::unique_ptr<Writer> writer;
+
+  std::mutex mutex;
+  std::condition_variable wake;
+  std::deque<Item> queue;
+  std::size_t queued_bytes = 0;
+  bool stopping = false;
+  RecorderStatus status{.running = true};
+  std::optional<std::uint32_t> first_period;
+  std::uint32_t newest_period = 0;
+
+  std::thread thread;  // last, so that it finds everything made
+};
+
+Recorder::Recorder(const std::filesystem::path& file, const Information& information)
+    : implementation_(std::make_unique<Implementation>(file, information)) {}
+
+Recorder::~Recorder() { stop(); }
+
+void Recorder::push(const device::ScopeSamples& samples) {
+  auto& self = *implementation_;
+  const std::lock_guard lock(self.mutex);
+  if (!self.status.running || self.stopping || samples.signals != self.information.signals || samples.count == 0) return;
+  // What was lost before the first sample was never part of this recording.
+  if (self.first_period) self.status.lost += samples.lost_before;
+  if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) {
+    self.status.lost += samples.count;
+    return;
+  }
+  if (!self.first_period) self.first_period = samples.first_period;
+  self.newest_period = samples.first_period + static_cast<std::uint32_t>(samples.count - 1);
+  self.status.samples += samples.count;
+  self.status.duration_s = static_cast<double>(self.newest_period - *self.first_period) / protocol::servo_rate_Hz;
+  self.queued_bytes += size_of(samples);
+  self.queue.emplace_back(samples);
+  self.wake.notify_one();
+}
+
+void Recorder::mark(const std::string& text) {
+  auto& self = *implementation_;
+  const std::lock_guard lock(self.mutex);
+  if (!self.status.running || self.stopping) return;
+  self.queue.emplace_back(Mark{self.newest_period, text});
+  ++self.status.marks;
+  self.wake.notify_one();
+}
+
+RecorderStatus Recorder::status() const {
+  const std::lock_guard lock(implementation_->mutex);
+  return implementation_->status;
+}
+
+RecorderStatus Recorder::stop() {
+  auto& self = *implementation_;
+  {
+    const std::lock_guard lock(self.mutex);
+    self.stopping = true;
+  }
+  self.wake.notify_one();
+  if (self.thread.joinable()) self.thread.join();
+  return status();
+}
+
+}  // namespace inkwell::recording

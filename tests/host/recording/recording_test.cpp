@@ -1,0 +1,237 @@
+// Recordings: what is written comes back, also after a crash, on a full disk, or from a damaged file.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <recording/recorder.hpp>
+#include <recording/recording.hpp>
+#include <recording/writer.hpp>
+
+using namespace inkwell;
+using namespace inkwell::recording;
+using protocol::Parameter;
+using protocol::Signal;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Directory {
+ public:
+  Directory() {
+    std::string pattern = (fs::temp_directory_path() / "inkwell-XXXXXX").string();
+    REQUIRE(mkdtemp(pattern.data()) != nullptr);
+    path_ = pattern;
+  }
+  ~Directory() { fs::remove_all(path_); }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+Information about() {
+  Information about{.created_utc = "2026-01-02T03:04:05Z",
+                    .firmware_version = "0.1.0",
+                    .serial_number = "0123456789ABCDEF01234567",
+                    .arm = "PHANTOM Omni",
+                    .simulation = true,
+                    .parameters = protocol::default_parameters(),
+                    .signals = {Signal::force_N, Signal::position_x_m, Signal::duty_1}};
+  about.parameters[Parameter::wall_stiffness_N_per_m] = 432.5f;
+  return about;
+}
+
+device::ScopeSamples samples(std::uint32_t first_period, std::size_t count) {
+  device::ScopeSamples samples{.signals = about().signals, .first_period = first_period, .count = count, .values = {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    const float at = static_cast<float>(first_period + i);
+    samples.values.insert(samples.values.end(), {at * 0.001f, 1.0f / (1.0f + at), -at});
+  }
+  return samples;
+}
+
+const std::vector<float>& column(const Recording& recording, Signal signal) {
+  const auto& signals = recording.information.signals;
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    if (signals[i] == signal) return recording.columns[i];
+  FAIL("the signal is missing");
+  return recording.columns[0];
+}
+
+void check_is_whole(const Recording& recording, std::uint32_t first_period, std::size_t count) {
+  REQUIRE(recording.size() == count);
+  const auto expected = samples(first_period, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    REQUIRE(recording.periods[i] == first_period + i);
+    REQUIRE(column(recording, Signal::force_N)[i] == expected.values[3 * i]);
+    REQUIRE(column(recording, Signal::position_x_m)[i] == expected.values[3 * i + 1]);
+    REQUIRE(column(recording, Signal::duty_1)[i] == expected.values[3 * i + 2]);
+  }
+}
+
+std::string error_of(const fs::path& file) {
+  try {
+    read(file);
+  } catch (const device::Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a recording comes back as it was written") {
+  const Directory directory;
+  for (const char* name : {"a.h5", "a.csv"}) {
+    CAPTURE(name);
+    const auto file = directory / name;
+    {
+      Recorder recorder(file, about());
+      for (std::uint32_t period = 5000; period < 15000; period += 50) recorder.push(samples(period, 50));
+      recorder.mark("touch");
+      const auto end = recorder.stop();
+      CHECK(end.error.empty());
+      CHECK(end.samples == 10'000);
+      CHECK(end.duration_s == doctest::Approx(0.49995));
+      CHECK(end.bytes > 50'000);
+      CHECK_FALSE(end.running);
+    }
+    const auto recording = read(file);
+    check_is_whole(recording, 5000, 10'000);
+    CHECK(recording.complete);
+    CHECK(recording.lost() == 0);
+    CHECK(recording.remarks.empty());
+    REQUIRE(recording.marks.size() == 1);
+    CHECK(recording.marks[0].text == "touch");
+    CHECK(recording.marks[0].period == 14'999);
+    CHECK(recording.information.parameters == about().parameters);
+    CHECK(recording.information.arm == "PHANTOM Omni");
+    CHECK(recording.information.firmware_version == "0.1.0");
+    CHECK(recording.information.serial_number == about().serial_number);
+    CHECK(recording.information.simulation);
+    CHECK(recording.information.created_utc == about().created_utc);
+  }
+}
+
+TEST_CASE("samples that were lost show as a gap and are counted") {
+  const Directory directory;
+  Recorder recorder(directory / "a.h5", about());
+  auto first = samples(100, 10);
+  first.lost_before = 77;  // before the recording began: not its loss
+  recorder.push(first);
+  auto second = samples(130, 10);
+  second.lost_before = 20;
+  recorder.push(second);
+  CHECK(recorder.stop().lost == 20);
+  CHECK(read(directory / "a.h5").lost() == 20);
+}
+
+TEST_CASE("an existing file is not overwritten, an unknown ending not guessed") {
+  const Directory directory;
+  std::ofstream(directory / "a.h5") << "precious";
+  CHECK_THROWS_AS(Recorder(directory / "a.h5", about()), device::Error);
+  CHECK_THROWS_AS(Recorder(directory / "a.mat", about()), device::Error);
+  CHECK_THROWS_AS(Recorder(directory / "missing" / "a.h5", about()), device::Error);
+  CHECK(fs::file_size(directory / "a.h5") == 8);
+}
+
+TEST_CASE("a recording survives the death of its program") {
+  const Directory directory;
+  for (const char* name : {"a.h5", "a.csv"}) {
+    CAPTURE(name);
+    const auto file = directory / name;
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      // Writes for ever and is killed in the middle of it.
+      Recorder recorder(file, about());
+      for (std::uint32_t period = 0;; period += 100) {
+        recorder.push(samples(period, 100));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    const auto recording = read(file);
+    CHECK_FALSE(recording.complete);
+    CHECK(recording.size() > 1000);
+    check_is_whole(recording, 0, recording.size());
+  }
+}
+
+TEST_CASE("a full disk ends the recording with a sentence and keeps what was written") {
+  const Directory directory;
+  for (const char* name : {"a.h5", "a.csv"}) {
+    CAPTURE(name);
+    const auto file = directory / name;
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      // A limit of the file's size stands in for the end of the disk: the same system call fails.
+      std::signal(SIGXFSZ, SIG_IGN);
+      const rlimit limit{10'000'000, 10'000'000};
+      setrlimit(RLIMIT_FSIZE, &limit);
+      Recorder recorder(file, about());
+      RecorderStatus status = recorder.status();
+      for (std::uint32_t period = 0; status.running && period < 20'000'000; period += 1000) {
+        recorder.push(samples(period, 1000));
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        status = recorder.status();
+      }
+      _exit(!status.running && status.error.find("holds everything") != std::string::npos &&
+                    status.error.find("cannot be written") != std::string::npos
+                ? 42
+                : 1);
+    }
+    int result = 0;
+    waitpid(child, &result, 0);
+    CHECK(WIFEXITED(result));
+    CHECK(WEXITSTATUS(result) == 42);
+    const auto recording = read(file);
+    CHECK_FALSE(recording.complete);
+    CHECK(recording.size() > 1000);
+    check_is_whole(recording, 0, recording.size());
+  }
+}
+
+TEST_CASE("a file that is no recording, or a damaged one, is refused with a sentence") {
+  const Directory directory;
+  CHECK(error_of(directory / "none.h5").find("none.h5") != std::string::npos);
+  std::ofstream(directory / "text.h5") << "hello";
+  CHECK(error_of(directory / "text.h5").find("no recording") != std::string::npos);
+  {
+    Recorder recorder(directory / "whole.h5", about());
+    recorder.push(samples(0, 20'000));
+  }
+  std::ifstream whole(directory / "whole.h5", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(whole), {}};
+  std::ofstream(directory / "cut.h5", std::ios::binary) << bytes.substr(0, 600);
+  CHECK(error_of(directory / "cut.h5").find("damaged") != std::string::npos);
+
+  std::ofstream(directory / "a.csv") << "# inkwell recording = 1\ntime_s,force_N\n0.00005,1.5\n0.0001,oops\n";
+  CHECK(error_of(directory / "a.csv").find("line 4") != std::string::npos);
+  std::ofstream(directory / "b.csv") << "# something else = 1\ntime_s,force_N\n0.00005,1.5\n";
+  CHECK_FALSE(error_of(directory / "b.csv").empty());
+}
+
+TEST_CASE("what a newer version wrote is read as far as it is known, and the rest is named") {
+  const Directory directory;
+  std::ofstream(directory / "a.csv") << "# inkwell recording = 99\n# parameter wobble_m = 3\n"
+                                        "time_s,force_N,wobble_N,duty_1\n0.00005,1.5,9,0.25\n";
+  const auto recording = read(directory / "a.csv");
+  CHECK(recording.remarks.size() == 3);
+  REQUIRE(recording.size() == 1);
+  CHECK(column(recording, Signal::force_N)[0] == 1.5f);
+  CHECK(column(recording, Signal::duty_1)[0] == 0.25f);
+}
