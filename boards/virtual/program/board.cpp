@@ -27,10 +27,14 @@ Board::Board(const Options& options)
     : plant_(arms::read(options.arm), {.seed = options.seed}),
       chip_(plant_, {.mode = options.mode,
                      .random_seed = static_cast<std::uint32_t>(options.seed),
-                     .log = [](const std::string& line) { log_line(line); }}),
-      usb_(chip_.scheduler(), chip_.interrupts(), chip_.unmodelled_log(), options.usbip_port) {
+                     .log = [](const std::string& line) { log_line(line); }}) {
   chip_.load_elf(options.elf);
-  chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_.core());
+  try {
+    usb_.emplace(chip_.scheduler(), chip_.interrupts(), chip_.unmodelled_log(), options.usbip_port);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{} (--usbip gives it)", error.what()));
+  }
+  chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_->core());
   chip_.on_injected_sequence = [this](std::uint64_t index, Ticks when) {
     if (trace_.is_running()) trace_.record(index, plant_.truth(when));
   };

@@ -1,6 +1,7 @@
 // The board as a whole: chip, plant and USB wired together. It lives on the simulation's thread.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <chip/chip.hpp>
@@ -24,7 +25,7 @@ class Board {
 
   Chip& chip() { return chip_; }
   Plant& plant() { return plant_; }
-  VirtualUsb& usb() { return usb_; }
+  VirtualUsb& usb() { return *usb_; }
   Trace& trace() { return trace_; }
   Truth truth() { return plant_.truth(chip_.now()); }
   bool locked_up() const { return locked_up_; }
@@ -34,7 +35,7 @@ class Board {
 
   Plant plant_;
   Chip chip_;
-  VirtualUsb usb_;
+  std::optional<VirtualUsb> usb_;  ///< there from construction to destruction
   Trace trace_;
   std::string console_line_;
   bool locked_up_ = false;

@@ -32,12 +32,16 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option("--elf", options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
   app.add_option("--arm", options.arm, "arm description (default: omni.toml from $INKWELL_ARMS or ../../boards/arms)")
       ->type_name("FILE");
-  app.add_option("--usbip", options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")->type_name("PORT");
+  const auto port = CLI::Range(0, 65535).description("");
+  app.add_option("--usbip", options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")
+      ->check(port)
+      ->type_name("PORT");
   app.add_option("--control", options.control_port, "TCP port of the control socket; 0 is any free one")
+      ->check(port)
       ->type_name("PORT");
   std::string mode = "fast";
   app.add_option("--mode", mode, "exact: interrupts come at any instruction; fast: between blocks of instructions")
-      ->check(CLI::IsMember({"exact", "fast"}))
+      ->check(CLI::IsMember({"exact", "fast"}).description(""))
       ->type_name("exact|fast")
       ->capture_default_str();
   app.add_flag("--real-time", options.real_time, "keep board time from running ahead of the clock on the wall");
@@ -46,7 +50,7 @@ CommandLine read_command_line(int argc, char** argv) {
       ->capture_default_str();
   double seconds = 0.0;
   auto* seconds_option = app.add_option("--seconds", seconds, "end after this much board time")
-                             ->check(CLI::PositiveNumber)
+                             ->check(CLI::PositiveNumber.description(""))
                              ->type_name("T");
   app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
   app.footer(
