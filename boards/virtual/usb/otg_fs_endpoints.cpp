@@ -170,21 +170,25 @@ bool OtgFsDevice::transmit_empty_level(unsigned endpoint) const {
 void OtgFsDevice::note_memory_layout() {
   if (!layout_changed_) return;
   layout_changed_ = false;
-  std::array<std::pair<std::size_t, std::size_t>, endpoint_count + 1> regions{};
-  std::size_t used = 0;
-  regions[used++] = {0, receive_size_};
+  struct Region {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+  std::array<Region, endpoint_count + 1> regions{};
+  regions[0].end = receive_size_;
   for (unsigned i = 0; i < endpoint_count; ++i) {
-    const bool in_use = i == 0 || (in_[i].control & epctl::usbaep) != 0;
-    if (in_use) regions[used++] = {transmit_size_[transmit_fifo_of(i)] & 0xFFFF, transmit_size_[transmit_fifo_of(i)] >> 16};
+    if (i != 0 && (in_[i].control & epctl::usbaep) == 0) continue;
+    const std::uint32_t size_register = transmit_size_[transmit_fifo_of(i)];
+    const std::size_t begin = size_register & 0xFFFF;
+    regions[i + 1] = {begin, begin + (size_register >> 16)};
   }
-  std::sort(regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(used));
-  for (std::size_t i = 0; i < used; ++i) {
-    const std::size_t end = regions[i].first + regions[i].second;
-    if (end > packet_memory_words)
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (regions[i].end > packet_memory_words)
       note("a FIFO reaches beyond the 320 words of packet memory", offset::dieptxf0, true,
-           static_cast<std::uint32_t>(end));
-    if (i + 1 < used && end > regions[i + 1].first)
-      note("two FIFOs overlap in packet memory", offset::dieptxf0, true, static_cast<std::uint32_t>(end));
+           static_cast<std::uint32_t>(regions[i].end));
+    for (std::size_t j = 0; j < i; ++j)
+      if (regions[i].begin < regions[j].end && regions[j].begin < regions[i].end)
+        note("two FIFOs overlap in packet memory", offset::dieptxf0, true, static_cast<std::uint32_t>(regions[i].begin));
   }
 }
 

@@ -1,0 +1,83 @@
+// A USB device driver as RM0090's programming model describes it, working on the core's registers only.
+//
+// Endpoints: 0x81 interrupt IN, 0x01 interrupt OUT, 0x82 bulk IN, 0x03 bulk OUT, 64 bytes each.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <virtual_usb/otg_fs_device.hpp>
+
+namespace inkwell::virtual_usb_test {
+
+using Bytes = std::vector<std::byte>;
+
+class FakeFirmware {
+ public:
+  explicit FakeFirmware(virtual_board::OtgFsDevice& core) : core_(core) {}
+
+  /// Starts the core and pulls D+ up.
+  void start();
+  /// The interrupt handler.
+  void handle_interrupt();
+
+  void send_report(std::span<const std::byte> report);  ///< on 0x81
+  void stream(bool on) { stream_wanted_ = on; }         ///< counting words on 0x82, from SET_CONFIGURATION on
+  void take_bulk(bool take);                            ///< 0x03 answers NAK while false
+  void halt_bulk_in();
+
+  // What happened.
+  unsigned resets = 0;
+  unsigned suspends = 0;
+  unsigned frames = 0;
+  unsigned setups = 0;
+  unsigned setup_done = 0;
+  unsigned reports_sent = 0;
+  std::uint8_t address = 0;
+  std::uint8_t configuration = 0;
+  Bytes control_received;  ///< data of the vendor request 2
+  Bytes report_received;
+  Bytes bulk_received;
+
+  // How to behave.
+  bool report_every_millisecond = false;
+  bool answers_requests = true;
+  bool clears_nak_too_early = false;
+  std::uint8_t report_interval = 1;
+
+  std::uint32_t read(std::uint32_t offset) { return core_.read(offset, 4); }
+  void write(std::uint32_t offset, std::uint32_t value) { core_.write(offset, value, 4); }
+  void set(std::uint32_t offset, std::uint32_t bits) { write(offset, read(offset) | bits); }
+
+ private:
+  void bus_reset();
+  void receive_word();
+  void handle_setup();
+  void answer(std::span<const std::byte> data, std::uint16_t length_asked);
+  void send_control_packet();
+  void stall_control();
+  void arm_control_out();
+  void configure();
+  void arm_out(unsigned endpoint);
+  void fill_stream();
+  void write_packet(unsigned endpoint, std::span<const std::byte> data);
+
+  virtual_board::OtgFsDevice& core_;
+  std::array<std::byte, 8> setup_{};
+  Bytes control_in_;
+  std::size_t control_in_sent_ = 0;
+  bool control_in_active_ = false;
+  bool control_in_needs_empty_packet_ = false;
+  std::size_t control_out_expected_ = 0;
+  bool stream_wanted_ = false;
+  bool stream_running_ = false;
+  std::uint32_t stream_word_ = 0;
+  std::uint32_t stream_bytes_left_ = 0;
+  bool bulk_taken_ = true;
+};
+
+/// Byte i of the answer to the vendor request 1.
+constexpr std::byte pattern(std::size_t i) { return std::byte((i * 7 + 3) & 0xFF); }
+
+}  // namespace inkwell::virtual_usb_test

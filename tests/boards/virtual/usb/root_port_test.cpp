@@ -1,0 +1,416 @@
+// Transfers over the modelled bus: a driver written against the manual on one side, a host on the other.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include <virtual_usb/root_port.hpp>
+
+#include "fake_board.hpp"
+#include "fake_firmware.hpp"
+
+namespace inkwell::virtual_usb_test {
+namespace {
+
+using virtual_board::OtgFsDevice;
+using virtual_board::RootPort;
+using virtual_board::ticks;
+using virtual_board::Urb;
+namespace status = virtual_board::transfer_status;
+
+struct Outcome {
+  std::int32_t status;
+  Bytes data;
+  std::uint32_t actual;
+  Ticks when;
+};
+
+class Bench final : public RootPort::Client {
+ public:
+  Bench() : core(scheduler, interrupts, log), firmware(core), port(scheduler, core, *this) {}
+
+  void run_for(double time_s) {
+    const Ticks end = scheduler.now() + ticks(time_s);
+    while (scheduler.run_one(end))
+      for (int i = 0; interrupts.asserted() && i < 20; ++i) firmware.handle_interrupt();
+    scheduler.pass_until(end);
+  }
+  void enumerate() {
+    firmware.start();
+    port.plug(true);
+    run_for(0.5);
+    REQUIRE(port.enumerated());
+  }
+  void use(bool configure = true) {
+    enumerate();
+    port.import();
+    if (configure) REQUIRE(control(0x00, 9, 5, 0).status == 0);
+  }
+  std::uint32_t submit(Urb urb) {
+    urb.sequence = ++sequence;
+    port.submit(std::move(urb));
+    return sequence;
+  }
+  std::uint32_t submit_control(unsigned type, unsigned request, unsigned value, unsigned length, Bytes data = {},
+                               unsigned index = 0) {
+    Urb urb;
+    urb.in = (type & 0x80) != 0;
+    urb.length = length;
+    urb.data = std::move(data);
+    const std::array<unsigned, 8> bytes{type, request, value, value >> 8, index, 0, length, length >> 8};
+    for (std::size_t i = 0; i < 8; ++i) urb.setup[i] = std::byte(bytes[i] & 0xFF);
+    return submit(std::move(urb));
+  }
+  Outcome wait_for(std::uint32_t which, double time_s = 1.0) {
+    for (double waited = 0; waited < time_s && !outcomes.contains(which); waited += 0.001) run_for(0.001);
+    REQUIRE(outcomes.contains(which));
+    return outcomes.at(which);
+  }
+  Outcome control(unsigned type, unsigned request, unsigned value, unsigned length, Bytes data = {},
+                  unsigned index = 0) {
+    return wait_for(submit_control(type, request, value, length, std::move(data), index));
+  }
+  std::uint32_t submit_in(unsigned endpoint, std::uint32_t length, std::uint32_t flags = 0) {
+    Urb urb;
+    urb.endpoint = static_cast<std::uint8_t>(endpoint);
+    urb.in = true;
+    urb.length = length;
+    urb.flags = flags;
+    return submit(std::move(urb));
+  }
+  std::uint32_t submit_out(unsigned endpoint, Bytes data, std::uint32_t flags = 0) {
+    Urb urb;
+    urb.endpoint = static_cast<std::uint8_t>(endpoint);
+    urb.length = static_cast<std::uint32_t>(data.size());
+    urb.data = std::move(data);
+    urb.flags = flags;
+    return submit(std::move(urb));
+  }
+
+  void between_transactions() override {}
+  void enumerated(const virtual_board::DeviceDescription& seen) override { description = seen; }
+  void detached() override { ++detachments; }
+  void completed(Urb&& urb, std::int32_t result) override {
+    REQUIRE_FALSE(outcomes.contains(urb.sequence));
+    const std::uint32_t actual = urb.actual_length();
+    outcomes[urb.sequence] = {result, std::move(urb.data), actual, scheduler.now()};
+  }
+
+  FakeScheduler scheduler;
+  FakeInterrupts interrupts;
+  FakeLog log;
+  OtgFsDevice core;
+  FakeFirmware firmware;
+  RootPort port;
+  std::uint32_t sequence = 0;
+  std::map<std::uint32_t, Outcome> outcomes;
+  virtual_board::DeviceDescription description;
+  int detachments = 0;
+};
+
+Bytes patterned(std::size_t length) {
+  Bytes bytes(length);
+  for (std::size_t i = 0; i < length; ++i) bytes[i] = pattern(i);
+  return bytes;
+}
+
+TEST_CASE("the host enumerates the device and then lets the bus fall silent") {
+  Bench bench;
+  bench.enumerate();
+  CHECK(bench.interrupts.position() == 67);
+  CHECK(bench.description.vendor() == 0x1209);
+  CHECK(bench.description.product() == 0x0001);
+  CHECK(bench.description.release() == 0x0134);
+  REQUIRE(bench.description.configurations.size() == 1);
+  CHECK(bench.description.configurations[0].value == 5);
+  CHECK(bench.description.configurations[0].interfaces.size() == 2);
+  CHECK(bench.description.configurations[0].endpoints.size() == 4);
+  CHECK(bench.firmware.resets == 2);
+  CHECK(bench.firmware.address == 2);
+  CHECK(bench.firmware.suspends >= 1);
+  const unsigned frames = bench.firmware.frames;
+  bench.run_for(0.1);
+  CHECK(bench.firmware.frames == frames);
+  CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("nothing is enumerated without the cable, or with a device that does not answer") {
+  Bench bench;
+  bench.firmware.start();
+  bench.run_for(0.5);
+  CHECK(bench.firmware.resets == 0);
+  bench.firmware.answers_requests = false;
+  bench.port.plug(true);
+  bench.run_for(1.5);
+  CHECK_FALSE(bench.port.enumerated());
+  CHECK(bench.firmware.resets >= 2);
+  bench.firmware.answers_requests = true;
+  bench.run_for(1.5);
+  CHECK(bench.port.enumerated());
+}
+
+TEST_CASE("an import resets, addresses and runs frames of one millisecond") {
+  Bench bench;
+  bench.enumerate();
+  bench.port.import();
+  const std::uint32_t held = bench.submit_control(0x80, 6, 0x0100, 18);
+  CHECK(bench.wait_for(held).data.size() == 18);
+  CHECK(bench.firmware.resets == 3);
+  const unsigned frames = bench.firmware.frames;
+  bench.run_for(0.25);
+  CHECK(bench.firmware.frames - frames == 250);
+  bench.port.release();
+  const unsigned suspends = bench.firmware.suspends;
+  bench.run_for(0.0025);
+  CHECK(bench.firmware.suspends == suspends);
+  bench.run_for(0.002);
+  CHECK(bench.firmware.suspends == suspends + 1);
+}
+
+TEST_CASE("control transfers of every awkward length") {
+  Bench bench;
+  bench.use();
+  for (const unsigned length : {0u, 1u, 8u, 63u, 64u, 65u, 127u, 128u, 129u, 1000u, 4096u}) {
+    CAPTURE(length);
+    const Outcome exact = bench.control(0xC0, 1, length, length);
+    CHECK(exact.status == 0);
+    CHECK(exact.data == patterned(length));
+    const Outcome shorter = bench.control(0xC0, 1, length, length + 64);  // needs a packet of 0 at multiples of 64
+    CHECK(shorter.status == 0);
+    CHECK(shorter.data == patterned(length));
+    const Outcome sent = bench.control(0x40, 2, 0, length, patterned(length));
+    CHECK(sent.status == 0);
+    CHECK(sent.actual == length);
+    CHECK(bench.firmware.control_received == patterned(length));
+  }
+  CHECK(bench.firmware.setup_done == bench.firmware.setups);
+  CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("an unknown request stalls and the next one works") {
+  Bench bench;
+  bench.use();
+  for (int i = 0; i < 3; ++i) {
+    CHECK(bench.control(0xC0, 99, 0, 8).status == status::stalled);
+    CHECK(bench.control(0x40, 99, 0, 0).status == status::stalled);
+    CHECK(bench.control(0xC0, 1, 20, 20).data == patterned(20));
+  }
+}
+
+TEST_CASE("bulk IN fills the frame: 19 packets of 64 bytes, in order") {
+  Bench bench;
+  bench.firmware.stream(true);
+  bench.use();
+  constexpr std::uint32_t length = 4096;
+  std::vector<std::uint32_t> urbs;
+  for (int i = 0; i < 64; ++i) urbs.push_back(bench.submit_in(2, length));
+  bench.run_for(0.1);
+  std::size_t received = 0;
+  std::uint32_t expected = 0;
+  for (const std::uint32_t urb : urbs) {
+    if (!bench.outcomes.contains(urb)) break;
+    const Bytes& data = bench.outcomes.at(urb).data;
+    REQUIRE(data.size() == length);
+    for (std::size_t i = 0; i < data.size(); i += 4) {
+      std::uint32_t word = 0;
+      std::memcpy(&word, data.data() + i, 4);
+      REQUIRE(word == expected++);
+    }
+    received += data.size();
+  }
+  CHECK(received <= 19u * 64 * 100);
+  CHECK(received >= 18u * 64 * 100);
+  CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("interrupt IN keeps its millisecond beside a full bulk stream") {
+  Bench bench;
+  bench.firmware.stream(true);
+  bench.firmware.report_every_millisecond = true;
+  bench.use();
+  std::vector<std::uint32_t> reports;
+  for (int i = 0; i < 200; ++i) reports.push_back(bench.submit_in(1, 64));
+  for (int i = 0; i < 100; ++i) bench.submit_in(2, 4096);
+  bench.run_for(0.202);  // the frame under way, and one more for the first report
+  for (std::uint32_t i = 0; i < reports.size(); ++i) {
+    REQUIRE(bench.outcomes.contains(reports[i]));
+    std::uint32_t number = 0;
+    std::memcpy(&number, bench.outcomes.at(reports[i]).data.data(), 4);
+    CHECK(number == i);
+    if (i == 0) continue;
+    const double gap_s = virtual_board::seconds(bench.outcomes.at(reports[i]).when - bench.outcomes.at(reports[i - 1]).when);
+    CHECK(gap_s == doctest::Approx(1e-3).epsilon(1e-6));
+  }
+  std::size_t bulk = 0;
+  for (const auto& [which, outcome] : bench.outcomes)
+    if (outcome.data.size() == 4096) bulk += outcome.data.size();
+  CHECK(bulk <= 18u * 64 * 202);
+  CHECK(bulk >= 17u * 64 * 202);
+}
+
+TEST_CASE("bInterval is honoured") {
+  Bench bench;
+  bench.firmware.report_interval = 8;
+  bench.firmware.report_every_millisecond = true;
+  bench.use();
+  for (int i = 0; i < 100; ++i) bench.submit_in(1, 64);
+  const std::size_t before = bench.outcomes.size();
+  bench.run_for(0.16);
+  CHECK(bench.outcomes.size() - before == 20);
+}
+
+TEST_CASE("NAK keeps a transfer pending until the device has something") {
+  Bench bench;
+  bench.use();
+  const std::uint32_t urb = bench.submit_in(1, 64);
+  bench.run_for(0.3);
+  CHECK_FALSE(bench.outcomes.contains(urb));
+  bench.firmware.send_report(patterned(10));
+  CHECK(bench.wait_for(urb, 0.003).data == patterned(10));
+  CHECK(bench.outcomes.at(urb).status == 0);
+  const std::uint32_t strict = bench.submit_in(1, 64, virtual_board::transfer_flag::short_is_error);
+  bench.firmware.send_report(patterned(10));
+  CHECK(bench.wait_for(strict).status == status::short_packet);
+}
+
+TEST_CASE("OUT transfers: reports, long bulk, a device that does not listen for a while") {
+  Bench bench;
+  bench.use();
+  CHECK(bench.wait_for(bench.submit_out(1, patterned(33))).actual == 33);
+  CHECK(bench.firmware.report_received == patterned(33));
+  CHECK(bench.wait_for(bench.submit_out(3, patterned(1000))).status == 0);
+  CHECK(bench.firmware.bulk_received == patterned(1000));
+
+  bench.firmware.bulk_received.clear();
+  bench.firmware.take_bulk(false);
+  CHECK(bench.wait_for(bench.submit_out(3, patterned(64))).status == 0);  // the packet that was armed already
+  const std::uint32_t urb = bench.submit_out(3, patterned(128), virtual_board::transfer_flag::zero_packet);
+  bench.run_for(0.1);
+  CHECK_FALSE(bench.outcomes.contains(urb));
+  bench.firmware.take_bulk(true);
+  CHECK(bench.wait_for(urb).actual == 128);
+  CHECK(bench.firmware.bulk_received.size() == 64 + 128);
+  CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("a halted endpoint answers -EPIPE until the host clears it, toggles start anew") {
+  Bench bench;
+  bench.firmware.stream(true);
+  bench.use();
+  CHECK(bench.wait_for(bench.submit_in(2, 64 * 3)).status == 0);  // an odd number of packets: toggle at DATA1
+  bench.firmware.halt_bulk_in();
+  CHECK(bench.wait_for(bench.submit_in(2, 640)).status == status::stalled);
+  CHECK(bench.wait_for(bench.submit_in(2, 640)).status == status::stalled);
+  CHECK(bench.control(0x02, 1, 0, 0, {}, 0x82).status == 0);
+  const Outcome after = bench.wait_for(bench.submit_in(2, 640));
+  CHECK(after.status == 0);
+  std::uint32_t word = 0;
+  std::memcpy(&word, after.data.data(), 4);
+  CHECK(word == 3 * 16);  // nothing lost, nothing twice
+}
+
+TEST_CASE("a packet larger than the room left is an overflow") {
+  Bench bench;
+  bench.use();
+  const std::uint32_t urb = bench.submit_in(1, 20);
+  bench.firmware.send_report(patterned(40));
+  CHECK(bench.wait_for(urb).status == status::overflow);
+  CHECK(bench.outcomes.at(urb).data == patterned(20));
+}
+
+TEST_CASE("endpoints exist only once configured") {
+  Bench bench;
+  bench.use(false);
+  bench.run_for(0.1);
+  CHECK(bench.wait_for(bench.submit_in(2, 64)).status == status::invalid);
+  CHECK(bench.control(0x00, 9, 5, 0).status == 0);
+  const std::uint32_t pending = bench.submit_in(2, 64);
+  bench.run_for(0.01);
+  CHECK_FALSE(bench.outcomes.contains(pending));
+  CHECK(bench.control(0x00, 9, 0, 0).status == 0);
+  CHECK(bench.wait_for(pending).status == status::invalid);
+}
+
+TEST_CASE("unlinked transfers are never answered, the others are") {
+  Bench bench;
+  bench.use();
+  const std::uint32_t first = bench.submit_in(1, 64);
+  const std::uint32_t second = bench.submit_in(1, 64);
+  bench.run_for(0.01);
+  CHECK(bench.port.unlink(first));
+  CHECK_FALSE(bench.port.unlink(first));
+  bench.firmware.send_report(patterned(5));
+  CHECK(bench.wait_for(second).data == patterned(5));
+  CHECK_FALSE(bench.outcomes.contains(first));
+  CHECK_FALSE(bench.port.unlink(second));
+}
+
+TEST_CASE("unplug in the middle of everything, then plug in again") {
+  for (const double moment_s : {0.05, 0.105, 0.125, 0.15, 0.2, 0.5003, 0.5211, 0.5407, 0.6001}) {
+    CAPTURE(moment_s);
+    Bench bench;
+    bench.firmware.stream(true);
+    bench.firmware.start();
+    bench.port.plug(true);
+    bench.run_for(std::min(moment_s, 0.5));
+    if (bench.port.enumerated()) {
+      bench.port.import();
+      bench.submit_control(0x00, 9, 5, 0);
+      bench.submit_control(0xC0, 1, 4096, 4096);
+      bench.run_for(std::max(0.0, moment_s - 0.5));
+      for (int i = 0; i < 10; ++i) bench.submit_in(2, 4096);
+      bench.run_for(0.0003);
+    }
+    bench.port.plug(false);
+    CHECK_FALSE(bench.port.enumerated());
+    const std::size_t answered = bench.outcomes.size();
+    bench.run_for(0.1);
+    CHECK(bench.outcomes.size() == answered);
+    bench.port.plug(true);
+    bench.run_for(0.5);
+    REQUIRE(bench.port.enumerated());
+    bench.port.import();
+    CHECK(bench.control(0x00, 9, 5, 0).status == 0);
+    CHECK(bench.wait_for(bench.submit_in(2, 4096)).data.size() == 4096);
+  }
+}
+
+TEST_CASE("a soft disconnect is noticed even if it is over within a frame") {
+  Bench bench;
+  bench.use();
+  constexpr std::uint32_t dctl = 0x804;
+  bench.firmware.set(dctl, 2);
+  bench.firmware.write(dctl, bench.firmware.read(dctl) & ~2u);
+  bench.run_for(0.002);
+  CHECK(bench.detachments == 1);
+  bench.run_for(0.5);
+  CHECK(bench.port.enumerated());
+}
+
+TEST_CASE("a reset of the chip takes the device off the bus") {
+  Bench bench;
+  bench.use();
+  bench.core.reset();
+  bench.run_for(0.01);
+  CHECK(bench.detachments == 1);
+  CHECK_FALSE(bench.port.enumerated());
+  bench.firmware.start();
+  bench.run_for(0.5);
+  CHECK(bench.port.enumerated());
+}
+
+TEST_CASE("CNAK before the setup-done word is popped loses that word, as on silicon") {
+  Bench bench;
+  bench.use();
+  bench.firmware.clears_nak_too_early = true;
+  const unsigned done = bench.firmware.setup_done;
+  const std::uint32_t urb = bench.submit_control(0xC0, 1, 8, 8);
+  bench.run_for(0.1);
+  CHECK_FALSE(bench.outcomes.contains(urb));
+  CHECK(bench.firmware.setup_done == done);
+  CHECK(bench.log.has("CNAK"));
+}
+
+}  // namespace
+}  // namespace inkwell::virtual_usb_test
