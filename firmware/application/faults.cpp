@@ -9,12 +9,13 @@
 
 namespace inkwell::application {
 
-/// Switches the motors off with six registers' worth of stores before it trusts anything else, the stack included:
-/// that may be what is broken. Then the record is made on the lowest 256 bytes of the stack, which nobody uses
+/// Switches the motors off with three stores before it trusts anything else, the stack included: that may be what is
+/// broken. Then the record is made on the lowest 256 bytes of the stack, which nobody uses
 /// unless the stack has overflowed. A second fault in here locks the processor up until the watchdog resets it.
 extern "C" [[gnu::naked]] void fault_handler() {
   using namespace drivers;
   asm volatile(
+      "cpsid i \n"
       "ldr r2, =%c[enable_address] \n"
       "ldr r3, =%c[enable_low] \n"
       "str r3, [r2] \n"
@@ -23,7 +24,6 @@ extern "C" [[gnu::naked]] void fault_handler() {
       "str r3, [r2] \n"
       "ldr r2, =%c[legs_b_address] \n"
       "str r3, [r2] \n"
-      "cpsid i \n"
       "mov r0, sp \n"
       "ldr r1, =stack_bottom + 256 \n"
       "mov sp, r1 \n"
