@@ -1,0 +1,19 @@
+// The commands of the `inkwell` program. Each adds itself to the program's options and, if it was chosen, runs.
+#pragma once
+
+#include <functional>
+
+#include "connection.hpp"
+
+namespace inkwell::command_line {
+
+/// What is to be done once the options are read; returns the exit code.
+using Action = std::function<int()>;
+
+void add_info_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_watch_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_parameters_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_experiment_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,57 @@
+// The options that say which device is meant, and the way to it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <device/device.hpp>
+#include <device/virtual_board.hpp>
+
+namespace inkwell::command_line {
+
+/// A mistake in what was typed; the program ends with exit code 2.
+class UsageError : public device::Error {
+ public:
+  using Error::Error;
+};
+
+struct DeviceOptions {
+  bool is_virtual = false;
+  std::filesystem::path elf;
+  std::filesystem::path arm;
+  std::string mode;  ///< empty: the command's own choice
+  std::uint64_t seed = 1;
+  bool real_time = false;
+  std::string usbip;  ///< HOST:PORT
+  std::string serial_number;
+  bool json = false;
+
+  void add_to(CLI::App& app);
+  device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, bool real_time_by_default) const;
+};
+
+/// What was found where the options point, without waiting.
+std::vector<device::Endpoint> list_devices(const DeviceOptions& options, const device::VirtualBoard* board);
+
+/// An open device and, with --virtual, the board that it is on.
+struct Connection {
+  std::unique_ptr<device::VirtualBoard> board;
+  std::unique_ptr<device::Device> device;
+};
+
+/// Opens the device that the options name. With --arm, a virtual board's firmware gets that arm's parameters.
+Connection connect(const DeviceOptions& options, bool real_time_by_default = false);
+
+/// The endpoint of a real device, or of one at --usbip. Throws device::Error if there is none.
+device::Endpoint find_one(const DeviceOptions& options);
+
+/// The rows of the parameter table that an arm description sets.
+std::vector<device::ParameterChange> arm_parameters(const std::filesystem::path& file);
+
+}  // namespace inkwell::command_line

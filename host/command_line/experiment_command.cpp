@@ -1,0 +1,98 @@
+#include "commands.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <experiment/wall_experiment.hpp>
+
+namespace inkwell::command_line {
+namespace {
+
+struct WallCommandOptions {
+  std::string output = "wall-experiment";
+  std::string wall;
+};
+
+/// A bar on a terminal, a line for each new step elsewhere. On standard error, so that --json stays clean.
+class ProgressBar {
+ public:
+  void operator()(std::string_view step, double done) {
+    constexpr int width = 24;
+    const int filled = static_cast<int>(done * width + 0.5);
+    if (is_terminal_)
+      fmt::print(stderr, "\r\x1b[K[{:#>{}}{:.>{}}] {}{}", "", filled, "", width - filled, step, done >= 1.0 ? "\n" : "");
+    else if (const auto sentence = step.substr(0, step.find(':')); sentence != last_) {
+      last_ = sentence;
+      fmt::print(stderr, "{:3.0f} %  {}\n", 100 * done, step);
+    }
+    std::fflush(stderr);
+  }
+
+ private:
+  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+  std::string last_;
+};
+
+void print(const nlohmann::ordered_json& summary, const std::string& directory) {
+  const auto number = [&](const char* name) { return summary.at(name).get<double>(); };
+  if (summary.at("simulation").get<bool>()) fmt::print("This is a simulation: a virtual board, arm and hand.\n");
+  fmt::print("wall {}           {} samples, {} lost; {} in contact\n", summary.at("wall").get<std::string>(),
+             summary.at("samples").get<std::size_t>(), summary.at("samples_lost").get<std::size_t>(),
+             summary.at("samples_in_contact").get<std::size_t>());
+  fmt::print("penetration      {:.2f} mm at most\n", 1e3 * number("penetration_maximum_m"));
+  fmt::print("force            {:.2f} N at most; off k d + c d' by {:.2f} mN at most\n", number("force_maximum_N"),
+             1e3 * summary.at("force_law").at("error_maximum_N").get<double>());
+  fmt::print("torque           T1z {:.2f} mNm at most, T2x and T3x {:.0f} mNm\n", 1e3 * number("torque_1_maximum_Nm"),
+             1e3 * number("torque_2_and_3_maximum_Nm"));
+  if (summary.contains("steady_hold"))
+    fmt::print("steady hold      {:.0f} encoder counts, {:.3f} mm, in {:.2f} s\n",
+               summary["steady_hold"]["encoder_spread_counts"].get<double>(),
+               1e3 * summary["steady_hold"]["position_spread_m"].get<double>(),
+               summary["steady_hold"]["duration_s"].get<double>());
+  if (summary.contains("current_step"))
+    fmt::print("current step     63 % after {:.0f} us, overshoot {:.1f} %, steady error {:.1f} mA\n",
+               1e6 * summary["current_step"]["rise_time_s"].get<double>(),
+               1e2 * summary["current_step"]["overshoot"].get<double>(),
+               1e3 * summary["current_step"]["steady_error_A"].get<double>());
+  fmt::print("written          {}: recording.csv, summary.json, figure-11.png to figure-14.png\n", directory);
+}
+
+int run_wall(const DeviceOptions& options, const WallCommandOptions& command) {
+  experiment::WallOptions wall;
+  wall.output_directory = command.output;
+  if (!command.wall.empty()) wall.wall = experiment::parse_wall(command.wall);
+  if (options.is_virtual)
+    wall.virtual_board = options.virtual_board(device::SimulationMode::exact, false);
+  else
+    wall.endpoint = find_one(options);
+  const auto summary = experiment::run_wall_experiment(wall, ProgressBar());
+  if (options.json)
+    fmt::print("{}\n", summary.dump(2));
+  else
+    print(summary, command.output);
+  return 0;
+}
+
+}  // namespace
+
+void add_experiment_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+  auto* command = program.add_subcommand("experiment", "Experiments that record every control period and draw figures");
+  command->require_subcommand(1);
+  auto* wall = command->add_subcommand(
+      "wall", "The experiment of Eriksson and Wikander, section 4.3: the sphere is pushed into a wall.\n"
+              "With --virtual a simulated hand does it; otherwise you are told when to push.");
+  const auto wall_options = std::make_shared<WallCommandOptions>();
+  wall->add_option("--out", wall_options->output, "Folder for recording.csv, summary.json and the figures")
+      ->capture_default_str();
+  wall->add_option("--wall", wall_options->wall, "Wall to push into; the forward one unless given")
+      ->check(CLI::IsMember({"x-", "x+", "y-", "y+", "z-", "z+"}));
+  wall->callback([&options, &action, wall_options] {
+    action = [&options, wall_options] { return run_wall(options, *wall_options); };
+  });
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,77 @@
+#include "commands.hpp"
+
+#include <chrono>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <protocol/reports.hpp>
+
+namespace inkwell::command_line {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::ordered_json;
+
+ordered_json to_json(const device::Information& information, const std::optional<protocol::PoseReport>& pose) {
+  const auto& report = information.report;
+  ordered_json json{{"serial_number", information.serial_number},
+                    {"firmware_version", information.firmware_version},
+                    {"protocol_version", information.protocol_version},
+                    {"companion_version", INKWELL_VERSION},
+                    {"servo_rate_Hz", report.servo_rate_Hz},
+                    {"processor_clock_Hz", report.processor_clock_Hz},
+                    {"servo_cycles_longest", report.servo_cycles_longest},
+                    {"servo_overruns", report.servo_overruns},
+                    {"pose_reports_dropped", report.pose_reports_dropped},
+                    {"scope_samples_dropped", report.scope_samples_dropped},
+                    {"reset_cause", report.reset_cause}};
+  if (pose) {
+    json["state"] = info(pose->state).name;
+    json["fault"] = info(pose->fault).name;
+    json["supply_V"] = pose->supply_dV / 10.0;
+  }
+  return json;
+}
+
+void print(const device::Information& information, const std::optional<protocol::PoseReport>& pose) {
+  const auto& report = information.report;
+  const double cycles_per_period = static_cast<double>(report.processor_clock_Hz) / std::max(1u, report.servo_rate_Hz);
+  fmt::print("serial number       {}\n", information.serial_number);
+  fmt::print("firmware            {}, protocol {} (companion {})\n", information.firmware_version,
+             information.protocol_version, INKWELL_VERSION);
+  fmt::print("control             {} Hz; longest interrupt {} cycles, {:.0f} % of its period; {} overruns\n",
+             report.servo_rate_Hz, report.servo_cycles_longest, 100.0 * report.servo_cycles_longest / cycles_per_period,
+             report.servo_overruns);
+  fmt::print("dropped             {} pose reports, {} scope samples, since the board started\n",
+             report.pose_reports_dropped, report.scope_samples_dropped);
+  if (!pose) {
+    fmt::print("state               unknown: the device sends no pose\n");
+    return;
+  }
+  fmt::print("supply              {:.1f} V\n", pose->supply_dV / 10.0);
+  fmt::print("state               {}: {}\n", info(pose->state).name, info(pose->state).meaning);
+  if (pose->fault != protocol::Fault::none)
+    fmt::print("fault               {}: {} {}\n", info(pose->fault).name, info(pose->fault).cause,
+               info(pose->fault).remedy);
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+  auto* command = program.add_subcommand("info", "Who is connected: versions, counters, state and fault with its remedy");
+  command->callback([&] {
+    action = [&] {
+      const auto connection = connect(options);
+      const auto pose = connection.device->read_pose(500ms);
+      const auto information = connection.device->information();
+      if (options.json)
+        fmt::print("{}\n", to_json(information, pose).dump(2));
+      else
+        print(information, pose);
+      return 0;
+    };
+  });
+}
+
+}  // namespace inkwell::command_line

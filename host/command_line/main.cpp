@@ -1,0 +1,56 @@
+// The `inkwell` program: alone it opens the window; its commands do what the window does, for scripts.
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "commands.hpp"
+
+namespace {
+
+constexpr int success = 0, failure = 1, wrong_usage = 2;
+
+int complain(const std::exception& error, int exit_code) {
+  fmt::print(stderr, "inkwell: {}\n", error.what());
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  using namespace inkwell::command_line;
+
+  CLI::App program("Companion of an Inkwell haptic arm. Without a command it opens the window.\n", "inkwell");
+  program.set_version_flag("--version", INKWELL_VERSION, "Print the version and exit");
+  program.footer("Exit code: 0 done, 1 the device or the work failed, 2 wrong usage.\n"
+                 "No board at hand? Add --virtual: it runs the firmware on a simulated board, arm and hand.");
+  program.get_formatter()->column_width(36);
+  program.require_subcommand(0, 1);
+  program.fallthrough();  // the device's options may stand behind the command as well
+
+  DeviceOptions options;
+  Action action;
+  options.add_to(program);
+  add_window_options(program, options, action);
+  add_info_command(program, options, action);
+  add_watch_command(program, options, action);
+  add_parameters_command(program, options, action);
+  add_experiment_command(program, options, action);
+
+  try {
+    program.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    const bool is_help = error.get_exit_code() == 0;
+    program.exit(error);
+    return is_help ? success : wrong_usage;
+  }
+  try {
+    return action();
+  } catch (const UsageError& error) {
+    return complain(error, wrong_usage);
+  } catch (const std::exception& error) {
+    return complain(error, failure);
+  }
+}

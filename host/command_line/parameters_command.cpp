@@ -1,0 +1,175 @@
+#include "commands.hpp"
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <device/parameter_file.hpp>
+
+namespace inkwell::command_line {
+namespace {
+
+using device::format_value;
+using device::ParameterChange;
+using nlohmann::ordered_json;
+using protocol::Parameter;
+using protocol::ParameterSet;
+
+ordered_json to_json(Parameter parameter, float value) {
+  const auto& row = info(parameter);
+  return {{"id", row.id}, {"name", row.name}, {"value", value}, {"default", row.default_value}, {"unit", row.unit},
+          {"minimum", row.minimum}, {"maximum", row.maximum}, {"group", row.group}, {"help", row.help}};
+}
+
+int list(const DeviceOptions& options) {
+  const auto connection = connect(options);
+  const ParameterSet held = connection.device->parameters();
+  ordered_json json = ordered_json::array();
+  std::string_view group;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+    const auto parameter = static_cast<Parameter>(i);
+    const auto& row = info(parameter);
+    if (options.json) {
+      json.push_back(to_json(parameter, held.values[i]));
+      continue;
+    }
+    if (row.group != group)
+      fmt::print("{}{:<34} {:>14}   {:>12}   {:<24} {}\n", group.empty() ? "" : "\n", row.group, "value", "default",
+                 "range", "unit");
+    group = row.group;
+    const std::string range = fmt::format("{} to {}", format_value(parameter, row.minimum), format_value(parameter, row.maximum));
+    fmt::print("  {:<32} {:>14} {} {:>12}   {:<24} {}\n", row.name, format_value(parameter, held.values[i]),
+               held.values[i] == row.default_value ? ' ' : '*', format_value(parameter, row.default_value), range,
+               row.unit);
+  }
+  if (options.json)
+    fmt::print("{}\n", json.dump(2));
+  else
+    fmt::print("\n* differs from the default of this companion\n");
+  return 0;
+}
+
+/// A mistake in what was typed is wrong usage, and is found before any device is touched.
+template <class Read>
+auto read_typed(const std::vector<std::string>& words, Read read) {
+  std::vector<decltype(read(std::string_view()))> results;
+  try {
+    for (const auto& word : words) results.push_back(read(word));
+  } catch (const device::Error& error) {
+    throw UsageError(error.what());
+  }
+  return results;
+}
+
+int get(const DeviceOptions& options, const std::vector<std::string>& names) {
+  const auto parameters = read_typed(names, device::parameter_named);
+  const auto connection = connect(options);
+  const ParameterSet held = connection.device->parameters();
+  ordered_json json = ordered_json::object();
+  for (auto parameter : parameters) {
+    if (options.json)
+      json[std::string(info(parameter).name)] = held[parameter];
+    else
+      fmt::print("{}\n", format_value(parameter, held[parameter]));
+  }
+  if (options.json) fmt::print("{}\n", json.dump());
+  return 0;
+}
+
+void report(const DeviceOptions& options, std::size_t count, const protocol::TransactionReport& transaction) {
+  if (options.json)
+    fmt::print("{}\n", ordered_json{{"accepted", count}, {"applied_at_periods", transaction.applied_at_periods}}.dump());
+  else
+    fmt::print("{} parameter{} took effect together.\n", count, count == 1 ? "" : "s");
+}
+
+int send(const DeviceOptions& options, const std::vector<ParameterChange>& changes) {
+  const auto connection = connect(options);
+  report(options, changes.size(), connection.device->set_parameters(changes));
+  return 0;
+}
+
+int set(const DeviceOptions& options, const std::vector<std::string>& assignments) {
+  return send(options, read_typed(assignments, device::parse_change));
+}
+
+int restore_defaults(const DeviceOptions& options) {
+  const auto connection = connect(options);
+  report(options, protocol::parameter_count, connection.device->restore_default_parameters());
+  return 0;
+}
+
+device::ParameterFile load_and_complain(const std::string& file) {
+  const auto loaded = device::load_parameters(file);
+  for (const auto& name : loaded.unknown)
+    fmt::print(stderr, "inkwell: {} is not a parameter of this version and is passed over; the nearest is {}.\n", name,
+               device::nearest_parameter_name(name));
+  if (loaded.changes.empty())
+    throw device::Error(fmt::format("{} holds no parameter that this version knows. Nothing was sent.", file));
+  return loaded;
+}
+
+int save(const DeviceOptions& options, const std::string& file) {
+  const auto connection = connect(options);
+  device::save_parameters(file, connection.device->parameters());
+  if (!options.json) fmt::print("{} parameters were written to {}.\n", protocol::parameter_count, file);
+  return 0;
+}
+
+int show_differences(const DeviceOptions& options, const std::string& file) {
+  const auto loaded = load_and_complain(file);
+  const auto connection = connect(options);
+  const auto differences = compare(loaded, connection.device->parameters());
+  ordered_json json = ordered_json::array();
+  for (const auto& difference : differences) {
+    const auto& row = info(difference.parameter);
+    if (options.json)
+      json.push_back({{"name", row.name}, {"file", difference.in_file}, {"device", difference.in_device}});
+    else
+      fmt::print("{:<34} file {:>12}   device {:>12} {}\n", row.name, format_value(difference.parameter, difference.in_file),
+                 format_value(difference.parameter, difference.in_device), row.unit);
+  }
+  if (options.json)
+    fmt::print("{}\n", json.dump(2));
+  else if (differences.empty())
+    fmt::print("The device holds what {} says.\n", file);
+  return 0;
+}
+
+}  // namespace
+
+void add_parameters_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+  auto* command = program.add_subcommand(
+      "parameters", "Every parameter with value, default, range and unit; or one of the commands below");
+  command->require_subcommand(0, 1);
+  command->callback([&options, &action, command] {
+    if (command->get_subcommands().empty()) action = [&options] { return list(options); };
+  });
+
+  const auto words = std::make_shared<std::vector<std::string>>();
+  const auto file = std::make_shared<std::string>();
+  const auto add = [&](const char* name, const char* help, std::function<int()> run) {
+    auto* subcommand = command->add_subcommand(name, help);
+    subcommand->callback([&action, run] { action = run; });
+    return subcommand;
+  };
+  add("get", "The value of one or more parameters", [&options, words] { return get(options, *words); })
+      ->add_option("NAME", *words, "Names of parameters")->required();
+  add("set", "Change parameters in one transaction: all of them take effect together, or none",
+      [&options, words] { return set(options, *words); })
+      ->add_option("NAME=VALUE", *words, "For example wall_stiffness_N_per_m=600")->required();
+  add("defaults", "Give every parameter its default", [&options] { return restore_defaults(options); });
+  add("load", "Send the parameters of a TOML file in one transaction",
+      [&options, file] { return send(options, load_and_complain(*file).changes); })
+      ->add_option("FILE", *file, "Written by `inkwell parameters save`")->required();
+  add("save", "Write the device's parameters to a TOML file", [&options, file] { return save(options, *file); })
+      ->add_option("FILE", *file, "It is replaced if it exists")->required();
+  add("diff", "Show where a TOML file and the device differ", [&options, file] { return show_differences(options, *file); })
+      ->add_option("FILE", *file, "Written by `inkwell parameters save`")->required();
+  add("arm", "Send the geometry, limits and box of an arm description in one transaction",
+      [&options, file] { return send(options, arm_parameters(*file)); })
+      ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")->required();
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,97 @@
+#include "commands.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <protocol/reports.hpp>
+
+namespace inkwell::command_line {
+namespace {
+
+using namespace std::chrono_literals;
+using protocol::PoseReport;
+
+struct WatchOptions {
+  double seconds = 0;  ///< 0: until interrupted
+  double rate_Hz = 10;
+};
+
+bool is_pressed(const PoseReport& pose, protocol::Switch which) {
+  return (pose.switches & static_cast<std::uint8_t>(which)) != 0;
+}
+
+nlohmann::ordered_json to_json(const PoseReport& pose, std::uint64_t lost) {
+  return {{"sequence", pose.sequence},
+          {"time_s", static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz},
+          {"state", info(pose.state).name},
+          {"fault", info(pose.fault).name},
+          {"position_m", {pose.position_m[0], pose.position_m[1], pose.position_m[2]}},
+          {"gimbal_rad", {pose.gimbal_rad[0], pose.gimbal_rad[1], pose.gimbal_rad[2]}},
+          {"force_N", {pose.force_N[0], pose.force_N[1], pose.force_N[2]}},
+          {"joint_rad", {pose.joint_rad[0], pose.joint_rad[1], pose.joint_rad[2]}},
+          {"button_1", is_pressed(pose, protocol::Switch::button_1)},
+          {"button_2", is_pressed(pose, protocol::Switch::button_2)},
+          {"inkwell", is_pressed(pose, protocol::Switch::inkwell)},
+          {"supply_V", pose.supply_dV / 10.0},
+          {"lost", lost}};
+}
+
+void print_head() {
+  fmt::print("{:>9}  {:<12} {:>26}  {:>23}  {:<12} {}\n", "time / s", "state", "position x y z / mm", "force x y z / N",
+             "switches", "lost");
+}
+
+void print_line(const PoseReport& pose, std::uint64_t lost) {
+  const auto& p = pose.position_m;
+  const auto& f = pose.force_N;
+  fmt::print("{:9.3f}  {:<12} {:8.2f} {:8.2f} {:8.2f}  {:7.2f} {:7.2f} {:7.2f}  {}{}{} {:>6}\n",
+             static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz,
+             pose.state == protocol::State::fault ? info(pose.fault).name : info(pose.state).name, 1e3f * p[0],
+             1e3f * p[1], 1e3f * p[2], f[0], f[1], f[2], is_pressed(pose, protocol::Switch::button_1) ? "1 " : "- ",
+             is_pressed(pose, protocol::Switch::button_2) ? "2 " : "- ",
+             is_pressed(pose, protocol::Switch::inkwell) ? "inkwell" : "-      ", lost);
+}
+
+int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
+  const auto connection = connect(options, true);
+  if (!options.json) print_head();
+  std::optional<std::uint32_t> first_period, sequence;
+  std::uint32_t next_shown = 0;
+  std::uint64_t lost = 0;
+  const auto periods_shown = static_cast<std::uint32_t>(protocol::servo_rate_Hz / watch_options.rate_Hz);
+  for (;;) {
+    const auto pose = connection.device->read_pose(2s);
+    if (!pose) throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
+    if (sequence) lost += pose->sequence - *sequence - 1;
+    sequence = pose->sequence;
+    if (!first_period) first_period = pose->time_periods;
+    const std::uint32_t passed = pose->time_periods - *first_period;
+    if (watch_options.seconds > 0 && passed >= watch_options.seconds * protocol::servo_rate_Hz) return 0;
+    if (passed < next_shown) continue;
+    next_shown += periods_shown;
+    if (options.json)
+      fmt::print("{}\n", to_json(*pose, lost).dump());
+    else
+      print_line(*pose, lost);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+void add_watch_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+  auto* command = program.add_subcommand("watch", "The pose, live: one line for each tenth of a second");
+  const auto watch_options = std::make_shared<WatchOptions>();
+  command->add_option("--seconds", watch_options->seconds, "End after this time of the board; without it, at Ctrl+C")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--rate", watch_options->rate_Hz, "Lines a second")->check(CLI::Range(0.1, 1000.0))->capture_default_str();
+  command->callback([&options, &action, watch_options] {
+    action = [&options, watch_options] { return watch(options, *watch_options); };
+  });
+}
+
+}  // namespace inkwell::command_line
