@@ -132,7 +132,11 @@ std::array<float, 3> AnalogInputs::take_currents_A() {
   return {take_current_A<ADC1>(), take_current_A<ADC2>(), take_current_A<ADC3>()};
 }
 
-void AnalogInputs::start_slow_conversions() { ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask); }
+void AnalogInputs::start_slow_conversions() {
+  // After an overrun the sequence before may still be running. Starting it again in the middle would shift all later
+  // results by a place; the count of transfers is full again exactly when a sequence is over.
+  if (DMA2::S0NDTR::read() == slow_channels) ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
+}
 
 std::array<float, 3> AnalogInputs::gimbal_ratio() const {
   constexpr float per_count = 1.0f / (board::adc_counts - 1);

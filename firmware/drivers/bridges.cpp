@@ -79,7 +79,8 @@ void Bridges::start() {
   using ClockEnable = registers::RCC::APB2ENR;
   ClockEnable::modify(ClockEnable::TIM1EN(1), ClockEnable::TIM8EN(1));
   static_cast<void>(ClockEnable::read());
-  // A debugger that halts the processor stops both timers, and with them their outputs.
+  // A debugger that halts the processor stops the timers: a halt must not leave the last duty on the motors for good.
+  // That the outputs go idle as well is to be seen on the bench (boards/omni_driver/README.md, "First power-up").
   using Freeze = registers::DBG::DBGMCU_APB2_FZ;
   Freeze::modify(Freeze::DBG_TIM1_STOP(1), Freeze::DBG_TIM8_STOP(1));
 
