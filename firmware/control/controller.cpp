@@ -85,10 +85,11 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
 void Controller::find_pose(const Settings& settings) {
   constexpr auto periods_per_s = static_cast<float>(protocol::servo_rate_Hz);
   for (std::size_t i = 0; i < 3; ++i) {
-    update(speeds_[i], encoder_counts_[i], periods_);
+    update(speeds_[i], encoder_counts_[i], periods_, i == joint_to_fit_);
     joint_speed_rad_per_s_[i] =
         speeds_[i].counts_per_period * settings.encoders.rad_per_count[i] * periods_per_s;
   }
+  joint_to_fit_ = joint_to_fit_ == 2 ? 0 : joint_to_fit_ + 1;
   joint_rad_ = joint_angles(counts_since_inkwell(), settings.encoders);
   pose_ = forward_kinematics(joint_rad_, settings.arm);
   velocity_m_per_s_ = probe_velocity(pose_.jacobian, joint_speed_rad_per_s_);

@@ -8,18 +8,20 @@ namespace {
 
 /// Farther than any arm moves within `rest_periods`; keeps the products below within 32 bits.
 constexpr std::int32_t farthest_counts = 65'536;
-static_assert(static_cast<std::int64_t>(farthest_counts) * SpeedEstimate::rest_periods < 0x7FFFFFFF);
+static_assert(2LL * (farthest_counts + 1) * SpeedEstimate::rest_periods < 0x7FFFFFFF);
 
-/// Fraction of counts over periods; compared by cross-multiplication, which is exact and needs no divide.
+/// Fraction of half counts over periods; compared by cross-multiplication, which is exact and needs no divide.
 struct Slope {
-  std::int32_t counts;
+  std::int32_t half_counts;
   std::int32_t periods;
 };
 
-bool less(const Slope& a, const Slope& b) { return a.counts * b.periods < b.counts * a.periods; }
+bool less(const Slope& a, const Slope& b) { return a.half_counts * b.periods < b.half_counts * a.periods; }
 
-/// Slope of the longest window whose line passes all of its edges within one count.
-Slope longest_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
+/// Slope of the longest window that is of use and whose line passes all of its edges within the tolerance.
+Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
+  const float speed = estimate.counts_per_period;
+  const std::int32_t tolerance = speed > -0.5f && speed < 0.5f ? 1 : 2;  // half counts
   Slope line{0, 1};
   Slope lowest{-1, 0};  // no bound yet
   Slope highest{1, 0};
@@ -32,11 +34,13 @@ Slope longest_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
         distance_counts < -farthest_counts)
       break;
     const auto age = static_cast<std::int32_t>(age_periods);
-    const Slope candidate{distance_counts, age};
+    const Slope candidate{2 * distance_counts, age};
     if (less(candidate, lowest) || less(highest, candidate)) break;
     line = candidate;
-    const Slope low{distance_counts - 1, age};
-    const Slope high{distance_counts + 1, age};
+    const bool whole_cycle = distance_counts >= SpeedEstimate::enough_counts || distance_counts <= -SpeedEstimate::enough_counts;
+    if (whole_cycle && age_periods >= SpeedEstimate::enough_periods) break;
+    const Slope low{2 * distance_counts - tolerance, age};
+    const Slope high{2 * distance_counts + tolerance, age};
     if (less(lowest, low)) lowest = low;
     if (less(high, highest)) highest = high;
   }
@@ -53,6 +57,7 @@ void remember(SpeedEstimate& estimate, const EncoderEdge& edge) {
 void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
   if (silent_periods >= SpeedEstimate::rest_periods) {
     estimate.remembered = 0;
+    estimate.head_waits = false;
     estimate.counts_per_period = 0.0f;
     return;
   }
@@ -70,31 +75,33 @@ void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
 SpeedEstimate start_speed_estimate(std::int32_t counts, std::uint32_t period) {
   SpeedEstimate estimate;
   estimate.counts = counts;
-  estimate.last_edge_period = period;
+  estimate.head.period = period;
   return estimate;
 }
 
-void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period) {
-  const std::uint32_t silent_periods = period - estimate.last_edge_period;
-  if (counts == estimate.counts) {
-    decay(estimate, silent_periods);
-    return;
+void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, bool may_fit) {
+  const std::int32_t before = estimate.counts;
+  if (counts == before) {
+    decay(estimate, period - estimate.head.period);
+  } else {
+    const std::int32_t direction = counts > before ? 1 : -1;
+    const bool starts_anew = estimate.remembered == 0 || direction != estimate.direction;
+    estimate.counts = counts;
+    estimate.direction = direction;
+    estimate.head = {period, direction > 0 ? counts : counts + 1};
+    estimate.head_waits = !starts_anew;
+    if (starts_anew) {
+      estimate.remembered = 0;
+      estimate.counts_per_period = 0.0f;
+      remember(estimate, estimate.head);
+    }
   }
-  const std::int32_t direction = counts > estimate.counts ? 1 : -1;
-  const EncoderEdge head{period, direction > 0 ? counts : counts + 1};
-  const bool first = estimate.remembered == 0 || direction != estimate.direction;
-  estimate.counts = counts;
-  estimate.direction = direction;
-  estimate.last_edge_period = period;
-  if (first) {
-    estimate.remembered = 0;
-    estimate.counts_per_period = 0.0f;
-    remember(estimate, head);
-    return;
-  }
-  const Slope line = longest_line(estimate, head);
-  estimate.counts_per_period = static_cast<float>(line.counts) * reciprocal(static_cast<float>(line.periods));
-  if (period - estimate.edges[estimate.newest].period >= SpeedEstimate::spacing_periods) remember(estimate, head);
+  if (!estimate.head_waits || !may_fit) return;
+  estimate.head_waits = false;
+  const Slope line = fit_line(estimate, estimate.head);
+  estimate.counts_per_period = 0.5f * static_cast<float>(line.half_counts) * reciprocal(static_cast<float>(line.periods));
+  if (estimate.head.period - estimate.edges[estimate.newest].period >= SpeedEstimate::spacing_periods)
+    remember(estimate, estimate.head);
 }
 
 }  // namespace inkwell::control

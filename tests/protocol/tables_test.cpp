@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <set>
+#include <string>
 #include <string_view>
 
 #include <protocol/faults.hpp>
@@ -16,14 +17,14 @@ namespace {
 using namespace inkwell::protocol;
 
 bool ends_in_unit(std::string_view name, std::string_view unit) {
-  if (unit.empty()) return true;
-  std::string suffix;
-  for (const char c : unit) suffix += c == '/' ? std::string{"_per_"} : (c == '(' || c == ')' ? std::string{} : std::string{c});
-  if (name.ends_with("_" + suffix)) return true;
-  // Signals write a speed as m_s, parameters as m_per_s; counts may stand before "per turn".
-  std::string short_suffix;
-  for (const char c : unit) short_suffix += c == '/' ? '_' : c;
-  return name.ends_with("_" + short_suffix) || name.find("_" + suffix + "_per_") != std::string_view::npos;
+  // "N/m" is written N_per_m in a parameter's name, and m/s is m_s in a signal's.
+  std::string per, plain;
+  for (const char c : unit) {
+    if (c == '(' || c == ')') continue;
+    per += c == '/' ? "_per_" : std::string{c};
+    plain += c == '/' ? '_' : c;
+  }
+  return unit.empty() || name.ends_with("_" + per) || name.ends_with("_" + plain) || name.ends_with(plain + "_per_turn");
 }
 
 TEST_CASE("parameters: names and ids are unique and found, names end in their unit, all have help") {

@@ -3,7 +3,8 @@
 #define DOCTEST_CONFIG_NO_MULTITHREADING
 #include <doctest/doctest.h>
 
-int main() {
+/// Called by the start-up code; ISO C++ keeps programs from calling main().
+extern "C" int run_tests() {
   doctest::Context context;
   context.setOption("no-colors", true);
   return context.run();

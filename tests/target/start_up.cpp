@@ -8,7 +8,7 @@ extern "C" {
 
 extern std::uint32_t bss_start, bss_end, stack_top;
 void __libc_init_array();
-int main();
+int run_tests();
 
 [[noreturn]] void reset() {
   // Full access to the floating-point unit (PM0214, "CPACR").
@@ -17,13 +17,16 @@ int main();
   asm volatile("dsb\n isb");
   for (std::uint32_t* word = &bss_start; word != &bss_end; ++word) *word = 0;
   __libc_init_array();
-  std::exit(main());
+  std::exit(run_tests());
 }
 
 [[noreturn]] void processor_fault() {
   inkwell::semihosting::write("The test image met a processor fault.\n");
   inkwell::semihosting::exit(99);
 }
+
+// Names this image to the destructors of static objects; there is only one image.
+void* __dso_handle = nullptr;
 
 // Called by __libc_init_array; all constructors are in the init array.
 void _init() {}
@@ -35,8 +38,7 @@ struct VectorTable {
   Handler handlers[15];
 };
 
-[[gnu::section(".vectors"), gnu::used]] extern const VectorTable vectors;
-const VectorTable vectors{&stack_top,
+[[gnu::section(".vectors"), gnu::used]] const VectorTable vectors{&stack_top,
                           {reset, processor_fault, processor_fault, processor_fault, processor_fault, processor_fault,
                            processor_fault, processor_fault, processor_fault, processor_fault, processor_fault,
                            processor_fault, processor_fault, processor_fault, processor_fault}};

@@ -2,6 +2,7 @@
 // instruction a nanosecond, so SysTick counts instructions in units of 168 MHz / 1 GHz.
 #include <doctest/doctest.h>
 
+#include <firmware/control/arms.hpp>
 #include <firmware/control/simulated_arm.hpp>
 
 namespace {
@@ -39,32 +40,57 @@ class InstructionCounter {
   float instructions_per_tick_;
 };
 
+/// The controller's stage clock, counting instructions.
+struct StageClock {
+  const InstructionCounter& counter;
+  std::uint32_t begin = counter.ticks();
+
+  std::uint32_t lap() {
+    const auto instructions = static_cast<std::uint32_t>(counter.instructions_since(begin));
+    begin = counter.ticks();
+    return instructions;
+  }
+};
+
+/// A box far from the arm, so that every step is in contact with three walls and at the force limit.
+protocol::ParameterSet parameters_out_of_box() {
+  using enum protocol::Parameter;
+  protocol::ParameterSet set = tests::omni_parameters();
+  set[box_minimum_x_m] = set[box_minimum_y_m] = set[box_minimum_z_m] = 0.4f;
+  set[box_maximum_x_m] = set[box_maximum_y_m] = set[box_maximum_z_m] = 0.5f;
+  return set;
+}
+
 TEST_CASE("a step in contact with all encoders moving takes less than 2000 instructions") {
-  const protocol::ParameterSet parameters = protocol::default_parameters();
-  const control::Settings settings = control::prepare(parameters);
+  const control::Settings settings = control::prepare(parameters_out_of_box());
   control::Controller controller = tests::active_controller(settings);
   control::Samples samples = tests::samples_at_rest();
-  tests::FakeClock clock;
   const InstructionCounter counter;
 
   float longest = 0.0f;
   float sum = 0.0f;
+  std::array<float, 6> stages{};
   constexpr int steps = 400;
   for (int i = 0; i < steps; ++i) {
     controller.host_alive();
-    // An edge in most periods and acceleration: the velocity windows are at their longest walk.
-    for (std::size_t joint = 0; joint < 3; ++joint)
-      samples.encoder_counts[joint] += static_cast<std::int32_t>(joint) + (i % 3 != 0 ? 1 : 0) - (i > 200 ? 2 : 0);
+    // An edge in two of three periods on every joint: the velocity windows are at their longest walk.
+    for (std::int32_t& counts : samples.encoder_counts) counts += i % 3 != 0 ? 1 : 0;
+    StageClock clock{counter};
     const std::uint32_t begin = counter.ticks();
     controller.step(samples, settings, clock);
-    controller.finish(clock);
     const float instructions = counter.instructions_since(begin);
+    controller.finish(clock);
     sum += instructions;
     longest = instructions > longest ? instructions : longest;
+    for (std::size_t stage = 0; stage < stages.size(); ++stage)
+      stages[stage] += controller.signals().values[static_cast<std::size_t>(protocol::Signal::stage_sample_cycles) + stage] / steps;
   }
-  MESSAGE("instructions of a step: mean " << sum / steps << ", longest " << longest);
+  MESSAGE("instructions of a step: mean " << sum / steps << ", longest " << longest << "; by stage: sample " << stages[0]
+                                          << ", pose " << stages[1] << ", contact " << stages[2] << ", torque "
+                                          << stages[3] << ", current " << stages[4] << ", report " << stages[5]);
   CHECK(controller.state() == protocol::State::active);
   CHECK(controller.signals()[protocol::Signal::force_N] > 0.0f);
+  CHECK(controller.signals()[protocol::Signal::joint_speed_3_rad_s] > 0.0f);
   CHECK(longest > 300.0f);
   CHECK(longest < 2000.0f);
 }

@@ -1,6 +1,7 @@
 // The whole signal path, from samples to duties.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -42,7 +43,7 @@ Settings settings_near_wall() {
 
 /// Joint 2 back and joint 3 up, so that the probe goes out along x, in steps slow enough for the speed limit.
 void push_into_wall(Controller& controller, Samples& samples, const Settings& settings) {
-  for (int i = 0; i < 150; ++i) {
+  for (int i = 0; i < 100; ++i) {
     if (i % 2 == 0) --samples.encoder_counts[1];
     ++samples.encoder_counts[2];
     controller.host_alive();

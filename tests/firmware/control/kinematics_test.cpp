@@ -2,7 +2,9 @@
 // paper's as Denavit-Hartenberg transforms, the Omni's as published by the Ubitrack project.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <firmware/control/arms.hpp>
 
@@ -55,7 +57,7 @@ Point paper_reference(const Joints& q, const protocol::ParameterSet& set) {
 using Reference = Point (*)(const Joints&, const protocol::ParameterSet&);
 
 struct ArmCase {
-  const char* name;
+  std::string name;
   protocol::ParameterSet parameters;
   Reference reference;
 };

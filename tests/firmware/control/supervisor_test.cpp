@@ -1,6 +1,7 @@
 // Every cell of the supervisor's tables.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include <control/supervisor.hpp>

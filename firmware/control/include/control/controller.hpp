@@ -86,6 +86,7 @@ class Controller {
   SwitchFilter switches_;
   InkwellReference reference_;
   std::array<SpeedEstimate, 3> speeds_{};
+  std::size_t joint_to_fit_ = 0;  ///< joints take turns, see update()
   std::array<CurrentLoop, 3> loops_{};
   TestPulse test_;
   Supervisor supervisor_;
