@@ -1,0 +1,326 @@
+// The core's registers against RM0090, and what it says of drivers that break the manual's rules.
+#include <doctest/doctest.h>
+
+#include <array>
+
+#include "fake_board.hpp"
+#include "fake_firmware.hpp"
+
+namespace inkwell::virtual_usb_test {
+namespace {
+
+using virtual_board::Handshake;
+using virtual_board::InReply;
+using virtual_board::OtgFsDevice;
+
+constexpr std::uint32_t gahbcfg = 0x008, grstctl = 0x010, gintsts = 0x014, gintmsk = 0x018, grxstsr = 0x01C,
+                        grxstsp = 0x020, gccfg = 0x038, dctl = 0x804, dsts = 0x808, dcfg = 0x800;
+constexpr std::uint32_t sof = 1u << 3, rxflvl = 1u << 4, ginakeff = 1u << 6, gonakeff = 1u << 7;
+constexpr std::uint32_t epena = 1u << 31, epdis = 1u << 30, snak = 1u << 27, cnak = 1u << 26, naksts = 1u << 17,
+                        stall = 1u << 21;
+constexpr std::array<std::byte, 8> some_request{};
+
+struct Bench {
+  Bench() : core(scheduler, interrupts, log), firmware(core) {
+    firmware.start();
+    core.set_bus_power(true);
+    core.begin_reset();
+    core.end_reset();
+    firmware.handle_interrupt();
+    write(gintmsk, 0);  // from here on the tests are the driver
+  }
+  std::uint32_t read(std::uint32_t offset) { return core.read(offset, 4); }
+  void write(std::uint32_t offset, std::uint32_t value) { core.write(offset, value, 4); }
+  InReply in(unsigned endpoint) { return core.in(0, endpoint, packet); }
+  /// Bulk endpoints 0x82 and 0x03, as after SET_CONFIGURATION.
+  void activate() {
+    write(0x940, 1u << 28 | 2u << 22 | 2u << 18 | 1u << 15 | 64);
+    write(0xB60, 1u << 28 | 2u << 18 | 1u << 15 | 64);
+  }
+  Handshake out(unsigned endpoint, bool data1, std::size_t length) {
+    return core.out(0, endpoint, data1, std::span(packet).first(length));
+  }
+
+  FakeScheduler scheduler;
+  FakeInterrupts interrupts;
+  FakeLog log;
+  OtgFsDevice core;
+  FakeFirmware firmware;
+  std::array<std::byte, virtual_board::full_speed_packet_maximum> packet{};
+};
+
+TEST_CASE("reset values") {
+  FakeScheduler scheduler;
+  FakeInterrupts interrupts;
+  FakeLog log;
+  OtgFsDevice core(scheduler, interrupts, log);
+  const std::array<std::pair<std::uint32_t, std::uint32_t>, 16> expected{{{0x008, 0},
+                                                                          {0x00C, 0x0A00},
+                                                                          {0x010, 0x8000'0000},
+                                                                          {0x014, 0x0400'0020},
+                                                                          {0x018, 0},
+                                                                          {0x024, 0x200},
+                                                                          {0x028, 0x0200'0200},
+                                                                          {0x03C, 0x1200},
+                                                                          {0x040, 0x4F54'281A},
+                                                                          {0x104, 0x0200'0400},
+                                                                          {0x800, 0x0220'0000},
+                                                                          {0x804, 0},
+                                                                          {0x828, 0x17D7},
+                                                                          {0x82C, 0x05B8},
+                                                                          {0x900, 0x8000},
+                                                                          {0xB00, 0x8000}}};
+  for (const auto& [offset, value] : expected) {
+    CAPTURE(offset);
+    CHECK(core.read(offset, 4) == value);
+  }
+  CHECK(log.sentences.empty());
+  core.read(0x440, 4);
+  CHECK(log.sentences.size() == 1);
+}
+
+TEST_CASE("the pull-up needs power, a session and no soft disconnect") {
+  FakeScheduler scheduler;
+  FakeInterrupts interrupts;
+  FakeLog log;
+  OtgFsDevice core(scheduler, interrupts, log);
+  CHECK(core.attachment() == 0);
+  core.write(gccfg, 1u << 16, 4);
+  CHECK(core.attachment() == 0);  // VBUS is not sensed
+  core.write(gccfg, 1u << 16 | 1u << 19, 4);
+  CHECK(core.attachment() == 0);  // sensed, and absent
+  core.set_bus_power(true);
+  CHECK(core.attachment() != 0);
+  core.set_bus_power(false);
+  CHECK(core.attachment() == 0);
+  CHECK((core.read(0x004, 4) & 1u << 2) != 0);  // session end detected
+  core.write(gccfg, 1u << 16 | 1u << 21, 4);
+  const std::uint32_t first = core.attachment();
+  CHECK(first != 0);
+  core.write(dctl, 2, 4);
+  CHECK(core.attachment() == 0);
+  core.write(dctl, 0, 4);
+  CHECK(core.attachment() != first);
+}
+
+TEST_CASE("the interrupt line follows status, mask and the global switch") {
+  Bench bench;
+  bench.write(gintsts, 0xFFFF'FFFF);
+  bench.core.start_of_frame(0x7A5);
+  CHECK_FALSE(bench.interrupts.asserted());
+  bench.write(gintmsk, sof);
+  CHECK(bench.interrupts.asserted());
+  CHECK(bench.interrupts.position() == 67);
+  bench.write(gahbcfg, 0);
+  CHECK_FALSE(bench.interrupts.asserted());
+  bench.write(gahbcfg, 1);
+  CHECK(bench.interrupts.asserted());
+  bench.write(gintsts, sof);
+  CHECK_FALSE(bench.interrupts.asserted());
+  CHECK((bench.read(dsts) >> 8 & 0x3FFF) == 0x7A5);
+}
+
+TEST_CASE("a SETUP packet is taken against NAK and STALL, clears the stall and sets NAK") {
+  Bench bench;
+  bench.write(0x900, stall | snak);
+  bench.write(0xB00, stall | snak);
+  CHECK(bench.in(0).handshake == Handshake::stall);
+  CHECK(bench.out(0, true, 0) == Handshake::stall);
+  CHECK(bench.core.setup(0, 0, some_request) == Handshake::ack);
+  CHECK((bench.read(0x900) & (stall | naksts)) == naksts);
+  CHECK((bench.read(0xB00) & (stall | naksts)) == naksts);
+  CHECK((bench.read(gintsts) & rxflvl) != 0);
+  CHECK((bench.read(grxstsr) >> 17 & 15) == 6);
+  const std::uint32_t status = bench.read(grxstsp);
+  CHECK((status >> 17 & 15) == 6);
+  CHECK((status >> 4 & 0x7FF) == 8);
+  bench.read(0x1000);
+  bench.read(0x1000);
+  CHECK((bench.read(gintsts) & rxflvl) == 0);  // setup done is written with the next token
+  CHECK(bench.in(0).handshake == Handshake::nak);
+  CHECK((bench.read(grxstsp) >> 17 & 15) == 4);
+  CHECK((bench.read(0xB08) & 1u << 3) != 0);
+  CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("back-to-back SETUP packets all arrive, four exceed the count") {
+  Bench bench;
+  for (int i = 0; i < 4; ++i) CHECK(bench.core.setup(0, 0, some_request) == Handshake::ack);
+  CHECK((bench.read(0xB08) & 1u << 6) != 0);
+  for (int i = 0; i < 4; ++i) {
+    CHECK((bench.read(grxstsp) >> 17 & 15) == 6);
+    bench.read(0x1000);
+    bench.read(0x1000);
+  }
+}
+
+TEST_CASE("a new address holds from the end of the status stage") {
+  Bench bench;
+  bench.core.setup(0, 0, some_request);
+  bench.write(dcfg, bench.read(dcfg) | 9u << 4);
+  bench.core.in(0, 0, bench.packet);  // ends the setup stage
+  while ((bench.read(gintsts) & rxflvl) != 0)
+    if ((bench.read(grxstsp) >> 4 & 0x7FF) == 8) bench.read(0x1000), bench.read(0x1000);
+  bench.write(0x910, 1u << 19);
+  bench.write(0x900, epena | cnak);
+  CHECK(bench.core.in(0, 0, bench.packet).handshake == Handshake::ack);
+  CHECK(bench.core.finish_in(0));
+  CHECK(bench.core.in(0, 0, bench.packet).handshake == Handshake::nothing);
+  CHECK(bench.core.in(9, 0, bench.packet).handshake == Handshake::nak);
+}
+
+TEST_CASE("IN: NAK until the whole packet is loaded, then data with alternating toggles") {
+  Bench bench;
+  bench.activate();
+  CHECK(bench.in(2).handshake == Handshake::nak);
+  bench.write(0x950, 2u << 19 | 70);
+  bench.write(0x940, bench.read(0x940) | epena | cnak);
+  const std::uint32_t free_words = bench.read(0x958);
+  CHECK(free_words == 128);
+  for (int i = 0; i < 15; ++i) bench.core.write(0x3000, 0x0403'0201, 4);
+  CHECK(bench.core.in(0, 2, bench.packet).handshake == Handshake::nak);
+  for (int i = 0; i < 3; ++i) bench.core.write(0x3000, 0x0807'0605, 4);
+  const InReply first = bench.in(2);
+  CHECK(first.handshake == Handshake::ack);
+  CHECK(first.length == 64);
+  CHECK_FALSE(first.data1);
+  CHECK(bench.packet[63] == std::byte{8});
+  CHECK(bench.in(2).length == 64);  // not acknowledged: the same again
+  CHECK(bench.core.finish_in(2));
+  CHECK((bench.read(0x948) & 1) == 0);
+  const InReply second = bench.in(2);
+  CHECK(second.length == 6);
+  CHECK(second.data1);
+  CHECK(bench.core.finish_in(2));
+  CHECK((bench.read(0x948) & 1) != 0);
+  CHECK((bench.read(0x940) & epena) == 0);
+  CHECK(bench.read(0x958) == 128);
+  CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("a flush or a disable spoils the packet on the wire") {
+  Bench bench;
+  bench.activate();
+  bench.write(0x950, 1u << 19 | 4);
+  bench.write(0x940, bench.read(0x940) | epena | cnak);
+  bench.write(0x3000, 1);
+  CHECK(bench.in(2).handshake == Handshake::ack);
+  bench.write(0x940, bench.read(0x940) | epdis | snak);
+  bench.write(grstctl, 2u << 6 | 1u << 5);
+  CHECK_FALSE(bench.core.finish_in(2));
+  CHECK((bench.read(0x948) & 1u << 1) != 0);
+  CHECK((bench.read(0x948) & 1u << 6) != 0);
+  CHECK(bench.read(0x958) == 128);
+}
+
+TEST_CASE("OUT: the receive FIFO keeps room for SETUP packets and answers NAK when full") {
+  Bench bench;
+  bench.activate();
+  bench.write(0xB70, 8u << 19 | 512);
+  bench.write(0xB60, bench.read(0xB60) | epena | cnak);
+  CHECK(bench.out(3, false, 64) == Handshake::ack);
+  CHECK(bench.out(3, true, 64) == Handshake::ack);
+  CHECK(bench.out(3, false, 64) == Handshake::nak);  // 56 words: 2 packets of 17 and no more
+  for (int i = 0; i < 3; ++i) CHECK(bench.core.setup(0, 0, some_request) == Handshake::ack);
+  CHECK((bench.read(grxstsp) >> 17 & 15) == 2);
+  for (int i = 0; i < 16; ++i) bench.read(0x1000);
+  bench.read(grxstsp);
+  for (int i = 0; i < 16; ++i) bench.read(0x1000);
+  CHECK(bench.out(3, true, 64) == Handshake::ack);  // a repetition: acknowledged, not stored
+  CHECK((bench.read(0xB70) >> 19 & 0x3FF) == 6);
+  CHECK(bench.out(3, false, 10) == Handshake::ack);  // short: the transfer ends
+  CHECK(bench.out(3, true, 64) == Handshake::nak);
+  CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("global NAKs") {
+  Bench bench;
+  bench.activate();
+  bench.write(0xB70, 1u << 19 | 64);
+  bench.write(0xB60, bench.read(0xB60) | epena | cnak);
+  bench.write(dctl, 1u << 9);
+  CHECK(bench.out(3, false, 64) == Handshake::nak);
+  CHECK((bench.read(gintsts) & gonakeff) == 0);
+  CHECK((bench.read(grxstsp) >> 17 & 15) == 1);
+  CHECK((bench.read(gintsts) & gonakeff) != 0);
+  bench.write(0xB60, bench.read(0xB60) | epdis | snak);
+  CHECK((bench.read(0xB68) & 1u << 1) != 0);
+  CHECK((bench.read(0xB60) & epena) == 0);
+  bench.write(dctl, 1u << 10);
+  CHECK((bench.read(gintsts) & gonakeff) == 0);
+  bench.write(dctl, 1u << 7);
+  CHECK((bench.read(gintsts) & ginakeff) != 0);
+  bench.write(dctl, 1u << 8);
+  CHECK((bench.read(gintsts) & ginakeff) == 0);
+  CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("TXFE follows the level that GAHBCFG chooses") {
+  Bench bench;
+  bench.activate();
+  bench.write(0x950, 8u << 19 | 512);
+  bench.write(0x940, bench.read(0x940) | epena | cnak);
+  const auto empty = [&] { return (bench.read(0x948) & 1u << 7) != 0; };
+  for (int i = 0; i < 64; ++i) bench.write(0x3000, 0);
+  CHECK(empty());
+  for (int i = 0; i < 16; ++i) bench.write(0x3000, 0);
+  CHECK_FALSE(empty());
+  bench.write(gahbcfg, 1u << 7 | 1);
+  bench.in(2);
+  bench.core.finish_in(2);
+  CHECK_FALSE(empty());
+  for (int i = 0; i < 4; ++i) {
+    bench.in(2);
+    bench.core.finish_in(2);
+  }
+  CHECK(empty());
+}
+
+TEST_CASE("what the manual forbids is said and has its consequence") {
+  Bench bench;
+  bench.activate();
+  SUBCASE("another access within a packet's FIFO writes") {
+    bench.write(0x950, 1u << 19 | 8);
+    bench.write(0x940, bench.read(0x940) | epena | cnak);
+    bench.write(0x3000, 1);
+    bench.read(gintsts);
+    bench.write(0x3000, 2);
+    CHECK(bench.log.has("interleaved"));
+    CHECK(bench.in(2).handshake == Handshake::nothing);  // a bad CRC
+  }
+  SUBCASE("more words than are free") {
+    bench.write(0x950, 16u << 19 | 1024);
+    bench.write(0x940, bench.read(0x940) | epena | cnak);
+    for (int i = 0; i < 129; ++i) bench.write(0x3000, 0);
+    CHECK(bench.log.has("full transmit FIFO"));
+  }
+  SUBCASE("no packet count") {
+    bench.write(0x940, bench.read(0x940) | epena | cnak);
+    CHECK(bench.log.has("packet count of 0"));
+    CHECK(bench.in(2).handshake == Handshake::nak);
+  }
+  SUBCASE("an OUT endpoint disabled without the global NAK") {
+    bench.write(0xB70, 1u << 19 | 64);
+    bench.write(0xB60, bench.read(0xB60) | epena | cnak);
+    bench.write(0xB60, bench.read(0xB60) | epdis | snak);
+    CHECK(bench.log.has("global OUT NAK"));
+    CHECK((bench.read(0xB68) & 1u << 1) == 0);
+  }
+  SUBCASE("data left in the receive FIFO") {
+    bench.core.setup(0, 0, std::array<std::byte, 8>{std::byte{0x80}, std::byte{6}});
+    bench.read(grxstsp);
+    CHECK(bench.read(grxstsp) == 0x0680);
+    CHECK(bench.log.has("taken for a status"));
+  }
+  SUBCASE("FIFOs that overlap") {
+    bench.write(0x108, 128u << 16 | 80);
+    bench.write(0x104, 16u << 16 | 72);
+    bench.write(0x920, 1u << 22 | 3u << 18 | 1u << 15 | 64);
+    bench.write(0x950, 1u << 19);
+    bench.write(0x940, bench.read(0x940) | epena | cnak);
+    CHECK(bench.log.has("overlap"));
+  }
+}
+
+}  // namespace
+}  // namespace inkwell::virtual_usb_test

@@ -1,0 +1,85 @@
+// A USB/IP client of few words, and a board that runs in a thread of its own.
+#pragma once
+
+#include <cstdint>
+#include <future>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <virtual_usb/virtual_usb.hpp>
+
+#include "fake_board.hpp"
+#include "fake_firmware.hpp"
+
+namespace inkwell::virtual_usb_test {
+
+/// The board's thread runs board time as fast as it can unless it is paused.
+class LiveBoard {
+ public:
+  LiveBoard();
+  ~LiveBoard();
+
+  /// Runs `action` between two milliseconds of board time, on the board's thread.
+  void call(std::function<void()> action);
+  void pause(bool paused) {
+    call([&] { paused_ = paused; });
+  }
+  /// False if the device was not enumerated within a generous time.
+  bool wait_until_enumerated();
+
+  FakeScheduler scheduler;
+  FakeInterrupts interrupts;
+  FakeLog log;
+  virtual_board::VirtualUsb usb;
+  FakeFirmware firmware;
+
+ private:
+  void run();
+
+  bool paused_ = false;
+  bool stop_ = false;
+  std::mutex mutex_;
+  std::vector<std::pair<std::function<void()>*, std::promise<void>*>> calls_;
+  std::thread thread_;
+};
+
+struct Reply {
+  std::uint32_t command = 0;
+  std::uint32_t sequence = 0;
+  std::int32_t status = 0;
+  std::uint32_t actual_length = 0;
+};
+
+class UsbIpClient {
+ public:
+  explicit UsbIpClient(std::uint16_t port);
+  ~UsbIpClient();
+
+  void send(std::span<const std::byte> bytes);
+  /// Fewer bytes than asked for if the server closed the connection or nothing came for 5 s.
+  Bytes receive(std::size_t length);
+  /// The server closed the connection (and sent nothing before that).
+  bool closed() { return receive(1).empty() && closed_; }
+
+  void send_operation(std::uint16_t code, std::uint16_t version = 0x0111);
+  /// Status of OP_REP_IMPORT.
+  std::uint32_t import(const std::string& bus_id = "1-1");
+
+  void submit(std::uint32_t sequence, unsigned endpoint, bool in, std::uint32_t length, Bytes out_data = {},
+              std::array<std::uint8_t, 8> setup = {});
+  void unlink(std::uint32_t sequence, std::uint32_t victim);
+  void send_header(const std::array<std::uint32_t, 10>& words, std::array<std::uint8_t, 8> setup = {});
+  Reply read_reply();
+
+ private:
+  int socket_;
+  bool closed_ = false;
+};
+
+std::uint32_t read_32(std::span<const std::byte> bytes, std::size_t at);
+std::uint32_t read_16(std::span<const std::byte> bytes, std::size_t at);
+
+}  // namespace inkwell::virtual_usb_test
