@@ -25,9 +25,10 @@ Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
   Slope line{0, 1};
   Slope lowest{-1, 0};  // no bound yet
   Slope highest{1, 0};
-  for (std::uint32_t back = 0; back < estimate.remembered; ++back) {
-    const EncoderEdge& edge =
-        estimate.edges[(estimate.newest + SpeedEstimate::capacity - back) % SpeedEstimate::capacity];
+  std::uint32_t index = estimate.newest;
+  for (std::uint32_t left = estimate.remembered; left > 0; --left) {
+    const EncoderEdge& edge = estimate.edges[index];
+    index = index == 0 ? SpeedEstimate::capacity - 1 : index - 1;
     const std::uint32_t age_periods = head.period - edge.period;
     const std::int32_t distance_counts = head.boundary - edge.boundary;
     if (age_periods > SpeedEstimate::rest_periods || distance_counts > farthest_counts ||
@@ -48,7 +49,7 @@ Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
 }
 
 void remember(SpeedEstimate& estimate, const EncoderEdge& edge) {
-  estimate.newest = (estimate.newest + 1) % SpeedEstimate::capacity;
+  estimate.newest = estimate.newest + 1 == SpeedEstimate::capacity ? 0 : estimate.newest + 1;
   estimate.edges[estimate.newest] = edge;
   if (estimate.remembered < SpeedEstimate::capacity) ++estimate.remembered;
 }

@@ -30,10 +30,10 @@ struct EncoderEdge {
 
 /// What the estimate of one joint remembers.
 struct SpeedEstimate {
-  static constexpr std::uint32_t capacity = 8;
-  /// Edges nearer than this to the last remembered one are used but not remembered, so that eight reach
-  /// back 3 ms at high speed, where every period has an edge.
-  static constexpr std::uint32_t spacing_periods = 8;
+  static constexpr std::uint32_t capacity = 6;
+  /// Edges nearer than this to the last remembered one are used but not remembered, so that six reach back
+  /// 3 ms at high speed, where every period has an edge.
+  static constexpr std::uint32_t spacing_periods = 11;
   /// An edge's time is uncertain by one period, so a window of this length is right to one in 64.
   static constexpr std::uint32_t enough_periods = 64;
   static constexpr std::int32_t enough_counts = 4;
