@@ -26,6 +26,9 @@ inline protocol::ParameterSet omni_parameters() {
   set[joint_2_maximum_rad] = 1.75f;
   set[elbow_minimum_rad] = -0.81f;
   set[elbow_maximum_rad] = 1.25f;
+  set[inkwell_joint_1_rad] = 0.0f;
+  set[inkwell_joint_2_rad] = 0.25f;
+  set[inkwell_joint_3_rad] = 0.1f;
   return set;
 }
 
@@ -47,6 +50,9 @@ inline protocol::ParameterSet paper_parameters() {
   set[joint_2_maximum_rad] = 1.75f;
   set[elbow_minimum_rad] = -2.4f;
   set[elbow_maximum_rad] = -0.3f;
+  set[inkwell_joint_1_rad] = 0.0f;
+  set[inkwell_joint_2_rad] = 0.9f;
+  set[inkwell_joint_3_rad] = -2.0f;
   return set;
 }
 

@@ -1,0 +1,152 @@
+// The controller closed over a simulated arm: motors with winding and back EMF, joints with inertia and
+// friction, encoders that count, and a hand that pulls the probe to a target. Inertia is taken constant and
+// gravity is left out; the virtual board simulates both.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <firmware/control/arms.hpp>
+#include <firmware/control/simulated_arm.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::Triple;
+using control::Vector3;
+using protocol::Parameter;
+using protocol::Signal;
+
+class SimulatedArm {
+ public:
+  SimulatedArm(const protocol::ParameterSet& parameters) : parameters_(parameters), settings_(control::prepare(parameters)) {
+    joint_rad_ = settings_.encoders.inkwell_rad;
+    inkwell_rad_ = joint_rad_;
+    hand_m = control::forward_kinematics(joint_rad_, settings_.arm).position_m;
+  }
+
+  Vector3 hand_m;  ///< where the hand wants the probe
+
+  control::Samples samples() const {
+    control::Samples samples = tests::samples_at_rest();
+    samples.current_A = current_A_;
+    for (std::size_t i = 0; i < 3; ++i)
+      samples.encoder_counts[i] = static_cast<std::int32_t>(
+          std::floor((joint_rad_[i] - inkwell_rad_[i]) / settings_.encoders.rad_per_count[i] + 0.5f));
+    return samples;
+  }
+
+  /// One control period with the duty that the bridges have now.
+  void run(const control::Drive& drive) {
+    constexpr int steps = 10;
+    constexpr float step_s = protocol::servo_period_s / steps;
+    for (int step = 0; step < steps; ++step) advance(drive, step_s);
+  }
+
+  const control::Settings& settings() const { return settings_; }
+
+ private:
+  void advance(const control::Drive& drive, float step_s) {
+    constexpr float resistance_ohm = 2.18f, inductance_H = 0.238e-3f, supply_V = 18.0f;  // RE25, as in the arm files
+    constexpr Triple inertia_kg_m2{1.1e-3f, 1.1e-3f, 0.6e-3f};
+    constexpr float coulomb_Nm = 0.01f, viscous_Nms_per_rad = 0.0005f;
+    constexpr float hand_N_per_m = 300.0f, hand_Ns_per_m = 3.0f;
+
+    const control::Pose pose = control::forward_kinematics(joint_rad_, settings_.arm);
+    const Vector3 velocity = control::probe_velocity(pose.jacobian, speed_rad_per_s_);
+    const Vector3 pull_N = hand_N_per_m * (hand_m - pose.position_m) - hand_Ns_per_m * velocity;
+    const Triple hand_Nm = control::joint_torques(pose.jacobian, pull_N);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float Nm_per_A = 1.0f / settings_.motors.ampere_per_Nm[i];
+      const float voltage_V = drive.enabled ? drive.duty[i] * supply_V - speed_rad_per_s_[i] * Nm_per_A : 0.0f;
+      current_A_[i] = drive.enabled
+                          ? current_A_[i] + step_s / inductance_H * (voltage_V - resistance_ohm * current_A_[i])
+                          : 0.0f;
+      const float friction_Nm =
+          coulomb_Nm * std::tanh(speed_rad_per_s_[i] / 0.005f) + viscous_Nms_per_rad * speed_rad_per_s_[i];
+      const float torque_Nm = current_A_[i] * Nm_per_A + hand_Nm[i] - friction_Nm;
+      speed_rad_per_s_[i] += step_s * torque_Nm / inertia_kg_m2[i];
+      joint_rad_[i] += step_s * speed_rad_per_s_[i];
+    }
+  }
+
+  protocol::ParameterSet parameters_;
+  control::Settings settings_;
+  Triple joint_rad_{}, inkwell_rad_{};
+  Triple speed_rad_per_s_{};
+  Triple current_A_{};
+};
+
+/// One push: what the device itself reported on the way.
+struct Push {
+  float largest_force_N = 0.0f;
+  float deepest_m = 0.0f;
+  float law_error_N = 0.0f;      ///< of F = k d + c d' against the logged values
+  float current_error_A = 0.0f;  ///< of the currents against their references, while the hand is steady
+  float lowest_steady_m = 1.0f;
+  float highest_steady_m = -1.0f;
+  protocol::State state;
+};
+
+/// The hand moves 14 mm along x in 0.3 s, the last 10 mm of it beyond the wall, and then holds still.
+Push push_against_wall(protocol::ParameterSet parameters) {
+  parameters[Parameter::sphere_radius_m] = 0.0f;
+  for (const Parameter bound : {Parameter::box_minimum_x_m, Parameter::box_minimum_y_m, Parameter::box_minimum_z_m})
+    parameters[bound] = -0.4f;
+  for (const Parameter bound : {Parameter::box_maximum_y_m, Parameter::box_maximum_z_m}) parameters[bound] = 0.4f;
+  const Vector3 start_m = SimulatedArm{parameters}.hand_m;
+  parameters[Parameter::box_maximum_x_m] = start_m.x + 0.004f;
+  SimulatedArm arm{parameters};
+  const control::Settings& settings = arm.settings();
+  control::Controller controller = tests::active_controller(settings);
+  tests::FakeClock clock;
+
+  Push push;
+  control::Drive next;  // a duty takes effect one period after its samples
+  constexpr int move_periods = 6'000, settle_periods = 6'000, steady_periods = 8'000, ramp_periods = 5'100;
+  for (int period = -ramp_periods; period < move_periods + settle_periods + steady_periods; ++period) {
+    const float part = control::clamp(static_cast<float>(period) / move_periods, 0.0f, 1.0f);
+    arm.hand_m.x = start_m.x + 0.014f * part;
+    controller.host_alive();
+    const control::Drive drive = controller.step(arm.samples(), settings, clock);
+    arm.run(next);
+    next = drive;
+
+    const protocol::SignalValues& signals = controller.signals();
+    const float depth_m = -signals[Signal::penetration_x_m];
+    const float force_N = -signals[Signal::force_x_N];
+    push.largest_force_N = std::max(push.largest_force_N, force_N);
+    push.deepest_m = std::max(push.deepest_m, depth_m);
+    if (force_N > 0.0f && force_N < settings.wall.force_limit_N) {
+      const float law_N = settings.wall.stiffness_N_per_m * depth_m +
+                          settings.wall.damping_Ns_per_m * signals[Signal::velocity_x_m_s];
+      push.law_error_N = std::max(push.law_error_N, std::abs(force_N - law_N));
+    }
+    if (period < move_periods + settle_periods) continue;
+    push.lowest_steady_m = std::min(push.lowest_steady_m, signals[Signal::position_x_m]);
+    push.highest_steady_m = std::max(push.highest_steady_m, signals[Signal::position_x_m]);
+    push.current_error_A = std::max(
+        push.current_error_A, std::abs(signals[Signal::current_1_A] - signals[Signal::current_reference_1_A]));
+  }
+  push.state = controller.state();
+  return push;
+}
+
+TEST_CASE("a push against a wall: the law holds, the current follows, and a steady hand rests within two counts") {
+  for (const auto& parameters : {tests::omni_parameters(), tests::paper_parameters()}) {
+    const Push push = push_against_wall(parameters);
+    // Two counts of joint 1 at the probe's reach of at most 0.27 m.
+    const float two_counts_m = 2.0f * 0.27f * 0.33e-3f;
+    MESSAGE("deepest " << push.deepest_m * 1e3f << " mm, largest force " << push.largest_force_N << " N, rests within "
+                       << (push.highest_steady_m - push.lowest_steady_m) * 1e6f << " um");
+    CHECK(push.state == protocol::State::active);
+    CHECK(push.largest_force_N > 1.5f);
+    CHECK(push.largest_force_N <= 3.3001f);
+    CHECK(push.deepest_m < 0.005f);
+    CHECK(push.law_error_N < 0.005f);
+    CHECK(push.highest_steady_m - push.lowest_steady_m < two_counts_m);
+    CHECK(push.current_error_A < 0.02f);
+  }
+}
+
+}  // namespace
