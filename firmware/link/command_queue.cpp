@@ -62,6 +62,7 @@ bool CommandQueue::waiting(protocol::Command command) const {
 
 void CommandQueue::host_gone() {
   sign_of_life_.store(false);
+  forgotten_.store(pushed_.load());
   host_gone_.store(true);
 }
 
@@ -69,7 +70,7 @@ const protocol::CommandReport* CommandQueue::take() {
   const std::uint32_t taken = taken_.load();
   if (host_gone_.load()) {
     host_gone_.store(false);
-    taken_.store(pushed_.load());
+    taken_.store(forgotten_.load());
     disable_force_ = {};
     disable_force_.command = Command::disable_force;
     disable_force_.token = last_token_;  // the host asked for nothing, so nothing new is acknowledged

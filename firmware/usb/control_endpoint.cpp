@@ -107,7 +107,6 @@ void ControlEndpoint::send_status() {
 void ControlEndpoint::stall() {
   stage_ = Stage::idle;
   port_.stall(control_in);
-  port_.stall(control_out);
 }
 
 }  // namespace inkwell::usb

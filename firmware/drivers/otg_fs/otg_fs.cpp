@@ -77,7 +77,7 @@ bool OtgFs::next_event(Event& event) {
   }
   // What was sent comes before what was received: the host goes on only after it has the packet.
   if (next_sent(event) || next_received(event) || next_suspend_or_resume(event, interrupts)) return true;
-  begin_control_transfers();
+  answer_control();
   registers::NVIC::ISER::write(interrupt_position / 32, 1u << interrupt_position % 32);
   return false;
 }
@@ -90,7 +90,7 @@ void OtgFs::bus_reset() {
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);
   fifo_memory::flush_receive();
-  control_receive_waits_ = false;
+  control_receive_waits_ = control_stall_waits_ = false;
   suspended_ = false;
   set_address(0);
   write_control_out_size();
@@ -133,7 +133,7 @@ bool OtgFs::take_received_word(Event& event) {
       // Only now is it known that no other SETUP follows, and only now may NAK be cleared again.
       Device::DOEPINT::write(0, ~0u);
       write_control_out_size();
-      control_receive_waits_ = false;
+      control_receive_waits_ = control_stall_waits_ = false;
       event.kind = Event::Kind::setup;
       event.endpoint = 0;
       event.length = static_cast<std::uint8_t>(setup_.size());
@@ -189,7 +189,7 @@ void OtgFs::send(std::uint8_t endpoint_address, std::span<const std::byte> data)
   in_[endpoint] = {data, true};
   if (endpoint == 0) {
     control_send_waits_ = true;
-    begin_control_transfers();
+    answer_control();
   } else {
     begin_send(endpoint);
   }
@@ -199,19 +199,23 @@ void OtgFs::receive(std::uint8_t endpoint_address) {
   const unsigned endpoint = number_of(endpoint_address);
   if (endpoint == 0) {
     control_receive_waits_ = true;
-    begin_control_transfers();
+    answer_control();
   } else {
     begin_receive(endpoint);
   }
 }
 
-// Endpoint 0 is not let go while something waits in the receive FIFO: it may be a SETUP packet, which makes
-// the transfer stale, and clearing NAK before its setup-done word is popped loses that word.
-void OtgFs::begin_control_transfers() {
-  if ((!control_send_waits_ && !control_receive_waits_) || Core::GINTSTS::RXFLVL::is_set()) return;
+// Endpoint 0 is not touched while something waits in the receive FIFO: it may be a SETUP packet, which makes
+// this answer stale, and clearing NAK before its setup-done word is popped loses that word.
+void OtgFs::answer_control() {
+  if (!(control_send_waits_ || control_receive_waits_ || control_stall_waits_) || Core::GINTSTS::RXFLVL::is_set()) return;
   if (control_receive_waits_) begin_receive(0);
   if (control_send_waits_) begin_send(0);
-  control_receive_waits_ = control_send_waits_ = false;
+  if (control_stall_waits_) {
+    Device::DIEPCTL::modify(0, Device::DIEPCTL::STALL(1));
+    Device::DOEPCTL::modify(0, Device::DOEPCTL::STALL(1));
+  }
+  control_receive_waits_ = control_send_waits_ = control_stall_waits_ = false;
 }
 
 void OtgFs::begin_send(unsigned endpoint) {
@@ -295,11 +299,15 @@ void OtgFs::close(std::uint8_t endpoint_address) {
 
 void OtgFs::stall(std::uint8_t endpoint_address) {
   const unsigned endpoint = number_of(endpoint_address);
-  if (is_in(endpoint_address)) {
+  if (endpoint == 0) {
+    stop_in(0);
+    control_receive_waits_ = false;
+    control_stall_waits_ = true;
+    answer_control();
+  } else if (is_in(endpoint_address)) {
     stop_in(endpoint);
     Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::STALL(1));
   } else {
-    if (endpoint == 0) control_receive_waits_ = false;
     Device::DOEPCTL::modify(endpoint, Device::DOEPCTL::STALL(1));
   }
 }

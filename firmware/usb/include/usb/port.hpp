@@ -30,7 +30,9 @@ struct Event {
 };
 
 /// Endpoint hardware. Endpoints go by their address, bit 7 set for IN. Every call returns at once or
-/// after a wait that is bounded to microseconds. Endpoint 0 is open from reset on and always takes SETUP.
+/// after a wait that is bounded to microseconds. Endpoint 0 is open from reset on and always takes SETUP; while
+/// a SETUP waits to be taken from next_event(), send(), receive() and stall() do nothing on endpoint 0, because
+/// they answer an older one.
 class Port {
  public:
   /// The next event; false if there is none. Also moves the running transfers on.
@@ -46,7 +48,7 @@ class Port {
   /// Closes an endpoint; a running transfer is forgotten.
   virtual void close(std::uint8_t endpoint_address) = 0;
 
-  /// Answers STALL from now on. On endpoint 0 until the next SETUP.
+  /// Answers STALL from now on. On endpoint 0 in both directions, until the next SETUP.
   virtual void stall(std::uint8_t endpoint_address) = 0;
 
   /// Forgets a running transfer, ends a stall and starts again with data toggle 0.

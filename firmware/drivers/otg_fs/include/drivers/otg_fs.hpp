@@ -59,7 +59,7 @@ class OtgFs final : public usb::Port {
   bool next_received(usb::Event& event);
   bool take_received_word(usb::Event& event);
   bool next_suspend_or_resume(usb::Event& event, std::uint32_t interrupts);
-  void begin_control_transfers();
+  void answer_control();
   void begin_send(unsigned endpoint);
   void begin_receive(unsigned endpoint);
   void fill(unsigned endpoint);
@@ -70,6 +70,7 @@ class OtgFs final : public usb::Port {
   std::array<std::byte, 8> setup_{};
   bool control_send_waits_ = false;
   bool control_receive_waits_ = false;
+  bool control_stall_waits_ = false;
   bool suspended_ = false;
 };
 

@@ -1,0 +1,158 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <limits>
+
+#include <link/command_queue.hpp>
+
+namespace inkwell {
+
+using link::CommandQueue;
+using link::decode_command;
+using protocol::Command;
+using protocol::CommandReport;
+
+namespace {
+
+CommandReport make(Command command, std::uint8_t token = 0) {
+  CommandReport report{};
+  report.command = command;
+  report.token = token;
+  return report;
+}
+
+bool sound(const CommandReport& report) { return decode_command(std::as_bytes(std::span(&report, 1))).has_value(); }
+
+}  // namespace
+
+TEST_CASE("sound commands are decoded as they are") {
+  for (const Command command : {Command::heartbeat, Command::enable_force, Command::disable_force, Command::clear_fault}) {
+    const CommandReport report = make(command, 77);
+    const auto decoded = decode_command(std::as_bytes(std::span(&report, 1)));
+    REQUIRE(decoded.has_value());
+    CHECK(std::memcmp(&*decoded, &report, sizeof report) == 0);
+  }
+}
+
+TEST_CASE("a command of another length, report, version or kind is ignored") {
+  const CommandReport good = make(Command::enable_force);
+  std::byte longer[sizeof good + 1]{};
+  std::memcpy(longer, &good, sizeof good);
+  for (std::size_t size = 0; size <= sizeof longer; ++size)
+    CHECK(decode_command(std::span(longer).first(size)).has_value() == (size == sizeof good));
+
+  CommandReport bad = good;
+  bad.version = protocol::protocol_version + 1;
+  CHECK_FALSE(sound(bad));
+  bad = good;
+  bad.report_id = protocol::ReportId::pose;
+  CHECK_FALSE(sound(bad));
+  for (int command = static_cast<int>(Command::test_voltage) + 1; command < 256; ++command)
+    CHECK_FALSE(sound(make(static_cast<Command>(command))));
+}
+
+TEST_CASE("a selection holds known signals, at most as many as fit") {
+  CommandReport report = make(Command::select_signals);
+  CHECK(sound(report));  // none: stops the scope
+  report.selection.count = protocol::scope_signals_maximum;
+  for (std::uint8_t& signal : report.selection.signals) signal = protocol::signal_count - 1;
+  CHECK(sound(report));
+  report.selection.signals[31] = protocol::signal_count;
+  CHECK_FALSE(sound(report));
+  report.selection.count = 31;
+  CHECK(sound(report));  // what is not counted is not looked at
+  report.selection.count = protocol::scope_signals_maximum + 1;
+  CHECK_FALSE(sound(report));
+  report.selection.count = 255;
+  CHECK_FALSE(sound(report));
+}
+
+TEST_CASE("a test pulse names a motor and has finite numbers") {
+  for (const Command command : {Command::test_current, Command::test_voltage}) {
+    CommandReport good = make(command);
+    good.test = {2, -0.5f, 0.1f};
+    CHECK(sound(good));
+    for (const int motor : {0, 4, 255}) {
+      CommandReport bad = good;
+      bad.test.motor = static_cast<std::uint8_t>(motor);
+      CHECK_FALSE(sound(bad));
+    }
+    const float infinity = std::numeric_limits<float>::infinity();
+    const float not_a_number = std::numeric_limits<float>::quiet_NaN();
+    for (const float amplitude : {infinity, -infinity, not_a_number}) {
+      CommandReport bad = good;
+      bad.test.amplitude = amplitude;
+      CHECK_FALSE(sound(bad));
+    }
+    for (const float duration_s : {-0.001f, 0.501f, infinity, not_a_number}) {
+      CommandReport bad = good;
+      bad.test.duration_s = duration_s;
+      CHECK_FALSE(sound(bad));
+    }
+  }
+}
+
+TEST_CASE("commands come out in order, one a period, and their tokens with them") {
+  CommandQueue queue;
+  CHECK(queue.take() == nullptr);
+  CHECK_FALSE(queue.take_sign_of_life());
+  // Several times round the ring.
+  std::uint8_t next = 0;
+  for (int round = 0; round < 10; ++round) {
+    for (int i = 0; i < 3; ++i) CHECK(queue.push(make(Command::heartbeat, static_cast<std::uint8_t>(next + i))));
+    CHECK(queue.take_sign_of_life());
+    CHECK_FALSE(queue.take_sign_of_life());
+    for (int i = 0; i < 3; ++i) {
+      const CommandReport* command = queue.take();
+      REQUIRE(command != nullptr);
+      CHECK(command->token == next);
+      CHECK(queue.last_token() == next);
+      ++next;
+    }
+    CHECK(queue.take() == nullptr);
+  }
+}
+
+TEST_CASE("a full queue refuses, keeps what it has and still notes the sign of life") {
+  CommandQueue queue;
+  for (std::uint32_t i = 0; i < CommandQueue::capacity; ++i)
+    CHECK(queue.push(make(Command::heartbeat, static_cast<std::uint8_t>(i))));
+  queue.take_sign_of_life();
+  CHECK_FALSE(queue.push(make(Command::enable_force, 99)));
+  CHECK(queue.take_sign_of_life());
+  CHECK_FALSE(queue.waiting(Command::enable_force));
+  for (std::uint32_t i = 0; i < CommandQueue::capacity; ++i) CHECK(queue.take()->token == i);
+  CHECK(queue.take() == nullptr);
+}
+
+TEST_CASE("a waiting command is seen until it is taken") {
+  CommandQueue queue;
+  queue.push(make(Command::heartbeat));
+  queue.push(make(Command::enable_force));
+  CHECK(queue.waiting(Command::enable_force));
+  queue.take();
+  CHECK(queue.waiting(Command::enable_force));
+  queue.take();
+  CHECK_FALSE(queue.waiting(Command::enable_force));
+}
+
+TEST_CASE("when the host is gone, the next thing that happens is that the force goes off") {
+  CommandQueue queue;
+  queue.push(make(Command::heartbeat, 5));
+  queue.take();
+  queue.push(make(Command::enable_force, 6));
+  queue.host_gone();
+  CHECK_FALSE(queue.take_sign_of_life());
+  queue.push(make(Command::clear_fault, 7));  // the next host, before the interrupt came
+  const CommandReport* command = queue.take();
+  REQUIRE(command != nullptr);
+  CHECK(command->command == Command::disable_force);
+  CHECK(command->token == 5);  // the command that was thrown away is not acknowledged
+  CHECK(queue.last_token() == 5);
+  command = queue.take();
+  REQUIRE(command != nullptr);
+  CHECK(command->token == 7);
+  CHECK(queue.take() == nullptr);
+}
+
+}  // namespace inkwell

@@ -1,0 +1,235 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <link/parameter_store.hpp>
+
+#include "transaction.hpp"
+
+namespace inkwell {
+
+using link::ParameterStore;
+using protocol::Parameter;
+using protocol::Refusal;
+using test::entry;
+using test::Transaction;
+
+namespace {
+
+std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
+
+/// Sends a transaction that must be refused, and checks that reason, parameter and value are told, that
+/// every value stayed, and that the interrupt gets nothing new.
+void check_refused(ParameterStore& store, std::span<const std::byte> report, Refusal reason, std::uint16_t id = 0,
+                   float value = 0.0f, bool force_is_on = false) {
+  const protocol::ParameterSet before = store.values();
+  const protocol::TransactionReport result_before = store.result();
+  const control::Settings* settings = &store.take(10);
+
+  CHECK(store.accept(report, force_is_on) == reason);
+
+  const protocol::TransactionReport result = store.result();
+  CHECK(result.refusal == reason);
+  CHECK(result.parameter_id == id);
+  const float refused_value = result.value;
+  if (std::isnan(value))
+    CHECK(std::isnan(refused_value));
+  else
+    CHECK(refused_value == value);
+  CHECK(result.transactions == result_before.transactions + 1);
+  CHECK(store.values() == before);
+  CHECK(&store.take(11) == settings);
+  CHECK(store.result().applied_at_periods == result_before.applied_at_periods);
+}
+
+}  // namespace
+
+TEST_CASE("a store starts with the defaults and reads them in the table's order") {
+  ParameterStore store;
+  protocol::ParametersReport report;
+  CHECK(store.read(report) == protocol::parameters_report_size(protocol::parameter_count));
+  CHECK(report.report_id == protocol::ReportId::parameters);
+  CHECK(report.version == protocol::protocol_version);
+  REQUIRE(report.count == protocol::parameter_count);
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+    CHECK(report.entries[i].id == protocol::parameter_table[i].id);
+    const float value = report.entries[i].value;
+    CHECK(value == protocol::parameter_table[i].default_value);
+  }
+}
+
+TEST_CASE("an accepted transaction takes effect whole, at the period in which the interrupt takes it") {
+  ParameterStore store;
+  const control::Settings* before = &store.take(0);
+  const float ramp_before = before->ramp_per_period;
+  const Transaction transaction{entry(Parameter::wall_stiffness_N_per_m, 500.0f), entry(Parameter::force_ramp_s, 1.0f)};
+  CHECK(store.accept(transaction.bytes(), false) == Refusal::accepted);
+  CHECK(before->ramp_per_period == ramp_before);  // what the interrupt works with is not touched
+
+  const control::Settings& after = store.take(1234);
+  CHECK(&after != before);
+  protocol::ParameterSet expected = protocol::default_parameters();
+  expected[Parameter::wall_stiffness_N_per_m] = 500.0f;
+  expected[Parameter::force_ramp_s] = 1.0f;
+  CHECK(after.ramp_per_period == control::prepare(expected).ramp_per_period);
+  CHECK(after.ramp_per_period != ramp_before);
+  CHECK(store.values() == expected);
+  CHECK(store.result().applied_at_periods == 1234);
+  CHECK(store.result().transactions == 1);
+
+  CHECK(&store.take(1235) == &after);
+  CHECK(store.result().applied_at_periods == 1234);
+}
+
+TEST_CASE("a report that is padded to its full size is accepted, as Windows sends it") {
+  ParameterStore store;
+  const Transaction transaction{entry(Parameter::wall_damping_Ns_per_m, 3.0f)};
+  CHECK(store.accept(transaction.bytes(sizeof(protocol::ParametersReport)), false) == Refusal::accepted);
+  CHECK(store.values()[Parameter::wall_damping_Ns_per_m] == 3.0f);
+}
+
+TEST_CASE("defaults are restored by their operation, all of them") {
+  ParameterStore store;
+  const Transaction change{entry(Parameter::wall_stiffness_N_per_m, 1.0f), entry(Parameter::link_2_m, 0.2f)};
+  REQUIRE(store.accept(change.bytes(), false) == Refusal::accepted);
+  store.take(1);
+  Transaction restore{};
+  restore.report().operation = protocol::ParameterOperation::restore_defaults;
+
+  SUBCASE("while the force is off") {
+    CHECK(store.accept(restore.bytes(), false) == Refusal::accepted);
+    CHECK(store.values() == protocol::default_parameters());
+  }
+  SUBCASE("but not while the force is on and the arm would change") {
+    check_refused(store, restore.bytes(), Refusal::force_is_on, id_of(Parameter::link_2_m),
+                  protocol::info(Parameter::link_2_m).default_value, true);
+  }
+  SUBCASE("and they come without entries") {
+    restore.report().count = 1;
+    check_refused(store, restore.bytes(), Refusal::wrong_length);
+  }
+}
+
+TEST_CASE("each refusal tells its reason and leaves everything as it was") {
+  ParameterStore store;
+  const std::uint16_t stiffness = id_of(Parameter::wall_stiffness_N_per_m);
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float not_a_number = std::numeric_limits<float>::quiet_NaN();
+  // A good entry stands before the bad one: it must not take effect either.
+  const protocol::ParameterEntry good = entry(Parameter::wall_damping_Ns_per_m, 5.0f);
+
+  SUBCASE("wrong version") {
+    Transaction transaction{good};
+    transaction.report().version = protocol::protocol_version + 1;
+    check_refused(store, transaction.bytes(), Refusal::wrong_version);
+  }
+  SUBCASE("wrong length") {
+    const Transaction transaction{good, good};
+    const std::size_t right = protocol::parameters_report_size(2);
+    for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{8}, right - 8, right - 1,
+                                   right + 1, sizeof(protocol::ParametersReport) - 1})
+      check_refused(store, transaction.bytes(size), Refusal::wrong_length);
+  }
+  SUBCASE("more entries than a report holds") {
+    Transaction transaction{good};
+    transaction.report().count = protocol::parameter_entries_maximum + 1;
+    check_refused(store, transaction.bytes(sizeof(protocol::ParametersReport)), Refusal::wrong_length);
+    transaction.report().count = 0xFFFF;
+    check_refused(store, transaction.bytes(sizeof(protocol::ParametersReport)), Refusal::wrong_length);
+  }
+  SUBCASE("unknown operation") {
+    Transaction transaction{good};
+    transaction.report().operation = static_cast<protocol::ParameterOperation>(2);
+    check_refused(store, transaction.bytes(), Refusal::unknown_operation);
+  }
+  SUBCASE("unknown parameter") {
+    for (const std::uint16_t id : {0, 99, 106, 609, 0xFFFF})
+      check_refused(store, Transaction{good, {id, 0, 1.0f}}.bytes(), Refusal::unknown_parameter, id, 1.0f);
+  }
+  SUBCASE("not finite") {
+    for (const float value : {infinity, -infinity, not_a_number})
+      check_refused(store, Transaction{good, {stiffness, 0, value}}.bytes(), Refusal::not_finite, stiffness, value);
+  }
+  SUBCASE("out of range") {
+    const float above = std::nextafter(3000.0f, infinity);
+    for (const float value : {-1.0f, above, 1e30f})
+      check_refused(store, Transaction{good, {stiffness, 0, value}}.bytes(), Refusal::out_of_range, stiffness, value);
+  }
+  SUBCASE("not whole") {
+    const Parameter counts = Parameter::encoder_1_counts_per_turn;
+    check_refused(store, Transaction{good, entry(counts, 1440.5f)}.bytes(), Refusal::not_whole, id_of(counts), 1440.5f);
+    const Parameter choice = Parameter::transmission;
+    check_refused(store, Transaction{good, entry(choice, 0.5f)}.bytes(), Refusal::not_whole, id_of(choice), 0.5f);
+  }
+  SUBCASE("given twice") {
+    check_refused(store, Transaction{good, {stiffness, 0, 1.0f}, {stiffness, 0, 2.0f}}.bytes(), Refusal::given_twice,
+                  stiffness, 2.0f);
+  }
+  SUBCASE("busy until the interrupt has taken the one before") {
+    REQUIRE(store.accept(Transaction{good}.bytes(), false) == Refusal::accepted);
+    const protocol::ParameterSet accepted = store.values();
+    CHECK(store.accept(Transaction{{stiffness, 0, 1.0f}}.bytes(), false) == Refusal::busy);
+    CHECK(store.result().refusal == Refusal::busy);
+    CHECK(store.values() == accepted);
+    store.take(5);
+    CHECK(store.accept(Transaction{{stiffness, 0, 1.0f}}.bytes(), false) == Refusal::accepted);
+  }
+}
+
+TEST_CASE("bounds must leave room between them") {
+  ParameterStore store;
+  const struct {
+    Parameter minimum, maximum;
+  } pairs[] = {
+      {Parameter::box_minimum_x_m, Parameter::box_maximum_x_m},
+      {Parameter::box_minimum_y_m, Parameter::box_maximum_y_m},
+      {Parameter::box_minimum_z_m, Parameter::box_maximum_z_m},
+      {Parameter::joint_1_minimum_rad, Parameter::joint_1_maximum_rad},
+      {Parameter::joint_2_minimum_rad, Parameter::joint_2_maximum_rad},
+      {Parameter::elbow_minimum_rad, Parameter::elbow_maximum_rad},
+  };
+  for (const auto& pair : pairs) {
+    CAPTURE(protocol::info(pair.minimum).name);
+    check_refused(store, Transaction{entry(pair.minimum, 0.3f), entry(pair.maximum, 0.3f)}.bytes(),
+                  Refusal::inconsistent, id_of(pair.minimum), 0.3f);
+    check_refused(store, Transaction{entry(pair.maximum, -0.4f), entry(pair.minimum, 0.4f)}.bytes(),
+                  Refusal::inconsistent, id_of(pair.minimum), 0.4f);
+  }
+  // Both bounds of a transaction are seen together, whatever their order.
+  CHECK(store.accept(Transaction{entry(Parameter::box_minimum_x_m, 0.2f), entry(Parameter::box_maximum_x_m, 0.4f)}.bytes(),
+                     false) == Refusal::accepted);
+}
+
+TEST_CASE("the box must have room for the sphere") {
+  ParameterStore store;
+  const float radius_m = protocol::info(Parameter::sphere_radius_m).default_value;
+  const Transaction narrow{entry(Parameter::box_minimum_y_m, 0.0f), entry(Parameter::box_maximum_y_m, 1.9f * radius_m)};
+  check_refused(store, narrow.bytes(), Refusal::inconsistent, id_of(Parameter::box_minimum_y_m), 0.0f);
+
+  const Transaction wide{entry(Parameter::box_minimum_y_m, 0.0f), entry(Parameter::box_maximum_y_m, 2.1f * radius_m)};
+  REQUIRE(store.accept(wide.bytes(), false) == Refusal::accepted);
+  store.take(1);
+  check_refused(store, Transaction{entry(Parameter::sphere_radius_m, 1.1f * radius_m)}.bytes(), Refusal::inconsistent,
+                id_of(Parameter::sphere_radius_m), 1.1f * radius_m);
+  check_refused(store, Transaction{entry(Parameter::box_maximum_y_m, 1.9f * radius_m)}.bytes(), Refusal::inconsistent,
+                id_of(Parameter::box_maximum_y_m), 1.9f * radius_m);
+}
+
+TEST_CASE("while the force is on the arm can not change, everything else can") {
+  ParameterStore store;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+    const protocol::ParameterInfo& row = protocol::parameter_table[i];
+    CAPTURE(row.name);
+    const bool arm = row.group == "arm";
+    // The same value again is no change.
+    CHECK(store.accept(Transaction{{row.id, 0, row.default_value}}.bytes(), true) == Refusal::accepted);
+    store.take(0);
+    if (!arm) continue;
+    const float other = row.default_value == row.maximum ? row.minimum : row.maximum;
+    check_refused(store, Transaction{{row.id, 0, other}}.bytes(), Refusal::force_is_on, row.id, other, true);
+  }
+  CHECK(store.accept(Transaction{entry(Parameter::wall_stiffness_N_per_m, 100.0f)}.bytes(), true) == Refusal::accepted);
+}
+
+}  // namespace inkwell

@@ -1,0 +1,279 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "fresh_link.hpp"
+
+namespace inkwell {
+
+using protocol::ScopeEncoding;
+using protocol::ScopeFrameHeader;
+using protocol::Signal;
+using protocol::SignalSelection;
+using protocol::SignalValues;
+
+namespace {
+
+template <class Value>
+Value read(std::span<const std::byte>& bytes) {
+  Value value;
+  REQUIRE(bytes.size() >= sizeof value);
+  std::memcpy(&value, bytes.data(), sizeof value);
+  bytes = bytes.subspan(sizeof value);
+  return value;
+}
+
+float read_value(std::span<const std::byte>& bytes, Signal signal) {
+  switch (protocol::info(signal).wire) {
+    case protocol::SignalWire::float32: return read<float>(bytes);
+    case protocol::SignalWire::current_int16: return static_cast<float>(read<std::int16_t>(bytes)) * protocol::current_step_A;
+    case protocol::SignalWire::duty_int16: return static_cast<float>(read<std::int16_t>(bytes)) * protocol::duty_step;
+  }
+  return 0.0f;
+}
+
+/// Reads a frame by the words of protocol/scope.hpp; calls `sample(period, values)` for every sample.
+template <class Sample>
+ScopeFrameHeader decode(std::span<const std::byte> frame, const SignalSelection& selection, Sample sample) {
+  CHECK(frame.size() <= protocol::scope_frame_maximum);
+  const std::size_t size = frame.size();
+  const auto header = read<ScopeFrameHeader>(frame);
+  CHECK(header.magic == protocol::scope_magic);
+  CHECK(header.length == size);
+  CHECK(header.signal_count == selection.count);
+  std::vector<float> values(selection.count);
+  for (std::uint32_t i = 0; i < header.sample_count; ++i) {
+    std::uint32_t mask = 0xFFFF'FFFFu >> (32 - selection.count);
+    if (header.encoding == ScopeEncoding::changes) {
+      const std::uint32_t all = mask;
+      mask = read<std::uint32_t>(frame);
+      CHECK((mask & ~all) == 0);
+      if (i == 0) CHECK(mask == all);
+    }
+    for (std::size_t k = 0; k < selection.count; ++k)
+      if (mask >> k & 1u) values[k] = read_value(frame, static_cast<Signal>(selection.signals[k]));
+    sample(header.first_period + i, values);
+  }
+  CHECK(frame.empty());
+  return header;
+}
+
+/// Every signal has another course, some steady, some stepping, some new in every period.
+SignalValues signals_at(std::uint32_t period) {
+  SignalValues signals{};
+  for (std::size_t i = 0; i < protocol::signal_count; ++i) {
+    const std::uint32_t step = period >> (i % 5 * 3);
+    signals.values[i] = static_cast<float>(step % 1000) * 0.001f * (i % 2 ? -1.0f : 1.0f);
+  }
+  return signals;
+}
+
+float resolution(Signal signal) {
+  switch (protocol::info(signal).wire) {
+    case protocol::SignalWire::current_int16: return 0.51f * protocol::current_step_A;
+    case protocol::SignalWire::duty_int16: return 0.51f * protocol::duty_step;
+    case protocol::SignalWire::float32: break;
+  }
+  return 0.0f;
+}
+
+SignalSelection select(std::uint8_t count, std::uint8_t first = 0) {
+  SignalSelection selection{};
+  selection.count = count;
+  for (std::uint8_t i = 0; i < count; ++i) selection.signals[i] = static_cast<std::uint8_t>(first + i);
+  return selection;
+}
+
+/// Records while the frames are read as soon as they come; every sample must come out once and right.
+void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, std::uint32_t periods) {
+  link::ScopeRecorder& scope = test::fresh_link().scope;
+  scope.select(selection, 9);
+  std::uint32_t next = 500, frames = 0;
+  int wrong = 0;
+  const auto read_frames = [&] {
+    for (auto frame = scope.oldest_frame(); !frame.empty(); frame = scope.oldest_frame()) {
+      const ScopeFrameHeader header = decode(frame, selection, [&](std::uint32_t period, const std::vector<float>& values) {
+        wrong += period != next;
+        const SignalValues expected = signals_at(next++);
+        for (std::size_t k = 0; k < selection.count; ++k) {
+          const auto signal = static_cast<Signal>(selection.signals[k]);
+          const float difference = values[k] - expected[signal];
+          const float allowed = resolution(signal);
+          wrong += !(difference <= allowed && difference >= -allowed);
+        }
+      });
+      CHECK(header.encoding == encoding);
+      CHECK(header.sequence == frames++);
+      CHECK(header.selection_token == 9);
+      CHECK(header.samples_dropped == 0);
+      scope.release();
+    }
+  };
+  const std::uint32_t end = 500 + periods;
+  for (std::uint32_t period = 500; period < end; ++period) {
+    scope.record(signals_at(period), period);
+    read_frames();
+  }
+  scope.select({}, 10);  // finishes the frame that was begun
+  for (int i = 0; i < 3; ++i) {
+    scope.record(signals_at(0), end);
+    read_frames();
+  }
+  CHECK(wrong == 0);
+  CHECK(next == end);
+  CHECK(frames > 1);
+  CHECK(scope.samples_dropped() == 0);
+}
+
+}  // namespace
+
+TEST_CASE("14 floats go out in full and come back as they were") {
+  check_round_trip(select(14), ScopeEncoding::full, 300);
+}
+
+TEST_CASE("narrow signals between wide ones come back within half a step") {
+  SignalSelection selection{};
+  selection.count = 7;
+  const Signal signals[] = {Signal::current_1_A, Signal::position_x_m, Signal::duty_2,       Signal::current_3_A,
+                            Signal::force_N,     Signal::duty_1,       Signal::joint_1_rad};
+  for (int i = 0; i < 7; ++i) selection.signals[i] = static_cast<std::uint8_t>(signals[i]);
+  check_round_trip(selection, ScopeEncoding::full, 1000);
+}
+
+TEST_CASE("the experiment's 31 signals go out as changes and come back as they were") {
+  check_round_trip(select(31), ScopeEncoding::changes, 300);
+}
+
+TEST_CASE("32 signals, and the last ones of the table") {
+  check_round_trip(select(32, static_cast<std::uint8_t>(protocol::signal_count - 32)), ScopeEncoding::changes, 200);
+}
+
+TEST_CASE("a single signal") { check_round_trip(select(1, 26), ScopeEncoding::full, 3000); }
+
+TEST_CASE("the encoding is the one that the protocol names for a selection") {
+  for (std::uint8_t count = 1; count <= 32; ++count) {
+    const SignalSelection selection = select(count);
+    CHECK(link::prepare(selection, 0).encoding == protocol::encoding_for(selection));
+  }
+}
+
+TEST_CASE("a narrow value beyond its range saturates") {
+  link::ScopeRecorder& scope = test::fresh_link().scope;
+  const SignalSelection selection = select(1, static_cast<std::uint8_t>(Signal::current_1_A));
+  scope.select(selection, 1);
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float value : {100.0f, -100.0f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
+    SignalValues signals{};
+    signals[Signal::current_1_A] = value;
+    scope.record(signals, 0);
+  }
+  scope.select({}, 2);
+  scope.record({}, 5);
+  std::vector<float> seen;
+  decode(scope.oldest_frame(), selection, [&](std::uint32_t, const std::vector<float>& values) { seen.push_back(values[0]); });
+  REQUIRE(seen.size() == 5);
+  const float highest = 32767.0f * protocol::current_step_A, lowest = -32768.0f * protocol::current_step_A;
+  CHECK(seen[0] == highest);
+  CHECK(seen[1] == lowest);
+  CHECK(seen[2] == highest);
+  CHECK(seen[3] == lowest);
+  CHECK(seen[4] == lowest);
+}
+
+TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but never one that is being sent") {
+  link::ScopeRecorder& scope = test::fresh_link().scope;
+  const SignalSelection selection = select(14);
+  constexpr std::uint32_t samples_per_frame = (2048 - 24) / 56;
+  scope.select(selection, 3);
+  constexpr std::uint32_t frames_recorded = 100;
+  std::uint32_t period = 0;
+  for (; period < frames_recorded * samples_per_frame; ++period) scope.record(signals_at(period), period);
+
+  const auto first = [&] {
+    return decode(scope.oldest_frame(), selection, [](std::uint32_t at, const std::vector<float>& values) {
+      if (values[0] != signals_at(at).values[0]) FAIL_CHECK("a sample was overwritten");
+    });
+  };
+  // The two in the hand-over are the very first; behind them are the newest that fit.
+  const std::uint32_t kept = link::ScopeRecorder::frame_count - 1;
+  const std::uint32_t dropped = (frames_recorded - kept) * samples_per_frame;
+  CHECK(scope.samples_dropped() == dropped);
+  std::uint32_t samples_seen = 0, frames_seen = 0, next_sequence = 0;
+  while (!scope.oldest_frame().empty()) {
+    const ScopeFrameHeader header = first();
+    if (frames_seen == 2) next_sequence = frames_recorded - kept + 2;
+    CHECK(header.sequence == next_sequence++);
+    CHECK(header.first_period == header.sequence * samples_per_frame);
+    samples_seen += header.sample_count;
+    ++frames_seen;
+    scope.release();
+    scope.record(signals_at(period), period);
+    ++period;
+  }
+  CHECK(frames_seen == kept);
+  CHECK(samples_seen + dropped == frames_recorded * samples_per_frame);
+  CHECK(scope.samples_dropped() == dropped);
+}
+
+TEST_CASE("a frame that is being sent stays as it is, whatever is recorded meanwhile") {
+  link::ScopeRecorder& scope = test::fresh_link().scope;
+  scope.select(select(31), 4);
+  std::uint32_t period = 0;
+  while (scope.oldest_frame().empty()) scope.record(signals_at(period), period), ++period;
+  const auto frame = scope.oldest_frame();
+  const std::vector<std::byte> copy(frame.begin(), frame.end());
+  for (int i = 0; i < 3000; ++i) scope.record(signals_at(period), period), ++period;
+  scope.select(select(5), 5);
+  for (int i = 0; i < 3000; ++i) scope.record(signals_at(period), period), ++period;
+  CHECK(scope.oldest_frame().data() == frame.data());
+  CHECK(std::memcmp(frame.data(), copy.data(), copy.size()) == 0);
+}
+
+TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the one before") {
+  link::ScopeRecorder& scope = test::fresh_link().scope;
+  scope.select(select(14), 1);
+  std::uint32_t period = 0;
+  for (int i = 0; i < 500; ++i) scope.record(signals_at(period), period), ++period;
+  const SignalSelection second = select(3, 6);
+  scope.select(select(20), 2);  // overtaken before the interrupt saw it
+  scope.select(second, 3);
+  const std::uint32_t start = period;
+  for (int i = 0; i < 1000; ++i) scope.record(signals_at(period), period), ++period;
+  // What was in the hand-over still comes, and says which selection it belongs to.
+  std::uint32_t old_frames = 0;
+  for (;; ++old_frames) {
+    ScopeFrameHeader header;
+    REQUIRE(!scope.oldest_frame().empty());
+    std::memcpy(&header, scope.oldest_frame().data(), sizeof header);
+    if (header.selection_token == 3) break;
+    CHECK(header.selection_token == 1);
+    scope.release();
+    scope.record(signals_at(period), period);
+    ++period;
+  }
+  CHECK(old_frames == link::ScopeRecorder::hand_over_places);
+  const ScopeFrameHeader header = decode(scope.oldest_frame(), second, [](std::uint32_t, const std::vector<float>&) {});
+  CHECK(header.sequence == 0);
+  CHECK(header.first_period == start);
+  CHECK(scope.samples_dropped() == 0);
+}
+
+TEST_CASE("the scope is off until signals are selected, and after none are") {
+  link::ScopeRecorder& scope = test::fresh_link().scope;
+  for (std::uint32_t period = 0; period < 5000; ++period) scope.record(signals_at(period), period);
+  CHECK(scope.oldest_frame().empty());
+  scope.select(select(2), 1);
+  scope.record(signals_at(0), 0);
+  scope.select({}, 2);
+  scope.record(signals_at(1), 1);
+  REQUIRE(!scope.oldest_frame().empty());
+  const ScopeFrameHeader header = decode(scope.oldest_frame(), select(2), [](std::uint32_t, const std::vector<float>&) {});
+  CHECK(header.sample_count == 1);
+  scope.release();
+  for (std::uint32_t period = 0; period < 5000; ++period) scope.record(signals_at(period), period);
+  CHECK(scope.oldest_frame().empty());
+}
+
+}  // namespace inkwell

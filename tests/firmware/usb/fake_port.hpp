@@ -1,0 +1,190 @@
+// A port made of software with a host behind it that does single packets, good and bad.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <usb/port.hpp>
+
+namespace inkwell::test {
+
+using Bytes = std::vector<std::byte>;
+
+inline Bytes to_bytes(std::span<const std::byte> data) { return {data.begin(), data.end()}; }
+
+enum class Handshake { ack, nak, stall };
+
+struct InPacket {
+  Handshake handshake = Handshake::nak;
+  Bytes data{};
+};
+
+/// Behaves as usb::Port says, and fails the test when the device does not keep to it.
+class FakePort final : public usb::Port {
+ public:
+  // ---- the device's side ----
+
+  bool next_event(usb::Event& event) override {
+    if (events_.empty()) return false;
+    event = events_.front();
+    events_.pop_front();
+    return true;
+  }
+
+  void set_address(std::uint8_t address) override { address_ = address; }
+
+  void open(std::uint8_t endpoint_address, usb::EndpointType type) override {
+    Endpoint& endpoint = at(endpoint_address);
+    endpoint = {};
+    endpoint.open = true;
+    endpoint.type = type;
+  }
+
+  void close(std::uint8_t endpoint_address) override { at(endpoint_address) = {}; }
+
+  void stall(std::uint8_t endpoint_address) override {
+    if (is_stale(endpoint_address)) return;
+    CHECK(at(endpoint_address).open);
+    at(endpoint_address).stalled = true;
+    if (endpoint_address == 0x80) at(0x00).stalled = true;
+    forget_transfer(endpoint_address);
+  }
+
+  void clear_stall(std::uint8_t endpoint_address) override {
+    Endpoint& endpoint = at(endpoint_address);
+    CHECK(endpoint.open);
+    forget_transfer(endpoint_address);
+    endpoint.stalled = false;
+    endpoint.data1 = false;
+  }
+
+  void send(std::uint8_t endpoint_address, std::span<const std::byte> data) override {
+    if (is_stale(endpoint_address)) return;
+    Endpoint& endpoint = at(endpoint_address);
+    CHECK((endpoint_address & 0x80) != 0);
+    CHECK(endpoint.open);
+    CHECK_MESSAGE(!endpoint.running, "one transfer at a time");
+    CHECK_FALSE(endpoint.stalled);
+    if (endpoint_address == 0x80) CHECK(data.size() <= usb::packet_size_maximum);
+    endpoint.running = true;
+    endpoint.data = data;
+    endpoint.data_at_start = to_bytes(data);
+    endpoint.offset = 0;
+  }
+
+  void cancel(std::uint8_t endpoint_address) override { forget_transfer(endpoint_address); }
+
+  void receive(std::uint8_t endpoint_address) override {
+    if (is_stale(endpoint_address)) return;
+    CHECK((endpoint_address & 0x80) == 0);
+    CHECK(at(endpoint_address).open);
+    at(endpoint_address).armed = true;
+  }
+
+  // ---- the host's side ----
+
+  void reset() {
+    for (Endpoint& endpoint : endpoints_) endpoint = {};
+    at(0x00).open = at(0x80).open = true;
+    address_ = 0;
+    events_.clear();
+    push(usb::Event::Kind::reset);
+  }
+  void suspend() { push(usb::Event::Kind::suspend); }
+  void resume() { push(usb::Event::Kind::resume); }
+
+  /// A SETUP packet; never refused, and it ends a stall of endpoint 0.
+  void setup(std::span<const std::byte> packet) {
+    at(0x00).stalled = at(0x80).stalled = false;
+    at(0x00).armed = false;
+    push(usb::Event::Kind::setup, 0, packet);
+  }
+
+  Handshake out(std::uint8_t number, std::span<const std::byte> packet) {
+    Endpoint& endpoint = at(number);
+    if (endpoint.stalled) return Handshake::stall;
+    if (!endpoint.open || !endpoint.armed) return Handshake::nak;
+    endpoint.armed = false;
+    endpoint.data1 = !endpoint.data1;
+    push(usb::Event::Kind::received, number, packet);
+    return Handshake::ack;
+  }
+
+  InPacket in(std::uint8_t number) {
+    Endpoint& endpoint = at(static_cast<std::uint8_t>(0x80 | number));
+    if (endpoint.stalled) return {Handshake::stall};
+    if (!endpoint.open || !endpoint.running) return {Handshake::nak};
+    CHECK_MESSAGE(to_bytes(endpoint.data) == endpoint.data_at_start, "what is being sent must not change");
+    const std::size_t size = std::min(endpoint.data.size() - endpoint.offset, usb::packet_size_maximum);
+    InPacket packet{Handshake::ack, to_bytes(endpoint.data.subspan(endpoint.offset, size))};
+    endpoint.offset += size;
+    endpoint.data1 = !endpoint.data1;
+    if (endpoint.offset == endpoint.data.size()) {
+      endpoint.running = false;
+      push(usb::Event::Kind::sent, number);
+    }
+    return packet;
+  }
+
+  std::uint8_t address() const { return address_; }
+  bool is_open(std::uint8_t endpoint_address) { return at(endpoint_address).open; }
+  bool is_stalled(std::uint8_t endpoint_address) { return at(endpoint_address).stalled; }
+  bool data_toggle(std::uint8_t endpoint_address) { return at(endpoint_address).data1; }
+  bool idle() const { return events_.empty(); }
+
+ private:
+  struct Endpoint {
+    bool open = false;
+    usb::EndpointType type = usb::EndpointType::control;
+    bool stalled = false;
+    bool armed = false;    ///< OUT: takes a packet
+    bool running = false;  ///< IN: has a transfer
+    bool data1 = false;
+    std::span<const std::byte> data{};
+    Bytes data_at_start{};
+    std::size_t offset = 0;
+  };
+
+  Endpoint& at(std::uint8_t endpoint_address) {
+    REQUIRE((endpoint_address & 0x7F) < 4);
+    return endpoints_[(endpoint_address & 0x80 ? 4u : 0u) + (endpoint_address & 0x03u)];
+  }
+
+  bool is_stale(std::uint8_t endpoint_address) const {
+    const auto is_setup = [](const usb::Event& event) { return event.kind == usb::Event::Kind::setup; };
+    return (endpoint_address & 0x7F) == 0 && std::any_of(events_.begin(), events_.end(), is_setup);
+  }
+
+  void forget_transfer(std::uint8_t endpoint_address) {
+    if ((endpoint_address & 0x80) == 0) return;
+    at(endpoint_address).running = false;
+    std::erase_if(events_, [&](const usb::Event& event) {
+      return event.kind == usb::Event::Kind::sent && event.endpoint == (endpoint_address & 0x0F);
+    });
+  }
+
+  void push(usb::Event::Kind kind, std::uint8_t number = 0, std::span<const std::byte> data = {}) {
+    usb::Event event;
+    event.kind = kind;
+    event.endpoint = number;
+    event.length = static_cast<std::uint8_t>(data.size());
+    REQUIRE(data.size() <= event.data.size());
+    std::copy(data.begin(), data.end(), event.data.begin());
+    events_.push_back(event);
+  }
+
+  std::array<Endpoint, 8> endpoints_{};
+  std::deque<usb::Event> events_;
+  std::uint8_t address_ = 0;
+};
+
+}  // namespace inkwell::test

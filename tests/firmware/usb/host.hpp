@@ -1,0 +1,149 @@
+// A device on a fake port, and a host that carries out control transfers on it.
+#pragma once
+
+#include <string>
+
+#include <usb/device.hpp>
+
+#include "../link/fresh_link.hpp"
+#include "fake_port.hpp"
+
+namespace inkwell::test {
+
+inline usb::SetupPacket request(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index,
+                                std::uint16_t length) {
+  return {type, request, value, index, length};
+}
+
+inline constexpr usb::Identity identity{{'0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'A', 'B',
+                                         'C', 'D', 'E', 'F', '0', '1', '2', '3', '4', '5', '6', '7'},
+                                        {1, 2, 3},
+                                        168'000'000,
+                                        0x14};
+
+/// How a control transfer ended, and what came in.
+struct ControlResult {
+  bool stalled = false;
+  Bytes data{};
+  bool operator==(const ControlResult&) const = default;
+};
+
+inline const ControlResult stall_result{true, {}};
+inline const ControlResult done_result{false, {}};
+
+struct Bench {
+  FakePort port;
+  link::Link& link = fresh_link();
+  usb::Device device{port, link, identity};
+  std::uint32_t periods = 0;
+
+  Bench() {
+    port.reset();
+    device.poll();
+  }
+
+  void setup(const usb::SetupPacket& packet) {
+    port.setup(std::as_bytes(std::span(&packet, 1)));
+    device.poll();
+  }
+
+  /// IN data stage and status stage of the request that setup() began.
+  ControlResult read(std::uint16_t length) {
+    ControlResult result;
+    for (;;) {
+      const InPacket packet = port.in(0);
+      if (packet.handshake == Handshake::stall) return stall_result;
+      REQUIRE(packet.handshake == Handshake::ack);
+      result.data.insert(result.data.end(), packet.data.begin(), packet.data.end());
+      device.poll();
+      REQUIRE(result.data.size() <= length);
+      if (packet.data.size() < 64 || result.data.size() == length) break;
+    }
+    // Nothing more than was asked for, and the status stage is taken.
+    CHECK(port.in(0).handshake == Handshake::nak);
+    CHECK(port.out(0, {}) == Handshake::ack);
+    device.poll();
+    return result;
+  }
+
+  ControlResult status_in() {
+    const InPacket packet = port.in(0);
+    if (packet.handshake == Handshake::stall) return stall_result;
+    REQUIRE(packet.handshake == Handshake::ack);
+    CHECK(packet.data.empty());
+    device.poll();
+    CHECK(port.in(0).handshake == Handshake::nak);
+    return done_result;
+  }
+
+  ControlResult control(const usb::SetupPacket& packet, std::span<const std::byte> data = {}) {
+    setup(packet);
+    if (packet.length == 0) return status_in();
+    if (packet.device_to_host()) return read(packet.length);
+    while (!data.empty()) {
+      const auto part = data.first(std::min<std::size_t>(64, data.size()));
+      const Handshake handshake = port.out(0, part);
+      if (handshake == Handshake::stall) return stall_result;
+      REQUIRE(handshake == Handshake::ack);
+      data = data.subspan(part.size());
+      device.poll();
+    }
+    return status_in();
+  }
+
+  ControlResult get_descriptor(std::uint16_t value, std::uint16_t length, std::uint8_t recipient = 0,
+                               std::uint16_t index = 0) {
+    return control(request(static_cast<std::uint8_t>(0x80 | recipient), 6, value, index, length));
+  }
+
+  ControlResult configure(std::uint16_t value = 1) { return control(request(0x00, 9, value, 0, 0)); }
+
+  template <class Report>
+  ControlResult set_report(std::uint8_t type, const Report& report, std::size_t size = sizeof(Report)) {
+    const auto bytes = std::as_bytes(std::span(&report, 1)).first(size);
+    const auto id = static_cast<std::uint16_t>(bytes[0]);
+    return control(request(0x21, 9, static_cast<std::uint16_t>(type << 8 | id), 0, static_cast<std::uint16_t>(size)),
+                   bytes);
+  }
+
+  ControlResult get_report(std::uint8_t type, std::uint8_t id, std::uint16_t length) {
+    return control(request(0xA1, 1, static_cast<std::uint16_t>(type << 8 | id), 0, length));
+  }
+
+  template <class Report>
+  Report get_feature(protocol::ReportId id) {
+    const ControlResult result = get_report(3, static_cast<std::uint8_t>(id), sizeof(Report));
+    REQUIRE(result.data.size() == sizeof(Report));
+    Report report;
+    std::memcpy(&report, result.data.data(), sizeof report);
+    return report;
+  }
+
+  /// Lets the control interrupt run; what it takes and records is real, its signals are not.
+  void run(std::uint32_t count, protocol::State state = protocol::State::ready) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      link.parameters.take(periods);
+      if (const protocol::CommandReport* command = link.commands.take()) last_command = *command;
+      protocol::SignalValues signals{};
+      signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
+      link.poses.record(signals, {state, protocol::Fault::none, 0, link.commands.last_token(), periods, 100});
+      link.scope.record(signals, periods++);
+      link.status.record(state, 100, false);
+    }
+  }
+
+  std::optional<protocol::CommandReport> last_command;
+};
+
+inline protocol::CommandReport command(protocol::Command kind, std::uint8_t token) {
+  protocol::CommandReport report{};
+  report.command = kind;
+  report.token = token;
+  return report;
+}
+
+inline std::span<const std::byte> bytes_of(const protocol::CommandReport& report) {
+  return std::as_bytes(std::span(&report, 1));
+}
+
+}  // namespace inkwell::test

@@ -1,0 +1,295 @@
+#include <doctest/doctest.h>
+
+#include "../link/transaction.hpp"
+#include "host.hpp"
+
+namespace inkwell {
+
+using test::Bench;
+using test::bytes_of;
+using test::Bytes;
+using test::command;
+using test::ControlResult;
+using test::done_result;
+using test::Handshake;
+using test::request;
+using test::stall_result;
+
+namespace {
+
+ControlResult answer(std::initializer_list<int> bytes) {
+  ControlResult result;
+  for (const int byte : bytes) result.data.push_back(static_cast<std::byte>(byte));
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("addresses up to 127 are taken, others refused") {
+  Bench bench;
+  CHECK(bench.control(request(0x00, 5, 42, 0, 0)) == done_result);
+  CHECK(bench.port.address() == 42);
+  for (const std::uint16_t address : {128, 255, 256, 0xFFFF})
+    CHECK(bench.control(request(0x00, 5, address, 0, 0)) == stall_result);
+  CHECK(bench.control(request(0x00, 5, 43, 1, 0)) == stall_result);
+  CHECK(bench.port.address() == 42);
+  CHECK(bench.control(request(0x00, 5, 127, 0, 0)) == done_result);
+  CHECK(bench.port.address() == 127);
+}
+
+TEST_CASE("a configuration is set, repeated, refused and taken back") {
+  Bench bench;
+  const auto current = [&] { return bench.control(request(0x80, 8, 0, 0, 1)); };
+  CHECK(current() == answer({0}));
+  CHECK_FALSE(bench.port.is_open(0x81));
+  for (int round = 0; round < 3; ++round) {
+    CHECK(bench.configure(1) == done_result);
+    CHECK(current() == answer({1}));
+    CHECK(bench.device.configured());
+    for (const int endpoint : {0x81, 0x01, 0x82}) CHECK(bench.port.is_open(static_cast<std::uint8_t>(endpoint)));
+  }
+  for (const std::uint16_t value : {2, 255, 0x0101, 0xFFFF}) {
+    CHECK(bench.configure(value) == stall_result);
+    CHECK(current() == answer({1}));
+  }
+  CHECK(bench.configure(0) == done_result);
+  CHECK(current() == answer({0}));
+  CHECK_FALSE(bench.port.is_open(0x82));
+  bench.run(100);
+  bench.device.poll();
+  CHECK(bench.port.in(1).handshake == Handshake::nak);
+}
+
+TEST_CASE("a repeated configuration starts toggles and transfers again") {
+  Bench bench;
+  bench.configure();
+  bench.run(20);
+  bench.device.poll();
+  CHECK(bench.port.in(1).handshake == Handshake::ack);
+  CHECK(bench.port.data_toggle(0x81));
+  bench.run(20);
+  bench.device.poll();  // a report is on its way
+  CHECK(bench.configure() == done_result);
+  CHECK_FALSE(bench.port.data_toggle(0x81));
+  bench.run(20);
+  bench.device.poll();
+  CHECK(bench.port.in(1).data.size() == 64);
+}
+
+TEST_CASE("status of device, interfaces and endpoints") {
+  Bench bench;
+  CHECK(bench.control(request(0x80, 0, 0, 0, 2)) == answer({1, 0}));  // self-powered
+  CHECK(bench.control(request(0x81, 0, 0, 0, 2)) == stall_result);    // not configured
+  CHECK(bench.control(request(0x82, 0, 0, 0x81, 2)) == stall_result);
+  CHECK(bench.control(request(0x82, 0, 0, 0x00, 2)) == answer({0, 0}));
+  bench.configure();
+  CHECK(bench.control(request(0x81, 0, 0, 0, 2)) == answer({0, 0}));
+  CHECK(bench.control(request(0x81, 0, 0, 1, 2)) == answer({0, 0}));
+  for (const int endpoint : {0x00, 0x80, 0x81, 0x01, 0x82})
+    CHECK(bench.control(request(0x82, 0, 0, static_cast<std::uint16_t>(endpoint), 2)) == answer({0, 0}));
+  CHECK(bench.control(request(0x80, 0, 1, 0, 2)) == stall_result);
+  CHECK(bench.control(request(0x81, 0, 0, 2, 2)) == stall_result);
+  for (const int endpoint : {0x02, 0x83, 0x03, 0x8F, 0x0181, 0xFF81})
+    CHECK(bench.control(request(0x82, 0, 0, static_cast<std::uint16_t>(endpoint), 2)) == stall_result);
+  CHECK(bench.control(request(0x83, 0, 0, 0, 2)) == stall_result);
+}
+
+TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
+  Bench bench;
+  bench.configure();
+  for (const int address : {0x81, 0x01, 0x82}) {
+    const auto endpoint = static_cast<std::uint8_t>(address);
+    CHECK(bench.control(request(0x02, 3, 0, endpoint, 0)) == done_result);
+    CHECK(bench.port.is_stalled(endpoint));
+    CHECK(bench.control(request(0x82, 0, 0, endpoint, 2)) == answer({1, 0}));
+    bench.run(40);
+    bench.device.poll();  // nothing is sent on a halted endpoint; the port would complain
+    CHECK(bench.control(request(0x02, 1, 0, endpoint, 0)) == done_result);
+    CHECK_FALSE(bench.port.is_stalled(endpoint));
+    CHECK_FALSE(bench.port.data_toggle(endpoint));
+    CHECK(bench.control(request(0x82, 0, 0, endpoint, 2)) == answer({0, 0}));
+  }
+  bench.run(20);
+  bench.device.poll();
+  CHECK(bench.port.in(1).handshake == Handshake::ack);
+  CHECK(bench.port.out(1, bytes_of(command(protocol::Command::heartbeat, 1))) == Handshake::ack);
+
+  CHECK(bench.control(request(0x02, 3, 0, 0x83, 0)) == stall_result);
+  CHECK(bench.control(request(0x02, 3, 1, 0x81, 0)) == stall_result);
+  CHECK(bench.control(request(0x00, 3, 1, 0, 0)) == stall_result);      // remote wake-up
+  CHECK(bench.control(request(0x00, 3, 2, 0x0100, 0)) == stall_result); // test modes are for high speed
+}
+
+TEST_CASE("the one setting of each interface is taken, others are refused") {
+  Bench bench;
+  CHECK(bench.control(request(0x01, 11, 0, 0, 0)) == stall_result);
+  bench.configure();
+  for (const std::uint16_t index : {0, 1}) {
+    CHECK(bench.control(request(0x01, 11, 0, index, 0)) == done_result);
+    CHECK(bench.control(request(0x81, 10, 0, index, 1)) == answer({0}));
+    CHECK(bench.control(request(0x01, 11, 1, index, 0)) == stall_result);
+  }
+  CHECK(bench.control(request(0x01, 11, 0, 2, 0)) == stall_result);
+  CHECK(bench.control(request(0x81, 10, 0, 2, 1)) == stall_result);
+}
+
+TEST_CASE("requests that do not exist are refused, whatever their type") {
+  Bench bench;
+  bench.configure();
+  for (unsigned type = 0; type < 256; ++type)
+    for (const unsigned number : {2u, 4u, 7u, 12u, 13u, 100u, 255u}) {
+      if ((type & 0x60) == 0x20 && number == 2) continue;  // GET_IDLE
+      const std::uint16_t length = type & 0x80 ? 8 : 0;
+      CHECK(bench.control(request(static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(number), 0, 0, length)) ==
+            stall_result);
+    }
+  CHECK(bench.control(request(0x80, 8, 0, 0, 1)) == answer({1}));
+}
+
+TEST_CASE("HID: idle rate is kept, boot protocol is refused") {
+  Bench bench;
+  CHECK(bench.control(request(0x21, 10, 0x0400, 0, 0)) == stall_result);  // not configured
+  bench.configure();
+  CHECK(bench.control(request(0x21, 10, 0x0400, 0, 0)) == done_result);
+  CHECK(bench.control(request(0xA1, 2, 0, 0, 1)) == answer({4}));
+  CHECK(bench.control(request(0x21, 11, 0, 0, 0)) == stall_result);
+  CHECK(bench.control(request(0xA1, 3, 0, 0, 1)) == stall_result);
+  CHECK(bench.control(request(0x21, 10, 0, 1, 0)) == stall_result);  // the scope is no HID interface
+}
+
+TEST_CASE("HID: the newest pose can be asked for") {
+  Bench bench;
+  bench.configure();
+  CHECK(bench.get_report(1, 0x01, 64) == stall_result);  // there is none yet
+  bench.run(100);
+  const Bytes data = bench.get_report(1, 0x01, 64).data;
+  REQUIRE(data.size() == sizeof(protocol::PoseReport));
+  protocol::PoseReport pose;
+  std::memcpy(&pose, data.data(), sizeof pose);
+  CHECK(pose.sequence == 4);
+}
+
+TEST_CASE("HID: information tells tables, clocks and counters") {
+  Bench bench;
+  bench.configure();
+  bench.run(5);
+  bench.link.status.record(protocol::State::ready, 4321, true);
+  const auto report = bench.get_feature<protocol::InformationReport>(protocol::ReportId::information);
+  CHECK(report.report_id == protocol::ReportId::information);
+  CHECK(report.version == protocol::protocol_version);
+  CHECK(report.firmware_version[0] == 1);
+  CHECK(report.firmware_version[2] == 3);
+  CHECK(report.parameter_table_hash == protocol::parameter_table_hash);
+  CHECK(report.signal_table_hash == protocol::signal_table_hash);
+  CHECK(report.servo_rate_Hz == 20'000);
+  CHECK(report.processor_clock_Hz == 168'000'000);
+  CHECK(report.servo_cycles_longest == 4321);
+  CHECK(report.servo_overruns == 1);
+  CHECK(report.scope_samples_dropped == 0);
+  CHECK(report.pose_reports_dropped == 0);
+  CHECK(report.reset_cause == 0x14);
+}
+
+TEST_CASE("HID: parameters are read, set as a transaction and its result is told") {
+  Bench bench;
+  bench.configure();
+  const test::Transaction transaction{test::entry(protocol::Parameter::wall_stiffness_N_per_m, 321.0f),
+                                      test::entry(protocol::Parameter::wall_damping_Ns_per_m, 4.0f)};
+  CHECK(bench.control(request(0x21, 9, 0x0311, 0, 24), transaction.bytes()) == done_result);
+  bench.run(3);
+  auto result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
+  CHECK(result.refusal == protocol::Refusal::accepted);
+  CHECK(result.transactions == 1);
+  CHECK(result.applied_at_periods == 0);
+
+  const Bytes data = bench.get_report(3, 0x11, sizeof(protocol::ParametersReport)).data;
+  REQUIRE(data.size() == protocol::parameters_report_size(protocol::parameter_count));
+  protocol::ParametersReport report;
+  std::memcpy(&report, data.data(), data.size());
+  const auto row = static_cast<std::size_t>(protocol::Parameter::wall_stiffness_N_per_m);
+  const float value = report.entries[row].value;
+  CHECK(value == 321.0f);
+
+  // A refusal is no stall: the transaction report tells it.
+  const test::Transaction bad{{9999, 0, 1.0f}};
+  CHECK(bench.control(request(0x21, 9, 0x0311, 0, 16), bad.bytes()) == done_result);
+  result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
+  CHECK(result.refusal == protocol::Refusal::unknown_parameter);
+  CHECK(result.parameter_id == 9999);
+  CHECK(result.transactions == 2);
+}
+
+TEST_CASE("HID: the arm does not change while the force is on or about to be") {
+  Bench bench;
+  bench.configure();
+  const test::Transaction transaction{test::entry(protocol::Parameter::link_2_m, 0.2f)};
+  const auto refusal = [&] {
+    bench.control(request(0x21, 9, 0x0311, 0, 16), transaction.bytes());
+    bench.run(1);
+    return bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction).refusal;
+  };
+  bench.run(1, protocol::State::active);
+  CHECK(refusal() == protocol::Refusal::force_is_on);
+  bench.run(1, protocol::State::ready);
+  // The command waits for the interrupt, which has not seen it yet.
+  CHECK(bench.set_report(2, command(protocol::Command::enable_force, 1)) == done_result);
+  CHECK(refusal() == protocol::Refusal::force_is_on);
+  CHECK(refusal() == protocol::Refusal::accepted);
+}
+
+TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
+  Bench bench;
+  bench.configure();
+  CHECK(bench.port.out(1, bytes_of(command(protocol::Command::clear_fault, 11))) == Handshake::ack);
+  bench.device.poll();
+  bench.run(2);  // the first command is the reset's disable_force
+  REQUIRE(bench.last_command.has_value());
+  CHECK(bench.last_command->token == 11);
+  CHECK(bench.link.commands.take_sign_of_life());
+
+  CHECK(bench.set_report(2, command(protocol::Command::disable_force, 12)) == done_result);
+  bench.run(1);
+  CHECK(bench.last_command->token == 12);
+  CHECK(bench.last_command->command == protocol::Command::disable_force);
+}
+
+TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, and nothing happens") {
+  Bench bench;
+  bench.configure();
+  bench.run(1);  // the reset's disable_force is taken
+  bench.last_command.reset();
+  const protocol::CommandReport good = command(protocol::Command::enable_force, 1);
+
+  for (unsigned type = 0; type < 5; ++type)
+    for (unsigned id = 0; id < 256; ++id) {
+      const auto value = static_cast<std::uint16_t>(type << 8 | id);
+      if (value == 0x0202 || value == 0x0311) continue;
+      bench.setup(request(0x21, 9, value, 0, 37));
+      CHECK(bench.port.out(0, bytes_of(good)) == Handshake::stall);
+    }
+  // The id in the data is another one than in the request.
+  CHECK(bench.control(request(0x21, 9, 0x0311, 0, 37), bytes_of(good)) == stall_result);
+  // Short and long.
+  for (const std::size_t size : {1u, 36u}) CHECK(bench.set_report(2, good, size) == done_result);
+  const std::array<std::byte, 64> longer{std::byte{2}};
+  CHECK(bench.set_report(2, longer) == done_result);
+  for (const std::size_t size : {0u, 1u, 36u, 38u, 64u}) {
+    std::array<std::byte, 64> packet{};
+    std::memcpy(packet.data(), &good, sizeof good);
+    CHECK(bench.port.out(1, std::span(packet).first(size)) == Handshake::ack);
+    bench.device.poll();
+  }
+  bench.run(5);
+  CHECK_FALSE(bench.last_command.has_value());
+  CHECK_FALSE(bench.link.commands.take_sign_of_life());
+
+  for (unsigned type = 0; type < 5; ++type)
+    for (unsigned id = 0; id < 256; ++id) {
+      const unsigned value = type << 8 | id;
+      if (value == 0x0101 || value == 0x0310 || value == 0x0311 || value == 0x0312) continue;
+      CHECK(bench.get_report(static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(id), 64) == stall_result);
+    }
+  CHECK(bench.control(request(0xA1, 1, 0x0310, 1, 64)) == stall_result);
+}
+
+}  // namespace inkwell
