@@ -65,7 +65,7 @@ struct Counters {
 enum class Stop : std::uint8_t {
   time_reached,
   firmware_exit,  ///< semihosting SYS_EXIT or SYS_EXIT_EXTENDED, see exit_code()
-  locked_up,      ///< a fault inside HardFault or NMI; only reset() (or a watchdog) helps. See lockup_reason()
+  locked_up,      ///< time reached, but the processor is locked up: only reset() or a watchdog helps. See lockup_reason()
   requested,      ///< request_stop()
 };
 
@@ -91,7 +91,7 @@ class Chip {
   /// Resets processor and peripherals as the pin NRST does (board time goes on).
   void reset(ResetCause cause = ResetCause::pin);
 
-  /// Runs until board time reaches `when`, or the firmware exits or locks up. Calls of the circuit, of
+  /// Runs until board time reaches `when`, or the firmware exits. Calls of the circuit, of
   /// peripherals and of scheduled events come from inside it.
   Stop run_until(Ticks when);
   /// From inside a callback: run_until() returns as soon as it can.

@@ -1,0 +1,111 @@
+// ADC1 to ADC3 (RM0090, "Analog-to-digital converter"): regular and injected groups, simultaneous modes.
+// Not modelled: interleaved and alternate-trigger modes, DMA through the common data register.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+
+#include "bus.hpp"
+
+namespace inkwell::virtual_board {
+
+class Adcs;
+
+class Adc final : public TimedPart {
+ public:
+  Adc(Machine& machine, Adcs& adcs, unsigned index);
+  void reset();
+  void step(Ticks now) override;
+  std::uint32_t read(std::uint32_t offset);
+  void write(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t stored(std::uint32_t offset) const;
+
+  bool is_on() const { return (cr2_ & 1) != 0; }
+  /// External trigger selections, or -1 while triggers are off.
+  int injected_trigger() const { return (cr2_ >> 20 & 3) != 0 ? static_cast<int>(cr2_ >> 16 & 0xF) : -1; }
+  int regular_trigger() const { return (cr2_ >> 28 & 3) != 0 ? static_cast<int>(cr2_ >> 24 & 0xF) : -1; }
+  void start_injected(Ticks now);
+  void start_regular(Ticks now);
+  /// A trigger of this ADC is followed by something that the processor must see.
+  bool injected_matters() const { return (cr1_ & 1u << 7) != 0; }
+  bool regular_matters() const { return (cr1_ & 1u << 5) != 0 || (cr2_ & 1u << 8) != 0; }
+  std::uint32_t status() const { return sr_; }
+  std::uint32_t data() const { return data_; }
+
+ private:
+  enum class Group : std::uint8_t { none, regular, injected };
+  enum class Phase : std::uint8_t { sampling, converting };
+  unsigned regular_length() const;
+  unsigned injected_length() const;
+  unsigned channel_of(Group group, unsigned rank) const;
+  unsigned sampling_cycles(unsigned channel) const;
+  unsigned resolution_bits() const { return 12 - 2 * (cr1_ >> 24 & 3); }
+  Ticks duration(unsigned cycles) const;
+  void begin_conversion(Ticks now);
+  void finish_regular(Ticks now);
+  void finish_injected(Ticks now);
+  std::uint32_t convert(double voltage_V) const;
+  std::uint32_t sample(unsigned channel, Ticks now) const;
+  void watch(unsigned channel);
+  void idle();
+  void update_interrupt();
+
+  Machine& machine_;
+  Adcs& adcs_;
+  unsigned index_;
+  Timeline::Slot slot_;
+  std::uint32_t sr_ = 0, cr1_ = 0, cr2_ = 0, htr_ = 0xFFF, ltr_ = 0, jsqr_ = 0, data_ = 0;
+  std::array<std::uint32_t, 2> smpr_{};
+  std::array<std::uint32_t, 3> sqr_{};
+  std::array<std::uint32_t, 4> offset_{}, injected_data_{};
+  Group group_ = Group::none;
+  Phase phase_ = Phase::sampling;
+  unsigned rank_ = 0, regular_rank_ = 0, injected_rank_ = 0;
+  bool resume_regular_ = false, automatic_injected_ = false;
+  std::uint32_t sample_ = 0;
+};
+
+class Adcs final : public RegisterBlock {
+ public:
+  explicit Adcs(Machine& machine);
+  void reset() override;
+  /// `channel` 1..4 of a timer matched, or trigger_output of timers.hpp.
+  void timer_trigger(unsigned timer, unsigned channel) {
+    if ((connected_[timer] >> channel & 1) != 0) trigger(timer, channel);
+  }
+  void external_line(unsigned line);
+  /// A match or trigger output of the timer starts conversions that the processor waits for.
+  bool listens_to_timer(unsigned timer, unsigned channel) const { return (awaited_[timer] >> channel & 1) != 0; }
+  /// After a change of triggers or interrupts.
+  void connect_triggers();
+  unsigned prescaler() const { return 2 * ((ccr_ >> 16 & 3) + 1); }
+  bool temperature_on() const { return (ccr_ & 1u << 23) != 0; }
+  bool battery_on() const { return (ccr_ & 1u << 22) != 0; }
+  void note_injected_sequence(Ticks now);
+  void start_injected(unsigned index, Ticks now);
+  void start_regular(unsigned index, Ticks now);
+
+  std::function<void(std::uint64_t index, Ticks when)> on_injected_sequence;
+
+ protected:
+  std::uint32_t read_word(std::uint32_t offset) override;
+  void write_word(std::uint32_t offset, std::uint32_t value) override;
+  std::uint32_t stored(std::uint32_t offset) const override;
+
+ private:
+  void trigger(unsigned timer, unsigned channel);
+  bool is_slave(unsigned index, bool injected) const;
+  bool injected_simultaneous() const;
+  bool regular_simultaneous() const;
+  unsigned group_size() const;
+
+  Machine& machine_;
+  std::deque<Adc> adcs_;
+  std::uint32_t ccr_ = 0;
+  std::uint64_t injected_sequences_ = 0;
+  Ticks last_injected_ = never;
+  std::array<std::uint8_t, 15> connected_{}, awaited_{};
+};
+
+}  // namespace inkwell::virtual_board

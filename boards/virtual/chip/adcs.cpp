@@ -1,0 +1,129 @@
+// The three converters together: triggers, simultaneous modes, common registers.
+#include "adc.hpp"
+#include "timers.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+struct TriggerSource {
+  std::uint8_t timer;    ///< 0: EXTI line
+  std::uint8_t channel;  ///< of the timer (0: trigger output), or the EXTI line
+};
+// RM0090, ADC_CR2: JEXTSEL and EXTSEL.
+constexpr TriggerSource injected_sources[16] = {{1, 4}, {1, 0}, {2, 1}, {2, 0}, {3, 2}, {3, 4}, {4, 1}, {4, 2},
+                                                {4, 3}, {4, 0}, {5, 4}, {5, 0}, {8, 2}, {8, 3}, {8, 4}, {0, 15}};
+constexpr TriggerSource regular_sources[16] = {{1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {2, 4}, {2, 0}, {3, 1},
+                                               {3, 0}, {4, 4}, {5, 1}, {5, 2}, {5, 3}, {8, 1}, {8, 0}, {0, 11}};
+constexpr std::uint32_t common_status = 0x300, common_control = 0x304, common_data = 0x308;
+
+}  // namespace
+
+Adcs::Adcs(Machine& machine) : machine_(machine) {
+  for (unsigned i = 0; i < 3; ++i) adcs_.emplace_back(machine, *this, i);
+  machine.adcs = this;
+}
+
+void Adcs::reset() {
+  ccr_ = 0;
+  injected_sequences_ = 0;
+  last_injected_ = never;
+  for (auto& adc : adcs_) adc.reset();
+  connect_triggers();
+}
+
+bool Adcs::injected_simultaneous() const {
+  const unsigned mode = ccr_ & 0x1F;
+  return mode == 0x01 || mode == 0x05 || mode == 0x11 || mode == 0x15;
+}
+
+bool Adcs::regular_simultaneous() const {
+  const unsigned mode = ccr_ & 0x1F;
+  return mode == 0x01 || mode == 0x02 || mode == 0x06 || mode == 0x11 || mode == 0x12 || mode == 0x16;
+}
+
+unsigned Adcs::group_size() const { return (ccr_ & 0x10) != 0 ? 3 : 2; }
+
+bool Adcs::is_slave(unsigned index, bool injected) const {
+  return index != 0 && index < group_size() && (injected ? injected_simultaneous() : regular_simultaneous());
+}
+
+void Adcs::note_injected_sequence(Ticks now) {
+  if (now == last_injected_) return;
+  last_injected_ = now;
+  if (on_injected_sequence) on_injected_sequence(injected_sequences_, now);
+  ++injected_sequences_;
+}
+
+void Adcs::start_injected(unsigned index, Ticks now) {
+  if (is_slave(index, true)) return;  // the master starts it
+  if (adcs_[index].is_on()) note_injected_sequence(now);
+  adcs_[index].start_injected(now);
+  if (index == 0 && injected_simultaneous())
+    for (unsigned i = 1; i < group_size(); ++i) adcs_[i].start_injected(now);
+}
+
+void Adcs::start_regular(unsigned index, Ticks now) {
+  if (is_slave(index, false)) return;
+  adcs_[index].start_regular(now);
+  if (index == 0 && regular_simultaneous())
+    for (unsigned i = 1; i < group_size(); ++i) adcs_[i].start_regular(now);
+}
+
+void Adcs::trigger(unsigned timer, unsigned channel) {
+  const Ticks now = machine_.timeline.now();
+  const auto matches = [&](int selected, const TriggerSource (&sources)[16]) {
+    return selected >= 0 && sources[selected].timer == timer && sources[selected].channel == channel;
+  };
+  for (unsigned i = 0; i < 3; ++i) {
+    if (matches(adcs_[i].injected_trigger(), injected_sources)) start_injected(i, now);
+    if (matches(adcs_[i].regular_trigger(), regular_sources)) start_regular(i, now);
+  }
+}
+
+void Adcs::external_line(unsigned line) { trigger(0, line); }
+
+void Adcs::connect_triggers() {
+  const auto connected_before = connected_, awaited_before = awaited_;
+  connected_.fill(0);
+  awaited_.fill(0);
+  const bool any_injected_matters =
+      adcs_[0].injected_matters() || adcs_[1].injected_matters() || adcs_[2].injected_matters();
+  const bool any_regular_matters = adcs_[0].regular_matters() || adcs_[1].regular_matters() || adcs_[2].regular_matters();
+  const auto connect = [&](int selected, const TriggerSource (&sources)[16], bool matters) {
+    if (selected < 0 || sources[selected].timer == 0) return;
+    const auto bit = static_cast<std::uint8_t>(1u << sources[selected].channel);
+    connected_[sources[selected].timer] |= bit;
+    if (matters) awaited_[sources[selected].timer] |= bit;
+  };
+  for (const auto& adc : adcs_) {
+    connect(adc.injected_trigger(), injected_sources, any_injected_matters);
+    connect(adc.regular_trigger(), regular_sources, any_regular_matters);
+  }
+  if (connected_ != connected_before || awaited_ != awaited_before) machine_.timers->plan_again();
+}
+
+std::uint32_t Adcs::stored(std::uint32_t offset) const {
+  if (offset < common_status) return adcs_[offset / 0x100].stored(offset & 0xFF);
+  return offset == common_control ? ccr_ : 0;
+}
+
+std::uint32_t Adcs::read_word(std::uint32_t offset) {
+  if (offset < common_status) return adcs_[offset / 0x100].read(offset & 0xFF);
+  switch (offset) {
+    case common_status: return adcs_[0].status() | adcs_[1].status() << 8 | adcs_[2].status() << 16;
+    case common_control: return ccr_;
+    case common_data: return adcs_[0].data() | adcs_[1].data() << 16;
+    default: machine_.log.note("ADC common", offset, false, 0); return 0;
+  }
+}
+
+void Adcs::write_word(std::uint32_t offset, std::uint32_t value) {
+  if (offset < common_status) return adcs_[offset / 0x100].write(offset & 0xFF, value);
+  if (offset != common_control) return machine_.log.note("ADC common", offset, true, value);
+  ccr_ = value & 0x00C3'EF1F;
+  const unsigned mode = ccr_ & 0x1F;
+  if ((mode != 0 && !injected_simultaneous() && !regular_simultaneous()) || (ccr_ & 0xC000) != 0)
+    machine_.log.note("ADC interleaved, alternate or common DMA mode,", offset, true, value);
+}
+
+}  // namespace inkwell::virtual_board

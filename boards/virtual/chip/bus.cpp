@@ -1,0 +1,142 @@
+#include "bus.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "processor.hpp"
+#include "system_control.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+constexpr std::uint32_t apb_base = 0x4000'0000, apb_bytes = 0x8'0000;
+constexpr std::uint32_t ahb2_base = 0x5000'0000, ahb2_bytes = 0x6'1000;
+constexpr std::uint32_t private_base = 0xE000'0000, private_bytes = 0x10'0000;
+constexpr std::uint32_t external_base = 0xA000'0000, external_bytes = 0x1000;
+constexpr std::uint32_t peripheral_alias_base = 0x4200'0000, peripheral_alias_bytes = 0x0200'0000;
+constexpr std::uint32_t sram_alias_base = 0x2200'0000, sram_alias_bytes = 32 * sram_bytes;
+
+template <std::uint32_t base>
+std::uint64_t read_window(uc_engine*, std::uint64_t offset, unsigned size, void* bus) {
+  return static_cast<Bus*>(bus)->read(base + static_cast<std::uint32_t>(offset), size);
+}
+
+template <std::uint32_t base>
+void write_window(uc_engine*, std::uint64_t offset, unsigned size, std::uint64_t value, void* bus) {
+  static_cast<Bus*>(bus)->write(base + static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(value), size);
+}
+
+template <std::uint32_t base, std::uint32_t bytes>
+constexpr Bus::Window window() {
+  return {base, bytes, read_window<base>, write_window<base>};
+}
+
+}  // namespace
+
+const Bus::Window Bus::windows[6] = {
+    window<apb_base, apb_bytes>(),         window<peripheral_alias_base, peripheral_alias_bytes>(),
+    window<ahb2_base, ahb2_bytes>(),       window<sram_alias_base, sram_alias_bytes>(),
+    window<private_base, private_bytes>(), window<external_base, external_bytes>(),
+};
+
+Bus::Bus(Machine& machine, SystemControl& system_control)
+    : machine_(machine), system_control_(system_control), apb_and_ahb1_(apb_bytes / 1024), ahb2_(ahb2_bytes / 1024) {}
+
+void Bus::add(std::uint32_t base, std::uint32_t bytes, const std::string& name, Peripheral& peripheral,
+              const std::uint32_t* enable_register, std::uint32_t enable_mask) {
+  for (std::uint32_t address = base; address < base + bytes; address += 1024) {
+    Slot* slot = slot_at(address);
+    if (slot == nullptr || base % 1024 != 0)
+      throw ChipError("The peripheral " + name + " is not on the bus: its base must be a multiple of 1024 in the "
+                      "regions 0x40000000 or 0x50000000.");
+    *slot = {&peripheral, base, enable_register, enable_mask, name};
+  }
+  if (std::find(peripherals_.begin(), peripherals_.end(), &peripheral) == peripherals_.end())
+    peripherals_.push_back(&peripheral);
+}
+
+void Bus::reset_peripherals() {
+  for (auto* peripheral : peripherals_) peripheral->reset();
+}
+
+Bus::Slot* Bus::slot_at(std::uint32_t address) {
+  if (address - apb_base < apb_bytes) return &apb_and_ahb1_[(address - apb_base) / 1024];
+  if (address - ahb2_base < ahb2_bytes) return &ahb2_[(address - ahb2_base) / 1024];
+  return nullptr;
+}
+
+bool Bus::is_clocked(const Slot& slot, std::uint32_t) {
+  if (slot.enable_register == nullptr || (*slot.enable_register & slot.enable_mask) != 0) return true;
+  machine_.log.say_once(slot.name + " is used while its clock is off in RCC: reads 0, writes are ignored");
+  return false;
+}
+
+std::uint32_t Bus::read_register(std::uint32_t address, unsigned size) {
+  Slot* slot = slot_at(address);
+  if (slot == nullptr || slot->peripheral == nullptr) {
+    char name[24];
+    std::snprintf(name, sizeof name, "0x%08X", static_cast<unsigned>(address & ~0x3FFu));
+    machine_.log.note(name, address & 0x3FF, false, 0);
+    return 0;
+  }
+  return is_clocked(*slot, address) ? slot->peripheral->read(address - slot->base, size) : 0;
+}
+
+void Bus::write_register(std::uint32_t address, std::uint32_t value, unsigned size) {
+  Slot* slot = slot_at(address);
+  if (slot == nullptr || slot->peripheral == nullptr) {
+    char name[24];
+    std::snprintf(name, sizeof name, "0x%08X", static_cast<unsigned>(address & ~0x3FFu));
+    machine_.log.note(name, address & 0x3FF, true, value);
+    return;
+  }
+  if (is_clocked(*slot, address)) slot->peripheral->write(address - slot->base, value, size);
+}
+
+void Bus::synchronise() { machine_.timeline.catch_up(machine_.processor->now()); }
+
+void Bus::settle_processor() {
+  if (machine_.nvic.changed() || machine_.timeline.wake_moved_forward() || machine_.reset_requested)
+    machine_.processor->end_slice();
+}
+
+std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
+  synchronise();
+  std::uint32_t value = 0;
+  if (address >= private_base) {
+    value = system_control_.read(address, size);
+  } else if (address - sram_alias_base < sram_alias_bytes) {
+    const std::uint32_t bit = (address - sram_alias_base) / 4;
+    value = machine_.memory.sram()[bit / 8] >> (bit % 8) & 1;
+  } else if (address - peripheral_alias_base < peripheral_alias_bytes) {
+    const std::uint32_t bit = (address - peripheral_alias_base) / 4;
+    value = read_register(apb_base + bit / 32 * 4, 4) >> (bit % 32) & 1;
+  } else {
+    value = read_register(address, size);
+  }
+  settle_processor();
+  return value;
+}
+
+void Bus::write(std::uint32_t address, std::uint32_t value, unsigned size) {
+  synchronise();
+  if (address >= private_base) {
+    system_control_.write(address, value, size);
+  } else if (address - sram_alias_base < sram_alias_bytes) {
+    const std::uint32_t bit = (address - sram_alias_base) / 4;
+    std::uint8_t& byte = machine_.memory.sram()[bit / 8];
+    const auto mask = static_cast<std::uint8_t>(1u << (bit % 8));
+    byte = static_cast<std::uint8_t>((value & 1) != 0 ? byte | mask : byte & ~mask);
+  } else if (address - peripheral_alias_base < peripheral_alias_bytes) {
+    const std::uint32_t bit = (address - peripheral_alias_base) / 4;
+    const std::uint32_t target = apb_base + bit / 32 * 4, mask = 1u << (bit % 32);
+    const std::uint32_t old = read_register(target, 4);
+    write_register(target, (value & 1) != 0 ? old | mask : old & ~mask, 4);
+  } else {
+    write_register(address, value, size);
+  }
+  settle_processor();
+}
+
+}  // namespace inkwell::virtual_board

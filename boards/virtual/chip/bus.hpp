@@ -1,0 +1,77 @@
+// From addresses to registers: peripheral blocks, bit-band aliases and the private peripheral bus.
+#pragma once
+
+#include <unicorn/unicorn.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "machine_parts.hpp"
+
+namespace inkwell::virtual_board {
+
+class SystemControl;
+
+/// A block of 32-bit registers. Narrow reads take a part of the word; narrow writes replace a part of `stored`.
+class RegisterBlock : public Peripheral {
+ public:
+  std::uint32_t read(std::uint32_t offset, unsigned size) final {
+    const std::uint32_t word = read_word(offset & ~3u);
+    return size == 4 ? word : word >> 8 * (offset & 3) & (size == 1 ? 0xFFu : 0xFFFFu);
+  }
+  void write(std::uint32_t offset, std::uint32_t value, unsigned size) final {
+    const std::uint32_t word = offset & ~3u;
+    write_word(word, size == 4 ? value : merge(stored(word), value, offset, size));
+  }
+
+ protected:
+  virtual std::uint32_t read_word(std::uint32_t offset) = 0;
+  virtual void write_word(std::uint32_t offset, std::uint32_t value) = 0;
+  /// What a narrow write leaves in place; without the side effects of reading.
+  virtual std::uint32_t stored(std::uint32_t) const { return 0; }
+};
+
+class Bus {
+ public:
+  Bus(Machine& machine, SystemControl& system_control);
+
+  /// Peripherals whose clock is off in `*enable_register & enable_mask` read 0 and ignore writes.
+  void add(std::uint32_t base, std::uint32_t bytes, const std::string& name, Peripheral& peripheral,
+           const std::uint32_t* enable_register = nullptr, std::uint32_t enable_mask = 0);
+  void reset_peripherals();
+
+  struct Window {
+    std::uint32_t base, bytes;
+    uc_cb_mmio_read_t read;
+    uc_cb_mmio_write_t write;
+  };
+  static const Window windows[6];
+
+  std::uint32_t read(std::uint32_t address, unsigned size);
+  void write(std::uint32_t address, std::uint32_t value, unsigned size);
+  /// For DMA: registers of peripherals without the processor's side of it.
+  std::uint32_t read_register(std::uint32_t address, unsigned size);
+  void write_register(std::uint32_t address, std::uint32_t value, unsigned size);
+
+ private:
+  struct Slot {
+    Peripheral* peripheral = nullptr;
+    std::uint32_t base = 0;
+    const std::uint32_t* enable_register = nullptr;
+    std::uint32_t enable_mask = 0;
+    std::string name;
+  };
+  Slot* slot_at(std::uint32_t address);
+  bool is_clocked(const Slot& slot, std::uint32_t address);
+  void synchronise();
+  void settle_processor();
+
+  Machine& machine_;
+  SystemControl& system_control_;
+  std::vector<Slot> apb_and_ahb1_;  ///< by kilobyte from 0x40000000
+  std::vector<Slot> ahb2_;          ///< by kilobyte from 0x50000000
+  std::vector<Peripheral*> peripherals_;
+};
+
+}  // namespace inkwell::virtual_board

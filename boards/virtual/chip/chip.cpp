@@ -1,0 +1,96 @@
+#include <chip/chip.hpp>
+#include <cstdio>
+
+#include "execution.hpp"
+#include "parts.hpp"
+
+namespace inkwell::virtual_board {
+
+struct Chip::Parts : ChipParts {
+  using ChipParts::ChipParts;
+};
+
+Chip::Chip(Circuit& circuit, const ChipOptions& options) : parts_(std::make_unique<Parts>(circuit, options)) {
+  auto& p = *parts_;
+  p.adcs.on_injected_sequence = [this](std::uint64_t index, Ticks when) {
+    if (on_injected_sequence) on_injected_sequence(index, when);
+  };
+  p.execution.on_console = [this](std::uint8_t byte) {
+    if (on_console) on_console(byte);
+  };
+  p.execution.on_reset = [this](ResetCause cause) {
+    if (on_reset) on_reset(cause);
+  };
+  for (auto& usart : p.usarts)
+    usart.on_sent = [this](unsigned number, std::uint8_t byte) {
+      if (on_usart) on_usart(number, byte);
+      if (on_console) on_console(byte);
+    };
+  p.execution.reset(ResetCause::power_on);
+}
+
+Chip::~Chip() = default;
+
+void Chip::load_elf(const std::filesystem::path& path) {
+  program_elf(path, parts_->machine.memory);
+  parts_->machine.request_reset(ResetCause::power_on);
+}
+
+void Chip::reset(ResetCause cause) {
+  // In the middle of a run the processor must first come to a stop.
+  if (parts_->execution.running()) {
+    parts_->machine.request_reset(cause);
+    parts_->processor.end_slice();
+    return;
+  }
+  parts_->machine.reset_requested = false;
+  parts_->execution.reset(cause);
+}
+
+Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
+void Chip::request_stop() { parts_->execution.request_stop(); }
+
+Scheduler& Chip::scheduler() { return parts_->events; }
+InterruptController& Chip::interrupts() { return parts_->machine.nvic; }
+InputPins& Chip::input_pins() { return parts_->pins; }
+UnmodelledLog& Chip::unmodelled_log() { return parts_->machine.log; }
+
+void Chip::add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral) {
+  parts_->add_outside_peripheral(base, size, name, peripheral);
+}
+
+void Chip::usart_receive(unsigned number, std::uint8_t byte) {
+  if (number >= 1 && number <= parts_->usarts.size()) parts_->usarts[number - 1].receive(byte);
+}
+
+Ticks Chip::now() const { return parts_->machine.timeline.now(); }
+Mode Chip::mode() const { return parts_->machine.options.mode; }
+Clocks Chip::clocks() const { return parts_->machine.clocks.frequencies; }
+const Counters& Chip::counters() const { return parts_->execution.counters(); }
+void Chip::clear_counters() { parts_->execution.clear_counters(); }
+int Chip::exit_code() const { return parts_->execution.exit_code(); }
+const std::string& Chip::lockup_reason() const { return parts_->execution.lockup_reason(); }
+const std::vector<std::string>& Chip::unmodelled_accesses() const { return parts_->machine.log.lines(); }
+std::uint32_t Chip::memory_word(std::uint32_t address) const { return parts_->machine.memory.word(address); }
+
+std::uint64_t Chip::state_hash() const {
+  // FNV-1a over the memories and the core's registers.
+  std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
+  const auto add = [&](const std::uint8_t* data, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; ++i) hash = (hash ^ data[i]) * 0x100'0000'01B3;
+  };
+  auto& memory = parts_->machine.memory;
+  add(memory.sram(), sram_bytes);
+  add(memory.ccm(), ccm_bytes);
+  const std::uint64_t cycles = parts_->processor.cycles();
+  add(reinterpret_cast<const std::uint8_t*>(&cycles), sizeof cycles);
+  for (const int id : {UC_ARM_REG_R0, UC_ARM_REG_R1, UC_ARM_REG_R2, UC_ARM_REG_R3, UC_ARM_REG_R4, UC_ARM_REG_R5,
+                       UC_ARM_REG_R6, UC_ARM_REG_R7, UC_ARM_REG_R8, UC_ARM_REG_R9, UC_ARM_REG_R10, UC_ARM_REG_R11,
+                       UC_ARM_REG_R12, UC_ARM_REG_MSP, UC_ARM_REG_PSP, UC_ARM_REG_LR, UC_ARM_REG_XPSR}) {
+    const std::uint32_t value = parts_->processor.read(id);
+    add(reinterpret_cast<const std::uint8_t*>(&value), sizeof value);
+  }
+  return hash;
+}
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,202 @@
+#include "dma.hpp"
+
+#include <cstring>
+
+namespace inkwell::virtual_board {
+namespace {
+
+constexpr std::uint32_t enabled = 1u << 0, transfer_error_interrupt = 1u << 2, half_interrupt = 1u << 3,
+                        complete_interrupt = 1u << 4, circular = 1u << 8, peripheral_increment = 1u << 9,
+                        memory_increment = 1u << 10, double_buffer = 1u << 18, current_target = 1u << 19;
+constexpr std::uint32_t transfer_error = 1u << 3, half = 1u << 4, complete = 1u << 5;
+constexpr std::uint32_t first_stream = 0x10, stream_bytes = 0x18;
+constexpr unsigned flag_shift[4] = {0, 6, 16, 22};
+
+struct Request {
+  std::uint8_t peripheral, source, controller, stream, channel;
+};
+constexpr Request timer_requests[] = {
+    {1, 0, 2, 5, 6}, {1, 1, 2, 1, 6}, {1, 1, 2, 3, 6}, {1, 2, 2, 2, 6}, {1, 3, 2, 6, 6}, {1, 4, 2, 4, 6},
+    {1, 1, 2, 6, 0}, {1, 2, 2, 6, 0}, {1, 3, 2, 6, 0},
+    {2, 0, 1, 1, 3}, {2, 3, 1, 1, 3}, {2, 1, 1, 5, 3}, {2, 2, 1, 6, 3}, {2, 4, 1, 6, 3}, {2, 0, 1, 7, 3}, {2, 4, 1, 7, 3},
+    {3, 0, 1, 2, 5}, {3, 4, 1, 2, 5}, {3, 1, 1, 4, 5}, {3, 2, 1, 5, 5}, {3, 3, 1, 7, 5},
+    {4, 1, 1, 0, 2}, {4, 2, 1, 3, 2}, {4, 0, 1, 6, 2}, {4, 3, 1, 7, 2},
+    {5, 3, 1, 0, 6}, {5, 0, 1, 0, 6}, {5, 4, 1, 1, 6}, {5, 1, 1, 2, 6}, {5, 4, 1, 3, 6}, {5, 2, 1, 4, 6}, {5, 0, 1, 6, 6},
+    {6, 0, 1, 1, 7}, {7, 0, 1, 2, 1}, {7, 0, 1, 4, 1},
+    {8, 0, 2, 1, 7}, {8, 1, 2, 2, 7}, {8, 2, 2, 3, 7}, {8, 3, 2, 4, 7}, {8, 4, 2, 7, 7},
+    {8, 1, 2, 2, 0}, {8, 2, 2, 2, 0}, {8, 3, 2, 2, 0},
+};
+constexpr Request adc_requests[] = {{0, 0, 2, 0, 0}, {0, 0, 2, 4, 0}, {1, 0, 2, 2, 1},
+                                    {1, 0, 2, 3, 1}, {2, 0, 2, 0, 2}, {2, 0, 2, 1, 2}};
+// Source 0 receives, 1 transmits.
+constexpr Request usart_requests[] = {
+    {1, 0, 2, 2, 4}, {1, 0, 2, 5, 4}, {1, 1, 2, 7, 4}, {2, 0, 1, 5, 4}, {2, 1, 1, 6, 4}, {3, 0, 1, 1, 4}, {3, 1, 1, 3, 4},
+    {3, 1, 1, 4, 7}, {4, 0, 1, 2, 4}, {4, 1, 1, 4, 4}, {5, 0, 1, 0, 4}, {5, 1, 1, 7, 4}, {6, 0, 2, 1, 5}, {6, 0, 2, 2, 5},
+    {6, 1, 2, 6, 5}, {6, 1, 2, 7, 5},
+};
+
+constexpr unsigned position_of(unsigned number, unsigned stream) {
+  constexpr unsigned positions[2][8] = {{11, 12, 13, 14, 15, 16, 17, 47}, {56, 57, 58, 59, 60, 68, 69, 70}};
+  return positions[number - 1][stream];
+}
+
+template <std::size_t n>
+bool ask(Dma& dma, const Request (&requests)[n], unsigned peripheral, unsigned source) {
+  for (const auto& r : requests)
+    if (r.peripheral == peripheral && r.source == source && dma.controller(r.controller).request(r.stream, r.channel))
+      return true;
+  return false;
+}
+
+}  // namespace
+
+DmaController::DmaController(Machine& machine, Bus& bus, unsigned number) : machine_(machine), bus_(bus), number_(number) {}
+
+void DmaController::reset() {
+  streams_ = {};
+  for (unsigned i = 0; i < 8; ++i) update_interrupt(i);
+}
+
+void DmaController::update_interrupt(unsigned index) {
+  const auto& s = streams_[index];
+  machine_.nvic.set_source(position_of(number_, index), 0,
+                           ((s.control & complete_interrupt) != 0 && (s.flags & complete) != 0) ||
+                               ((s.control & half_interrupt) != 0 && (s.flags & half) != 0) ||
+                               ((s.control & transfer_error_interrupt) != 0 && (s.flags & transfer_error) != 0));
+}
+
+bool DmaController::load(std::uint32_t address, unsigned size, std::uint32_t& value) {
+  value = 0;
+  if (address >= 0x4000'0000) {
+    value = bus_.read_register(address, size);
+    return true;
+  }
+  const std::uint8_t* place = machine_.memory.at(address, size);
+  // The CCM is on the processor's data bus only (RM0090, "System architecture").
+  if (place == nullptr || (address >= ccm_base && address < system_base)) return false;
+  std::memcpy(&value, place, size);
+  return true;
+}
+
+bool DmaController::store(std::uint32_t address, unsigned size, std::uint32_t value) {
+  if (address >= 0x4000'0000) {
+    bus_.write_register(address, value, size);
+    return true;
+  }
+  std::uint8_t* place = machine_.memory.ram_at(address, size);
+  if (place == nullptr || address < sram_base) return false;
+  std::memcpy(place, &value, size);
+  return true;
+}
+
+void DmaController::move_item(unsigned index) {
+  auto& s = streams_[index];
+  const unsigned size = 1u << (s.control >> 11 & 3);
+  const unsigned direction = s.control >> 6 & 3;
+  const unsigned target = (s.control & current_target) != 0 ? 1 : 0;
+  const std::uint32_t peripheral = s.peripheral + ((s.control & peripheral_increment) != 0 ? s.moved * size : 0);
+  const std::uint32_t memory = s.memory[target] + ((s.control & memory_increment) != 0 ? s.moved * size : 0);
+  std::uint32_t value = 0;
+  const bool moved = direction == 1 ? load(memory, size, value) && store(peripheral, size, value)
+                                    : load(peripheral, size, value) && store(memory, size, value);
+  if (!moved) {
+    s.control &= ~enabled;
+    s.flags |= transfer_error;
+    return update_interrupt(index);
+  }
+  ++s.moved;
+  --s.count;
+  if (s.count == s.reload / 2) s.flags |= half;
+  if (s.count == 0) {
+    s.flags |= complete;
+    if ((s.control & double_buffer) != 0) s.control ^= current_target;
+    if ((s.control & (circular | double_buffer)) != 0) {
+      s.count = s.reload;
+      s.moved = 0;
+    } else {
+      s.control &= ~enabled;
+    }
+  }
+  update_interrupt(index);
+}
+
+bool DmaController::request(unsigned index, unsigned channel) {
+  const auto& s = streams_[index];
+  if ((s.control & enabled) == 0 || (s.control >> 25 & 7) != channel || s.count == 0) return false;
+  move_item(index);
+  return true;
+}
+
+void DmaController::enable(unsigned index) {
+  auto& s = streams_[index];
+  s.reload = s.count;
+  s.moved = 0;
+  if ((s.control >> 6 & 3) == 2) {
+    if (number_ == 1) return machine_.log.say_once("DMA1 can not move memory to memory: nothing is moved");
+    while ((s.control & enabled) != 0 && s.count != 0) move_item(index);
+  } else if (on_enabled) {
+    on_enabled();
+  }
+}
+
+std::uint32_t DmaController::stored(std::uint32_t offset) const {
+  if (offset < first_stream || offset >= first_stream + 8 * stream_bytes) return 0;
+  const auto& s = streams_[(offset - first_stream) / stream_bytes];
+  switch ((offset - first_stream) % stream_bytes) {
+    case 0x00: return s.control;
+    case 0x04: return s.count;
+    case 0x08: return s.peripheral;
+    case 0x0C: return s.memory[0];
+    case 0x10: return s.memory[1];
+    default: return s.fifo;
+  }
+}
+
+std::uint32_t DmaController::read_word(std::uint32_t offset) {
+  if (offset < 0x08) {
+    std::uint32_t value = 0;
+    for (unsigned i = 0; i < 4; ++i) value |= streams_[offset + i].flags << flag_shift[i];
+    return value;
+  }
+  if (offset >= first_stream + 8 * stream_bytes) machine_.log.note("DMA" + std::to_string(number_), offset, false, 0);
+  return stored(offset);
+}
+
+void DmaController::write_word(std::uint32_t offset, std::uint32_t value) {
+  if (offset == 0x08 || offset == 0x0C) {
+    for (unsigned i = 0; i < 4; ++i) {
+      const unsigned index = offset - 0x08 + i;
+      streams_[index].flags &= ~(value >> flag_shift[i] & 0x3D);
+      update_interrupt(index);
+    }
+    return;
+  }
+  if (offset < first_stream || offset >= first_stream + 8 * stream_bytes)
+    return machine_.log.note("DMA" + std::to_string(number_), offset, true, value);
+  const unsigned index = (offset - first_stream) / stream_bytes;
+  auto& s = streams_[index];
+  switch ((offset - first_stream) % stream_bytes) {
+    case 0x00: {
+      const bool was_enabled = (s.control & enabled) != 0;
+      s.control = value & 0x0FEF'FFFF;
+      if (was_enabled && (value & enabled) == 0) s.flags |= complete;
+      if (!was_enabled && (value & enabled) != 0) enable(index);
+      return update_interrupt(index);
+    }
+    case 0x04:
+      if ((s.control & enabled) == 0) s.count = value & 0xFFFF;
+      return;
+    case 0x08: s.peripheral = value; return;
+    case 0x0C: s.memory[0] = value; return;
+    case 0x10: s.memory[1] = value; return;
+    default: s.fifo = (value & 0x87) | 0x20; return;
+  }
+}
+
+Dma::Dma(Machine& machine, Bus& bus) : first_(machine, bus, 1), second_(machine, bus, 2) { machine.dma = this; }
+
+bool Dma::adc_request(unsigned index) { return ask(*this, adc_requests, index, 0); }
+bool Dma::timer_request(unsigned timer, unsigned source) { return ask(*this, timer_requests, timer, source); }
+bool Dma::usart_request(unsigned number, bool transmit) { return ask(*this, usart_requests, number, transmit ? 1 : 0); }
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,59 @@
+// DMA1 and DMA2 (RM0090, "DMA controller"). A request moves one item at once; FIFO thresholds and bursts
+// are accepted and change nothing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bus.hpp"
+
+namespace inkwell::virtual_board {
+
+class DmaController final : public RegisterBlock {
+ public:
+  DmaController(Machine& machine, Bus& bus, unsigned number);
+  void reset() override;
+  /// A peripheral's request on a stream's channel. False: no stream takes it now.
+  bool request(unsigned stream, unsigned channel);
+  /// After a stream has been enabled: peripherals may have a request waiting.
+  std::function<void()> on_enabled;
+
+ protected:
+  std::uint32_t read_word(std::uint32_t offset) override;
+  void write_word(std::uint32_t offset, std::uint32_t value) override;
+  std::uint32_t stored(std::uint32_t offset) const override;
+
+ private:
+  struct Stream {
+    std::uint32_t control = 0, count = 0, peripheral = 0, memory[2] = {0, 0}, fifo = 0x21;
+    std::uint32_t reload = 0, moved = 0;
+    std::uint32_t flags = 0;
+  };
+  void enable(unsigned index);
+  void move_item(unsigned index);
+  bool load(std::uint32_t address, unsigned size, std::uint32_t& value);
+  bool store(std::uint32_t address, unsigned size, std::uint32_t value);
+  void update_interrupt(unsigned index);
+
+  Machine& machine_;
+  Bus& bus_;
+  unsigned number_;
+  std::array<Stream, 8> streams_{};
+};
+
+/// Which stream serves which peripheral (RM0090, tables "DMA1 request mapping" and "DMA2 request mapping").
+class Dma {
+ public:
+  Dma(Machine& machine, Bus& bus);
+  DmaController& controller(unsigned number) { return number == 1 ? first_ : second_; }
+  bool adc_request(unsigned index);
+  /// `source` 0 is the update, 1..4 the channels.
+  bool timer_request(unsigned timer, unsigned source);
+  bool usart_request(unsigned number, bool transmit);
+
+ private:
+  DmaController first_, second_;
+};
+
+}  // namespace inkwell::virtual_board

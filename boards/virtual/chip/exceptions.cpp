@@ -1,0 +1,146 @@
+// Exception entry and return of the processor, and who has spent how many instructions.
+#include <algorithm>
+#include <cstring>
+
+#include "processor.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+constexpr std::uint32_t basic_frame_bytes = 0x20, extended_frame_bytes = 0x68;
+constexpr std::uint32_t control_spsel = 2, control_fpca = 4;
+constexpr std::uint32_t xpsr_thumb = 1u << 24, xpsr_align = 1u << 9, xpsr_exception = 0x1FF;
+// EXC_RETURN (ARMv7-M, table B1-8): bit 4 clear is an extended frame, bit 3 thread mode, bit 2 process stack.
+constexpr std::uint32_t exc_return_handler = 0xFFFFFFF1, exc_return_basic = 1u << 4, exc_return_thread = 1u << 3,
+                        exc_return_process_stack = 1u << 2;
+
+// Lists for batched access; each access to the engine costs more than the register.
+int frame_registers[] = {UC_ARM_REG_R0, UC_ARM_REG_R1, UC_ARM_REG_R2,   UC_ARM_REG_R3,
+                         UC_ARM_REG_R12, UC_ARM_REG_LR, UC_ARM_REG_XPSR, UC_ARM_REG_SP, UC_ARM_REG_CONTROL};
+int float_registers[] = {UC_ARM_REG_D0, UC_ARM_REG_D1, UC_ARM_REG_D2, UC_ARM_REG_D3,
+                         UC_ARM_REG_D4, UC_ARM_REG_D5, UC_ARM_REG_D6, UC_ARM_REG_D7};
+
+}  // namespace
+
+void Processor::begin_counting(unsigned exception) {
+  if (!running_.empty()) running_.back().own_instructions += cycles_ - counted_until_;
+  counted_until_ = cycles_;
+  running_.push_back({exception, 0});
+}
+
+void Processor::end_counting() {
+  if (running_.empty()) return;
+  auto& done = running_.back();
+  done.own_instructions += cycles_ - counted_until_;
+  counted_until_ = cycles_;
+  auto& entry = counters_.exceptions[done.exception];
+  ++entry.count;
+  entry.longest_instructions = std::max(entry.longest_instructions, done.own_instructions);
+  running_.pop_back();
+}
+
+void Processor::clear_counters() {
+  counters_ = {};
+}
+
+bool Processor::start_handler(unsigned exception, std::uint32_t exception_return, std::uint32_t vector_table) {
+  const std::uint32_t vector = machine_.memory.word(vector_table + 4 * exception);
+  write(UC_ARM_REG_LR, exception_return);
+  write(UC_ARM_REG_IPSR, exception);
+  program_counter_ = vector;
+  current_exception_ = exception;
+  machine_.nvic.enter(exception);
+  begin_counting(exception);
+  return (vector & 1) != 0;
+}
+
+bool Processor::enter_exception(unsigned exception, bool align_stack, bool float_context, std::uint32_t vector_table) {
+  std::uint32_t values[9];
+  void* places[9];
+  for (int i = 0; i < 9; ++i) places[i] = &values[i];
+  uc_reg_read_batch(engine_, frame_registers, places, 9);
+  const std::uint32_t stack_pointer = values[7], control = values[8];
+  const bool extended = float_context && (control & control_fpca) != 0;
+  const bool aligned = (align_stack || extended) && (stack_pointer & 4) != 0;
+  const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
+  const std::uint32_t frame = (stack_pointer - bytes) & ~(aligned ? 4u : 0u);
+  std::uint8_t* place = machine_.memory.ram_at(frame, bytes);
+  if (place == nullptr) return false;
+
+  std::uint32_t words[extended_frame_bytes / 4] = {
+      values[0], values[1], values[2], values[3], values[4], values[5], program_counter_ & ~1u,
+      (values[6] & ~(xpsr_align | xpsr_exception)) | xpsr_thumb | (aligned ? xpsr_align : 0u) | current_exception_};
+  if (extended) {
+    // Stacked at once also when FPCCR asks for lazy stacking: firmware can not tell but by reading its own stack.
+    void* float_places[8];
+    for (int i = 0; i < 8; ++i) float_places[i] = &words[8 + 2 * i];
+    uc_reg_read_batch(engine_, float_registers, float_places, 8);
+    words[24] = read(UC_ARM_REG_FPSCR);
+  }
+  std::memcpy(place, words, bytes);
+
+  std::uint32_t exception_return = exc_return_handler & ~(extended ? exc_return_basic : 0u);
+  if (current_exception_ == exception_none) {
+    exception_return |= exc_return_thread;
+    if ((control & control_spsel) != 0) exception_return |= exc_return_process_stack;
+  }
+  write(UC_ARM_REG_SP, frame);
+  // SPSEL must be off before the mode changes, or Unicorn mixes up its banked stack pointers.
+  if ((control & (control_spsel | control_fpca)) != 0)
+    write(UC_ARM_REG_CONTROL, control & ~(control_spsel | control_fpca));
+  return start_handler(exception, exception_return, vector_table);
+}
+
+bool Processor::return_from_exception(std::uint32_t vector_table) {
+  const std::uint32_t exception_return = fault_address_;
+  const bool to_thread = (exception_return & exc_return_thread) != 0;
+  const bool process_stack = (exception_return & exc_return_process_stack) != 0;
+  const bool extended = (exception_return & exc_return_basic) == 0;
+  const unsigned leaving = current_exception_;
+  auto& nvic = machine_.nvic;
+  if (!nvic.active(leaving) || (!to_thread && process_stack)) return false;
+
+  nvic.leave(leaving);
+  end_counting();
+  if (leaving != exception_nmi) write(UC_ARM_REG_FAULTMASK, 0);
+
+  // Tail-chaining: what is pending starts on the frame that is already there.
+  if (const unsigned next = nvic.next(masks()); next != exception_none) {
+    const std::uint32_t control = read(UC_ARM_REG_CONTROL);
+    if ((control & control_fpca) != 0) write(UC_ARM_REG_CONTROL, control & ~control_fpca);
+    return start_handler(next, exception_return, vector_table);
+  }
+
+  const std::uint32_t frame = read(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP);
+  const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
+  const std::uint8_t* place = machine_.memory.ram_at(frame, bytes);
+  if (place == nullptr) return false;
+  std::uint32_t words[extended_frame_bytes / 4];
+  std::memcpy(words, place, bytes);
+  const std::uint32_t xpsr = words[7];
+  const unsigned exception = xpsr & xpsr_exception;
+  // The mode in the frame must be the mode that EXC_RETURN names.
+  if ((exception == exception_none) != to_thread || exception >= exception_numbers) return false;
+
+  if (extended) {
+    void* float_places[8];
+    for (int i = 0; i < 8; ++i) float_places[i] = &words[8 + 2 * i];
+    uc_reg_write_batch(engine_, float_registers, float_places, 8);
+    write(UC_ARM_REG_FPSCR, words[24]);
+  }
+  const std::uint32_t stack_pointer = (frame + bytes) | ((xpsr & xpsr_align) != 0 ? 4u : 0u);
+  const std::uint32_t control = read(UC_ARM_REG_CONTROL) & 1u;
+  write(UC_ARM_REG_IPSR, exception);
+  write(UC_ARM_REG_CONTROL, control | (process_stack ? control_spsel : 0u) | (extended ? control_fpca : 0u));
+  write(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP, stack_pointer);
+  void* places[6];
+  for (int i = 0; i < 6; ++i) places[i] = &words[i];
+  uc_reg_write_batch(engine_, frame_registers, places, 6);
+  write(UC_ARM_REG_XPSR_NZCVQG, xpsr & 0xF80F0000);
+  write(UC_ARM_REG_APSR_NZCV, xpsr & 0xF0000000);  // last: it rebuilds Unicorn's own copies of the flags
+  program_counter_ = words[6];
+  current_exception_ = exception;
+  return true;
+}
+
+}  // namespace inkwell::virtual_board

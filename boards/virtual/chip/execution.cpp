@@ -1,0 +1,229 @@
+#include "execution.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "semihosting.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+// CFSR (ARMv7-M, B3.2.15).
+constexpr std::uint32_t instruction_access = 1u << 0, instruction_bus = 1u << 8, precise_data_bus = 1u << 9,
+                        bus_stacking = 1u << 12, bus_address_valid = 1u << 15, undefined = 1u << 16,
+                        invalid_state = 1u << 17, invalid_return = 1u << 18, no_coprocessor = 1u << 19;
+// HFSR.
+constexpr std::uint32_t vector_table_fault = 1u << 1, forced = 1u << 30, debug_event = 1u << 31;
+constexpr std::uint16_t semihosting_breakpoint = 0xBEAB;
+
+std::string at(const char* what, std::uint32_t address, std::uint32_t program_counter) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%s 0x%08X, program counter 0x%08X", what, static_cast<unsigned>(address),
+                static_cast<unsigned>(program_counter));
+  return text;
+}
+
+}  // namespace
+
+void Execution::reset(ResetCause cause) {
+  machine_.reset_requested = false;
+  machine_.nvic.reset();
+  bus_.reset_peripherals();
+  rcc_.record_reset(cause);
+  system_control_.reset();
+  machine_.sleep_counts_cycles = false;
+  processor_.reset(system_control_.vector_table());
+  processor_.anchor(machine_.timeline.now());
+  state_ = State::runs;
+  lockup_reason_.clear();
+  ++processor_.counters().resets[static_cast<std::size_t>(cause)];
+  if (on_reset) on_reset(cause);
+}
+
+void Execution::reset_if_requested() {
+  if (machine_.reset_requested) reset(machine_.reset_cause);
+}
+
+const Counters& Execution::counters() {
+  auto& counters = processor_.counters();
+  counters.instructions = processor_.cycles() - cycles_before_;
+  counters.duration = machine_.timeline.now() - counting_since_;
+  return counters;
+}
+
+void Execution::clear_counters() {
+  processor_.clear_counters();
+  cycles_before_ = processor_.cycles();
+  counting_since_ = machine_.timeline.now();
+}
+
+Stop Execution::run_until(Ticks when) {
+  running_ = true;
+  stop_requested_ = false;
+  const Stop stop = run_slices(when);
+  running_ = false;
+  return stop;
+}
+
+Stop Execution::run_slices(Ticks when) {
+  auto& timeline = machine_.timeline;
+  for (;;) {
+    if (state_ == State::runs) timeline.catch_up(processor_.now());
+    // Half a period early spares a stop of its own where something else stops the processor anyhow.
+    machine_.advance_circuit(Machine::advance_period / 2);
+    reset_if_requested();
+    if (stop_requested_) return Stop::requested;
+    if (state_ == State::exited) return Stop::firmware_exit;
+    if (state_ == State::locked_up && timeline.now() >= when) return Stop::locked_up;
+    if (timeline.now() >= when) return Stop::time_reached;
+
+    if (state_ != State::runs) {
+      if (wakes()) {
+        state_ = State::runs;
+        processor_.anchor(timeline.now());
+        take_exception();
+      } else {
+        sleep_until(when);
+        continue;
+      }
+    }
+    if (machine_.nvic.take_newly_pending() && system_control_.sends_event_on_pending()) processor_.set_event_register();
+    if (machine_.nvic.take_changed()) take_exception();
+    if (state_ != State::runs) continue;
+
+    const Ticks stop_at = std::min({timeline.next_wake(), when, machine_.last_advance + Machine::advance_period});
+    handle(processor_.run(processor_.cycles_until(stop_at)));
+  }
+}
+
+void Execution::take_exception() {
+  const Masks masks = processor_.masks();
+  const unsigned exception = machine_.nvic.next(masks);
+  if (exception != exception_none) enter(exception);
+  // Something pending that only PRIMASK, FAULTMASK or BASEPRI hold back: the processor must see them open.
+  const unsigned next = machine_.nvic.most_urgent();
+  processor_.watch_masks(next != exception_none && machine_.nvic.group_priority(next) < machine_.nvic.execution_priority({}));
+}
+
+bool Execution::wakes() const {
+  if (state_ == State::locked_up || state_ == State::exited) return false;
+  // PRIMASK does not keep an interrupt from waking (ARMv7-M, "Wait For Interrupt").
+  Masks masks = processor_.masks();
+  masks.primask = false;
+  return machine_.nvic.next(masks) != exception_none;
+}
+
+void Execution::sleep_until(Ticks when) {
+  auto& timeline = machine_.timeline;
+  const Ticks from = timeline.now();
+  const Ticks to = std::max(from, std::min({timeline.next_wake(), when, machine_.last_advance + Machine::advance_period}));
+  timeline.catch_up(to);
+  if (state_ == State::sleeps || state_ == State::waits_for_event) processor_.counters().asleep += to - from;
+  if (machine_.sleep_counts_cycles) processor_.add_sleep_cycles(machine_.clocks.hclk.cycles_in(to - from));
+  if (state_ == State::waits_for_event) {
+    if (machine_.nvic.take_newly_pending() && system_control_.sends_event_on_pending()) processor_.set_event_register();
+    if (processor_.take_event_register()) {
+      state_ = State::runs;
+      processor_.anchor(timeline.now());
+    }
+  }
+}
+
+void Execution::enter(unsigned exception) {
+  const bool entered = processor_.enter_exception(exception, system_control_.aligns_stack(),
+                                                  system_control_.preserves_float_context(), system_control_.vector_table());
+  if (entered) return;
+  const std::uint32_t stack = processor_.read(UC_ARM_REG_SP);
+  if (exception == exception_hard_fault || machine_.memory.ram_at(stack, 4) == nullptr) {
+    system_control_.record_fault(bus_stacking, forced);
+    return lock_up(at("no stack to enter an exception on at", stack, processor_.program_counter()));
+  }
+  system_control_.record_fault(0, vector_table_fault);
+  enter(exception_hard_fault);
+}
+
+void Execution::lock_up(const std::string& what) {
+  state_ = State::locked_up;
+  lockup_reason_ = "The processor has locked up: " + what + ".";
+  machine_.log.say(lockup_reason_);
+}
+
+void Execution::raise_fault(unsigned exception, std::uint32_t configurable_bits, const std::string& what) {
+  auto& nvic = machine_.nvic;
+  const int priority = nvic.execution_priority(processor_.masks());
+  system_control_.record_fault(configurable_bits, 0);
+  if (exception != exception_hard_fault && nvic.enabled(exception) && nvic.group_priority(exception) < priority)
+    return enter(exception);
+  if (priority <= -1) return lock_up(what);
+  if (exception != exception_hard_fault) system_control_.record_fault(0, forced);
+  machine_.log.say_once("HardFault: " + what);
+  enter(exception_hard_fault);
+}
+
+void Execution::handle_breakpoint() {
+  const std::uint32_t address = processor_.program_counter();
+  if (machine_.memory.half_word(address) != semihosting_breakpoint) {
+    // Without a debugger a breakpoint is a fault (ARMv7-M, C1.4.1).
+    system_control_.record_fault(0, debug_event);
+    return raise_fault(exception_hard_fault, 0, at("breakpoint without a debugger at", address, address));
+  }
+  const std::uint32_t operation = processor_.read(UC_ARM_REG_R0);
+  const auto answer = semihosting_call(operation, processor_.read(UC_ARM_REG_R1), machine_.memory, on_console);
+  if (!answer.known) machine_.log.say_once("semihosting call " + std::to_string(operation) + " is not modelled: answers -1");
+  processor_.write(UC_ARM_REG_R0, answer.result);
+  processor_.set_program_counter(address + 2);
+  if (answer.exit_code) {
+    exit_code_ = *answer.exit_code;
+    state_ = State::exited;
+  }
+}
+
+void Execution::handle_return() {
+  if (!processor_.return_from_exception(system_control_.vector_table()))
+    return raise_fault(exception_usage_fault, invalid_return,
+                       at("invalid EXC_RETURN", processor_.fault_address(), processor_.program_counter()));
+  processor_.watch_masks(false);
+  if (processor_.returned_to_thread() && system_control_.sleeps_on_exit()) state_ = State::sleeps;
+}
+
+void Execution::handle(Outcome outcome) {
+  const std::uint32_t address = processor_.fault_address(), program_counter = processor_.program_counter();
+  switch (outcome) {
+    case Outcome::slice_over: break;
+    case Outcome::wait_for_interrupt: state_ = State::sleeps; break;
+    case Outcome::wait_for_event:
+      if (!processor_.take_event_register()) state_ = State::waits_for_event;
+      break;
+    case Outcome::supervisor_call:
+      if (machine_.nvic.group_priority(exception_svcall) < machine_.nvic.execution_priority(processor_.masks()))
+        enter(exception_svcall);
+      else raise_fault(exception_hard_fault, 0, at("SVC that can not be taken before", program_counter, program_counter));
+      break;
+    case Outcome::breakpoint: handle_breakpoint(); break;
+    case Outcome::exception_return: handle_return(); break;
+    case Outcome::undefined_instruction:
+      raise_fault(exception_usage_fault, undefined, at("undefined instruction at", program_counter, program_counter));
+      break;
+    case Outcome::invalid_state:
+      raise_fault(exception_usage_fault, invalid_state, at("branch out of Thumb state to", program_counter, program_counter));
+      break;
+    case Outcome::no_coprocessor:
+      raise_fault(exception_usage_fault, no_coprocessor, at("coprocessor instruction at", program_counter, program_counter));
+      break;
+    case Outcome::data_fault:
+      system_control_.record_bus_fault_address(address);
+      raise_fault(exception_bus_fault, precise_data_bus | bus_address_valid,
+                  at("nothing answers on the bus at", address, program_counter));
+      break;
+    case Outcome::instruction_fault:
+      raise_fault(exception_bus_fault, instruction_bus, at("no instructions at", address, program_counter));
+      break;
+    case Outcome::execute_never:
+      raise_fault(exception_memory_fault, instruction_access, at("no instructions may be at", address, program_counter));
+      break;
+  }
+  // Entry, return and sleep change what may run next.
+  if (outcome != Outcome::slice_over && state_ == State::runs) take_exception();
+}
+
+}  // namespace inkwell::virtual_board

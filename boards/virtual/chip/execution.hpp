@@ -1,0 +1,64 @@
+// The chip at work: slices of the processor, exceptions, faults, sleep, resets.
+#pragma once
+
+#include <chip/chip.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "bus.hpp"
+#include "machine_parts.hpp"
+#include "processor.hpp"
+#include "rcc.hpp"
+#include "system_control.hpp"
+
+namespace inkwell::virtual_board {
+
+class Execution {
+ public:
+  Execution(Machine& machine, Processor& processor, Bus& bus, SystemControl& system_control, Rcc& rcc)
+      : machine_(machine), processor_(processor), bus_(bus), system_control_(system_control), rcc_(rcc) {}
+
+  Stop run_until(Ticks when);
+  void reset(ResetCause cause);
+  void request_stop() {
+    stop_requested_ = true;
+    if (running_) processor_.end_slice();
+  }
+  bool running() const { return running_; }
+  const Counters& counters();
+  void clear_counters();
+  int exit_code() const { return exit_code_; }
+  const std::string& lockup_reason() const { return lockup_reason_; }
+
+  std::function<void(std::uint8_t)> on_console;
+  std::function<void(ResetCause)> on_reset;
+
+ private:
+  enum class State : std::uint8_t { runs, sleeps, waits_for_event, locked_up, exited };
+  Stop run_slices(Ticks when);
+  void reset_if_requested();
+  void take_exception();
+  void sleep_until(Ticks when);
+  bool wakes() const;
+  void handle(Outcome outcome);
+  void handle_breakpoint();
+  void handle_return();
+  void raise_fault(unsigned exception, std::uint32_t configurable_bits, const std::string& what);
+  void enter(unsigned exception);
+  void lock_up(const std::string& what);
+
+  Machine& machine_;
+  Processor& processor_;
+  Bus& bus_;
+  SystemControl& system_control_;
+  Rcc& rcc_;
+  State state_ = State::runs;
+  bool running_ = false, stop_requested_ = false;
+  int exit_code_ = 0;
+  std::string lockup_reason_;
+  Ticks counting_since_ = 0;
+  std::uint64_t cycles_before_ = 0;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,100 @@
+#include "exti.hpp"
+
+#include "adc.hpp"
+#include "processor.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+constexpr std::uint32_t imr = 0x00, emr = 0x04, rtsr = 0x08, ftsr = 0x0C, swier = 0x10, pr = 0x14;
+constexpr std::uint32_t lines = 0x007F'FFFF;
+
+/// Position in the vector table of each line (RM0090, table "Vector table").
+constexpr unsigned position_of(unsigned line) {
+  constexpr unsigned positions[23] = {6,  7,  8,  9,  10, 23, 23, 23, 23, 23, 40, 40,
+                                      40, 40, 40, 40, 1,  41, 42, 62, 76, 2,  3};
+  return positions[line];
+}
+}  // namespace
+
+void Exti::reset() {
+  interrupt_mask_ = event_mask_ = rising_ = falling_ = software_ = pending_ = 0;
+  update_interrupts();
+}
+
+void Exti::update_interrupts() {
+  for (unsigned line = 0; line < 23; ++line)
+    machine_.nvic.set_source(position_of(line), line, (pending_ & interrupt_mask_ & 1u << line) != 0);
+}
+
+void Exti::edge(unsigned line) {
+  const std::uint32_t bit = 1u << line;
+  if (((interrupt_mask_ | event_mask_) & bit) == 0) return;
+  if ((event_mask_ & bit) != 0) machine_.processor->set_event_register();
+  if ((interrupt_mask_ & bit) != 0) {
+    pending_ |= bit;
+    machine_.nvic.set_source(position_of(line), line, true);
+  }
+  machine_.adcs->external_line(line);
+}
+
+void Exti::pin_changed(unsigned port, unsigned pin, bool high) {
+  if (((high ? rising_ : falling_) >> pin & 1) != 0 && syscfg_.port_of(pin) == port) edge(pin);
+}
+
+std::uint32_t Exti::stored(std::uint32_t offset) const {
+  switch (offset) {
+    case imr: return interrupt_mask_;
+    case emr: return event_mask_;
+    case rtsr: return rising_;
+    case ftsr: return falling_;
+    case swier: return software_;
+    default: return 0;  // PR: ones clear
+  }
+}
+
+std::uint32_t Exti::read_word(std::uint32_t offset) {
+  if (offset == pr) {
+    machine_.advance_circuit(Machine::input_age_limit);
+    return pending_;
+  }
+  if (offset < pr) return stored(offset);
+  machine_.log.note("EXTI", offset, false, 0);
+  return 0;
+}
+
+void Exti::write_word(std::uint32_t offset, std::uint32_t value) {
+  value &= lines;
+  switch (offset) {
+    case imr: interrupt_mask_ = value; break;
+    case emr: event_mask_ = value; break;
+    case rtsr: rising_ = value; break;
+    case ftsr: falling_ = value; break;
+    case swier: {
+      const std::uint32_t risen = value & ~software_;
+      software_ = value;
+      for (unsigned line = 0; line < 23; ++line)
+        if ((risen >> line & 1) != 0) edge(line);
+      break;
+    }
+    case pr:
+      pending_ &= ~value;
+      software_ &= ~value;
+      break;
+    default: machine_.log.note("EXTI", offset, true, value); break;
+  }
+  update_interrupts();
+}
+
+std::uint32_t Exti::Syscfg::read_word(std::uint32_t offset) {
+  if (offset < 0x24) return words_[offset / 4];
+  exti_.machine_.log.note("SYSCFG", offset, false, 0);
+  return 0;
+}
+
+void Exti::Syscfg::write_word(std::uint32_t offset, std::uint32_t value) {
+  if (offset == 0x00 && (value & 3) != 0) exti_.machine_.log.note("SYSCFG memory remap,", offset, true, value);
+  if (offset < 0x24) words_[offset / 4] = value & 0xFFFF;
+  else exti_.machine_.log.note("SYSCFG", offset, true, value);
+}
+
+}  // namespace inkwell::virtual_board

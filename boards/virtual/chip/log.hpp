@@ -1,0 +1,44 @@
+// Log of the chip: once per place that firmware touched something that is not modelled.
+#pragma once
+
+#include <chip/machine.hpp>
+#include <cstdio>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace inkwell::virtual_board {
+
+class Log final : public UnmodelledLog {
+ public:
+  explicit Log(std::function<void(const std::string&)> sink) : sink_(std::move(sink)) {
+    if (!sink_) sink_ = [](const std::string& line) { std::fprintf(stderr, "chip: %s\n", line.c_str()); };
+  }
+  void say(const std::string& line) { sink_(line); }
+  /// Says each line once.
+  void say_once(const std::string& line) {
+    if (!said_.insert(line).second) return;
+    unmodelled_.push_back(line);
+    sink_(line);
+  }
+  void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) override {
+    char text[64];
+    if (write)
+      std::snprintf(text, sizeof text, " + 0x%03X is not modelled: write of 0x%08X ignored", offset, value);
+    else
+      std::snprintf(text, sizeof text, " + 0x%03X is not modelled: reads 0", offset);
+    // Once per place, so the value must not make it another place.
+    const std::string place = peripheral + (write ? " w " : " r ") + std::to_string(offset);
+    if (!places_.insert(place).second) return;
+    say_once(peripheral + text);
+  }
+  const std::vector<std::string>& lines() const { return unmodelled_; }
+
+ private:
+  std::function<void(const std::string&)> sink_;
+  std::set<std::string> said_, places_;
+  std::vector<std::string> unmodelled_;
+};
+
+}  // namespace inkwell::virtual_board

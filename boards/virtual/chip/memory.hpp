@@ -1,0 +1,50 @@
+// Flash, SRAM, CCM and system memory (RM0090, memory map).
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+namespace inkwell::virtual_board {
+
+inline constexpr std::uint32_t flash_base = 0x0800'0000, flash_bytes = 1024 * 1024;
+inline constexpr std::uint32_t sram_base = 0x2000'0000, sram_bytes = 128 * 1024;  ///< SRAM1 and SRAM2 are adjacent
+inline constexpr std::uint32_t ccm_base = 0x1000'0000, ccm_bytes = 64 * 1024;
+inline constexpr std::uint32_t system_base = 0x1FFF'0000, system_bytes = 64 * 1024;  ///< with option bytes
+
+class Memory {
+ public:
+  Memory();
+  std::uint8_t* flash() { return flash_.data(); }
+  std::uint8_t* sram() { return sram_.data(); }
+  std::uint8_t* ccm() { return ccm_.data(); }
+  std::uint8_t* system() { return system_.data(); }
+
+  /// Where `bytes` at `address` lie, or nullptr if they are not all within one memory.
+  std::uint8_t* at(std::uint32_t address, std::uint32_t bytes);
+  const std::uint8_t* at(std::uint32_t address, std::uint32_t bytes) const {
+    return const_cast<Memory*>(this)->at(address, bytes);
+  }
+  /// Writable memory only (SRAM, CCM).
+  std::uint8_t* ram_at(std::uint32_t address, std::uint32_t bytes);
+  std::uint32_t word(std::uint32_t address) const {
+    std::uint32_t value = 0;
+    if (const auto* place = at(address, 4)) std::memcpy(&value, place, 4);
+    return value;
+  }
+  std::uint16_t half_word(std::uint32_t address) const {
+    std::uint16_t value = 0;
+    if (const auto* place = at(address, 2)) std::memcpy(&value, place, 2);
+    return value;
+  }
+
+ private:
+  // Unicorn wants pages of 4 KB, page-aligned sizes; alignment of the host memory does not matter.
+  std::vector<std::uint8_t> flash_, sram_, ccm_, system_;
+};
+
+/// Erases the flash and writes the load segments of an ELF file by physical address. Throws ChipError.
+void program_elf(const std::filesystem::path& path, Memory& memory);
+
+}  // namespace inkwell::virtual_board

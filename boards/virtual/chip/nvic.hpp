@@ -1,0 +1,100 @@
+// Exceptions of the processor: what is enabled, pending and active, at which priority (ARMv7-M, B1.5 and B3.4).
+#pragma once
+
+#include <array>
+#include <chip/chip.hpp>
+#include <chip/machine.hpp>
+#include <cstdint>
+#include <utility>
+
+namespace inkwell::virtual_board {
+
+enum Exception : unsigned {
+  exception_none = 0,
+  exception_reset = 1,
+  exception_nmi = 2,
+  exception_hard_fault = 3,
+  exception_memory_fault = 4,
+  exception_bus_fault = 5,
+  exception_usage_fault = 6,
+  exception_svcall = 11,
+  exception_debug = 12,
+  exception_pendsv = 14,
+  exception_systick = 15,
+  exception_interrupt_0 = 16,
+};
+
+/// Execution priority: lower is more urgent; thread mode has `lowest`.
+inline constexpr int priority_lowest = 256;
+
+/// Mask registers, which live in the processor.
+struct Masks {
+  bool primask = false, faultmask = false;
+  std::uint32_t basepri = 0;
+};
+
+class Nvic final : public InterruptController {
+ public:
+  static constexpr unsigned positions = 82;
+  static constexpr unsigned outside_source = 31;
+
+  void reset();
+
+  /// Lines are shared by several peripherals or flags; `source` (0..31) tells them apart.
+  void set_source(unsigned position, unsigned source, bool asserted);
+  void set_level(unsigned position, bool asserted) override { set_source(position, outside_source, asserted); }
+
+  std::uint32_t read(std::uint32_t offset) const;  ///< offset from 0xE000E000
+  void write(std::uint32_t offset, std::uint32_t value, unsigned size);
+
+  void pend(unsigned exception);
+  void unpend(unsigned exception);
+  bool pending(unsigned exception) const { return test(pending_, exception); }
+  bool active(unsigned exception) const { return test(active_, exception); }
+  void set_active(unsigned exception, bool is_active) { assign(active_, exception, is_active); }
+  void enable(unsigned exception, bool is_enabled) { assign(enabled_, exception, is_enabled); changed_ = true; }
+  bool enabled(unsigned exception) const { return test(enabled_, exception); }
+  bool any_active() const { return (active_[0] | active_[1]) != 0; }
+  unsigned active_count() const;
+
+  std::uint8_t priority(unsigned exception) const { return priority_[exception]; }
+  void set_priority(unsigned exception, std::uint8_t value) { priority_[exception] = value & 0xF0; changed_ = true; }
+  void set_priority_group(unsigned group) { group_ = group; changed_ = true; }
+  unsigned priority_group() const { return group_; }
+
+  /// Group priority of an exception; -1 is HardFault, -2 NMI.
+  int group_priority(unsigned exception) const;
+  /// Priority of what runs now, raised by the masks.
+  int execution_priority(const Masks& masks) const;
+  /// The exception to enter now, or exception_none.
+  unsigned next(const Masks& masks) const;
+  /// Most urgent of what is pending and enabled, whatever runs; exception_none if nothing is.
+  unsigned most_urgent() const;
+  /// Entry makes a pending exception active. A line that stays asserted pends again after the return.
+  void enter(unsigned exception);
+  void leave(unsigned exception);
+
+  /// Since the last call, something became pending, or priorities or enables changed.
+  bool take_changed() { return std::exchange(changed_, false); }
+  bool changed() const { return changed_; }
+  /// An exception went from not pending to pending (for SEVONPEND).
+  bool take_newly_pending() { return std::exchange(newly_pending_, false); }
+
+ private:
+  using Bits = std::array<std::uint64_t, 2>;
+  static bool test(const Bits& bits, unsigned n) { return (bits[n >> 6] >> (n & 63) & 1) != 0; }
+  static void assign(Bits& bits, unsigned n, bool value) {
+    const std::uint64_t mask = std::uint64_t{1} << (n & 63);
+    bits[n >> 6] = value ? bits[n >> 6] | mask : bits[n >> 6] & ~mask;
+  }
+  std::uint32_t word_of(const Bits& bits, unsigned index) const;
+
+  Bits pending_{}, active_{}, enabled_{};
+  std::array<std::uint8_t, exception_numbers> priority_{};
+  std::array<std::uint32_t, positions> level_{};
+  unsigned group_ = 0;
+  bool changed_ = false;
+  bool newly_pending_ = false;
+};
+
+}  // namespace inkwell::virtual_board

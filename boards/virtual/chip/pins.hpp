@@ -1,0 +1,88 @@
+// GPIO A to I: registers, and what a pin's level is made of (RM0090, "General-purpose I/Os").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "alternate_functions.hpp"
+#include "bus.hpp"
+
+namespace inkwell::virtual_board {
+
+class Pins;
+
+class GpioPort final : public RegisterBlock {
+ public:
+  GpioPort(Pins& pins, Machine& machine, unsigned index) : pins_(pins), machine_(machine), index_(index) {}
+  void reset() override;
+
+  enum class Mode : std::uint8_t { input, output, alternate, analog };
+  Mode mode(unsigned pin) const { return static_cast<Mode>(moder_ >> 2 * pin & 3); }
+  bool open_drain(unsigned pin) const { return (otyper_ >> pin & 1) != 0; }
+  unsigned pull(unsigned pin) const { return pupdr_ >> 2 * pin & 3; }
+  bool output_bit(unsigned pin) const { return (odr_ >> pin & 1) != 0; }
+  unsigned alternate_function(unsigned pin) const { return afr_[pin >> 3] >> 4 * (pin & 7) & 0xF; }
+  void set_input(unsigned pin, bool high) { idr_ = high ? idr_ | 1u << pin : idr_ & ~(1u << pin); }
+  bool input(unsigned pin) const { return (idr_ >> pin & 1) != 0; }
+
+ protected:
+  std::uint32_t read_word(std::uint32_t offset) override;
+  void write_word(std::uint32_t offset, std::uint32_t value) override;
+  std::uint32_t stored(std::uint32_t offset) const override;
+
+ private:
+  void write_configuration(std::uint32_t& target, std::uint32_t value, unsigned bits_per_pin);
+  void write_output(std::uint32_t value);
+  void write_lock(std::uint32_t value);
+  Pins& pins_;
+  Machine& machine_;
+  unsigned index_;
+  std::uint32_t moder_ = 0, otyper_ = 0, ospeedr_ = 0, pupdr_ = 0, idr_ = 0, odr_ = 0, lckr_ = 0;
+  std::array<std::uint32_t, 2> afr_{};
+  unsigned lock_step_ = 0;
+};
+
+class Pins final : public InputPins {
+ public:
+  static constexpr unsigned ports = 9;
+  explicit Pins(Machine& machine);
+  GpioPort& port(unsigned index) { return ports_[index]; }
+  void drive(char port, unsigned pin, PinLevel level) override;
+
+  /// A timer's output changes. Called in the order of time, hundreds of thousands of times a second.
+  void timer_output(unsigned timer, unsigned line, PinLevel level) {
+    auto& output = outputs_[timer * timer_lines + line];
+    if (output.level == level) return;
+    output.level = level;
+    for (unsigned i = 0; i < output.count; ++i) update(output.pins[i] >> 4, output.pins[i] & 15);
+  }
+
+  /// After mode or alternate function of pins changed.
+  void reconnect(unsigned port, std::uint32_t pins);
+  /// Finds the level of a pin anew and tells who wants to know.
+  void update(unsigned port, unsigned pin);
+
+ private:
+  struct TimerOutput {
+    PinLevel level = PinLevel::floating;
+    std::uint8_t count = 0;
+    std::array<std::uint8_t, 3> pins{};  ///< port << 4 | pin
+  };
+  struct State {
+    PinLevel driven = PinLevel::floating;  ///< by the circuit
+    PinLevel output = PinLevel::floating;  ///< by the chip, as the circuit was told
+    bool input = false;
+    std::uint8_t routes = 0;
+    std::array<std::uint8_t, 2> route{};  ///< indices into timer_pins
+  };
+  State& state(unsigned port, unsigned pin) { return states_[port * 16 + pin]; }
+  PinLevel output_of(unsigned port, unsigned pin) const;
+
+  Machine& machine_;
+  std::vector<GpioPort> ports_;
+  std::array<State, ports * 16> states_{};
+  std::array<TimerOutput, 15 * timer_lines> outputs_{};
+};
+
+}  // namespace inkwell::virtual_board

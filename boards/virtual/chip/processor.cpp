@@ -1,0 +1,227 @@
+#include "processor.hpp"
+
+#include <algorithm>
+
+#include "bus.hpp"
+#include "flash.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+void check(uc_err error, const char* what) {
+  if (error != UC_ERR_OK)
+    throw ChipError(std::string("The processor (Unicorn) refuses to ") + what + ": " + uc_strerror(error) + ".");
+}
+
+template <class Function>
+uc_err add_hook(uc_engine* engine, int type, Function* function, void* self) {
+  uc_hook hook;
+  return uc_hook_add(engine, &hook, type, reinterpret_cast<void*>(function), self, 1, 0);
+}
+
+// Numbers with which Unicorn's interrupt hook is called for M-profile processors.
+enum : std::uint32_t {
+  undefined = 1,
+  software_interrupt = 2,
+  prefetch_abort = 3,
+  data_abort = 4,
+  breakpoint = 7,
+  exception_exit = 8,
+  no_coprocessor = 17,
+  invalid_state = 18,
+};
+
+constexpr bool is_wide(std::uint16_t first_half) { return first_half >= 0xE800; }
+constexpr std::uint16_t send_event = 0xBF40;
+
+}  // namespace
+
+Processor::Processor(Machine& machine, Bus& bus) : machine_(machine), block_lengths_(flash_bytes / 2) {
+  check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
+  // UC_MODE_MCLASS would force another model; the model alone makes it M-profile.
+  check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "be a Cortex-M4");
+  map_memories(bus);
+  if (machine.options.mode == Mode::exact)
+    check(add_hook(engine_, UC_HOOK_CODE, code_hook, this), "be watched");
+  else
+    check(add_hook(engine_, UC_HOOK_BLOCK, block_hook, this), "be watched");
+  check(add_hook(engine_, UC_HOOK_INTR, interrupt_hook, this), "report exceptions");
+  check(add_hook(engine_, UC_HOOK_INSN_INVALID, invalid_hook, this), "report instructions");
+  check(add_hook(engine_, UC_HOOK_MEM_INVALID, memory_hook, this), "report faults");
+}
+
+Processor::~Processor() {
+  if (engine_ != nullptr) uc_close(engine_);
+}
+
+void Processor::map_memories(Bus& bus) {
+  auto& memory = machine_.memory;
+  const auto map = [&](std::uint32_t base, std::uint32_t bytes, std::uint32_t rights, std::uint8_t* place) {
+    check(uc_mem_map_ptr(engine_, base, bytes, rights, place), "map a memory");
+  };
+  map(flash_base, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
+  map(0, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
+  map(sram_base, sram_bytes, UC_PROT_ALL, memory.sram());
+  map(ccm_base, ccm_bytes, UC_PROT_READ | UC_PROT_WRITE, memory.ccm());  // not on the instruction bus
+  map(system_base, system_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.system());
+  for (const auto& window : Bus::windows)
+    check(uc_mmio_map(engine_, window.base, window.bytes, window.read, &bus, window.write, &bus), "map the registers");
+}
+
+void Processor::reset(std::uint32_t vector_table) {
+  for (int id = UC_ARM_REG_R0; id <= UC_ARM_REG_R12; ++id) write(id, 0);
+  write(UC_ARM_REG_CONTROL, 0);
+  write(UC_ARM_REG_IPSR, 0);
+  write(UC_ARM_REG_PRIMASK, 0);
+  write(UC_ARM_REG_FAULTMASK, 0);
+  write(UC_ARM_REG_BASEPRI, 0);
+  write(UC_ARM_REG_FPSCR, 0);
+  write(UC_ARM_REG_XPSR_NZCVQG, 0);
+  write(UC_ARM_REG_PSP, 0);
+  write(UC_ARM_REG_MSP, machine_.memory.word(vector_table) & ~3u);
+  write(UC_ARM_REG_LR, 0xFFFFFFFF);
+  program_counter_ = machine_.memory.word(vector_table + 4);
+  current_exception_ = 0;
+  watch_masks_ = event_register_ = false;
+  while (!running_.empty()) end_counting();
+  // The firmware may have been replaced.
+  forget_code(flash_base, flash_bytes);
+  forget_code(sram_base, sram_bytes);
+}
+
+void Processor::forget_code(std::uint32_t address, std::uint32_t bytes) {
+  uc_ctl_remove_cache(engine_, std::uint64_t{address}, std::uint64_t{address} + bytes);
+  if (address < flash_base || address >= flash_base + flash_bytes) return;
+  const std::uint64_t alias = address - flash_base;
+  uc_ctl_remove_cache(engine_, alias, alias + bytes);
+  // A block that reaches into the changed range may start before it.
+  std::fill(block_lengths_.begin(), block_lengths_.end(), BlockLength{});
+}
+
+std::uint64_t Processor::cycles_until(Ticks when) const {
+  const Ticks time = now();
+  if (when <= time) return 1;
+  const auto& clock = machine_.clocks.hclk;
+  return std::max<std::uint64_t>(1, (std::min(when - time, ticks_per_s) * clock.denominator + clock.numerator - 1) / clock.numerator);
+}
+
+Masks Processor::masks() const {
+  return {(read(UC_ARM_REG_PRIMASK) & 1) != 0, (read(UC_ARM_REG_FAULTMASK) & 1) != 0, read(UC_ARM_REG_BASEPRI)};
+}
+
+Outcome Processor::run(std::uint64_t cycles) {
+  stop_cycle_ = cycles_ + cycles;
+  stopped_ = false;
+  outcome_ = Outcome::slice_over;
+  if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
+  const uc_err error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
+  program_counter_ = read(UC_ARM_REG_PC) & ~1u;
+  if (outcome_ != Outcome::slice_over) return outcome_;
+  if (error == UC_ERR_INSN_INVALID) return Outcome::undefined_instruction;
+  if (error == UC_ERR_FETCH_UNMAPPED || error == UC_ERR_FETCH_PROT) {
+    fault_address_ = program_counter_;
+    return Outcome::instruction_fault;
+  }
+  if (error != UC_ERR_OK) return Outcome::data_fault;
+  return stopped_ ? Outcome::slice_over : Outcome::wait_for_interrupt;
+}
+
+unsigned Processor::count_instructions(std::uint32_t address, std::uint32_t bytes) const {
+  unsigned instructions = 0;
+  for (std::uint32_t end = address + bytes; address < end; ++instructions)
+    address += is_wide(machine_.memory.half_word(address)) ? 4 : 2;
+  return instructions;
+}
+
+unsigned Processor::instructions_of(std::uint32_t address, std::uint32_t bytes) {
+  const std::uint32_t offset = address < flash_bytes ? address : address - flash_base;
+  if (offset >= flash_bytes) return count_instructions(address, bytes);
+  BlockLength& known = block_lengths_[offset / 2];
+  if (known.bytes != bytes)
+    known = {static_cast<std::uint16_t>(bytes), static_cast<std::uint16_t>(count_instructions(address, bytes))};
+  return known.instructions;
+}
+
+bool Processor::masks_open() {
+  return machine_.nvic.next(masks()) != exception_none;
+}
+
+void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* pointer) {
+  auto& self = *static_cast<Processor*>(pointer);
+  if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) return self.stop();
+  self.last_code_address_ = static_cast<std::uint32_t>(address);
+  self.cycles_ += self.instructions_of(static_cast<std::uint32_t>(address), size);
+}
+
+void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t, void* pointer) {
+  auto& self = *static_cast<Processor*>(pointer);
+  if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) self.stop();
+  else {
+    self.last_code_address_ = static_cast<std::uint32_t>(address);
+    ++self.cycles_;
+  }
+}
+
+void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* pointer) {
+  auto& self = *static_cast<Processor*>(pointer);
+  switch (number) {
+    case software_interrupt: self.outcome_ = Outcome::supervisor_call; break;
+    case breakpoint: self.outcome_ = Outcome::breakpoint; break;
+    case exception_exit:
+      self.outcome_ = Outcome::exception_return;
+      self.fault_address_ = self.read(UC_ARM_REG_PC) | 1;
+      break;
+    case no_coprocessor: self.outcome_ = Outcome::no_coprocessor; break;
+    case invalid_state: self.outcome_ = Outcome::invalid_state; break;
+    case prefetch_abort:
+      self.outcome_ = Outcome::execute_never;
+      self.fault_address_ = self.read(UC_ARM_REG_PC);
+      break;
+    case data_abort: self.outcome_ = Outcome::data_fault; break;
+    case undefined:
+    default: self.outcome_ = Outcome::undefined_instruction; break;
+  }
+  uc_emu_stop(engine);
+}
+
+bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
+  auto& self = *static_cast<Processor*>(pointer);
+  // WFE and YIELD come here too, with the program counter behind them; an undefined instruction comes with it
+  // at the instruction, which then begins the last block or is the last instruction.
+  const std::uint32_t after = self.read(UC_ARM_REG_PC) & ~1u;
+  constexpr std::uint16_t yield = 0xBF10, wait_for_event = 0xBF20;
+  constexpr std::uint16_t wide_hint = 0xF3AF, wide_yield = 0x8001, wide_wait_for_event = 0x8002;
+  const std::uint16_t last = self.machine_.memory.half_word(after - 2);
+  const bool wide = self.machine_.memory.half_word(after - 4) == wide_hint;
+  if (self.last_code_address_ != after) {
+    if (last == wait_for_event || (wide && last == wide_wait_for_event)) self.outcome_ = Outcome::wait_for_event;
+    else if (last == yield || (wide && last == wide_yield)) self.stopped_ = true;
+    else self.outcome_ = Outcome::undefined_instruction;
+    if (self.stopped_ || self.outcome_ == Outcome::wait_for_event) {
+      uc_emu_stop(engine);
+      return true;
+    }
+  }
+  self.outcome_ = Outcome::undefined_instruction;
+  return false;
+}
+
+bool Processor::memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value,
+                            void* pointer) {
+  auto& self = *static_cast<Processor*>(pointer);
+  self.fault_address_ = static_cast<std::uint32_t>(address);
+  switch (type) {
+    case UC_MEM_WRITE_PROT:
+      // The flash takes writes while it is being programmed (RM0090, "Flash programming").
+      if (self.machine_.flash->program(self.fault_address_, static_cast<std::uint32_t>(value), static_cast<unsigned>(size)))
+        return true;
+      self.outcome_ = Outcome::data_fault;
+      break;
+    case UC_MEM_FETCH_UNMAPPED: self.outcome_ = Outcome::instruction_fault; break;
+    case UC_MEM_FETCH_PROT: self.outcome_ = Outcome::instruction_fault; break;
+    default: self.outcome_ = Outcome::data_fault; break;
+  }
+  return false;
+}
+
+}  // namespace inkwell::virtual_board

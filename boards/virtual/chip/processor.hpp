@@ -1,0 +1,131 @@
+// Cortex-M4F: instructions by Unicorn, exception entry and return by us (ARMv7-M Architecture Reference Manual, B1.5).
+#pragma once
+
+#include <unicorn/unicorn.h>
+
+#include <chip/chip.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "machine_parts.hpp"
+
+namespace inkwell::virtual_board {
+
+class Bus;
+class SystemControl;
+
+/// Why the processor stopped executing.
+enum class Outcome : std::uint8_t {
+  slice_over,
+  wait_for_interrupt,
+  wait_for_event,
+  supervisor_call,
+  breakpoint,
+  exception_return,
+  undefined_instruction,
+  invalid_state,        ///< a branch out of Thumb state
+  no_coprocessor,
+  data_fault,           ///< nothing answers at fault_address()
+  instruction_fault,    ///< nothing to execute at fault_address()
+  execute_never,        ///< fault_address() is in a region without instructions
+};
+
+class Processor {
+ public:
+  Processor(Machine& machine, Bus& bus);
+  ~Processor();
+  Processor(const Processor&) = delete;
+  Processor& operator=(const Processor&) = delete;
+
+  /// Reset: stack pointer and program counter from the vector table at `vector_table`.
+  void reset(std::uint32_t vector_table);
+  /// Executes for about `cycles` (fast mode: up to the end of a basic block) or until something happens.
+  Outcome run(std::uint64_t cycles);
+  /// The current slice ends before the next instruction (fast mode: block).
+  void end_slice() { stop_cycle_ = 0; }
+  /// While something more urgent is pending, ends the slice as soon as the masks let it through.
+  void watch_masks(bool watch) { watch_masks_ = watch; }
+  /// After instructions in memory changed.
+  void forget_code(std::uint32_t address, std::uint32_t bytes);
+
+  std::uint64_t cycles() const { return cycles_; }
+  void add_sleep_cycles(std::uint64_t cycles) { slept_cycles_ += cycles; }
+  std::uint64_t slept_cycles() const { return slept_cycles_; }
+  /// Board time of the current instruction (fast mode: of the end of the current block).
+  Ticks now() const { return anchor_time_ + machine_.clocks.hclk.duration(cycles_ - anchor_cycles_); }
+  /// Cycles that fit until `when`, at least 1.
+  std::uint64_t cycles_until(Ticks when) const;
+  /// Board time goes on from `time` (after sleep, or a change of clock).
+  void anchor(Ticks time) {
+    anchor_time_ = time;
+    anchor_cycles_ = cycles_;
+  }
+
+  std::uint32_t read(int id) const {
+    std::uint32_t value = 0;
+    uc_reg_read(engine_, id, &value);
+    return value;
+  }
+  void write(int id, std::uint32_t value) { uc_reg_write(engine_, id, &value); }
+  std::uint32_t program_counter() const { return program_counter_; }
+  void set_program_counter(std::uint32_t value) { program_counter_ = value; }
+  Masks masks() const;
+  unsigned current_exception() const { return current_exception_; }
+  std::uint32_t fault_address() const { return fault_address_; }
+  bool take_event_register() { return std::exchange(event_register_, false); }
+  void set_event_register() { event_register_ = true; }
+
+  // exceptions.cpp
+  /// Stacks the context and starts the handler. False: the stack or the vector can not be used.
+  bool enter_exception(unsigned exception, bool align_stack, bool float_context, std::uint32_t vector_table);
+  /// Ends the handler that runs. False: what it returns to is not valid.
+  bool return_from_exception(std::uint32_t vector_table);
+  bool returned_to_thread() const { return current_exception_ == exception_none; }
+  Counters& counters() { return counters_; }
+  void clear_counters();
+
+ private:
+  struct Running {
+    unsigned exception;
+    std::uint64_t own_instructions;
+  };
+  static void block_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
+  static void code_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
+  static void interrupt_hook(uc_engine*, std::uint32_t number, void* self);
+  static bool memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value, void* self);
+  static bool invalid_hook(uc_engine*, void* self);
+  bool masks_open();
+  unsigned instructions_of(std::uint32_t address, std::uint32_t bytes);
+  unsigned count_instructions(std::uint32_t address, std::uint32_t bytes) const;
+  void map_memories(Bus& bus);
+  void stop() {
+    stopped_ = true;
+    uc_emu_stop(engine_);
+  }
+  void begin_counting(unsigned exception);
+  void end_counting();
+  bool start_handler(unsigned exception, std::uint32_t exception_return, std::uint32_t vector_table);
+
+  Machine& machine_;
+  uc_engine* engine_ = nullptr;
+  std::uint64_t cycles_ = 0, stop_cycle_ = 0, slept_cycles_ = 0;
+  Ticks anchor_time_ = 0;
+  std::uint64_t anchor_cycles_ = 0;
+  std::uint32_t program_counter_ = 0;
+  unsigned current_exception_ = 0;
+  std::uint32_t last_code_address_ = 0;
+  std::uint32_t fault_address_ = 0;
+  Outcome outcome_ = Outcome::slice_over;
+  bool stopped_ = false, watch_masks_ = false, event_register_ = false;
+  /// Instructions of the block that starts at each half word of the flash, and its bytes.
+  struct BlockLength {
+    std::uint16_t bytes, instructions;
+  };
+  std::vector<BlockLength> block_lengths_;
+  std::vector<Running> running_;
+  std::uint64_t counted_until_ = 0;
+  Counters counters_;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,72 @@
+// Private peripheral bus of the Cortex-M4: system control block, SysTick, floating-point context registers,
+// cycle counter, and the debug registers that firmware touches (ARMv7-M, B3.2, B3.3, C1.6, C1.8).
+#pragma once
+
+#include <cstdint>
+
+#include "machine_parts.hpp"
+
+namespace inkwell::virtual_board {
+
+class SysTick final : public TimedPart, public ClockUser {
+ public:
+  explicit SysTick(Machine& machine);
+  void reset();
+  std::uint32_t read(std::uint32_t offset);
+  void write(std::uint32_t offset, std::uint32_t value);
+  void step(Ticks now) override;
+  void before_clock_change() override;
+  void after_clock_change() override;
+
+ private:
+  std::uint32_t current() const;
+  Ticks duration(std::uint64_t counts) const;
+  void start(std::uint32_t counts_until_zero);
+  void announce();
+  Machine& machine_;
+  Timeline::Slot slot_;
+  std::uint32_t control_ = 0, reload_ = 0, held_ = 0;
+  Ticks zero_at_ = never;
+};
+
+class SystemControl {
+ public:
+  explicit SystemControl(Machine& machine);
+  void reset();
+  std::uint32_t read(std::uint32_t address, unsigned size);
+  void write(std::uint32_t address, std::uint32_t value, unsigned size);
+
+  std::uint32_t vector_table() const { return vector_table_; }
+  bool aligns_stack() const { return (configuration_ & 1u << 9) != 0; }
+  bool preserves_float_context() const { return (float_control_ & 1u << 31) != 0; }
+  bool sleeps_on_exit() const { return (sleep_control_ & 1u << 1) != 0; }
+  bool sends_event_on_pending() const { return (sleep_control_ & 1u << 4) != 0; }
+
+  /// Records a fault's cause. Bits of CFSR, HFSR; addresses where the bits say that they are valid.
+  void record_fault(std::uint32_t configurable_bits, std::uint32_t hard_fault_bits);
+  void record_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
+  std::uint32_t configurable_faults() const { return configurable_faults_; }
+  std::uint32_t bus_fault_address() const { return bus_fault_address_; }
+
+ private:
+  std::uint32_t read_word(std::uint32_t address);
+  void write_word(std::uint32_t address, std::uint32_t value);
+  std::uint32_t interrupt_control_state() const;
+  void write_interrupt_control_state(std::uint32_t value);
+  void write_reset_control(std::uint32_t value);
+  std::uint32_t handler_control_state() const;
+  void write_handler_control_state(std::uint32_t value);
+  std::uint32_t cycle_count() const;
+
+  Machine& machine_;
+  SysTick systick_;
+  std::uint32_t vector_table_ = 0, sleep_control_ = 0, configuration_ = 0x200, reset_control_ = 0;
+  std::uint32_t configurable_faults_ = 0, hard_faults_ = 0, debug_faults_ = 0;
+  std::uint32_t memory_fault_address_ = 0, bus_fault_address_ = 0, auxiliary_faults_ = 0;
+  std::uint32_t coprocessor_access_ = 0, auxiliary_control_ = 0;
+  std::uint32_t float_control_ = 0xC000'0000, float_address_ = 0, float_default_ = 0;
+  std::uint32_t debug_monitor_ = 0, trace_control_ = 0x4000'0000;
+  std::uint32_t cycle_base_ = 0, cycle_held_ = 0;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,133 @@
+// Board time as the parts of the chip live it.
+//
+// A part that changes by itself (timer, converter, watchdog) tells two times: `due`, when its next internal
+// step falls, and `wake`, by when that step must be seen by the processor (interrupt, reset, memory). The
+// processor runs on to the earliest wake; steps before it are made up for in the order of time as soon as
+// anybody looks. So the edges of a pulse-width modulation cost no stop of the processor.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chip/machine.hpp>
+#include <cstddef>
+#include <functional>
+#include <queue>
+#include <unordered_set>
+#include <vector>
+
+#include "clock.hpp"
+
+namespace inkwell::virtual_board {
+
+class TimedPart {
+ public:
+  virtual ~TimedPart() = default;
+  /// Board time has reached the `due` that the part asked for; it asks for the next before it returns.
+  virtual void step(Ticks now) = 0;
+};
+
+class Timeline {
+ public:
+  using Slot = std::size_t;
+  static constexpr std::size_t capacity = 40;
+
+  Timeline() {
+    due_.fill(never);
+    wake_.fill(never);
+  }
+  Slot add(TimedPart& part) {
+    parts_[count_] = &part;
+    return count_++;
+  }
+  void set(Slot slot, Ticks due, Ticks wake) {
+    due_[slot] = due;
+    wake_[slot] = wake;
+    next_due_ = std::min(next_due_, due);
+    if (wake < next_wake_) {
+      next_wake_ = wake;
+      wake_moved_forward_ = true;
+    }
+  }
+  /// The next step, without a change of the wake.
+  void set_due(Slot slot, Ticks due) {
+    due_[slot] = due;
+    next_due_ = std::min(next_due_, due);
+  }
+  Ticks now() const { return now_; }
+  /// Makes every step up to and including `until`.
+  void catch_up(Ticks until) {
+    while (next_due_ <= until) {
+      std::size_t first = 0;
+      for (std::size_t i = 1; i < count_; ++i)
+        if (due_[i] < due_[first]) first = i;
+      const Ticks due = due_[first];
+      next_due_ = due;
+      if (due > until) break;
+      now_ = std::max(now_, due);
+      due_[first] = never;
+      parts_[first]->step(now_);
+      next_due_ = 0;
+    }
+    now_ = std::max(now_, until);
+  }
+  Ticks next_wake() {
+    next_wake_ = *std::min_element(wake_.begin(), wake_.begin() + static_cast<std::ptrdiff_t>(count_));
+    wake_moved_forward_ = false;
+    return next_wake_;
+  }
+  /// A wake earlier than the last next_wake() has been asked for.
+  bool wake_moved_forward() const { return wake_moved_forward_; }
+
+ private:
+  std::array<Ticks, capacity> due_{};
+  std::array<Ticks, capacity> wake_{};
+  std::array<TimedPart*, capacity> parts_{};
+  std::size_t count_ = 0;
+  Ticks now_ = 0;
+  Ticks next_due_ = never;
+  Ticks next_wake_ = never;
+  bool wake_moved_forward_ = false;
+};
+
+/// Events of the parts outside of the chip (USB host, circuit), one timed part together.
+class EventQueue final : public Scheduler, public TimedPart {
+ public:
+  explicit EventQueue(Timeline& timeline) : timeline_(timeline), slot_(timeline.add(*this)) {}
+  Ticks now() const override { return timeline_.now(); }
+  Id at(Ticks when, std::function<void()> action) override {
+    const Id id = ++last_id_;
+    queue_.push({std::max(when, timeline_.now()), id, std::move(action)});
+    alive_.insert(id);
+    announce();
+    return id;
+  }
+  void cancel(Id id) override { alive_.erase(id); }
+  void step(Ticks now) override {
+    while (!queue_.empty() && queue_.top().when <= now) {
+      // Moving out of the queue is safe: the order depends on time and number only.
+      Event event = std::move(const_cast<Event&>(queue_.top()));
+      queue_.pop();
+      if (alive_.erase(event.id) != 0) event.action();
+    }
+    announce();
+  }
+
+ private:
+  struct Event {
+    Ticks when;
+    Id id;
+    std::function<void()> action;
+    bool operator<(const Event& other) const { return when != other.when ? when > other.when : id > other.id; }
+  };
+  void announce() {
+    const Ticks next = queue_.empty() ? never : queue_.top().when;
+    timeline_.set(slot_, next, next);
+  }
+  Timeline& timeline_;
+  Timeline::Slot slot_;
+  std::priority_queue<Event> queue_;
+  std::unordered_set<Id> alive_;
+  Id last_id_ = 0;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,149 @@
+// TIM1 to TIM14 (RM0090, "Advanced-control timers", "General-purpose timers", "Basic timers").
+//
+// The counter is not stepped: it runs in ramps (up to the next overflow or underflow) and its value follows
+// from the time. Steps happen only at compare matches that somebody needs and at the ends of ramps.
+// Not modelled: input filters and prescalers, dead time, break of the clock security system, DMA bursts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <limits>
+
+#include "alternate_functions.hpp"
+#include "bus.hpp"
+
+namespace inkwell::virtual_board {
+
+/// What a timer can do, and where its interrupts go.
+struct TimerModel {
+  std::uint8_t number;
+  std::uint8_t bits;
+  std::uint8_t channels;
+  bool on_apb2;
+  bool advanced;       ///< repetition counter, complementary outputs, break
+  bool counts_down;    ///< up and down, centre-aligned, encoder
+  bool is_master, is_slave;
+  std::uint8_t update_position, capture_position, trigger_position, break_position;
+  std::array<std::uint8_t, 4> internal_triggers;  ///< timers behind ITR0..3
+};
+
+/// Sources of a trigger for the ADCs: channel 1..4 of a timer, or its trigger output.
+inline constexpr unsigned trigger_output = 0;
+
+class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
+ public:
+  Timer(Machine& machine, const TimerModel& model);
+  void reset() override;
+  void step(Ticks now) override;
+  void before_clock_change() override;
+  void after_clock_change() override;
+
+  /// A pin that is an input of this timer changed.
+  void input_changed(unsigned line, bool high);
+  /// A pin is connected to this timer; its level so far is no edge.
+  void connect_input(unsigned line, bool high);
+  /// The trigger output of timer `master` rose or, for a level, changed.
+  void internal_trigger(unsigned master, bool level, bool is_pulse);
+  /// Somebody's interest in this timer's events changed.
+  void plan_again();
+  const TimerModel& model() const { return model_; }
+
+ protected:
+  std::uint32_t read_word(std::uint32_t offset) override;
+  void write_word(std::uint32_t offset, std::uint32_t value) override;
+  std::uint32_t stored(std::uint32_t offset) const override;
+
+ private:
+  static constexpr std::uint64_t no_match = std::numeric_limits<std::uint64_t>::max();
+  struct Channel {
+    std::uint32_t compare = 0, active_compare = 0;  ///< CCRx, and its copy in use
+    std::uint64_t match = no_match;                 ///< tick of the current ramp
+    bool reference = false;                         ///< OCxREF
+    bool needed = false;                            ///< somebody needs its matches in time
+    PinLevel when_active = PinLevel::floating, when_inactive = PinLevel::floating;
+    PinLevel complement_when_active = PinLevel::floating, complement_when_inactive = PinLevel::floating;
+    bool input = false;  ///< level at its pin
+  };
+
+  // timer.cpp: counting
+  const Clock& clock() const;
+  std::uint64_t divider() const { return std::uint64_t{active_prescaler_} + 1; }
+  Ticks time_of(std::uint64_t tick) const { return ramp_start_ + clock().duration(tick * divider()); }
+  std::uint64_t tick_at(Ticks time) const { return clock().periods_in(time - ramp_start_, divider()); }
+  std::uint32_t count_at(std::uint64_t tick) const;
+  std::uint32_t count_now() const;
+  bool centre_aligned() const { return (cr1_ >> 5 & 3) != 0; }
+  unsigned slave_mode() const { return smcr_ & 7; }
+  bool encoder_mode() const { return slave_mode() >= 1 && slave_mode() <= 3; }
+  bool runs() const;
+  void settle();
+  void begin_ramp(Ticks now);
+  void find_matches();
+  void account(std::uint64_t tick);
+  void matched(unsigned channel);
+  void end_ramp(Ticks now);
+  bool repetitions_over();
+  void update_event(bool by_software);
+  void reinitialise(bool by_software);
+  void count_one(bool down);
+  void plan();
+  Ticks update_time() const;
+  bool update_needed() const;
+  void trigger_out(bool level, bool is_pulse);
+
+  // timer_outputs.cpp: compare references, outputs, break, inputs
+  unsigned output_mode(unsigned channel) const { return ccmr_[channel / 2] >> (8 * (channel % 2) + 4) & 7; }
+  unsigned selection(unsigned channel) const { return ccmr_[channel / 2] >> 8 * (channel % 2) & 3; }
+  bool preloads(unsigned channel) const { return (ccmr_[channel / 2] >> (8 * (channel % 2) + 3) & 1) != 0; }
+  bool compare_level(unsigned channel, std::uint32_t count) const;
+  void set_reference(unsigned channel, bool level);
+  void drive_outputs(unsigned channel);
+  void configure_outputs();
+  void configure_channel(unsigned channel);
+  void check_break();
+  void capture(unsigned channel);
+  void count_encoder_edge(unsigned changed_channel);
+  void trigger_in(bool level, bool is_pulse);
+  void channel_edge(unsigned channel);
+
+  // timer_registers.cpp
+  void write_control(std::uint32_t value);
+  void write_events(std::uint32_t value);
+  void update_interrupts();
+  void raise(std::uint32_t flags);
+
+  Machine& machine_;
+  const TimerModel model_;
+  Timeline::Slot slot_;
+  std::uint32_t limit_;  ///< 2^bits - 1
+  std::uint32_t cr1_ = 0, cr2_ = 0, smcr_ = 0, dier_ = 0, sr_ = 0, ccer_ = 0, psc_ = 0, arr_ = 0, rcr_ = 0, bdtr_ = 0,
+                dcr_ = 0, or_ = 0;
+  std::array<std::uint32_t, 2> ccmr_{};
+  std::array<Channel, 4> channels_{};
+  std::uint32_t active_prescaler_ = 0, active_reload_ = 0, repetitions_ = 0;
+  std::uint32_t count_ = 0;  ///< at the start of the ramp
+  bool down_ = false;
+  bool gate_open_ = false;
+  bool break_input_ = false, external_input_ = false;
+  Ticks ramp_start_ = 0;
+  std::uint64_t ramp_length_ = 0, accounted_ = 0, next_tick_ = 0;
+};
+
+class Timers {
+ public:
+  explicit Timers(Machine& machine);
+  Timer& timer(unsigned number) { return timers_[number - 1]; }
+  void input_changed(unsigned timer_number, unsigned line, bool high) { timer(timer_number).input_changed(line, high); }
+  void trigger_from(unsigned master, bool level, bool is_pulse);
+  /// A slave listens to the trigger output of `master` in a mode that starts or steps it.
+  bool has_slave(unsigned master) const { return slaves_[master] != 0; }
+  void set_slave(unsigned slave, unsigned master, bool listens);
+  void plan_again();
+
+ private:
+  std::deque<Timer> timers_;
+  std::array<std::uint32_t, 15> slaves_{};  ///< by master: bit of each slave
+};
+
+}  // namespace inkwell::virtual_board
