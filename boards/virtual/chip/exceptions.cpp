@@ -47,6 +47,7 @@ bool Processor::start_handler(unsigned exception, std::uint32_t exception_return
   const std::uint32_t vector = machine_.memory.word(vector_table + 4 * exception);
   write(UC_ARM_REG_LR, exception_return);
   write(UC_ARM_REG_IPSR, exception);
+  write(UC_ARM_REG_APSR_NZCV, 0);  // makes Unicorn notice the change of mode; flags are free at entry
   program_counter_ = vector;
   current_exception_ = exception;
   machine_.nvic.enter(exception);

@@ -77,6 +77,7 @@ void Processor::reset(std::uint32_t vector_table) {
   write(UC_ARM_REG_BASEPRI, 0);
   write(UC_ARM_REG_FPSCR, 0);
   write(UC_ARM_REG_XPSR_NZCVQG, 0);
+  write(UC_ARM_REG_APSR_NZCV, 0);
   write(UC_ARM_REG_PSP, 0);
   write(UC_ARM_REG_MSP, machine_.memory.word(vector_table) & ~3u);
   write(UC_ARM_REG_LR, 0xFFFFFFFF);
