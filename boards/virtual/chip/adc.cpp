@@ -115,7 +115,6 @@ std::uint32_t Adc::sample(unsigned channel, Ticks now) const {
   if (channel == 18) return index_ == 0 && adcs_.battery_on() ? convert(reference_V / 2) : 0;
   if (channel > 18) return 0;
   const AnalogPin pin = index_ == 2 ? analog_pins_3[channel] : analog_pins_12[channel];
-  machine_.last_advance = now;
   return convert(machine_.circuit.analog_V(pin.port, pin.pin, now));
 }
 

@@ -35,9 +35,12 @@ constexpr Bus::Window window() {
 }  // namespace
 
 const Bus::Window Bus::windows[6] = {
-    window<apb_base, apb_bytes>(),         window<peripheral_alias_base, peripheral_alias_bytes>(),
-    window<ahb2_base, ahb2_bytes>(),       window<sram_alias_base, sram_alias_bytes>(),
-    window<private_base, private_bytes>(), window<external_base, external_bytes>(),
+    window<apb_base, apb_bytes>(),
+    window<private_base, private_bytes>(),
+    window<ahb2_base, ahb2_bytes>(),
+    window<peripheral_alias_base, peripheral_alias_bytes>(),
+    window<sram_alias_base, sram_alias_bytes>(),
+    window<external_base, external_bytes>(),
 };
 
 Bus::Bus(Machine& machine, SystemControl& system_control)

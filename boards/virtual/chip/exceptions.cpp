@@ -137,7 +137,7 @@ bool Processor::return_from_exception(std::uint32_t vector_table) {
   void* places[6];
   for (int i = 0; i < 6; ++i) places[i] = &words[i];
   uc_reg_write_batch(engine_, frame_registers, places, 6);
-  write(UC_ARM_REG_XPSR_NZCVQG, xpsr & 0xF80F0000);
+  write(UC_ARM_REG_XPSR_NZCVQG, (xpsr & 0xF80F0000) | xpsr_thumb | exception);
   write(UC_ARM_REG_APSR_NZCV, xpsr & 0xF0000000);  // last: it rebuilds Unicorn's own copies of the flags
   program_counter_ = words[6];
   current_exception_ = exception;

@@ -4,6 +4,7 @@
 
 #include "bus.hpp"
 #include "flash.hpp"
+#include "unicorn_page_lock.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -37,6 +38,7 @@ constexpr std::uint16_t send_event = 0xBF40;
 }  // namespace
 
 Processor::Processor(Machine& machine, Bus& bus) : machine_(machine), block_lengths_(flash_bytes / 2) {
+  link_page_lock();
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
   // UC_MODE_MCLASS would force another model; the model alone makes it M-profile.
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "be a Cortex-M4");
@@ -59,13 +61,14 @@ void Processor::map_memories(Bus& bus) {
   const auto map = [&](std::uint32_t base, std::uint32_t bytes, std::uint32_t rights, std::uint8_t* place) {
     check(uc_mem_map_ptr(engine_, base, bytes, rights, place), "map a memory");
   };
-  map(flash_base, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
-  map(0, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
+  // Unicorn searches its regions in the order of mapping, at each access that is no plain load: the busiest first.
   map(sram_base, sram_bytes, UC_PROT_ALL, memory.sram());
   map(ccm_base, ccm_bytes, UC_PROT_READ | UC_PROT_WRITE, memory.ccm());  // not on the instruction bus
-  map(system_base, system_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.system());
   for (const auto& window : Bus::windows)
     check(uc_mmio_map(engine_, window.base, window.bytes, window.read, &bus, window.write, &bus), "map the registers");
+  map(flash_base, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
+  map(0, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
+  map(system_base, system_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.system());
 }
 
 void Processor::reset(std::uint32_t vector_table) {
@@ -76,7 +79,7 @@ void Processor::reset(std::uint32_t vector_table) {
   write(UC_ARM_REG_FAULTMASK, 0);
   write(UC_ARM_REG_BASEPRI, 0);
   write(UC_ARM_REG_FPSCR, 0);
-  write(UC_ARM_REG_XPSR_NZCVQG, 0);
+  write(UC_ARM_REG_XPSR_NZCVQG, 1u << 24);
   write(UC_ARM_REG_APSR_NZCV, 0);
   write(UC_ARM_REG_PSP, 0);
   write(UC_ARM_REG_MSP, machine_.memory.word(vector_table) & ~3u);

@@ -1,0 +1,82 @@
+// A chip on a bench: a circuit that writes down every edge, and the test firmwares.
+#pragma once
+
+#include <chip/chip.hpp>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace inkwell::virtual_board::test {
+
+struct Edge {
+  char port;
+  unsigned pin;
+  PinLevel level;
+  Ticks when;
+};
+
+class Bench final : public Circuit {
+ public:
+  void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override {
+    check_time(now);
+    edges.push_back({port, pin, level, now});
+  }
+  double analog_V(char port, unsigned pin, Ticks now) override {
+    check_time(now);
+    samples.push_back({port, pin, PinLevel::floating, now});
+    const auto found = voltages.find({port, pin});
+    return found == voltages.end() ? 0.0 : found->second;
+  }
+  void advance(Ticks now) override {
+    check_time(now);
+    longest_pause = std::max(longest_pause, now - last_advance);
+    last_advance = now;
+  }
+  std::vector<Edge> edges_of(char port, unsigned pin) const {
+    std::vector<Edge> found;
+    for (const auto& edge : edges)
+      if (edge.port == port && edge.pin == pin) found.push_back(edge);
+    return found;
+  }
+
+  std::vector<Edge> edges, samples;
+  std::map<std::pair<char, unsigned>, double> voltages;
+  bool time_ran_backward = false;
+  Ticks longest_pause = 0, last_advance = 0;
+
+ private:
+  void check_time(Ticks now) {
+    time_ran_backward |= now < last_;
+    last_ = now;
+  }
+  Ticks last_ = 0;
+};
+
+inline std::string firmware_path(const std::string& name) {
+  return std::string(INKWELL_BUILD_DIRECTORY) + "/chip-firmware/" + name + ".elf";
+}
+
+/// A chip with its bench, running a test firmware from reset.
+struct Rig {
+  explicit Rig(const std::string& firmware, Mode mode = Mode::exact) : chip(bench, options(mode)) {
+    chip.load_elf(firmware_path(firmware));
+    chip.reset();
+  }
+  ChipOptions options(Mode mode) {
+    ChipOptions chosen;
+    chosen.mode = mode;
+    chosen.log = [this](const std::string& line) { log.push_back(line); };
+    return chosen;
+  }
+  std::uint32_t result(unsigned index) const { return chip.memory_word(0x2001F000 + 4 * index); }
+  void run_for(double time_s) { chip.run_until(chip.now() + ticks(time_s)); }
+
+  Bench bench;
+  std::vector<std::string> log;
+  Chip chip;
+};
+
+inline constexpr std::uint32_t finished = 0x600D600D;
+
+}  // namespace inkwell::virtual_board::test

@@ -1,0 +1,76 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "chip_fixture.hpp"
+
+using namespace inkwell::virtual_board;
+using namespace inkwell::virtual_board::test;
+
+namespace {
+
+std::string read_file(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// What load_elf says of a file with this content.
+std::string complaint(const std::string& content) {
+  const auto path = std::filesystem::temp_directory_path() / "inkwell-corrupt.elf";
+  std::ofstream(path, std::ios::binary) << content;
+  Bench bench;
+  Chip chip(bench);
+  std::string said;
+  try {
+    chip.load_elf(path);
+  } catch (const ChipError& error) {
+    said = error.what();
+  }
+  std::filesystem::remove(path);
+  return said;
+}
+
+bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_SUITE("virtual chip: ELF") {
+  TEST_CASE("a file that can not be loaded is refused with a sentence") {
+    Bench bench;
+    Chip chip(bench);
+    CHECK_THROWS_AS(chip.load_elf("/nowhere/at/all.elf"), ChipError);
+    CHECK_THROWS_AS(chip.load_elf("/tmp"), ChipError);
+    CHECK(contains(complaint(""), "not an ELF"));
+    CHECK(contains(complaint("#!/bin/sh\n"), "not an ELF"));
+    CHECK(contains(complaint(read_file("/proc/self/exe")), "not for a 32-bit ARM"));
+
+    const std::string good = read_file(firmware_path("watchdog"));
+    REQUIRE(complaint(good).empty());
+    CHECK(contains(complaint(good.substr(0, 40)), "truncated"));
+    CHECK(contains(complaint(good.substr(0, 60)), "truncated"));
+    const std::string first_pages = good.substr(0, 0x1010);
+    CHECK(contains(complaint(first_pages), "truncated"));
+
+    std::string elsewhere = good;
+    const std::uint32_t outside = 0x0900'0000;
+    std::uint32_t headers = 0;
+    std::memcpy(&headers, good.data() + 28, 4);
+    std::memcpy(elsewhere.data() + headers + 12, &outside, 4);  // p_paddr of the first segment
+    CHECK(contains(complaint(elsewhere), "0x09000000"));
+    std::string relocatable = good;
+    relocatable[16] = 1;
+    CHECK(contains(complaint(relocatable), "not a linked executable"));
+  }
+
+  TEST_CASE("a refused file leaves the flash as it was") {
+    Rig rig("watchdog");
+    const std::uint32_t before = rig.chip.memory_word(0x0800'0004);
+    CHECK_THROWS_AS(rig.chip.load_elf("/proc/self/exe"), ChipError);
+    CHECK(rig.chip.memory_word(0x0800'0004) == before);
+    rig.run_for(0.2);
+    CHECK(rig.result(0) == finished);
+  }
+}

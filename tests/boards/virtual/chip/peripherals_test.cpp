@@ -1,0 +1,164 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "chip_fixture.hpp"
+
+using namespace inkwell::virtual_board;
+using namespace inkwell::virtual_board::test;
+
+namespace {
+
+constexpr Ticks cycle = 50;  // at 168 MHz
+constexpr Ticks pwm_period = 2000 * cycle;
+
+/// The two encoder inputs step through the quadrature, forward for positive counts.
+void turn(Rig& rig, int& phase, int counts) {
+  constexpr bool a[] = {false, true, true, false}, b[] = {false, false, true, true};
+  for (; counts != 0; counts += counts > 0 ? -1 : 1) {
+    phase = (phase + (counts > 0 ? 1 : 3)) % 4;
+    rig.chip.input_pins().drive('B', 4, a[phase] ? PinLevel::high : PinLevel::low);
+    rig.chip.input_pins().drive('B', 5, b[phase] ? PinLevel::high : PinLevel::low);
+  }
+}
+
+}  // namespace
+
+TEST_SUITE("virtual chip: peripherals") {
+  TEST_CASE("TIM1 and TIM8: edges to the cycle, started together, preloaded duty") {
+    Rig rig("pwm");
+    rig.run_for(0.002);
+    REQUIRE(rig.result(0) == finished);
+    CHECK(rig.chip.clocks().hclk_Hz == 168'000'000);
+    const auto first = rig.bench.edges_of('A', 8), second = rig.bench.edges_of('C', 6);
+    REQUIRE(first.size() > 60);
+    REQUIRE(second.size() > 60);
+
+    // PWM mode 1: high within 400 cycles of the bottom, low elsewhere; the last edges have the new duty of 250.
+    std::vector<Ticks> high_times;
+    for (std::size_t i = 2; i + 1 < first.size(); ++i) {
+      CHECK(first[i].level != first[i - 1].level);
+      if (first[i].level == PinLevel::high) high_times.push_back(first[i + 1].when - first[i].when);
+    }
+    CHECK(high_times.front() == 800 * cycle);
+    CHECK(high_times.back() == 500 * cycle);
+    for (const Ticks t : high_times) CHECK((t == 800 * cycle || t == 500 * cycle));
+
+    // Both timers turn round at the same instants: the middles of their pulses are the same.
+    const auto rising = [](const std::vector<Edge>& edges, std::size_t from) {
+      while (edges[from].level != PinLevel::high) ++from;
+      return from;
+    };
+    const std::size_t i = rising(first, 4), k = rising(second, 4);
+    const Ticks middle_1 = (first[i].when + first[i + 1].when) / 2, middle_2 = (second[k].when + second[k + 1].when) / 2;
+    CHECK((middle_1 > middle_2 ? middle_1 - middle_2 : middle_2 - middle_1) % pwm_period == 0);
+    CHECK_FALSE(rig.bench.time_ran_backward);
+    CHECK(rig.bench.longest_pause <= ticks(51e-6));
+  }
+
+  TEST_CASE("repetition counter: an update every sixth half period, at the bottom") {
+    Rig rig("pwm");
+    rig.run_for(0.002);
+    const std::uint32_t before = rig.result(1);
+    rig.run_for(0.1);
+    // Six half periods of 1000 cycles.
+    CHECK(rig.result(1) - before == 168'000'000 / 10 / 6000);
+    for (unsigned n = 0; n < 4; ++n) {
+      CHECK(rig.result(4 + 2 * n) == 0);   // counting up again
+      CHECK(rig.result(5 + 2 * n) < 40);   // a few instructions after the bottom
+    }
+  }
+
+  TEST_CASE("encoder mode counts every edge, both ways, through the wrap") {
+    Rig rig("encoder", Mode::fast);
+    int phase = 0;
+    rig.chip.input_pins().drive('B', 4, PinLevel::low);
+    rig.chip.input_pins().drive('B', 5, PinLevel::low);
+    rig.run_for(0.001);
+    REQUIRE(rig.result(0) == finished);
+    const auto start = static_cast<std::uint16_t>(rig.result(1));
+    int total = 0;
+    for (const int counts : {1, 7, -3, 1000, -2500, 70'000, -5}) {
+      turn(rig, phase, counts);
+      total += counts;
+      rig.run_for(20e-6);
+      CHECK(static_cast<std::uint16_t>(rig.result(1)) == static_cast<std::uint16_t>(start + total));
+      CHECK(rig.result(2) == (counts < 0 ? 1 : 0));
+    }
+  }
+
+  TEST_CASE("injected conversions start with the trigger, all three converters at the same instant") {
+    Rig rig("converters");
+    rig.bench.voltages = {{{'C', 0}, 0.825}, {{'C', 1}, 1.65}, {{'C', 2}, 2.475}, {{'C', 3}, 0.5}, {{'C', 4}, 3.0}};
+    std::vector<Ticks> sequences;
+    rig.chip.on_injected_sequence = [&](std::uint64_t index, Ticks when) {
+      CHECK(index == sequences.size());
+      sequences.push_back(when);
+    };
+    rig.run_for(0.003);
+    REQUIRE(rig.result(0) == finished);
+    CHECK(rig.result(2) == 1024);
+    CHECK(rig.result(3) == 2048);
+    CHECK(rig.result(4) == 3072);
+    // 15 cycles of 21 MHz are 60 counts of TIM2; then the interrupt's first instructions.
+    CHECK(rig.result(5) >= 60);
+    CHECK(rig.result(5) < 75);
+    REQUIRE(sequences.size() > 50);
+    for (std::size_t i = 1; i < sequences.size(); ++i) CHECK(sequences[i] - sequences[i - 1] == ticks(20e-6));
+    // Sampled 3 cycles of the converter after the trigger.
+    unsigned at_once = 0;
+    for (const auto& sample : rig.bench.samples)
+      if (sample.pin <= 2 && sample.port == 'C' && sample.when == sequences[5] + 3 * 8 * cycle) ++at_once;
+    CHECK(at_once == 3);
+  }
+
+  TEST_CASE("regular conversions fill a ring by DMA beside them") {
+    Rig rig("converters");
+    rig.bench.voltages = {{{'C', 3}, 0.5}, {{'C', 4}, 3.0}};
+    rig.run_for(0.003);
+    REQUIRE(rig.result(6) > 10);
+    const auto channel_13 = static_cast<std::uint32_t>(std::floor(0.5 / 3.3 * 4096));
+    const auto channel_14 = static_cast<std::uint32_t>(std::floor(3.0 / 3.3 * 4096));
+    for (unsigned i = 0; i < 4; ++i) CHECK(rig.result(8 + i) == (channel_13 | channel_14 << 16));
+    const std::uint32_t before = rig.result(6);
+    rig.run_for(0.01);
+    // 96 cycles of 21 MHz a conversion, 8 to a round; each injected group costs one 84-cycle start over and itself.
+    const double undisturbed = 0.01 * 21e6 / (96 * 8);
+    CHECK(rig.result(6) - before < undisturbed);
+    CHECK(rig.result(6) - before > 0.7 * undisturbed);
+  }
+
+  TEST_CASE("pins, bit-band, identity, flash and USART") {
+    Rig rig("input_output", Mode::fast);
+    std::string sent;
+    std::vector<Ticks> times;
+    rig.chip.on_usart = [&](unsigned number, std::uint8_t byte) {
+      CHECK(number == 2);
+      sent += static_cast<char>(byte);
+      times.push_back(rig.chip.now());
+    };
+    rig.run_for(0.3);
+    REQUIRE(rig.result(0) == finished);
+    CHECK(sent == "chip\n");
+    CHECK(times[2] - times[1] == 10 * 365 * 4 * cycle);  // ten bits of 365 cycles of PCLK1
+    CHECK(rig.bench.edges_of('C', 10).back().level == PinLevel::high);
+    CHECK(rig.result(2) == 1u << 5);
+    CHECK(rig.result(3) == 0x00310042);
+    CHECK(rig.result(4) == 1024);
+    CHECK(rig.result(5) == 0x12345678);
+    CHECK(rig.result(6) == 0xFFFFFFFF);
+    CHECK((rig.result(7) & 1u << 7) != 0);
+
+    CHECK(rig.result(1) == 0);
+    for (int i = 0; i < 3; ++i) {
+      rig.chip.input_pins().drive('B', 13, PinLevel::low);
+      rig.run_for(1e-5);
+      rig.chip.input_pins().drive('B', 13, PinLevel::floating);  // the pull-up
+      rig.run_for(1e-5);
+      CHECK(rig.result(1) == static_cast<std::uint32_t>(i + 1));
+    }
+    for (const char c : {'o', 'k'}) rig.chip.usart_receive(2, static_cast<std::uint8_t>(c));
+    rig.run_for(0.001);
+    CHECK(rig.result(8) == ('o' << 8 | 'k'));
+  }
+}
