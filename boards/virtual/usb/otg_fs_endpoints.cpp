@@ -188,7 +188,8 @@ void OtgFsDevice::note_memory_layout() {
            static_cast<std::uint32_t>(regions[i].end));
     for (std::size_t j = 0; j < i; ++j)
       if (regions[i].begin < regions[j].end && regions[j].begin < regions[i].end)
-        note("two FIFOs overlap in packet memory", offset::dieptxf0, true, static_cast<std::uint32_t>(regions[i].begin));
+        note("two FIFOs overlap in packet memory", offset::dieptxf0, true,
+             static_cast<std::uint32_t>(regions[i].begin));
   }
 }
 

@@ -41,7 +41,7 @@ namespace gusbcfg {
 inline constexpr std::uint32_t fhmod = 1u << 29;
 }
 namespace grstctl {
-inline constexpr std::uint32_t csrst = 1u << 0, hsrst = 1u << 1, fcrst = 1u << 2, rxfflsh = 1u << 4,
+inline constexpr std::uint32_t csrst = 1u << 0, rxfflsh = 1u << 4,
                                txfflsh = 1u << 5, ahbidl = 1u << 31;
 constexpr unsigned txfnum(std::uint32_t value) { return (value >> 6) & 0x1F; }
 inline constexpr unsigned all_fifos = 0x10;
@@ -85,7 +85,9 @@ inline constexpr std::uint32_t xfrc = 1u << 0, epdisd = 1u << 1, stup = 1u << 3,
                                inepne = 1u << 6, b2bstup = 1u << 6, txfe = 1u << 7;
 }
 namespace tsiz {
-constexpr std::uint32_t packets(std::uint32_t value, bool control_in) { return (value >> 19) & (control_in ? 3 : 0x3FF); }
+constexpr std::uint32_t packets(std::uint32_t value, bool control_in) {
+  return (value >> 19) & (control_in ? 3 : 0x3FF);
+}
 }
 
 /// PKTSTS of a word from GRXSTSP.

@@ -24,7 +24,7 @@ inline constexpr std::uint32_t device_id = bus_number << 16 | device_number;
 inline constexpr std::uint32_t transfer_maximum = 16u << 20;
 
 enum class Operation : std::uint16_t { list_devices = 0x8005, import = 0x8003 };
-enum class ImportStatus : std::uint32_t { success = 0, failed = 1, busy = 2, device_error = 3, no_device = 4, error = 5 };
+enum class ImportStatus : std::uint32_t { success = 0, busy = 2, no_device = 4 };
 enum class Command : std::uint32_t { submit = 1, unlink = 2 };
 
 struct OperationHeader {

@@ -239,8 +239,8 @@ TEST_CASE("interrupt IN keeps its millisecond beside a full bulk stream") {
     std::memcpy(&number, bench.outcomes.at(reports[i]).data.data(), 4);
     CHECK(number == i);
     if (i == 0) continue;
-    const double gap_s = virtual_board::seconds(bench.outcomes.at(reports[i]).when - bench.outcomes.at(reports[i - 1]).when);
-    CHECK(gap_s == doctest::Approx(1e-3).epsilon(1e-6));
+    const Ticks gap = bench.outcomes.at(reports[i]).when - bench.outcomes.at(reports[i - 1]).when;
+    CHECK(virtual_board::seconds(gap) == doctest::Approx(1e-3).epsilon(1e-6));
   }
   std::size_t bulk = 0;
   for (const auto& [which, outcome] : bench.outcomes)
