@@ -198,6 +198,8 @@ void OtgFsDevice::write_device_configuration(std::uint32_t value) {
 }
 
 void OtgFsDevice::write_device_control(std::uint32_t value) {
+  if ((value & dctl::rwusig) != 0)  // the bus sleeps only while nobody uses the device, so nobody could wake
+    note("remote wake-up is not modelled", offset::dctl, true, value);
   device_control_ = value & dctl::writable;
   if ((value & dctl::cginak) != 0) global_in_nak_ = false;
   if ((value & dctl::sginak) != 0) global_in_nak_ = true;
