@@ -17,11 +17,13 @@ Triple rows(const ParameterSet& set, Parameter first, std::size_t stride = 1) {
   return {set.values[index], set.values[index + stride], set.values[index + 2 * stride]};
 }
 
-static_assert(static_cast<int>(Parameter::gear_ratio_3) == static_cast<int>(Parameter::gear_ratio_1) + 2 &&
-              static_cast<int>(Parameter::joint_2_minimum_rad) == static_cast<int>(Parameter::joint_1_minimum_rad) + 2 &&
-              static_cast<int>(Parameter::elbow_minimum_rad) == static_cast<int>(Parameter::joint_1_minimum_rad) + 4 &&
-              static_cast<int>(Parameter::box_minimum_y_m) == static_cast<int>(Parameter::box_minimum_x_m) + 2 &&
-              static_cast<int>(Parameter::gimbal_2_square_rad) == static_cast<int>(Parameter::gimbal_1_square_rad) + 3,
+constexpr int distance(Parameter from, Parameter to) { return static_cast<int>(to) - static_cast<int>(from); }
+
+static_assert(distance(Parameter::gear_ratio_1, Parameter::gear_ratio_3) == 2 &&
+                  distance(Parameter::joint_1_minimum_rad, Parameter::joint_2_minimum_rad) == 2 &&
+                  distance(Parameter::joint_1_minimum_rad, Parameter::elbow_minimum_rad) == 4 &&
+                  distance(Parameter::box_minimum_x_m, Parameter::box_minimum_y_m) == 2 &&
+                  distance(Parameter::gimbal_1_square_rad, Parameter::gimbal_2_square_rad) == 3,
               "rows() relies on the order of the table");
 
 Vector3 vector_of(const Triple& values) { return {values[0], values[1], values[2]}; }

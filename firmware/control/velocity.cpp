@@ -38,7 +38,8 @@ Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
     const Slope candidate{2 * distance_counts, age};
     if (less(candidate, lowest) || less(highest, candidate)) break;
     line = candidate;
-    const bool whole_cycle = distance_counts >= SpeedEstimate::enough_counts || distance_counts <= -SpeedEstimate::enough_counts;
+    const bool whole_cycle =
+        distance_counts >= SpeedEstimate::enough_counts || distance_counts <= -SpeedEstimate::enough_counts;
     if (whole_cycle && age_periods >= SpeedEstimate::enough_periods) break;
     const Slope low{2 * distance_counts - tolerance, age};
     const Slope high{2 * distance_counts + tolerance, age};
@@ -100,7 +101,8 @@ void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, 
   if (!estimate.head_waits || !may_fit) return;
   estimate.head_waits = false;
   const Slope line = fit_line(estimate, estimate.head);
-  estimate.counts_per_period = 0.5f * static_cast<float>(line.half_counts) * reciprocal(static_cast<float>(line.periods));
+  estimate.counts_per_period =
+      0.5f * static_cast<float>(line.half_counts) * reciprocal(static_cast<float>(line.periods));
   if (estimate.head.period - estimate.edges[estimate.newest].period >= SpeedEstimate::spacing_periods)
     remember(estimate, estimate.head);
 }

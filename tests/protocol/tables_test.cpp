@@ -24,7 +24,8 @@ bool ends_in_unit(std::string_view name, std::string_view unit) {
     per += c == '/' ? "_per_" : std::string{c};
     plain += c == '/' ? '_' : c;
   }
-  return unit.empty() || name.ends_with("_" + per) || name.ends_with("_" + plain) || name.ends_with(plain + "_per_turn");
+  return unit.empty() || name.ends_with("_" + per) || name.ends_with("_" + plain) ||
+         name.ends_with(plain + "_per_turn");
 }
 
 TEST_CASE("parameters: names and ids are unique and found, names end in their unit, all have help") {

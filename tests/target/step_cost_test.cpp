@@ -72,6 +72,7 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2000 instr
   float sum = 0.0f;
   std::array<float, 6> stages{};
   constexpr int steps = 400;
+  constexpr auto first_stage = static_cast<std::size_t>(protocol::Signal::stage_sample_cycles);
   for (int i = 0; i < steps; ++i) {
     controller.host_alive();
     // An edge in two of three periods on every joint: the velocity windows are at their longest walk.
@@ -84,12 +85,11 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2000 instr
     sum += instructions;
     longest = instructions > longest ? instructions : longest;
     for (std::size_t stage = 0; stage < stages.size(); ++stage)
-      stages[stage] += controller.signals().values[static_cast<std::size_t>(protocol::Signal::stage_sample_cycles) + stage] *
-                       counter.instructions_per_tick() / steps;
+      stages[stage] += controller.signals().values[first_stage + stage] * counter.instructions_per_tick() / steps;
   }
-  MESSAGE("instructions of a step: mean " << sum / steps << ", longest " << longest << "; by stage: sample " << stages[0]
-                                          << ", pose " << stages[1] << ", contact " << stages[2] << ", torque "
-                                          << stages[3] << ", current " << stages[4] << ", report " << stages[5]);
+  MESSAGE("instructions of a step: mean " << sum / steps << ", longest " << longest);
+  MESSAGE("by stage: sample " << stages[0] << ", pose " << stages[1] << ", contact " << stages[2] << ", torque "
+                              << stages[3] << ", current " << stages[4] << ", report " << stages[5]);
   CHECK(controller.state() == protocol::State::active);
   CHECK(controller.signals()[protocol::Signal::force_N] > 0.0f);
   CHECK(controller.signals()[protocol::Signal::joint_speed_3_rad_s] > 0.0f);

@@ -64,7 +64,8 @@ TEST_CASE("a wall never pulls, whatever the speed of leaving") {
   tests::Random random{11};
   int pulled_back = 0, let_go = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Vector3 probe{random.between(-0.055f, 0.055f), random.between(-0.065f, 0.065f), random.between(-0.075f, 0.075f)};
+    const Vector3 probe{random.between(-0.055f, 0.055f), random.between(-0.065f, 0.065f),
+                        random.between(-0.075f, 0.075f)};
     const Vector3 velocity{random.between(-2, 2), random.between(-2, 2), random.between(-2, 2)};
     const Contact contact = control::find_contact(probe, box);
     const Force force = control::wall_force(contact, velocity, wall);

@@ -113,7 +113,8 @@ TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, an
   CHECK(signals[Signal::force_N] == doctest::Approx(800.0f * depth_m).epsilon(1e-4));
   CHECK(signals[Signal::force_y_N] == 0.0f);
   CHECK(signals[Signal::torque_1_Nm] == 0.0f);
-  const control::Triple joints{signals[Signal::joint_1_rad], signals[Signal::joint_2_rad], signals[Signal::joint_3_rad]};
+  const control::Triple joints{signals[Signal::joint_1_rad], signals[Signal::joint_2_rad],
+                               signals[Signal::joint_3_rad]};
   const control::Triple torque = control::joint_torques(control::forward_kinematics(joints, settings.arm).jacobian,
                                                         {signals[Signal::force_x_N], 0.0f, 0.0f});
   CHECK(signals[Signal::torque_2_Nm] == torque[1]);

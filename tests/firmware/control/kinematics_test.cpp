@@ -155,8 +155,10 @@ TEST_CASE("the links' ends: constant lengths, and the last one is the probe") {
       const control::Pose pose = control::forward_kinematics(q, settings.arm);
       CHECK(ends.shoulder_m == settings.arm.origin_m);
       CHECK(distance(point(ends.probe_m), point(pose.position_m)) < 1e-7);
-      CHECK(distance(point(ends.shoulder_m), point(ends.elbow_m)) == doctest::Approx(settings.arm.link_2_m).epsilon(1e-6));
-      CHECK(distance(point(ends.elbow_m), point(ends.probe_m)) == doctest::Approx(settings.arm.link_3_m).epsilon(1e-6));
+      const double link_2_m = distance(point(ends.shoulder_m), point(ends.elbow_m));
+      const double link_3_m = distance(point(ends.elbow_m), point(ends.probe_m));
+      CHECK(link_2_m == doctest::Approx(settings.arm.link_2_m).epsilon(1e-6));
+      CHECK(link_3_m == doctest::Approx(settings.arm.link_3_m).epsilon(1e-6));
     }
   }
 }

@@ -11,7 +11,8 @@ struct FakeClock {
   std::uint32_t lap() { return ++laps; }
 };
 
-inline constexpr control::BoardLimits board_limits{.supply_minimum_V = 12.0f, .supply_maximum_V = 24.0f, .duty_limit = 0.95f};
+inline constexpr control::BoardLimits board_limits{
+    .supply_minimum_V = 12.0f, .supply_maximum_V = 24.0f, .duty_limit = 0.95f};
 
 inline control::Samples samples_at_rest() {
   return {.encoder_counts = {},

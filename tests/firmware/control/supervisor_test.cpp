@@ -50,7 +50,8 @@ struct FaultCase {
 
 std::vector<FaultCase> fault_cases() {
   const std::vector<State> started{State::unreferenced, State::ready, State::active};
-  return {{Fault::not_finite, &Conditions::not_finite, {State::starting, State::unreferenced, State::ready, State::active}, false},
+  const std::vector<State> all{State::starting, State::unreferenced, State::ready, State::active};
+  return {{Fault::not_finite, &Conditions::not_finite, all, false},
           {Fault::supply_low, &Conditions::supply_low, started, false},
           {Fault::supply_high, &Conditions::supply_high, started, false},
           {Fault::bridge_fault, &Conditions::bridge_fault, started, false},
@@ -68,7 +69,8 @@ TEST_CASE("each fault is looked for in its states and in no other") {
       Conditions conditions{.offsets_measured = state != State::starting,
                             .referenced = state == State::ready || state == State::active};
       conditions.*row.condition = true;
-      const bool expected = std::find(row.looked_for_in.begin(), row.looked_for_in.end(), state) != row.looked_for_in.end();
+      const bool expected =
+          std::find(row.looked_for_in.begin(), row.looked_for_in.end(), state) != row.looked_for_in.end();
       CHECK(advance(in(state), conditions, {}) == (expected ? Supervisor{State::fault, row.fault} : in(state)));
     }
 }

@@ -19,7 +19,7 @@ using protocol::Signal;
 
 class SimulatedArm {
  public:
-  SimulatedArm(const protocol::ParameterSet& parameters) : parameters_(parameters), settings_(control::prepare(parameters)) {
+  explicit SimulatedArm(const protocol::ParameterSet& parameters) : settings_(control::prepare(parameters)) {
     joint_rad_ = settings_.encoders.inkwell_rad;
     inkwell_rad_ = joint_rad_;
     hand_m = control::forward_kinematics(joint_rad_, settings_.arm).position_m;
@@ -70,7 +70,6 @@ class SimulatedArm {
     }
   }
 
-  protocol::ParameterSet parameters_;
   control::Settings settings_;
   Triple joint_rad_{}, inkwell_rad_{};
   Triple speed_rad_per_s_{};

@@ -16,7 +16,7 @@
 //   ---------------------+------------------------------------+-----------------------------------------
 //   processor_fault, watchdog, servo_overrun | every state    | at once: raised by the application
 //   not_finite           | every state                        | the values are finite
-//   current_sensor       | end of starting                    | never: the board must be reset
+//   current_sensor       | once the offsets are measured      | never: the board must be reset
 //   supply_low, _high    | unreferenced, ready, active        | the supply is within its bounds
 //   bridge_fault         | unreferenced, ready, active        | the fault line is released
 //   over_current         | unreferenced, ready, active        | the currents are within their bounds
