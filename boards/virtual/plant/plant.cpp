@@ -57,8 +57,10 @@ std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) 
 }
 
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
-/// A contact to ground, or an open-drain output: the pull-up makes the high level.
-PinLevel pulled_down(bool closed) { return closed ? PinLevel::low : PinLevel::floating; }
+/// A bare contact to ground; the chip's own pull-up makes the high level.
+PinLevel contact(bool closed) { return closed ? PinLevel::low : PinLevel::floating; }
+/// The bridges' open-drain wire with the board's pull-up.
+PinLevel fault_wire(bool fault) { return fault ? PinLevel::low : PinLevel::high; }
 
 }  // namespace
 
@@ -94,7 +96,7 @@ void Plant::connect(InputPins& pins) {
     pins.drive(board::encoders[i].a.pin.port, board::encoders[i].a.pin.number, level_of(encoder_levels_[i].a));
     pins.drive(board::encoders[i].b.pin.port, board::encoders[i].b.pin.number, level_of(encoder_levels_[i].b));
   }
-  shown_.fill(PinLevel::high);  // which no contact ever shows, so that each is driven now
+  shown_.fill(PinLevel::floating);  // as the chip sees a pin that nothing drives
   show_inputs();
 }
 
@@ -116,9 +118,9 @@ void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
 
 void Plant::update_legs(unsigned motor, Ticks now) {
   for (unsigned leg = 0; leg < 2; ++leg) {
-    const PinLevel pin = leg_pins_[motor][leg];
-    const bool off = !bridges_enabled_ || bridge_fault_ || pin == PinLevel::floating;
-    motors_[motor].set_leg(leg, off ? Leg::floating : pin == PinLevel::high ? Leg::high : Leg::low, now);
+    // A disabled or tripped bridge leaves the current to its diodes. A floating pin is low: the inputs have pull-downs.
+    const bool off = !bridges_enabled_ || bridge_fault_;
+    motors_[motor].set_leg(leg, off ? Leg::floating : leg_pins_[motor][leg] == PinLevel::high ? Leg::high : Leg::low, now);
   }
 }
 
@@ -219,11 +221,11 @@ void Plant::show_inputs() {
     });
   }
   const bool inkwell_closed = inkwell_.switch_closed(arm_.dynamics().position_m(arm_.joints_rad()));
-  show(board::button_1.port, board::button_1.number, pulled_down(buttons_[0]), shown_[0]);
-  show(board::button_2.port, board::button_2.number, pulled_down(buttons_[1]), shown_[1]);
-  show(board::inkwell_switch.port, board::inkwell_switch.number, pulled_down(inkwell_closed), shown_[2]);
-  show(board::bridge_fault_tim1.pin.port, board::bridge_fault_tim1.pin.number, pulled_down(bridge_fault_), shown_[3]);
-  show(board::bridge_fault_tim8.pin.port, board::bridge_fault_tim8.pin.number, pulled_down(bridge_fault_), shown_[4]);
+  show(board::button_1.port, board::button_1.number, contact(buttons_[0]), shown_[0]);
+  show(board::button_2.port, board::button_2.number, contact(buttons_[1]), shown_[1]);
+  show(board::inkwell_switch.port, board::inkwell_switch.number, contact(inkwell_closed), shown_[2]);
+  show(board::bridge_fault_tim1.pin.port, board::bridge_fault_tim1.pin.number, fault_wire(bridge_fault_), shown_[3]);
+  show(board::bridge_fault_tim8.pin.port, board::bridge_fault_tim8.pin.number, fault_wire(bridge_fault_), shown_[4]);
 }
 
 // ---- what a person does ----------------------------------------------------------------------------------

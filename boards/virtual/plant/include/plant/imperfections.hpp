@@ -19,7 +19,7 @@ struct Imperfections {
 
   // Supply
   double source_resistance_ohm = 0.15;
-  double bulk_capacitance_F = 1000e-6;
+  double bulk_capacitance_F = 2200e-6;
   double quiescent_resistance_ohm = 300.0;  ///< what bridges and regulator draw
   double supply_reading_noise_V = 0.0008;   ///< rms at the pin
 
