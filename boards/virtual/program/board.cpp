@@ -41,6 +41,7 @@ Board::Board(const Options& options)
   chip_.on_console = [this](std::uint8_t byte) { console(byte); };
   plant_.connect(chip_.input_pins());
   chip_.reset(ResetCause::power_on);
+  chip_.clear_counters();  // resets are counted from here on
   chip_.on_reset = [this](ResetCause cause) {
     locked_up_ = false;
     if (trace_.is_running()) trace_.start();  // control periods count from 0 again
