@@ -88,7 +88,8 @@ Stop Execution::run_slices(Ticks when) {
       }
     }
     if (machine_.nvic.take_newly_pending() && system_control_.sends_event_on_pending()) processor_.set_event_register();
-    if (machine_.nvic.take_changed()) take_exception();
+    const bool opened = processor_.take_masks_opened();
+    if (machine_.nvic.take_changed() || opened) take_exception();
     if (state_ != State::runs) continue;
 
     const Ticks stop_at = std::min({timeline.next_wake(), when, machine_.last_advance + Machine::advance_period});

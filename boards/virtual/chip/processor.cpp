@@ -147,7 +147,9 @@ unsigned Processor::instructions_of(std::uint32_t address, std::uint32_t bytes) 
 }
 
 bool Processor::masks_open() {
-  return machine_.nvic.next(masks()) != exception_none;
+  if (machine_.nvic.next(masks()) == exception_none) return false;
+  masks_opened_ = true;
+  return true;
 }
 
 void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* pointer) {

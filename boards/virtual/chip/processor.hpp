@@ -46,6 +46,8 @@ class Processor {
   void end_slice() { stop_cycle_ = 0; }
   /// While something more urgent is pending, ends the slice as soon as the masks let it through.
   void watch_masks(bool watch) { watch_masks_ = watch; }
+  /// The masks that were watched have let something through since the last call.
+  bool take_masks_opened() { return std::exchange(masks_opened_, false); }
   /// After instructions in memory changed.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
 
@@ -117,7 +119,7 @@ class Processor {
   std::uint32_t last_code_address_ = 0;
   std::uint32_t fault_address_ = 0;
   Outcome outcome_ = Outcome::slice_over;
-  bool stopped_ = false, watch_masks_ = false, event_register_ = false;
+  bool stopped_ = false, watch_masks_ = false, masks_opened_ = false, event_register_ = false;
   /// Instructions of the block that starts at each half word of the flash, and its bytes.
   struct BlockLength {
     std::uint16_t bytes, instructions;

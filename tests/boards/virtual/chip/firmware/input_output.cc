@@ -48,8 +48,7 @@ void run() {
   word(flash + 0x10) = 2 << 8 | 2 << 3 | 1 << 1;
   word(flash + 0x10) = 2 << 8 | 2 << 3 | 1 << 1 | 1 << 16;
   while ((word(flash + 0x0C) & 1 << 16) != 0)
-    for (volatile int i = 0; i < 10000; i = i + 1) {
-    }
+    for (unsigned i = 0; i < 10000; ++i) asm volatile("nop");
   word(flash + 0x10) = 2 << 8 | 1;
   word(0x08008000) = 0x12345678;
   while ((word(flash + 0x0C) & 1 << 16) != 0) {
