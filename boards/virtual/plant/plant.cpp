@@ -70,7 +70,8 @@ Plant::Plant(const arms::Description& arm, const PlantOptions& options)
       supply_(imperfections_, static_cast<double>(board::supply_nominal_V)),
       torque_per_A_{torque_per_A(arm, 0), torque_per_A(arm, 1), torque_per_A(arm, 2)},
       arm_(arm, inkwell_joints_rad(arm)),
-      inkwell_(arm_.dynamics().position_m(inkwell_joints_rad(arm)), true),
+      probe_m_(arm_.dynamics().position_m(arm_.joints_rad())),
+      inkwell_(probe_m_, true),
       encoders_{encoder(arm, 0), encoder(arm, 1), encoder(arm, 2)},
       gimbal_terms_{gimbal_terms(arm, 0), gimbal_terms(arm, 1), gimbal_terms(arm, 2)},
       random_(options.seed) {
@@ -96,6 +97,7 @@ void Plant::connect(InputPins& pins) {
     pins.drive(board::encoders[i].a.pin.port, board::encoders[i].a.pin.number, level_of(encoder_levels_[i].a));
     pins.drive(board::encoders[i].b.pin.port, board::encoders[i].b.pin.number, level_of(encoder_levels_[i].b));
   }
+  inputs_stale_ = true;
   shown_.fill(PinLevel::floating);  // as the chip sees a pin that nothing drives
   show_inputs();
 }
@@ -186,7 +188,9 @@ void Plant::step() {
   const std::array<Coupling, 3> couplings = {hand_.coupling(next_step_), carrier_.coupling(next_step_),
                                              inkwell_.coupling()};
   arm_.step(duration_s, torque_Nm_, couplings);
-  inkwell_.advance(duration_s, arm_.dynamics().position_m(arm_.joints_rad()));
+  probe_m_ = arm_.dynamics().position_m(arm_.joints_rad());
+  inputs_stale_ = true;
+  inkwell_.advance(duration_s, probe_m_);
   if (carrier_.holds()) finish_docking();
   supply_.advance(duration_s, supply_charge_As);
   for (unsigned i = 0; i < 3; ++i) {
@@ -198,7 +202,7 @@ void Plant::step() {
 void Plant::finish_docking() {
   // The funnel takes over where the way ends, not wherever the way happens to cross it.
   if (carrier_.is_moving(next_step_)) return;
-  if (inkwell_.capture(arm_.dynamics().position_m(arm_.joints_rad()))) carrier_.release();
+  if (inkwell_.capture(probe_m_)) carrier_.release();
 }
 
 // ---- the chip's inputs -----------------------------------------------------------------------------------
@@ -210,7 +214,8 @@ void Plant::show(char port, unsigned pin, PinLevel level, PinLevel& shown) {
 }
 
 void Plant::show_inputs() {
-  if (pins_ == nullptr) return;
+  if (pins_ == nullptr || !inputs_stale_) return;
+  inputs_stale_ = false;
   for (unsigned i = 0; i < 3; ++i) {
     const auto& wiring = board::encoders[i];
     encoders_[i].follow(arm_.joints_rad()[i], [&](QuadratureEncoder::Levels levels) {
@@ -220,7 +225,7 @@ void Plant::show_inputs() {
       encoder_levels_[i] = levels;
     });
   }
-  const bool inkwell_closed = inkwell_.switch_closed(arm_.dynamics().position_m(arm_.joints_rad()));
+  const bool inkwell_closed = inkwell_.switch_closed(probe_m_);
   show(board::button_1.port, board::button_1.number, contact(buttons_[0]), shown_[0]);
   show(board::button_2.port, board::button_2.number, contact(buttons_[1]), shown_[1]);
   show(board::inkwell_switch.port, board::inkwell_switch.number, contact(inkwell_closed), shown_[2]);
@@ -230,8 +235,14 @@ void Plant::show_inputs() {
 
 // ---- what a person does ----------------------------------------------------------------------------------
 
+void Plant::press_buttons(bool first, bool second) {
+  buttons_ = {first, second};
+  inputs_stale_ = true;
+}
+
 void Plant::set_bridge_fault(bool fault) {
   bridge_fault_ = fault;
+  inputs_stale_ = true;
   for (unsigned i = 0; i < 3; ++i) update_legs(i, now_);
 }
 
@@ -244,7 +255,7 @@ void Plant::let_go() { hand_.release(); }
 
 void Plant::follow(const std::vector<Waypoint>& waypoints) {
   carrier_.release();
-  hand_.follow(waypoints, arm_.dynamics().position_m(arm_.joints_rad()), now_);
+  hand_.follow(waypoints, probe_m_, now_);
 }
 
 void Plant::dock(bool docked) {
@@ -259,16 +270,17 @@ void Plant::dock(bool docked) {
   constexpr double shortest_s = 0.1;
   constexpr double stiffness_N_per_m = 800.0;  // sags by less than the funnel's radius under the arm's weight
   constexpr double damping_Ns_per_m = 8.0;
-  const Vector3 probe_m = arm_.dynamics().position_m(arm_.joints_rad());
-  const double distance_m = (inkwell_.position_m() - probe_m).norm();
-  carrier_.hold(probe_m, stiffness_N_per_m, damping_Ns_per_m);
-  carrier_.follow({{std::max(shortest_s, distance_m / speed_m_s), inkwell_.position_m()}}, probe_m, now_);
+  const double distance_m = (inkwell_.position_m() - probe_m_).norm();
+  carrier_.hold(probe_m_, stiffness_N_per_m, damping_Ns_per_m);
+  carrier_.follow({{std::max(shortest_s, distance_m / speed_m_s), inkwell_.position_m()}}, probe_m_, now_);
 }
 
 void Plant::place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) {
   carrier_.release();
   inkwell_.eject();
   arm_.place(joints_rad, joint_speeds_rad_s);
+  probe_m_ = arm_.dynamics().position_m(joints_rad);
+  inputs_stale_ = true;
 }
 
 Truth Plant::truth(Ticks now) {

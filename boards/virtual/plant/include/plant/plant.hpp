@@ -41,7 +41,7 @@ class Plant final : public Circuit {
   void advance(Ticks now) override;
 
   // ---- what a person does to it, from the time of the last call of the chip on ----
-  void press_buttons(bool first, bool second) { buttons_ = {first, second}; }
+  void press_buttons(bool first, bool second);
   void set_supply_V(double volts) { supply_.set_source_V(volts); }
   void set_bridge_fault(bool fault);
   /// Turns the gimbal, as the hand does with the stylus: yaw, pitch, roll.
@@ -88,6 +88,7 @@ class Plant final : public Circuit {
   // Mechanical
   std::array<double, 3> torque_per_A_;      ///< at the joint, sign of the wiring included
   ArmMotion arm_;
+  Vector3 probe_m_;                         ///< where the last step brought it
   Hand hand_;
   Hand carrier_;                            ///< holds while it carries the stylus to the inkwell
   Inkwell inkwell_;
@@ -95,6 +96,7 @@ class Plant final : public Circuit {
 
   // Inputs of the chip
   InputPins* pins_ = nullptr;
+  bool inputs_stale_ = true;                ///< something that the inputs show has moved since
   std::array<QuadratureEncoder, 3> encoders_;
   std::array<QuadratureEncoder::Levels, 3> encoder_levels_{};
   std::array<bool, 2> buttons_{};
