@@ -71,22 +71,22 @@ void FlashController::step(Ticks) {
   update_interrupt();
 }
 
-bool FlashController::program(std::uint32_t address, std::uint32_t value, unsigned size) {
-  std::uint8_t* place = machine_.memory.at(address, size);
+std::optional<std::uint32_t> FlashController::program(std::uint32_t address, std::uint32_t value, unsigned size) {
+  const std::uint8_t* place = machine_.memory.at(address, size);
   const std::uint32_t offset = address < flash_bytes ? address : address - flash_base;
-  if (place == nullptr || offset >= flash_bytes) return false;
+  if (place == nullptr || offset >= flash_bytes) return {};
+  std::uint32_t content = 0;
+  std::memcpy(&content, place, size);
   const unsigned parallelism = 1u << (control_ >> 8 & 3);
   if ((control_ & lock) != 0 || (control_ & programming) == 0) status_ |= sequence_error;
   else if (address % size != 0) status_ |= alignment_error;
   else if (parallelism != size && !(parallelism == 8 && size == 4)) status_ |= size_error;
   else {
-    // Programming only clears bits.
-    for (unsigned i = 0; i < size; ++i) place[i] &= static_cast<std::uint8_t>(value >> 8 * i);
-    machine_.processor->forget_code(flash_base + offset, size);
+    content &= value;  // programming only clears bits
     begin(16 * (ticks_per_s / 1'000'000));
   }
   update_interrupt();
-  return true;
+  return content;
 }
 
 void FlashController::erase() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "bus.hpp"
 
@@ -14,8 +15,8 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void step(Ticks now) override;
   void before_clock_change() override {}
   void after_clock_change() override { check_wait_states(); }
-  /// A store of the processor into the flash. False: a bus fault, nothing but the flash takes it.
-  bool program(std::uint32_t address, std::uint32_t value, unsigned size);
+  /// A store of the processor into the flash: what is there afterwards. Nothing: not the flash, a bus fault.
+  std::optional<std::uint32_t> program(std::uint32_t address, std::uint32_t value, unsigned size);
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;

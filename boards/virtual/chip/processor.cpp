@@ -1,6 +1,7 @@
 #include "processor.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "bus.hpp"
 #include "flash.hpp"
@@ -120,6 +121,7 @@ Outcome Processor::run(std::uint64_t cycles) {
   if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
   const uc_err error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
   program_counter_ = read(UC_ARM_REG_PC) & ~1u;
+  if (!flash_stores_.empty()) finish_flash_stores();
   if (outcome_ != Outcome::slice_over) return outcome_;
   if (error == UC_ERR_INSN_INVALID) return Outcome::undefined_instruction;
   if (error == UC_ERR_FETCH_UNMAPPED || error == UC_ERR_FETCH_PROT) {
@@ -128,6 +130,14 @@ Outcome Processor::run(std::uint64_t cycles) {
   }
   if (error != UC_ERR_OK) return Outcome::data_fault;
   return stopped_ ? Outcome::slice_over : Outcome::wait_for_interrupt;
+}
+
+void Processor::finish_flash_stores() {
+  for (const auto& store : flash_stores_) {
+    std::memcpy(machine_.memory.at(store.address, store.size), &store.content, store.size);
+    forget_code(store.address, store.size);
+  }
+  flash_stores_.clear();
 }
 
 unsigned Processor::count_instructions(std::uint32_t address, std::uint32_t bytes) const {
@@ -219,8 +229,12 @@ bool Processor::memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address,
   switch (type) {
     case UC_MEM_WRITE_PROT:
       // The flash takes writes while it is being programmed (RM0090, "Flash programming").
-      if (self.machine_.flash->program(self.fault_address_, static_cast<std::uint32_t>(value), static_cast<unsigned>(size)))
+      if (const auto content = self.machine_.flash->program(self.fault_address_, static_cast<std::uint32_t>(value),
+                                                            static_cast<unsigned>(size))) {
+        self.flash_stores_.push_back({self.fault_address_, *content, static_cast<unsigned>(size)});
+        self.end_slice();
         return true;
+      }
       self.outcome_ = Outcome::data_fault;
       break;
     case UC_MEM_FETCH_UNMAPPED: self.outcome_ = Outcome::instruction_fault; break;

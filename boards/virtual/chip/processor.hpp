@@ -98,6 +98,7 @@ class Processor {
   static bool memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value, void* self);
   static bool invalid_hook(uc_engine*, void* self);
   bool masks_open();
+  void finish_flash_stores();
   unsigned instructions_of(std::uint32_t address, std::uint32_t bytes);
   unsigned count_instructions(std::uint32_t address, std::uint32_t bytes) const;
   void map_memories(Bus& bus);
@@ -125,6 +126,12 @@ class Processor {
     std::uint16_t bytes, instructions;
   };
   std::vector<BlockLength> block_lengths_;
+  /// Unicorn makes stores into the flash by itself; what the flash made of them is put right after the slice.
+  struct FlashStore {
+    std::uint32_t address, content;
+    unsigned size;
+  };
+  std::vector<FlashStore> flash_stores_;
   std::vector<Running> running_;
   std::uint64_t counted_until_ = 0;
   Counters counters_;

@@ -56,6 +56,7 @@ void run() {
   word(flash + 0x10) = 1u << 31;
   results[5] = word(0x08008000);
   word(0x08008004) = 0;  // locked again: an error flag, nothing programmed
+  asm volatile("isb" ::: "memory");
   results[6] = word(0x08008004);
   results[7] = word(flash + 0x0C);
   results[0] = finished;
