@@ -50,7 +50,6 @@ std::size_t Rig::collect(std::chrono::milliseconds timeout) {
 
 void Rig::run(double time_s) {
   const auto slices = static_cast<int>(std::lround(time_s / slice_s));
-  const auto slices_per_sign = static_cast<int>(sign_of_life_s / slice_s);
   std::size_t received = 0;
   for (int slice = 1; slice <= slices; ++slice) {
     control.run(slice_s);
@@ -61,7 +60,8 @@ void Rig::run(double time_s) {
       REQUIRE_MESSAGE(arrived > 0, "the pose reports stopped");
       received += arrived;
     }
-    if (slice % slices_per_sign == 0) command(protocol::Command::heartbeat);
+    since_sign_of_life_s_ += slice_s;
+    if (since_sign_of_life_s_ >= sign_of_life_s) command(protocol::Command::heartbeat);
   }
 }
 
@@ -71,6 +71,7 @@ void Rig::set(std::initializer_list<device::ParameterChange> changes) {
 
 void Rig::command(protocol::Command command) {
   call([&](device::Device& arm) { arm.send(command); });
+  since_sign_of_life_s_ = 0;
 }
 
 void Rig::run_until(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {

@@ -51,6 +51,7 @@ class Rig {
 
  private:
   std::size_t collect(std::chrono::milliseconds timeout);
+  double since_sign_of_life_s_ = 0;
   std::vector<protocol::PoseReport> poses_;
 };
 
