@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -83,11 +84,18 @@ std::string plot_command(const std::vector<Curve>& curves) {
   return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
 }
 
+/// For a string in single quotes of gnuplot or the shell: `quote` stands for a quote within it.
+std::string quoted(const std::string& text, std::string_view quote) {
+  std::string result;
+  for (char character : text) character == '\'' ? result += quote : result += character;
+  return result;
+}
+
 std::string head(const FigureOptions& options, int number, const char* title) {
   const auto& parameters = options.parameters;
   const std::string subtitle = fmt::format(
       "Figure {}  ·  {}{}  ·  wall {}  ·  k = {} N/m, c = {} Ns/m  ·  line: mean of a millisecond, band: its extremes",
-      number, options.simulation ? "simulation  ·  " : "", options.arm, wall_name(options.wall),
+      number, options.simulation ? "simulation  ·  " : "", quoted(options.arm, "''"), wall_name(options.wall),
       parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m]);
   return fmt::format(
       "\nset output 'figure-{0}.png'\nunset label\n"
@@ -132,9 +140,8 @@ std::string script(const FigureOptions& options, const Recording& data) {
 }
 
 void run_gnuplot(const std::filesystem::path& directory) {
-  std::string quoted;
-  for (char character : directory.string()) quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
-  const std::string command = fmt::format("cd '{}' && gnuplot figures.gnuplot 2>&1", quoted);
+  const std::string command =
+      fmt::format("cd '{}' && gnuplot figures.gnuplot 2>&1", quoted(directory.string(), "'\\''"));
   std::FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) throw device::Error("gnuplot cannot be started: the system allows no more processes.");
   std::string said;

@@ -1,0 +1,289 @@
+#include "fake_usbip_server.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+namespace inkwell::tests {
+namespace {
+
+constexpr std::uint32_t pipe_error = static_cast<std::uint32_t>(-EPIPE);
+
+bool receive(int socket, void* data, std::size_t size) {
+  return size == 0 || recv(socket, data, size, MSG_WAITALL) == static_cast<ssize_t>(size);
+}
+
+void put32(Bytes& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::byte>(value >> shift));
+}
+void put16(Bytes& bytes, std::uint16_t value) {
+  bytes.push_back(static_cast<std::byte>(value >> 8));
+  bytes.push_back(static_cast<std::byte>(value));
+}
+
+Bytes bytes(std::initializer_list<int> values) {
+  Bytes result;
+  for (int value : values) result.push_back(static_cast<std::byte>(value));
+  return result;
+}
+
+/// HID with two interrupt endpoints, then a vendor interface with one bulk endpoint.
+Bytes default_configuration() {
+  return bytes({9, 2, 57, 0, 2, 1, 0, 0x80, 50,                          //
+                9, 4, 0, 0, 2, 3, 0, 0, 0,                               //
+                9, 0x21, 0x11, 1, 0, 1, 0x22, 64, 0,                     //
+                7, 5, 0x81, 3, 64, 0, 1, 7, 5, 0x01, 3, 64, 0, 1,        //
+                9, 4, 1, 0, 1, 0xFF, 0, 0, 0, 7, 5, 0x82, 2, 64, 0, 0});
+}
+
+Bytes string_descriptor(const std::string& text) {
+  Bytes descriptor = bytes({static_cast<int>(2 + 2 * text.size()), 3});
+  for (char character : text) {
+    descriptor.push_back(static_cast<std::byte>(character));
+    descriptor.push_back(std::byte{0});
+  }
+  return descriptor;
+}
+
+}  // namespace
+
+FakeUsbipServer::FakeUsbipServer() : configuration(default_configuration()) {
+  information.report_id = protocol::ReportId::information;
+  information.version = protocol::protocol_version;
+  information.parameter_table_hash = protocol::parameter_table_hash;
+  information.signal_table_hash = protocol::signal_table_hash;
+  information.servo_rate_Hz = protocol::servo_rate_Hz;
+  transaction_.report_id = protocol::ReportId::transaction;
+  listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  bind(listener_, reinterpret_cast<sockaddr*>(&address), size);
+  listen(listener_, 4);
+  getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
+  port_ = ntohs(address.sin_port);
+  thread_ = std::thread([this] { accept_clients(); });
+}
+
+FakeUsbipServer::~FakeUsbipServer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    if (client_ >= 0) shutdown(client_, SHUT_RDWR);
+  }
+  shutdown(listener_, SHUT_RDWR);
+  thread_.join();
+  close(listener_);
+}
+
+device::Endpoint FakeUsbipServer::endpoint() const {
+  return {device::Endpoint::Kind::usbip, "", "", "1-1", "127.0.0.1", port_};
+}
+
+void FakeUsbipServer::accept_clients() {
+  for (;;) {
+    const int client = accept(listener_, nullptr, nullptr);
+    if (client < 0) return;
+    {
+      const std::lock_guard lock(mutex_);
+      client_ = client;
+      if (stopping_) shutdown(client, SHUT_RDWR);
+    }
+    serve(client);
+    const std::lock_guard lock(mutex_);
+    close(client);
+    client_ = -1;
+    waiting_.clear();
+    ready_.clear();
+  }
+}
+
+void FakeUsbipServer::serve(int client) {
+  std::array<std::uint8_t, 8> request{};
+  if (!receive(client, request.data(), request.size())) return;
+  const bool imports_device = request[3] == 0x03;
+  std::array<char, 32> bus_id{};
+  if (imports_device && !receive(client, bus_id.data(), bus_id.size())) return;
+
+  Bytes reply;
+  put16(reply, 0x0111);
+  put16(reply, imports_device ? 0x0003 : 0x0005);
+  const bool refused = imports_device && (refuses_import || std::strcmp(bus_id.data(), "1-1") != 0);
+  put32(reply, refused ? 1 : 0);
+  if (!imports_device) put32(reply, 1);
+  if (!refused) {
+    Bytes description(288);
+    std::memcpy(description.data() + 256, "1-1", 3);
+    put32(description, 1);
+    put32(description, 2);
+    put32(description, 2);
+    put16(description, 0x1209);
+    put16(description, product_id);
+    put16(description, 0x0100);
+    const Bytes tail = bytes({0, 0, 0, 1, 1, 2});
+    description.insert(description.end(), tail.begin(), tail.end());
+    reply.insert(reply.end(), description.begin(), description.end());
+    if (!imports_device) reply.resize(reply.size() + 8);
+  }
+  ::send(client, reply.data(), reply.size(), MSG_NOSIGNAL);
+  if (imports_device && !refused) {
+    {
+      const std::lock_guard lock(mutex_);
+      ++imports_;
+    }
+    serve_transfers(client);
+  }
+}
+
+void FakeUsbipServer::serve_transfers(int client) {
+  for (;;) {
+    std::array<std::uint8_t, 48> message{};
+    if (!receive(client, message.data(), message.size())) return;
+    const auto number = [&](std::size_t at) {
+      return static_cast<std::uint32_t>(message[at]) << 24 | static_cast<std::uint32_t>(message[at + 1]) << 16 |
+             static_cast<std::uint32_t>(message[at + 2]) << 8 | message[at + 3];
+    };
+    const std::uint32_t command = number(0), sequence = number(4), length = number(24);
+    const bool is_in = number(12) == 1;
+    const auto endpoint = static_cast<std::uint8_t>(number(16));
+    if (command != 1) return;
+    Bytes data(is_in ? 0 : length);
+    if (!receive(client, data.data(), data.size())) return;
+    const std::lock_guard lock(mutex_);
+    if (endpoint == 0) {
+      std::uint8_t setup[8];
+      std::memcpy(setup, message.data() + 40, 8);
+      const auto result = answer_control(setup, data);
+      const Bytes empty;
+      answer(client, sequence, result ? 0 : -EPIPE, result && is_in ? *result : empty,
+             is_in ? 0 : static_cast<std::uint32_t>(data.size()));
+    } else if (is_in) {
+      waiting_[endpoint].push_back(sequence);
+      match(endpoint);
+    } else {
+      protocol::CommandReport report{};
+      std::memcpy(&report, data.data(), std::min(data.size(), sizeof report));
+      commands_.push_back(report);
+      answer(client, sequence, 0, {}, static_cast<std::uint32_t>(data.size()));
+    }
+  }
+}
+
+void FakeUsbipServer::match(std::uint8_t endpoint) {
+  auto& waiting = waiting_[endpoint];
+  auto& ready = ready_[endpoint];
+  while (!waiting.empty() && !ready.empty()) {
+    answer(client_, waiting.front(), 0, ready.front(), 0);
+    waiting.pop_front();
+    ready.pop_front();
+  }
+}
+
+void FakeUsbipServer::answer(int client, std::uint32_t sequence, std::int32_t status, const Bytes& data,
+                             std::uint32_t length) {
+  Bytes reply;
+  put32(reply, 3);
+  put32(reply, sequence);
+  for (int i = 0; i < 3; ++i) put32(reply, 0);
+  put32(reply, status == 0 ? 0 : pipe_error);
+  put32(reply, data.empty() ? length : static_cast<std::uint32_t>(data.size()));
+  reply.resize(48);
+  reply.insert(reply.end(), data.begin(), data.end());
+  ::send(client, reply.data(), reply.size(), MSG_NOSIGNAL);
+}
+
+std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)[8], const Bytes& data) {
+  const auto limited = [&](Bytes reply) {
+    const std::size_t length = setup[6] | static_cast<std::size_t>(setup[7]) << 8;
+    reply.resize(std::min(reply.size(), length));
+    return reply;
+  };
+  if (setup[0] == 0x80 && setup[1] == 6) {
+    switch (setup[3]) {
+      case 1: return limited(bytes({18, 1, 0, 2, 0, 0, 0, 64, 0x09, 0x12, 1, 0, 0, 1, 1, 2, 3, 1}));
+      case 2: return limited(configuration);
+      case 3: return limited(string_descriptor(setup[2] == 3 ? "0123456789ABCDEF01234567" : "Inkwell haptic arm"));
+      default: return std::nullopt;
+    }
+  }
+  if (setup[0] == 0x00 && setup[1] == 9) return Bytes{};
+  if (setup[0] == 0xA1 && setup[1] == 1 && setup[3] == 3) {
+    switch (static_cast<protocol::ReportId>(setup[2])) {
+      case protocol::ReportId::information: return limited(bytes_of(information));
+      case protocol::ReportId::transaction: return limited(bytes_of(transaction_));
+      case protocol::ReportId::parameters: {
+        protocol::ParametersReport report{};
+        report.report_id = protocol::ReportId::parameters;
+        report.version = protocol::protocol_version;
+        report.count = protocol::parameter_count;
+        for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+          report.entries[i] = {protocol::parameter_table[i].id, 0, parameters.values[i]};
+        return limited(bytes_of(report));
+      }
+      default: return std::nullopt;
+    }
+  }
+  if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x11) {
+    protocol::ParametersReport report{};
+    std::memcpy(&report, data.data(), std::min(data.size(), sizeof report));
+    transaction_.refusal = judge(report);
+    transaction_.parameter_id = transaction_.refusal == protocol::Refusal::accepted ? std::uint16_t{0} : report.entries[0].id;
+    transaction_.value = report.entries[0].value;
+    ++transaction_.transactions;
+    if (transaction_.refusal != protocol::Refusal::accepted) return stalls_refusals ? std::nullopt : std::optional(Bytes{});
+    if (report.operation == protocol::ParameterOperation::restore_defaults) parameters = protocol::default_parameters();
+    for (std::size_t i = 0; i < report.count; ++i)
+      if (const auto parameter = protocol::find_parameter(report.entries[i].id)) parameters[*parameter] = report.entries[i].value;
+    return Bytes{};
+  }
+  return std::nullopt;
+}
+
+void FakeUsbipServer::send(std::uint8_t endpoint, Bytes data) {
+  const std::lock_guard lock(mutex_);
+  ready_[endpoint].push_back(std::move(data));
+  match(endpoint);
+}
+
+void FakeUsbipServer::hang_up() {
+  const std::lock_guard lock(mutex_);
+  if (client_ >= 0) shutdown(client_, SHUT_RDWR);
+}
+
+std::vector<protocol::CommandReport> FakeUsbipServer::commands() {
+  const std::lock_guard lock(mutex_);
+  return commands_;
+}
+
+std::size_t FakeUsbipServer::waiting_transfers(std::uint8_t endpoint) {
+  const std::lock_guard lock(mutex_);
+  return waiting_[endpoint].size();
+}
+
+std::size_t FakeUsbipServer::transactions() {
+  const std::lock_guard lock(mutex_);
+  return transaction_.transactions;
+}
+
+std::size_t FakeUsbipServer::imports() {
+  const std::lock_guard lock(mutex_);
+  return imports_;
+}
+
+bool eventually(const std::function<bool()>& condition) {
+  for (int i = 0; i < 5000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return condition();
+}
+
+}  // namespace inkwell::tests

@@ -1,0 +1,85 @@
+// A USB/IP server with a device of Inkwell's shape, for tests: what it answers is set by the test.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <device/link.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell::tests {
+
+using Bytes = std::vector<std::byte>;
+
+template <class Report>
+Bytes bytes_of(const Report& report) {
+  const auto bytes = std::as_bytes(std::span(&report, 1));
+  return {bytes.begin(), bytes.end()};
+}
+
+class FakeUsbipServer {
+ public:
+  FakeUsbipServer();
+  ~FakeUsbipServer();
+
+  std::uint16_t port() const { return port_; }
+  device::Endpoint endpoint() const;
+
+  // Set before a client comes.
+  std::uint16_t product_id = 0x0001;
+  bool refuses_import = false;
+  Bytes configuration;  ///< descriptor
+  protocol::InformationReport information{};
+  protocol::ParameterSet parameters = protocol::default_parameters();
+  /// What becomes of a transaction; called with its entries.
+  std::function<protocol::Refusal(const protocol::ParametersReport&)> judge =
+      [](const protocol::ParametersReport&) { return protocol::Refusal::accepted; };
+  bool stalls_refusals = false;
+
+  /// Answers the oldest waiting transfer of this IN endpoint (1 pose, 2 scope), now or when it comes.
+  void send(std::uint8_t endpoint, Bytes data);
+  /// Cuts the connection, as a board that was stopped would.
+  void hang_up();
+
+  std::vector<protocol::CommandReport> commands();
+  std::size_t waiting_transfers(std::uint8_t endpoint);
+  std::size_t transactions();
+  std::size_t imports();
+
+ private:
+  struct Waiting {
+    std::uint32_t sequence;
+  };
+  void accept_clients();
+  void serve(int client);
+  void serve_transfers(int client);
+  void match(std::uint8_t endpoint);
+  void answer(int client, std::uint32_t sequence, std::int32_t status, const Bytes& data, std::uint32_t length);
+  std::optional<Bytes> answer_control(const std::uint8_t (&setup)[8], const Bytes& data);
+
+  int listener_ = -1;
+  std::uint16_t port_ = 0;
+  std::thread thread_;
+  std::mutex mutex_;
+  int client_ = -1;
+  bool stopping_ = false;
+  std::map<std::uint8_t, std::deque<std::uint32_t>> waiting_;
+  std::map<std::uint8_t, std::deque<Bytes>> ready_;
+  std::vector<protocol::CommandReport> commands_;
+  protocol::TransactionReport transaction_{};
+  std::size_t imports_ = 0;
+};
+
+/// Waits, at most five seconds, until the condition holds.
+bool eventually(const std::function<bool()>& condition);
+
+}  // namespace inkwell::tests

@@ -1,0 +1,110 @@
+#include <doctest/doctest.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include <device/parameter_file.hpp>
+
+using namespace inkwell;
+using protocol::Parameter;
+
+namespace {
+
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const device::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const char* words) { return text.find(words) != std::string::npos; }
+
+struct TemporaryFile {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("inkwell-parameters-" + std::to_string(getpid()) + ".toml");
+  ~TemporaryFile() { std::filesystem::remove(path); }
+};
+
+}  // namespace
+
+TEST_CASE("parameters come back from a file exactly as they were") {
+  auto parameters = protocol::default_parameters();
+  parameters[Parameter::wall_stiffness_N_per_m] = 0.1f * 7777.0f;
+  parameters[Parameter::box_minimum_x_m] = -0.0712345678f;
+  const TemporaryFile file;
+  device::save_parameters(file.path, parameters);
+  const auto loaded = device::load_parameters(file.path);
+  CHECK(loaded.unknown.empty());
+  REQUIRE(loaded.changes.size() == protocol::parameter_count);
+  for (const auto& [parameter, value] : loaded.changes) CHECK(value == parameters[parameter]);
+  CHECK(compare(loaded, parameters).empty());
+}
+
+TEST_CASE("differences between a file and a device are named") {
+  const auto file = device::parse_parameters("[parameters]\nforce_limit_N = 1.5\nsphere_radius_m = 0.005\n", "soft.toml");
+  const auto differences = compare(file, protocol::default_parameters());
+  REQUIRE(differences.size() == 1);
+  CHECK(differences[0].parameter == Parameter::force_limit_N);
+  CHECK(differences[0].in_file == 1.5f);
+  CHECK(differences[0].in_device == protocol::info(Parameter::force_limit_N).default_value);
+}
+
+TEST_CASE("names that this version does not know are returned, not refused") {
+  const auto file = device::parse_parameters("[parameters]\nforce_limit_N = 2\nmagic_N = 1\n[motor]\nx = 1\n", "new.toml");
+  CHECK(file.changes.size() == 1);
+  REQUIRE(file.unknown.size() == 1);
+  CHECK(file.unknown[0] == "magic_N");
+}
+
+TEST_CASE("a bad file is refused with its line and the remedy") {
+  const auto refusal = [](const char* text) {
+    return message_of([&] { device::parse_parameters(text, "bad.toml"); });
+  };
+  const auto not_toml = refusal("[parameters]\nforce_limit_N = = 2\n");
+  CHECK(contains(not_toml, "bad.toml, line 2"));
+  const auto too_large = refusal("[parameters]\n\nforce_limit_N = 80.0\n");
+  CHECK(contains(too_large, "line 3"));
+  CHECK(contains(too_large, "0.0 to 8.0 N"));
+  CHECK(contains(refusal("[parameters]\nforce_limit_N = \"soft\"\n"), "not a number"));
+  CHECK(contains(refusal("[parameters]\nforce_limit_N = nan\n"), "force_limit_N"));
+  CHECK(contains(refusal("[parameters]\ntransmission = 0.5\n"), "whole number"));
+  CHECK(contains(refusal("force_limit_N = 2\n"), "[parameters]"));
+  CHECK(contains(message_of([] { device::load_parameters("/nowhere/at/all.toml"); }), "/nowhere/at/all.toml"));
+}
+
+TEST_CASE("a file that cannot be written leaves the old one alone") {
+  CHECK(contains(message_of([] { device::save_parameters("/nowhere/at/all.toml", protocol::default_parameters()); }),
+                 "cannot be written"));
+}
+
+TEST_CASE("a mistyped name gets the nearest one suggested") {
+  CHECK(device::nearest_parameter_name("wall_stifness_N_per_m") == "wall_stiffness_N_per_m");
+  CHECK(device::nearest_parameter_name("box_minimum_x") == "box_minimum_x_m");
+  CHECK(contains(message_of([] { device::parameter_named("force_limit"); }), "force_limit_N"));
+}
+
+TEST_CASE("NAME=VALUE is read, and refused with what would be right") {
+  const auto [parameter, value] = device::parse_change("wall_damping_Ns_per_m=2.5");
+  CHECK(parameter == Parameter::wall_damping_Ns_per_m);
+  CHECK(value == 2.5f);
+  const auto refusal = [](const char* text) { return message_of([&] { device::parse_change(text); }); };
+  CHECK(contains(refusal("wall_damping_Ns_per_m"), "NAME=VALUE"));
+  CHECK(contains(refusal("wall_damping_Ns_per_m="), "not a number"));
+  CHECK(contains(refusal("wall_damping_Ns_per_m=2,5"), "not a number"));
+  CHECK(contains(refusal("wall_damping_Ns_per_m=20.5"), "0.0 to 20.0 Ns/m"));
+  CHECK(contains(refusal("wall_damping_Ns_per_m=inf"), "range"));
+  CHECK(contains(refusal("encoder_1_counts_per_turn=1440.5"), "whole number"));
+}
+
+TEST_CASE("values are written in their shortest exact form") {
+  CHECK(device::format_value(Parameter::force_limit_N, 3.3f) == "3.3");
+  CHECK(device::format_value(Parameter::force_limit_N, 3.0f) == "3.0");
+  CHECK(device::format_value(Parameter::encoder_1_counts_per_turn, 1440.0f) == "1440");
+  CHECK(device::format_value(Parameter::encoder_1_counts_per_turn, 1000000.0f) == "1000000");
+}

@@ -1,0 +1,109 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include <device/session.hpp>
+
+#include "fake_usbip_server.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using device::Connection;
+using protocol::Parameter;
+
+namespace {
+
+bool was_sent(FakeUsbipServer& server, protocol::Command command) {
+  const auto commands = server.commands();
+  return std::any_of(commands.begin(), commands.end(), [&](const auto& report) { return report.command == command; });
+}
+
+std::size_t count_of(FakeUsbipServer& server, protocol::Command command) {
+  const auto commands = server.commands();
+  return static_cast<std::size_t>(
+      std::count_if(commands.begin(), commands.end(), [&](const auto& report) { return report.command == command; }));
+}
+
+bool is_connected(const device::Session& session) { return session.status().connection == Connection::connected; }
+
+}  // namespace
+
+TEST_CASE("a session connects, shows pose and parameters, and gives its sign of life") {
+  FakeUsbipServer server;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  CHECK(session.status().information->serial_number == "0123456789ABCDEF01234567");
+  CHECK(session.parameters() == server.parameters);
+  CHECK(eventually([&] { return count_of(server, protocol::Command::heartbeat) >= 3; }));
+
+  protocol::PoseReport pose{};
+  pose.report_id = protocol::ReportId::pose;
+  for (std::uint32_t sequence : {10u, 11u, 15u}) {
+    pose.sequence = sequence;
+    server.send(1, bytes_of(pose));
+  }
+  REQUIRE(eventually([&] { return session.status().poses_received == 3; }));
+  CHECK(session.newest_pose()->sequence == 15);
+  CHECK(session.status().poses_lost == 3);
+}
+
+TEST_CASE("changes asked for in a burst go out together, the last value of each parameter") {
+  FakeUsbipServer server;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  // Queued before there is a device, so all of them are merged into one transaction.
+  session.set_parameters({{Parameter::force_limit_N, 1.0f}});
+  session.set_parameters({{Parameter::force_limit_N, 2.0f}, {Parameter::sphere_radius_m, 0.004f}});
+  REQUIRE(eventually([&] { return server.transactions() > 0; }));
+  REQUIRE(eventually([&] { return session.parameters_revision() >= 2; }));
+  CHECK((*session.parameters())[Parameter::force_limit_N] == 2.0f);
+  CHECK((*session.parameters())[Parameter::sphere_radius_m] == 0.004f);
+  CHECK(server.transactions() <= 2);
+  CHECK_FALSE(session.refusal());
+}
+
+TEST_CASE("a refusal is kept until another transaction is accepted") {
+  FakeUsbipServer server;
+  server.judge = [](const protocol::ParametersReport& report) {
+    return report.entries[0].value > 3 ? protocol::Refusal::out_of_range : protocol::Refusal::accepted;
+  };
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  session.set_parameters({{Parameter::force_limit_N, 4.0f}});
+  REQUIRE(eventually([&] { return session.refusal().has_value(); }));
+  CHECK(session.refusal()->find("force_limit_N") != std::string::npos);
+  CHECK(session.parameters() == protocol::default_parameters());
+  session.set_parameters({{Parameter::force_limit_N, 1.0f}});
+  CHECK(eventually([&] { return !session.refusal(); }));
+}
+
+TEST_CASE("a session comes back by itself, selects its signals again, and repeats no command") {
+  FakeUsbipServer server;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  session.select_signals({protocol::Signal::force_N});
+  REQUIRE(eventually([&] { return was_sent(server, protocol::Command::select_signals); }));
+  session.send(protocol::Command::enable_force);
+  REQUIRE(eventually([&] { return was_sent(server, protocol::Command::enable_force); }));
+  server.hang_up();
+  REQUIRE(eventually([&] { return server.imports() == 2 && is_connected(session); }));
+  CHECK(eventually([&] { return count_of(server, protocol::Command::select_signals) == 2; }));
+  CHECK(count_of(server, protocol::Command::enable_force) == 1);
+}
+
+TEST_CASE("a session says why it is not connected") {
+  SUBCASE("nothing there") {
+    device::Session session([]() -> std::optional<device::Endpoint> { return std::nullopt; });
+    CHECK(eventually([&] { return !session.status().message.empty(); }));
+    CHECK(session.status().connection == Connection::searching);
+    CHECK_FALSE(session.newest_pose());
+  }
+  SUBCASE("another version") {
+    FakeUsbipServer server;
+    server.information.version = 99;
+    device::Session session([&] { return std::optional(server.endpoint()); });
+    CHECK(eventually([&] { return session.status().connection == Connection::incompatible; }));
+    CHECK(session.status().message.find("99") != std::string::npos);
+  }
+  SUBCASE("no permission") {
+    device::Session session([]() -> std::optional<device::Endpoint> { throw device::NoPermission("Write the udev line."); });
+    CHECK(eventually([&] { return session.status().connection == Connection::no_permission; }));
+  }
+}

@@ -1,0 +1,205 @@
+// The device library against a USB/IP server: identity, poses, commands, parameters, scope, and every way in
+// which the other end can fail.
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include <device/device.hpp>
+
+#include "fake_usbip_server.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using namespace std::chrono_literals;
+using protocol::Parameter;
+
+namespace {
+
+protocol::PoseReport pose_number(std::uint32_t sequence) {
+  protocol::PoseReport pose{};
+  pose.report_id = protocol::ReportId::pose;
+  pose.state = protocol::State::ready;
+  pose.sequence = sequence;
+  pose.time_periods = 20 * sequence;
+  pose.position_m[2] = 0.125f;
+  return pose;
+}
+
+template <class Failure>
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Failure& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const char* words) { return text.find(words) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("a USB/IP server is asked for arms, and other devices are passed over") {
+  FakeUsbipServer server;
+  const auto found = device::find_usbip_devices("127.0.0.1", server.port());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].path == "1-1");
+  server.product_id = 0x0BAD;
+  CHECK(device::find_usbip_devices("127.0.0.1", server.port()).empty());
+}
+
+TEST_CASE("an arm on USB/IP tells who it is and streams its pose") {
+  FakeUsbipServer server;
+  server.information.firmware_version[1] = 3;
+  const auto arm = device::Device::open(server.endpoint());
+  const auto information = arm->information();
+  CHECK(information.firmware_version == "0.3.0");
+  CHECK(information.serial_number == "0123456789ABCDEF01234567");
+  CHECK_FALSE(arm->read_pose(1ms));
+  server.send(1, Bytes(5, std::byte{1}));  // not a pose: passed over
+  for (std::uint32_t i = 0; i < 100; ++i) server.send(1, bytes_of(pose_number(i)));
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const auto pose = arm->read_pose(1s);
+    REQUIRE(pose);
+    CHECK(pose->sequence == i);
+    CHECK(pose->position_m[2] == 0.125f);
+  }
+}
+
+TEST_CASE("enough transfers are under way that a late reader loses nothing") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  CHECK(eventually([&] { return server.waiting_transfers(2) >= 60; }));  // 60 frames of 2 KiB are 100 ms
+  CHECK(eventually([&] { return server.waiting_transfers(1) >= 16; }));
+}
+
+TEST_CASE("commands carry version and a token that is never 0") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  for (int i = 0; i < 300; ++i) CHECK(arm->send(protocol::Command::heartbeat) != 0);
+  arm->send(protocol::Command::test_current, {2, 0.5f, 0.04f});
+  REQUIRE(eventually([&] { return server.commands().size() == 301; }));
+  const auto commands = server.commands();
+  CHECK(commands[0].version == protocol::protocol_version);
+  CHECK(commands[0].token != commands[1].token);
+  CHECK(commands[300].command == protocol::Command::test_current);
+  CHECK(commands[300].test.motor == 2);
+  CHECK(commands[300].test.amplitude == 0.5f);
+}
+
+TEST_CASE("keep_alive follows board time where that is faster than the clock") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  arm->send(protocol::Command::heartbeat);
+  auto pose = pose_number(1);
+  pose.time_periods = 10'000;
+  server.send(1, bytes_of(pose));
+  REQUIRE(arm->read_pose(1s));
+  arm->keep_alive();
+  CHECK(eventually([&] { return server.commands().size() >= 2; }));
+}
+
+TEST_CASE("parameters are read, set as one transaction, and restored") {
+  FakeUsbipServer server;
+  server.parameters[Parameter::force_limit_N] = 1.25f;
+  const auto arm = device::Device::open(server.endpoint());
+  CHECK(arm->parameters() == server.parameters);
+  const std::vector<device::ParameterChange> changes{{Parameter::box_minimum_x_m, -0.01f}, {Parameter::box_maximum_x_m, 0.02f}};
+  CHECK(arm->set_parameters(changes).transactions == 1);
+  CHECK(server.transactions() == 1);
+  CHECK(arm->parameters()[Parameter::box_maximum_x_m] == 0.02f);
+  arm->restore_default_parameters();
+  CHECK(arm->parameters() == protocol::default_parameters());
+}
+
+TEST_CASE("a refusal names the parameter, the reason and the range, whether the device stalls or not") {
+  FakeUsbipServer server;
+  server.judge = [](const auto&) { return protocol::Refusal::out_of_range; };
+  SUBCASE("with a stall") { server.stalls_refusals = true; }
+  SUBCASE("without") {}
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 9.0f}};
+  const auto message = message_of<device::Refused>([&] { arm->set_parameters(changes); });
+  CHECK(contains(message, "force_limit_N = 9"));
+  CHECK(contains(message, "0 to 8 N"));
+}
+
+TEST_CASE("a transaction that meets a busy device is tried again") {
+  FakeUsbipServer server;
+  int attempts = 0;
+  server.judge = [&](const auto&) { return ++attempts < 3 ? protocol::Refusal::busy : protocol::Refusal::accepted; };
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 2.0f}};
+  CHECK(arm->set_parameters(changes).refusal == protocol::Refusal::accepted);
+  CHECK(server.transactions() == 3);
+}
+
+TEST_CASE("firmware of another protocol version is refused with the remedy") {
+  FakeUsbipServer server;
+  SUBCASE("version") {
+    server.information.version = protocol::protocol_version + 1;
+    const auto message = message_of<device::Incompatible>([&] { device::Device::open(server.endpoint()); });
+    CHECK(contains(message, "version 2"));
+    CHECK(contains(message, "Flash"));
+  }
+  SUBCASE("tables") {
+    server.information.parameter_table_hash ^= 1u;
+    CHECK(contains(message_of<device::Incompatible>([&] { device::Device::open(server.endpoint()); }), "parameters"));
+  }
+}
+
+TEST_CASE("scope frames arrive decoded; empty transfers between them are nothing") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<protocol::Signal> signals{protocol::Signal::force_N};
+  const auto token = arm->select_signals(signals);
+  protocol::ScopeFrameHeader header{};
+  header.first_period = 77;
+  header.sample_count = 1;
+  header.signal_count = 1;
+  header.selection_token = token;
+  header.length = sizeof header + 4;
+  Bytes frame = bytes_of(header);
+  const Bytes value = bytes_of(2.5f);
+  frame.insert(frame.end(), value.begin(), value.end());
+  server.send(2, {});
+  server.send(2, Bytes(64, std::byte{0xAA}));
+  server.send(2, frame);
+  const auto samples = arm->read_scope(1s);
+  REQUIRE(samples);
+  CHECK(samples->first_period == 77);
+  CHECK(samples->values == std::vector<float>{2.5f});
+  CHECK(arm->malformed_scope_frames() == 1);
+  CHECK_FALSE(arm->read_scope(1ms));
+}
+
+TEST_CASE("a connection that breaks is told as Disconnected, in every call") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  server.send(1, bytes_of(pose_number(1)));
+  REQUIRE(arm->read_pose(1s));
+  server.hang_up();
+  CHECK_THROWS_AS(arm->read_pose(5s), device::Disconnected);
+  CHECK_THROWS_AS(arm->read_scope(5s), device::Disconnected);
+  CHECK_THROWS_AS(arm->information(), device::Disconnected);
+  CHECK_THROWS_AS(arm->send(protocol::Command::heartbeat), device::Disconnected);
+}
+
+TEST_CASE("a device that is in use, or is none of ours, is refused") {
+  FakeUsbipServer server;
+  SUBCASE("in use") {
+    server.refuses_import = true;
+    CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "another program"));
+  }
+  SUBCASE("without a scope") {
+    server.configuration.resize(41);
+    CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "scope"));
+  }
+  SUBCASE("damaged descriptor") {
+    server.configuration[9] = std::byte{0};
+    CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "damaged"));
+  }
+  SUBCASE("nobody there") {
+    CHECK(contains(message_of<device::Error>([] { device::find_usbip_devices("127.0.0.1", 1); }), "Nothing answers"));
+  }
+}
