@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <imgui_stdlib.h>
 
-#include <window/parameter_file.hpp>
+#include <device/parameter_file.hpp>
 
 namespace inkwell::window {
 
@@ -53,10 +53,11 @@ void TuningPanel::load(const std::filesystem::path& path, ParameterEditor& edito
   path_ = path.string();
   messages_.clear();
   try {
-    const LoadedParameters loaded = load_parameters(path);
-    editor.apply("load " + path.filename().string(), loaded.changes, now_s);
-    messages_ = loaded.remarks;
-    messages_.insert(messages_.begin(), fmt::format("Loaded {} values from {}.", loaded.changes.size(), path.filename().string()));
+    const device::ParameterFile file = device::load_parameters(path);
+    editor.apply("load " + path.filename().string(), file.changes, now_s);
+    messages_ = {fmt::format("Loaded {} values from {}.", file.changes.size(), path.filename().string())};
+    for (const std::string& name : file.unknown)
+      messages_.push_back(fmt::format("This version does not know {}; it was left out.", name));
     message_is_error_ = false;
   } catch (const device::Error& error) {
     messages_ = {error.what()};
@@ -67,7 +68,7 @@ void TuningPanel::load(const std::filesystem::path& path, ParameterEditor& edito
 void TuningPanel::save(const ParameterEditor& editor) {
   messages_.clear();
   try {
-    save_text(path_, format_parameters(editor.shown()));
+    device::save_parameters(path_, editor.shown());
     messages_ = {fmt::format("Saved all parameters in {}.", path_)};
     message_is_error_ = false;
   } catch (const device::Error& error) {

@@ -12,8 +12,6 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-#include <window/parameter_file.hpp>
-
 #include "companion.hpp"
 #include "display.hpp"
 #include "renderer.hpp"
@@ -56,12 +54,18 @@ WindowSettings remembered_settings(const WindowOptions& options) {
 void remember_settings(const WindowSettings& settings) {
   const auto path = window_settings_path();
   if (path.empty()) return;
+  // A new file first, so that a full disk leaves the old one whole.
+  const std::filesystem::path unfinished = path.string() + ".new";
   std::error_code error;
   std::filesystem::create_directories(path.parent_path(), error);
-  try {
-    save_text(path, format_settings(settings));
-  } catch (const device::Error& failure) {
-    fmt::print(stderr, "The window's settings were not kept: {}\n", failure.what());
+  std::ofstream stream(unfinished);
+  stream << format_settings(settings);
+  stream.close();
+  if (stream) {
+    std::filesystem::rename(unfinished, path, error);
+  } else {
+    std::filesystem::remove(unfinished, error);
+    fmt::print(stderr, "The window's settings could not be kept in {}. Check that its disk is not full.\n", path.string());
   }
 }
 
