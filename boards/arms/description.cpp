@@ -31,7 +31,8 @@ class Section {
  public:
   Section(const toml::table& file, std::string_view name, const std::string& source) : name_(name), source_(source) {
     const auto* node = file.get(name);
-    if (node == nullptr) throw DescriptionError(fmt::format("{}: the section [{}] is missing; see omni.toml.", source, name));
+    if (node == nullptr)
+      throw DescriptionError(fmt::format("{}: the section [{}] is missing; see omni.toml.", source, name));
     table_ = node->as_table();
     if (table_ == nullptr) fail(*node, fmt::format("{} must be a section: [{}]", name, name));
   }
@@ -58,7 +59,8 @@ class Section {
     const double value = *node.value<double>();
     if (!std::isfinite(value)) fail(node, fmt::format("{} must be a finite number", key));
     if (value < minimum || value > maximum)
-      fail(node, fmt::format("{} = {} is out of range; give a number from {:.6g} to {:.6g}", key, value, minimum, maximum));
+      fail(node,
+           fmt::format("{} = {} is out of range; give a number from {:.6g} to {:.6g}", key, value, minimum, maximum));
     return value;
   }
 
@@ -70,7 +72,8 @@ class Section {
   const toml::node& get(std::string_view key) const {
     const auto* node = table_->get(key);
     if (node == nullptr)
-      throw DescriptionError(fmt::format("{}: {} is missing in section [{}]; omni.toml shows every key.", source_, key, name_));
+      throw DescriptionError(
+          fmt::format("{}: {} is missing in section [{}]; omni.toml shows every key.", source_, key, name_));
     return *node;
   }
 
@@ -166,8 +169,8 @@ Description parse(std::string_view text, const std::string& source) {
   constexpr std::string_view sections[] = {"arm", "parameters", "motor", "simulation"};
   for (const auto& [key, node] : file)
     if (std::ranges::find(sections, key.str()) == std::end(sections))
-      throw DescriptionError(fmt::format("{}, line {}: there is no section or key {} at the top of the file: {}{}", source,
-                                         node.source().begin.line, key.str(), advice_for(key.str(), sections),
+      throw DescriptionError(fmt::format("{}, line {}: there is no section or key {} at the top of the file: {}{}",
+                                         source, node.source().begin.line, key.str(), advice_for(key.str(), sections),
                                          advice_for(key.str(), sections).ends_with('?') ? "" : "."));
 
   const Section arm(file, "arm", source);
@@ -185,8 +188,8 @@ Description parse(std::string_view text, const std::string& source) {
 Description read(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file))
-    throw DescriptionError(
-        fmt::format("{}: this arm description cannot be read. Check the path; boards/arms/ holds examples.", file.string()));
+    throw DescriptionError(fmt::format(
+        "{}: this arm description cannot be read. Check the path; boards/arms/ holds examples.", file.string()));
   std::stringstream text;
   text << stream.rdbuf();
   return parse(text.str(), file.string());

@@ -122,7 +122,11 @@ void Plant::update_legs(unsigned motor, Ticks now) {
   for (unsigned leg = 0; leg < 2; ++leg) {
     // A disabled or tripped bridge leaves the current to its diodes. A floating pin is low: the inputs have pull-downs.
     const bool off = !bridges_enabled_ || bridge_fault_;
-    motors_[motor].set_leg(leg, off ? Leg::floating : leg_pins_[motor][leg] == PinLevel::high ? Leg::high : Leg::low, now);
+    motors_[motor].set_leg(leg,
+                           off                                       ? Leg::floating
+                           : leg_pins_[motor][leg] == PinLevel::high ? Leg::high
+                                                                     : Leg::low,
+                           now);
   }
 }
 

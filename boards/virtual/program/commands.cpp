@@ -95,7 +95,10 @@ json status(const json&, Simulation& simulation) {
        {{"connected", board.usb().connected()},
         {"enumerated", board.usb().enumerated()},
         {"imported", board.usb().imported()}}},
-      {"trace", {{"running", board.trace().is_running()}, {"rows", board.trace().waiting()}, {"dropped", board.trace().dropped()}}},
+      {"trace",
+       {{"running", board.trace().is_running()},
+        {"rows", board.trace().waiting()},
+        {"dropped", board.trace().dropped()}}},
   };
   if (board.locked_up()) reply["locked_up"] = chip.lockup_reason();
   return reply;
@@ -162,8 +165,10 @@ json hand(const json& request, Simulation& simulation) {
   }
   const Hand& now = plant.hand();
   const Vector3 target_m = vector(request, "target_m", reach_m);
-  const double stiffness = number_or(request, "stiffness_N_per_m", now.stiffness_N_per_m(), 0.0, Hand::stiffness_maximum_N_per_m);
-  const double damping = number_or(request, "damping_Ns_per_m", now.damping_Ns_per_m(), 0.0, Hand::damping_maximum_Ns_per_m);
+  const double stiffness =
+      number_or(request, "stiffness_N_per_m", now.stiffness_N_per_m(), 0.0, Hand::stiffness_maximum_N_per_m);
+  const double damping =
+      number_or(request, "damping_Ns_per_m", now.damping_Ns_per_m(), 0.0, Hand::damping_maximum_Ns_per_m);
   plant.hold(target_m, stiffness, damping);
   return {};
 }

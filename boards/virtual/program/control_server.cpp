@@ -44,8 +44,10 @@ int listen_on(std::uint16_t& port) {
     const int error = errno;
     ::close(socket);
     if (error == EADDRINUSE)
-      throw std::runtime_error(fmt::format("port {} is in use; choose another with --control, or 0 for any free one.", port));
-    throw std::runtime_error(fmt::format("port {} cannot be opened: {}; choose another with --control.", port, std::strerror(error)));
+      throw std::runtime_error(
+          fmt::format("port {} is in use; choose another with --control, or 0 for any free one.", port));
+    throw std::runtime_error(
+        fmt::format("port {} cannot be opened: {}; choose another with --control.", port, std::strerror(error)));
   }
   ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
   port = ntohs(address.sin_port);

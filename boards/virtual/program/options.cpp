@@ -24,7 +24,8 @@ CommandLine read_command_line(int argc, char** argv) {
   options.arm = default_arm();
   CLI::App app{
       "Runs the ELF of an STM32F405 on a board made of software: the chip, bridges, motors and sensors, an arm and a\n"
-      "hand. Its USB device is exported by the USB/IP protocol; a control socket moves the hand, presses buttons, runs\n"
+      "hand. Its USB device is exported by the USB/IP protocol; a control socket moves the hand, presses buttons, "
+      "runs\n"
       "and stops the time, and tells what no real board could. Both listen on 127.0.0.1 only.\n"
       "When it is ready it prints one line: ready usbip=PORT control=PORT. Its log goes to stderr."};
   app.name("virtual-board");
@@ -56,7 +57,8 @@ CommandLine read_command_line(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options; firmware that ends by\n"
       "semihosting passes its own exit code on.\n"
-      "Control socket: one JSON object a line each way, such as {\"command\":\"status\"}. Commands: status, pause, run,\n"
+      "Control socket: one JSON object a line each way, such as {\"command\":\"status\"}. Commands: status, pause, "
+      "run,\n"
       "resume, reset, quit, usb, buttons, supply, bridge_fault, hand, hand_path, gimbal, dock, truth, trace.");
   try {
     app.parse(argc, argv);

@@ -109,10 +109,12 @@ TEST_CASE("a wrong unit is told the right one") {
   CHECK_SAYS(complaint(omni_with("link_2_m = 0.13335", "link_2_mm = 133.35")), "lengths are in metres: link_2_m.");
   CHECK_SAYS(complaint(omni_with("elbow_minimum_rad = ", "elbow_minimum_deg = ")),
              "angles are in radians: elbow_minimum_rad.");
-  CHECK_SAYS(complaint(omni_with("current_limit_1_A", "current_limit_1_mA")), "currents are in amperes: current_limit_1_A.");
+  CHECK_SAYS(complaint(omni_with("current_limit_1_A", "current_limit_1_mA")),
+             "currents are in amperes: current_limit_1_A.");
   CHECK_SAYS(complaint(omni_with("link_2_mass_kg", "link_2_mass_g")), "masses are in kilograms: link_2_mass_kg.");
   CHECK_SAYS(complaint(omni_with("inductance_H", "inductance_mH")), "inductances are in henries: inductance_H.");
-  CHECK_SAYS(complaint(omni_with("rotor_inertia_kg_m2", "rotor_inertia_gcm2")), "kilogram square metres: rotor_inertia_kg_m2.");
+  CHECK_SAYS(complaint(omni_with("rotor_inertia_kg_m2", "rotor_inertia_gcm2")),
+             "kilogram square metres: rotor_inertia_kg_m2.");
   CHECK_SAYS(complaint(omni_with("link_2_m = ", "link_2 = ")), "lengths are in metres: link_2_m.");
 }
 
@@ -120,7 +122,8 @@ TEST_CASE("a value out of range is refused with the range") {
   const auto text = complaint(omni_with("link_2_m = 0.13335", "link_2_m = 133.35"));
   CHECK_SAYS(text, "line 21: link_2_m = 133.35 is out of range; give a number from 0.02 to 1.");
   CHECK_SAYS(complaint(omni_with("resistance_ohm = 2.18", "resistance_ohm = 0")), "resistance_ohm = 0 is out of range");
-  CHECK_SAYS(complaint(omni_with("link_2_mass_kg = 0.055", "link_2_mass_kg = -1")), "link_2_mass_kg = -1 is out of range");
+  CHECK_SAYS(complaint(omni_with("link_2_mass_kg = 0.055", "link_2_mass_kg = -1")),
+             "link_2_mass_kg = -1 is out of range");
 }
 
 TEST_CASE("a value that is no finite or whole number is refused") {
@@ -129,7 +132,8 @@ TEST_CASE("a value that is no finite or whole number is refused") {
   CHECK_SAYS(complaint(omni_with("link_2_m = 0.13335", "link_2_m = nan")), "link_2_m must be a finite number");
   CHECK_SAYS(complaint(omni_with("link_2_m = 0.13335", "link_2_m = inf")), "link_2_m must be a finite number");
   CHECK_SAYS(complaint(omni_with("counts_per_turn = 1440", "counts_per_turn = 1440.5")), "must be a whole number");
-  CHECK_SAYS(complaint(omni_with("transmission = 1", "transmission = 0.5")), "transmission = 0.5 must be a whole number");
+  CHECK_SAYS(complaint(omni_with("transmission = 1", "transmission = 0.5")),
+             "transmission = 0.5 must be a whole number");
   CHECK_SAYS(complaint(omni_with("name = \"PHANTOM Omni\"", "name = 3")), "name must be a text in quotes");
   CHECK_SAYS(complaint("arm = 3\n"), "arm must be a section");
 }

@@ -71,7 +71,8 @@ TEST_CASE("a voltage step drives the current along R and L") {
   const double time_constant_s = inductance_H / resistance_ohm;
   for (const double at_s : {20e-6, 50e-6, 108e-6, 300e-6, 2e-3}) {
     motor.advance(ticks(at_s));
-    CHECK(motor.current_A() == doctest::Approx(bus_V / resistance_ohm * (1.0 - std::exp(-at_s / time_constant_s))).epsilon(1e-6));
+    CHECK(motor.current_A() ==
+          doctest::Approx(bus_V / resistance_ohm * (1.0 - std::exp(-at_s / time_constant_s))).epsilon(1e-6));
   }
   // Charge is the current's integral: V t / R minus what the inductance keeps.
   const auto charges = motor.take_charges();
@@ -94,7 +95,8 @@ TEST_CASE("the ripple is that of unipolar switching, and its mean stands at the 
   Ticks now = 0;
   const auto ripple = switch_bridge(motor, 0.5, 1000, now);
   CHECK(ripple.mean_A == doctest::Approx(0.5 * bus_V / resistance_ohm).epsilon(1e-3));
-  CHECK(ripple.highest_A - ripple.lowest_A == doctest::Approx(static_cast<double>(board::current_ripple_A)).epsilon(0.01));
+  CHECK(ripple.highest_A - ripple.lowest_A ==
+        doctest::Approx(static_cast<double>(board::current_ripple_A)).epsilon(0.01));
   CHECK(ripple.at_turning_point_A == doctest::Approx(ripple.mean_A).epsilon(1e-3));
   const auto none = switch_bridge(motor, 0.0, 1000, now);
   CHECK(none.highest_A - none.lowest_A < 1e-6);

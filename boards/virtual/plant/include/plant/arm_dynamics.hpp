@@ -38,7 +38,9 @@ class ArmDynamics {
   double kinetic_energy_J(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
   double potential_energy_J(const Vector3& joints_rad) const;
   /// Joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram: what the elbow's stops act on.
-  double elbow_rad(const Vector3& joints_rad) const { return parallelogram_ ? joints_rad[2] - joints_rad[1] : joints_rad[2]; }
+  double elbow_rad(const Vector3& joints_rad) const {
+    return parallelogram_ ? joints_rad[2] - joints_rad[1] : joints_rad[2];
+  }
   bool is_parallelogram() const { return parallelogram_; }
 
  private:

@@ -18,7 +18,9 @@ class QuadratureEncoder {
       : counts_per_rad_(counts_per_rad), shown_(count_at(joint_rad)) {}
 
   /// Counts of the disc at this joint angle; zero is where the joint's angle is zero.
-  std::int64_t count_at(double joint_rad) const { return static_cast<std::int64_t>(std::floor(joint_rad * counts_per_rad_)); }
+  std::int64_t count_at(double joint_rad) const {
+    return static_cast<std::int64_t>(std::floor(joint_rad * counts_per_rad_));
+  }
   std::int64_t shown() const { return shown_; }
 
   /// Both outputs at `count`. A leads B while counting up (RM0090, "Encoder interface mode").

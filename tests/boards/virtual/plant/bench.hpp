@@ -1,0 +1,111 @@
+// A plant on the bench: the edges that the timers would give it, and a decoder for its encoders.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include <board/omni_driver.hpp>
+#include <plant/plant.hpp>
+
+#include "arms.hpp"
+
+namespace inkwell::test {
+
+using namespace inkwell::virtual_board;
+
+inline constexpr Ticks servo_period = ticks_per_s / board::servo_rate_Hz;
+inline constexpr Ticks pwm_period = ticks_per_s / board::pwm_Hz;
+
+/// Levels of the chip's inputs, with a quadrature decoder as the timers have one.
+class Pins final : public InputPins {
+ public:
+  void drive(char port, unsigned pin, PinLevel level) override {
+    ++calls;
+    levels[{port, pin}] = level;
+    for (unsigned i = 0; i < 3; ++i) {
+      const auto& w = board::encoders[i];
+      const bool a = at(w.a.pin) == PinLevel::high, b = at(w.b.pin) == PinLevel::high;
+      const int phase = a ? (b ? 2 : 1) : (b ? 3 : 0);
+      const int moved = (phase - phases[i]) & 3;
+      if (moved == 2) ++jumps;  // both pins at once: the direction is lost
+      counts[i] += moved == 1 ? 1 : moved == 3 ? -1 : 0;
+      phases[i] = phase;
+    }
+  }
+  PinLevel at(board::Pin pin) const {
+    const auto found = levels.find({pin.port, pin.number});
+    return found == levels.end() ? PinLevel::floating : found->second;
+  }
+  std::map<std::pair<char, unsigned>, PinLevel> levels;
+  std::array<int, 3> phases{};
+  std::array<std::int64_t, 3> counts{};
+  int calls = 0, jumps = 0;
+};
+
+/// A plant with the edges that timers would give it: centre-aligned, unipolar, as the board's facts say.
+struct Bench {
+  explicit Bench(const arms::Description& arm, const PlantOptions& options = {}) : plant(arm, options) {
+    plant.connect(pins);
+    counts_at_start = pins.counts;
+  }
+
+  void enable(bool on) {
+    plant.output_changed(board::bridge_enable.port, board::bridge_enable.number, on ? PinLevel::high : PinLevel::low,
+                         now);
+  }
+  void legs(PinLevel level) {
+    for (const auto& bridge : board::bridges)
+      for (const auto& leg : {bridge.leg_a, bridge.leg_b})
+        plant.output_changed(leg.pin.port, leg.pin.number, level, now);
+  }
+  /// Runs without any edge.
+  void idle(double time_s) {
+    for (const Ticks end = now + ticks(time_s); now < end;) plant.advance(now += servo_period);
+  }
+  /// Runs with PWM at these duties.
+  void run(double time_s, std::array<double, 3> duty) {
+    struct Edge {
+      Ticks at;
+      board::Pin pin;
+      PinLevel level;
+    };
+    std::array<Edge, 12> edges;
+    for (unsigned i = 0; i < 3; ++i)
+      for (unsigned leg = 0; leg < 2; ++leg) {
+        const double high = (1.0 + (leg == 0 ? duty[i] : -duty[i])) / 2.0;
+        const auto half_low = static_cast<Ticks>((1.0 - high) / 2.0 * static_cast<double>(pwm_period));
+        const board::Pin pin = leg == 0 ? board::bridges[i].leg_a.pin : board::bridges[i].leg_b.pin;
+        edges[i * 4 + leg * 2] = {half_low, pin, PinLevel::high};
+        edges[i * 4 + leg * 2 + 1] = {pwm_period - half_low, pin, PinLevel::low};
+      }
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.at < b.at; });
+    const Ticks end = now + ticks(time_s);
+    for (unsigned period = 0; now < end; ++period) {
+      for (const Edge& edge : edges) plant.output_changed(edge.pin.port, edge.pin.number, edge.level, now + edge.at);
+      now += pwm_period;
+      if (period % board::pwm_periods_per_servo_period == 2) {
+        for (const auto& input : board::motor_current) plant.analog_V(input.pin.port, input.pin.number, now);
+        plant.advance(now);
+      }
+    }
+  }
+  double read_V(const board::AnalogInput& input) { return plant.analog_V(input.pin.port, input.pin.number, now); }
+  double measured_A(unsigned motor) {
+    return (read_V(board::motor_current[motor]) - static_cast<double>(board::shunt_amplifier_offset_V)) /
+           static_cast<double>(board::shunt_ohm * board::shunt_amplifier_gain);
+  }
+
+  Pins pins;
+  Plant plant;
+  std::array<std::int64_t, 3> counts_at_start{};
+  Ticks now = 0;
+};
+
+inline Vector3 free_joints(const arms::Description& arm) {
+  using protocol::Parameter;
+  return arm.parameters[Parameter::transmission] == 1.0f ? Vector3(0.1, 0.8, 0.4) : Vector3(0.1, 1.0, -1.4);
+}
+
+}  // namespace inkwell::test
