@@ -39,6 +39,7 @@ constexpr std::uint16_t send_event = 0xBF40;
 }  // namespace
 
 Processor::Processor(Machine& machine, Bus& bus) : machine_(machine), block_lengths_(flash_bytes / 2) {
+  machine.clock_users.push_back(this);
   link_page_lock();
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
   // UC_MODE_MCLASS would force another model; the model alone makes it M-profile.

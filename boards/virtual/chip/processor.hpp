@@ -31,10 +31,10 @@ enum class Outcome : std::uint8_t {
   execute_never,        ///< fault_address() is in a region without instructions
 };
 
-class Processor {
+class Processor final : public ClockUser {
  public:
   Processor(Machine& machine, Bus& bus);
-  ~Processor();
+  ~Processor() override;
   Processor(const Processor&) = delete;
   Processor& operator=(const Processor&) = delete;
 
@@ -63,6 +63,10 @@ class Processor {
     anchor_time_ = time;
     anchor_cycles_ = cycles_;
   }
+
+  // The cycles so far have lasted as long as they did; what is left of the slice is counted anew.
+  void before_clock_change() override { anchor(now()); }
+  void after_clock_change() override { end_slice(); }
 
   std::uint32_t read(int id) const {
     std::uint32_t value = 0;
