@@ -14,6 +14,12 @@ void add_info_command(CLI::App& program, const DeviceOptions& options, Action& a
 void add_watch_command(CLI::App& program, const DeviceOptions& options, Action& action);
 void add_parameters_command(CLI::App& program, const DeviceOptions& options, Action& action);
 void add_experiment_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_record_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_replay_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_plot_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_calibrate_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_tune_command(CLI::App& program, const DeviceOptions& options, Action& action);
+void add_check_command(CLI::App& program, const DeviceOptions& options, Action& action);
 void add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
 
 }  // namespace inkwell::command_line

@@ -1,13 +1,12 @@
 #include "commands.hpp"
 
-#include <unistd.h>
-
-#include <cstdio>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include <experiment/wall_experiment.hpp>
+
+#include "progress_bar.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -15,26 +14,6 @@ namespace {
 struct WallCommandOptions {
   std::string output = "wall-experiment";
   std::string wall;
-};
-
-/// A bar on a terminal, a line for each new step elsewhere. On standard error, so that --json stays clean.
-class ProgressBar {
- public:
-  void operator()(std::string_view step, double done) {
-    constexpr int width = 24;
-    const int filled = static_cast<int>(done * width + 0.5);
-    if (is_terminal_)
-      fmt::print(stderr, "\r\x1b[K[{:#>{}}{:.>{}}] {}{}", "", filled, "", width - filled, step, done >= 1.0 ? "\n" : "");
-    else if (const auto sentence = step.substr(0, step.find(':')); sentence != last_) {
-      last_ = sentence;
-      fmt::print(stderr, "{:3.0f} %  {}\n", 100 * done, step);
-    }
-    std::fflush(stderr);
-  }
-
- private:
-  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
-  std::string last_;
 };
 
 void print(const nlohmann::ordered_json& summary, const std::string& directory) {

@@ -38,6 +38,12 @@ int main(int argument_count, char** arguments) {
   add_watch_command(program, options, action);
   add_parameters_command(program, options, action);
   add_experiment_command(program, options, action);
+  add_calibrate_command(program, options, action);
+  add_tune_command(program, options, action);
+  add_check_command(program, options, action);
+  add_record_command(program, options, action);
+  add_replay_command(program, options, action);
+  add_plot_command(program, options, action);
 
   try {
     program.parse(argument_count, arguments);

@@ -4,32 +4,19 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <device/nearest_name.hpp>
+
 namespace inkwell::device {
 namespace {
 
 using protocol::Parameter;
 using protocol::ParameterKind;
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
 
 std::string range_text(Parameter parameter) {
   const auto& row = info(parameter);
@@ -48,10 +35,7 @@ std::string format_value(Parameter parameter, float value) {
 }
 
 std::string_view nearest_parameter_name(std::string_view name) {
-  return std::min_element(protocol::parameter_table.begin(), protocol::parameter_table.end(),
-                          [&](const auto& a, const auto& b) {
-                            return edit_distance(name, a.name) < edit_distance(name, b.name);
-                          })->name;
+  return nearest_name(protocol::parameter_table, name);
 }
 
 Parameter parameter_named(std::string_view name) {

@@ -87,6 +87,8 @@ struct VirtualBoard::Implementation {
     process = fork();
     if (process < 0) throw Error("The virtual board cannot be started: the system allows no more processes.");
     if (process == 0) {
+      // Ctrl-C in the terminal is for the companion, which ends the board when it is done with it.
+      setpgid(0, 0);
       prctl(PR_SET_PDEATHSIG, SIGTERM);
       if (getppid() != parent) _exit(1);  // the parent died before the line above
       dup2(output.write_end, STDOUT_FILENO);

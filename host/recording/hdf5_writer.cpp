@@ -19,7 +19,8 @@ constexpr hsize_t chunk_marks = 16;
 
 class Hdf5Writer final : public Writer {
  public:
-  Hdf5Writer(const std::filesystem::path& file, const Information& information) : name_(file.string()) {
+  Hdf5Writer(const std::filesystem::path& file, const Information& information)
+      : name_(file.string()), values_(information.signals.size()) {
     const QuietHdf5 quiet;
     lay_out(information);
     open_for_writing(information);
@@ -31,22 +32,15 @@ class Hdf5Writer final : public Writer {
   }
 
   void append(const device::ScopeSamples& samples) override {
-    const QuietHdf5 quiet;
     const std::size_t width = samples.signals.size();
-    std::vector<std::uint32_t> periods(samples.count);
-    std::vector<double> times_s(samples.count);
     for (std::size_t i = 0; i < samples.count; ++i) {
-      periods[i] = samples.first_period + static_cast<std::uint32_t>(i);
-      times_s[i] = static_cast<double>(periods[i]) / protocol::servo_rate_Hz;
+      const std::uint32_t period = samples.first_period + static_cast<std::uint32_t>(i);
+      periods_.push_back(period);
+      times_s_.push_back(static_cast<double>(period) / protocol::servo_rate_Hz);
+      for (std::size_t j = 0; j < width; ++j) values_[j].push_back(samples.values[i * width + j]);
     }
-    extend(period_, size_, samples.count, H5T_NATIVE_UINT32, periods.data());
-    extend(time_, size_, samples.count, H5T_NATIVE_DOUBLE, times_s.data());
-    std::vector<float> column(samples.count);
-    for (std::size_t j = 0; j < width; ++j) {
-      for (std::size_t i = 0; i < samples.count; ++i) column[i] = samples.values[i * width + j];
-      extend(signals_[j], size_, samples.count, H5T_NATIVE_FLOAT, column.data());
-    }
-    size_ += samples.count;
+    // A scope frame has some tens of samples, and HDF5 takes as long for them as for thousands.
+    if (periods_.size() >= chunk_samples) write_samples();
   }
   void mark(const Mark& mark) override {
     const QuietHdf5 quiet;
@@ -58,6 +52,7 @@ class Hdf5Writer final : public Writer {
   }
   void flush() override {
     const QuietHdf5 quiet;
+    write_samples();
     if (H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) < 0) fail();
     // Only now are the samples known to be on the disk: a column may have grown without its values.
     if (H5Dwrite(samples_.id(), H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &size_) < 0) fail();
@@ -159,6 +154,20 @@ class Hdf5Writer final : public Writer {
     complete_ = open("/complete");
     samples_ = open("/samples");
   }
+  void write_samples() {
+    const QuietHdf5 quiet;
+    const hsize_t count = periods_.size();
+    if (count == 0) return;
+    extend(period_, size_, count, H5T_NATIVE_UINT32, periods_.data());
+    extend(time_, size_, count, H5T_NATIVE_DOUBLE, times_s_.data());
+    for (std::size_t j = 0; j < values_.size(); ++j) {
+      extend(signals_[j], size_, count, H5T_NATIVE_FLOAT, values_[j].data());
+      values_[j].clear();
+    }
+    size_ += count;
+    periods_.clear();
+    times_s_.clear();
+  }
   void extend(const Handle& dataset, hsize_t at, hsize_t count, hid_t type, const void* values) {
     const hsize_t size = at + count;
     if (H5Dset_extent(dataset.id(), &size) < 0) fail();
@@ -183,7 +192,10 @@ class Hdf5Writer final : public Writer {
   std::string name_;
   Handle file_, period_, time_, mark_period_, mark_text_, complete_, samples_;
   std::vector<Handle> signals_;
-  hsize_t size_ = 0;
+  std::vector<std::uint32_t> periods_;  ///< of samples that are not in the file yet, and the columns beside them
+  std::vector<double> times_s_;
+  std::vector<std::vector<float>> values_;
+  hsize_t size_ = 0;  ///< samples in the file
   hsize_t mark_count_ = 0;
 };
 

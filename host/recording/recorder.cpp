@@ -97,6 +97,13 @@ void Recorder::push(const device::ScopeSamples& samples) {
   auto& self = *implementation_;
   const std::lock_guard lock(self.mutex);
   if (!self.status.running || self.stopping || samples.signals != self.information.signals || samples.count == 0) return;
+  const auto step = static_cast<std::int32_t>(samples.first_period - self.newest_period);
+  if (self.first_period && step <= 0) {
+    self.status.error = "The board was restarted, so its time began anew. The recording ends with the last sample before.";
+    self.stopping = true;
+    self.wake.notify_one();
+    return;
+  }
   // What was lost before the first sample was never part of this recording.
   if (self.first_period) self.status.lost += samples.lost_before;
   if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) {
@@ -115,7 +122,7 @@ void Recorder::push(const device::ScopeSamples& samples) {
 void Recorder::mark(const std::string& text) {
   auto& self = *implementation_;
   const std::lock_guard lock(self.mutex);
-  if (!self.status.running || self.stopping) return;
+  if (!self.status.running || self.stopping || !self.first_period) return;
   self.queue.emplace_back(Mark{self.newest_period, text});
   ++self.status.marks;
   self.wake.notify_one();

@@ -1,7 +1,9 @@
 #include <recording/recording.hpp>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
+#include <ranges>
 
 #include <fmt/format.h>
 
@@ -14,7 +16,27 @@ std::uint64_t Recording::lost() const {
   return std::uint64_t{periods.back() - periods.front()} + 1 - periods.size();
 }
 
-Recording read(const std::filesystem::path& file) {
+std::size_t Recording::sample_at(double elapsed) const {
+  // A hundredth of a period, so that a time that was computed finds the sample that it was computed from.
+  const double rounding_s = 0.01 / protocol::servo_rate_Hz;
+  const auto samples = std::views::iota(std::size_t{0}, size());
+  return static_cast<std::size_t>(
+      std::ranges::partition_point(samples, [&](std::size_t i) { return elapsed_s(i) < elapsed - rounding_s; }) -
+      samples.begin());
+}
+
+const std::vector<float>& Recording::column(protocol::Signal signal) const {
+  const auto& recorded = information.signals;
+  const auto found = std::find(recorded.begin(), recorded.end(), signal);
+  if (found != recorded.end()) return columns[static_cast<std::size_t>(found - recorded.begin())];
+  std::vector<std::string_view> names;
+  for (const auto each : recorded) names.push_back(info(each).name);
+  throw device::Error(fmt::format("The recording does not hold {}. It holds {}.", info(signal).name, fmt::join(names, ", ")));
+}
+
+namespace {
+
+Recording read_either(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     throw device::Error(fmt::format("{} cannot be read. Give the name of a recording that exists.", file.string()));
@@ -27,13 +49,28 @@ Recording read(const std::filesystem::path& file) {
                                   file.string(), format_name));
 }
 
-std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information) {
+}  // namespace
+
+Recording read(const std::filesystem::path& file) {
+  Recording recording = read_either(file);
+  recording.name = file.stem().string();
+  return recording;
+}
+
+void check_can_be_created(const std::filesystem::path& file) {
+  const auto ending = file.extension();
+  if (ending != ".h5" && ending != ".hdf5" && ending != ".csv")
+    throw device::Error(fmt::format("{} must end in .h5 or .csv, which chooses the format.", file.string()));
   if (std::filesystem::exists(file))
     throw device::Error(fmt::format("{} exists. Give the recording another name, or remove that file.", file.string()));
-  const auto ending = file.extension();
-  if (ending == ".h5" || ending == ".hdf5") return create_hdf5(file, information);
-  if (ending == ".csv") return create_csv(file, information);
-  throw device::Error(fmt::format("{} must end in .h5 or .csv, which chooses the format.", file.string()));
+  const auto folder = std::filesystem::absolute(file).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw device::Error(fmt::format("The folder {} does not exist. Make it, or choose another place.", folder.string()));
+}
+
+std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information) {
+  check_can_be_created(file);
+  return file.extension() == ".csv" ? create_csv(file, information) : create_hdf5(file, information);
 }
 
 }  // namespace inkwell::recording

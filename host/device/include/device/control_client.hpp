@@ -70,6 +70,7 @@ class ControlClient {
   void supply(double voltage_V);
   void hand(const Hand& hand);
   void hand_path(const std::vector<HandWaypoint>& path);  ///< minimum jerk between the waypoints
+  void gimbal(const Vector3& angles_rad);  ///< turns the stylus: yaw, pitch, roll
   void dock(bool docked);  ///< presses the stylus into the inkwell, or takes it out
 
   void trace_start();

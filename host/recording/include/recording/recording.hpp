@@ -18,6 +18,7 @@ struct Mark {
 };
 
 struct Recording {
+  std::string name;                         ///< of its file, without folder and ending
   Information information;
   bool complete = true;                     ///< false: the program or the disk gave up before the end was written
   std::vector<std::uint32_t> periods;       ///< control period of each sample
@@ -26,7 +27,18 @@ struct Recording {
   std::vector<std::string> remarks;         ///< sentences about what this version did not understand
 
   std::size_t size() const { return periods.size(); }
-  double time_s(std::size_t sample) const { return static_cast<double>(periods[sample]) / protocol::servo_rate_Hz; }
+  /// Board time since the first sample.
+  double elapsed_s(std::size_t sample) const { return elapsed_s_at(periods[sample]); }
+  double elapsed_s_at(std::uint32_t period) const {
+    // Unsigned, so that it is right across the wrap of the board's counter.
+    return static_cast<double>(period - periods.front()) / protocol::servo_rate_Hz;
+  }
+  /// From the first sample to the last; 0 without samples.
+  double duration_s() const { return periods.empty() ? 0.0 : elapsed_s(size() - 1); }
+  /// The first sample at or after a time since the first sample; size() if there is none.
+  std::size_t sample_at(double elapsed_s) const;
+  /// Throws device::Error, with what was recorded, if the signal was not.
+  const std::vector<float>& column(protocol::Signal signal) const;
   /// Control periods between the first and the last sample that are missing.
   std::uint64_t lost() const;
 };

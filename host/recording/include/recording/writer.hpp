@@ -25,6 +25,9 @@ class Writer {
   virtual void finish() = 0;
 };
 
+/// Throws device::Error with a sentence if the ending is unknown, the file exists, or its folder does not.
+void check_can_be_created(const std::filesystem::path& file);
+
 /// The ending chooses the format: .h5 and .hdf5, or .csv. An existing file is refused, not overwritten.
 std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information);
 

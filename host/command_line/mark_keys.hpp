@@ -1,0 +1,34 @@
+// Marks set from standard input while a recording runs.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <termios.h>
+
+namespace inkwell::command_line {
+
+/// On a terminal each press of the space bar or the return key is a mark, numbered. From a pipe each line is one,
+/// with the line as its text.
+class MarkKeys {
+ public:
+  explicit MarkKeys(int descriptor);
+  /// Gives the terminal back as it was.
+  ~MarkKeys();
+  MarkKeys(const MarkKeys&) = delete;
+  MarkKeys& operator=(const MarkKeys&) = delete;
+
+  /// The text of the next mark, if there is one; does not wait.
+  std::optional<std::string> next();
+
+ private:
+  void read_what_is_there();
+
+  int descriptor_;
+  std::optional<termios> terminal_before_;
+  std::string pending_;
+  int count_ = 0;
+  bool is_at_end_ = false;
+};
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,187 @@
+#include "commands.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <arm/defaults.hpp>
+#include <arms/description.hpp>
+#include <recording/recorder.hpp>
+#include <recording/signals.hpp>
+
+#include "interrupt.hpp"
+#include "mark_keys.hpp"
+#include "progress_bar.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::ordered_json;
+using recording::RecorderStatus;
+
+struct RecordOptions {
+  std::string file;
+  std::string signals;
+  bool all = false;
+  double seconds = 0;  ///< 0: until interrupted
+  bool mark_key = false;
+};
+
+/// Reads the scope in a thread of its own, so that a slow terminal costs no samples, and ends by itself after a
+/// given number of control periods.
+class ScopeRecorder {
+ public:
+  ScopeRecorder(device::Device& device, recording::Recorder& recorder, double seconds)
+      : device_(device), recorder_(recorder), periods_(static_cast<std::uint32_t>(seconds * protocol::servo_rate_Hz + 0.5)) {
+    thread_ = std::thread([this] { read(); });
+  }
+  ~ScopeRecorder() {
+    stopping_ = true;
+    thread_.join();
+  }
+  ScopeRecorder(const ScopeRecorder&) = delete;
+  ScopeRecorder& operator=(const ScopeRecorder&) = delete;
+
+  bool is_done() const { return is_done_; }
+
+ private:
+  void read() {
+    try {
+      while (!stopping_ && !is_done_)
+        if (auto samples = device_.read_scope(20ms)) take(*samples);
+    } catch (const device::Error&) {
+      // The thread that reads the poses meets the same error and tells it.
+    }
+  }
+  void take(device::ScopeSamples& samples) {
+    if (samples.count == 0) return;
+    if (!first_period_) first_period_ = samples.first_period;
+    if (periods_ > 0) {
+      const std::uint32_t passed = samples.first_period - *first_period_;
+      const std::size_t wanted = passed < periods_ ? periods_ - passed : 0;
+      is_done_ = samples.count >= wanted;
+      if (wanted == 0) return;
+      samples.count = std::min(samples.count, wanted);
+    }
+    recorder_.push(samples);
+  }
+
+  device::Device& device_;
+  recording::Recorder& recorder_;
+  std::uint32_t periods_;  ///< 0: without end
+  std::optional<std::uint32_t> first_period_;
+  std::atomic<bool> stopping_ = false, is_done_ = false;
+  std::thread thread_;
+};
+
+/// A real board does not know which arm it is built into; a virtual one has been told.
+std::string arm_name(const DeviceOptions& options) {
+  if (!options.is_virtual) return {};
+  return options.arm.empty() ? std::string(arm_defaults::name) : arms::read(options.arm).name;
+}
+
+std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
+  if (options.all) return recording::signal_path();
+  if (options.signals.empty()) return recording::standard_signals();
+  return recording::parse_signals(options.signals);
+}
+
+std::string progress_text(const RecorderStatus& status) {
+  std::string text = fmt::format("Recording: {:.1f} s, {:.1f} MB, {} lost", status.duration_s, 1e-6 * static_cast<double>(status.bytes),
+                                 status.lost);
+  if (status.marks > 0) text += fmt::format(", {} mark{}", status.marks, status.marks == 1 ? "" : "s");
+  return text;
+}
+
+void run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options) {
+  const InterruptGuard interrupt;
+  std::optional<MarkKeys> keys;
+  if (options.mark_key) keys.emplace(STDIN_FILENO);
+  ScopeRecorder scope(device, recorder, options.seconds);
+  ProgressBar progress;
+  auto last_pose = std::chrono::steady_clock::now(), next_shown = last_pose;
+  while (!scope.is_done() && !interrupt.was_asked_to_end() && recorder.status().running) {
+    const auto now = std::chrono::steady_clock::now();
+    device.keep_alive();
+    if (device.read_pose(20ms)) last_pose = now;
+    if (now - last_pose > 2s) throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
+    while (keys) {
+      const auto text = keys->next();
+      if (!text) break;
+      recorder.mark(*text);
+    }
+    if (now < next_shown) continue;
+    next_shown = now + 100ms;
+    const auto status = recorder.status();
+    const auto done = options.seconds > 0 ? std::optional(std::min(1.0, status.duration_s / options.seconds)) : std::nullopt;
+    progress(progress_text(status) + (options.seconds > 0 ? "" : ". Ctrl-C ends it."), done);
+  }
+  progress.end();
+}
+
+ordered_json to_json(const RecordOptions& options, const RecorderStatus& status) {
+  ordered_json json{{"file", options.file},          {"duration_s", status.duration_s}, {"samples", status.samples},
+                    {"lost", status.lost},           {"bytes", status.bytes},           {"free_bytes", status.free_bytes},
+                    {"marks", status.marks},         {"complete", status.error.empty()}};
+  if (!status.error.empty()) json["error"] = status.error;
+  return json;
+}
+
+int record(const DeviceOptions& device_options, const RecordOptions& options) {
+  std::vector<protocol::Signal> signals;
+  try {
+    signals = chosen_signals(options);
+    recording::check_can_be_created(options.file);
+  } catch (const device::Error& error) {
+    throw UsageError(error.what());
+  }
+  const auto connection = connect(device_options, true);
+  auto& device = *connection.device;
+  const auto information = recording::describe(device.information(), device.parameters(), signals, arm_name(device_options),
+                                               device_options.is_virtual);
+  recording::Recorder recorder(options.file, information);
+  device.select_signals(signals);
+  std::string failure;
+  try {
+    run(device, recorder, options);
+    device.select_signals({});
+  } catch (const device::Error& error) {
+    failure = error.what();
+  }
+  auto status = recorder.stop();
+  if (status.error.empty() && !failure.empty()) status.error = failure + " The recording holds everything up to then.";
+  if (device_options.json)
+    fmt::print("{}\n", to_json(options, status).dump());
+  else
+    fmt::print("{}: {:.2f} s, {} samples of {} signals, {} lost, {:.1f} MB\n", options.file, status.duration_s, status.samples,
+               signals.size(), status.lost, 1e-6 * static_cast<double>(status.bytes));
+  if (!status.error.empty()) throw device::Error(status.error);
+  return 0;
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+  auto* command = program.add_subcommand("record", "Record signals at every control period, until Ctrl-C or for a time");
+  const auto record_options = std::make_shared<RecordOptions>();
+  command->add_option("FILE", record_options->file, "Ends in .h5 (HDF5) or .csv; it must not exist yet")->required();
+  auto* signals = command->add_option("--signals", record_options->signals,
+                                      "Names with commas between them; without it what replay and plots need");
+  command->add_flag("--all", record_options->all, "The whole signal path, from the encoders to the duties")->excludes(signals);
+  command->add_option("--seconds", record_options->seconds, "End after this time of the board")->check(CLI::PositiveNumber);
+  command->add_flag("--mark-key", record_options->mark_key,
+                    "The space bar sets a mark; from a pipe, each line does, with its text");
+  command->callback([&options, &action, record_options] {
+    action = [&options, record_options] { return record(options, *record_options); };
+  });
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,78 @@
+#include "commands.hpp"
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <recording/recording.hpp>
+
+namespace inkwell::command_line {
+namespace {
+
+using nlohmann::ordered_json;
+using recording::Recording;
+
+ordered_json to_json(const Recording& recording) {
+  const auto& about = recording.information;
+  ordered_json signals = ordered_json::array(), marks = ordered_json::array(), parameters = ordered_json::object();
+  for (const auto signal : about.signals) signals.push_back({{"name", info(signal).name}, {"unit", info(signal).unit}});
+  for (const auto& mark : recording.marks)
+    marks.push_back({{"time_s", recording.elapsed_s_at(mark.period)}, {"text", mark.text}});
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    parameters[std::string(protocol::parameter_table[i].name)] = about.parameters.values[i];
+  return {{"created_utc", about.created_utc},
+          {"firmware_version", about.firmware_version},
+          {"protocol_version", about.protocol_version},
+          {"serial_number", about.serial_number},
+          {"arm", about.arm},
+          {"simulation", about.simulation},
+          {"complete", recording.complete},
+          {"duration_s", recording.duration_s()},
+          {"samples", recording.size()},
+          {"lost", recording.lost()},
+          {"signals", signals},
+          {"marks", marks},
+          {"parameters", parameters},
+          {"remarks", recording.remarks}};
+}
+
+void print(const Recording& recording) {
+  const auto& about = recording.information;
+  fmt::print("recorded            {}{}\n", about.created_utc, about.simulation ? ", from a simulation" : "");
+  fmt::print("device              {}, firmware {}, protocol {}\n", about.serial_number, about.firmware_version,
+             about.protocol_version);
+  if (!about.arm.empty()) fmt::print("arm                 {}\n", about.arm);
+  fmt::print("duration            {:.3f} s, {} samples, {} lost{}\n", recording.duration_s(), recording.size(), recording.lost(),
+             recording.complete ? "" : "; its end is missing");
+  std::vector<std::string_view> names;
+  for (const auto signal : about.signals) names.push_back(info(signal).name);
+  fmt::print("{} signals          {}\n", names.size(), fmt::join(names, ", "));
+  for (const auto& mark : recording.marks)
+    fmt::print("mark at {:9.3f} s   {}\n", recording.elapsed_s_at(mark.period), mark.text);
+  const auto defaults = protocol::default_parameters();
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    if (about.parameters.values[i] != defaults.values[i])
+      fmt::print("not the default     {} = {}\n", protocol::parameter_table[i].name, about.parameters.values[i]);
+}
+
+int describe(const DeviceOptions& options, const std::string& file) {
+  const auto recording = recording::read(file);
+  for (const auto& remark : recording.remarks) fmt::print(stderr, "inkwell: {}\n", remark);
+  if (options.json)
+    fmt::print("{}\n", to_json(recording).dump(2));
+  else
+    print(recording);
+  return 0;
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+  auto* command = program.add_subcommand("replay", "Say what a recording holds");
+  const auto file = std::make_shared<std::string>();
+  command->add_option("FILE", *file, "Written by `inkwell record`")->required();
+  command->callback([&options, &action, file] { action = [&options, file] { return describe(options, *file); }; });
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,206 @@
+#include <recording/figure.hpp>
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include <device/link.hpp>
+#include <recording/gnuplot.hpp>
+#include <recording/signals.hpp>
+
+namespace inkwell::recording {
+namespace {
+
+using protocol::Parameter;
+using protocol::Signal;
+
+constexpr std::size_t points_maximum = 1200;  ///< about one for each pixel of the plot's width
+constexpr int width_pixels = 1600;
+constexpr int titles_pixels = 120, time_axis_pixels = 80;
+constexpr int pane_pixels = 320, pane_gap_pixels = 40;
+
+constexpr std::array colours = {"blue", "vermilion", "green", "purple", "orange", "sky", "ink"};
+
+/// Samples from `begin` up to `end`.
+struct Range {
+  std::size_t begin, end;
+};
+
+/// A directory for script and data that goes away with this object.
+class WorkDirectory {
+ public:
+  WorkDirectory() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "inkwell-figure-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr)
+      throw device::Error("No temporary directory can be made. Check the space left in " + pattern + ".");
+    path_ = pattern;
+  }
+  ~WorkDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  WorkDirectory(const WorkDirectory&) = delete;
+  WorkDirectory& operator=(const WorkDirectory&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void write_data(const Recording& recording, const std::vector<Signal>& signals, Range shown, double from_s, double to_s,
+                const std::filesystem::path& file) {
+  std::vector<std::string> names{"time_s"};
+  std::vector<const std::vector<float>*> columns;
+  for (const auto signal : signals) {
+    for (const auto& name : band_columns(std::string(info(signal).name))) names.push_back(name);
+    columns.push_back(&recording.column(signal));
+  }
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), "{}\n", fmt::join(names, ","));
+
+  const std::size_t points = std::min(points_maximum, shown.end - shown.begin);
+  // With few points, each of them is one sample; the half period keeps rounding from moving one to its neighbour.
+  const double half_period_s = 0.5 / protocol::servo_rate_Hz;
+  const double step_s = (to_s - from_s + 2 * half_period_s) / static_cast<double>(points);
+  std::size_t begin = shown.begin;
+  for (std::size_t point = 0; point < points; ++point) {
+    const double start_s = from_s - half_period_s + step_s * static_cast<double>(point);
+    const std::size_t end = point + 1 == points ? shown.end : std::min(shown.end, recording.sample_at(start_s + step_s));
+    fmt::format_to(std::back_inserter(text), "{:.7g}", start_s + 0.5 * step_s);
+    for (const auto* column : columns) {
+      const Band band = band_of(end - begin, [&](std::size_t i) { return static_cast<double>((*column)[begin + i]); });
+      fmt::format_to(std::back_inserter(text), ",{:.7g},{:.7g},{:.7g}", band.mean, band.minimum, band.maximum);
+    }
+    text.push_back('\n');
+    begin = end;
+  }
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream.flush()) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
+}
+
+std::string subtitle(const Recording& recording, double shown_s) {
+  const auto& about = recording.information;
+  std::vector<std::string> parts;
+  if (about.simulation) parts.push_back("simulation");
+  if (!about.arm.empty()) parts.push_back(about.arm);
+  parts.push_back(fmt::format("k = {} N/m, c = {} Ns/m", about.parameters[Parameter::wall_stiffness_N_per_m],
+                              about.parameters[Parameter::wall_damping_Ns_per_m]));
+  parts.push_back("firmware " + about.firmware_version);
+  parts.push_back(about.created_utc);
+  if (recording.lost() > 0) parts.push_back(fmt::format("{} samples lost", recording.lost()));
+  if (!recording.complete) parts.push_back("cut short");
+  if (shown_s * protocol::servo_rate_Hz > static_cast<double>(points_maximum))
+    parts.push_back(fmt::format("line: mean of {:.2g} ms, band: its extremes", 1e3 * shown_s / points_maximum));
+  return fmt::format("{}", fmt::join(parts, "  ·  "));
+}
+
+/// Dashed lines through all panes; their texts stand in the first one only.
+std::string marks(const Recording& recording, double from_s, double to_s, bool with_text) {
+  std::string text;
+  int number = 10;
+  for (const auto& mark : recording.marks) {
+    const double at_s = recording.elapsed_s_at(mark.period);
+    if (at_s < from_s || at_s > to_s) continue;
+    text += fmt::format("set arrow {0} from first {1:.6f}, graph 0 to first {1:.6f}, graph 1 nohead linecolor rgb grey "
+                        "linewidth 1.2 dashtype 2 front\n", number, at_s);
+    if (with_text)
+      text += fmt::format("set label {} {} at first {:.6f}, graph 1 offset 0.4,-0.6 left font 'Inter,15' textcolor rgb grey "
+                          "noenhanced front\n", number, gnuplot_text(mark.text), at_s);
+    ++number;
+  }
+  return text;
+}
+
+std::string script(const Recording& recording, const std::vector<FigurePane>& panes, const std::string& name, double from_s,
+                   double to_s) {
+  const auto count = static_cast<int>(panes.size());
+  const int height = titles_pixels + count * pane_pixels + (count - 1) * pane_gap_pixels + time_axis_pixels;
+  std::string text = figure_head("data.csv", width_pixels, height);
+  text += fmt::format("set output 'figure.png'\nset multiplot\nset lmargin at screen 0.09\nset rmargin at screen 0.8\n"
+                      "set xrange [{:.6f}:{:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
+                      "set ytics autofreq\nset key noautotitle\n", from_s, to_s);
+  text += figure_titles(name + (recording.information.simulation ? " (simulation)" : ""),
+                        subtitle(recording, to_s - from_s), height);
+  text += marks(recording, from_s, to_s, true);
+  text += "set format x ''\nunset xlabel\n";
+  int top = height - titles_pixels;
+  for (int i = 0; i < count; ++i, top -= pane_pixels + pane_gap_pixels) {
+    const auto& pane = panes[static_cast<std::size_t>(i)];
+    if (i == 1) {
+      // gnuplot would draw the first pane's labels again in every pane.
+      text += "unset label\nunset arrow\n" + marks(recording, from_s, to_s, false);
+    }
+    if (i + 1 == count) text += "set format x '%g'\nset xlabel 'time  /  s' textcolor rgb ink\n";
+    text += fmt::format("set tmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n", static_cast<double>(top) / height,
+                        static_cast<double>(top - pane_pixels) / height);
+    text += fmt::format("set ylabel {} textcolor rgb ink noenhanced offset -0.5\n", gnuplot_text(pane.label));
+    std::vector<Curve> curves;
+    for (std::size_t j = 0; j < pane.signals.size(); ++j) {
+      const std::string colour = colours[j % colours.size()];
+      const std::string signal(info(pane.signals[j]).name);
+      curves.push_back({signal, j < colours.size() ? colour : colour + " dashtype 2", signal});
+    }
+    text += plot_command(curves);
+  }
+  return text + "unset multiplot\n";
+}
+
+}  // namespace
+
+std::vector<FigurePane> figure_panes(const std::vector<Signal>& signals) {
+  constexpr std::size_t quantities_maximum = 2;  // more would not fit beside their axis
+  std::vector<FigurePane> panes;
+  std::vector<std::string_view> units;
+  std::vector<std::vector<std::string>> quantities;
+  for (const auto signal : signals) {
+    const auto unit = info(signal).unit;
+    const auto pane = static_cast<std::size_t>(std::find(units.begin(), units.end(), unit) - units.begin());
+    if (pane == units.size()) {
+      units.push_back(unit);
+      panes.emplace_back();
+      quantities.emplace_back();
+    }
+    panes[pane].signals.push_back(signal);
+    const auto quantity = quantity_of(signal);
+    if (std::find(quantities[pane].begin(), quantities[pane].end(), quantity) == quantities[pane].end())
+      quantities[pane].push_back(quantity);
+  }
+  for (std::size_t i = 0; i < panes.size(); ++i) {
+    std::vector<std::string> parts;
+    if (quantities[i].size() <= quantities_maximum || units[i].empty())
+      parts.push_back(fmt::format("{}", fmt::join(quantities[i], ", ")));
+    if (!units[i].empty()) parts.emplace_back(units[i]);
+    panes[i].label = fmt::format("{}", fmt::join(parts, "  /  "));
+  }
+  return panes;
+}
+
+void draw_figure(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture) {
+  if (recording.size() == 0) throw device::Error("The recording holds no samples, so there is nothing to draw.");
+  const auto& signals = options.signals.empty() ? recording.information.signals : options.signals;
+  const double end_s = recording.duration_s();
+  const double from_s = std::max(0.0, options.from_s), to_s = std::min(end_s, options.to_s.value_or(end_s));
+  const Range shown{recording.sample_at(from_s), recording.sample_at(to_s + 0.5 / protocol::servo_rate_Hz)};
+  if (shown.end <= shown.begin + 1)
+    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.4g} s.", options.from_s,
+                                    options.to_s.value_or(end_s), end_s));
+
+  const WorkDirectory work;
+  write_data(recording, signals, shown, from_s, to_s, work.path() / "data.csv");
+  std::ofstream stream(work.path() / "figure.gnuplot", std::ios::binary);
+  stream << script(recording, figure_panes(signals), recording.name, from_s, to_s) << std::flush;
+  if (!stream) throw device::Error(fmt::format("{} cannot be written. Check the space left.", work.path().string()));
+  stream.close();
+  run_gnuplot(work.path() / "figure.gnuplot");
+  std::error_code error;
+  std::filesystem::copy_file(work.path() / "figure.png", picture, std::filesystem::copy_options::overwrite_existing, error);
+  if (error)
+    throw device::Error(fmt::format("{} cannot be written: {}. Give another place with --out.", picture.string(), error.message()));
+}
+
+}  // namespace inkwell::recording
