@@ -27,11 +27,15 @@ ScopePlan prepare(const protocol::SignalSelection& selection, std::uint8_t token
   plan.count = selection.count;
   plan.token = token;
   std::uint32_t size = 0;
+  std::size_t run = 0;
   for (std::size_t i = 0; i < selection.count; ++i) {
     const protocol::SignalWire wire = wires[selection.signals[i]];
     plan.items[i] = selection.signals[i];
-    if (wire != protocol::SignalWire::float32) plan.items[i] |= ScopePlan::narrow;
     plan.steps_per_unit[i] = steps_per_unit(wire);
+    const bool narrow = wire != protocol::SignalWire::float32;
+    const bool run_is_narrow = run % 2 != 0;
+    if (narrow != run_is_narrow) ++run;
+    plan.run_ends[run] = static_cast<std::uint8_t>(i + 1);
     size += static_cast<std::uint32_t>(protocol::wire_size(wire));
   }
   // As protocol::encoding_for says, from the columns at hand.

@@ -13,7 +13,12 @@ namespace {
 
 using protocol::ReportId;
 
-enum HidRequest : std::uint8_t { get_report_request = 1, get_idle_request = 2, set_report_request = 9, set_idle_request = 10 };
+enum HidRequest : std::uint8_t {
+  get_report_request = 1,
+  get_idle_request = 2,
+  set_report_request = 9,
+  set_idle_request = 10,
+};
 enum ReportType : std::uint8_t { input_report = 1, output_report_type = 2, feature_report = 3 };
 
 constexpr std::uint8_t class_interface_out = 0x21, class_interface_in = 0xA1, vendor_device_in = 0xC0;

@@ -48,7 +48,8 @@ void write_packet(unsigned endpoint, std::span<const std::byte> packet) {
 void read_packet(std::span<std::byte> target, std::size_t size) {
   for (std::size_t i = 0; i < size; i += 4) {
     const std::uint32_t word = Fifo::DFIFO::read(0);
-    if (i < target.size()) std::memcpy(target.data() + i, &word, std::min<std::size_t>({4, size - i, target.size() - i}));
+    if (i >= target.size()) continue;
+    std::memcpy(target.data() + i, &word, std::min<std::size_t>({4, size - i, target.size() - i}));
   }
 }
 
@@ -208,7 +209,8 @@ void OtgFs::receive(std::uint8_t endpoint_address) {
 // Endpoint 0 is not touched while something waits in the receive FIFO: it may be a SETUP packet, which makes
 // this answer stale, and clearing NAK before its setup-done word is popped loses that word.
 void OtgFs::answer_control() {
-  if (!(control_send_waits_ || control_receive_waits_ || control_stall_waits_) || Core::GINTSTS::RXFLVL::is_set()) return;
+  const bool waits = control_send_waits_ || control_receive_waits_ || control_stall_waits_;
+  if (!waits || Core::GINTSTS::RXFLVL::is_set()) return;
   if (control_receive_waits_) begin_receive(0);
   if (control_send_waits_) begin_send(0);
   if (control_stall_waits_) {
@@ -220,9 +222,9 @@ void OtgFs::answer_control() {
 
 void OtgFs::begin_send(unsigned endpoint) {
   using Size = Device::DIEPTSIZ;
-  const std::size_t size = in_[endpoint].remaining.size();
-  const std::size_t packets = std::max<std::size_t>(1, (size + packet_size_maximum - 1) / packet_size_maximum);
-  Size::write(endpoint, Size::PKTCNT(static_cast<std::uint32_t>(packets)), Size::XFRSIZ(static_cast<std::uint32_t>(size)));
+  const auto size = static_cast<std::uint32_t>(in_[endpoint].remaining.size());
+  const std::uint32_t packets = size == 0 ? 1 : (size + packet_size_maximum - 1) / packet_size_maximum;
+  Size::write(endpoint, Size::PKTCNT(packets), Size::XFRSIZ(size));
   Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::EPENA(1), Device::DIEPCTL::CNAK(1));
   fill(endpoint);
 }

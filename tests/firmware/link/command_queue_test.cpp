@@ -26,7 +26,8 @@ bool sound(const CommandReport& report) { return decode_command(std::as_bytes(st
 }  // namespace
 
 TEST_CASE("sound commands are decoded as they are") {
-  for (const Command command : {Command::heartbeat, Command::enable_force, Command::disable_force, Command::clear_fault}) {
+  for (const Command command :
+       {Command::heartbeat, Command::enable_force, Command::disable_force, Command::clear_fault}) {
     const CommandReport report = make(command, 77);
     const auto decoded = decode_command(std::as_bytes(std::span(&report, 1)));
     REQUIRE(decoded.has_value());

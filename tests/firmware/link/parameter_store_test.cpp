@@ -197,8 +197,8 @@ TEST_CASE("bounds must leave room between them") {
                   Refusal::inconsistent, id_of(pair.minimum), 0.4f);
   }
   // Both bounds of a transaction are seen together, whatever their order.
-  CHECK(store.accept(Transaction{entry(Parameter::box_minimum_x_m, 0.2f), entry(Parameter::box_maximum_x_m, 0.4f)}.bytes(),
-                     false) == Refusal::accepted);
+  const Transaction both{entry(Parameter::box_minimum_x_m, 0.2f), entry(Parameter::box_maximum_x_m, 0.4f)};
+  CHECK(store.accept(both.bytes(), false) == Refusal::accepted);
 }
 
 TEST_CASE("the box must have room for the sphere") {

@@ -26,12 +26,10 @@ Value read(std::span<const std::byte>& bytes) {
 }
 
 float read_value(std::span<const std::byte>& bytes, Signal signal) {
-  switch (protocol::info(signal).wire) {
-    case protocol::SignalWire::float32: return read<float>(bytes);
-    case protocol::SignalWire::current_int16: return static_cast<float>(read<std::int16_t>(bytes)) * protocol::current_step_A;
-    case protocol::SignalWire::duty_int16: return static_cast<float>(read<std::int16_t>(bytes)) * protocol::duty_step;
-  }
-  return 0.0f;
+  const protocol::SignalWire wire = protocol::info(signal).wire;
+  if (wire == protocol::SignalWire::float32) return read<float>(bytes);
+  const float step = wire == protocol::SignalWire::current_int16 ? protocol::current_step_A : protocol::duty_step;
+  return static_cast<float>(read<std::int16_t>(bytes)) * step;
 }
 
 /// Reads a frame by the words of protocol/scope.hpp; calls `sample(period, values)` for every sample.
@@ -94,7 +92,7 @@ void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, 
   int wrong = 0;
   const auto read_frames = [&] {
     for (auto frame = scope.oldest_frame(); !frame.empty(); frame = scope.oldest_frame()) {
-      const ScopeFrameHeader header = decode(frame, selection, [&](std::uint32_t period, const std::vector<float>& values) {
+      const auto compare = [&](std::uint32_t period, const std::vector<float>& values) {
         wrong += period != next;
         const SignalValues expected = signals_at(next++);
         for (std::size_t k = 0; k < selection.count; ++k) {
@@ -103,7 +101,8 @@ void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, 
           const float allowed = resolution(signal);
           wrong += !(difference <= allowed && difference >= -allowed);
         }
-      });
+      };
+      const ScopeFrameHeader header = decode(frame, selection, compare);
       CHECK(header.encoding == encoding);
       CHECK(header.sequence == frames++);
       CHECK(header.selection_token == 9);
@@ -150,6 +149,15 @@ TEST_CASE("32 signals, and the last ones of the table") {
   check_round_trip(select(32, static_cast<std::uint8_t>(protocol::signal_count - 32)), ScopeEncoding::changes, 200);
 }
 
+TEST_CASE("wide and narrow signals in turn, 32 of them, whichever comes first") {
+  for (const std::size_t narrow_places : {0u, 1u}) {
+    SignalSelection selection = select(32);
+    for (std::size_t i = 0; i < 32; ++i)
+      selection.signals[i] = static_cast<std::uint8_t>(i % 2 == narrow_places ? 25 + i / 2 % 6 : i / 2);
+    check_round_trip(selection, ScopeEncoding::changes, 200);
+  }
+}
+
 TEST_CASE("a single signal") { check_round_trip(select(1, 26), ScopeEncoding::full, 3000); }
 
 TEST_CASE("the encoding is the one that the protocol names for a selection") {
@@ -172,7 +180,8 @@ TEST_CASE("a narrow value beyond its range saturates") {
   scope.select({}, 2);
   scope.record({}, 5);
   std::vector<float> seen;
-  decode(scope.oldest_frame(), selection, [&](std::uint32_t, const std::vector<float>& values) { seen.push_back(values[0]); });
+  const auto keep = [&](std::uint32_t, const std::vector<float>& values) { seen.push_back(values[0]); };
+  decode(scope.oldest_frame(), selection, keep);
   REQUIRE(seen.size() == 5);
   const float highest = 32767.0f * protocol::current_step_A, lowest = -32768.0f * protocol::current_step_A;
   CHECK(seen[0] == highest);
@@ -269,7 +278,8 @@ TEST_CASE("the scope is off until signals are selected, and after none are") {
   scope.select({}, 2);
   scope.record(signals_at(1), 1);
   REQUIRE(!scope.oldest_frame().empty());
-  const ScopeFrameHeader header = decode(scope.oldest_frame(), select(2), [](std::uint32_t, const std::vector<float>&) {});
+  const auto ignore = [](std::uint32_t, const std::vector<float>&) {};
+  const ScopeFrameHeader header = decode(scope.oldest_frame(), select(2), ignore);
   CHECK(header.sample_count == 1);
   scope.release();
   for (std::uint32_t period = 0; period < 5000; ++period) scope.record(signals_at(period), period);

@@ -47,8 +47,8 @@ TEST_CASE("wLength around every size: exactly what was asked for, or what there 
       if (length == 0) continue;
       CAPTURE(length);
       // Bench::read checks that the data stage ends with a short packet exactly if less came than was asked for.
-      const Bytes data =
-          bench.control(request(read.type, read.number, read.value, read.index, static_cast<std::uint16_t>(length))).data;
+      const auto w_length = static_cast<std::uint16_t>(length);
+      const Bytes data = bench.control(request(read.type, read.number, read.value, read.index, w_length)).data;
       CHECK(data == Bytes(all.begin(), all.begin() + std::min(length, exact)));
     }
     CHECK(bench.control(request(read.type, read.number, read.value, read.index, 0)) == done_result);

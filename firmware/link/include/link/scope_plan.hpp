@@ -10,12 +10,11 @@
 namespace inkwell::link {
 
 struct ScopePlan {
-  /// Flag in an item of a signal that goes as a 16-bit number; below it stands the place in SignalValues.
-  static constexpr std::uint8_t narrow = 0x80;
-  static_assert(protocol::signal_count <= narrow);
-
-  std::array<std::uint8_t, protocol::scope_signals_maximum> items{};
-  std::array<float, protocol::scope_signals_maximum> steps_per_unit{};  ///< of the narrow items
+  std::array<std::uint8_t, protocol::scope_signals_maximum> items{};    ///< places in SignalValues
+  std::array<float, protocol::scope_signals_maximum> steps_per_unit{};  ///< where it goes as a 16-bit number
+  /// The items fall into runs that go alternately as floats and as 16-bit numbers, floats first (none, if the
+  /// first item is narrow). Each entry is the number of items up to the end of its run, 0 behind the last run.
+  std::array<std::uint8_t, protocol::scope_signals_maximum + 2> run_ends{};
   std::uint32_t count = 0;                ///< 0: the scope is off
   std::uint32_t sample_size_maximum = 0;  ///< bytes, the mask of a `changes` sample included
   protocol::ScopeEncoding encoding = protocol::ScopeEncoding::full;
