@@ -222,7 +222,8 @@ struct Session::Implementation {
           if (receive) receive(*samples);
         }
       } catch (const Error&) {
-        lost = true;  // the report thread reconnects
+        const std::lock_guard lock(mutex);
+        if (device == reading) lost = true;  // the report thread reconnects, unless it has done so already
       }
     }
   }

@@ -58,18 +58,19 @@ blue = '#0072b2'; vermilion = '#d55e00'; green = '#009e73'
 set border 3 linecolor rgb grey linewidth 1
 set tics nomirror out scale 0.6 textcolor rgb ink
 set grid linecolor rgb pale linewidth 0.8 linetype 1
-set key outside right top vertical Left reverse samplen 1.6 spacing 1.25 textcolor rgb ink noenhanced
+set key at screen 0.97, screen 0.845 right top horizontal Left reverse samplen 1.6 width 1 textcolor rgb ink noenhanced
 set xlabel 'time  /  s' textcolor rgb ink
-set lmargin 12
-set tmargin 5
-set bmargin 4
+set lmargin at screen 0.105
+set rmargin at screen 0.97
+set tmargin at screen 0.79
+set bmargin at screen 0.13
 set style fill transparent solid 0.22 noborder
 )";
 
 struct Curve {
   std::string name;    ///< in the data
   std::string colour;  ///< variable of the script
-  std::string title;
+  std::string title;   ///< in the legend; none where the axis says it
 };
 
 /// A band from the smallest to the largest value of each millisecond, and its mean as a line.
@@ -79,8 +80,8 @@ std::string plot_command(const std::vector<Curve>& curves) {
     parts.push_back(fmt::format("data using 'time_s':'{0}_minimum':'{0}_maximum' with filledcurves fillcolor rgb {1} notitle",
                                 curve.name, curve.colour));
   for (const auto& curve : curves)
-    parts.push_back(fmt::format("data using 'time_s':'{0}_mean' with lines linewidth 2 linecolor rgb {1} title '{2}'",
-                                curve.name, curve.colour, curve.title));
+    parts.push_back(fmt::format("data using 'time_s':'{0}_mean' with lines linewidth 2 linecolor rgb {1} {2}", curve.name,
+                                curve.colour, curve.title.empty() ? "notitle" : "title '" + curve.title + "'"));
   return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
 }
 
@@ -99,7 +100,7 @@ std::string head(const FigureOptions& options, int number, const char* title) {
       parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m]);
   return fmt::format(
       "\nset output 'figure-{0}.png'\nunset label\n"
-      "set label 1 '{1}{2}' at graph 0, screen 0.955 left font 'Inter Semi Bold,26' textcolor rgb ink noenhanced\n"
+      "set label 1 '{1}{2}' at graph 0, screen 0.955 left font 'Inter:Bold,26' textcolor rgb ink noenhanced\n"
       "set label 2 '{3}' at graph 0, screen 0.905 left font 'Inter,16' textcolor rgb grey noenhanced\n",
       number, title, options.simulation ? " (simulation)" : "", subtitle);
 }
@@ -112,28 +113,28 @@ std::string script(const FigureOptions& options, const Recording& data) {
   const double deepest_mm = std::max(0.5, largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end()));
   // The free movement is centimetres, the penetration millimetres: the paper's question is about the latter.
   text += head(options, 11, "Position of the sphere relative to the wall");
-  text += fmt::format("set ylabel 'sphere’s surface beyond the wall  /  mm' textcolor rgb ink offset -0.5\n"
+  text += fmt::format("set ylabel 'sphere’s surface beyond the wall  /  mm' textcolor rgb ink\n"
                       "set yrange [{0:.3f}:{1:.3f}]\n"
                       "set object 1 rectangle from graph 0, first 0 to graph 1, first {1:.3f} behind fillcolor rgb pale "
                       "fillstyle solid 0.55 noborder\n"
                       "set label 3 'inside the wall' at graph 0.012, first {2:.3f} left textcolor rgb grey\n"
                       "set arrow 1 from graph 0, first 0 to graph 1, first 0 nohead linecolor rgb ink linewidth 1.2 front\n",
                       -2.0 * deepest_mm, 1.3 * deepest_mm, 1.17 * deepest_mm);
-  text += plot_command({{"distance_mm", "blue", "sphere"}});
+  text += plot_command({{"distance_mm", "blue", ""}});
   text += "unset object 1\nunset arrow 1\nset yrange [*:*]\n";
 
   text += head(options, 12, "Magnitude of the force");
-  text += "set ylabel 'force  /  N' textcolor rgb ink offset -0.5\nset yrange [0:*]\n";
-  text += plot_command({{"force_N", "blue", "force"}});
+  text += "set ylabel 'force  /  N' textcolor rgb ink\nset yrange [0:*]\n";
+  text += plot_command({{"force_N", "blue", ""}});
   text += "set yrange [*:*]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n";
 
   text += head(options, 13, "Torques at the three joints");
-  text += "set ylabel 'torque  /  Nm' textcolor rgb ink offset -0.5\n";
+  text += "set ylabel 'torque  /  Nm' textcolor rgb ink\n";
   text += plot_command({{"torque_1_Nm", "green", "T1z, waist"}, {"torque_2_Nm", "blue", "T2x, shoulder"},
                         {"torque_3_Nm", "vermilion", "T3x, elbow"}});
 
   text += head(options, 14, "Duty of the three bridges");
-  text += "set ylabel 'duty  /  % of the supply' textcolor rgb ink offset -0.5\n";
+  text += "set ylabel 'duty  /  % of the supply' textcolor rgb ink\n";
   text += plot_command({{"duty_1_percent", "green", "bridge 1"}, {"duty_2_percent", "blue", "bridge 2"},
                         {"duty_3_percent", "vermilion", "bridge 3"}});
   return text;
