@@ -85,7 +85,7 @@ Camera look_at_box(glm::vec3 minimum_m, glm::vec3 maximum_m) {
   camera.centre_m.z -= 0.25f * radius_m;  // a little towards the arm behind the box
   camera.azimuth_rad = 0.56f;
   camera.elevation_rad = 0.36f;
-  camera.distance_m = std::clamp(1.62f * radius_m / std::tan(0.5f * Camera::field_of_view_rad), nearest_m, farthest_m);
+  camera.distance_m = std::clamp(1.32f * radius_m / std::tan(0.5f * Camera::field_of_view_rad), nearest_m, farthest_m);
   return camera;
 }
 

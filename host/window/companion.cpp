@@ -12,6 +12,20 @@ constexpr float splitter_points = 5.0f;
 constexpr float tuning_minimum_points = 300.0f;
 constexpr float scope_minimum_points = 150.0f;
 constexpr float scene_minimum_points = 240.0f;
+
+// True if a person could see the difference.
+bool looks_different(const protocol::PoseReport& a, const protocol::PoseReport& b) {
+  constexpr float visible_m = 2e-4f;
+  constexpr float visible_N = 0.02f;
+  constexpr float visible_rad = 0.02f;
+  if (a.state != b.state || a.fault != b.fault || a.switches != b.switches) return true;
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(a.position_m[i] - b.position_m[i]) > visible_m || std::abs(a.force_N[i] - b.force_N[i]) > visible_N ||
+        std::abs(a.gimbal_rad[i] - b.gimbal_rad[i]) > visible_rad)
+      return true;
+  return false;
+}
+
 }  // namespace
 
 Companion::Companion(const WindowOptions& options, const WindowSettings& settings, float scale)
@@ -94,7 +108,7 @@ void Companion::carry_out(const StatusBarOutcome& outcome) {
 float Companion::splitter(const char* name, ImVec2 place, ImVec2 size, bool vertical) const {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2{1, 1});
-  begin_pane(name, place, size, ImGuiWindowFlags_NoBackground);
+  begin_pane(name, place, size);
   ImGui::InvisibleButton("handle", size);
   const bool lively = ImGui::IsItemHovered() || ImGui::IsItemActive();
   if (lively) ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
@@ -141,16 +155,21 @@ void Companion::draw(ImVec2 size, double now_s) {
     scope_panel_.draw({0, top + scene_height + gap}, {left_width, size.y - top - scene_height - gap}, style_);
   }
 
+  const bool scope_runs = settings_.scope_is_shown && view.connected() && !scope_panel_.is_paused();
+  is_moving_ = scope_runs || drawn_pose_.has_value() != view.pose.has_value() ||
+               (drawn_pose_ && looks_different(*drawn_pose_, *view.pose));
+  if (is_moving_) drawn_pose_ = view.pose;
+
   carry_out(outcome);
   if (auto changes = editor_.take_changes(); !changes.empty()) desk_.session().set_parameters(std::move(changes));
 }
 
-void Companion::draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool flat_colours) const {
+void Companion::draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool smooth) const {
   const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const int height = pixels(scene_size_.y);
   scene_pane_.draw_scene(renderer,
                          {pixels(scene_place_.x), framebuffer_height - pixels(scene_place_.y) - height, pixels(scene_size_.x), height},
-                         *style_.palette, flat_colours);
+                         {*style_.palette, options_.flat_colours, smooth && !options_.flat_colours, std::nullopt});
 }
 
 }  // namespace inkwell::window

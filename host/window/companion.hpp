@@ -25,10 +25,12 @@ class Companion {
   /// Lays out and draws every pane; ImGui's frame is open.
   void draw(ImVec2 size, double now_s);
   /// The picture under the panes; the framebuffer is bound. `pixels_per_unit`: framebuffer over screen coordinates.
-  void draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool flat_colours) const;
+  void draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool smooth) const;
 
   /// A key went down or up, whatever has the focus. The space bar stops at once.
   void key(int key, bool down);
+  /// Something in the picture changes by itself, so that it has to be drawn at the full rate.
+  bool is_moving() const { return is_moving_; }
   const Palette& colours() const { return *style_.palette; }
   /// As they stand now, to be remembered.
   WindowSettings settings() const;
@@ -56,6 +58,8 @@ class Companion {
   bool file_is_to_be_sent_;
   ImVec2 scene_place_{0, 0};
   ImVec2 scene_size_{1, 1};
+  std::optional<protocol::PoseReport> drawn_pose_;
+  bool is_moving_ = true;
   bool button_1_ = false;
   bool button_2_ = false;
 };

@@ -89,6 +89,14 @@ void FramePacer::wait() {
   // After a frame that took too long the rhythm starts anew instead of hurrying to catch up.
   next_s_ = std::max(next_s_ + period_s_, now_s - period_s_);
   if (next_s_ > now_s) std::this_thread::sleep_for(std::chrono::duration<double>(next_s_ - now_s));
+
+  if (const double measured_s = now_s - half_second_began_s_; measured_s > 0.5) {
+    // A single wait of half a second is a window that was idle, not a slow one.
+    if (frames_in_it_ > 4 && measured_s > 1.2 * period_s_ * frames_in_it_) keeps_up_ = false;
+    half_second_began_s_ = now_s;
+    frames_in_it_ = 0;
+  }
+  ++frames_in_it_;
 }
 
 }  // namespace inkwell::window

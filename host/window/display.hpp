@@ -45,9 +45,15 @@ class FramePacer {
   explicit FramePacer(double frames_per_second) : period_s_(1.0 / frames_per_second) {}
   void wait();
 
+  /// True while the frames come as they should; false once half a second of them was a fifth too slow, for good.
+  bool keeps_up() const { return keeps_up_; }
+
  private:
   double period_s_;
   double next_s_ = 0.0;
+  double half_second_began_s_ = 0.0;
+  int frames_in_it_ = 0;
+  bool keeps_up_ = true;
 };
 
 }  // namespace inkwell::window

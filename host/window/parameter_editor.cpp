@@ -151,6 +151,11 @@ std::string label_of(const protocol::ParameterInfo& info) {
       break;
     }
   }
+  // "box_minimum_x" stands under "Box": the group's name need not be said again.
+  const std::string_view first_word = info.group.substr(0, info.group.find(' '));
+  if (name.starts_with(first_word) && name.size() > first_word.size() + 1 && name[first_word.size()] == '_' &&
+      std::isalpha(static_cast<unsigned char>(name[first_word.size() + 1])) != 0)
+    name.remove_prefix(first_word.size() + 1);
   std::string label{name};
   std::ranges::replace(label, '_', ' ');
   label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));

@@ -74,7 +74,7 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const
   const float size = font->FontSize;
   list.AddRectFilled(area.minimum, area.maximum, packed(palette.plot_ground), style.points(3));
 
-  const std::vector<double> y_ticks = ticks(area.y, static_cast<int>(area.height() / style.points(y_ticks_every_points)));
+  const std::vector<double> y_ticks = ticks(area.y, std::max(3, static_cast<int>(area.height() / style.points(y_ticks_every_points))));
   const double y_step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : area.y.extent();
   for (double value : y_ticks) {
     const float y = std::round(area.to_y(value));

@@ -35,7 +35,7 @@ AxisRange enclosing_range(double minimum, double maximum) {
   const double middle = 0.5 * (minimum + maximum);
   const double least = std::max(1e-3 * std::abs(middle), 1e-6);
   const double extent = std::max(maximum - minimum, least);
-  const double step = tick_step(extent, 5);
+  const double step = tick_step(extent, 10);
   const double room = 0.06 * extent;
   return {std::floor((middle - 0.5 * extent - room) / step) * step, std::ceil((middle + 0.5 * extent + room) / step) * step};
 }

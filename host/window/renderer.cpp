@@ -9,17 +9,27 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr int samples_per_pixel = 4;
-constexpr float floor_size_m = 1.6f;
+constexpr int samples_when_smooth = 4;
+constexpr int sky_bands = 48;
+constexpr float floor_radius_m = 0.8f;
+constexpr float floor_grid_m = 0.05f;
+constexpr float wall_grid_m = 0.02f;
+
+// A wall and what of it has to be drawn, in view space.
+struct WallPicture {
+  const WallView* wall;
+  int u, v;             // the axes along it
+  glm::vec3 corner_m;   // in workspace axes
+  glm::vec4 colour;     // without its alpha
+  float frame_alpha, grid_alpha, pane_alpha;
+};
 
 }  // namespace
 
 Renderer::Renderer()
-    : sky_(shaders::sky_vertex, shaders::sky_fragment),
-      solid_(shaders::solid_vertex, shaders::solid_fragment),
+    : solid_(shaders::solid_vertex, shaders::solid_fragment),
       shadow_(shaders::solid_vertex, shaders::shadow_fragment),
-      wall_(shaders::panel_vertex, shaders::wall_fragment),
-      floor_(shaders::panel_vertex, shaders::floor_fragment) {
+      pane_(shaders::pane_vertex, shaders::pane_fragment) {
   bodies_ = {upload(sphere(14, 24)), upload(tapered_cylinder(1.0f, 24)), upload(tapered_cylinder(0.72f, 24)),
              upload(tapered_cylinder(0.0f, 20)), upload(coil(9, 0.28f, 14, 6))};
   glGenVertexArrays(1, &no_vertices_);
@@ -59,14 +69,15 @@ Renderer::Body Renderer::upload(const Mesh& mesh) {
   return body;
 }
 
-void Renderer::size_target(int width, int height) {
-  if (width == target_width_ && height == target_height_) return;
+void Renderer::size_target(int width, int height, int samples) {
+  if (width == target_width_ && height == target_height_ && samples == target_samples_) return;
+  target_samples_ = samples;
   target_width_ = width;
   target_height_ = height;
   glBindRenderbuffer(GL_RENDERBUFFER, target_buffers_[0]);
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_per_pixel, GL_RGBA8, width, height);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width, height);
   glBindRenderbuffer(GL_RENDERBUFFER, target_buffers_[1]);
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_per_pixel, GL_DEPTH24_STENCIL8, width, height);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH24_STENCIL8, width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, target_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target_buffers_[0]);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, target_buffers_[1]);
@@ -90,23 +101,48 @@ void Renderer::draw_solids(const std::vector<Solid>& solids, bool opaque, const 
   }
 }
 
-void Renderer::draw_floor(const std::vector<Solid>& solids, const SceneModel& scene, const SceneLook& look) const {
-  const glm::vec3 middle = workspace_to_view(scene.frame) * (0.5f * (scene.box_minimum_m + scene.box_maximum_m));
-  const glm::vec3 corner{middle.x - 0.5f * floor_size_m, scene.floor_height_m, middle.z + 0.5f * floor_size_m};
-  glEnable(GL_BLEND);
-  glDepthMask(GL_FALSE);
-  floor_.use();
-  floor_.set("to_clip", to_clip_);
-  floor_.set("corner", corner);
-  floor_.set("edge_u", glm::vec3{floor_size_m, 0.0f, 0.0f});
-  floor_.set("edge_v", glm::vec3{0.0f, 0.0f, -floor_size_m});
-  floor_.set("size", glm::vec2{floor_size_m});
-  floor_.set("line_colour", look.palette.floor_line);
-  glBindVertexArray(no_vertices_);
-  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+void Renderer::draw_sky(const Palette& palette) const {
+  // Clearing bands costs a tenth of shading every pixel of a gradient.
+  glEnable(GL_SCISSOR_TEST);
+  for (int band = 0; band < sky_bands; ++band) {
+    const int bottom = target_height_ * band / sky_bands;
+    const int top = target_height_ * (band + 1) / sky_bands;
+    const glm::vec4 colour = glm::mix(to_vector(palette.sky_bottom), to_vector(palette.sky_top),
+                                      static_cast<float>(band) / static_cast<float>(sky_bands - 1));
+    glScissor(0, bottom, target_width_, top - bottom);
+    glClearColor(colour.r, colour.g, colour.b, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+  }
+  glDisable(GL_SCISSOR_TEST);
+}
 
-  // Shadows straight down: what lies under the sphere on the floor tells its depth in the picture. The stencil
-  // lets each pixel be darkened once only, however many bodies lie over it.
+void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
+  // Lines that fade with their distance from the middle.
+  const glm::vec3 middle = workspace_to_view(scene.frame) * (0.5f * (scene.box_minimum_m + scene.box_maximum_m));
+  const glm::vec4 colour = to_vector(look.palette.floor_line);
+  const int count = static_cast<int>(floor_radius_m / floor_grid_m);
+  const auto place = [&](int i, int j) {
+    return glm::vec3{middle.x + static_cast<float>(i) * floor_grid_m, scene.floor_height_m,
+                     middle.z + static_cast<float>(j) * floor_grid_m};
+  };
+  const auto faded = [&](int i, int j) {
+    const float distance = std::hypot(static_cast<float>(i), static_cast<float>(j)) / static_cast<float>(count);
+    return glm::vec4{glm::vec3{colour}, 0.85f * std::clamp(1.15f * (1.0f - distance), 0.0f, 1.0f)};
+  };
+  constexpr int step = 2;  // cells for one piece of line
+  for (int i = -count; i <= count; ++i) {
+    for (int j = -count; j < count; j += step) {
+      if (std::hypot(static_cast<float>(i), static_cast<float>(std::abs(j + step / 2))) > static_cast<float>(count)) continue;
+      lines_.add(place(i, j), place(i, j + step), faded(i, j), faded(i, j + step), 1.0f);
+      lines_.add(place(j, i), place(j + step, i), faded(j, i), faded(j + step, i), 1.0f);
+    }
+  }
+  lines_.draw(to_clip_, {target_width_, target_height_});
+}
+
+void Renderer::draw_shadows(const std::vector<Solid>& solids, const SceneModel& scene, const SceneLook& look) const {
+  // Straight down: what lies under the sphere on the floor tells its depth in the picture. The stencil lets each
+  // pixel be darkened once only, however many bodies lie over it.
   glm::mat4 flattened{1.0f};
   flattened[1][1] = 0.0f;
   flattened[3][1] = scene.floor_height_m + 0.0005f;
@@ -124,79 +160,97 @@ void Renderer::draw_floor(const std::vector<Solid>& solids, const SceneModel& sc
     glDrawElements(GL_TRIANGLES, body.count, GL_UNSIGNED_SHORT, nullptr);
   }
   glDisable(GL_STENCIL_TEST);
-  glDepthMask(GL_TRUE);
-  glDisable(GL_BLEND);
 }
 
-void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const SceneLook& look) const {
+void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const SceneLook& look) {
   const glm::mat3 to_view = workspace_to_view(scene.frame);
   const glm::vec3 extent = scene.box_maximum_m - scene.box_minimum_m;
-  glEnable(GL_BLEND);
-  glDepthMask(GL_FALSE);
-  wall_.use();
-  wall_.set("to_clip", to_clip_);
+  std::vector<WallPicture> pictures;
+  for (std::size_t i = 0; i < scene.walls.size(); ++i) {
+    const WallView& wall = scene.walls[i];
+    WallPicture picture{&wall, (wall.axis + 1) % 3, (wall.axis + 2) % 3, scene.box_minimum_m, {}, 0, 0, 0};
+    if (wall.upper) picture.corner_m[wall.axis] = scene.box_maximum_m[wall.axis];
+    // Walls between the eye and the free space stay see-through.
+    const bool is_near = glm::dot(to_view * wall.inward, camera.eye_m() - to_view * picture.corner_m) < 0.0f;
+    const bool is_marked = look.marked_wall == static_cast<int>(i);
+    const bool touched = wall.pushes_back;
+    picture.colour = to_vector(touched ? scene_colours::wall_touched : scene_colours::wall_idle);
+    picture.frame_alpha = look.flat_colours || touched || is_marked ? 1.0f : is_near ? 0.35f : 0.65f;
+    picture.grid_alpha = touched ? (is_near ? 0.25f : 0.45f) : is_near ? 0.0f : 0.20f;
+    picture.pane_alpha = touched ? 0.17f : is_marked ? 0.14f : is_near ? 0.0f : 0.07f;
+    pictures.push_back(picture);
+  }
+  // A wall that pushes back comes last, for its frame has edges in common with its neighbours.
+  std::ranges::stable_partition(pictures, [](const WallPicture& each) { return !each.wall->pushes_back; });
+
+  pane_.use();
+  pane_.set("to_clip", to_clip_);
   glBindVertexArray(no_vertices_);
-  // Far walls first: those whose free side faces the eye. The near ones stay see-through.
-  for (bool near_side : {false, true}) {
-    for (std::size_t i = 0; i < scene.walls.size(); ++i) {
-      const WallView& wall = scene.walls[i];
-      const int u = (wall.axis + 1) % 3;
-      const int v = (wall.axis + 2) % 3;
-      glm::vec3 corner = scene.box_minimum_m;
-      if (wall.upper) corner[wall.axis] = scene.box_maximum_m[wall.axis];
-      const bool faces_away = glm::dot(to_view * wall.inward, camera.eye_m() - to_view * corner) < 0.0f;
-      if (faces_away != near_side) continue;
-      glm::vec3 edge_u{0.0f};
-      glm::vec3 edge_v{0.0f};
-      edge_u[u] = extent[u];
-      edge_v[v] = extent[v];
-      const bool marked = look.marked_wall == static_cast<int>(i);
-      const Colour colour = wall.pushes_back ? scene_colours::wall_touched : scene_colours::wall_idle;
-      const float frame = look.flat_colours || wall.pushes_back || marked ? 1.0f : near_side ? 0.30f : 0.62f;
-      wall_.set("corner", to_view * corner);
-      wall_.set("edge_u", to_view * edge_u);
-      wall_.set("edge_v", to_view * edge_v);
-      wall_.set("size", glm::vec2{extent[u], extent[v]});
-      wall_.set("frame_colour", glm::vec4{glm::vec3{to_vector(colour)}, frame});
-      wall_.set("fill", wall.pushes_back ? 0.16f : marked ? 0.14f : near_side ? 0.0f : 0.07f);
-      wall_.set("grid", near_side ? (wall.pushes_back ? 0.20f : 0.0f) : (wall.pushes_back ? 0.34f : 0.17f));
-      wall_.set("contact", glm::vec2{scene.proxy_m[u] - corner[u], scene.proxy_m[v] - corner[v]});
-      wall_.set("glow", wall.pushes_back ? 1.0f : 0.0f);
+  for (const WallPicture& picture : pictures) {
+    const auto [wall, u, v, corner_m, colour, frame_alpha, grid_alpha, pane_alpha] = picture;
+    glm::vec3 edge_u{0.0f};
+    glm::vec3 edge_v{0.0f};
+    edge_u[u] = extent[u];
+    edge_v[v] = extent[v];
+    if (pane_alpha > 0.0f) {
+      pane_.set("corner", to_view * corner_m);
+      pane_.set("edge_u", to_view * edge_u);
+      pane_.set("edge_v", to_view * edge_v);
+      pane_.set("base_colour", glm::vec4{glm::vec3{colour}, pane_alpha});
+      pane_.set("contact", glm::vec2{scene.proxy_m[u] - corner_m[u], scene.proxy_m[v] - corner_m[v]});
+      pane_.set("glow", wall->pushes_back ? 0.6f : 0.0f);
       glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }
+    const auto add = [&](glm::vec3 from, glm::vec3 to, float alpha, float width) {
+      const glm::vec4 ink{glm::vec3{colour}, alpha};
+      lines_.add(to_view * from, to_view * to, ink, ink, width);
+    };
+    if (grid_alpha > 0.0f) {
+      const auto grid = [&](int across, glm::vec3 along) {
+        const float first = std::ceil(corner_m[across] / wall_grid_m + 0.1f) * wall_grid_m;
+        for (float at = first; at < corner_m[across] + extent[across] - 0.1f * wall_grid_m; at += wall_grid_m) {
+          glm::vec3 from = corner_m;
+          from[across] = at;
+          add(from, from + along, grid_alpha, 1.0f);
+        }
+      };
+      grid(u, edge_v);
+      grid(v, edge_u);
+    }
+    const float width = wall->pushes_back ? 2.2f : 1.4f;
+    add(corner_m, corner_m + edge_u, frame_alpha, width);
+    add(corner_m + edge_u, corner_m + edge_u + edge_v, frame_alpha, width);
+    add(corner_m + edge_u + edge_v, corner_m + edge_v, frame_alpha, width);
+    add(corner_m + edge_v, corner_m, frame_alpha, width);
   }
-  glDepthMask(GL_TRUE);
-  glDisable(GL_BLEND);
+  lines_.draw(to_clip_, {target_width_, target_height_});
 }
 
 void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera,
                     const SceneLook& look, const Viewport& viewport) {
   if (viewport.width < 2 || viewport.height < 2) return;
-  size_target(viewport.width, viewport.height);
+  size_target(viewport.width, viewport.height, look.smooth ? samples_when_smooth : 0);
   glBindFramebuffer(GL_FRAMEBUFFER, target_);
   glViewport(0, 0, viewport.width, viewport.height);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
-  glEnable(GL_MULTISAMPLE);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-
-  glDisable(GL_DEPTH_TEST);
-  sky_.use();
-  sky_.set("top", look.palette.sky_top);
-  sky_.set("bottom", look.palette.sky_bottom);
-  glBindVertexArray(no_vertices_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  draw_sky(look.palette);
 
   to_clip_ = camera.projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height)) * camera.view();
   const std::vector<Solid> solids = solids_of(scene, hand, look.palette);
   glEnable(GL_DEPTH_TEST);
-  draw_floor(solids, scene, look);
   draw_solids(solids, true, camera, look);
-  draw_walls(scene, camera, look);
+  // What is see-through is tested against the bodies' depth, and leaves none of its own.
   glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+  draw_floor(scene, look);
+  draw_shadows(solids, scene, look);
+  draw_walls(scene, camera, look);
   draw_solids(solids, false, camera, look);
+  glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);

@@ -13,6 +13,7 @@
 #include <window/palette.hpp>
 #include <window/scene_model.hpp>
 
+#include "line_batch.hpp"
 #include "scene_solids.hpp"
 #include "shader.hpp"
 
@@ -26,6 +27,7 @@ struct Viewport {
 struct SceneLook {
   const Palette& palette;
   bool flat_colours;                ///< no lighting, frames of the walls opaque
+  bool smooth;                      ///< with multisampling
   std::optional<int> marked_wall;   ///< under the mouse: index into SceneModel::walls
 };
 
@@ -36,7 +38,7 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws into the part of the window's framebuffer, smoothed by multisampling in a buffer of its own.
+  /// Draws into the part of the window's framebuffer, through a buffer of its own.
   void draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera, const SceneLook& look,
             const Viewport& viewport);
 
@@ -47,10 +49,12 @@ class Renderer {
   };
 
   static Body upload(const Mesh& mesh);
-  void size_target(int width, int height);
+  void size_target(int width, int height, int samples);
   void draw_solids(const std::vector<Solid>& solids, bool opaque, const Camera& camera, const SceneLook& look) const;
-  void draw_floor(const std::vector<Solid>& solids, const SceneModel& scene, const SceneLook& look) const;
-  void draw_walls(const SceneModel& scene, const Camera& camera, const SceneLook& look) const;
+  void draw_sky(const Palette& palette) const;
+  void draw_floor(const SceneModel& scene, const SceneLook& look);
+  void draw_shadows(const std::vector<Solid>& solids, const SceneModel& scene, const SceneLook& look) const;
+  void draw_walls(const SceneModel& scene, const Camera& camera, const SceneLook& look);
 
   std::array<Body, 5> bodies_;  // in the order of Shape
   GLuint no_vertices_ = 0;
@@ -58,12 +62,12 @@ class Renderer {
   std::array<GLuint, 2> target_buffers_{};  // colour, depth with stencil
   int target_width_ = 0;
   int target_height_ = 0;
+  int target_samples_ = -1;
   glm::mat4 to_clip_{1.0f};
-  ShaderProgram sky_;
   ShaderProgram solid_;
   ShaderProgram shadow_;
-  ShaderProgram wall_;
-  ShaderProgram floor_;
+  ShaderProgram pane_;
+  LineBatch lines_;
 };
 
 }  // namespace inkwell::window

@@ -32,7 +32,7 @@ glm::vec3 turned(glm::vec3 vector, glm::vec3 axis, float angle_rad) {
 // has them: right, down and clockwise are where the stylus goes for a negative, positive and positive angle.
 void orient_stylus(SceneModel& scene, glm::vec3 gimbal_rad) {
   const glm::vec3 forearm = glm::normalize(scene.probe_m - scene.elbow_m);
-  glm::vec3 outward = glm::cross(scene.arm_side, forearm);
+  glm::vec3 outward = glm::cross(forearm, scene.arm_side);
   glm::vec3 across = turned(scene.arm_side, forearm, gimbal_rad.x);
   outward = turned(turned(outward, forearm, gimbal_rad.x), across, gimbal_rad.y);
   scene.stylus_direction = outward;

@@ -235,16 +235,16 @@ void ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
     camera_ = look_at_box(glm::min(a, b), glm::max(a, b));
     view_is_to_be_reset_ = false;
   }
-  begin_pane("scene", place, size, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollWithMouse);
+  begin_pane("scene", place, size, ImGuiWindowFlags_NoScrollWithMouse);
   handle_mouse(input);
   draw_labels(input);
   draw_tools(input);
   end_pane();
 }
 
-void ScenePane::draw_scene(Renderer& renderer, const Viewport& viewport, const Palette& palette, bool flat_colours) const {
-  const auto marked = drag_ == Drag::wall ? std::optional(dragged_wall_) : marked_wall_;
-  renderer.draw(scene_, hand_view_, camera_, {palette, flat_colours, marked}, viewport);
+void ScenePane::draw_scene(Renderer& renderer, const Viewport& viewport, SceneLook look) const {
+  look.marked_wall = drag_ == Drag::wall ? std::optional(dragged_wall_) : marked_wall_;
+  renderer.draw(scene_, hand_view_, camera_, look, viewport);
 }
 
 }  // namespace inkwell::window

@@ -25,7 +25,7 @@ class ScenePane {
  public:
   /// Handles the mouse and draws the labels; the picture below them comes from draw_scene.
   void draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input);
-  void draw_scene(Renderer& renderer, const Viewport& viewport, const Palette& palette, bool flat_colours) const;
+  void draw_scene(Renderer& renderer, const Viewport& viewport, SceneLook look) const;
   void reset_view() { view_is_to_be_reset_ = true; }
 
  private:

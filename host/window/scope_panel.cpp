@@ -115,7 +115,7 @@ void ScopePanel::draw_legend(std::size_t index, ImVec2 place, float width, const
     }
     const float taken = font->CalcTextSizeA(font->FontSize, 1e4f, 0, label.c_str()).x;
     right -= taken;
-    if (right < place.x + style.points(130)) break;
+    if (right < place.x + style.points(24)) break;
     list.AddText(font, font->FontSize, {right, place.y}, packed(palette.text_quiet), label.c_str());
     right -= style.points(14);
     const float middle = place.y + 0.5f * font->FontSize + style.points(1);
@@ -173,7 +173,7 @@ void ScopePanel::draw_time(std::size_t index, PlotArea area, const Stretch& stre
   area.x = {(stretch.first - stretch.zero) / rate_Hz, (stretch.last - stretch.zero) / rate_Hz};
   area.y = memory.y.update(static_cast<double>(all.minimum), static_cast<double>(all.maximum), ImGui::GetTime());
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_axes(list, area, style, "s", common_unit(pane));
+  draw_axes(list, area, style, "s", "");
   if (trigger_settings_.mode != TriggerMode::off && std::ranges::find(pane.signals, trigger_settings_.signal) != pane.signals.end()) {
     const float y = area.to_y(static_cast<double>(trigger_settings_.level));
     if (y > area.minimum.y && y < area.maximum.y)
@@ -292,7 +292,7 @@ void ScopePanel::draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const S
   const float title_width = ImGui::GetItemRectSize().x;
   help_on_hover("", "Click to choose what this pane shows.", style);
   draw_pane_menu(index, style);
-  draw_legend(index, {place.x + title_width - style.points(116), place.y + style.points(4)}, size.x - title_width + style.points(110), stretch, style);
+  draw_legend(index, {place.x + title_width, place.y + style.points(4)}, size.x - title_width - style.points(6), stretch, style);
 
   const PlotArea area{{place.x + style.points(y_axis_points), place.y + style.points(header_points)},
                       {place.x + size.x - style.points(6), place.y + size.y - style.points(x_axis_points)}, {0, 1}, {0, 1}};

@@ -28,6 +28,7 @@ class ScopePanel {
   /// What has to be streamed for the panes and the trigger.
   std::vector<protocol::Signal> signals() const;
   void store(WindowSettings& settings) const;
+  bool is_paused() const { return paused_; }
 
  private:
   /// The stretch of the history that all time panes show, in samples; `zero` is where their axis says 0.

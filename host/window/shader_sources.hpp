@@ -3,22 +3,6 @@
 
 namespace inkwell::window::shaders {
 
-/// A triangle that covers the viewport, without vertices of its own.
-inline constexpr char sky_vertex[] = R"(#version 330 core
-out float height;
-void main() {
-  vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);
-  height = corner.y;
-  gl_Position = vec4(2.0 * corner - 1.0, 0.9999, 1.0);
-})";
-
-inline constexpr char sky_fragment[] = R"(#version 330 core
-in float height;
-uniform vec4 top;
-uniform vec4 bottom;
-out vec4 colour;
-void main() { colour = vec4(mix(bottom.rgb, top.rgb, height), 1.0); })";
-
 inline constexpr char solid_vertex[] = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -64,7 +48,7 @@ out vec4 colour;
 void main() { colour = base_colour; })";
 
 /// A rectangle given by a corner and two edges; `place` is in metres along the edges.
-inline constexpr char panel_vertex[] = R"(#version 330 core
+inline constexpr char pane_vertex[] = R"(#version 330 core
 uniform vec3 corner;
 uniform vec3 edge_u;
 uniform vec3 edge_v;
@@ -76,41 +60,40 @@ void main() {
   gl_Position = to_clip * vec4(corner + part.x * edge_u + part.y * edge_v, 1.0);
 })";
 
-/// A wall: a faint pane with a grid of 20 mm, a frame, and a glow around the place where it pushes back.
-inline constexpr char wall_fragment[] = R"(#version 330 core
+/// The pane of a wall, with a glow around the place where it pushes back.
+inline constexpr char pane_fragment[] = R"(#version 330 core
 in vec2 place;
-uniform vec2 size;
-uniform vec4 frame_colour;   // alpha: of the frame
-uniform float fill;          // alpha of the pane
-uniform float grid;          // alpha of the grid
+uniform vec4 base_colour;
 uniform vec2 contact;
-uniform float glow;          // 0 none, 1 full
+uniform float glow;
 out vec4 colour;
 void main() {
-  vec2 pixel = fwidth(place);
-  vec2 to_edge = min(place, size - place) / pixel;
-  float frame = 1.0 - smoothstep(0.9, 1.9, min(to_edge.x, to_edge.y));
-  vec2 to_line = abs(fract(place / 0.02 - 0.5) - 0.5) * 0.02 / pixel;
-  float line = 1.0 - min(min(to_line.x, to_line.y), 1.0);
   vec2 offset = place - contact;
   float near = 1.0 / (1.0 + dot(offset, offset) * 2600.0);
-  float pane = fill + grid * line + glow * near * near * 0.6;
-  colour = vec4(frame_colour.rgb, max(frame * frame_colour.a, min(pane, 0.85)));
+  colour = vec4(base_colour.rgb, base_colour.a + glow * near * near);
 })";
 
-/// The table: a grid of 50 mm that fades with the distance from the middle.
-inline constexpr char floor_fragment[] = R"(#version 330 core
-in vec2 place;
-uniform vec2 size;
-uniform vec4 line_colour;
+/// Lines come as bands that are already in clip space. Across a band the distance is in pixels, so it must not
+/// be bent by the perspective.
+inline constexpr char line_vertex[] = R"(#version 330 core
+layout(location = 0) in vec4 place;
+layout(location = 1) in vec4 end_colour;
+layout(location = 2) in vec2 across;
+noperspective out vec2 from_middle;
+out vec4 line_colour;
+void main() {
+  from_middle = across;
+  line_colour = end_colour;
+  gl_Position = place;
+})";
+
+inline constexpr char line_fragment[] = R"(#version 330 core
+noperspective in vec2 from_middle;
+in vec4 line_colour;
 out vec4 colour;
 void main() {
-  vec2 from_middle = place - 0.5 * size;
-  vec2 pixel = max(fwidth(place), vec2(1e-6));
-  vec2 to_line = abs(fract(from_middle / 0.05 - 0.5) - 0.5) * 0.05 / pixel;
-  float line = 1.0 - min(min(to_line.x, to_line.y), 1.0);
-  float fade = 1.0 - smoothstep(0.25, 0.5, length(from_middle) / size.x);
-  colour = vec4(line_colour.rgb, line * fade * 0.75 + 0.05 * fade);
+  float cover = clamp(from_middle.y + 0.5 - abs(from_middle.x), 0.0, 1.0);
+  colour = vec4(line_colour.rgb, line_colour.a * cover);
 })";
 
 }  // namespace inkwell::window::shaders

@@ -107,8 +107,10 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(8)});
   begin_pane("status", place, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  ImGui::GetWindowDrawList()->AddLine({place.x, place.y + size.y - 1}, {place.x + size.x, place.y + size.y - 1},
-                                      packed(palette.line));
+  ImDrawList& ground = *ImGui::GetWindowDrawList();
+  ground.PushClipRectFullScreen();
+  ground.AddLine({place.x, place.y + size.y - 1}, {place.x + size.x, place.y + size.y - 1}, packed(palette.line));
+  ground.PopClipRect();
   draw_device(style, desk);
   ImGui::SameLine(0, style.points(14));
 
@@ -187,7 +189,7 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
 bool draw_fault_banner(ImVec2 place, ImVec2 size, const Style& style, protocol::Fault fault) {
   const Palette& palette = *style.palette;
   const protocol::CodeInfo& info = protocol::info(fault);
-  begin_pane("fault", place, size, ImGuiWindowFlags_NoBackground);
+  begin_pane("fault", place, size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(place, {place.x + size.x, place.y + size.y}, packed(palette.raised));
   list.AddRectFilled(place, {place.x + style.points(5), place.y + size.y}, packed(palette.danger));

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include <imgui_freetype.h>
+#include <imgui_internal.h>
 
 namespace inkwell::window {
 
@@ -191,12 +192,42 @@ bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size) 
   return ImGui::Button(label, size);
 }
 
+bool bar_slider(const char* label, float& value, float minimum, float maximum, const char* format,
+                ImGuiSliderFlags flags, float width, const Style& style) {
+  const Palette& palette = *style.palette;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 end{corner.x + width, corner.y + ImGui::GetFrameHeight()};
+  const bool hovered = ImGui::IsMouseHoveringRect(corner, end) && ImGui::IsWindowHovered();
+  const float linear = (value - minimum) / (maximum - minimum);
+  const float part = (flags & ImGuiSliderFlags_Logarithmic) != 0 ? std::log(value / minimum) / std::log(maximum / minimum) : linear;
+  const float edge = corner.x + std::clamp(part, 0.0f, 1.0f) * width;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float rounding = ImGui::GetStyle().FrameRounding;
+  list.AddRectFilled(corner, end, packed(hovered ? palette.raised_hover : palette.raised), rounding);
+  if (edge - corner.x > 1.0f) {
+    list.PushClipRect(corner, {edge, end.y}, true);
+    list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
+    list.PopClipRect();
+  }
+  list.AddLine({edge, corner.y + style.points(3)}, {edge, end.y - style.points(3)}, packed(palette.accent), style.points(2));
+  const ImU32 nothing = packed(palette.raised.with_alpha(0));
+  const bool typing = ImGui::TempInputIsActive(ImGui::GetID(label));
+  if (!typing)
+    for (ImGuiCol slot : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive})
+      ImGui::PushStyleColor(slot, nothing);
+  ImGui::SetNextItemWidth(width);
+  const bool edited = ImGui::SliderFloat(label, &value, minimum, maximum, format, flags);
+  if (!typing) ImGui::PopStyleColor(5);
+  return edited;
+}
+
 bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags) {
   ImGui::SetNextWindowPos(place);
   ImGui::SetNextWindowSize(size);
   return ImGui::Begin(name, nullptr,
                       ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                          ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
+                          ImGuiWindowFlags_NoBringToFrontOnFocus |
+                          ImGuiWindowFlags_NoBackground | flags);
 }
 
 void end_pane() { ImGui::End(); }

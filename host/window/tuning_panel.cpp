@@ -140,7 +140,7 @@ void TuningPanel::draw_row(Parameter parameter, const Style& style, ParameterEdi
 
   const float left = ImGui::GetCursorPosX();
   const float width = ImGui::GetContentRegionAvail().x;
-  const float label_width = std::min(0.47f * width, style.points(190));
+  const float label_width = std::min(0.42f * width, style.points(170));
   const std::string label = label_of(info);
   ImGui::AlignTextToFramePadding();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -154,7 +154,8 @@ void TuningPanel::draw_row(Parameter parameter, const Style& style, ParameterEdi
 
   ImGui::SameLine();
   ImGui::SetCursorPosX(left + label_width);
-  ImGui::SetNextItemWidth(width - label_width - style.points(unit_points + reset_points));
+  const float field_width = width - label_width - style.points(unit_points + reset_points);
+  ImGui::SetNextItemWidth(field_width);
   float value = editor.shown(parameter);
   bool edited = false;
   if (info.kind == ParameterKind::choice) {
@@ -168,8 +169,8 @@ void TuningPanel::draw_row(Parameter parameter, const Style& style, ParameterEdi
   } else {
     const bool wide = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f;
     const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
-    edited = ImGui::SliderFloat("##value", &value, info.minimum, info.maximum,
-                                fmt::format("%.{}f", decimals_of(info)).c_str(), flags);
+    edited = bar_slider("##value", value, info.minimum, info.maximum, fmt::format("%.{}f", decimals_of(info)).c_str(),
+                        flags, field_width, style);
     if (ImGui::IsItemActivated()) editor.begin_step(label);
     if (edited) {
       const ParameterChange change{parameter, info.kind == ParameterKind::whole ? std::round(value) : value};

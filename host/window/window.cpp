@@ -20,6 +20,9 @@ namespace inkwell::window {
 
 namespace {
 
+constexpr double lively_for_s = 0.5;
+constexpr double idle_period_s = 0.1;
+
 /// ImGui with its two back ends, for as long as the window is open.
 class ImGuiScope {
  public:
@@ -83,10 +86,18 @@ void run(const WindowOptions& options) {
   const double started_s = glfwGetTime();
   std::uint64_t frames = 0;
   double drawing_s = 0.0;
+  double last_lively_s = started_s;
   while (glfwWindowShouldClose(display.handle()) == 0) {
-    pacer.wait();
+    if (glfwGetTime() - last_lively_s < lively_for_s) {
+      pacer.wait();
+      glfwPollEvents();
+    } else {
+      // Nothing moves: a few frames a second are enough to see it when something does.
+      const double before_s = glfwGetTime();
+      glfwWaitEventsTimeout(idle_period_s);
+      if (glfwGetTime() - before_s < 0.9 * idle_period_s) last_lively_s = glfwGetTime();
+    }
     const double now_s = glfwGetTime();
-    glfwPollEvents();
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(display.handle(), &width, &height);
@@ -98,11 +109,16 @@ void run(const WindowOptions& options) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     companion.draw(size, now_s);
     ImGui::Render();
-    companion.draw_scene(renderer, static_cast<float>(width) / size.x, height, options.flat_colours);
+    if (companion.is_moving()) last_lively_s = now_s;
+
+    const bool is_last = !options.screenshot.empty() && now_s - started_s >= options.after_seconds;
+    const ImVec4 ground = vector(companion.colours().panel);
+    glClearColor(ground.x, ground.y, ground.z, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    companion.draw_scene(renderer, static_cast<float>(width) / size.x, height, pacer.keeps_up() || is_last);
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     ++frames;
-    const bool is_last = !options.screenshot.empty() && now_s - started_s >= options.after_seconds;
     if (is_last) write_screenshot(options.screenshot, width, height);
     drawing_s += glfwGetTime() - now_s;
     glfwSwapBuffers(display.handle());

@@ -79,12 +79,12 @@ inline constexpr Palette dark_palette{
     .on_danger = {255, 255, 255},
     .plot_ground = {19, 22, 28},
     .plot_grid = {38, 44, 53},
-    .sky_top = {33, 39, 48},
-    .sky_bottom = {20, 23, 29},
-    .floor_line = {62, 71, 84},
-    .shadow = {0, 0, 0, 110},
+    .sky_top = {30, 35, 43},
+    .sky_bottom = {44, 51, 61},
+    .floor_line = {78, 88, 103},
+    .shadow = {8, 10, 14, 150},
     .metal = {176, 184, 194},
-    .metal_dark = {74, 83, 95},
+    .metal_dark = {92, 102, 116},
     .lines = line_colours_dark,
 };
 

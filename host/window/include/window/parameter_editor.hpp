@@ -72,7 +72,7 @@ class ParameterEditor {
   std::optional<Step> open_step_;
 };
 
-/// "wall_stiffness_N_per_m" -> "Wall stiffness": the name in words, without the unit it ends in.
+/// "wall_stiffness_N_per_m" -> "Wall stiffness": the name in words, without its group and the unit it ends in.
 std::string label_of(const protocol::ParameterInfo& info);
 
 /// Digits after the decimal point with which a value of this parameter is shown: about a ten-thousandth of its range.
