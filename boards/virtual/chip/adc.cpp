@@ -10,15 +10,30 @@
 namespace inkwell::virtual_board {
 namespace {
 
-enum : std::uint32_t { sr = 0x00, cr1 = 0x04, cr2 = 0x08, smpr1 = 0x0C, smpr2 = 0x10, jofr1 = 0x14, jofr4 = 0x20,
-                       htr = 0x24, ltr = 0x28, sqr1 = 0x2C, sqr3 = 0x34, jsqr = 0x38, jdr1 = 0x3C, jdr4 = 0x48, dr = 0x4C };
+enum : std::uint32_t {
+  sr = 0x00,
+  cr1 = 0x04,
+  cr2 = 0x08,
+  smpr1 = 0x0C,
+  smpr2 = 0x10,
+  jofr1 = 0x14,
+  jofr4 = 0x20,
+  htr = 0x24,
+  ltr = 0x28,
+  sqr1 = 0x2C,
+  sqr3 = 0x34,
+  jsqr = 0x38,
+  jdr1 = 0x3C,
+  jdr4 = 0x48,
+  dr = 0x4C
+};
 constexpr std::uint32_t watchdog = 1u << 0, end_of_conversion = 1u << 1, end_of_injected = 1u << 2,
                         injected_started = 1u << 3, regular_started = 1u << 4, overrun = 1u << 5;
 // CR1
 constexpr std::uint32_t conversion_interrupt = 1u << 5, watchdog_interrupt = 1u << 6, injected_interrupt = 1u << 7,
-                        scan = 1u << 8, watchdog_single = 1u << 9, automatic_injected = 1u << 10, discontinuous = 1u << 11,
-                        discontinuous_injected = 1u << 12, watchdog_injected = 1u << 22, watchdog_regular = 1u << 23,
-                        overrun_interrupt = 1u << 26;
+                        scan = 1u << 8, watchdog_single = 1u << 9, automatic_injected = 1u << 10,
+                        discontinuous = 1u << 11, discontinuous_injected = 1u << 12, watchdog_injected = 1u << 22,
+                        watchdog_regular = 1u << 23, overrun_interrupt = 1u << 26;
 // CR2
 constexpr std::uint32_t continuous = 1u << 1, dma_on = 1u << 8, end_each = 1u << 10, left_aligned = 1u << 11,
                         start_injected_bit = 1u << 22, start_regular_bit = 1u << 30;
@@ -47,7 +62,9 @@ void Adc::idle() {
   machine_.timeline.set(slot_, never, never);
 }
 
-Ticks Adc::duration(unsigned cycles) const { return machine_.clocks.pclk2.duration(std::uint64_t{cycles} * adcs_.prescaler()); }
+Ticks Adc::duration(unsigned cycles) const {
+  return machine_.clocks.pclk2.duration(std::uint64_t{cycles} * adcs_.prescaler());
+}
 
 unsigned Adc::regular_length() const { return (cr1_ & scan) != 0 ? (sqr_[0] >> 20 & 0xF) + 1 : 1; }
 unsigned Adc::injected_length() const { return (cr1_ & scan) != 0 ? (jsqr_ >> 20 & 3) + 1 : 1; }

@@ -88,7 +88,8 @@ void Adcs::connect_triggers() {
   awaited_.fill(0);
   const bool any_injected_matters =
       adcs_[0].injected_matters() || adcs_[1].injected_matters() || adcs_[2].injected_matters();
-  const bool any_regular_matters = adcs_[0].regular_matters() || adcs_[1].regular_matters() || adcs_[2].regular_matters();
+  const bool any_regular_matters =
+      adcs_[0].regular_matters() || adcs_[1].regular_matters() || adcs_[2].regular_matters();
   const auto connect = [&](int selected, const TriggerSource (&sources)[16], bool matters) {
     if (selected < 0 || sources[selected].timer == 0) return;
     const auto bit = static_cast<std::uint8_t>(1u << sources[selected].channel);

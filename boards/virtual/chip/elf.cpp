@@ -45,7 +45,8 @@ void program_elf(const std::filesystem::path& path, Memory& memory) {
   if (std::filesystem::is_directory(path, ignored))
     throw ChipError(name + " is a folder. Give the ELF file of the firmware.");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw ChipError("There is no readable file " + name + ". Build the firmware first, or correct the path.");
+  if (!stream)
+    throw ChipError("There is no readable file " + name + ". Build the firmware first, or correct the path.");
   const std::vector<char> file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   if (file.size() < SELFMAG || std::memcmp(file.data(), ELFMAG, SELFMAG) != 0)
     throw ChipError(name + " is not an ELF file. Give the .elf that the linker writes, not a .bin or .hex.");

@@ -103,7 +103,8 @@ void Execution::take_exception() {
   if (exception != exception_none) enter(exception);
   // Something pending that only PRIMASK, FAULTMASK or BASEPRI hold back: the processor must see them open.
   const unsigned next = machine_.nvic.most_urgent();
-  processor_.watch_masks(next != exception_none && machine_.nvic.group_priority(next) < machine_.nvic.execution_priority({}));
+  processor_.watch_masks(next != exception_none &&
+                         machine_.nvic.group_priority(next) < machine_.nvic.execution_priority({}));
 }
 
 bool Execution::wakes() const {
@@ -117,7 +118,8 @@ bool Execution::wakes() const {
 void Execution::sleep_until(Ticks when) {
   auto& timeline = machine_.timeline;
   const Ticks from = timeline.now();
-  const Ticks to = std::max(from, std::min({timeline.next_wake(), when, machine_.last_advance + Machine::advance_period}));
+  const Ticks to =
+      std::max(from, std::min({timeline.next_wake(), when, machine_.last_advance + Machine::advance_period}));
   timeline.catch_up(to);
   if (state_ == State::sleeps || state_ == State::waits_for_event) processor_.counters().asleep += to - from;
   if (machine_.sleep_counts_cycles) processor_.add_sleep_cycles(machine_.clocks.hclk.cycles_in(to - from));
@@ -131,8 +133,9 @@ void Execution::sleep_until(Ticks when) {
 }
 
 void Execution::enter(unsigned exception) {
-  const bool entered = processor_.enter_exception(exception, system_control_.aligns_stack(),
-                                                  system_control_.preserves_float_context(), system_control_.vector_table());
+  const bool entered =
+      processor_.enter_exception(exception, system_control_.aligns_stack(), system_control_.preserves_float_context(),
+                                 system_control_.vector_table());
   if (entered) return;
   const std::uint32_t stack = processor_.read(UC_ARM_REG_SP);
   if (exception == exception_hard_fault || machine_.memory.ram_at(stack, 4) == nullptr) {
@@ -170,7 +173,8 @@ void Execution::handle_breakpoint() {
   }
   const std::uint32_t operation = processor_.read(UC_ARM_REG_R0);
   const auto answer = semihosting_call(operation, processor_.read(UC_ARM_REG_R1), machine_.memory, on_console);
-  if (!answer.known) machine_.log.say_once("semihosting call " + std::to_string(operation) + " is not modelled: answers -1");
+  if (!answer.known)
+    machine_.log.say_once("semihosting call " + std::to_string(operation) + " is not modelled: answers -1");
   processor_.write(UC_ARM_REG_R0, answer.result);
   processor_.set_program_counter(address + 2);
   if (answer.exit_code) {
@@ -198,7 +202,8 @@ void Execution::handle(Outcome outcome) {
     case Outcome::supervisor_call:
       if (machine_.nvic.group_priority(exception_svcall) < machine_.nvic.execution_priority(processor_.masks()))
         enter(exception_svcall);
-      else raise_fault(exception_hard_fault, 0, at("SVC that can not be taken before", program_counter, program_counter));
+      else
+        raise_fault(exception_hard_fault, 0, at("SVC that can not be taken before", program_counter, program_counter));
       break;
     case Outcome::breakpoint: handle_breakpoint(); break;
     case Outcome::exception_return: handle_return(); break;
@@ -206,10 +211,12 @@ void Execution::handle(Outcome outcome) {
       raise_fault(exception_usage_fault, undefined, at("undefined instruction at", program_counter, program_counter));
       break;
     case Outcome::invalid_state:
-      raise_fault(exception_usage_fault, invalid_state, at("branch out of Thumb state to", program_counter, program_counter));
+      raise_fault(exception_usage_fault, invalid_state,
+                  at("branch out of Thumb state to", program_counter, program_counter));
       break;
     case Outcome::no_coprocessor:
-      raise_fault(exception_usage_fault, no_coprocessor, at("coprocessor instruction at", program_counter, program_counter));
+      raise_fault(exception_usage_fault, no_coprocessor,
+                  at("coprocessor instruction at", program_counter, program_counter));
       break;
     case Outcome::data_fault:
       system_control_.record_bus_fault_address(address);
@@ -220,7 +227,8 @@ void Execution::handle(Outcome outcome) {
       raise_fault(exception_bus_fault, instruction_bus, at("no instructions at", address, program_counter));
       break;
     case Outcome::execute_never:
-      raise_fault(exception_memory_fault, instruction_access, at("no instructions may be at", address, program_counter));
+      raise_fault(exception_memory_fault, instruction_access,
+                  at("no instructions may be at", address, program_counter));
       break;
   }
   // Entry, return and sleep change what may run next.

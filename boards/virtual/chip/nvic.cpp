@@ -12,7 +12,8 @@ void Nvic::reset() {
   group_ = 0;
   enabled_ = {};
   // These have no enable bit. The three configurable faults have theirs in SHCSR.
-  for (const unsigned always : {exception_nmi, exception_hard_fault, exception_svcall, exception_pendsv, exception_systick})
+  for (const unsigned always :
+       {exception_nmi, exception_hard_fault, exception_svcall, exception_pendsv, exception_systick})
     assign(enabled_, always, true);
   changed_ = true;
   newly_pending_ = false;
@@ -62,7 +63,8 @@ int Nvic::execution_priority(const Masks& masks) const {
   for (unsigned half = 0; half < 2; ++half)
     for (std::uint64_t bits = active_[half]; bits != 0; bits &= bits - 1)
       priority = std::min(priority, group_priority(half * 64 + static_cast<unsigned>(std::countr_zero(bits))));
-  if (masks.basepri != 0) priority = std::min(priority, static_cast<int>(masks.basepri & (0xFFu << (group_ + 1)) & 0xFF));
+  if (masks.basepri != 0)
+    priority = std::min(priority, static_cast<int>(masks.basepri & (0xFFu << (group_ + 1)) & 0xFF));
   if (masks.primask) priority = std::min(priority, 0);
   if (masks.faultmask) priority = std::min(priority, -1);
   return priority;
@@ -118,7 +120,8 @@ void Nvic::write(std::uint32_t offset, std::uint32_t value, unsigned size) {
   if (offset >= 0x400) {
     for (unsigned i = 0; i < size; ++i) {
       const unsigned position = (offset & 0x3FF) + i;
-      if (position < positions) set_priority(exception_interrupt_0 + position, static_cast<std::uint8_t>(value >> 8 * i));
+      if (position < positions)
+        set_priority(exception_interrupt_0 + position, static_cast<std::uint8_t>(value >> 8 * i));
     }
     return;
   }

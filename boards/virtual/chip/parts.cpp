@@ -48,7 +48,8 @@ void ChipParts::put(std::uint32_t base, const std::string& name, Peripheral& per
 ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(circuit, options) {
   machine.processor = &processor;
   for (unsigned i = 0; i < 6; ++i)
-    usarts.emplace_back(machine, i + 1, usart_places[i].position, usart_places[i].place.enable_register == Rcc::apb2enr);
+    usarts.emplace_back(machine, i + 1, usart_places[i].position,
+                        usart_places[i].place.enable_register == Rcc::apb2enr);
   for (unsigned number : {1u, 2u})
     dma.controller(number).on_enabled = [this] {
       for (auto& usart : usarts) usart.serve_dma();

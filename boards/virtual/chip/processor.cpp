@@ -108,7 +108,8 @@ std::uint64_t Processor::cycles_until(Ticks when) const {
   const Ticks time = now();
   if (when <= time) return 1;
   const auto& clock = machine_.clocks.hclk;
-  return std::max<std::uint64_t>(1, (std::min(when - time, ticks_per_s) * clock.denominator + clock.numerator - 1) / clock.numerator);
+  return std::max<std::uint64_t>(
+      1, (std::min(when - time, ticks_per_s) * clock.denominator + clock.numerator - 1) / clock.numerator);
 }
 
 Masks Processor::masks() const {

@@ -99,7 +99,8 @@ class Processor final : public ClockUser {
   static void block_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   static void code_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   static void interrupt_hook(uc_engine*, std::uint32_t number, void* self);
-  static bool memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value, void* self);
+  static bool memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value,
+                          void* self);
   static bool invalid_hook(uc_engine*, void* self);
   bool masks_open();
   void finish_flash_stores();

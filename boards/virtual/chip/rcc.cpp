@@ -16,8 +16,9 @@ struct OscillatorBits {
   Ticks start_up;  ///< typical values of the data sheet
 };
 constexpr OscillatorBits oscillator_bits[] = {
-    {Rcc::cr, 0, 1, 2 * microsecond},        {Rcc::cr, 16, 17, 500 * microsecond}, {Rcc::cr, 24, 25, 100 * microsecond},
-    {Rcc::cr, 26, 27, 100 * microsecond},    {Rcc::csr, 0, 1, 15 * microsecond},   {Rcc::bdcr, 0, 1, 2'000'000 * microsecond},
+    {Rcc::cr, 0, 1, 2 * microsecond},     {Rcc::cr, 16, 17, 500 * microsecond},
+    {Rcc::cr, 24, 25, 100 * microsecond}, {Rcc::cr, 26, 27, 100 * microsecond},
+    {Rcc::csr, 0, 1, 15 * microsecond},   {Rcc::bdcr, 0, 1, 2'000'000 * microsecond},
 };
 
 constexpr unsigned ahb_divider(std::uint32_t cfgr) {
@@ -66,7 +67,8 @@ std::uint32_t Rcc::pll_output_Hz(unsigned shift_of_divider) const {
   if (m < 2 || n < 2) return 0;
   const std::uint64_t oscillator_Hz = std::uint64_t{source_Hz} / m * n;
   if (oscillator_Hz < 100'000'000 || oscillator_Hz > 432'000'000)
-    machine_.log.say_once("RCC_PLLCFGR asks for a PLL of " + std::to_string(oscillator_Hz) + " Hz, outside of 100 to 432 MHz");
+    machine_.log.say_once("RCC_PLLCFGR asks for a PLL of " + std::to_string(oscillator_Hz) +
+                          " Hz, outside of 100 to 432 MHz");
   const std::uint32_t divider = shift_of_divider == 16 ? 2 * ((value >> 16 & 3) + 1) : value >> 24 & 0xF;
   return divider < 2 ? 0 : static_cast<std::uint32_t>(oscillator_Hz / divider);
 }

@@ -39,7 +39,8 @@ SemihostingAnswer semihosting_call(std::uint32_t operation, std::uint32_t parame
     case sys_istty: return {1, {}, true};
     case sys_exit: return {0, parameter == stopped_application_exit ? 0 : 1, true};
     case sys_exit_extended:
-      return {0, memory.word(parameter) == stopped_application_exit ? static_cast<int>(memory.word(parameter + 4)) : 1, true};
+      return {0, memory.word(parameter) == stopped_application_exit ? static_cast<int>(memory.word(parameter + 4)) : 1,
+              true};
     case sys_seek:
     case sys_flen:
     case sys_errno: return {0, {}, true};

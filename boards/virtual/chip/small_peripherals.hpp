@@ -42,7 +42,9 @@ class CrcUnit final : public RegisterBlock {
   }
 
  protected:
-  std::uint32_t read_word(std::uint32_t offset) override { return offset == 0 ? data_ : offset == 4 ? independent_ : 0; }
+  std::uint32_t read_word(std::uint32_t offset) override {
+    return offset == 0 ? data_ : offset == 4 ? independent_ : 0;
+  }
   void write_word(std::uint32_t offset, std::uint32_t value) override {
     if (offset == 4) independent_ = value & 0xFF;
     if (offset == 8 && (value & 1) != 0) data_ = 0xFFFF'FFFF;

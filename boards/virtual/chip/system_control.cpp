@@ -36,6 +36,7 @@ void SystemControl::reset() {
   debug_monitor_ = 0;
   trace_control_ = 0x4000'0000;
   cycle_base_ = cycle_held_ = 0;
+  debug_freeze_ = {};
   systick_.reset();
 }
 
@@ -125,6 +126,8 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
     case 0xE000'EF44: return 0x1100'0011;
     case 0xE004'2000: return 0x1007'6413;  // DBGMCU_IDCODE: STM32F405, revision 1
     case 0xE004'2004: return machine_.sleep_counts_cycles ? 1 : 0;
+    case 0xE004'2008:
+    case 0xE004'200C: return debug_freeze_[(address - 0xE004'2008) / 4];
     default: break;
   }
   if (address >= first_handler_priority && address <= last_handler_priority) {
@@ -166,11 +169,13 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case trace_cell_base:
       cycle_held_ = cycle_count();
       trace_control_ = (trace_control_ & ~0xFFu) | (value & 0xFF);
-      cycle_base_ = static_cast<std::uint32_t>(machine_.processor->cycles() + machine_.processor->slept_cycles()) - cycle_held_;
+      cycle_base_ =
+          static_cast<std::uint32_t>(machine_.processor->cycles() + machine_.processor->slept_cycles()) - cycle_held_;
       return;
     case trace_cell_base + 4:
       cycle_held_ = value;
-      cycle_base_ = static_cast<std::uint32_t>(machine_.processor->cycles() + machine_.processor->slept_cycles()) - value;
+      cycle_base_ =
+          static_cast<std::uint32_t>(machine_.processor->cycles() + machine_.processor->slept_cycles()) - value;
       return;
     case 0xE000'1FB0: return;  // DWT_LAR: not locked
     case 0xE000'E008: auxiliary_control_ = value; return;
@@ -199,7 +204,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case 0xE000'EF3C: float_default_ = value; return;
     case 0xE004'2004: machine_.sleep_counts_cycles = (value & 1) != 0; return;
     case 0xE004'2008:
-    case 0xE004'200C: return;  // DBGMCU freezes: nothing here stops for a debugger
+    case 0xE004'200C: debug_freeze_[(address - 0xE004'2008) / 4] = value; return;
     default: break;
   }
   if (address >= 0xE000'E010 && address <= 0xE000'E01C) return systick_.write(address - 0xE000'E010, value);

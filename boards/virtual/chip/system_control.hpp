@@ -2,6 +2,7 @@
 // cycle counter, and the debug registers that firmware touches (ARMv7-M, B3.2, B3.3, C1.6, C1.8).
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "machine_parts.hpp"
@@ -67,6 +68,7 @@ class SystemControl {
   std::uint32_t float_control_ = 0xC000'0000, float_address_ = 0, float_default_ = 0;
   std::uint32_t debug_monitor_ = 0, trace_control_ = 0x4000'0000;
   std::uint32_t cycle_base_ = 0, cycle_held_ = 0;
+  std::array<std::uint32_t, 2> debug_freeze_{};  ///< DBGMCU: nothing here stops for a debugger
 };
 
 }  // namespace inkwell::virtual_board

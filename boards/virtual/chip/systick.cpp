@@ -24,7 +24,8 @@ Ticks SysTick::duration(std::uint64_t counts) const {
 std::uint32_t SysTick::current() const {
   if (zero_at_ == never) return held_;
   const Ticks left = zero_at_ - machine_.timeline.now();
-  const std::uint64_t counts = machine_.clocks.hclk.cycles_in(left + duration(1) - 1) / ((control_ & processor_clock) != 0 ? 1 : 8);
+  const std::uint64_t counts =
+      machine_.clocks.hclk.cycles_in(left + duration(1) - 1) / ((control_ & processor_clock) != 0 ? 1 : 8);
   return counts > reload_ ? 0 : static_cast<std::uint32_t>(counts);
 }
 

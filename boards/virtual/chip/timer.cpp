@@ -199,8 +199,8 @@ void Timer::step(Ticks now) {
 
 bool Timer::update_needed() const {
   return (dier_ & (update_interrupt | update_dma)) != 0 || (cr1_ & one_pulse) != 0 ||
-         ((cr2_ >> 4 & 7) == master_update &&
-          (machine_.adcs->listens_to_timer(model_.number, trigger_output) || machine_.timers->has_slave(model_.number)));
+         ((cr2_ >> 4 & 7) == master_update && (machine_.adcs->listens_to_timer(model_.number, trigger_output) ||
+                                               machine_.timers->has_slave(model_.number)));
 }
 
 Ticks Timer::update_time() const {

@@ -62,7 +62,8 @@ void Timer::configure_channel(unsigned i) {
     channel.needed = output || complement;
   } else if ((bdtr_ & off_state_idle) != 0 && (output || complement)) {
     channel.when_active = channel.when_inactive = level((cr2_ >> (8 + 2 * i) & 1) != 0);
-    if (i < 3) channel.complement_when_active = channel.complement_when_inactive = level((cr2_ >> (9 + 2 * i) & 1) != 0);
+    if (i < 3)
+      channel.complement_when_active = channel.complement_when_inactive = level((cr2_ >> (9 + 2 * i) & 1) != 0);
   }
   if ((cr2_ >> 4 & 7) >= master_compare_pulse) channel.needed = true;
 }
@@ -135,7 +136,6 @@ void Timer::input_changed(unsigned line, bool high) {
     return;
   }
   if (line == external_trigger) {
-    external_input_ = high;
     const bool inverted = (smcr_ & 1u << 15) != 0;
     if ((smcr_ >> 4 & 7) == 7) trigger_in(high != inverted, false);
     return;
@@ -151,7 +151,6 @@ void Timer::input_changed(unsigned line, bool high) {
 
 void Timer::connect_input(unsigned line, bool high) {
   if (line == break_input) break_input_ = high;
-  else if (line == external_trigger) external_input_ = high;
   else if (line < model_.channels) channels_[line].input = high;
 }
 

@@ -12,8 +12,25 @@ using namespace timer_bits;
 namespace {
 
 enum : std::uint32_t {
-  cr1 = 0x00, cr2 = 0x04, smcr = 0x08, dier = 0x0C, sr = 0x10, egr = 0x14, ccmr1 = 0x18, ccmr2 = 0x1C, ccer = 0x20,
-  cnt = 0x24, psc = 0x28, arr = 0x2C, rcr = 0x30, ccr1 = 0x34, ccr4 = 0x40, bdtr = 0x44, dcr = 0x48, dmar = 0x4C, option = 0x50,
+  cr1 = 0x00,
+  cr2 = 0x04,
+  smcr = 0x08,
+  dier = 0x0C,
+  sr = 0x10,
+  egr = 0x14,
+  ccmr1 = 0x18,
+  ccmr2 = 0x1C,
+  ccer = 0x20,
+  cnt = 0x24,
+  psc = 0x28,
+  arr = 0x2C,
+  rcr = 0x30,
+  ccr1 = 0x34,
+  ccr4 = 0x40,
+  bdtr = 0x44,
+  dcr = 0x48,
+  dmar = 0x4C,
+  option = 0x50,
 };
 
 // Positions: RM0090, table "Vector table". Internal triggers: tables "TIMx internal trigger connection".
@@ -110,7 +127,8 @@ void Timer::write_control(std::uint32_t value) {
   if (!centre_aligned() && !encoder_mode()) down_ = (cr1_ & direction) != 0;
   else if (!was_centred && centre_aligned() && !was_enabled) down_ = (value & direction) != 0;
   begin_ramp(was_running && runs() ? ramp_start_ : machine_.timeline.now());
-  if (((cr1_ & enable) != 0) != was_enabled && (cr2_ >> 4 & 7) == master_enable) trigger_out((cr1_ & enable) != 0, false);
+  if (((cr1_ & enable) != 0) != was_enabled && (cr2_ >> 4 & 7) == master_enable)
+    trigger_out((cr1_ & enable) != 0, false);
 }
 
 void Timer::write_events(std::uint32_t value) {

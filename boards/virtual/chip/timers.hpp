@@ -125,7 +125,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   std::uint32_t count_ = 0;  ///< at the start of the ramp
   bool down_ = false;
   bool gate_open_ = false;
-  bool break_input_ = false, external_input_ = false;
+  bool break_input_ = false;
   Ticks ramp_start_ = 0;
   std::uint64_t ramp_length_ = 0, accounted_ = 0, next_tick_ = 0;
 };

@@ -56,7 +56,8 @@ TEST_SUITE("virtual chip: peripherals") {
       return from;
     };
     const std::size_t i = rising(first, 4), k = rising(second, 4);
-    const Ticks middle_1 = (first[i].when + first[i + 1].when) / 2, middle_2 = (second[k].when + second[k + 1].when) / 2;
+    const Ticks middle_1 = (first[i].when + first[i + 1].when) / 2,
+                middle_2 = (second[k].when + second[k + 1].when) / 2;
     CHECK((middle_1 > middle_2 ? middle_1 - middle_2 : middle_2 - middle_1) % pwm_period == 0);
     CHECK_FALSE(rig.bench.time_ran_backward);
     CHECK(rig.bench.longest_pause <= ticks(51e-6));

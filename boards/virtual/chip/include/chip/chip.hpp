@@ -31,7 +31,6 @@ enum class Mode : std::uint8_t {
 struct ChipOptions {
   Mode mode = Mode::fast;
   std::uint32_t crystal_Hz = 8'000'000;            ///< HSE
-  std::uint32_t low_speed_crystal_Hz = 32'768;     ///< LSE
   std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
   std::uint32_t random_seed = 1;                   ///< of the RNG peripheral
   /// Takes each line of the log (without a newline); by default it goes to stderr.
@@ -58,15 +57,17 @@ struct Counters {
   Ticks asleep = 0;
   std::array<ExceptionCounters, exception_numbers> exceptions{};
   std::array<std::uint32_t, reset_causes> resets{};  ///< by ResetCause
-  double sleep_share() const { return duration == 0 ? 0.0 : static_cast<double>(asleep) / static_cast<double>(duration); }
+  double sleep_share() const {
+    return duration == 0 ? 0.0 : static_cast<double>(asleep) / static_cast<double>(duration);
+  }
 };
 
 /// Why run_until() came back.
 enum class Stop : std::uint8_t {
   time_reached,
   firmware_exit,  ///< semihosting SYS_EXIT or SYS_EXIT_EXTENDED, see exit_code()
-  locked_up,      ///< time reached, but the processor is locked up: only reset() or a watchdog helps. See lockup_reason()
-  requested,      ///< request_stop()
+  locked_up,  ///< time reached, but the processor is locked up: only reset() or a watchdog helps. See lockup_reason()
+  requested,  ///< request_stop()
 };
 
 /// Frequencies that firmware has set up, in Hz; 0 is a clock that stands still.

@@ -24,7 +24,8 @@ void equal() { mark(4); }
 
 [[gnu::naked]] void supervisor_call() {
   // R0 of the caller's frame comes back doubled; the frame is where EXC_RETURN's bit 2 says.
-  asm volatile("tst lr, #4\n ite eq\n mrseq r0, msp\n mrsne r0, psp\n ldr r1, [r0]\n add r1, r1\n str r1, [r0]\n bx lr");
+  asm volatile(
+      "tst lr, #4\n ite eq\n mrseq r0, msp\n mrsne r0, psp\n ldr r1, [r0]\n add r1, r1\n str r1, [r0]\n bx lr");
 }
 volatile std::uint32_t pendsv_return;
 [[gnu::naked]] void pendsv() {

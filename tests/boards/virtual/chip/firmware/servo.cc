@@ -26,7 +26,8 @@ void control() {
     const std::uint32_t converter = adc::adc1 + 0x100 * i;
     state[i] = static_cast<float>(word(converter + adc::jdr1));
   }
-  for (unsigned i = 0; i < 30; ++i) results[4] = results[4] + word(tim3 + cnt) + word(tim1 + cnt) + (word(gpio::b + gpio::idr) & 1);
+  for (unsigned i = 0; i < 30; ++i)
+    results[4] = results[4] + word(tim3 + cnt) + word(tim1 + cnt) + (word(gpio::b + gpio::idr) & 1);
   for (unsigned round = 0; round < 10; ++round)
     for (unsigned i = 3; i < 34; ++i) state[i] = state[i] * 0.99f + state[i - 3] * 0.01f;
   const auto duty = static_cast<std::uint32_t>(200 + (results[1] & 0x3FF));

@@ -3,8 +3,12 @@
 
 #include <cstdint>
 
-inline volatile std::uint32_t& word(std::uint32_t address) { return *reinterpret_cast<volatile std::uint32_t*>(address); }
-inline volatile std::uint16_t& half(std::uint32_t address) { return *reinterpret_cast<volatile std::uint16_t*>(address); }
+inline volatile std::uint32_t& word(std::uint32_t address) {
+  return *reinterpret_cast<volatile std::uint32_t*>(address);
+}
+inline volatile std::uint16_t& half(std::uint32_t address) {
+  return *reinterpret_cast<volatile std::uint16_t*>(address);
+}
 inline volatile std::uint8_t& byte(std::uint32_t address) { return *reinterpret_cast<volatile std::uint8_t*>(address); }
 
 /// Words that the test reads at 0x2001F000.
@@ -29,7 +33,8 @@ inline constexpr std::uint32_t cr = 0x40023800, pllcfgr = 0x40023804, cfgr = 0x4
 }
 namespace gpio {
 inline constexpr std::uint32_t a = 0x40020000, b = 0x40020400, c = 0x40020800;
-inline constexpr std::uint32_t moder = 0x00, pupdr = 0x0C, idr = 0x10, odr = 0x14, bsrr = 0x18, afrl = 0x20, afrh = 0x24;
+inline constexpr std::uint32_t moder = 0x00, pupdr = 0x0C, idr = 0x10, odr = 0x14, bsrr = 0x18, afrl = 0x20,
+                               afrh = 0x24;
 void alternate(std::uint32_t port, unsigned pin, unsigned function);
 }  // namespace gpio
 namespace timer {
