@@ -1,10 +1,10 @@
 // Guides on a terminal: the text of each step, a prompt before anything moves, the numbers as they are measured.
 #include "commands.hpp"
 
-#include <csignal>
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -17,6 +17,8 @@
 #include <guides/guides.hpp>
 #include <guides/session_port.hpp>
 #include <guides/simulated_user.hpp>
+
+#include "interrupt.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -36,29 +38,6 @@ struct GuideOptions {
     command.add_flag("--yes", yes, "Agree to every step beforehand: motors get current without a question");
     command.add_flag("--apply", apply, "Send the proposed changes to the device without a question");
   }
-};
-
-volatile std::sig_atomic_t interrupted = 0;
-
-/// Ctrl+C cancels the guide, which leaves the motors off, instead of ending the program in the middle.
-class InterruptCancels {
- public:
-  InterruptCancels() {
-    interrupted = 0;
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    sigaction(SIGINT, &action, &old_interrupt_);
-    sigaction(SIGTERM, &action, &old_terminate_);
-  }
-  ~InterruptCancels() {
-    sigaction(SIGINT, &old_interrupt_, nullptr);
-    sigaction(SIGTERM, &old_terminate_, nullptr);
-  }
-  InterruptCancels(const InterruptCancels&) = delete;
-  InterruptCancels& operator=(const InterruptCancels&) = delete;
-
- private:
-  struct sigaction old_interrupt_ {}, old_terminate_ {};
 };
 
 /// A line that the user typed, if there is one; none while he has not. Throws UsageError when no one can type.
@@ -184,8 +163,9 @@ class Bench {
 
 class GuideRun {
  public:
-  GuideRun(Bench& bench, Guide& guide, const GuideOptions& options, bool json)
-      : bench_(bench), guide_(guide), options_(options), json_(json), port_(bench.session()) {}
+  /// Ctrl+C cancels the guide, which leaves the motors off, instead of ending the program in the middle.
+  GuideRun(Bench& bench, Guide& guide, const GuideOptions& options, bool json, const InterruptGuard& interrupt)
+      : bench_(bench), guide_(guide), options_(options), json_(json), interrupt_(interrupt), port_(bench.session()) {}
 
   void run() {
     fmt::print(stderr, "{}\n", guide_.title());
@@ -206,7 +186,7 @@ class GuideRun {
 
  private:
   void round() {
-    if (interrupted != 0) guide_.cancel(port_);
+    if (interrupt_.was_asked_to_end()) guide_.cancel(port_);
     for (const auto& samples : bench_.take_frames()) guide_.receive(samples);
     const auto now = guides::observe(bench_.session());
     guide_.advance(now, port_);
@@ -243,7 +223,7 @@ class GuideRun {
     for (;;) {
       if (const auto line = typed_line()) return *line == "yes" || *line == "y";
       round();
-      if (interrupted != 0) return false;
+      if (interrupt_.was_asked_to_end()) return false;
     }
   }
 
@@ -257,6 +237,7 @@ class GuideRun {
   Guide& guide_;
   const GuideOptions& options_;
   bool json_;
+  const InterruptGuard& interrupt_;
   guides::SessionPort port_;
   Display display_;
   std::uint32_t sequence_ = 0;
@@ -275,12 +256,12 @@ void print_result(const Guide& guide) {
 }
 
 int run_guides(const DeviceOptions& options, const GuideOptions& guide_options, std::vector<Guide> all) {
-  const InterruptCancels interrupt;
+  const InterruptGuard interrupt;
   Bench bench(options);
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string failure;
   for (Guide& guide : all) {
-    GuideRun(bench, guide, guide_options, options.json).run();
+    GuideRun(bench, guide, guide_options, options.json, interrupt).run();
     if (options.json)
       results.push_back(to_json(guide));
     else

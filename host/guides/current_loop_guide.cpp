@@ -1,0 +1,330 @@
+// Current loops: identify each motor from voltage pulses, suggest gains, try them with steps of current.
+#include <guides/guides.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <board/omni_driver.hpp>
+#include <device/parameter_file.hpp>
+#include <experiment/summary.hpp>
+#include <guides/motor_identification.hpp>
+
+#include "joint_motion.hpp"
+#include "pulse_recorder.hpp"
+
+namespace inkwell::guides {
+namespace {
+
+using protocol::Command;
+using protocol::Parameter;
+using protocol::ParameterSet;
+using protocol::Signal;
+using protocol::TestPulse;
+
+constexpr double period_s = 1.0 / protocol::servo_rate_Hz;
+constexpr float voltage_pulse_s = 0.01f;  // some ninety time constants of the winding
+constexpr float first_voltage_V = 1.0f, largest_voltage_V = 4.0f;
+constexpr int pairs_of_pulses = 3;  // at the larger voltage; one pulse forward and one back cancel the arm's motion
+constexpr float step_pulse_s = 0.02f, step_A = 0.5f;
+constexpr double ripple_A = static_cast<double>(board::current_ripple_A) / 2;
+
+/// What the steps of this guide tell one another.
+struct Tuning {
+  CurrentLoopOptions options;
+  std::vector<MotorCircuit> motors;  ///< in the order of options.motors
+  std::optional<CurrentLoopGains> gains;
+  std::vector<experiment::CurrentStep> before, after;
+};
+
+double held(const ParameterSet& set, Parameter first, int motor) {
+  return static_cast<double>(set[parameter_of(first, motor)]);
+}
+
+/// Test pulses stay well below what the motor may carry.
+float test_current_A(const ParameterSet& set, int motor) {
+  return std::min(step_A, 0.5f * set[parameter_of(Parameter::current_limit_1_A, motor)]);
+}
+
+class IdentifyMotor final : public Step {
+ public:
+  IdentifyMotor(std::shared_ptr<Tuning> tuning, std::shared_ptr<Findings> findings, int motor)
+      : tuning_(std::move(tuning)), findings_(std::move(findings)), motor_(motor) {}
+
+  std::string title() const override { return fmt::format("Identify motor {}", motor_); }
+  std::string text() const override {
+    return fmt::format("Motor {} gets {} pulses of 10 ms, {:.0f} V at first and {:.0f} V at most, forward and back. The "
+                       "arm may twitch. Leave the stylus in the inkwell and keep your hands off. The walls' force stays "
+                       "off.", motor_, 2 * (1 + pairs_of_pulses), first_voltage_V, largest_voltage_V);
+  }
+  bool asks_first() const override { return true; }
+
+  void begin(const Observation& now, DevicePort& port) override {
+    set_ = *now.parameters;
+    start_pulse(first_voltage_V, now, port);
+  }
+  void receive(const device::ScopeSamples& samples) override {
+    if (recorder_) recorder_->receive(samples);
+  }
+
+  bool advance(const Observation& now, DevicePort& port) override {
+    if (!recorder_->advance(*now.pose, port)) return false;
+    pulses_.push_back(taken_pulse());
+    if (pulses_.size() == 2) choose_voltage();
+    if (pulses_.size() < 2 * (1 + pairs_of_pulses)) {
+      const float amplitude_V = pulses_.size() < 2 ? first_voltage_V : voltage_V_;
+      start_pulse(pulses_.size() % 2 == 0 ? amplitude_V : -amplitude_V, now, port);
+      return false;
+    }
+    const MotorCircuit circuit = identify(pulses_, period_s, ripple_A);
+    tuning_->motors.push_back(circuit);
+    report(circuit);
+    return true;
+  }
+
+  std::vector<Check> checks() const override {
+    std::vector<Check> checks{{"pulses recorded", static_cast<double>(pulses_.size()), "",
+                               fmt::format("{}", 2 * (1 + pairs_of_pulses)), pulses_.size() == 2 * (1 + pairs_of_pulses)}};
+    if (pulses_.empty()) return checks;
+    double largest_A = 0;
+    for (const double current_A : pulses_.back().current_A) largest_A = std::max(largest_A, std::abs(current_A));
+    checks.push_back({fmt::format("largest current of motor {}", motor_), largest_A, "A", "more than 0.05", largest_A > 0.05});
+    return checks;
+  }
+  double progress() const override { return static_cast<double>(pulses_.size()) / (2 * (1 + pairs_of_pulses)); }
+
+ private:
+  void start_pulse(float voltage_V, const Observation& now, DevicePort& port) {
+    recorder_.emplace(Command::test_voltage, TestPulse{static_cast<std::uint8_t>(motor_), voltage_V, voltage_pulse_s},
+                      std::vector<Signal>{signal_of(Signal::current_1_A, motor_), signal_of(Signal::duty_1, motor_),
+                                          Signal::supply_V, signal_of(Signal::joint_speed_1_rad_s, motor_)},
+                      signal_of(Signal::duty_1, motor_));
+    recorder_->begin(*now.pose, port);
+  }
+
+  VoltagePulse taken_pulse() const {
+    const auto supply_V = recorder_->values_of(Signal::supply_V);
+    const auto speed_rad_s = recorder_->values_of(signal_of(Signal::joint_speed_1_rad_s, motor_));
+    const double sign = held(set_, Parameter::motor_1_reversed, motor_) == 1.0 ? -1.0 : 1.0;
+    const double back_emf_Vs = sign * held(set_, Parameter::gear_ratio_1, motor_) *
+                               held(set_, Parameter::torque_constant_1_Nm_per_A, motor_);
+    VoltagePulse pulse{recorder_->values_of(signal_of(Signal::duty_1, motor_)),
+                       recorder_->values_of(signal_of(Signal::current_1_A, motor_)), speed_rad_s};
+    for (std::size_t i = 0; i < pulse.voltage_V.size(); ++i) {
+      pulse.voltage_V[i] *= supply_V[i];
+      pulse.back_emf_V[i] *= back_emf_Vs;
+    }
+    return pulse;
+  }
+
+  /// The second voltage asks for the current of the later step test, by what the first pulses showed.
+  void choose_voltage() {
+    const double resistance_ohm = identify(pulses_, period_s, ripple_A).resistance_ohm;
+    const double wanted_A = 2.0 * static_cast<double>(test_current_A(set_, motor_));
+    voltage_V_ = std::clamp(static_cast<float>(resistance_ohm * wanted_A), first_voltage_V, largest_voltage_V);
+  }
+
+  void report(const MotorCircuit& circuit) {
+    const double motor_ohm = circuit.resistance_ohm - static_cast<double>(board::shunt_ohm);
+    findings_->sentences.push_back(
+        fmt::format("Motor {}: R = {:.3f} ohm ({:.3f} ohm with the shunt), L = {:.4f} mH, time constant {:.0f} us, dead "
+                    "time takes {:.2f} V, fit within {:.1f} mA.", motor_, motor_ohm, circuit.resistance_ohm,
+                    1e3 * circuit.inductance_H, 1e6 * circuit.inductance_H / circuit.resistance_ohm,
+                    circuit.dead_time_voltage_V, 1e3 * circuit.residual_A));
+    findings_->details["motors"].push_back({{"motor", motor_},
+                                            {"resistance_ohm", motor_ohm},
+                                            {"circuit_resistance_ohm", circuit.resistance_ohm},
+                                            {"inductance_H", circuit.inductance_H},
+                                            {"dead_time_voltage_V", circuit.dead_time_voltage_V},
+                                            {"delay_s", circuit.delay_s},
+                                            {"residual_A", circuit.residual_A}});
+  }
+
+  std::shared_ptr<Tuning> tuning_;
+  std::shared_ptr<Findings> findings_;
+  int motor_;
+  ParameterSet set_{};
+  float voltage_V_ = first_voltage_V;
+  std::optional<PulseRecorder> recorder_;
+  std::vector<VoltagePulse> pulses_;
+};
+
+/// A step of current in each motor, with the gains that the device holds or, for a while, with the suggested ones.
+class TryGains final : public Step {
+ public:
+  TryGains(std::shared_ptr<Tuning> tuning, std::shared_ptr<Findings> findings, bool suggested)
+      : tuning_(std::move(tuning)), findings_(std::move(findings)), suggested_(suggested) {}
+
+  std::string title() const override { return suggested_ ? "Step response with the suggested gains" : "Step response now"; }
+  std::string text() const override {
+    const std::string pulses = fmt::format("Motor {} gets a step of {:.1f} A for 20 ms", fmt::join(tuning_->options.motors, ", then "), step_A);
+    if (!suggested_) return pulses + " with the gains that the device holds now. Leave the stylus in the inkwell.";
+    return pulses + " with the suggested gains. They are on the device for this test only; afterwards it holds the old "
+                    "ones again until you apply the new ones. Leave the stylus in the inkwell.";
+  }
+  bool asks_first() const override { return true; }
+
+  void begin(const Observation& now, DevicePort& port) override {
+    old_ = *now.parameters;
+    if (!suggested_) {
+      start_pulse(now, port);
+      return;
+    }
+    suggest();
+    port.set_parameters(gains_of(*tuning_->gains));
+    lent_ = true;
+    since_.start(*now.pose);
+  }
+  void receive(const device::ScopeSamples& samples) override {
+    if (recorder_) recorder_->receive(samples);
+  }
+
+  bool advance(const Observation& now, DevicePort& port) override {
+    if (!recorder_) {
+      if (!holds_suggested(*now.parameters)) {
+        if (now.refusal) throw device::Error(*now.refusal);
+        if (since_.seconds(*now.pose) > 3.0) throw device::Error("The device did not take the suggested gains. Reset the board.");
+        return false;
+      }
+      start_pulse(now, port);
+    }
+    if (!recorder_->advance(*now.pose, port)) return false;
+    take_step();
+    if (steps().size() < tuning_->options.motors.size()) {
+      start_pulse(now, port);
+      return false;
+    }
+    if (suggested_) propose();
+    return true;
+  }
+
+  std::vector<device::ParameterChange> to_put_back() const override {
+    if (!lent_) return {};
+    return {{Parameter::current_proportional_gain_V_per_A, old_[Parameter::current_proportional_gain_V_per_A]},
+            {Parameter::current_integral_gain_V_per_As, old_[Parameter::current_integral_gain_V_per_As]}};
+  }
+
+  std::vector<Check> checks() const override {
+    std::vector<Check> checks;
+    const auto& done = suggested_ ? tuning_->after : tuning_->before;
+    for (std::size_t i = 0; i < done.size(); ++i) {
+      const int motor = tuning_->options.motors[i];
+      checks.push_back({fmt::format("motor {} rises to 63 % in", motor), 1e6 * done[i].rise_time_s, "us", "", true});
+      checks.push_back({fmt::format("motor {} overshoots by", motor), 1e2 * done[i].overshoot, "%", "less than 15",
+                        done[i].overshoot < 0.15});
+    }
+    return checks;
+  }
+  double progress() const override {
+    return static_cast<double>((suggested_ ? tuning_->after : tuning_->before).size()) /
+           static_cast<double>(tuning_->options.motors.size());
+  }
+
+ private:
+  std::vector<experiment::CurrentStep>& steps() { return suggested_ ? tuning_->after : tuning_->before; }
+
+  void start_pulse(const Observation& now, DevicePort& port) {
+    const int motor = tuning_->options.motors[steps().size()];
+    recorder_.emplace(Command::test_current,
+                      TestPulse{static_cast<std::uint8_t>(motor), test_current_A(old_, motor), step_pulse_s},
+                      std::vector<Signal>{signal_of(Signal::current_reference_1_A, motor), signal_of(Signal::current_1_A, motor)},
+                      signal_of(Signal::current_reference_1_A, motor));
+    recorder_->begin(*now.pose, port);
+  }
+
+  void take_step() {
+    const int motor = tuning_->options.motors[steps().size()];
+    const auto reference_A = recorder_->values_of(signal_of(Signal::current_reference_1_A, motor));
+    const auto current_A = recorder_->values_of(signal_of(Signal::current_1_A, motor));
+    const auto step = experiment::current_step(reference_A, current_A, period_s);
+    steps().push_back(step);
+    const char* when = suggested_ ? "after" : "before";
+    Curve curve{fmt::format("motor {}, {}", motor, when), {}};
+    constexpr double shown_ms = 4;
+    const auto begin = static_cast<double>(std::ranges::find_if(reference_A, [](double r) { return r != 0; }) - reference_A.begin());
+    for (std::size_t i = 0; i < current_A.size(); ++i) {
+      const double time_ms = 1e3 * (static_cast<double>(i) - begin) * period_s;
+      if (time_ms <= shown_ms) curve.points.emplace_back(time_ms, current_A[i]);
+    }
+    findings_->curves.push_back(std::move(curve));
+    findings_->details["steps"].push_back({{"motor", motor},
+                                           {"gains", when},
+                                           {"amplitude_A", step.amplitude_A},
+                                           {"rise_time_s", step.rise_time_s},
+                                           {"overshoot", step.overshoot},
+                                           {"steady_error_A", step.steady_error_A}});
+  }
+
+  /// The motors share their gains, so they get those of the mean motor.
+  void suggest() {
+    MotorCircuit mean;
+    const auto count = static_cast<double>(tuning_->motors.size());
+    for (const auto& motor : tuning_->motors) {
+      mean.resistance_ohm += motor.resistance_ohm / count;
+      mean.inductance_H += motor.inductance_H / count;
+      mean.delay_s += motor.delay_s / count;
+    }
+    tuning_->gains = suggest_gains(mean, tuning_->options.bandwidth_Hz);
+    // The bridge holds a voltage for a period, which delays it by half of one in the mean.
+    const double margin_deg = phase_margin_deg(tuning_->options.bandwidth_Hz, mean.delay_s + period_s / 2);
+    for (const auto& [parameter, value] : gains_of(*tuning_->gains)) device::check_value(parameter, value);
+    findings_->sentences.push_back(
+        fmt::format("For {:.0f} Hz: Kp = L w = {:.3f} V/A, Ki = R w = {:.0f} V/(As); the delay leaves {:.0f} degrees of "
+                    "phase margin.", tuning_->options.bandwidth_Hz, tuning_->gains->proportional_V_per_A,
+                    tuning_->gains->integral_V_per_As, margin_deg));
+    findings_->details["bandwidth_Hz"] = tuning_->options.bandwidth_Hz;
+    findings_->details["proportional_gain_V_per_A"] = tuning_->gains->proportional_V_per_A;
+    findings_->details["integral_gain_V_per_As"] = tuning_->gains->integral_V_per_As;
+    findings_->details["phase_margin_deg"] = margin_deg;
+  }
+
+  static std::vector<device::ParameterChange> gains_of(const CurrentLoopGains& gains) {
+    return {{Parameter::current_proportional_gain_V_per_A, static_cast<float>(gains.proportional_V_per_A)},
+            {Parameter::current_integral_gain_V_per_As, static_cast<float>(gains.integral_V_per_As)}};
+  }
+  bool holds_suggested(const ParameterSet& set) const {
+    return std::ranges::all_of(gains_of(*tuning_->gains), [&](const auto& change) { return set[change.first] == change.second; });
+  }
+
+  void propose() {
+    for (std::size_t i = 0; i < tuning_->after.size(); ++i) {
+      const auto& before = tuning_->before[i];
+      const auto& after = tuning_->after[i];
+      findings_->sentences.push_back(
+          fmt::format("Motor {}, step of {:.1f} A: 63 % after {:.0f} us (before {:.0f} us), overshoot {:.1f} % (before {:.1f} "
+                      "%), steady error {:.1f} mA (before {:.1f} mA).", tuning_->options.motors[i], after.amplitude_A,
+                      1e6 * after.rise_time_s, 1e6 * before.rise_time_s, 1e2 * after.overshoot, 1e2 * before.overshoot,
+                      1e3 * after.steady_error_A, 1e3 * before.steady_error_A));
+    }
+    const std::string reason = fmt::format("for a bandwidth of {:.0f} Hz", tuning_->options.bandwidth_Hz);
+    findings_->propose(old_, Parameter::current_proportional_gain_V_per_A, tuning_->gains->proportional_V_per_A, reason);
+    findings_->propose(old_, Parameter::current_integral_gain_V_per_As, tuning_->gains->integral_V_per_As, reason);
+  }
+
+  std::shared_ptr<Tuning> tuning_;
+  std::shared_ptr<Findings> findings_;
+  bool suggested_;
+  ParameterSet old_{};
+  bool lent_ = false;
+  Stopwatch since_;
+  std::optional<PulseRecorder> recorder_;
+};
+
+}  // namespace
+
+Guide current_loop_guide(const CurrentLoopOptions& options) {
+  auto tuning = std::make_shared<Tuning>();
+  tuning->options = options;
+  auto findings = std::make_shared<Findings>();
+  std::vector<std::unique_ptr<Step>> steps;
+  steps.push_back(std::make_unique<RestInInkwell>(findings, false));
+  for (const int motor : options.motors)
+    steps.push_back(std::make_unique<IdentifyMotor>(tuning, findings, motor));
+  steps.push_back(std::make_unique<TryGains>(tuning, findings, false));
+  steps.push_back(std::make_unique<TryGains>(tuning, findings, true));
+  return {"current-loop", "Current-loop tuning", std::move(steps), findings};
+}
+
+}  // namespace inkwell::guides

@@ -1,0 +1,183 @@
+#include <guides/guide.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <device/parameter_file.hpp>
+
+namespace inkwell::guides {
+namespace {
+
+const char* phase_name(Phase phase) {
+  switch (phase) {
+    case Phase::asks: return "asks";
+    case Phase::working: return "working";
+    case Phase::finished: return "finished";
+    case Phase::cancelled: return "cancelled";
+    case Phase::failed: return "failed";
+  }
+  return "";
+}
+
+/// A pulse of nothing takes the place of one that runs.
+void make_safe(DevicePort& port) {
+  port.send(protocol::Command::disable_force);
+  port.send(protocol::Command::test_voltage, {1, 0.0f, protocol::servo_period_s});
+}
+
+}  // namespace
+
+void Findings::propose(const protocol::ParameterSet& held, protocol::Parameter parameter, double value,
+                       const std::string& reason) {
+  const auto& row = info(parameter);
+  const float proposed = static_cast<float>(row.kind == protocol::ParameterKind::real ? value : std::round(value));
+  if (proposed == held[parameter]) return;
+  device::check_value(parameter, proposed);
+  proposals.push_back({parameter, held[parameter], proposed, reason});
+}
+
+Guide::Guide(std::string name, std::string title, std::vector<std::unique_ptr<Step>> steps,
+             std::shared_ptr<Findings> findings)
+    : name_(std::move(name)), title_(std::move(title)), steps_(std::move(steps)), findings_(std::move(findings)) {
+  enter(0);
+}
+
+void Guide::enter(std::size_t index) {
+  index_ = index;
+  begun_ = agreed_ = false;
+  phase_ = steps_[index]->asks_first() ? Phase::asks : Phase::working;
+}
+
+bool Guide::takes_confirmation() const {
+  return phase_ == Phase::asks ? !agreed_ : phase_ == Phase::working && step().takes_confirmation();
+}
+
+double Guide::progress() const {
+  if (phase_ == Phase::finished) return 1;
+  return (static_cast<double>(index_) + (begun_ ? step().progress() : 0)) / static_cast<double>(steps_.size());
+}
+
+void Guide::confirm() {
+  if (phase_ == Phase::asks) agreed_ = true;
+  if (phase_ == Phase::working && step().takes_confirmation()) steps_[index_]->confirm();
+}
+
+void Guide::receive(const device::ScopeSamples& samples) {
+  if (phase_ == Phase::working && begun_) steps_[index_]->receive(samples);
+}
+
+void Guide::advance(const Observation& now, DevicePort& port) {
+  if (applied_ == Applied::sent && now.parameters_revision != seen_revision_) watch_transaction(now);
+  seen_revision_ = now.parameters_revision;
+  if (now.parameters && holds(now, put_back_)) put_back_.clear();
+  if (is_over()) return;
+  try {
+    run(now, port);
+  } catch (const device::Error& error) {
+    end(Phase::failed, error.what(), port);
+  }
+}
+
+void Guide::run(const Observation& now, DevicePort& port) {
+  if (!now.connected && made_safe_) {
+    const bool lent = begun_ && !step().to_put_back().empty();
+    throw device::Disconnected(fmt::format(
+        "The device went away in the step \"{}\". No proposal was applied.{} Connect it again and start the guide anew.",
+        step().title(), lent ? " Parameters that were on trial are still on it if it kept its power." : ""));
+  }
+  if (!now.connected || !now.pose || !now.parameters) return;  // it is still being connected
+  if (now.pose->state == protocol::State::fault) {
+    const auto& fault = protocol::info(now.pose->fault);
+    throw device::Error(fmt::format("The device reports the fault {}: {} {}", fault.name, fault.cause, fault.remedy));
+  }
+  if (!made_safe_) {
+    make_safe(port);
+    made_safe_ = true;
+  }
+  if (phase_ == Phase::asks) {
+    if (!agreed_) return;
+    phase_ = Phase::working;
+  }
+  if (!begun_) {
+    begun_ = true;
+    steps_[index_]->begin(now, port);
+  }
+  if (!steps_[index_]->advance(now, port)) return;
+  leave_step(port);
+  if (index_ + 1 < steps_.size())
+    enter(index_ + 1);
+  else
+    end(Phase::finished, findings_->proposals.empty() ? "Finished. There is nothing to change."
+                                                      : "Finished. The proposals wait to be applied.", port);
+}
+
+void Guide::leave_step(DevicePort& port) {
+  if (!begun_) return;
+  begun_ = false;
+  put_back_ = steps_[index_]->to_put_back();
+  if (!put_back_.empty()) port.set_parameters(put_back_);
+}
+
+bool Guide::holds(const Observation& now, const std::vector<device::ParameterChange>& changes) {
+  return std::ranges::all_of(changes, [&](const auto& change) { return (*now.parameters)[change.first] == change.second; });
+}
+
+void Guide::end(Phase phase, std::string outcome, DevicePort& port) {
+  // Without a device the commands go nowhere; its firmware ends a pulse after half a second at the latest.
+  make_safe(port);
+  leave_step(port);
+  port.select_signals({});
+  phase_ = phase;
+  outcome_ = std::move(outcome);
+}
+
+void Guide::cancel(DevicePort& port) {
+  if (!is_over()) end(Phase::cancelled, "Cancelled. The motors are off and no proposal was applied.", port);
+}
+
+std::vector<device::ParameterChange> Guide::proposed_changes() const {
+  std::vector<device::ParameterChange> changes;
+  for (const auto& proposal : findings_->proposals) changes.emplace_back(proposal.parameter, proposal.proposed);
+  return changes;
+}
+
+void Guide::apply(DevicePort& port) {
+  if (phase_ != Phase::finished || findings_->proposals.empty() || applied_ == Applied::sent) return;
+  put_back_.clear();  // the proposals overwrite what was on trial
+  port.set_parameters(proposed_changes());
+  applied_ = Applied::sent;
+}
+
+void Guide::watch_transaction(const Observation& now) {
+  if (!now.parameters) return;
+  if (holds(now, proposed_changes())) {
+    applied_ = Applied::yes;
+  } else if (now.refusal) {
+    applied_ = Applied::refused;
+    refusal_ = *now.refusal;
+  }
+}
+
+nlohmann::ordered_json to_json(const Guide& guide) {
+  nlohmann::ordered_json proposals = nlohmann::ordered_json::array();
+  for (const auto& proposal : guide.findings().proposals)
+    proposals.push_back({{"parameter", info(proposal.parameter).name},
+                         {"held", proposal.held},
+                         {"proposed", proposal.proposed},
+                         {"unit", info(proposal.parameter).unit},
+                         {"reason", proposal.reason}});
+  nlohmann::ordered_json json{{"guide", guide.name()},
+                              {"result", phase_name(guide.phase())},
+                              {"outcome", guide.outcome()},
+                              {"findings", guide.findings().sentences},
+                              {"proposals", proposals},
+                              {"applied", guide.applied() == Applied::yes}};
+  if (!guide.refusal().empty()) json["refusal"] = guide.refusal();
+  json.update(guide.findings().details);
+  return json;
+}
+
+}  // namespace inkwell::guides

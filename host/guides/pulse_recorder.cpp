@@ -1,0 +1,90 @@
+#include "pulse_recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace inkwell::guides {
+namespace {
+
+constexpr std::size_t samples_before = 40;  // that show zero before the pulse
+constexpr double scope_limit_s = 2.0, pulse_limit_s = 1.0;
+
+}  // namespace
+
+PulseRecorder::PulseRecorder(protocol::Command command, const protocol::TestPulse& pulse,
+                             std::vector<protocol::Signal> signals, protocol::Signal seen_in)
+    : command_(command),
+      pulse_(pulse),
+      signals_(std::move(signals)),
+      seen_in_(static_cast<std::size_t>(std::ranges::find(signals_, seen_in) - signals_.begin())) {}
+
+void PulseRecorder::begin(const protocol::PoseReport& pose, DevicePort& port) {
+  port.select_signals(signals_);
+  start_over(pose);
+}
+
+void PulseRecorder::start_over(const protocol::PoseReport& pose) {
+  recording_ = {};
+  state_ = State::waits_for_scope;
+  since_.start(pose);
+}
+
+void PulseRecorder::receive(const device::ScopeSamples& samples) {
+  if (samples.signals != signals_ || state_ == State::done) return;
+  // What the scope's start loses is no gap in what counts.
+  if (recording_.size() == 0) {
+    device::ScopeSamples first = samples;
+    first.lost_before = 0;
+    recording_.append(first);
+  } else {
+    recording_.append(samples);
+  }
+}
+
+bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) {
+  if (state_ == State::done) return true;
+  if (pose.state != protocol::State::ready)
+    throw device::Error("Test pulses need the state ready. Put the stylus into the inkwell once, leave the force off "
+                        "and start the guide again.");
+  if (recording_.lost_samples > 0) {
+    if (--attempts_left_ == 0)
+      throw device::Error("Samples of the scope were lost again and again. Close other programs that load this "
+                          "computer and start the guide again.");
+    start_over(pose);
+  }
+  if (state_ == State::waits_for_scope) {
+    if (since_.seconds(pose) > scope_limit_s)
+      throw device::Error("The scope sends nothing. Reset the board and start the guide again.");
+    if (recording_.size() < samples_before) return false;
+    port.send(command_, pulse_);
+    since_.start(pose);
+    state_ = State::waits_for_end;
+  }
+  const std::size_t width = signals_.size();
+  std::size_t begin = 0;
+  while (begin < recording_.size() && recording_.values[begin * width + seen_in_] == 0.0f) ++begin;
+  const auto needed = static_cast<std::size_t>(2.0f * pulse_.duration_s * protocol::servo_rate_Hz);
+  if (recording_.size() < begin + needed || begin == recording_.size()) {
+    if (since_.seconds(pose) > pulse_limit_s + 2.0 * static_cast<double>(pulse_.duration_s))
+      throw device::Error("The test pulse did not come. Check that no other program sends commands to the device, "
+                          "reset the board and start the guide again.");
+    return false;
+  }
+  // From a little before the pulse to the end of the rest after it.
+  const std::size_t from = begin > samples_before ? begin - samples_before : 0;
+  recording_.values.resize((begin + needed) * width);
+  recording_.values.erase(recording_.values.begin(), recording_.values.begin() + static_cast<std::ptrdiff_t>(from * width));
+  state_ = State::done;
+  return true;
+}
+
+std::vector<double> PulseRecorder::values_of(protocol::Signal signal) const {
+  const auto place = static_cast<std::size_t>(std::ranges::find(signals_, signal) - signals_.begin());
+  std::vector<double> values(recording_.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = static_cast<double>(recording_.values[i * signals_.size() + place]);
+  return values;
+}
+
+}  // namespace inkwell::guides

@@ -1,0 +1,41 @@
+// Sends one test pulse and keeps what the scope shows of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <experiment/recording.hpp>
+#include <guides/step.hpp>
+
+namespace inkwell::guides {
+
+class PulseRecorder {
+ public:
+  /// `seen_in`: the signal that differs from zero while the pulse is on. It is among `signals`.
+  PulseRecorder(protocol::Command command, const protocol::TestPulse& pulse, std::vector<protocol::Signal> signals,
+                protocol::Signal seen_in);
+
+  void begin(const protocol::PoseReport& pose, DevicePort& port);
+  void receive(const device::ScopeSamples& samples);
+  /// True once the pulse and the rest after it are recorded without a gap. A recording with a gap is made again, three
+  /// times at most. Throws device::Error if the scope or the pulse does not come.
+  bool advance(const protocol::PoseReport& pose, DevicePort& port);
+
+  std::vector<double> values_of(protocol::Signal signal) const;
+  std::size_t size() const { return recording_.size(); }
+
+ private:
+  enum class State : std::uint8_t { waits_for_scope, waits_for_end, done };
+  void start_over(const protocol::PoseReport& pose);
+
+  protocol::Command command_;
+  protocol::TestPulse pulse_;
+  std::vector<protocol::Signal> signals_;
+  std::size_t seen_in_;  ///< place of the signal in the recording
+  experiment::ScopeRecording recording_;
+  State state_ = State::waits_for_scope;
+  Stopwatch since_;
+  int attempts_left_ = 3;
+};
+
+}  // namespace inkwell::guides
