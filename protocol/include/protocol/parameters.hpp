@@ -39,8 +39,8 @@ enum class ParameterKind : std::uint8_t {
   X(202, wall_damping_Ns_per_m, real, "Ns/m", 0.0f, 20.0f, 2.0f, "contact", "Damping constant c of the walls (paper, section 3.3). It acts only in contact.") \
   X(203, force_limit_N, real, "N", 0.0f, 8.0f, 3.3f, "contact", "Largest magnitude of the force that is asked of the motors.")    \
   X(204, force_ramp_s, real, "s", 0.0f, 2.0f, 0.25f, "contact", "Time in which the force rises from nothing to full after it is switched on.") \
-  X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, 1.2f, "current loop", "Proportional gain of the current loops. The inductance times the wanted bandwidth in rad/s.") \
-  X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, 11000.0f, "current loop", "Integral gain of the current loops. The resistance times the wanted bandwidth in rad/s.") \
+  X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, 1.35f, "current loop", "Proportional gain of the current loops. The inductance times the wanted bandwidth in rad/s.") \
+  X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, 12400.0f, "current loop", "Integral gain of the current loops. The resistance times the wanted bandwidth in rad/s.") \
   X(302, voltage_limit_V, real, "V", 0.0f, 24.0f, 16.0f, "current loop", "Largest voltage that a current loop may put on a motor; the supply bounds it as well.") \
   X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Largest current asked of motor 1.") \
   X(401, current_limit_2_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_2_A, "limits", "Largest current asked of motor 2.") \
