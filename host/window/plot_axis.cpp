@@ -13,9 +13,9 @@ constexpr double shrink_delay_s = 1.5;
 double tick_step(double extent, int wanted) {
   const double rough = extent / std::max(wanted, 1);
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  for (double factor : {1.0, 2.0, 5.0})
-    if (factor * power >= rough) return factor * power;
-  return 10.0 * power;
+  // The nearest of 1, 2, 5 and 10 as the eye sees distances: by ratio.
+  const double factor = rough / power;
+  return power * (factor < std::sqrt(2.0) ? 1.0 : factor < std::sqrt(10.0) ? 2.0 : factor < std::sqrt(50.0) ? 5.0 : 10.0);
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+// Settings survive a round trip, and damage to their file never keeps the window shut. Layouts and axes.
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include <window/plot_axis.hpp>
+#include <window/window_settings.hpp>
+#include <protocol/reports.hpp>
+
+using namespace inkwell;
+using namespace inkwell::window;
+
+TEST_CASE("settings come back as they were written") {
+  WindowSettings settings;
+  settings.theme = Theme::light;
+  settings.tuning_width = 412.0f;
+  settings.scope_is_shown = false;
+  settings.scope_span_s = 0.05;
+  settings.trigger = {TriggerMode::single, protocol::Signal::current_2_A, TriggerEdge::falling, -0.25f, 0.5f};
+  settings.layout = built_in_layout("currents");
+  settings.layout.panes.push_back({PaneKind::xy, "x against \"y\"", {protocol::Signal::position_x_m, protocol::Signal::position_y_m}});
+  settings.parameters_file = "/home/someone/soft wall.toml";
+  CHECK(parse_settings(format_settings(settings)) == settings);
+}
+
+TEST_CASE("a damaged file gives the defaults, and what makes no sense keeps its default") {
+  CHECK(parse_settings("[window\ntheme = ") == WindowSettings{});
+  CHECK(parse_settings("") == WindowSettings{});
+  const WindowSettings settings = parse_settings(
+      "[window]\ntheme = \"pink\"\ntuning_width = -5\nscope_height = \"tall\"\n"
+      "[scope]\nspan_s = 1e9\npanes = [ { kind = \"time\", signals = [ \"no_such_signal\" ] }, 7 ]\n"
+      "[trigger]\nsignal = \"force_N\"\npre_trigger = 3\n");
+  CHECK(settings == WindowSettings{});
+}
+
+TEST_CASE("layouts name existing signals, and fit into one selection") {
+  for (const ScopeLayout& layout : built_in_layouts()) {
+    CAPTURE(layout.name);
+    CHECK_FALSE(layout.panes.empty());
+    CHECK(signals_of(layout).size() <= protocol::scope_signals_maximum);
+  }
+  CHECK(built_in_layout("paper").panes.size() == 4);
+  CHECK(built_in_layout("none of them").name == built_in_layouts().front().name);
+}
+
+TEST_CASE("a layout with too many signals asks for as many as can be streamed, each once") {
+  ScopeLayout layout{"all", 2, {{PaneKind::time, "a", {}}, {PaneKind::time, "b", {}}}};
+  for (const auto& info : protocol::signal_table)
+    for (Pane& pane : layout.panes) pane.signals.push_back(static_cast<protocol::Signal>(info.id));
+  CHECK(signals_of(layout).size() == protocol::scope_signals_maximum);
+}
+
+TEST_CASE("ticks are round numbers inside the range") {
+  const auto result = ticks({-0.23, 0.98}, 6);
+  REQUIRE(result.size() == 6);
+  CHECK(result.front() == doctest::Approx(-0.2));
+  CHECK(result.back() == doctest::Approx(0.8));
+  CHECK(ticks({1.0, 1.0}, 5).empty());
+  CHECK(tick_label(0.25, 0.05) == "0.25");
+  CHECK(tick_label(1500.0, 500.0) == "1500");
+  CHECK(tick_label(1e-17, 0.5) == "0");
+}
+
+TEST_CASE("a range holds its data, also if they are constant or missing") {
+  for (const auto& [low, high] : {std::pair{0.0, 3.3}, {-1e-5, 1e-5}, {42.0, 42.0}, {-7e4, 2.0}}) {
+    const AxisRange range = enclosing_range(low, high);
+    CHECK(range.minimum <= low);
+    CHECK(range.maximum >= high);
+    CHECK(range.extent() > 0.0);
+    CHECK(range.extent() < 2.0 * std::max(high - low, 0.1 * std::abs(low) + 1e-5));
+  }
+  CHECK(enclosing_range(std::nan(""), std::nan("")).extent() > 0.0);
+}
+
+TEST_CASE("an axis grows at once and shrinks only after a while") {
+  SteadyRange axis;
+  axis.update(0.0, 1.0, 0.0);
+  CHECK(axis.update(0.0, 10.0, 0.1).maximum >= 10.0);
+  CHECK(axis.update(0.0, 1.0, 0.2).maximum >= 10.0);
+  CHECK(axis.update(0.0, 1.0, 1.0).maximum >= 10.0);
+  CHECK(axis.update(0.0, 1.0, 2.0).maximum < 2.0);
+}
