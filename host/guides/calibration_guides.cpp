@@ -207,8 +207,7 @@ PotentiometerCurve held_curve(const ParameterSet& set, int axis) {
 /// What the arm's description says of the whole track.
 AngleRange described_range(int axis) {
   const auto curve = held_curve(protocol::default_parameters(), axis);
-  const auto [least, most] = std::minmax(curve.angle_rad(0), curve.angle_rad(1));
-  return {least, most};
+  return {std::min(curve.angle_rad(0), curve.angle_rad(1)), std::max(curve.angle_rad(0), curve.angle_rad(1))};
 }
 
 struct AxisPoints {

@@ -1,0 +1,142 @@
+// The guides through the command line: the firmware that is flashed on the virtual board, with the simulated hand as
+// the user.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <device/device.hpp>
+#include <device/virtual_board.hpp>
+
+#include "program.hpp"
+
+using namespace inkwell::tests;
+using namespace inkwell;
+using namespace std::chrono_literals;
+
+namespace {
+
+nlohmann::json guide(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--virtual", "--yes", "--json"});
+  const auto result = run_program("inkwell", arguments, 240s);
+  INFO("output: ", result.out, result.err);
+  REQUIRE(result.exit_code == 0);
+  return nlohmann::json::parse(result.out);
+}
+
+}  // namespace
+
+TEST_CASE("current-loop tuning finds the simulated motors within 5 % and its gains work") {
+  const auto result = guide({"tune", "current-loop"});
+  CHECK(result.at("result") == "finished");
+  CHECK(result.at("applied") == false);
+  REQUIRE(result.at("motors").size() == 3);
+  for (const auto& motor : result.at("motors")) {
+    // [motor] of boards/arms/omni.toml
+    CHECK(motor.at("resistance_ohm").get<double>() == doctest::Approx(2.18).epsilon(0.05));
+    CHECK(motor.at("inductance_H").get<double>() == doctest::Approx(0.238e-3).epsilon(0.05));
+    CHECK(std::abs(motor.at("delay_s").get<double>() - 50e-6) < 10e-6);
+  }
+  REQUIRE(result.at("steps").size() == 6);
+  for (const auto& step : result.at("steps")) {
+    CHECK(step.at("rise_time_s").get<double>() > 100e-6);
+    CHECK(step.at("rise_time_s").get<double>() < 350e-6);
+    CHECK(step.at("overshoot").get<double>() < 0.10);
+    CHECK(std::abs(step.at("steady_error_A").get<double>()) < 0.01);
+  }
+}
+
+TEST_CASE("a wider bandwidth rises faster, and is applied when asked") {
+  const auto result = guide({"tune", "current-loop", "--motor", "2", "--bandwidth", "1500", "--apply"});
+  CHECK(result.at("applied") == true);
+  REQUIRE(result.at("steps").size() == 2);
+  const double before_s = result.at("steps")[0].at("rise_time_s"), after_s = result.at("steps")[1].at("rise_time_s");
+  CHECK(after_s < 0.75 * before_s);
+  REQUIRE(result.at("proposals").size() == 2);
+  CHECK(result.at("proposals")[0].at("proposed").get<double>() == doctest::Approx(0.238e-3 * 2 * 3.14159 * 1500).epsilon(0.05));
+}
+
+TEST_CASE("a healthy simulated arm needs no change of directions") {
+  const auto result = guide({"check", "directions"});
+  CHECK(result.at("result") == "finished");
+  CHECK(result.at("proposals").empty());
+  REQUIRE(result.at("encoders").size() == 3);
+  REQUIRE(result.at("motors").size() == 3);
+  for (const auto& motor : result.at("motors")) {
+    CHECK(motor.at("turned_by_positive_current_rad").get<double>() > 0.005);
+    CHECK(motor.at("turned_by_negative_current_rad").get<double>() < -0.005);
+  }
+}
+
+TEST_CASE("first connection looks at everything once") {
+  const auto result = guide({"check", "connection"});
+  CHECK(result.at("result") == "finished");
+  CHECK(std::abs(result.at("device").at("supply_V").get<double>() - 18.0) < 0.5);
+  CHECK(result.at("encoders").size() == 3);
+  CHECK(result.at("buttons") == nlohmann::json::array({1, 2}));
+}
+
+TEST_CASE("calibration of the simulated arm agrees with its description") {
+  const auto results = guide({"calibrate", "all", "--quadratic"});
+  REQUIRE(results.size() == 3);
+  const auto& joints = results[1].at("joints");
+  REQUIRE(joints.size() == 3);
+  for (const auto& joint : joints) {
+    CHECK(joint.at("agrees") == true);
+    CHECK(joint.at("found_rad")[1].get<double>() - joint.at("found_rad")[0].get<double>() > 1.5);
+  }
+  const auto& potentiometers = results[2].at("potentiometers");
+  REQUIRE(potentiometers.size() == 3);
+  for (const auto& potentiometer : potentiometers) {
+    CHECK(potentiometer.at("largest_change_rad").get<double>() < 0.01);
+    CHECK(potentiometer.at("ratio")[1].get<double>() > 0.99);
+  }
+  for (const auto& result : results) CHECK(result.at("proposals").empty());
+}
+
+TEST_CASE("a device that is unplugged in the middle of a guide ends it with a sentence, and its motors are off") {
+  device::VirtualBoardOptions options;
+  device::VirtualBoard board(options);
+  auto control = board.control();
+  std::optional<ProgramResult> result;
+  std::thread guide([&] {
+    result = run_program("inkwell", {"tune", "current-loop", "--yes", "--json", "--usbip",
+                                     "127.0.0.1:" + std::to_string(board.usbip_port())}, 120s);
+  });
+  // Until a motor has current, which is in the first pulses.
+  bool powered = false;
+  for (int i = 0; i < 4000 && !powered; ++i) {
+    const auto truth = control.truth();
+    powered = std::abs(truth.at("true_current_1_A").get<double>()) > 0.1;
+    std::this_thread::sleep_for(1ms);
+  }
+  control.usb(false);
+  guide.join();
+  CHECK(powered);
+  INFO("output: ", result->out, result->err);
+  CHECK(result->exit_code == 1);
+  CHECK(result->err.find("went away in the step") != std::string::npos);
+  const auto json = nlohmann::json::parse(result->out);
+  CHECK(json.at("result") == "failed");
+  CHECK(json.at("applied") == false);
+  std::this_thread::sleep_for(1s);
+  CHECK(std::abs(control.truth().at("true_current_1_A").get<double>()) < 0.02);
+}
+
+TEST_CASE("without consent nothing is powered") {
+  const auto result = run_program("inkwell", {"tune", "current-loop", "--virtual", "--json"}, 60s);
+  CHECK(result.exit_code == 2);
+  CHECK(result.err.find("--yes") != std::string::npos);
+  CHECK(result.err.find("Motor 1 gets 8 pulses") != std::string::npos);
+}
+
+TEST_CASE("a range that is none is wrong usage") {
+  const auto result = run_program("inkwell", {"calibrate", "pots", "--virtual", "--yes", "--yaw-range", "2:-2"});
+  CHECK(result.exit_code == 2);
+  CHECK(result.err.find("is no range") != std::string::npos);
+}
