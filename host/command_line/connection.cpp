@@ -105,7 +105,9 @@ std::vector<device::ParameterChange> arm_parameters(const std::filesystem::path&
 Connection connect(const DeviceOptions& options, bool real_time_by_default) {
   Connection connection;
   if (!options.is_virtual) {
-    connection.device = device::Device::open(find_one(options));
+    const auto endpoint = find_one(options);
+    connection.device = device::Device::open(endpoint);
+    connection.is_simulation = endpoint.is_virtual;
     return connection;
   }
   std::vector<device::ParameterChange> arm;
@@ -120,6 +122,7 @@ Connection connect(const DeviceOptions& options, bool real_time_by_default) {
     std::this_thread::sleep_for(20ms);
   }
   connection.device = device::Device::open(*endpoint);
+  connection.is_simulation = endpoint->is_virtual;
   if (!arm.empty()) connection.device->set_parameters(arm);
   return connection;
 }

@@ -43,6 +43,7 @@ std::vector<device::Endpoint> list_devices(const DeviceOptions& options, const d
 struct Connection {
   std::unique_ptr<device::VirtualBoard> board;
   std::unique_ptr<device::Device> device;
+  bool is_simulation = false;
 };
 
 /// Opens the device that the options name. With --arm, a virtual board's firmware gets that arm's parameters.

@@ -146,7 +146,7 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   const auto connection = connect(device_options, true);
   auto& device = *connection.device;
   const auto information = recording::describe(device.information(), device.parameters(), signals, arm_name(device_options),
-                                               device_options.is_virtual);
+                                               connection.is_simulation);
   recording::Recorder recorder(options.file, information);
   device.select_signals(signals);
   std::string failure;

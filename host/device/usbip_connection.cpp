@@ -47,7 +47,7 @@ std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto description = receive<usbip::DeviceDescription>(socket);
     for (int j = 0; j < description.interface_count; ++j) receive<std::array<std::uint8_t, 4>>(socket);
-    devices.push_back({text_of(description.bus_id), description.vendor_id, description.product_id});
+    devices.push_back({text_of(description.path), text_of(description.bus_id), description.vendor_id, description.product_id});
   }
   return devices;
 }

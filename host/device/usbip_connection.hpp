@@ -20,6 +20,7 @@
 namespace inkwell::device {
 
 struct UsbipDevice {
+  std::string path;  ///< of the device on the server
   std::string bus_id;
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;

@@ -167,11 +167,15 @@ class UsbipLink : public Link {
 
 std::unique_ptr<Link> open_usbip_link(const Endpoint& endpoint) { return std::make_unique<UsbipLink>(endpoint); }
 
+// What the virtual board's USB/IP server calls the platform that its device is on.
+constexpr char virtual_board_path[] = "/inkwell_virtual_board/";
+
 std::vector<Endpoint> find_usbip_devices(const std::string& host, std::uint16_t port) {
   std::vector<Endpoint> endpoints;
   for (const auto& device : list_usbip_devices(host, port)) {
     if (device.vendor_id != identity::vendor_id || device.product_id != identity::product_id) continue;
-    endpoints.push_back({Endpoint::Kind::usbip, "", identity::product, device.bus_id, host, port});
+    const bool is_virtual = device.path.find(virtual_board_path) != std::string::npos;
+    endpoints.push_back({Endpoint::Kind::usbip, "", identity::product, device.bus_id, host, port, is_virtual});
   }
   return endpoints;
 }

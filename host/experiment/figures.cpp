@@ -1,10 +1,6 @@
 #include <experiment/figures.hpp>
 
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <fstream>
 #include <string_view>
 #include <vector>
@@ -12,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <protocol/reports.hpp>
+#include <recording/gnuplot.hpp>
 
 namespace inkwell::experiment {
 namespace {
@@ -46,67 +43,29 @@ std::vector<Quantity> quantities(const FigureOptions& options) {
   };
 }
 
-// Blue, vermilion and green of Okabe and Ito: told apart with every kind of colour blindness.
-constexpr char script_head[] = R"(# Draws figure-11.png to figure-14.png. Made by `inkwell experiment`; run it with: gnuplot figures.gnuplot
-set datafile separator comma
-set datafile columnheaders
-data = 'figure-data.csv'
-set terminal pngcairo size 1600,900 font 'Inter,20' background '#ffffff' linewidth 1.4
-set encoding utf8
-ink = '#24292f'; grey = '#6b7280'; pale = '#e5e7eb'
-blue = '#0072b2'; vermilion = '#d55e00'; green = '#009e73'
-set border 3 linecolor rgb grey linewidth 1
-set tics nomirror out scale 0.6 textcolor rgb ink
-set grid linecolor rgb pale linewidth 0.8 linetype 1
-set key at screen 0.97, screen 0.845 right top horizontal Left reverse samplen 1.6 width 1 textcolor rgb ink noenhanced
-set xlabel 'time  /  s' textcolor rgb ink
+constexpr int width_pixels = 1600, height_pixels = 900;
+
+constexpr char layout[] = R"(set key at screen 0.97, screen 0.845 right top horizontal width 1
 set lmargin at screen 0.105
 set rmargin at screen 0.97
 set tmargin at screen 0.79
 set bmargin at screen 0.13
-set style fill transparent solid 0.22 noborder
 )";
-
-struct Curve {
-  std::string name;    ///< in the data
-  std::string colour;  ///< variable of the script
-  std::string title;   ///< in the legend; none where the axis says it
-};
-
-/// A band from the smallest to the largest value of each millisecond, and its mean as a line.
-std::string plot_command(const std::vector<Curve>& curves) {
-  std::vector<std::string> parts;
-  for (const auto& curve : curves)
-    parts.push_back(fmt::format("data using 'time_s':'{0}_minimum':'{0}_maximum' with filledcurves fillcolor rgb {1} notitle",
-                                curve.name, curve.colour));
-  for (const auto& curve : curves)
-    parts.push_back(fmt::format("data using 'time_s':'{0}_mean' with lines linewidth 2 linecolor rgb {1} {2}", curve.name,
-                                curve.colour, curve.title.empty() ? "notitle" : "title '" + curve.title + "'"));
-  return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
-}
-
-/// For a string in single quotes of gnuplot or the shell: `quote` stands for a quote within it.
-std::string quoted(const std::string& text, std::string_view quote) {
-  std::string result;
-  for (char character : text) character == '\'' ? result += quote : result += character;
-  return result;
-}
 
 std::string head(const FigureOptions& options, int number, const char* title) {
   const auto& parameters = options.parameters;
   const std::string subtitle = fmt::format(
       "Figure {}  ·  {}{}  ·  wall {}  ·  k = {} N/m, c = {} Ns/m  ·  line: mean of a millisecond, band: its extremes",
-      number, options.simulation ? "simulation  ·  " : "", quoted(options.arm, "''"), wall_name(options.wall),
+      number, options.simulation ? "simulation  ·  " : "", options.arm, wall_name(options.wall),
       parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m]);
-  return fmt::format(
-      "\nset output 'figure-{0}.png'\nunset label\n"
-      "set label 1 '{1}{2}' at graph 0, screen 0.955 left font 'Inter:Bold,26' textcolor rgb ink noenhanced\n"
-      "set label 2 '{3}' at graph 0, screen 0.905 left font 'Inter,16' textcolor rgb grey noenhanced\n",
-      number, title, options.simulation ? " (simulation)" : "", subtitle);
+  return fmt::format("\nset output 'figure-{}.png'\nunset label\n{}", number,
+                     recording::figure_titles(fmt::format("{}{}", title, options.simulation ? " (simulation)" : ""),
+                                              subtitle, height_pixels));
 }
 
 std::string script(const FigureOptions& options, const Recording& data) {
-  std::string text = script_head;
+  std::string text = "# Draws figure-11.png to figure-14.png. Made by `inkwell experiment`; run it with: gnuplot figures.gnuplot\n";
+  text += recording::figure_head("figure-data.csv", width_pixels, height_pixels) + layout;
   text += fmt::format("set xrange [{:.3f}:{:.3f}]\n", options.shown.from_s, options.shown.to_s);
 
   const auto largest = data.values_of("distance_mm_maximum");
@@ -120,76 +79,59 @@ std::string script(const FigureOptions& options, const Recording& data) {
                       "set label 3 'inside the wall' at graph 0.012, first {2:.3f} left textcolor rgb grey\n"
                       "set arrow 1 from graph 0, first 0 to graph 1, first 0 nohead linecolor rgb ink linewidth 1.2 front\n",
                       -2.0 * deepest_mm, 1.3 * deepest_mm, 1.17 * deepest_mm);
-  text += plot_command({{"distance_mm", "blue", ""}});
+  text += recording::plot_command({{"distance_mm", "blue", ""}});
   text += "unset object 1\nunset arrow 1\nset yrange [*:*]\n";
 
   text += head(options, 12, "Magnitude of the force");
   text += "set ylabel 'force  /  N' textcolor rgb ink\nset yrange [0:*]\n";
-  text += plot_command({{"force_N", "blue", ""}});
+  text += recording::plot_command({{"force_N", "blue", ""}});
   text += "set yrange [*:*]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n";
 
   text += head(options, 13, "Torques at the three joints");
   text += "set ylabel 'torque  /  Nm' textcolor rgb ink\n";
-  text += plot_command({{"torque_1_Nm", "green", "T1z, waist"}, {"torque_2_Nm", "blue", "T2x, shoulder"},
+  text += recording::plot_command({{"torque_1_Nm", "green", "T1z, waist"}, {"torque_2_Nm", "blue", "T2x, shoulder"},
                         {"torque_3_Nm", "vermilion", "T3x, elbow"}});
 
   text += head(options, 14, "Duty of the three bridges");
   text += "set ylabel 'duty  /  % of the supply' textcolor rgb ink\n";
-  text += plot_command({{"duty_1_percent", "green", "bridge 1"}, {"duty_2_percent", "blue", "bridge 2"},
+  text += recording::plot_command({{"duty_1_percent", "green", "bridge 1"}, {"duty_2_percent", "blue", "bridge 2"},
                         {"duty_3_percent", "vermilion", "bridge 3"}});
   return text;
 }
 
-void run_gnuplot(const std::filesystem::path& directory) {
-  const std::string command =
-      fmt::format("cd '{}' && gnuplot figures.gnuplot 2>&1", quoted(directory.string(), "'\\''"));
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) throw device::Error("gnuplot cannot be started: the system allows no more processes.");
-  std::string said;
-  std::array<char, 512> chunk;
-  while (const std::size_t length = std::fread(chunk.data(), 1, chunk.size(), pipe)) said.append(chunk.data(), length);
-  const int status = pclose(pipe);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw device::Error(fmt::format("The figures were not drawn. Install gnuplot-nox. The shell said: {}", said));
-}
-
 }  // namespace
 
-Recording figure_data(const Recording& recording, const FigureOptions& options) {
+Recording figure_data(const Recording& source, const FigureOptions& options) {
   const auto shown = quantities(options);
   std::vector<std::string> columns{"time_s"};
   std::vector<std::size_t> sources;
   for (const auto& quantity : shown) {
-    for (const char* kind : {"mean", "minimum", "maximum"}) columns.push_back(quantity.name + "_" + kind);
-    sources.push_back(recording.column(quantity.column));
+    for (auto& column : recording::band_columns(quantity.name)) columns.push_back(std::move(column));
+    sources.push_back(source.column(quantity.column));
   }
   Recording data(columns);
-  const std::size_t time = recording.column("time_s");
+  const std::size_t time = source.column("time_s");
   std::vector<double> row;
-  for (std::size_t first = 0; first + samples_per_point <= recording.size(); first += samples_per_point) {
-    row.assign(1, recording.at(first + samples_per_point / 2, time));
+  for (std::size_t first = 0; first + samples_per_point <= source.size(); first += samples_per_point) {
+    row.assign(1, source.at(first + samples_per_point / 2, time));
     for (std::size_t j = 0; j < shown.size(); ++j) {
-      double sum = 0, smallest = 0, largest = 0;
-      for (std::size_t i = 0; i < samples_per_point; ++i) {
-        const double value = shown[j].scale * recording.at(first + i, sources[j]) + shown[j].offset;
-        smallest = i == 0 ? value : std::min(smallest, value);
-        largest = i == 0 ? value : std::max(largest, value);
-        sum += value;
-      }
-      row.insert(row.end(), {sum / samples_per_point, smallest, largest});
+      const auto band = recording::band_of(samples_per_point, [&](std::size_t i) {
+        return shown[j].scale * source.at(first + i, sources[j]) + shown[j].offset;
+      });
+      row.insert(row.end(), {band.mean, band.minimum, band.maximum});
     }
     data.append(row);
   }
   return data;
 }
 
-void draw_figures(const Recording& recording, const FigureOptions& options, const std::filesystem::path& directory) {
-  const Recording data = figure_data(recording, options);
+void draw_figures(const Recording& source, const FigureOptions& options, const std::filesystem::path& directory) {
+  const Recording data = figure_data(source, options);
   write_csv(data, directory / "figure-data.csv");
   std::ofstream stream(directory / "figures.gnuplot", std::ios::binary | std::ios::trunc);
   stream << script(options, data) << std::flush;
   if (!stream) throw device::Error(fmt::format("{} cannot be written. Check the space left.", directory.string()));
-  run_gnuplot(directory);
+  recording::run_gnuplot(directory / "figures.gnuplot");
 }
 
 }  // namespace inkwell::experiment

@@ -278,6 +278,7 @@ nlohmann::ordered_json run_wall_experiment(const WallOptions& options, const Pro
     endpoint = wait_for_endpoint(*board);
   } else if (options.endpoint) {
     endpoint = *options.endpoint;
+    circumstances.simulation = endpoint.is_virtual;
   } else {
     throw device::Error("No arm was found. Plug one in, or give --virtual.");
   }

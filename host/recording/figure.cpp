@@ -20,7 +20,7 @@ using protocol::Signal;
 
 constexpr std::size_t points_maximum = 1200;  ///< about one for each pixel of the plot's width
 constexpr int width_pixels = 1600;
-constexpr int titles_pixels = 120, time_axis_pixels = 80;
+constexpr int titles_pixels = 120, time_axis_pixels = 120;
 constexpr int pane_pixels = 320, pane_gap_pixels = 40;
 
 constexpr std::array colours = {"blue", "vermilion", "green", "purple", "orange", "sky", "ink"};
@@ -83,7 +83,7 @@ void write_data(const Recording& recording, const std::vector<Signal>& signals, 
   if (!stream.flush()) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
 }
 
-std::string subtitle(const Recording& recording, double shown_s) {
+std::string subtitle(const Recording& recording) {
   const auto& about = recording.information;
   std::vector<std::string> parts;
   if (about.simulation) parts.push_back("simulation");
@@ -94,23 +94,26 @@ std::string subtitle(const Recording& recording, double shown_s) {
   parts.push_back(about.created_utc);
   if (recording.lost() > 0) parts.push_back(fmt::format("{} samples lost", recording.lost()));
   if (!recording.complete) parts.push_back("cut short");
-  if (shown_s * protocol::servo_rate_Hz > static_cast<double>(points_maximum))
-    parts.push_back(fmt::format("line: mean of {:.2g} ms, band: its extremes", 1e3 * shown_s / points_maximum));
   return fmt::format("{}", fmt::join(parts, "  ·  "));
 }
 
-/// Dashed lines through all panes; their texts stand in the first one only.
+std::string time_label(double shown_s) {
+  if (shown_s * protocol::servo_rate_Hz <= static_cast<double>(points_maximum)) return "time  /  s";
+  return fmt::format("time  /  s          line: mean of {:.2g} ms, band: its extremes", 1e3 * shown_s / points_maximum);
+}
+
+/// Dashed lines through all panes; their texts stand in the first one only, in steps so that neighbours do not overlap.
 std::string marks(const Recording& recording, double from_s, double to_s, bool with_text) {
   std::string text;
-  int number = 10;
+  int number = 12;  // above those of titles and axes
   for (const auto& mark : recording.marks) {
     const double at_s = recording.elapsed_s_at(mark.period);
     if (at_s < from_s || at_s > to_s) continue;
     text += fmt::format("set arrow {0} from first {1:.6f}, graph 0 to first {1:.6f}, graph 1 nohead linecolor rgb grey "
                         "linewidth 1.2 dashtype 2 front\n", number, at_s);
     if (with_text)
-      text += fmt::format("set label {} {} at first {:.6f}, graph 1 offset 0.4,-0.6 left font 'Inter,15' textcolor rgb grey "
-                          "noenhanced front\n", number, gnuplot_text(mark.text), at_s);
+      text += fmt::format("set label {} {} at first {:.6f}, graph {} offset 0.4,-0.6 left font 'Inter,15' textcolor rgb grey "
+                          "noenhanced front\n", number, gnuplot_text(mark.text), at_s, 1 - 0.08 * (number % 4));
     ++number;
   }
   return text;
@@ -121,11 +124,11 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
   const auto count = static_cast<int>(panes.size());
   const int height = titles_pixels + count * pane_pixels + (count - 1) * pane_gap_pixels + time_axis_pixels;
   std::string text = figure_head("data.csv", width_pixels, height);
-  text += fmt::format("set output 'figure.png'\nset multiplot\nset lmargin at screen 0.09\nset rmargin at screen 0.8\n"
+  text += fmt::format("set output 'figure.png'\nset multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.77\n"
                       "set xrange [{:.6f}:{:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
-                      "set ytics autofreq\nset key noautotitle\n", from_s, to_s);
+                      "set key at screen 0.785, graph 1 left top\n", from_s, to_s);
   text += figure_titles(name + (recording.information.simulation ? " (simulation)" : ""),
-                        subtitle(recording, to_s - from_s), height);
+                        subtitle(recording), height);
   text += marks(recording, from_s, to_s, true);
   text += "set format x ''\nunset xlabel\n";
   int top = height - titles_pixels;
@@ -135,10 +138,12 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
       // gnuplot would draw the first pane's labels again in every pane.
       text += "unset label\nunset arrow\n" + marks(recording, from_s, to_s, false);
     }
-    if (i + 1 == count) text += "set format x '%g'\nset xlabel 'time  /  s' textcolor rgb ink\n";
+    if (i + 1 == count) text += fmt::format("set format x '%g'\nset xlabel {} textcolor rgb ink\n", gnuplot_text(time_label(to_s - from_s)));
     text += fmt::format("set tmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n", static_cast<double>(top) / height,
                         static_cast<double>(top - pane_pixels) / height);
-    text += fmt::format("set ylabel {} textcolor rgb ink noenhanced offset -0.5\n", gnuplot_text(pane.label));
+    // A label instead of ylabel, which would stand elsewhere in each pane, as far out as the numbers push it.
+    text += fmt::format("set label 3 {} at screen 0.018, graph 0.5 center rotate textcolor rgb ink noenhanced\n",
+                        gnuplot_text(pane.label));
     std::vector<Curve> curves;
     for (std::size_t j = 0; j < pane.signals.size(); ++j) {
       const std::string colour = colours[j % colours.size()];

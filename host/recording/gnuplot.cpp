@@ -46,7 +46,7 @@ std::string figure_head(const std::string& data_file, int width, int height) {
 std::string figure_titles(std::string_view title, std::string_view subtitle, int height) {
   constexpr double title_pixels = 40.0, subtitle_pixels = 85.0;
   return fmt::format(
-      "set label 1 {} at graph 0, screen {:.4f} left font 'Inter Semi Bold,26' textcolor rgb ink noenhanced\n"
+      "set label 1 {} at graph 0, screen {:.4f} left font 'Inter:Bold,26' textcolor rgb ink noenhanced\n"
       "set label 2 {} at graph 0, screen {:.4f} left font 'Inter,16' textcolor rgb grey noenhanced\n",
       gnuplot_text(title), 1 - title_pixels / height, gnuplot_text(subtitle), 1 - subtitle_pixels / height);
 }
@@ -57,8 +57,8 @@ std::string plot_command(const std::vector<Curve>& curves) {
     parts.push_back(fmt::format("data using 'time_s':'{0}_minimum':'{0}_maximum' with filledcurves fillcolor rgb {1} notitle",
                                 curve.name, curve.style.substr(0, curve.style.find(' '))));
   for (const auto& curve : curves)
-    parts.push_back(fmt::format("data using 'time_s':'{0}_mean' with lines linewidth 2 linecolor rgb {1} title {2}",
-                                curve.name, curve.style, gnuplot_text(curve.title)));
+    parts.push_back(fmt::format("data using 'time_s':'{0}_mean' with lines linewidth 2 linecolor rgb {1} {2}", curve.name,
+                                curve.style, curve.title.empty() ? "notitle" : "title " + gnuplot_text(curve.title)));
   return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
 }
 

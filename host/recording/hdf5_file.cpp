@@ -10,13 +10,6 @@ std::recursive_mutex& hdf5_mutex() {
   return mutex;
 }
 
-Handle text_type(std::size_t length) {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.id(), length == 0 ? 1 : length);
-  H5Tset_cset(type.id(), H5T_CSET_UTF8);
-  return type;
-}
-
 void write_attribute(hid_t object, const char* name, hid_t type, const void* value) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(object, name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -25,6 +18,15 @@ void write_attribute(hid_t object, const char* name, hid_t type, const void* val
 }
 
 }  // namespace
+
+Handle text_type(std::size_t bytes) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), bytes == 0 ? 1 : bytes);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  // Padded, not ended, by zeros: the text may fill its place to the last byte.
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
+  return type;
+}
 
 QuietHdf5::QuietHdf5() : lock_(hdf5_mutex()) {
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

@@ -47,6 +47,9 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
+/// Fixed-length UTF-8 text.
+Handle text_type(std::size_t bytes);
+
 void write_attribute(hid_t object, const char* name, const std::string& text);
 void write_attribute(hid_t object, const char* name, std::int64_t number);
 /// Empty, or 0, if there is no such attribute.

@@ -64,11 +64,13 @@ class Hdf5Reader {
     for (const auto& name : names("/signals")) {
       if (const auto signal = protocol::find_signal(name)) {
         about.signals.push_back(*signal);
-        columns_.push_back("/signals/" + name);
       } else {
         recording_.remarks.push_back(fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
       }
     }
+    // HDF5 gives names in alphabetical order; in the table's order those that belong together stand together.
+    std::sort(about.signals.begin(), about.signals.end());
+    for (const auto signal : about.signals) columns_.push_back(fmt::format("/signals/{}", info(signal).name));
   }
   void read_marks() {
     const std::size_t count = std::min(length("/marks/period"), length("/marks/text"));
@@ -76,10 +78,7 @@ class Hdf5Reader {
     std::vector<std::uint32_t> periods(count);
     std::vector<char> texts(count * mark_text_bytes);
     read_values("/marks/period", H5T_NATIVE_UINT32, count, periods.data());
-    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-    H5Tset_size(type.id(), mark_text_bytes);
-    H5Tset_cset(type.id(), H5T_CSET_UTF8);
-    read_values("/marks/text", type.id(), count, texts.data());
+    read_values("/marks/text", text_type(mark_text_bytes).id(), count, texts.data());
     for (std::size_t i = 0; i < count; ++i) {
       const std::string_view text(texts.data() + i * mark_text_bytes, mark_text_bytes);
       recording_.marks.push_back({periods[i], std::string(text.substr(0, text.find('\0')))});

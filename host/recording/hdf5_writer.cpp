@@ -47,7 +47,7 @@ class Hdf5Writer final : public Writer {
     std::array<char, mark_text_bytes> text{};
     std::copy_n(mark.text.begin(), std::min(mark.text.size(), mark_text_bytes), text.begin());
     extend(mark_period_, mark_count_, 1, H5T_NATIVE_UINT32, &mark.period);
-    extend(mark_text_, mark_count_, 1, mark_type().id(), text.data());
+    extend(mark_text_, mark_count_, 1, text_type(mark_text_bytes).id(), text.data());
     ++mark_count_;
   }
   void flush() override {
@@ -68,12 +68,6 @@ class Hdf5Writer final : public Writer {
   }
 
  private:
-  static Handle mark_type() {
-    Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-    H5Tset_size(type.id(), mark_text_bytes);
-    H5Tset_cset(type.id(), H5T_CSET_UTF8);
-    return type;
-  }
   static Handle access() {
     Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_libver_bounds(list.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
@@ -132,7 +126,7 @@ class Hdf5Writer final : public Writer {
     }
     const Handle marks = group(file.id(), "marks");
     growing(marks.id(), "period", H5T_STD_U32LE, chunk_marks);
-    growing(marks.id(), "text", mark_type().id(), chunk_marks);
+    growing(marks.id(), "text", text_type(mark_text_bytes).id(), chunk_marks);
     const std::int32_t no = 0;
     scalar(file.id(), "complete", H5T_NATIVE_INT32, &no);
     const hsize_t none = 0;
