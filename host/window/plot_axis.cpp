@@ -33,7 +33,10 @@ std::vector<double> ticks(const AxisRange& range, int wanted) {
 AxisRange enclosing_range(double minimum, double maximum) {
   if (std::isnan(minimum) || std::isnan(maximum)) return {-1.0, 1.0};
   const double middle = 0.5 * (minimum + maximum);
-  const double least = std::max(1e-3 * std::abs(middle), 1e-6);
+  // A constant gets room of its own: a fifth of it, or one unit for a plain zero.
+  const double least = minimum < maximum ? std::max(1e-4 * std::abs(middle), 1e-9)
+                       : middle == 0.0   ? 1.0
+                                         : 0.2 * std::abs(middle);
   const double extent = std::max(maximum - minimum, least);
   const double step = tick_step(extent, 10);
   const double room = 0.06 * extent;
