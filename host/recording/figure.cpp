@@ -192,7 +192,7 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
   const double from_s = std::max(0.0, options.from_s), to_s = std::min(end_s, options.to_s.value_or(end_s));
   const Range shown{recording.sample_at(from_s), recording.sample_at(to_s + 0.5 / protocol::servo_rate_Hz)};
   if (shown.end <= shown.begin + 1)
-    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.4g} s.", options.from_s,
+    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.3f} s.", options.from_s,
                                     options.to_s.value_or(end_s), end_s));
 
   const WorkDirectory work;

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -16,28 +15,17 @@
 #include <recording/recording.hpp>
 #include <recording/writer.hpp>
 
+#include "directory.hpp"
+
 using namespace inkwell;
 using namespace inkwell::recording;
+using inkwell::tests::Directory;
 using protocol::Parameter;
 using protocol::Signal;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-class Directory {
- public:
-  Directory() {
-    std::string pattern = (fs::temp_directory_path() / "inkwell-XXXXXX").string();
-    REQUIRE(mkdtemp(pattern.data()) != nullptr);
-    path_ = pattern;
-  }
-  ~Directory() { fs::remove_all(path_); }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
 
 Information about() {
   Information about{.created_utc = "2026-01-02T03:04:05Z",
@@ -60,22 +48,14 @@ device::ScopeSamples samples(std::uint32_t first_period, std::size_t count) {
   return samples;
 }
 
-const std::vector<float>& column(const Recording& recording, Signal signal) {
-  const auto& signals = recording.information.signals;
-  for (std::size_t i = 0; i < signals.size(); ++i)
-    if (signals[i] == signal) return recording.columns[i];
-  FAIL("the signal is missing");
-  return recording.columns[0];
-}
-
 void check_is_whole(const Recording& recording, std::uint32_t first_period, std::size_t count) {
   REQUIRE(recording.size() == count);
   const auto expected = samples(first_period, count);
   for (std::size_t i = 0; i < count; ++i) {
     REQUIRE(recording.periods[i] == first_period + i);
-    REQUIRE(column(recording, Signal::force_N)[i] == expected.values[3 * i]);
-    REQUIRE(column(recording, Signal::position_x_m)[i] == expected.values[3 * i + 1]);
-    REQUIRE(column(recording, Signal::duty_1)[i] == expected.values[3 * i + 2]);
+    REQUIRE(recording.column(Signal::force_N)[i] == expected.values[3 * i]);
+    REQUIRE(recording.column(Signal::position_x_m)[i] == expected.values[3 * i + 1]);
+    REQUIRE(recording.column(Signal::duty_1)[i] == expected.values[3 * i + 2]);
   }
 }
 
@@ -134,6 +114,44 @@ TEST_CASE("samples that were lost show as a gap and are counted") {
   recorder.push(second);
   CHECK(recorder.stop().lost == 20);
   CHECK(read(directory / "a.h5").lost() == 20);
+}
+
+TEST_CASE("a board that was restarted ends the recording") {
+  const Directory directory;
+  Recorder recorder(directory / "a.h5", about());
+  recorder.mark("before the first sample there is nothing to mark");
+  recorder.push(samples(1000, 100));
+  recorder.push(samples(0, 100));
+  recorder.push(samples(100, 100));
+  const auto end = recorder.stop();
+  CHECK(end.error.find("restarted") != std::string::npos);
+  const auto recording = read(directory / "a.h5");
+  check_is_whole(recording, 1000, 100);
+  CHECK(recording.marks.empty());
+}
+
+TEST_CASE("the wrap of the board's time is no restart") {
+  const Directory directory;
+  Recorder recorder(directory / "a.h5", about());
+  recorder.push(samples(0xFFFFFFF0u, 16));
+  recorder.push(samples(0, 4));
+  CHECK(recorder.stop().error.empty());
+  const auto recording = read(directory / "a.h5");
+  REQUIRE(recording.size() == 20);
+  CHECK(recording.lost() == 0);
+  CHECK(recording.duration_s() == doctest::Approx(19 * 50e-6));
+}
+
+TEST_CASE("samples are found by their time") {
+  Recording recording;
+  recording.periods = {100, 101, 102, 110, 111};
+  CHECK(recording.sample_at(-1) == 0);
+  CHECK(recording.sample_at(0) == 0);
+  CHECK(recording.sample_at(50e-6) == 1);
+  CHECK(recording.sample_at(51e-6) == 2);
+  CHECK(recording.sample_at(150e-6) == 3);  // in the gap: the first one after it
+  CHECK(recording.sample_at(1) == 5);
+  CHECK_THROWS_AS(recording.column(Signal::force_N), device::Error);
 }
 
 TEST_CASE("an existing file is not overwritten, an unknown ending not guessed") {
@@ -232,6 +250,6 @@ TEST_CASE("what a newer version wrote is read as far as it is known, and the res
   const auto recording = read(directory / "a.csv");
   CHECK(recording.remarks.size() == 3);
   REQUIRE(recording.size() == 1);
-  CHECK(column(recording, Signal::force_N)[0] == 1.5f);
-  CHECK(column(recording, Signal::duty_1)[0] == 0.25f);
+  CHECK(recording.column(Signal::force_N)[0] == 1.5f);
+  CHECK(recording.column(Signal::duty_1)[0] == 0.25f);
 }

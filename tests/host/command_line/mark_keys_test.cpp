@@ -1,0 +1,69 @@
+#include <doctest/doctest.h>
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <string_view>
+#include <thread>
+
+#include <command_line/interrupt.hpp>
+#include <command_line/mark_keys.hpp>
+
+using namespace inkwell::command_line;
+
+namespace {
+
+void type(int descriptor, std::string_view text) {
+  REQUIRE(write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+}
+
+}  // namespace
+
+TEST_CASE("each line of a pipe is a mark with its text") {
+  int ends[2];
+  REQUIRE(pipe(ends) == 0);
+  MarkKeys keys(ends[0]);
+  CHECK_FALSE(keys.next());
+  type(ends[1], "touch\n\nlet");
+  CHECK(keys.next() == "touch");
+  CHECK(keys.next() == "mark 2");
+  CHECK_FALSE(keys.next());  // the line is not whole yet
+  type(ends[1], " go\n");
+  close(ends[1]);
+  CHECK(keys.next() == "let go");
+  CHECK_FALSE(keys.next());
+  close(ends[0]);
+}
+
+TEST_CASE("on a terminal the space bar is a mark, at once, and the terminal is given back") {
+  const int keyboard = posix_openpt(O_RDWR | O_NOCTTY);
+  REQUIRE(keyboard >= 0);
+  REQUIRE(grantpt(keyboard) == 0);
+  REQUIRE(unlockpt(keyboard) == 0);
+  const int terminal = open(ptsname(keyboard), O_RDWR | O_NOCTTY);
+  REQUIRE(terminal >= 0);
+  termios before, during, after;
+  tcgetattr(terminal, &before);
+  {
+    MarkKeys keys(terminal);
+    tcgetattr(terminal, &during);
+    CHECK((during.c_lflag & static_cast<tcflag_t>(ICANON | ECHO)) == 0);
+    CHECK((during.c_lflag & static_cast<tcflag_t>(ISIG)) != 0);
+    type(keyboard, "x  ");
+    CHECK(keys.next() == "mark 1");
+    CHECK(keys.next() == "mark 2");
+    CHECK_FALSE(keys.next());
+  }
+  tcgetattr(terminal, &after);
+  CHECK(after.c_lflag == before.c_lflag);
+  close(terminal);
+  close(keyboard);
+}
+
+TEST_CASE("an interrupt is noted while it is watched for") {
+  InterruptGuard guard;
+  CHECK_FALSE(guard.was_asked_to_end());
+  raise(SIGINT);
+  CHECK(guard.was_asked_to_end());
+}

@@ -1,0 +1,114 @@
+// Recordings through the command line: from the virtual board to the file, back, and on paper.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include <recording/recording.hpp>
+#include <recording/signals.hpp>
+
+#include "program.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using nlohmann::json;
+using protocol::Signal;
+
+namespace {
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a recording holds every control period, and says where it comes from") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("a.h5");
+  const auto run = run_program("inkwell", {"--virtual", "record", file, "--seconds", "1.5", "--json"});
+  INFO("standard error: ", run.err);
+  REQUIRE(run.exit_code == 0);
+  const auto status = json::parse(run.out);
+  CHECK(status["samples"] == 30'000);
+  CHECK(status["lost"] == 0);
+  CHECK(status["complete"] == true);
+  CHECK(status["bytes"] == std::filesystem::file_size(file));
+
+  const auto recording = recording::read(file);
+  CHECK(recording.size() == 30'000);
+  CHECK(recording.lost() == 0);
+  CHECK(recording.complete);
+  CHECK(recording.information.simulation);
+  CHECK(recording.information.arm == "PHANTOM Omni");
+  CHECK(recording.information.serial_number.size() == 24);
+  CHECK(recording.information.parameters == protocol::default_parameters());
+  CHECK(recording.information.signals == recording::standard_signals());
+  // The stylus rests in the inkwell: the joints do not move, the measured currents are noise of the converter.
+  const auto& joint_rad = recording.column(Signal::joint_2_rad);
+  CHECK(joint_rad.back() == doctest::Approx(recording.information.parameters[protocol::Parameter::inkwell_joint_2_rad]).epsilon(0.02));
+  bool current_varies = false;
+  for (const float current_A : recording.column(Signal::current_1_A)) {
+    REQUIRE(std::abs(current_A) < 0.05f);
+    current_varies |= current_A != recording.column(Signal::current_1_A).front();
+  }
+  CHECK(current_varies);
+
+  SUBCASE("replay says what it holds") {
+    const auto described = run_program("inkwell", {"replay", file, "--json"});
+    REQUIRE(described.exit_code == 0);
+    const auto held = json::parse(described.out);
+    CHECK(held["samples"] == 30'000);
+    CHECK(held["simulation"] == true);
+    CHECK(held["signals"].size() == recording::standard_signals().size());
+    CHECK(held["parameters"]["wall_stiffness_N_per_m"] == 800.0);
+  }
+  SUBCASE("plot draws it") {
+    const auto picture = directory.file("a.png");
+    REQUIRE(run_program("inkwell", {"plot", file, "--signals", "current_1_A,joint_2_rad", "--from", "0.2", "--to", "0.4"}).exit_code == 0);
+    CHECK(std::filesystem::file_size(picture) > 10'000);
+    CHECK(read_file(picture).substr(1, 3) == "PNG");
+  }
+  SUBCASE("a damaged copy is refused with a sentence") {
+    const auto damaged = directory.file("damaged.h5");
+    std::ofstream(damaged, std::ios::binary) << read_file(file).substr(0, 700);
+    for (const char* command : {"replay", "plot"}) {
+      const auto refused = run_program("inkwell", command == std::string("replay") ? std::vector<std::string>{command, damaged, "--json"}
+                                                                                  : std::vector<std::string>{command, damaged});
+      CHECK(refused.exit_code == 1);
+      CHECK(refused.err.find("damaged.h5 is damaged") != std::string::npos);
+    }
+  }
+  SUBCASE("it is not overwritten") {
+    const auto refused = run_program("inkwell", {"--virtual", "record", file, "--seconds", "1"});
+    CHECK(refused.exit_code == 2);
+    CHECK(refused.err.find("exists") != std::string::npos);
+    CHECK(recording::read(file).size() == 30'000);
+  }
+}
+
+TEST_CASE("the whole signal path goes into a CSV without loss") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("a.csv");
+  const auto run = run_program("inkwell", {"--virtual", "record", file, "--all", "--seconds", "0.5", "--json"});
+  INFO("standard error: ", run.err);
+  REQUIRE(run.exit_code == 0);
+  const auto recording = recording::read(file);
+  CHECK(recording.size() == 10'000);
+  CHECK(recording.lost() == 0);
+  CHECK(recording.information.signals == recording::signal_path());
+}
+
+TEST_CASE("mistakes in a recording's command are found before a board is started") {
+  const TemporaryDirectory directory;
+  const auto misspelt = run_program("inkwell", {"--virtual", "record", directory.file("a.h5"), "--signals", "forse_N"});
+  CHECK(misspelt.exit_code == 2);
+  CHECK(misspelt.err.find("force_N") != std::string::npos);
+  const auto format = run_program("inkwell", {"--virtual", "record", directory.file("a.mat")});
+  CHECK(format.exit_code == 2);
+  CHECK(format.err.find(".h5") != std::string::npos);
+  CHECK(run_program("inkwell", {"plot", directory.file("none.h5")}).err.find("none.h5") != std::string::npos);
+}
