@@ -8,7 +8,9 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr float line_points = 1.4f;
+// Rounded to whole pixels, which ImGui draws with a third of the triangles.
+constexpr float line_points = 1.5f;
+constexpr float pixels_per_column = 2.0f;
 constexpr float y_ticks_every_points = 34.0f;
 constexpr float x_ticks_every_points = 84.0f;
 
@@ -72,7 +74,6 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const
   const Palette& palette = *style.palette;
   ImFont* font = style.fonts.caption;
   const float size = font->FontSize;
-  list.AddRectFilled(area.minimum, area.maximum, packed(palette.plot_ground), style.points(3));
 
   const std::vector<double> y_ticks = ticks(area.y, std::max(3, static_cast<int>(area.height() / style.points(y_ticks_every_points))));
   const double y_step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : area.y.extent();
@@ -100,8 +101,8 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const
 
 void draw_signal(ImDrawList& list, const PlotArea& area, const SignalSeries& series, double first, double last,
                  Colour colour, const Style& style) {
-  const auto columns = static_cast<std::size_t>(std::max(area.width(), 1.0f));
-  const float thickness = style.points(line_points);
+  const auto columns = static_cast<std::size_t>(std::max(area.width() / pixels_per_column, 1.0f));
+  const float thickness = std::round(style.points(line_points));
   list.PushClipRect(area.minimum, area.maximum, true);
   if (last - first < 2.0 * static_cast<double>(columns)) {
     draw_samples(list, area, series, first, last, colour, thickness);
@@ -115,7 +116,7 @@ void draw_points(ImDrawList& list, const PlotArea& area, std::span<const std::pa
                  Colour colour, const Style& style) {
   list.PushClipRect(area.minimum, area.maximum, true);
   {
-    Polyline line(list, packed(colour), style.points(line_points));
+    Polyline line(list, packed(colour), std::round(style.points(line_points)));
     for (const auto& [x, y] : points) {
       if (std::isnan(x) || std::isnan(y)) {
         line.finish();

@@ -54,7 +54,7 @@ std::string tick_label(double value, double step) {
 AxisRange SteadyRange::update(double minimum, double maximum, double now_s) {
   const AxisRange wanted = enclosing_range(minimum, maximum);
   const bool fits = range_.extent() > 0.0 && wanted.minimum >= range_.minimum && wanted.maximum <= range_.maximum;
-  const bool is_much_smaller = wanted.extent() < 0.6 * range_.extent();
+  const bool is_much_smaller = wanted.extent() < 0.8 * range_.extent();
   if (!fits) {
     // Grow at once; on the side where there is room, keep what was shown.
     range_ = range_.extent() > 0.0 ? AxisRange{std::min(wanted.minimum, range_.minimum), std::max(wanted.maximum, range_.maximum)}

@@ -10,7 +10,6 @@ namespace inkwell::window {
 namespace {
 
 constexpr int samples_when_smooth = 4;
-constexpr int sky_bands = 48;
 constexpr float floor_radius_m = 0.8f;
 constexpr float floor_grid_m = 0.05f;
 constexpr float wall_grid_m = 0.02f;
@@ -27,93 +26,47 @@ struct WallPicture {
 }  // namespace
 
 Renderer::Renderer()
-    : solid_(shaders::solid_vertex, shaders::solid_fragment),
-      shadow_(shaders::solid_vertex, shaders::shadow_fragment),
+    : sky_(shaders::sky_vertex, shaders::sky_fragment),
+      solid_(shaders::solid_vertex, shaders::solid_fragment),
+      shadow_(shaders::shadow_vertex, shaders::shadow_fragment),
       pane_(shaders::pane_vertex, shaders::pane_fragment) {
-  bodies_ = {upload(sphere(14, 24)), upload(tapered_cylinder(1.0f, 24)), upload(tapered_cylinder(0.72f, 24)),
-             upload(tapered_cylinder(0.0f, 20)), upload(coil(9, 0.28f, 14, 6))};
   glGenVertexArrays(1, &no_vertices_);
   glGenFramebuffers(1, &target_);
   glGenRenderbuffers(2, target_buffers_.data());
 }
 
 Renderer::~Renderer() {
-  for (const Body& body : bodies_) {
-    glDeleteVertexArrays(1, &body.vertex_array);
-    glDeleteBuffers(1, &body.vertices);
-    glDeleteBuffers(1, &body.indices);
-  }
   glDeleteVertexArrays(1, &no_vertices_);
   glDeleteFramebuffers(1, &target_);
   glDeleteRenderbuffers(2, target_buffers_.data());
 }
 
-Renderer::Body Renderer::upload(const Mesh& mesh) {
-  Body body{};
-  glGenVertexArrays(1, &body.vertex_array);
-  glGenBuffers(1, &body.vertices);
-  glGenBuffers(1, &body.indices);
-  glBindVertexArray(body.vertex_array);
-  glBindBuffer(GL_ARRAY_BUFFER, body.vertices);
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)), mesh.vertices.data(),
-               GL_STATIC_DRAW);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, body.indices);
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint16_t)),
-               mesh.indices.data(), GL_STATIC_DRAW);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), nullptr);
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<void*>(offsetof(Vertex, normal)));
-  glBindVertexArray(0);
-  body.count = static_cast<GLsizei>(mesh.indices.size());
-  return body;
-}
-
-void Renderer::size_target(int width, int height, int samples) {
-  if (width == target_width_ && height == target_height_ && samples == target_samples_) return;
-  target_samples_ = samples;
+void Renderer::size_target(int width, int height) {
+  if (width == target_width_ && height == target_height_) return;
   target_width_ = width;
   target_height_ = height;
   glBindRenderbuffer(GL_RENDERBUFFER, target_buffers_[0]);
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_RGBA8, width, height);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_when_smooth, GL_RGBA8, width, height);
   glBindRenderbuffer(GL_RENDERBUFFER, target_buffers_[1]);
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, GL_DEPTH24_STENCIL8, width, height);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples_when_smooth, GL_DEPTH24_STENCIL8, width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, target_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target_buffers_[0]);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, target_buffers_[1]);
 }
 
-void Renderer::draw_solids(const std::vector<Solid>& solids, bool opaque, const Camera& camera,
-                           const SceneLook& look) const {
+void Renderer::prepare_solids(const Camera& camera, const SceneLook& look) const {
   solid_.use();
   solid_.set("to_clip", to_clip_);
   solid_.set("eye", camera.eye_m());
   solid_.set("lit", look.flat_colours ? 0.0f : 1.0f);
-  for (const Solid& solid : solids) {
-    const bool drawn_opaque = look.flat_colours || solid.colour.alpha == 255;
-    if (drawn_opaque != opaque) continue;
-    solid_.set("placement", solid.placement);
-    solid_.set("base_colour", look.flat_colours ? solid.colour.with_alpha(255) : solid.colour);
-    solid_.set("shininess", solid.shininess);
-    const Body& body = bodies_[static_cast<std::size_t>(solid.shape)];
-    glBindVertexArray(body.vertex_array);
-    glDrawElements(GL_TRIANGLES, body.count, GL_UNSIGNED_SHORT, nullptr);
-  }
 }
 
 void Renderer::draw_sky(const Palette& palette) const {
-  // Clearing bands costs a tenth of shading every pixel of a gradient.
-  glEnable(GL_SCISSOR_TEST);
-  for (int band = 0; band < sky_bands; ++band) {
-    const int bottom = target_height_ * band / sky_bands;
-    const int top = target_height_ * (band + 1) / sky_bands;
-    const glm::vec4 colour = glm::mix(to_vector(palette.sky_bottom), to_vector(palette.sky_top),
-                                      static_cast<float>(band) / static_cast<float>(sky_bands - 1));
-    glScissor(0, bottom, target_width_, top - bottom);
-    glClearColor(colour.r, colour.g, colour.b, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-  }
-  glDisable(GL_SCISSOR_TEST);
+  sky_.use();
+  sky_.set("top", palette.sky_top);
+  sky_.set("bottom", palette.sky_bottom);
+  glBindVertexArray(no_vertices_);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
 void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
@@ -129,7 +82,7 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
     const float distance = std::hypot(static_cast<float>(i), static_cast<float>(j)) / static_cast<float>(count);
     return glm::vec4{glm::vec3{colour}, 0.85f * std::clamp(1.15f * (1.0f - distance), 0.0f, 1.0f)};
   };
-  constexpr int step = 2;  // cells for one piece of line
+  constexpr int step = 4;  // cells for one piece of line
   for (int i = -count; i <= count; ++i) {
     for (int j = -count; j < count; j += step) {
       if (std::hypot(static_cast<float>(i), static_cast<float>(std::abs(j + step / 2))) > static_cast<float>(count)) continue;
@@ -137,10 +90,10 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
       lines_.add(place(j, i), place(j + step, i), faded(j, i), faded(j + step, i), 1.0f);
     }
   }
-  lines_.draw(to_clip_, {target_width_, target_height_});
+  lines_.draw(to_clip_, size_pixels_);
 }
 
-void Renderer::draw_shadows(const std::vector<Solid>& solids, const SceneModel& scene, const SceneLook& look) const {
+void Renderer::draw_shadows(const SceneModel& scene, const SceneLook& look) const {
   // Straight down: what lies under the sphere on the floor tells its depth in the picture. The stencil lets each
   // pixel be darkened once only, however many bodies lie over it.
   glm::mat4 flattened{1.0f};
@@ -152,13 +105,7 @@ void Renderer::draw_shadows(const std::vector<Solid>& solids, const SceneModel& 
   glEnable(GL_STENCIL_TEST);
   glStencilFunc(GL_EQUAL, 0, 0xFF);
   glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
-  for (const Solid& solid : solids) {
-    if (!solid.casts_shadow) continue;
-    shadow_.set("placement", solid.placement);
-    const Body& body = bodies_[static_cast<std::size_t>(solid.shape)];
-    glBindVertexArray(body.vertex_array);
-    glDrawElements(GL_TRIANGLES, body.count, GL_UNSIGNED_SHORT, nullptr);
-  }
+  solids_.draw_shadow_casters();
   glDisable(GL_STENCIL_TEST);
 }
 
@@ -223,39 +170,48 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
     add(corner_m + edge_u + edge_v, corner_m + edge_v, frame_alpha, width);
     add(corner_m + edge_v, corner_m, frame_alpha, width);
   }
-  lines_.draw(to_clip_, {target_width_, target_height_});
+  lines_.draw(to_clip_, size_pixels_);
 }
 
 void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera,
                     const SceneLook& look, const Viewport& viewport) {
   if (viewport.width < 2 || viewport.height < 2) return;
-  size_target(viewport.width, viewport.height, look.smooth ? samples_when_smooth : 0);
-  glBindFramebuffer(GL_FRAMEBUFFER, target_);
-  glViewport(0, 0, viewport.width, viewport.height);
+  size_pixels_ = {viewport.width, viewport.height};
+  if (look.smooth) {
+    size_target(viewport.width, viewport.height);
+    glBindFramebuffer(GL_FRAMEBUFFER, target_);
+    glViewport(0, 0, viewport.width, viewport.height);
+    glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  } else {
+    glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
+  }
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  glDisable(GL_DEPTH_TEST);
   draw_sky(look.palette);
 
   to_clip_ = camera.projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height)) * camera.view();
-  const std::vector<Solid> solids = solids_of(scene, hand, look.palette);
+  solids_.fill(solids_of(scene, hand, look.palette), look.flat_colours);
   glEnable(GL_DEPTH_TEST);
-  draw_solids(solids, true, camera, look);
+  prepare_solids(camera, look);
+  solids_.draw_opaque();
   // What is see-through is tested against the bodies' depth, and leaves none of its own.
   glEnable(GL_BLEND);
   glDepthMask(GL_FALSE);
   draw_floor(scene, look);
-  draw_shadows(solids, scene, look);
+  draw_shadows(scene, look);
   draw_walls(scene, camera, look);
-  draw_solids(solids, false, camera, look);
+  prepare_solids(camera, look);
+  solids_.draw_see_through();
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glDisable(GL_DEPTH_TEST);
   glBindVertexArray(0);
   glUseProgram(0);
 
+  if (!look.smooth) return;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glBlitFramebuffer(0, 0, viewport.width, viewport.height, viewport.x, viewport.y, viewport.x + viewport.width,

@@ -2,20 +2,18 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <optional>
-#include <vector>
 
 #include <epoxy/gl.h>
 
 #include <window/camera.hpp>
-#include <window/mesh.hpp>
 #include <window/palette.hpp>
 #include <window/scene_model.hpp>
 
 #include "line_batch.hpp"
 #include "scene_solids.hpp"
 #include "shader.hpp"
+#include "solid_batch.hpp"
 
 namespace inkwell::window {
 
@@ -27,7 +25,7 @@ struct Viewport {
 struct SceneLook {
   const Palette& palette;
   bool flat_colours;                ///< no lighting, frames of the walls opaque
-  bool smooth;                      ///< with multisampling
+  bool smooth;                      ///< with multisampling, in a buffer of its own: dear without a graphics card
   std::optional<int> marked_wall;   ///< under the mouse: index into SceneModel::walls
 };
 
@@ -38,36 +36,31 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws into the part of the window's framebuffer, through a buffer of its own.
+  /// Draws into the part of the window's framebuffer, whose depth and stencil have been cleared.
   void draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera, const SceneLook& look,
             const Viewport& viewport);
 
  private:
-  struct Body {
-    GLuint vertex_array, vertices, indices;
-    GLsizei count;
-  };
-
-  static Body upload(const Mesh& mesh);
-  void size_target(int width, int height, int samples);
-  void draw_solids(const std::vector<Solid>& solids, bool opaque, const Camera& camera, const SceneLook& look) const;
+  void size_target(int width, int height);
+  void prepare_solids(const Camera& camera, const SceneLook& look) const;
   void draw_sky(const Palette& palette) const;
   void draw_floor(const SceneModel& scene, const SceneLook& look);
-  void draw_shadows(const std::vector<Solid>& solids, const SceneModel& scene, const SceneLook& look) const;
+  void draw_shadows(const SceneModel& scene, const SceneLook& look) const;
   void draw_walls(const SceneModel& scene, const Camera& camera, const SceneLook& look);
 
-  std::array<Body, 5> bodies_;  // in the order of Shape
   GLuint no_vertices_ = 0;
   GLuint target_ = 0;
   std::array<GLuint, 2> target_buffers_{};  // colour, depth with stencil
   int target_width_ = 0;
   int target_height_ = 0;
-  int target_samples_ = -1;
+  glm::vec2 size_pixels_{1.0f};
   glm::mat4 to_clip_{1.0f};
+  ShaderProgram sky_;
   ShaderProgram solid_;
   ShaderProgram shadow_;
   ShaderProgram pane_;
   LineBatch lines_;
+  SolidBatch solids_;
 };
 
 }  // namespace inkwell::window

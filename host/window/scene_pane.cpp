@@ -180,9 +180,12 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
   if (hand_view_) {
     const float pull_N = static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
     if (pull_N > 0.25f) {
+      // On the side away from the sphere, where the force's arrow is not.
       const ImVec2 place = on_screen(hand_view_->target_m);
-      plate(list, style, {place.x + style.points(10), place.y + style.points(6)}, palette.text_quiet,
-            fmt::format("hand {:.1f} N", pull_N));
+      const std::string label = fmt::format("hand {:.1f} N", pull_N);
+      const bool to_the_left = place.x < on_screen(scene_.probe_m).x;
+      const float left = to_the_left ? place.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : place.x + style.points(16);
+      plate(list, style, {left, place.y - style.points(22)}, palette.text_quiet, label);
     }
   }
   if (input.pose && is_referenced(*input.pose)) {

@@ -30,6 +30,15 @@ std::string common_unit(const Pane& pane) {
   return std::string(unit);
 }
 
+// "force_N" -> "force": the unit stands beside the pane's title if all its signals have the same.
+std::string short_name(const protocol::SignalInfo& info, bool unit_is_told) {
+  std::string ending = "_" + std::string(info.unit);
+  std::ranges::replace(ending, '/', '_');
+  std::string name{info.name};
+  if (unit_is_told && !info.unit.empty() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+  return name;
+}
+
 Colour line_colour(const Style& style, std::size_t index) {
   return style.palette->lines[index % style.palette->lines.size()];
 }
@@ -65,13 +74,18 @@ void ScopePanel::receive(const device::ScopeSamples& samples) {
   if (!paused_) history_.append(samples);
 }
 
+void ScopePanel::start_anew() {
+  history_.clear();
+  trigger_.arm();
+  paused_ = false;
+}
+
 void ScopePanel::pause(bool paused) {
   if (paused == paused_) return;
   if (paused) {
     paused_last_ = stretch().last;
   } else {
-    history_.clear();  // what came during the pause was let go
-    trigger_.arm();
+    start_anew();  // what came during the pause was let go
   }
   paused_ = paused;
 }
@@ -100,17 +114,19 @@ void ScopePanel::draw_legend(std::size_t index, ImVec2 place, float width, const
   ImFont* font = style.fonts.caption;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   float right = place.x + width;
+  const std::string unit = common_unit(pane);
+  list.AddText(font, font->FontSize, {place.x + style.points(2), place.y}, packed(palette.text_quiet), unit.c_str());
   for (std::size_t i = pane.signals.size(); i-- > 0;) {
     const auto& info = protocol::info(pane.signals[i]);
     const SignalSeries* series = history_.find(pane.signals[i]);
-    std::string label{info.name};
+    std::string label = short_name(info, !unit.empty());
     if (cursors_are_shown_ && series != nullptr && pane.kind == PaneKind::time) {
       const auto at = [&](double cursor) {
         const double index_at = stretch.last + cursor * stretch.span();
         return index_at < static_cast<double>(series->begin()) || index_at >= static_cast<double>(series->end())
                    ? std::nan("") : static_cast<double>((*series)[static_cast<std::uint64_t>(index_at)]);
       };
-      label = fmt::format("{}  {}  {}  diff. {}", info.name, formatted(at(cursors_[0])), formatted(at(cursors_[1])),
+      label = fmt::format("{}  {}  {}  diff. {}", label, formatted(at(cursors_[0])), formatted(at(cursors_[1])),
                           formatted(at(cursors_[1]) - at(cursors_[0])));
     }
     const float taken = font->CalcTextSizeA(font->FontSize, 1e4f, 0, label.c_str()).x;
@@ -202,7 +218,7 @@ void ScopePanel::draw_time(std::size_t index, PlotArea area, const Stretch& stre
     const ImVec2 taken = font->CalcTextSizeA(font->FontSize, 1e4f, 0, line.c_str());
     const ImVec2 corner{area.minimum.x + style.points(6), y};
     list.AddRectFilled({corner.x - style.points(3), corner.y}, {corner.x + taken.x + style.points(3), corner.y + taken.y},
-                       packed(style.palette->plot_ground.with_alpha(210)));
+                       packed(style.palette->panel.with_alpha(210)));
     list.AddText(font, font->FontSize, corner, packed(line_colour(style, i)), line.c_str());
   }
 }

@@ -3,46 +3,70 @@
 
 namespace inkwell::window::shaders {
 
+/// The ground of the picture, lighter at one end, over the whole viewport.
+inline constexpr char sky_vertex[] = R"(#version 330 core
+uniform vec4 top;
+uniform vec4 bottom;
+out vec3 shade;
+void main() {
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  shade = mix(bottom.rgb, top.rgb, corner.y);
+  gl_Position = vec4(2.0 * corner - 1.0, 0.0, 1.0);
+})";
+
+inline constexpr char sky_fragment[] = R"(#version 330 core
+in vec3 shade;
+out vec4 colour;
+void main() { colour = vec4(shade, 1.0); })";
+
+/// All bodies in one batch: places, normals and colours come ready for the scene.
 inline constexpr char solid_vertex[] = R"(#version 330 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
-uniform mat4 placement;
+layout(location = 2) in vec4 body_colour;   // as bytes
+layout(location = 3) in float body_shininess;
 uniform mat4 to_clip;
 out vec3 world;
 out vec3 world_normal;
+out vec4 base_colour;
+out float shininess;
 void main() {
-  vec4 place = placement * vec4(position, 1.0);
-  world = place.xyz;
-  // Stretched bodies are round across their axis, so the cofactor matrix is left out but for its scale.
-  world_normal = normal.x * placement[0].xyz / dot(placement[0].xyz, placement[0].xyz)
-               + normal.y * placement[1].xyz / dot(placement[1].xyz, placement[1].xyz)
-               + normal.z * placement[2].xyz / dot(placement[2].xyz, placement[2].xyz);
-  gl_Position = to_clip * place;
+  world = position;
+  world_normal = normal;
+  base_colour = body_colour;
+  shininess = body_shininess;
+  gl_Position = to_clip * vec4(position, 1.0);
 })";
 
 inline constexpr char solid_fragment[] = R"(#version 330 core
 in vec3 world;
 in vec3 world_normal;
-uniform vec4 base_colour;
+in vec4 base_colour;
+in float shininess;
 uniform vec3 eye;
-uniform float shininess;
 uniform float lit;
 out vec4 colour;
+const vec3 key = vec3(0.420, 0.747, 0.514);   // of length 1
 void main() {
   vec3 n = normalize(world_normal);
   vec3 to_eye = normalize(eye - world);
-  vec3 key = normalize(vec3(0.45, 0.80, 0.55));
   float diffuse = max(dot(n, key), 0.0);
   float sky = 0.5 + 0.5 * n.y;
-  float rim = pow(1.0 - max(dot(n, to_eye), 0.0), 3.0);
-  float gloss = pow(max(dot(n, normalize(key + to_eye)), 0.0), 40.0);
+  float facing = 1.0 - max(dot(n, to_eye), 0.0);
+  float rim = facing * facing * facing;
+  // The 32nd power by squaring: pow() is dear without a graphics card.
+  float gloss = max(dot(n, normalize(key + to_eye)), 0.0);
+  gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss;
   vec3 shaded = base_colour.rgb * (0.34 + 0.26 * sky + 0.52 * diffuse) + shininess * (0.55 * gloss + 0.18 * rim);
   colour = vec4(mix(base_colour.rgb, shaded, lit), base_colour.a);
 })";
 
+inline constexpr char shadow_vertex[] = R"(#version 330 core
+layout(location = 0) in vec3 position;
+uniform mat4 to_clip;
+void main() { gl_Position = to_clip * vec4(position, 1.0); })";
+
 inline constexpr char shadow_fragment[] = R"(#version 330 core
-in vec3 world;
-in vec3 world_normal;
 uniform vec4 base_colour;
 out vec4 colour;
 void main() { colour = base_colour; })";

@@ -52,7 +52,6 @@ struct Palette {
   Colour caution;
   Colour danger;         ///< stop, faults
   Colour on_danger;      ///< text on danger
-  Colour plot_ground;
   Colour plot_grid;
   Colour sky_top;        ///< background of the scene
   Colour sky_bottom;
@@ -77,7 +76,6 @@ inline constexpr Palette dark_palette{
     .caution = {230, 159, 0},
     .danger = {201, 62, 48},
     .on_danger = {255, 255, 255},
-    .plot_ground = {19, 22, 28},
     .plot_grid = {38, 44, 53},
     .sky_top = {30, 35, 43},
     .sky_bottom = {44, 51, 61},
@@ -102,7 +100,6 @@ inline constexpr Palette light_palette{
     .caution = {176, 104, 0},
     .danger = {196, 50, 36},
     .on_danger = {255, 255, 255},
-    .plot_ground = {255, 255, 255},
     .plot_grid = {229, 233, 238},
     .sky_top = {240, 243, 246},
     .sky_bottom = {216, 222, 229},
