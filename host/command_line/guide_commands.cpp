@@ -85,8 +85,7 @@ class Display {
     drawn_at_ = Clock::now();
     std::string line;
     for (const auto& check : guide.step().checks())
-      line += fmt::format("{}{} {:.3f}{}{}", line.empty() ? "" : "; ", check.name, check.value,
-                          check.unit.empty() ? "" : " " + check.unit,
+      line += fmt::format("{}{} {}{}", line.empty() ? "" : "; ", check.name, guides::measured_text(check),
                           check.expected.empty() ? "" : fmt::format(" ({}: {})", check.passed ? "ok" : "expected", check.expected));
     fmt::print(stderr, "\r\x1b[K{:.160}", line);
     line_is_open_ = true;

@@ -216,22 +216,27 @@ struct AxisPoints {
   double middle_ratio = 0.5;
 };
 
-/// Keeps the mean of the last reports: the wiper is noisy.
+/// The mean over the last reports: the wiper is noisy. Counts time, not reports, of which a window sees fewer.
 class Smoothed {
  public:
-  void take(double ratio) {
-    recent_.push_back(ratio);
-    if (recent_.size() > 40) recent_.pop_front();
+  void take(double ratio, double time_s) {
+    if (recent_.empty()) began_at_s_ = time_s;
+    recent_.push_back({time_s, ratio});
+    while (time_s - recent_.front().first > window_s) recent_.pop_front();
+    is_full_ = time_s - began_at_s_ >= window_s;
   }
-  bool is_full() const { return recent_.size() == 40; }
+  bool is_full() const { return is_full_; }
   double mean() const {
     double sum = 0;
-    for (const double ratio : recent_) sum += ratio;
+    for (const auto& [time_s, ratio] : recent_) sum += ratio;
     return recent_.empty() ? 0 : sum / static_cast<double>(recent_.size());
   }
 
  private:
-  std::deque<double> recent_;
+  static constexpr double window_s = 0.04;
+  std::deque<std::pair<double, double>> recent_;
+  double began_at_s_ = 0;
+  bool is_full_ = false;
 };
 
 class TurnGimbal final : public UserMoves {
@@ -258,10 +263,10 @@ class TurnGimbal final : public UserMoves {
   }
 
  protected:
-  void look(const Observation& now, double) override {
+  void look(const Observation& now, double time_s) override {
     if (now.pose->sequence == sequence_) return;
     sequence_ = now.pose->sequence;
-    smoothed_.take(held_curve(*now.parameters, axis_).ratio(static_cast<double>(now.pose->gimbal_rad[axis_ - 1])));
+    smoothed_.take(held_curve(*now.parameters, axis_).ratio(static_cast<double>(now.pose->gimbal_rad[axis_ - 1])), time_s);
     if (middle_ || !smoothed_.is_full()) return;
     points_->least_ratio = std::min(points_->least_ratio, smoothed_.mean());
     points_->most_ratio = std::max(points_->most_ratio, smoothed_.mean());

@@ -31,6 +31,12 @@ constexpr int pairs_of_pulses = 3;  // at the larger voltage; one pulse forward 
 constexpr float step_pulse_s = 0.02f, step_A = 0.5f;
 constexpr double ripple_A = static_cast<double>(board::current_ripple_A) / 2;
 
+/// More digits than the fit supports would only be harder to read and to compare.
+double to_four_digits(double value) {
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 3);
+  return step * std::round(value / step);
+}
+
 /// What the steps of this guide tell one another.
 struct Tuning {
   CurrentLoopOptions options;
@@ -266,7 +272,8 @@ class TryGains final : public Step {
       mean.inductance_H += motor.inductance_H / count;
       mean.delay_s += motor.delay_s / count;
     }
-    tuning_->gains = suggest_gains(mean, tuning_->options.bandwidth_Hz);
+    const auto exact = suggest_gains(mean, tuning_->options.bandwidth_Hz);
+    tuning_->gains = {to_four_digits(exact.proportional_V_per_A), to_four_digits(exact.integral_V_per_As)};
     // The bridge holds a voltage for a period, which delays it by half of one in the mean.
     const double margin_deg = phase_margin_deg(tuning_->options.bandwidth_Hz, mean.delay_s + period_s / 2);
     for (const auto& [parameter, value] : gains_of(*tuning_->gains)) device::check_value(parameter, value);

@@ -30,6 +30,10 @@ void make_safe(DevicePort& port) {
 
 }  // namespace
 
+std::string measured_text(const Check& check) {
+  return fmt::format("{:.4g}{}{}", check.value, check.unit.empty() ? "" : " ", check.unit);
+}
+
 void Findings::propose(const protocol::ParameterSet& held, protocol::Parameter parameter, double value,
                        const std::string& reason) {
   const auto& row = info(parameter);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -103,6 +104,7 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
   device::VirtualBoardOptions options;
   device::VirtualBoard board(options);
   auto control = board.control();
+  for (int i = 0; i < 1000 && !board.find(); ++i) std::this_thread::sleep_for(10ms);
   std::optional<ProgramResult> result;
   std::thread guide([&] {
     result = run_program("inkwell", {"tune", "current-loop", "--yes", "--json", "--usbip",

@@ -23,6 +23,9 @@ struct Check {
   bool passed = false;
 };
 
+/// "0.1234 rad": the value to four digits, with its unit.
+std::string measured_text(const Check& check);
+
 /// A change that a guide proposes. Nothing reaches the device before Guide::apply.
 struct Proposal {
   protocol::Parameter parameter;

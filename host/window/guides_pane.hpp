@@ -1,0 +1,59 @@
+// The pane that leads through a guide: what will happen, the numbers as they are measured, the step response, and the
+// buttons Confirm, Cancel and Apply.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <guides/guides.hpp>
+#include <guides/simulated_user.hpp>
+
+#include "device_desk.hpp"
+#include "style.hpp"
+
+namespace inkwell::window {
+
+class GuidesPane {
+ public:
+  /// `control_port`: of the virtual board whose simulated hand can do the user's part; 0 for a real device.
+  explicit GuidesPane(std::uint16_t control_port) : control_port_(control_port) {}
+
+  /// Once a frame, with the scope's frames since the last one, whether the pane is shown or not.
+  void follow(DeviceDesk& desk, const std::vector<device::ScopeSamples>& frames);
+  void draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk);
+
+  /// Ends a guide that runs, motors off. The stop button does this.
+  void cancel(DeviceDesk& desk);
+  bool is_running() const { return guide_ && !guide_->is_over(); }
+  /// The scope belongs to the guide while there are any.
+  const std::vector<protocol::Signal>& signals() const { return signals_; }
+
+ private:
+  struct Offer {
+    const char* title;
+    const char* help;
+    std::function<guides::Guide()> make;
+  };
+  std::vector<Offer> offers() const;
+  void start(guides::Guide guide);
+  void draw_offers(const Style& style, const DeviceDesk& desk);
+  void draw_step(const Style& style);
+  void draw_checks(const Style& style);
+  void draw_result(const Style& style);
+  void draw_curves(const Style& style);
+  void draw_buttons(const Style& style, DeviceDesk& desk);
+  void run_simulated_user();
+
+  std::uint16_t control_port_;
+  bool hand_helps_ = true;
+  float bandwidth_Hz_ = static_cast<float>(guides::bandwidth_default_Hz);
+  std::optional<guides::Guide> guide_;
+  std::optional<guides::SimulatedUser> user_;
+  std::string user_problem_;
+  std::vector<protocol::Signal> signals_;
+};
+
+}  // namespace inkwell::window
