@@ -75,7 +75,8 @@ Mesh coil(int turns, float wire_radius, int segments_per_turn, int segments_arou
       // The tube's circle lies in the plane of the axis and the outward direction; along z it is flattened
       // because the mesh is stretched to the spring's length later.
       const glm::vec3 normal = std::cos(around) * outward + std::sin(around) * glm::vec3{0.0f, 0.0f, 1.0f};
-      const glm::vec3 offset = wire_radius * (std::cos(around) * outward + 0.06f * std::sin(around) * glm::vec3{0, 0, 1});
+      const glm::vec3 offset =
+          wire_radius * (std::cos(around) * outward + 0.06f * std::sin(around) * glm::vec3{0, 0, 1});
       mesh.vertices.push_back({radius * outward + glm::vec3{0.0f, 0.0f, part} + offset, normal});
     }
   }

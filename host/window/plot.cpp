@@ -51,7 +51,8 @@ void draw_samples(ImDrawList& list, const PlotArea& area, const SignalSeries& se
   }
 }
 
-void draw_columns(ImDrawList& list, const PlotArea& area, const std::vector<Extremes>& columns, Colour colour, float thickness) {
+void draw_columns(ImDrawList& list, const PlotArea& area, const std::vector<Extremes>& columns, Colour colour,
+                  float thickness) {
   const ImU32 ink = packed(colour);
   Polyline line(list, ink, thickness);
   const float column_width = area.width() / static_cast<float>(columns.size());
@@ -64,27 +65,32 @@ void draw_columns(ImDrawList& list, const PlotArea& area, const std::vector<Extr
     const float low = area.to_y(static_cast<double>(columns[i].minimum));
     const float high = area.to_y(static_cast<double>(columns[i].maximum));
     line.add(x, 0.5f * (low + high));
-    if (low - high > thickness) list.AddRectFilled({x - 0.5f * column_width, high}, {x + 0.5f * column_width, low}, ink);
+    if (low - high > thickness)
+      list.AddRectFilled({x - 0.5f * column_width, high}, {x + 0.5f * column_width, low}, ink);
   }
 }
 
 }  // namespace
 
-void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit, const std::string& y_unit) {
+void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
+               const std::string& y_unit) {
   const Palette& palette = *style.palette;
   ImFont* font = style.fonts.caption;
   const float size = font->FontSize;
 
-  const std::vector<double> y_ticks = ticks(area.y, std::max(3, static_cast<int>(area.height() / style.points(y_ticks_every_points))));
+  const std::vector<double> y_ticks =
+      ticks(area.y, std::max(3, static_cast<int>(area.height() / style.points(y_ticks_every_points))));
   const double y_step = y_ticks.size() > 1 ? y_ticks[1] - y_ticks[0] : area.y.extent();
   for (double value : y_ticks) {
     const float y = std::round(area.to_y(value));
     list.AddLine({area.minimum.x, y}, {area.maximum.x, y}, packed(palette.plot_grid));
     const std::string label = tick_label(value, y_step);
     const ImVec2 taken = font->CalcTextSizeA(size, 1e4f, 0, label.c_str());
-    list.AddText(font, size, {area.minimum.x - taken.x - style.points(6), y - 0.5f * taken.y}, packed(palette.text_quiet), label.c_str());
+    list.AddText(font, size, {area.minimum.x - taken.x - style.points(6), y - 0.5f * taken.y},
+                 packed(palette.text_quiet), label.c_str());
   }
-  const std::vector<double> x_ticks = ticks(area.x, static_cast<int>(area.width() / style.points(x_ticks_every_points)));
+  const std::vector<double> x_ticks =
+      ticks(area.x, static_cast<int>(area.width() / style.points(x_ticks_every_points)));
   const double x_step = x_ticks.size() > 1 ? x_ticks[1] - x_ticks[0] : area.x.extent();
   for (double value : x_ticks) {
     const float x = std::round(area.to_x(value));
@@ -92,11 +98,13 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const
     std::string label = tick_label(value, x_step);
     if (value == x_ticks.back()) label += " " + x_unit;
     const ImVec2 taken = font->CalcTextSizeA(size, 1e4f, 0, label.c_str());
-    const float left = std::clamp(x - 0.5f * taken.x, area.minimum.x, std::max(area.minimum.x, area.maximum.x - taken.x));
+    const float left =
+        std::clamp(x - 0.5f * taken.x, area.minimum.x, std::max(area.minimum.x, area.maximum.x - taken.x));
     list.AddText(font, size, {left, area.maximum.y + style.points(3)}, packed(palette.text_quiet), label.c_str());
   }
   if (!y_unit.empty())
-    list.AddText(font, size, {area.minimum.x + style.points(5), area.minimum.y + style.points(2)}, packed(palette.text_quiet), y_unit.c_str());
+    list.AddText(font, size, {area.minimum.x + style.points(5), area.minimum.y + style.points(2)},
+                 packed(palette.text_quiet), y_unit.c_str());
 }
 
 void draw_signal(ImDrawList& list, const PlotArea& area, const SignalSeries& series, double first, double last,

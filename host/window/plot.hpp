@@ -25,7 +25,8 @@ struct PlotArea {
 };
 
 /// Ground, grid and the numbers on both axes. `x_unit` and `y_unit` stand at the ends of the axes.
-void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit, const std::string& y_unit);
+void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
+               const std::string& y_unit);
 
 /// A signal over [first, last) of its samples, which the whole width shows. Columns with many samples are drawn
 /// from their smallest to their largest value, so no spike is lost.

@@ -15,7 +15,10 @@ double tick_step(double extent, int wanted) {
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
   // The nearest of 1, 2, 5 and 10 as the eye sees distances: by ratio.
   const double factor = rough / power;
-  return power * (factor < std::sqrt(2.0) ? 1.0 : factor < std::sqrt(10.0) ? 2.0 : factor < std::sqrt(50.0) ? 5.0 : 10.0);
+  return power * (factor < std::sqrt(2.0)    ? 1.0
+                  : factor < std::sqrt(10.0) ? 2.0
+                  : factor < std::sqrt(50.0) ? 5.0
+                                             : 10.0);
 }
 
 }  // namespace
@@ -40,7 +43,8 @@ AxisRange enclosing_range(double minimum, double maximum) {
   const double extent = std::max(maximum - minimum, least);
   const double step = tick_step(extent, 10);
   const double room = 0.06 * extent;
-  return {std::floor((middle - 0.5 * extent - room) / step) * step, std::ceil((middle + 0.5 * extent + room) / step) * step};
+  return {std::floor((middle - 0.5 * extent - room) / step) * step,
+          std::ceil((middle + 0.5 * extent + room) / step) * step};
 }
 
 std::string tick_label(double value, double step) {
@@ -57,8 +61,9 @@ AxisRange SteadyRange::update(double minimum, double maximum, double now_s) {
   const bool is_much_smaller = wanted.extent() < 0.8 * range_.extent();
   if (!fits) {
     // Grow at once; on the side where there is room, keep what was shown.
-    range_ = range_.extent() > 0.0 ? AxisRange{std::min(wanted.minimum, range_.minimum), std::max(wanted.maximum, range_.maximum)}
-                                   : wanted;
+    range_ = range_.extent() > 0.0
+                 ? AxisRange{std::min(wanted.minimum, range_.minimum), std::max(wanted.maximum, range_.maximum)}
+                 : wanted;
     if (wanted.extent() < 0.6 * range_.extent()) range_ = wanted;
     small_since_s_ = now_s;
   } else if (!is_much_smaller) {

@@ -17,9 +17,9 @@ constexpr float wall_grid_m = 0.02f;
 // A wall and what of it has to be drawn, in view space.
 struct WallPicture {
   const WallView* wall;
-  int u, v;             // the axes along it
-  glm::vec3 corner_m;   // in workspace axes
-  glm::vec4 colour;     // without its alpha
+  int u, v;            // the axes along it
+  glm::vec3 corner_m;  // in workspace axes
+  glm::vec4 colour;    // without its alpha
   float frame_alpha, grid_alpha, pane_alpha;
 };
 
@@ -85,7 +85,8 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
   constexpr int step = 4;  // cells for one piece of line
   for (int i = -count; i <= count; ++i) {
     for (int j = -count; j < count; j += step) {
-      if (std::hypot(static_cast<float>(i), static_cast<float>(std::abs(j + step / 2))) > static_cast<float>(count)) continue;
+      if (std::hypot(static_cast<float>(i), static_cast<float>(std::abs(j + step / 2))) > static_cast<float>(count))
+        continue;
       lines_.add(place(i, j), place(i, j + step), faded(i, j), faded(i, j + step), 1.0f);
       lines_.add(place(j, i), place(j + step, i), faded(j, i), faded(j + step, i), 1.0f);
     }
@@ -192,7 +193,8 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
   glDisable(GL_DEPTH_TEST);
   draw_sky(look.palette);
 
-  to_clip_ = camera.projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height)) * camera.view();
+  to_clip_ =
+      camera.projection(static_cast<float>(viewport.width) / static_cast<float>(viewport.height)) * camera.view();
   solids_.fill(solids_of(scene, hand, look.palette), look.flat_colours);
   glEnable(GL_DEPTH_TEST);
   prepare_solids(camera, look);

@@ -54,7 +54,8 @@ glm::mat3 workspace_to_view(control::Frame frame) {
 
 SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const protocol::ParameterSet& parameters) {
   const control::Settings settings = control::prepare(parameters);
-  const control::Triple inkwell_rad{parameters[Parameter::inkwell_joint_1_rad], parameters[Parameter::inkwell_joint_2_rad],
+  const control::Triple inkwell_rad{parameters[Parameter::inkwell_joint_1_rad],
+                                    parameters[Parameter::inkwell_joint_2_rad],
                                     parameters[Parameter::inkwell_joint_3_rad]};
   const bool posed = pose && is_referenced(*pose);
   const control::Triple joint_rad =
@@ -97,8 +98,8 @@ SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const pr
   scene.arm_side = glm::normalize(glm::cross(up, forward));
   orient_stylus(scene, pose ? to_glm(pose->gimbal_rad) : glm::vec3{0.0f});
 
-  scene.floor_height_m = std::min({glm::dot(scene.shoulder_m, up) - base_height_m, glm::dot(scene.inkwell_m, up) - 0.03f,
-                                   glm::dot(scene.box_minimum_m, up) - 0.012f});
+  scene.floor_height_m = std::min({glm::dot(scene.shoulder_m, up) - base_height_m,
+                                   glm::dot(scene.inkwell_m, up) - 0.03f, glm::dot(scene.box_minimum_m, up) - 0.012f});
   return scene;
 }
 

@@ -40,8 +40,7 @@ glm::vec3 ScenePane::wall_handle(int wall) const {
   return centre;
 }
 
-std::optional<int> ScenePane::wall_under(glm::vec2 mouse) const {
-  const float reach = wall_grab_points * ImGui::GetFontSize() / 15.0f;
+std::optional<int> ScenePane::wall_under(glm::vec2 mouse, float reach) const {
   for (int wall = 0; wall < 6; ++wall)
     if (glm::length(to_glm(on_screen(wall_handle(wall))) - mouse) < reach) return wall;
   return std::nullopt;
@@ -87,8 +86,7 @@ void ScenePane::continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm:
       glm::vec3 axis{0.0f};
       axis[wall.axis] = 1.0f;
       const float along_m = nearest_on_line(ray, to_view * handle, to_view * axis) - wall_grab_offset_m_;
-      const float place_m =
-          dragged_wall_m(input.editor.shown(), wall.axis, wall.upper, handle[wall.axis] + along_m);
+      const float place_m = dragged_wall_m(input.editor.shown(), wall.axis, wall.upper, handle[wall.axis] + along_m);
       const device::ParameterChange change{wall_parameter(wall.axis, wall.upper), place_m};
       input.editor.edit({&change, 1}, input.now_s);
       break;
@@ -108,15 +106,17 @@ void ScenePane::handle_mouse(const ScenePaneInput& input) {
   const glm::vec2 mouse = to_glm(io.MousePos);
   ImGui::SetCursorScreenPos({origin_.x, origin_.y});
   ImGui::SetItemAllowOverlap();
-  ImGui::InvisibleButton("scene", {size_.x, size_.y},
-                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                             ImGuiButtonFlags_MouseButtonMiddle);
+  ImGui::InvisibleButton(
+      "scene", {size_.x, size_.y},
+      ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
   ImGui::SetItemAllowOverlap();
   const bool hovered = ImGui::IsItemHovered();
   if (drag_ == Drag::none) {
     const float reach = input.style.points(probe_grab_points);
     over_probe_ = hovered && input.hand != nullptr && glm::length(to_glm(on_screen(scene_.probe_m)) - mouse) < reach;
-    marked_wall_ = hovered && !over_probe_ && input.editor.known() ? wall_under(mouse) : std::nullopt;
+    marked_wall_ = hovered && !over_probe_ && input.editor.known()
+                       ? wall_under(mouse, input.style.points(wall_grab_points))
+                       : std::nullopt;
     if (ImGui::IsItemActivated()) start_drag(input, mouse);
   }
   if (drag_ != Drag::none) {
@@ -159,8 +159,8 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
       const bool marked = marked_wall_ == wall || (drag_ == Drag::wall && dragged_wall_ == wall);
       const ImVec2 place = on_screen(wall_handle(wall));
       list.AddCircleFilled(place, style.points(marked ? 5.5f : 3.5f), packed(palette.panel));
-      list.AddCircle(place, style.points(marked ? 5.5f : 3.5f),
-                     packed(marked ? palette.accent : palette.text_quiet), 0, style.points(1.5f));
+      list.AddCircle(place, style.points(marked ? 5.5f : 3.5f), packed(marked ? palette.accent : palette.text_quiet), 0,
+                     style.points(1.5f));
       if (!marked) continue;
       const WallView& view = scene_.walls[static_cast<std::size_t>(wall)];
       plate(list, style, {place.x + style.points(12), place.y - style.points(8)}, palette.text,
@@ -175,16 +175,19 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
   const float force_N = glm::length(scene_.force_N);
   if (force_N > 0.02f) {
     const ImVec2 tip = on_screen(force_arrow_tip_m(scene_));
-    plate(list, style, {tip.x + style.points(10), tip.y - style.points(8)}, palette.text, fmt::format("{:.2f} N", force_N));
+    plate(list, style, {tip.x + style.points(10), tip.y - style.points(8)}, palette.text,
+          fmt::format("{:.2f} N", force_N));
   }
   if (hand_view_) {
-    const float pull_N = static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
+    const float pull_N =
+        static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
     if (pull_N > 0.25f) {
       // On the side away from the sphere, where the force's arrow is not.
       const ImVec2 place = on_screen(hand_view_->target_m);
       const std::string label = fmt::format("hand {:.1f} N", pull_N);
       const bool to_the_left = place.x < on_screen(scene_.probe_m).x;
-      const float left = to_the_left ? place.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : place.x + style.points(16);
+      const float left =
+          to_the_left ? place.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : place.x + style.points(16);
       plate(list, style, {left, place.y - style.points(22)}, palette.text_quiet, label);
     }
   }
@@ -195,9 +198,10 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
     list.AddText({origin_.x + size_.x - taken.x - style.points(16), origin_.y + size_.y - taken.y - style.points(12)},
                  packed(palette.text), position.c_str());
   }
-  const char* help = input.hand == nullptr
-                         ? "Drag to turn, right drag to move, wheel to zoom"
-                         : "Drag the sphere to move the hand (wheel: depth), drag elsewhere to turn, right drag to move";
+  const char* help =
+      input.hand == nullptr
+          ? "Drag to turn, right drag to move, wheel to zoom"
+          : "Drag the sphere to move the hand (wheel: depth), drag elsewhere to turn, right drag to move";
   list.AddText({origin_.x + style.points(88), origin_.y + size_.y - style.points(27)},
                packed(palette.text_quiet.with_alpha(170)), help);
   ImGui::PopFont();
@@ -213,12 +217,14 @@ void ScenePane::draw_tools(const ScenePaneInput& input) {
   ImGui::BeginDisabled(!input.hand->target_m());
   if (ImGui::Button("Let go")) input.hand->let_go();
   ImGui::EndDisabled();
-  help_on_hover("", "The simulated hand lets go of the stylus, and the arm falls as its weight and friction have it.", style);
+  help_on_hover("", "The simulated hand lets go of the stylus, and the arm falls as its weight and friction have it.",
+                style);
   ImGui::SameLine();
   ImGui::BeginDisabled(input.hand->is_docked());
   if (ImGui::Button("Into the inkwell")) input.hand->put_into_inkwell();
   ImGui::EndDisabled();
-  help_on_hover("", "The simulated hand puts the stylus into the inkwell, where the board learns where the arm is.", style);
+  help_on_hover("", "The simulated hand puts the stylus into the inkwell, where the board learns where the arm is.",
+                style);
   if (const std::string error = input.hand->error(); !error.empty()) {
     ImGui::SetCursorScreenPos({origin_.x + style.points(14), ImGui::GetCursorScreenPos().y});
     text(style.palette->caution, error);

@@ -35,7 +35,7 @@ class ScenePane {
   void start_drag(const ScenePaneInput& input, glm::vec2 mouse);
   void continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm::vec2 moved);
   void end_drag(const ScenePaneInput& input);
-  std::optional<int> wall_under(glm::vec2 mouse) const;
+  std::optional<int> wall_under(glm::vec2 mouse, float reach) const;
   glm::vec3 wall_handle(int wall) const;
 
   void draw_labels(const ScenePaneInput& input) const;

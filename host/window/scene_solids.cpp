@@ -41,14 +41,18 @@ void add_arm(Builder& builder, const SceneModel& scene, glm::vec3 up, const Pale
 
   builder.rod(Shape::cylinder, foot, foot + 0.012f * up, 0.062f, palette.metal_dark, 0.1f);
   builder.rod(Shape::tapered, foot + 0.012f * up, scene.shoulder_m - 0.028f * up, 0.052f, palette.metal_dark, 0.2f);
-  builder.rod(Shape::cylinder, scene.shoulder_m - 0.028f * up, scene.shoulder_m - 0.022f * up, 0.037f, palette.metal, 0.5f);
+  builder.rod(Shape::cylinder, scene.shoulder_m - 0.028f * up, scene.shoulder_m - 0.022f * up, 0.037f, palette.metal,
+              0.5f);
   builder.rod(Shape::cylinder, scene.shoulder_m - 0.030f * side, scene.shoulder_m + 0.030f * side, 0.022f,
               palette.metal_dark, 0.3f);
-  builder.rod(Shape::cylinder, scene.shoulder_m + 0.030f * side, scene.shoulder_m + 0.033f * side, 0.015f, palette.metal, 0.6f);
-  builder.rod(Shape::cylinder, scene.shoulder_m - 0.033f * side, scene.shoulder_m - 0.030f * side, 0.015f, palette.metal, 0.6f);
+  builder.rod(Shape::cylinder, scene.shoulder_m + 0.030f * side, scene.shoulder_m + 0.033f * side, 0.015f,
+              palette.metal, 0.6f);
+  builder.rod(Shape::cylinder, scene.shoulder_m - 0.033f * side, scene.shoulder_m - 0.030f * side, 0.015f,
+              palette.metal, 0.6f);
 
   builder.rod(Shape::tapered, scene.shoulder_m, scene.elbow_m, 0.0125f, palette.metal, 0.4f);
-  builder.rod(Shape::cylinder, scene.elbow_m - 0.013f * side, scene.elbow_m + 0.013f * side, 0.0125f, palette.metal_dark, 0.3f);
+  builder.rod(Shape::cylinder, scene.elbow_m - 0.013f * side, scene.elbow_m + 0.013f * side, 0.0125f,
+              palette.metal_dark, 0.3f);
   builder.rod(Shape::tapered, scene.elbow_m, scene.probe_m - 0.006f * link_3, 0.0085f, palette.metal, 0.4f);
 
   if (scene.parallelogram) {
@@ -83,7 +87,8 @@ std::vector<Solid> solids_of(const SceneModel& scene, const std::optional<HandVi
 
   const glm::vec3 well_foot = scene.inkwell_m + up * (scene.floor_height_m - glm::dot(scene.inkwell_m, up));
   builder.rod(Shape::cylinder, well_foot, scene.inkwell_m - 0.016f * up, 0.006f, palette.metal_dark, 0.2f);
-  builder.rod(Shape::tapered, scene.inkwell_m - 0.004f * up, scene.inkwell_m - 0.020f * up, 0.013f, palette.metal_dark, 0.3f);
+  builder.rod(Shape::tapered, scene.inkwell_m - 0.004f * up, scene.inkwell_m - 0.020f * up, 0.013f, palette.metal_dark,
+              0.3f);
 
   const float radius_m = std::max(scene.sphere_radius_m, smallest_drawn_sphere_m);
   builder.ball(scene.probe_m, radius_m, scene_colours::probe, 0.5f);

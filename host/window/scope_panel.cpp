@@ -18,9 +18,7 @@ constexpr float header_points = 24.0f;
 constexpr float y_axis_points = 52.0f;
 constexpr float x_axis_points = 21.0f;
 
-std::string formatted(double value) {
-  return std::isnan(value) ? "—" : fmt::format("{:.4g}", value);
-}
+std::string formatted(double value) { return std::isnan(value) ? "—" : fmt::format("{:.4g}", value); }
 
 // Signals of one pane usually share a unit, which then stands once at the axis.
 std::string common_unit(const Pane& pane) {
@@ -95,7 +93,8 @@ ScopePanel::Stretch ScopePanel::stretch() {
   const auto end = static_cast<double>(history_.end());
   if (paused_) return {paused_last_ - span, paused_last_, end};
   if (trigger_settings_.mode != TriggerMode::off) {
-    if (const SignalSeries* series = history_.find(trigger_settings_.signal)) trigger_.advance(*series, trigger_settings_, span);
+    if (const SignalSeries* series = history_.find(trigger_settings_.signal))
+      trigger_.advance(*series, trigger_settings_, span);
     if (const auto event = trigger_.event()) {
       const double first = static_cast<double>(*event) - static_cast<double>(trigger_settings_.pre_trigger) * span;
       return {first, first + span, static_cast<double>(*event)};
@@ -108,7 +107,8 @@ ScopePanel::Stretch ScopePanel::stretch() {
   return {last - span, last, last};
 }
 
-void ScopePanel::draw_legend(std::size_t index, ImVec2 place, float width, const Stretch& stretch, const Style& style) const {
+void ScopePanel::draw_legend(std::size_t index, ImVec2 place, float width, const Stretch& stretch,
+                             const Style& style) const {
   const Pane& pane = layout_.panes[index];
   const Palette& palette = *style.palette;
   ImFont* font = style.fonts.caption;
@@ -124,7 +124,8 @@ void ScopePanel::draw_legend(std::size_t index, ImVec2 place, float width, const
       const auto at = [&](double cursor) {
         const double index_at = stretch.last + cursor * stretch.span();
         return index_at < static_cast<double>(series->begin()) || index_at >= static_cast<double>(series->end())
-                   ? std::nan("") : static_cast<double>((*series)[static_cast<std::uint64_t>(index_at)]);
+                   ? std::nan("")
+                   : static_cast<double>((*series)[static_cast<std::uint64_t>(index_at)]);
       };
       label = fmt::format("{}  {}  {}  diff. {}", label, formatted(at(cursors_[0])), formatted(at(cursors_[1])),
                           formatted(at(cursors_[1]) - at(cursors_[0])));
@@ -145,7 +146,8 @@ void ScopePanel::handle_mouse(const PlotArea& area, const Stretch& stretch) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f) {
     const double before_s = span_s_;
-    span_s_ = std::clamp(span_s_ * std::exp(-0.15 * static_cast<double>(io.MouseWheel)), span_minimum_s, span_maximum_s);
+    span_s_ =
+        std::clamp(span_s_ * std::exp(-0.15 * static_cast<double>(io.MouseWheel)), span_minimum_s, span_maximum_s);
     // While paused, what is under the mouse stays under it.
     const double right_part = static_cast<double>((area.maximum.x - io.MousePos.x) / area.width());
     if (paused_) paused_last_ += right_part * (span_s_ - before_s) * rate_Hz;
@@ -154,7 +156,8 @@ void ScopePanel::handle_mouse(const PlotArea& area, const Stretch& stretch) {
     if (!paused_) pause(true);
     paused_last_ -= static_cast<double>(io.MouseDelta.x / area.width()) * stretch.span();
     const double begin = static_cast<double>(history_.begin());
-    paused_last_ = std::clamp(paused_last_, begin, std::max(begin, static_cast<double>(history_.end()) + 0.5 * stretch.span()));
+    paused_last_ =
+        std::clamp(paused_last_, begin, std::max(begin, static_cast<double>(history_.end()) + 0.5 * stretch.span()));
   }
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) pause(false);
 }
@@ -171,7 +174,8 @@ void ScopePanel::draw_cursors(const PlotArea& area, const Style& style) {
     if (ImGui::IsItemActive() && dragged_cursor_ == i)
       cursor = std::clamp(static_cast<double>((io.MousePos.x - area.maximum.x) / area.width()), -1.0, 0.0);
     if (near) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    list.AddLine({x, area.minimum.y}, {x, area.maximum.y}, packed(style.palette->text.with_alpha(near ? 255 : 150)), style.points(1));
+    list.AddLine({x, area.minimum.y}, {x, area.maximum.y}, packed(style.palette->text.with_alpha(near ? 255 : 150)),
+                 style.points(1));
   }
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) dragged_cursor_ = -1;
 }
@@ -183,17 +187,20 @@ void ScopePanel::draw_time(std::size_t index, PlotArea area, const Stretch& stre
   for (protocol::Signal signal : pane.signals) {
     const SignalSeries* series = history_.find(signal);
     if (series == nullptr || stretch.last <= 0.0) continue;
-    const Extremes each = series->extremes(static_cast<std::uint64_t>(std::max(stretch.first, 0.0)), static_cast<std::uint64_t>(stretch.last));
+    const Extremes each = series->extremes(static_cast<std::uint64_t>(std::max(stretch.first, 0.0)),
+                                           static_cast<std::uint64_t>(stretch.last));
     all = {std::fmin(all.minimum, each.minimum), std::fmax(all.maximum, each.maximum)};
   }
   area.x = {(stretch.first - stretch.zero) / rate_Hz, (stretch.last - stretch.zero) / rate_Hz};
   area.y = memory.y.update(static_cast<double>(all.minimum), static_cast<double>(all.maximum), ImGui::GetTime());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_axes(list, area, style, "s", "");
-  if (trigger_settings_.mode != TriggerMode::off && std::ranges::find(pane.signals, trigger_settings_.signal) != pane.signals.end()) {
+  if (trigger_settings_.mode != TriggerMode::off &&
+      std::ranges::find(pane.signals, trigger_settings_.signal) != pane.signals.end()) {
     const float y = area.to_y(static_cast<double>(trigger_settings_.level));
     if (y > area.minimum.y && y < area.maximum.y)
-      list.AddLine({area.minimum.x, y}, {area.maximum.x, y}, packed(style.palette->accent.with_alpha(120)), style.points(1));
+      list.AddLine({area.minimum.x, y}, {area.maximum.x, y}, packed(style.palette->accent.with_alpha(120)),
+                   style.points(1));
   }
   for (std::size_t i = 0; i < pane.signals.size(); ++i)
     if (const SignalSeries* series = history_.find(pane.signals[i]))
@@ -207,17 +214,20 @@ void ScopePanel::draw_time(std::size_t index, PlotArea area, const Stretch& stre
     memory.statistics.clear();
     for (protocol::Signal signal : pane.signals)
       if (const SignalSeries* series = history_.find(signal); series != nullptr && stretch.last > 0.0)
-        memory.statistics.push_back(statistics(*series, static_cast<std::uint64_t>(std::max(stretch.first, 0.0)), static_cast<std::uint64_t>(stretch.last)));
+        memory.statistics.push_back(statistics(*series, static_cast<std::uint64_t>(std::max(stretch.first, 0.0)),
+                                               static_cast<std::uint64_t>(stretch.last)));
   }
   ImFont* font = style.fonts.caption;
   float y = area.minimum.y + style.points(18);
   for (std::size_t i = 0; i < memory.statistics.size(); ++i, y += font->FontSize + style.points(1)) {
     const Statistics& each = memory.statistics[i];
-    const std::string line = fmt::format("mean {}   rms {}   deviation {}   {} to {}", formatted(each.mean), formatted(each.root_mean_square),
-                                         formatted(each.standard_deviation), formatted(each.minimum), formatted(each.maximum));
+    const std::string line = fmt::format("mean {}   rms {}   deviation {}   {} to {}", formatted(each.mean),
+                                         formatted(each.root_mean_square), formatted(each.standard_deviation),
+                                         formatted(each.minimum), formatted(each.maximum));
     const ImVec2 taken = font->CalcTextSizeA(font->FontSize, 1e4f, 0, line.c_str());
     const ImVec2 corner{area.minimum.x + style.points(6), y};
-    list.AddRectFilled({corner.x - style.points(3), corner.y}, {corner.x + taken.x + style.points(3), corner.y + taken.y},
+    list.AddRectFilled({corner.x - style.points(3), corner.y},
+                       {corner.x + taken.x + style.points(3), corner.y + taken.y},
                        packed(style.palette->panel.with_alpha(210)));
     list.AddText(font, font->FontSize, corner, packed(line_colour(style, i)), line.c_str());
   }
@@ -231,7 +241,10 @@ void ScopePanel::draw_spectrum(std::size_t index, PlotArea area, const Stretch& 
     memory.spectra.clear();
     for (protocol::Signal signal : pane.signals) {
       const SignalSeries* series = history_.find(signal);
-      memory.spectra.push_back(series == nullptr ? Spectrum{} : spectrum(*series, static_cast<std::uint64_t>(std::max(stretch.first, 0.0)), static_cast<std::uint64_t>(stretch.last)));
+      memory.spectra.push_back(series == nullptr
+                                   ? Spectrum{}
+                                   : spectrum(*series, static_cast<std::uint64_t>(std::max(stretch.first, 0.0)),
+                                              static_cast<std::uint64_t>(stretch.last)));
     }
   }
   double largest = 1e-9;
@@ -282,7 +295,8 @@ void ScopePanel::draw_xy(std::size_t index, PlotArea area, const Stretch& stretc
   area.x = memory.x.update(static_cast<double>(x.minimum), static_cast<double>(x.maximum), ImGui::GetTime());
   area.y = memory.y.update(static_cast<double>(y.minimum), static_cast<double>(y.maximum), ImGui::GetTime());
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_axes(list, area, style, std::string(protocol::info(pane.signals.front()).unit), pane.signals.size() > 1 ? std::string(protocol::info(pane.signals[1]).unit) : "");
+  draw_axes(list, area, style, std::string(protocol::info(pane.signals.front()).unit),
+            pane.signals.size() > 1 ? std::string(protocol::info(pane.signals[1]).unit) : "");
   if (x_series == nullptr || first >= last) return;
   const std::uint64_t stride = std::max<std::uint64_t>(1, (last - first) / points_maximum);
   for (std::size_t j = 1; j < pane.signals.size(); ++j) {
@@ -308,10 +322,13 @@ void ScopePanel::draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const S
   const float title_width = ImGui::GetItemRectSize().x;
   help_on_hover("", "Click to choose what this pane shows.", style);
   draw_pane_menu(index, style);
-  draw_legend(index, {place.x + title_width, place.y + style.points(4)}, size.x - title_width - style.points(6), stretch, style);
+  draw_legend(index, {place.x + title_width, place.y + style.points(4)}, size.x - title_width - style.points(6),
+              stretch, style);
 
   const PlotArea area{{place.x + style.points(y_axis_points), place.y + style.points(header_points)},
-                      {place.x + size.x - style.points(6), place.y + size.y - style.points(x_axis_points)}, {0, 1}, {0, 1}};
+                      {place.x + size.x - style.points(6), place.y + size.y - style.points(x_axis_points)},
+                      {0, 1},
+                      {0, 1}};
   if (area.width() > style.points(40) && area.height() > style.points(24)) {
     ImGui::SetCursorScreenPos(area.minimum);
     ImGui::InvisibleButton("plot", {area.width(), area.height()});
@@ -337,9 +354,12 @@ void ScopePanel::draw(ImVec2 place, ImVec2 size, const Style& style) {
   const float gap = style.points(12);
   const float left = place.x + style.points(12);
   const float width = (size.x - style.points(24) - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
-  const float height = (place.y + size.y - top - style.points(6) - style.points(6) * static_cast<float>(rows - 1)) / static_cast<float>(rows);
+  const float height = (place.y + size.y - top - style.points(6) - style.points(6) * static_cast<float>(rows - 1)) /
+                       static_cast<float>(rows);
   for (int i = 0; i < count; ++i)
-    draw_pane(static_cast<std::size_t>(i), {left + static_cast<float>(i % columns) * (width + gap), top + static_cast<float>(i / columns) * (height + style.points(6))},
+    draw_pane(static_cast<std::size_t>(i),
+              {left + static_cast<float>(i % columns) * (width + gap),
+               top + static_cast<float>(i / columns) * (height + style.points(6))},
               {width, height}, shown, style);
   if (removed_pane_) {
     layout_.panes.erase(layout_.panes.begin() + static_cast<std::ptrdiff_t>(*removed_pane_));

@@ -67,7 +67,8 @@ void ScopePanel::draw_toolbar(const Style& style) {
     const double apart_s = std::abs(cursors_[1] - cursors_[0]) * span_s_;
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    text(style.fonts.caption, style.palette->text, fmt::format("{:.5g} ms, {:.4g} Hz", 1000.0 * apart_s, 1.0 / std::max(apart_s, 1e-9)));
+    text(style.fonts.caption, style.palette->text,
+         fmt::format("{:.5g} ms, {:.4g} Hz", 1000.0 * apart_s, 1.0 / std::max(apart_s, 1e-9)));
   }
   ImGui::PopStyleVar();
 }
@@ -97,7 +98,8 @@ void ScopePanel::draw_trigger_tools(const Style& style) {
   ImGui::SameLine();
   float percent = 100.0f * trigger_settings_.pre_trigger;
   ImGui::SetNextItemWidth(style.points(64));
-  if (ImGui::SliderFloat("##before", &percent, 0.0f, 100.0f, "%.0f %%")) trigger_settings_.pre_trigger = percent / 100.0f;
+  if (ImGui::SliderFloat("##before", &percent, 0.0f, 100.0f, "%.0f %%"))
+    trigger_settings_.pre_trigger = percent / 100.0f;
   help_on_hover("Before the event", "Part of the picture that lies before the event.", style);
   if (trigger_settings_.mode != TriggerMode::single) return;
   ImGui::SameLine();

@@ -35,7 +35,8 @@ Colour colour_of(State state, const Palette& palette) {
 }
 
 // A number with its caption above, in a column of fixed width.
-void gauge(const char* caption, const std::string& value, Colour colour, const char* help, float width, const Style& style) {
+void gauge(const char* caption, const std::string& value, Colour colour, const char* help, float width,
+           const Style& style) {
   ImGui::BeginGroup();
   text(style.fonts.caption, style.palette->text_quiet, caption);
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() - style.points(6));
@@ -59,21 +60,24 @@ void StatusBar::draw_device_list(const Style& style, DeviceDesk& desk) {
   if (!view.list_error.empty()) wrapped_text(palette.caution, view.list_error);
   if (view.listed.empty()) text(palette.text_quiet, "None found.");
   for (const device::Endpoint& endpoint : view.listed) {
-    const bool present = view.connected() && view.status.information &&
-                         view.status.information->serial_number == endpoint.serial_number;
+    const bool present =
+        view.connected() && view.status.information && view.status.information->serial_number == endpoint.serial_number;
     const std::string place = endpoint.kind == device::Endpoint::Kind::usb
-                                  ? std::string("USB") : fmt::format("virtual, port {}", endpoint.port);
-    if (ImGui::Selectable(fmt::format("{}   {}   {}", endpoint.product, endpoint.serial_number, place).c_str(), present))
+                                  ? std::string("USB")
+                                  : fmt::format("virtual, port {}", endpoint.port);
+    if (ImGui::Selectable(fmt::format("{}   {}   {}", endpoint.product, endpoint.serial_number, place).c_str(),
+                          present))
       if (!present) desk.choose(endpoint.serial_number);
   }
   if (!desk.wanted_serial_number().empty() && ImGui::Selectable("Any device")) desk.choose("");
   if (view.status.information) {
     const auto& information = *view.status.information;
     ImGui::Separator();
-    text(palette.text_quiet, fmt::format("Firmware {}, protocol version {}", information.firmware_version,
-                                         information.protocol_version));
-    text(palette.text_quiet, fmt::format("Longest control interrupt: {} of {} cycles", information.report.servo_cycles_longest,
-                                         information.report.processor_clock_Hz / std::max(information.report.servo_rate_Hz, 1u)));
+    text(palette.text_quiet,
+         fmt::format("Firmware {}, protocol version {}", information.firmware_version, information.protocol_version));
+    text(palette.text_quiet,
+         fmt::format("Longest control interrupt: {} of {} cycles", information.report.servo_cycles_longest,
+                     information.report.processor_clock_Hz / std::max(information.report.servo_rate_Hz, 1u)));
   }
   ImGui::EndPopup();
 }
@@ -93,8 +97,8 @@ void StatusBar::draw_device(const Style& style, DeviceDesk& desk) {
   list.AddCircleFilled({corner.x + style.points(14), corner.y + 0.5f * area.y}, style.points(4.5f),
                        packed(colour_of(connection, palette)));
   const float left = corner.x + style.points(29);
-  list.AddText(style.fonts.strong, style.fonts.strong->FontSize, {left, corner.y + style.points(2)}, packed(palette.text),
-               title_of(connection));
+  list.AddText(style.fonts.strong, style.fonts.strong->FontSize, {left, corner.y + style.points(2)},
+               packed(palette.text), title_of(connection));
   list.AddText(style.fonts.caption, style.fonts.caption->FontSize, {left, corner.y + style.points(20)},
                packed(palette.text_quiet), serial.empty() ? "choose a device" : serial.c_str());
   draw_device_list(style, desk);
@@ -128,15 +132,19 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
         "Pose reports received in the last second; the device sends 1000.", style.points(72), style);
   const std::uint64_t lost = status.poses_lost + status.scope_samples_lost;
   gauge("Lost", alive ? fmt::format("{}", lost) : "—", lost > 0 ? palette.caution : palette.text,
-        fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost, status.scope_samples_lost,
-                    status.scope_samples_received + status.scope_samples_lost).c_str(), style.points(56), style);
+        fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost,
+                    status.scope_samples_lost, status.scope_samples_received + status.scope_samples_lost)
+            .c_str(),
+        style.points(56), style);
 
   const float height = style.points(38);
   const float stop_width = style.points(118);
   const float force_width = style.points(116);
   const float gap = style.points(8);
   const auto switches = alive ? view.pose->switches : std::uint8_t{0};
-  const auto is_pressed = [switches](protocol::Switch which) { return (switches & static_cast<std::uint8_t>(which)) != 0; };
+  const auto is_pressed = [switches](protocol::Switch which) {
+    return (switches & static_cast<std::uint8_t>(which)) != 0;
+  };
   float x = place.x + size.x - style.points(12) - stop_width;
   const float y = place.y + style.points(8);
   ImGui::SetCursorScreenPos({x, y});
@@ -168,7 +176,8 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   // The stylus' two buttons and the inkwell, as the board feels them.
   if (alive) {
     const char* names[] = {"1", "2", "inkwell"};
-    const protocol::Switch which[] = {protocol::Switch::button_1, protocol::Switch::button_2, protocol::Switch::inkwell};
+    const protocol::Switch which[] = {protocol::Switch::button_1, protocol::Switch::button_2,
+                                      protocol::Switch::inkwell};
     ImDrawList& list = *ImGui::GetWindowDrawList();
     float right = x - style.points(14);
     for (int i = 2; i >= 0; --i) {
@@ -199,7 +208,8 @@ bool draw_fault_banner(ImVec2 place, ImVec2 size, const Style& style, protocol::
   text(palette.text_quiet, info.remedy);
   ImGui::EndGroup();
   ImGui::SetCursorPos({size.x - style.points(130), style.points(14)});
-  const bool pressed = coloured_button("Clear fault", palette.danger, palette.on_danger, {style.points(118), style.points(34)});
+  const bool pressed =
+      coloured_button("Clear fault", palette.danger, palette.on_danger, {style.points(118), style.points(34)});
   end_pane();
   return pressed;
 }
@@ -210,8 +220,9 @@ void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& v
   ImGui::SetNextWindowSize({style.points(420), 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, style.points(8));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(20), style.points(16)});
-  ImGui::Begin("connection", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::Begin("connection", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   text(style.fonts.strong, colour_of(view.status.connection, palette), title_of(view.status.connection));
   const std::string& message = view.status.message.empty() ? view.list_error : view.status.message;
   wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);

@@ -66,7 +66,8 @@ Fonts load_fonts(float scale) {
     atlas.Build();
     return {only, only, only};
   }
-  const Fonts fonts{add_font(found->regular, std::round(15.0f * scale)), add_font(found->strong, std::round(15.0f * scale)),
+  const Fonts fonts{add_font(found->regular, std::round(15.0f * scale)),
+                    add_font(found->strong, std::round(15.0f * scale)),
                     add_font(found->regular, std::round(12.5f * scale))};
   atlas.Build();
   for (ImFont* font : {fonts.body, fonts.strong, fonts.caption}) make_digits_tabular(font);
@@ -199,7 +200,8 @@ bool bar_slider(const char* label, float& value, float minimum, float maximum, c
   const ImVec2 end{corner.x + width, corner.y + ImGui::GetFrameHeight()};
   const bool hovered = ImGui::IsMouseHoveringRect(corner, end) && ImGui::IsWindowHovered();
   const float linear = (value - minimum) / (maximum - minimum);
-  const float part = (flags & ImGuiSliderFlags_Logarithmic) != 0 ? std::log(value / minimum) / std::log(maximum / minimum) : linear;
+  const float part =
+      (flags & ImGuiSliderFlags_Logarithmic) != 0 ? std::log(value / minimum) / std::log(maximum / minimum) : linear;
   const float edge = corner.x + std::clamp(part, 0.0f, 1.0f) * width;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float rounding = ImGui::GetStyle().FrameRounding;
@@ -209,11 +211,13 @@ bool bar_slider(const char* label, float& value, float minimum, float maximum, c
     list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
     list.PopClipRect();
   }
-  list.AddLine({edge, corner.y + style.points(3)}, {edge, end.y - style.points(3)}, packed(palette.accent), style.points(2));
+  list.AddLine({edge, corner.y + style.points(3)}, {edge, end.y - style.points(3)}, packed(palette.accent),
+               style.points(2));
   const ImU32 nothing = packed(palette.raised.with_alpha(0));
   const bool typing = ImGui::TempInputIsActive(ImGui::GetID(label));
   if (!typing)
-    for (ImGuiCol slot : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive})
+    for (ImGuiCol slot : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_SliderGrab,
+                          ImGuiCol_SliderGrabActive})
       ImGui::PushStyleColor(slot, nothing);
   ImGui::SetNextItemWidth(width);
   const bool edited = ImGui::SliderFloat(label, &value, minimum, maximum, format, flags);
@@ -226,8 +230,7 @@ bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags fl
   ImGui::SetNextWindowSize(size);
   return ImGui::Begin(name, nullptr,
                       ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                          ImGuiWindowFlags_NoBringToFrontOnFocus |
-                          ImGuiWindowFlags_NoBackground | flags);
+                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoBackground | flags);
 }
 
 void end_pane() { ImGui::End(); }

@@ -26,7 +26,8 @@ std::array<const char*, 2> choice_names(Parameter parameter) {
 
 std::string help_of(const protocol::ParameterInfo& info) {
   return fmt::format("{}\n\nRange {} to {}{}{}, default {}.\nCtrl and click to type a value.\nIn files: {}", info.help,
-                     info.minimum, info.maximum, info.unit.empty() ? "" : " ", info.unit, info.default_value, info.name);
+                     info.minimum, info.maximum, info.unit.empty() ? "" : " ", info.unit, info.default_value,
+                     info.name);
 }
 
 // Two arrows that turn back: drawn, because not every font has them.
@@ -108,8 +109,8 @@ void TuningPanel::draw_presets(const Style& style, ParameterEditor& editor, doub
   const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1.0f)) / count;
   for (const Preset& preset : all) {
     const bool on = editor.known() && std::ranges::all_of(preset.changes, [&](const ParameterChange& change) {
-      return editor.shown(change.first) == change.second;
-    });
+                      return editor.shown(change.first) == change.second;
+                    });
     if (toggle_button(std::string(preset.name).c_str(), on, style, {width, 0}))
       editor.apply(std::string(preset.name), preset.changes, now_s);
     help_on_hover(preset.name, preset.help, style);
@@ -145,8 +146,8 @@ void TuningPanel::draw_row(Parameter parameter, const Style& style, ParameterEdi
   ImGui::AlignTextToFramePadding();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   if (changed)
-    ImGui::GetWindowDrawList()->AddCircleFilled(
-        {corner.x - style.points(7), corner.y + 0.5f * ImGui::GetFrameHeight()}, style.points(2.6f), packed(palette.accent));
+    ImGui::GetWindowDrawList()->AddCircleFilled({corner.x - style.points(7), corner.y + 0.5f * ImGui::GetFrameHeight()},
+                                                style.points(2.6f), packed(palette.accent));
   ImGui::PushClipRect(corner, {corner.x + label_width - style.points(4), corner.y + ImGui::GetFrameHeight()}, true);
   text(changed ? palette.text : palette.text_quiet, label);
   ImGui::PopClipRect();
@@ -201,7 +202,8 @@ void TuningPanel::draw_group(std::string_view group, const Style& style, Paramet
   const bool often_used = group == "box" || group == "contact" || group == "current loop";
   int changed = 0;
   for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    if (protocol::parameter_table[i].group == group && editor.known() && editor.differs_from_default(static_cast<Parameter>(i)))
+    if (protocol::parameter_table[i].group == group && editor.known() &&
+        editor.differs_from_default(static_cast<Parameter>(i)))
       ++changed;
   ImGui::Dummy({0, style.points(1)});
   ImGui::PushFont(style.fonts.strong);
@@ -211,7 +213,8 @@ void TuningPanel::draw_group(std::string_view group, const Style& style, Paramet
   if (changed > 0) {
     ImGui::PushFont(style.fonts.caption);
     ImGui::SameLine();
-    right_text(style.palette->accent, fmt::format("{} changed", changed), ImGui::GetContentRegionAvail().x - style.points(4));
+    right_text(style.palette->accent, fmt::format("{} changed", changed),
+               ImGui::GetContentRegionAvail().x - style.points(4));
     ImGui::PopFont();
   }
   if (!open) return;
@@ -236,9 +239,11 @@ void TuningPanel::draw_file_dialog(const Style& style, ParameterEditor& editor, 
                                                  : "A file saved here, or an arm's description.");
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  const bool entered = ImGui::InputTextWithHint("##path", "parameters.toml", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered =
+      ImGui::InputTextWithHint("##path", "parameters.toml", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
   const std::filesystem::path folder = std::filesystem::path(path_).has_parent_path()
-                                           ? std::filesystem::path(path_).parent_path() : std::filesystem::current_path();
+                                           ? std::filesystem::path(path_).parent_path()
+                                           : std::filesystem::current_path();
   std::error_code error;
   if (ImGui::BeginChild("files", {0, style.points(150)})) {
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -249,13 +254,17 @@ void TuningPanel::draw_file_dialog(const Style& style, ParameterEditor& editor, 
     if (error) text(style.palette->text_quiet, "This folder does not exist.");
   }
   ImGui::EndChild();
-  const bool confirmed = coloured_button(saving ? "Save" : "Load", style.palette->accent, style.palette->panel,
-                                         {style.points(100), 0}) || entered;
+  const bool confirmed =
+      coloured_button(saving ? "Save" : "Load", style.palette->accent, style.palette->panel, {style.points(100), 0}) ||
+      entered;
   ImGui::SameLine();
-  const bool cancelled = ImGui::Button("Cancel", {style.points(100), 0}) ||
-                         ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  const bool cancelled =
+      ImGui::Button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
   if (confirmed && !path_.empty()) {
-    if (saving) save(editor); else load(path_, editor, now_s);
+    if (saving)
+      save(editor);
+    else
+      load(path_, editor, now_s);
   }
   if ((confirmed && !path_.empty()) || cancelled) {
     task_ = FileTask::none;

@@ -16,7 +16,8 @@ class TuningPanel {
   explicit TuningPanel(std::filesystem::path parameters_file) : path_(parameters_file.string()) {}
 
   /// `refusal`: why the device refused the newest transaction; empty if it did not.
-  void draw(ImVec2 place, ImVec2 size, const Style& style, ParameterEditor& editor, const std::string& refusal, double now_s);
+  void draw(ImVec2 place, ImVec2 size, const Style& style, ParameterEditor& editor, const std::string& refusal,
+            double now_s);
 
   /// Loads a file as one undo step; says in the pane what became of it.
   void load(const std::filesystem::path& path, ParameterEditor& editor, double now_s);

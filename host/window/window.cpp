@@ -68,7 +68,8 @@ void remember_settings(const WindowSettings& settings) {
     std::filesystem::rename(unfinished, path, error);
   } else {
     std::filesystem::remove(unfinished, error);
-    fmt::print(stderr, "The window's settings could not be kept in {}. Check that its disk is not full.\n", path.string());
+    fmt::print(stderr, "The window's settings could not be kept in {}. Check that its disk is not full.\n",
+               path.string());
   }
 }
 

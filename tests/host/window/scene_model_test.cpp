@@ -29,7 +29,8 @@ protocol::PoseReport middle_pose(protocol::State state) { return pose_at(0.0f, 0
 TEST_CASE("the links have the lengths of the arm") {
   const auto parameters = protocol::default_parameters();
   const SceneModel scene = window::build_scene(pose_at(0.3f, 0.8f, 0.5f, protocol::State::ready), parameters);
-  CHECK(glm::length(scene.elbow_m - scene.shoulder_m) == doctest::Approx(parameters[Parameter::link_2_m]).epsilon(1e-4));
+  CHECK(glm::length(scene.elbow_m - scene.shoulder_m) ==
+        doctest::Approx(parameters[Parameter::link_2_m]).epsilon(1e-4));
   CHECK(glm::length(scene.probe_m - scene.elbow_m) == doctest::Approx(parameters[Parameter::link_3_m]).epsilon(1e-4));
   CHECK(std::abs(glm::dot(scene.arm_side, scene.elbow_m - scene.shoulder_m)) < 1e-5f);
   CHECK(std::abs(glm::dot(scene.arm_side, scene.probe_m - scene.elbow_m)) < 1e-5f);
@@ -101,7 +102,8 @@ TEST_CASE("a ray through a projected point meets that point") {
   CHECK(glm::length(met - point) < 1e-4f);
   const glm::vec3 x_axis{1.0f, 0.0f, 0.0f};
   const glm::vec3 moved = camera.project(point + 0.02f * x_axis, size);
-  CHECK(window::nearest_on_line(camera.ray({moved.x, moved.y}, size), point, x_axis) == doctest::Approx(0.02).epsilon(1e-2));
+  CHECK(window::nearest_on_line(camera.ray({moved.x, moved.y}, size), point, x_axis) ==
+        doctest::Approx(0.02).epsilon(1e-2));
 }
 
 TEST_CASE("the camera never turns over and never leaves its distances") {

@@ -26,7 +26,8 @@ bool equal(Extremes a, Extremes b) {
   return a.minimum == b.minimum && a.maximum == b.maximum;
 }
 
-device::ScopeSamples samples_of(std::vector<protocol::Signal> signals, std::uint32_t first_period, std::size_t count, float value) {
+device::ScopeSamples samples_of(std::vector<protocol::Signal> signals, std::uint32_t first_period, std::size_t count,
+                                float value) {
   device::ScopeSamples samples{std::move(signals), first_period, count, {}, 0};
   samples.values.assign(count * samples.signals.size(), value);
   return samples;
@@ -47,7 +48,8 @@ TEST_CASE("the extremes of random stretches are those of their samples") {
     const std::uint64_t b = place(random);
     CAPTURE(a);
     CAPTURE(b);
-    CHECK(equal(series.extremes(std::min(a, b), std::max(a, b)), extremes_one_by_one(series, std::min(a, b), std::max(a, b))));
+    CHECK(equal(series.extremes(std::min(a, b), std::max(a, b)),
+                extremes_one_by_one(series, std::min(a, b), std::max(a, b))));
   }
 }
 

@@ -18,7 +18,8 @@ TEST_CASE("settings come back as they were written") {
   settings.scope_span_s = 0.05;
   settings.trigger = {TriggerMode::single, protocol::Signal::current_2_A, TriggerEdge::falling, -0.25f, 0.5f};
   settings.layout = built_in_layout("currents");
-  settings.layout.panes.push_back({PaneKind::xy, "x against \"y\"", {protocol::Signal::position_x_m, protocol::Signal::position_y_m}});
+  settings.layout.panes.push_back(
+      {PaneKind::xy, "x against \"y\"", {protocol::Signal::position_x_m, protocol::Signal::position_y_m}});
   settings.parameters_file = "/home/someone/soft wall.toml";
   CHECK(parse_settings(format_settings(settings)) == settings);
 }

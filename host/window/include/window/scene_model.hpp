@@ -55,8 +55,8 @@ glm::mat3 workspace_to_view(control::Frame frame);
 /// The pair of parameters that place a wall, so that it can be dragged.
 protocol::Parameter wall_parameter(int axis, bool upper);
 
-/// A wall's place along its axis after a drag: within the parameter's range, and leaving room for the sphere and
-/// `clearance_m` between the two walls.
+/// A wall's place along its axis after a drag, in whole millimetres: within the parameter's range, and leaving room
+/// for the sphere between the two walls.
 float dragged_wall_m(const protocol::ParameterSet& parameters, int axis, bool upper, float wanted_m);
 
 }  // namespace inkwell::window
