@@ -33,7 +33,7 @@ int main(int argument_count, char** arguments) {
   DeviceOptions options;
   Action action;
   options.add_to(program);
-  add_window_options(program, options, action);
+  const auto open_window = add_window_options(program, options, action);
   add_info_command(program, options, action);
   add_watch_command(program, options, action);
   add_parameters_command(program, options, action);
@@ -42,7 +42,7 @@ int main(int argument_count, char** arguments) {
   add_tune_command(program, options, action);
   add_check_command(program, options, action);
   add_record_command(program, options, action);
-  add_replay_command(program, options, action);
+  add_replay_command(program, options, open_window, action);
   add_plot_command(program, options, action);
 
   try {

@@ -68,11 +68,21 @@ int describe(const DeviceOptions& options, const std::string& file) {
 
 }  // namespace
 
-void add_replay_command(CLI::App& program, const DeviceOptions& options, Action& action) {
-  auto* command = program.add_subcommand("replay", "Say what a recording holds");
-  const auto file = std::make_shared<std::string>();
-  command->add_option("FILE", *file, "Written by `inkwell record`")->required();
-  command->callback([&options, &action, file] { action = [&options, file] { return describe(options, *file); }; });
+void add_replay_command(CLI::App& program, const DeviceOptions& options, const OpenWindow& open_window, Action& action) {
+  struct ReplayOptions {
+    std::string file;
+    bool information = false;
+  };
+  auto* command = program.add_subcommand("replay", "Open the window on a recording; or, with --info or --json, say what it holds");
+  const auto replay_options = std::make_shared<ReplayOptions>();
+  command->add_option("FILE", replay_options->file, "Written by `inkwell record`")->required();
+  command->add_flag("--info", replay_options->information, "Only say what it holds");
+  command->callback([&options, &action, open_window, replay_options] {
+    action = [&options, open_window, replay_options] {
+      return options.json || replay_options->information ? describe(options, replay_options->file)
+                                                         : open_window(replay_options->file);
+    };
+  });
 }
 
 }  // namespace inkwell::command_line

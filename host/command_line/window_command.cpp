@@ -25,7 +25,7 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
 
 }  // namespace
 
-void add_window_options(CLI::App& program, const DeviceOptions& options, Action& action) {
+OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action) {
   struct Settings {
     window::WindowOptions window;
     std::uint16_t control_port = 0;
@@ -49,10 +49,13 @@ void add_window_options(CLI::App& program, const DeviceOptions& options, Action&
   program.add_flag("--flat-colours", window.flat_colours, "Draw the scene without lighting")->group(group);
   program.add_flag("--forget-settings", settings->forget, "Neither read nor write the window's settings")->group(group);
   program.add_option("--control", settings->control_port, "Control port of the virtual board at --usbip, for the mouse")->group(group);
-  action = [&options, settings] {
+  const OpenWindow open = [&options, settings](const std::filesystem::path& recording) {
+    settings->window.recording = recording;
     settings->window.persist_settings = !settings->forget;
     return open_window(options, settings->window, settings->control_port, settings->theme);
   };
+  action = [open] { return open({}); };
+  return open;
 }
 
 }  // namespace inkwell::command_line

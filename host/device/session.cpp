@@ -89,6 +89,7 @@ struct Session::Implementation {
     const auto held = opened->parameters();
     const std::lock_guard lock(mutex);
     state.information = information;
+    state.is_simulation = endpoint.is_virtual;
     state.connection = Connection::connected;
     state.message = "Connected to " + information.serial_number + ".";
     parameter_set = held;

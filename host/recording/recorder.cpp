@@ -104,12 +104,9 @@ void Recorder::push(const device::ScopeSamples& samples) {
     self.wake.notify_one();
     return;
   }
-  // What was lost before the first sample was never part of this recording.
-  if (self.first_period) self.status.lost += samples.lost_before;
-  if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) {
-    self.status.lost += samples.count;
-    return;
-  }
+  // Counted by their periods, so that those are counted too that were lost between the link and here.
+  if (self.first_period) self.status.lost += static_cast<std::uint32_t>(step) - 1;
+  if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) return;  // the next block's step counts it as lost
   if (!self.first_period) self.first_period = samples.first_period;
   self.newest_period = samples.first_period + static_cast<std::uint32_t>(samples.count - 1);
   self.status.samples += samples.count;

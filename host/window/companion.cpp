@@ -9,6 +9,7 @@ namespace inkwell::window {
 
 namespace {
 constexpr float splitter_points = 5.0f;
+constexpr float tabs_points = 40.0f;
 constexpr float tuning_minimum_points = 300.0f;
 constexpr float scope_minimum_points = 150.0f;
 constexpr float scene_minimum_points = 240.0f;
@@ -35,9 +36,14 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       desk_(options.list_devices, options.serial_number),
       tuning_panel_(settings.parameters_file),
       scope_panel_(settings),
+      guides_pane_(options.virtual_board_control_port),
       file_is_to_be_sent_(!options.parameters_file.empty()) {
   if (options.virtual_board_control_port != 0) hand_.emplace(options.virtual_board_control_port);
   use_theme(settings.theme);
+  if (!options.recording.empty()) {
+    replay_bar_.open(options.recording);
+    tab_ = Tab::recording;
+  }
 }
 
 void Companion::use_theme(Theme theme) {
@@ -53,7 +59,10 @@ WindowSettings Companion::settings() const {
   return now;
 }
 
-void Companion::stop() { desk_.session().send(protocol::Command::disable_force); }
+void Companion::stop() {
+  guides_pane_.cancel(desk_);
+  desk_.session().send(protocol::Command::disable_force);
+}
 
 void Companion::key(int key, bool down) {
   if (key == GLFW_KEY_SPACE && down) stop();
@@ -80,8 +89,24 @@ void Companion::follow_device(double now_s) {
     tuning_panel_.load(options_.parameters_file, editor_, now_s);
   }
   editor_.forget_unconfirmed(now_s);
-  desk_.select_signals(scope_panel_.signals());
-  for (const device::ScopeSamples& samples : desk_.take_scope()) scope_panel_.receive(samples);
+  const auto frames = desk_.take_scope();
+  guides_pane_.follow(desk_, frames);
+  const bool guide_has_scope = !guides_pane_.signals().empty();
+  recording_pane_.follow(view, frames);
+  desk_.select_signals(guide_has_scope                  ? guides_pane_.signals()
+                       : recording_pane_.is_recording() ? recording_pane_.signals()
+                                                        : scope_panel_.signals());
+  if (!guide_has_scope && !replay_bar_.is_open())
+    for (const device::ScopeSamples& samples : frames) scope_panel_.receive(samples);
+}
+
+void Companion::follow_replay(double now_s) {
+  try {
+    if (const auto file = recording_pane_.take_replay_wish()) replay_bar_.open(*file);
+  } catch (const device::Error& error) {
+    recording_pane_.refuse_replay(error.what());
+  }
+  replay_bar_.follow(now_s, scope_panel_);
 }
 
 void Companion::keyboard_shortcuts(double now_s) {
@@ -120,8 +145,27 @@ float Companion::splitter(const char* name, ImVec2 place, ImVec2 size, bool vert
   return (vertical ? moved.x : moved.y) / style_.scale;
 }
 
+float Companion::draw_tabs(ImVec2 place, float width) {
+  const float height = style_.points(tabs_points);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style_.points(12), style_.points(6)});
+  begin_pane("tabs", place, {width, height}, ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  const float third = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3.0f;
+  const auto button = [&](const char* label, Tab tab) {
+    if (toggle_button(label, tab_ == tab, style_, {third, 0})) tab_ = tab;
+  };
+  button("Tuning##tab", Tab::tuning);
+  ImGui::SameLine();
+  button("Guides##tab", Tab::guides);
+  ImGui::SameLine();
+  button("Recording##tab", Tab::recording);
+  end_pane();
+  return height;
+}
+
 void Companion::draw(ImVec2 size, double now_s) {
   follow_device(now_s);
+  follow_replay(now_s);
   keyboard_shortcuts(now_s);
   const DeviceView& view = desk_.view();
   StatusBarOutcome outcome;
@@ -136,29 +180,48 @@ void Companion::draw(ImVec2 size, double now_s) {
                                  ? std::max(style_.points(scope_minimum_points), std::min(style_.points(settings_.scope_height), scope_room))
                                  : 0.0f;
   const float left_width = std::floor(size.x - tuning_width - gap);
-  const float scene_height = std::floor(size.y - top - (settings_.scope_is_shown ? scope_height + gap : 0.0f));
+  const bool replays = replay_bar_.is_open();
+  const float replay_height = replays ? style_.points(replay_bar_points) : 0.0f;
+  const float scene_end = std::floor(size.y - (settings_.scope_is_shown ? scope_height + gap : 0.0f));
+  const float scene_height = scene_end - top - replay_height;
 
   outcome = status_bar_.draw({0, 0}, {size.x, bar}, style_, desk_, settings_.scope_is_shown);
   if (fault) outcome.clear_fault = draw_fault_banner({0, bar}, {size.x, top - bar}, style_, view.pose->fault);
 
   scene_place_ = {0, top};
   scene_size_ = {left_width, scene_height};
-  scene_pane_.draw(scene_place_, scene_size_, {style_, view.pose, editor_, hand_ ? &*hand_ : nullptr, now_s});
-  if (!view.connected()) draw_connection_card({0.5f * left_width, top + 0.45f * scene_height}, style_, view);
+  const std::optional<protocol::PoseReport> pose = replays ? replay_bar_.pose() : view.pose;
+  ParameterEditor& editor = replays ? replay_bar_.editor() : editor_;
+  scene_pane_.draw(scene_place_, scene_size_, {style_, pose, editor, hand_ && !replays ? &*hand_ : nullptr, now_s});
+  if (replays) replay_bar_.draw({0, scene_end - replay_height}, {left_width, replay_height}, style_, scope_panel_);
+  if (!view.connected() && !replays) draw_connection_card({0.5f * left_width, top + 0.45f * scene_height}, style_, view);
 
-  tuning_panel_.draw({left_width + gap, top}, {size.x - left_width - gap, size.y - top}, style_, editor_, seen_refusal_, now_s);
+  const ImVec2 column{left_width + gap, top};
+  const float column_width = size.x - left_width - gap;
+  const float tabs = draw_tabs(column, column_width);
+  const ImVec2 pane_place{column.x, column.y + tabs}, pane_size{column_width, size.y - top - tabs};
+  switch (tab_) {
+    case Tab::tuning:
+      tuning_panel_.draw(pane_place, pane_size, style_, editor,
+                         replays ? "These parameters are the recording's. Close it to tune the device." : seen_refusal_, now_s);
+      break;
+    case Tab::guides: guides_pane_.draw(pane_place, pane_size, style_, desk_); break;
+    case Tab::recording:
+      recording_pane_.draw(pane_place, pane_size, style_, view, guides_pane_.signals().empty(), scope_panel_.signals());
+      break;
+  }
   settings_.tuning_width -= splitter("tuning splitter", {left_width, top}, {gap, size.y - top}, true);
   settings_.tuning_width = std::clamp(settings_.tuning_width, tuning_minimum_points, 0.5f * size.x / style_.scale);
   if (settings_.scope_is_shown) {
-    settings_.scope_height -= splitter("scope splitter", {0, top + scene_height}, {left_width, gap}, false);
+    settings_.scope_height -= splitter("scope splitter", {0, scene_end}, {left_width, gap}, false);
     settings_.scope_height = std::clamp(settings_.scope_height, scope_minimum_points, std::max(scope_minimum_points, scope_room / style_.scale));
-    scope_panel_.draw({0, top + scene_height + gap}, {left_width, size.y - top - scene_height - gap}, style_);
+    scope_panel_.draw({0, scene_end + gap}, {left_width, size.y - scene_end - gap}, style_);
   }
 
   const bool scope_runs = settings_.scope_is_shown && view.connected() && !scope_panel_.is_paused();
-  is_moving_ = scope_runs || drawn_pose_.has_value() != view.pose.has_value() ||
-               (drawn_pose_ && looks_different(*drawn_pose_, *view.pose));
-  if (is_moving_) drawn_pose_ = view.pose;
+  is_moving_ = scope_runs || guides_pane_.is_running() || recording_pane_.is_recording() || replay_bar_.is_playing() ||
+               drawn_pose_.has_value() != pose.has_value() || (drawn_pose_ && looks_different(*drawn_pose_, *pose));
+  if (is_moving_) drawn_pose_ = pose;
 
   carry_out(outcome);
   if (auto changes = editor_.take_changes(); !changes.empty()) desk_.session().set_parameters(std::move(changes));

@@ -9,7 +9,10 @@
 #include <window/window_settings.hpp>
 
 #include "device_desk.hpp"
+#include "guides_pane.hpp"
 #include "mouse_hand.hpp"
+#include "recording_pane.hpp"
+#include "replay_bar.hpp"
 #include "scene_pane.hpp"
 #include "scope_panel.hpp"
 #include "status_bar.hpp"
@@ -36,12 +39,17 @@ class Companion {
   WindowSettings settings() const;
 
  private:
+  enum class Tab : std::uint8_t { tuning, guides, recording };
+
   void follow_device(double now_s);
   void keyboard_shortcuts(double now_s);
   void use_theme(Theme theme);
   void carry_out(const StatusBarOutcome& outcome);
   float splitter(const char* name, ImVec2 place, ImVec2 size, bool vertical) const;
   void stop();
+  void follow_replay(double now_s);
+  /// The tabs over the right column; returns their height.
+  float draw_tabs(ImVec2 place, float width);
 
   WindowOptions options_;
   WindowSettings settings_;
@@ -53,6 +61,10 @@ class Companion {
   ScenePane scene_pane_;
   TuningPanel tuning_panel_;
   ScopePanel scope_panel_;
+  GuidesPane guides_pane_;
+  RecordingPane recording_pane_;
+  ReplayBar replay_bar_;
+  Tab tab_ = Tab::tuning;
   std::uint64_t seen_revision_ = 0;
   std::string seen_refusal_;
   bool file_is_to_be_sent_;

@@ -30,7 +30,7 @@ std::string common_unit(const Pane& pane) {
 
 // "force_N" -> "force": the unit stands beside the pane's title if all its signals have the same.
 std::string short_name(const protocol::SignalInfo& info, bool unit_is_told) {
-  std::string ending = "_" + std::string(info.unit);
+  std::string ending = fmt::format("_{}", info.unit);
   std::ranges::replace(ending, '/', '_');
   std::string name{info.name};
   if (unit_is_told && !info.unit.empty() && name.ends_with(ending)) name.resize(name.size() - ending.size());

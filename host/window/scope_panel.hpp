@@ -29,6 +29,9 @@ class ScopePanel {
   std::vector<protocol::Signal> signals() const;
   void store(WindowSettings& settings) const;
   bool is_paused() const { return paused_; }
+  double span_s() const { return span_s_; }
+  /// Forgets what was received: what comes next does not continue it.
+  void start_anew();
 
  private:
   /// The stretch of the history that all time panes show, in samples; `zero` is where their axis says 0.

@@ -20,6 +20,7 @@ struct SessionStatus {
   Connection connection = Connection::searching;
   std::string message;  ///< a sentence for the user, with the remedy where there is one
   std::optional<Information> information;
+  bool is_simulation = false;  ///< connected to a virtual board
   double pose_rate_Hz = 0;
   std::uint64_t poses_received = 0;
   std::uint64_t poses_lost = 0;

@@ -34,6 +34,8 @@ struct WindowOptions {
   bool flat_colours = false;
   std::string layout;            ///< layout of the scope to start with, e.g. "paper"; empty: that of the last time
 
+  std::filesystem::path recording;   ///< replayed from the start, in place of the device
+
   std::filesystem::path screenshot;  ///< with it: write the framebuffer to this PNG and close
   double after_seconds = 3.0;        ///< when the screenshot is taken, from the first frame on
   std::filesystem::path parameters_file;  ///< sent to the device as soon as one is connected
