@@ -200,8 +200,10 @@ bool draw_fault_banner(ImVec2 place, ImVec2 size, const Style& style, protocol::
   const protocol::CodeInfo& info = protocol::info(fault);
   begin_pane("fault", place, size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRectFullScreen();
   list.AddRectFilled(place, {place.x + size.x, place.y + size.y}, packed(palette.raised));
   list.AddRectFilled(place, {place.x + style.points(5), place.y + size.y}, packed(palette.danger));
+  list.PopClipRect();
   ImGui::SetCursorPos({style.points(18), style.points(9)});
   ImGui::BeginGroup();
   text(style.fonts.strong, palette.text, info.cause);
