@@ -113,7 +113,7 @@ TEST_CASE("an arm description that is wrong is refused with the line to mend") {
     check_refused(board(), {"link_3_m", "13.335"});
   }
   SUBCASE("not TOML") {
-    write_file(file, replaced(good, "[motor]", "[motor"));
+    write_file(file, replaced(good, "\n[motor]\n", "\n[motor\n"));
     check_refused(board(), {"arm.toml", "line"});
   }
 }

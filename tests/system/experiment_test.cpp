@@ -78,13 +78,13 @@ const std::array<std::string, 3> axis_names{"x", "y", "z"};
 }  // namespace
 
 TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
-  const TemporaryDirectory directory;
-  const auto result = run_program("inkwell", {"experiment", "wall", "--virtual", "--out", directory.path()},
-                                  std::chrono::seconds(300));
+  // One run for all that is looked at below.
+  static const TemporaryDirectory directory;
+  static const auto result = run_program("inkwell", {"experiment", "wall", "--virtual", "--out", directory.path()},
+                                         std::chrono::seconds(300));
   INFO("output: ", result.out, result.err);
   REQUIRE(result.exit_code == 0);
-
-  const Recording recording(directory.file("recording.csv"));
+  static const Recording recording(directory.file("recording.csv"));
   const auto summary = nlohmann::json::parse(std::ifstream(directory.file("summary.json")));
   CHECK(recording.names == expected_columns());
   CHECK(summary.at("simulation") == true);

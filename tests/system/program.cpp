@@ -27,7 +27,7 @@ ProgramResult run_program(const std::string& program, const std::vector<std::str
                           std::chrono::seconds limit) {
   const TemporaryDirectory directory;
   const std::string out = directory.file("out"), err = directory.file("err");
-  std::vector<std::string> words{build_directory() + "/" + program};
+  std::vector<std::string> words{program.starts_with("/") ? program : build_directory() + "/" + program};
   words.insert(words.end(), arguments.begin(), arguments.end());
 
   const pid_t child = fork();
