@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <arm/defaults.hpp>
 #include <arms/description.hpp>
 #include <recording/recorder.hpp>
 #include <recording/signals.hpp>
@@ -82,11 +81,8 @@ class ScopeRecorder {
   std::thread thread_;
 };
 
-/// A real board does not know which arm it is built into; a virtual one has been told.
-std::string arm_name(const DeviceOptions& options) {
-  if (!options.is_virtual) return {};
-  return options.arm.empty() ? std::string(arm_defaults::name) : arms::read(options.arm).name;
-}
+/// The board does not know which arm it is built into; the user may have said it.
+std::string arm_name(const DeviceOptions& options) { return options.arm.empty() ? std::string() : arms::read(options.arm).name; }
 
 std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
   if (options.all) return recording::signal_path();

@@ -7,6 +7,19 @@
 
 namespace inkwell::recording {
 
+namespace {
+
+/// Whether geometry, motors and gimbal are those of the arm that the defaults describe.
+bool is_default_arm(const protocol::ParameterSet& parameters) {
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+    const auto& row = protocol::parameter_table[i];
+    if ((row.group == "arm" || row.group == "gimbal") && parameters.values[i] != row.default_value) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 Information describe(const device::Information& device, const protocol::ParameterSet& parameters,
                      std::vector<protocol::Signal> signals, const std::string& arm, bool simulation) {
   const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -14,7 +27,7 @@ Information describe(const device::Information& device, const protocol::Paramete
           .firmware_version = device.firmware_version,
           .protocol_version = device.protocol_version,
           .serial_number = device.serial_number,
-          .arm = arm,
+          .arm = arm.empty() && is_default_arm(parameters) ? arm_defaults::name : arm,
           .simulation = simulation,
           .parameters = parameters,
           .signals = std::move(signals)};

@@ -26,10 +26,10 @@ std::string size_text(std::uint64_t bytes) {
 }
 
 void number(const char* name, const std::string& value, Colour colour, const Style& style) {
-  const float width = ImGui::GetContentRegionAvail().x;
+  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   text(style.palette->text_quiet, name);
   ImGui::SameLine(0, 0);
-  ImGui::SetCursorPosX(0.45f * width);
+  ImGui::SetCursorPosX(left + 0.45f * width);
   right_text(colour, value, 0.55f * width);
 }
 

@@ -23,7 +23,7 @@ void ReplayBar::open(const std::filesystem::path& file) {
 }
 
 void ReplayBar::follow(double now_s, ScopePanel& scope) {
-  const double passed_s = now_s - followed_until_s_;
+  const double passed_s = now_s - followed_until_s_.value_or(now_s);
   followed_until_s_ = now_s;
   if (!replay_) return;
   editor_.take_changes();

@@ -37,7 +37,7 @@ class ReplayBar {
 
   std::optional<recording::Replay> replay_;
   ParameterEditor editor_;
-  double followed_until_s_ = 0;
+  std::optional<double> followed_until_s_;
 };
 
 }  // namespace inkwell::window

@@ -142,6 +142,16 @@ TEST_CASE("the wrap of the board's time is no restart") {
   CHECK(recording.duration_s() == doctest::Approx(19 * 50e-6));
 }
 
+TEST_CASE("an arm is known by its parameters if it is the default one") {
+  device::Information device{.firmware_version = "0.1.0", .protocol_version = 1, .serial_number = "", .report = {}};
+  auto parameters = protocol::default_parameters();
+  parameters[Parameter::box_minimum_x_m] = -0.01f;  // the user's, not the arm's
+  CHECK(describe(device, parameters, {}, "", false).arm == "PHANTOM Omni");
+  CHECK(describe(device, parameters, {}, "another", false).arm == "another");
+  parameters[Parameter::link_2_m] = 0.2f;
+  CHECK(describe(device, parameters, {}, "", false).arm.empty());
+}
+
 TEST_CASE("samples are found by their time") {
   Recording recording;
   recording.periods = {100, 101, 102, 110, 111};

@@ -26,7 +26,8 @@ struct Information {
   std::vector<protocol::Signal> signals;
 };
 
-/// What is to be written about a recording that starts now.
+/// What is to be written about a recording that starts now. An empty `arm` is recognized by the parameters if it is the
+/// one that their defaults describe.
 Information describe(const device::Information& device, const protocol::ParameterSet& parameters,
                      std::vector<protocol::Signal> signals, const std::string& arm, bool simulation);
 
