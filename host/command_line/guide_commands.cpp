@@ -69,7 +69,8 @@ class Display {
       shown_text_ = text;
       fmt::print(stderr, "{}\n", text);
     }
-    if (asks && !asked_ && guide.phase() == Phase::asks) fmt::print(stderr, "Press Enter to agree, Ctrl+C to cancel.\n");
+    if (asks && !asked_ && guide.phase() == Phase::asks)
+      fmt::print(stderr, "Press Enter to agree, Ctrl+C to cancel.\n");
     if (asks) asked_ = true;
     if (is_terminal_ && guide.phase() == Phase::working) live(guide);
     std::fflush(stderr);
@@ -85,8 +86,9 @@ class Display {
     drawn_at_ = Clock::now();
     std::string line;
     for (const auto& check : guide.step().checks())
-      line += fmt::format("{}{} {}{}", line.empty() ? "" : "; ", check.name, guides::measured_text(check),
-                          check.expected.empty() ? "" : fmt::format(" ({}: {})", check.passed ? "ok" : "expected", check.expected));
+      line += fmt::format(
+          "{}{} {}{}", line.empty() ? "" : "; ", check.name, guides::measured_text(check),
+          check.expected.empty() ? "" : fmt::format(" ({}: {})", check.passed ? "ok" : "expected", check.expected));
     fmt::print(stderr, "\r\x1b[K{:.160}", line);
     line_is_open_ = true;
   }
@@ -123,10 +125,12 @@ class Bench {
     const auto give_up_at = Clock::now() + transaction_limit;
     const auto holds_arm = [&] {
       const auto held = session_->parameters();
-      return held && std::ranges::all_of(changes, [&](const auto& change) { return (*held)[change.first] == change.second; });
+      return held &&
+             std::ranges::all_of(changes, [&](const auto& change) { return (*held)[change.first] == change.second; });
     };
     while (!holds_arm()) {
-      if (Clock::now() > give_up_at) throw device::Error(session_->refusal().value_or("The device did not take the arm's parameters."));
+      if (Clock::now() > give_up_at)
+        throw device::Error(session_->refusal().value_or("The device did not take the arm's parameters."));
       std::this_thread::sleep_for(5ms);
     }
   }
@@ -195,7 +199,8 @@ class GuideRun {
     }
     if (now.connected && Clock::now() - heard_at_ > silence_limit) {
       guide_.cancel(port_);
-      throw device::Error("The device is silent. Reset the board, or let a paused virtual board run, and start the guide again.");
+      throw device::Error(
+          "The device is silent. Reset the board, or let a paused virtual board run, and start the guide again.");
     }
     std::this_thread::sleep_for(1ms);
   }
@@ -228,7 +233,8 @@ class GuideRun {
 
  public:
   static void print(const guides::Proposal& proposal, std::FILE* file) {
-    fmt::print(file, "  {} = {} (now {}): {}\n", info(proposal.parameter).name, proposal.proposed, proposal.held, proposal.reason);
+    fmt::print(file, "  {} = {} (now {}): {}\n", info(proposal.parameter).name, proposal.proposed, proposal.held,
+               proposal.reason);
   }
 
  private:
@@ -267,7 +273,8 @@ int run_guides(const DeviceOptions& options, const GuideOptions& guide_options, 
       print_result(guide);
     if (guide.phase() != Phase::finished) failure = guide.outcome();
     if (guide.applied() == guides::Applied::refused) failure = guide.refusal();
-    if (guide.applied() == guides::Applied::sent) failure = "The device did not confirm the changes. Read them back with `inkwell parameters`.";
+    if (guide.applied() == guides::Applied::sent)
+      failure = "The device did not confirm the changes. Read them back with `inkwell parameters`.";
     if (!failure.empty()) break;
   }
   if (options.json) fmt::print("{}\n", (all.size() == 1 ? results[0] : results).dump(2));
@@ -281,8 +288,10 @@ guides::AngleRange parse_range(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%lf:%lf%c", &range.minimum_rad, &range.maximum_rad, &rest) != 2 ||
       !(range.minimum_rad < range.maximum_rad))
-    throw UsageError(fmt::format("`{}` is no range. Give the angles of both stops in radians, the lower first, for example "
-                                 "-2.455:2.455.", text));
+    throw UsageError(
+        fmt::format("`{}` is no range. Give the angles of both stops in radians, the lower first, for example "
+                    "-2.455:2.455.",
+                    text));
   return range;
 }
 
@@ -306,7 +315,8 @@ void add_calibrate_command(CLI::App& program, const DeviceOptions& options, Acti
   const char* names[] = {"--yaw-range", "--pitch-range", "--roll-range"};
   for (std::size_t axis = 0; axis < 3; ++axis)
     command->add_option(names[axis], settings->range[axis], "MINIMUM:MAXIMUM in radians between its stops");
-  command->add_flag("--quadratic", settings->quadratic, "Fit the potentiometers' square term, with a third point in the middle");
+  command->add_flag("--quadratic", settings->quadratic,
+                    "Fit the potentiometers' square term, with a third point in the middle");
   settings->add_to(*command);
   command->callback([&options, &action, settings] {
     action = [&options, settings] {
@@ -317,7 +327,9 @@ void add_calibrate_command(CLI::App& program, const DeviceOptions& options, Acti
       std::vector<Guide> all;
       const auto wanted = [&](const char* what) { return settings->what == what || settings->what == "all"; };
       if (wanted("inkwell")) all.push_back(guides::inkwell_guide());
-      if (wanted("stops")) all.push_back(guides::stops_guide(settings->trust == "limits" ? guides::StopsTrust::limits : guides::StopsTrust::encoders));
+      if (wanted("stops"))
+        all.push_back(guides::stops_guide(settings->trust == "limits" ? guides::StopsTrust::limits
+                                                                      : guides::StopsTrust::encoders));
       if (wanted("pots")) all.push_back(guides::potentiometer_guide(pots));
       return run_guides(options, *settings, std::move(all));
     };
@@ -333,9 +345,11 @@ void add_tune_command(CLI::App& program, const DeviceOptions& options, Action& a
   auto* command = program.add_subcommand("tune", "Guides that find parameters by measuring");
   command->require_subcommand(1);
   auto* loop = command->add_subcommand(
-      "current-loop", "Identifies resistance and inductance of the motors from pulses of voltage, suggests the gains of the\n"
-                      "current loops and tries them with steps of current.");
-  loop->add_option("--motor", settings->motor, "This motor only, 1 to 3; all three unless given")->check(CLI::Range(1, 3));
+      "current-loop",
+      "Identifies resistance and inductance of the motors from pulses of voltage, suggests the gains of the\n"
+      "current loops and tries them with steps of current.");
+  loop->add_option("--motor", settings->motor, "This motor only, 1 to 3; all three unless given")
+      ->check(CLI::Range(1, 3));
   loop->add_option("--bandwidth", settings->loop.bandwidth_Hz, "Bandwidth of the current loops in Hz")
       ->check(CLI::Range(guides::bandwidth_minimum_Hz, guides::bandwidth_maximum_Hz))->capture_default_str();
   settings->add_to(*loop);
@@ -365,7 +379,8 @@ void add_check_command(CLI::App& program, const DeviceOptions& options, Action& 
     });
   };
   add("connection", "First connection: versions, supply, inkwell, encoders, buttons", guides::first_connection_guide);
-  add("directions", "Each encoder while you turn its joint, then each motor with a pulse of current", guides::direction_guide);
+  add("directions", "Each encoder while you turn its joint, then each motor with a pulse of current",
+      guides::direction_guide);
 }
 
 }  // namespace inkwell::command_line

@@ -23,7 +23,8 @@ double PotentiometerCurve::ratio(double angle_rad) const {
   const double discriminant = std::max(slope_rad * slope_rad - 4 * square_rad * constant, 0.0);
   // This form of the root goes over into the line's as the square term vanishes.
   const double divisor = slope_rad + std::copysign(std::sqrt(discriminant), slope_rad);
-  if (divisor == 0) throw device::Error("The potentiometer's slope is 0, so nothing can be read from it. Load the defaults.");
+  if (divisor == 0)
+    throw device::Error("The potentiometer's slope is 0, so nothing can be read from it. Load the defaults.");
   return -2 * constant / divisor;
 }
 
@@ -34,7 +35,8 @@ PotentiometerCurve fit_potentiometer(std::span<const PotentiometerPoint> points,
   constexpr double smallest_spread = 0.1;
   const auto [least, most] = std::ranges::minmax_element(points, {}, &PotentiometerPoint::ratio);
   if (most->ratio - least->ratio < smallest_spread)
-    throw device::Error("The potentiometer's voltage hardly changed. Check its plug and turn the axis to both its stops.");
+    throw device::Error(
+        "The potentiometer's voltage hardly changed. Check its plug and turn the axis to both its stops.");
   Eigen::MatrixXd powers(static_cast<Eigen::Index>(points.size()), unknowns);
   Eigen::VectorXd angles(powers.rows());
   for (Eigen::Index i = 0; i < powers.rows(); ++i) {

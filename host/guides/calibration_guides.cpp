@@ -66,23 +66,28 @@ class MoveJointToStops final : public UserMoves {
   MoveJointToStops(std::shared_ptr<StopsFound> found, int joint) : found_(std::move(found)), joint_(joint) {}
   std::string title() const override { return fmt::format("Stops of joint {}, {}", joint_, joint_name(joint_)); }
   std::string text() const override {
-    return fmt::format("Move joint {}, {}, gently against its one stop, hold it there for half a second, and then against "
-                       "the other. The other joints stay away from theirs. Press button 1 when both are done. No current "
-                       "flows.", joint_, joint_name(joint_));
+    return fmt::format(
+        "Move joint {}, {}, gently against its one stop, hold it there for half a second, and then against "
+        "the other. The other joints stay away from theirs. Press button 1 when both are done. No current "
+        "flows.",
+        joint_, joint_name(joint_));
   }
   UserTask user_task() const override { return {UserTask::Kind::move_joint_to_stops, joint_}; }
   std::vector<Check> checks() const override {
     const bool rested = least_rad_ <= most_rad_;
-    return {{fmt::format("joint {} now", joint_), now_rad_, "rad", "", true},
-            {"rested at the lowest at", rested ? least_rad_ : 0, "rad", fmt::format("{:.3f}", expected_.low_rad), rested},
-            {"rested at the highest at", rested ? most_rad_ : 0, "rad", fmt::format("{:.3f}", expected_.high_rad), is_complete()}};
+    return {
+        {fmt::format("joint {} now", joint_), now_rad_, "rad", "", true},
+        {"rested at the lowest at", rested ? least_rad_ : 0, "rad", fmt::format("{:.3f}", expected_.low_rad), rested},
+        {"rested at the highest at", rested ? most_rad_ : 0, "rad", fmt::format("{:.3f}", expected_.high_rad),
+         is_complete()}};
   }
 
  protected:
   void look(const Observation& now, double time_s) override {
     constexpr double still_rad = 0.003, rest_s = 0.3;
     const auto& set = *now.parameters;
-    expected_ = {value(set, Parameter::joint_1_minimum_rad, joint_, 2), value(set, Parameter::joint_1_maximum_rad, joint_, 2)};
+    expected_ = {value(set, Parameter::joint_1_minimum_rad, joint_, 2),
+                 value(set, Parameter::joint_1_maximum_rad, joint_, 2)};
     Angles joints{};
     for (std::size_t i = 0; i < 3; ++i) joints[i] = static_cast<double>(now.pose->joint_rad[i]);
     // The elbow's stops lie between the links; see control::elbow_rad.
@@ -133,12 +138,14 @@ class CompareStops final : public Step {
       const auto place = static_cast<std::size_t>(joint - 1);
       const bool relative = joint == 3 && set[Parameter::transmission] == 1.0f;
       const JointStops found{found_->low[place][place], found_->high[place][place]};
-      JointStops expected{value(set, Parameter::joint_1_minimum_rad, joint, 2), value(set, Parameter::joint_1_maximum_rad, joint, 2)};
+      JointStops expected{value(set, Parameter::joint_1_minimum_rad, joint, 2),
+                          value(set, Parameter::joint_1_maximum_rad, joint, 2)};
       if (relative) {
         expected.low_rad += corrected_shoulder_rad(set, found_->low[2][1]);
         expected.high_rad += corrected_shoulder_rad(set, found_->high[2][1]);
       }
-      judge(set, joint, found, expected, relative ? JointStops{found_->low[2][1], found_->high[2][1]} : JointStops{0, 0});
+      judge(set, joint, found, expected,
+            relative ? JointStops{found_->low[2][1], found_->high[2][1]} : JointStops{0, 0});
     }
     return true;
   }
@@ -149,7 +156,8 @@ class CompareStops final : public Step {
     return shoulder_.inkwell_rad + shoulder_.scale * (angle_rad - inkwell_rad);
   }
 
-  void judge(const ParameterSet& set, int joint, const JointStops& found, const JointStops& expected, const JointStops& base) {
+  void judge(const ParameterSet& set, int joint, const JointStops& found, const JointStops& expected,
+             const JointStops& base) {
     const double inkwell_rad = value(set, Parameter::inkwell_joint_1_rad, joint);
     StopsFit fit = fit_stops(found, expected, inkwell_rad, false);
     const bool width_agrees = std::abs(found.width_rad() - expected.width_rad()) <= stops_tolerance_rad;
@@ -159,29 +167,36 @@ class CompareStops final : public Step {
     if (joint == 2) shoulder_ = width_agrees && place_agrees ? StopsFit{1, inkwell_rad, 0, 0} : fit;
     if (joint == 2 && !trusts_limits) shoulder_ = {1, inkwell_rad, 0, 0};
 
-    findings_->sentences.push_back(fmt::format(
-        "Joint {}: stops at {:.3f} and {:.3f} rad, expected {:.3f} and {:.3f}: {}", joint, found.low_rad, found.high_rad,
-        expected.low_rad, expected.high_rad,
-        width_agrees && place_agrees ? "they agree." : width_agrees ? "the travel agrees but lies elsewhere." : "the travel differs."));
+    findings_->sentences.push_back(
+        fmt::format("Joint {}: stops at {:.3f} and {:.3f} rad, expected {:.3f} and {:.3f}: {}", joint, found.low_rad,
+                    found.high_rad, expected.low_rad, expected.high_rad,
+                    width_agrees && place_agrees ? "they agree."
+                    : width_agrees               ? "the travel agrees but lies elsewhere."
+                                                 : "the travel differs."));
     findings_->details["joints"].push_back({{"joint", joint},
                                             {"found_rad", {found.low_rad, found.high_rad}},
                                             {"expected_rad", {expected.low_rad, expected.high_rad}},
                                             {"agrees", width_agrees && place_agrees}});
     if (width_agrees && place_agrees) return;
     if (!trusts_limits) {
-      findings_->propose(set, parameter_of(Parameter::joint_1_minimum_rad, joint, 2), found.low_rad - base.low_rad, "the lower stop was found here");
-      findings_->propose(set, parameter_of(Parameter::joint_1_maximum_rad, joint, 2), found.high_rad - base.high_rad, "the upper stop was found here");
+      findings_->propose(set, parameter_of(Parameter::joint_1_minimum_rad, joint, 2), found.low_rad - base.low_rad,
+                         "the lower stop was found here");
+      findings_->propose(set, parameter_of(Parameter::joint_1_maximum_rad, joint, 2), found.high_rad - base.high_rad,
+                         "the upper stop was found here");
       return;
     }
     if (!width_agrees) {
       // Four counts a line; stops that yield leave about a hundredth open, which the encoder's data sheet settles.
       const double counts = value(set, Parameter::encoder_1_counts_per_turn, joint) / fit.scale;
-      findings_->propose(set, parameter_of(Parameter::encoder_1_counts_per_turn, joint), 4 * std::round(counts / 4),
-                         fmt::format("the travel was found {:.2f} times as wide as it is; prefer the encoder's data sheet "
-                                     "where it is near", 1 / fit.scale));
+      findings_->propose(
+          set, parameter_of(Parameter::encoder_1_counts_per_turn, joint), 4 * std::round(counts / 4),
+          fmt::format("the travel was found {:.2f} times as wide as it is; prefer the encoder's data sheet "
+                      "where it is near",
+                      1 / fit.scale));
     }
     if (std::abs(fit.inkwell_rad - inkwell_rad) > stops_tolerance_rad)
-      findings_->propose(set, parameter_of(Parameter::inkwell_joint_1_rad, joint), fit.inkwell_rad, "then the stops lie at the limits");
+      findings_->propose(set, parameter_of(Parameter::inkwell_joint_1_rad, joint), fit.inkwell_rad,
+                         "then the stops lie at the limits");
   }
 
   std::shared_ptr<Findings> findings_;
@@ -200,7 +215,8 @@ const char* axis_name(int axis) {
 constexpr int rows_per_axis = 3;
 
 PotentiometerCurve held_curve(const ParameterSet& set, int axis) {
-  return {value(set, Parameter::gimbal_1_square_rad, axis, rows_per_axis), value(set, Parameter::gimbal_1_slope_rad, axis, rows_per_axis),
+  return {value(set, Parameter::gimbal_1_square_rad, axis, rows_per_axis),
+          value(set, Parameter::gimbal_1_slope_rad, axis, rows_per_axis),
           value(set, Parameter::gimbal_1_offset_rad, axis, rows_per_axis)};
 }
 
@@ -241,21 +257,27 @@ class Smoothed {
 
 class TurnGimbal final : public UserMoves {
  public:
-  TurnGimbal(std::shared_ptr<AxisPoints> points, int axis, bool middle) : points_(std::move(points)), axis_(axis), middle_(middle) {}
-  std::string title() const override { return fmt::format("Potentiometer {}, {}{}", axis_, axis_name(axis_), middle_ ? ", middle" : ""); }
+  TurnGimbal(std::shared_ptr<AxisPoints> points, int axis, bool middle)
+      : points_(std::move(points)), axis_(axis), middle_(middle) {}
+  std::string title() const override {
+    return fmt::format("Potentiometer {}, {}{}", axis_, axis_name(axis_), middle_ ? ", middle" : "");
+  }
   std::string text() const override {
     if (middle_)
-      return fmt::format("Turn the stylus' {} to {:.3f} rad, the middle of its range, hold it there and press button 1.",
-                         axis_name(axis_), (points_->range.minimum_rad + points_->range.maximum_rad) / 2);
-    return fmt::format("Turn the stylus' {} to both its stops, at {:.3f} and {:.3f} rad, and hold it at each for a moment. "
-                       "Press button 1 when both are done. No current flows.", axis_name(axis_), points_->range.minimum_rad,
-                       points_->range.maximum_rad);
+      return fmt::format(
+          "Turn the stylus' {} to {:.3f} rad, the middle of its range, hold it there and press button 1.",
+          axis_name(axis_), (points_->range.minimum_rad + points_->range.maximum_rad) / 2);
+    return fmt::format(
+        "Turn the stylus' {} to both its stops, at {:.3f} and {:.3f} rad, and hold it at each for a moment. "
+        "Press button 1 when both are done. No current flows.",
+        axis_name(axis_), points_->range.minimum_rad, points_->range.maximum_rad);
   }
   UserTask user_task() const override {
     return {middle_ ? UserTask::Kind::centre_gimbal : UserTask::Kind::turn_gimbal_to_stops, axis_};
   }
   std::vector<Check> checks() const override {
-    std::vector<Check> checks{{fmt::format("{} potentiometer now", axis_name(axis_)), smoothed_.mean(), "of its supply", "", true}};
+    std::vector<Check> checks{
+        {fmt::format("{} potentiometer now", axis_name(axis_)), smoothed_.mean(), "of its supply", "", true}};
     if (middle_ || points_->least_ratio > points_->most_ratio) return checks;
     checks.push_back({"least", points_->least_ratio, "of its supply", "", is_complete()});
     checks.push_back({"most", points_->most_ratio, "of its supply", "", is_complete()});
@@ -266,17 +288,21 @@ class TurnGimbal final : public UserMoves {
   void look(const Observation& now, double time_s) override {
     if (now.pose->sequence == sequence_) return;
     sequence_ = now.pose->sequence;
-    smoothed_.take(held_curve(*now.parameters, axis_).ratio(static_cast<double>(now.pose->gimbal_rad[axis_ - 1])), time_s);
+    smoothed_.take(held_curve(*now.parameters, axis_).ratio(static_cast<double>(now.pose->gimbal_rad[axis_ - 1])),
+                   time_s);
     if (middle_ || !smoothed_.is_full()) return;
     points_->least_ratio = std::min(points_->least_ratio, smoothed_.mean());
     points_->most_ratio = std::max(points_->most_ratio, smoothed_.mean());
   }
-  bool is_complete() const override { return middle_ ? smoothed_.is_full() : points_->most_ratio - points_->least_ratio > 0.1; }
+  bool is_complete() const override {
+    return middle_ ? smoothed_.is_full() : points_->most_ratio - points_->least_ratio > 0.1;
+  }
   void take(const Observation&) override {
     if (middle_) points_->middle_ratio = smoothed_.mean();
   }
   std::string too_late() const override {
-    return fmt::format("The stylus' {} was not turned in two minutes. If it was, check its potentiometer's plug.", axis_name(axis_));
+    return fmt::format("The stylus' {} was not turned in two minutes. If it was, check its potentiometer's plug.",
+                       axis_name(axis_));
   }
 
  private:
@@ -309,15 +335,18 @@ class FitPotentiometers final : public Step {
     if (quadratic_) given.push_back({points.middle_ratio, (points.range.minimum_rad + points.range.maximum_rad) / 2});
     const PotentiometerCurve curve = fit_potentiometer(given, quadratic_);
     double largest_change_rad = 0;
-    for (double ratio = points.least_ratio; ratio <= points.most_ratio; ratio += (points.most_ratio - points.least_ratio) / 50)
+    for (double ratio = points.least_ratio; ratio <= points.most_ratio;
+         ratio += (points.most_ratio - points.least_ratio) / 50)
       largest_change_rad = std::max(largest_change_rad, std::abs(curve.angle_rad(ratio) - held.angle_rad(ratio)));
     // A hundredth of a radian is what wiper noise and a hand at the stop leave open.
     constexpr double tolerance_rad = 0.01;
     const bool agrees = largest_change_rad <= tolerance_rad;
-    findings_->sentences.push_back(fmt::format(
-        "Gimbal {}, {}: wiper from {:.4f} to {:.4f} of its supply; angle = {:.4f} r^2 + {:.4f} r + {:.4f} rad, {:.3f} rad off what the "
-        "device holds at most{}.", axis, axis_name(axis), points.least_ratio, points.most_ratio, curve.square_rad, curve.slope_rad,
-        curve.offset_rad, largest_change_rad, agrees ? ", so it is kept" : ""));
+    findings_->sentences.push_back(
+        fmt::format("Gimbal {}, {}: wiper from {:.4f} to {:.4f} of its supply; angle = {:.4f} r^2 + {:.4f} r + {:.4f} "
+                    "rad, {:.3f} rad off what the "
+                    "device holds at most{}.",
+                    axis, axis_name(axis), points.least_ratio, points.most_ratio, curve.square_rad, curve.slope_rad,
+                    curve.offset_rad, largest_change_rad, agrees ? ", so it is kept" : ""));
     findings_->details["potentiometers"].push_back({{"axis", axis},
                                                     {"ratio", {points.least_ratio, points.most_ratio}},
                                                     {"square_rad", curve.square_rad},
@@ -326,10 +355,13 @@ class FitPotentiometers final : public Step {
                                                     {"largest_change_rad", largest_change_rad},
                                                     {"agrees", agrees}});
     if (agrees) return;
-    const std::string reason = fmt::format("fits the {} stops of the {}", quadratic_ ? "middle and the" : "two", axis_name(axis));
-    findings_->propose(set, parameter_of(Parameter::gimbal_1_square_rad, axis, rows_per_axis), curve.square_rad, reason);
+    const std::string reason =
+        fmt::format("fits the {} stops of the {}", quadratic_ ? "middle and the" : "two", axis_name(axis));
+    findings_->propose(set, parameter_of(Parameter::gimbal_1_square_rad, axis, rows_per_axis), curve.square_rad,
+                       reason);
     findings_->propose(set, parameter_of(Parameter::gimbal_1_slope_rad, axis, rows_per_axis), curve.slope_rad, reason);
-    findings_->propose(set, parameter_of(Parameter::gimbal_1_offset_rad, axis, rows_per_axis), curve.offset_rad, reason);
+    findings_->propose(set, parameter_of(Parameter::gimbal_1_offset_rad, axis, rows_per_axis), curve.offset_rad,
+                       reason);
   }
 
   std::shared_ptr<Findings> findings_;

@@ -24,19 +24,23 @@ class LookAtDevice final : public Step {
     const auto& information = *now.information;
     const auto& report = information.report;
     const double supply_V = now.pose->supply_dV / 10.0, load = now.pose->servo_load / 2.55;
-    checks_ = {{"protocol version", static_cast<double>(information.protocol_version), "",
-                fmt::format("{}", protocol::protocol_version), information.protocol_version == protocol::protocol_version},
-               {"supply", supply_V, "V", fmt::format("{:.0f} to {:.0f}", board::supply_minimum_V, board::supply_maximum_V),
-                supply_V >= static_cast<double>(board::supply_minimum_V) && supply_V <= static_cast<double>(board::supply_maximum_V)},
-               {"servo load", load, "%", "below 90", load < 90},
-               {"servo overruns", static_cast<double>(report.servo_overruns), "", "0", report.servo_overruns == 0}};
+    checks_ = {
+        {"protocol version", static_cast<double>(information.protocol_version), "",
+         fmt::format("{}", protocol::protocol_version), information.protocol_version == protocol::protocol_version},
+        {"supply", supply_V, "V", fmt::format("{:.0f} to {:.0f}", board::supply_minimum_V, board::supply_maximum_V),
+         supply_V >= static_cast<double>(board::supply_minimum_V) &&
+             supply_V <= static_cast<double>(board::supply_maximum_V)},
+        {"servo load", load, "%", "below 90", load < 90},
+        {"servo overruns", static_cast<double>(report.servo_overruns), "", "0", report.servo_overruns == 0}};
     for (const auto& check : checks_)
       if (!check.passed)
-        throw device::Error(fmt::format("{} is {:.1f}{}{}, expected {}. Correct it and start the guide again.", check.name,
-                                        check.value, check.unit.empty() ? "" : " ", check.unit, check.expected));
-    findings_->sentences.push_back(fmt::format("Device {} with firmware {}, protocol {}; supply {:.1f} V, control interrupt "
-                                               "uses {:.0f} % of its period.", information.serial_number,
-                                               information.firmware_version, information.protocol_version, supply_V, load));
+        throw device::Error(fmt::format("{} is {:.1f}{}{}, expected {}. Correct it and start the guide again.",
+                                        check.name, check.value, check.unit.empty() ? "" : " ", check.unit,
+                                        check.expected));
+    findings_->sentences.push_back(fmt::format(
+        "Device {} with firmware {}, protocol {}; supply {:.1f} V, control interrupt "
+        "uses {:.0f} % of its period.",
+        information.serial_number, information.firmware_version, information.protocol_version, supply_V, load));
     findings_->details["device"] = {{"serial_number", information.serial_number},
                                     {"firmware_version", information.firmware_version},
                                     {"protocol_version", information.protocol_version},
@@ -69,15 +73,16 @@ class PressButton final : public Step {
       hint_ = "the other button is pressed; if it is the right one, the buttons' wires are swapped";
     seen_ |= now_pressed_;
     if (since_.seconds(*now.pose) > user_limit_s)
-      throw device::Error(fmt::format("Button {} was not pressed{}. Check its wiring and start the guide again.", button_,
-                                      hint_.empty() ? "" : ": " + hint_));
+      throw device::Error(fmt::format("Button {} was not pressed{}. Check its wiring and start the guide again.",
+                                      button_, hint_.empty() ? "" : ": " + hint_));
     if (!seen_ || now_pressed_) return false;
     findings_->sentences.push_back(fmt::format("Button {} works.", button_));
     findings_->details["buttons"].push_back(button_);
     return true;
   }
   std::vector<Check> checks() const override {
-    return {{fmt::format("button {}", button_), now_pressed_ ? 1.0 : 0.0, "", hint_.empty() ? "pressed" : hint_, seen_}};
+    return {
+        {fmt::format("button {}", button_), now_pressed_ ? 1.0 : 0.0, "", hint_.empty() ? "pressed" : hint_, seen_}};
   }
 
  private:
@@ -96,7 +101,8 @@ Guide first_connection_guide() {
   std::vector<std::unique_ptr<Step>> steps;
   steps.push_back(std::make_unique<LookAtDevice>(findings));
   steps.push_back(std::make_unique<RestInInkwell>(findings, true));
-  for (int joint = 1; joint <= 3; ++joint) steps.push_back(std::make_unique<TurnJointForward>(findings, reversed, joint));
+  for (int joint = 1; joint <= 3; ++joint)
+    steps.push_back(std::make_unique<TurnJointForward>(findings, reversed, joint));
   for (int button = 1; button <= 2; ++button) steps.push_back(std::make_unique<PressButton>(findings, button));
   return {"first-connection", "First connection", std::move(steps), findings};
 }

@@ -61,9 +61,11 @@ class IdentifyMotor final : public Step {
 
   std::string title() const override { return fmt::format("Identify motor {}", motor_); }
   std::string text() const override {
-    return fmt::format("Motor {} gets {} pulses of 10 ms, {:.0f} V at first and {:.0f} V at most, forward and back. The "
-                       "arm may twitch. Leave the stylus in the inkwell and keep your hands off. The walls' force stays "
-                       "off.", motor_, 2 * (1 + pairs_of_pulses), first_voltage_V, largest_voltage_V);
+    return fmt::format(
+        "Motor {} gets {} pulses of 10 ms, {:.0f} V at first and {:.0f} V at most, forward and back. The "
+        "arm may twitch. Leave the stylus in the inkwell and keep your hands off. The walls' force stays "
+        "off.",
+        motor_, 2 * (1 + pairs_of_pulses), first_voltage_V, largest_voltage_V);
   }
   bool asks_first() const override { return true; }
 
@@ -92,11 +94,13 @@ class IdentifyMotor final : public Step {
 
   std::vector<Check> checks() const override {
     std::vector<Check> checks{{"pulses recorded", static_cast<double>(pulses_.size()), "",
-                               fmt::format("{}", 2 * (1 + pairs_of_pulses)), pulses_.size() == 2 * (1 + pairs_of_pulses)}};
+                               fmt::format("{}", 2 * (1 + pairs_of_pulses)),
+                               pulses_.size() == 2 * (1 + pairs_of_pulses)}};
     if (pulses_.empty()) return checks;
     double largest_A = 0;
     for (const double current_A : pulses_.back().current_A) largest_A = std::max(largest_A, std::abs(current_A));
-    checks.push_back({fmt::format("largest current of motor {}", motor_), largest_A, "A", "more than 0.05", largest_A > 0.05});
+    checks.push_back(
+        {fmt::format("largest current of motor {}", motor_), largest_A, "A", "more than 0.05", largest_A > 0.05});
     return checks;
   }
   double progress() const override { return static_cast<double>(pulses_.size()) / (2 * (1 + pairs_of_pulses)); }
@@ -134,11 +138,11 @@ class IdentifyMotor final : public Step {
 
   void report(const MotorCircuit& circuit) {
     const double motor_ohm = circuit.resistance_ohm - static_cast<double>(board::shunt_ohm);
-    findings_->sentences.push_back(
-        fmt::format("Motor {}: R = {:.3f} ohm ({:.3f} ohm with the shunt), L = {:.4f} mH, time constant {:.0f} us, dead "
-                    "time takes {:.2f} V, fit within {:.1f} mA.", motor_, motor_ohm, circuit.resistance_ohm,
-                    1e3 * circuit.inductance_H, 1e6 * circuit.inductance_H / circuit.resistance_ohm,
-                    circuit.dead_time_voltage_V, 1e3 * circuit.residual_A));
+    findings_->sentences.push_back(fmt::format(
+        "Motor {}: R = {:.3f} ohm ({:.3f} ohm with the shunt), L = {:.4f} mH, time constant {:.0f} us, dead "
+        "time takes {:.2f} V, fit within {:.1f} mA.",
+        motor_, motor_ohm, circuit.resistance_ohm, 1e3 * circuit.inductance_H,
+        1e6 * circuit.inductance_H / circuit.resistance_ohm, circuit.dead_time_voltage_V, 1e3 * circuit.residual_A));
     findings_->details["motors"].push_back({{"motor", motor_},
                                             {"resistance_ohm", motor_ohm},
                                             {"circuit_resistance_ohm", circuit.resistance_ohm},
@@ -163,9 +167,12 @@ class TryGains final : public Step {
   TryGains(std::shared_ptr<Tuning> tuning, std::shared_ptr<Findings> findings, bool suggested)
       : tuning_(std::move(tuning)), findings_(std::move(findings)), suggested_(suggested) {}
 
-  std::string title() const override { return suggested_ ? "Step response with the suggested gains" : "Step response now"; }
+  std::string title() const override {
+    return suggested_ ? "Step response with the suggested gains" : "Step response now";
+  }
   std::string text() const override {
-    const std::string pulses = fmt::format("Motor {} gets a step of {:.1f} A for 20 ms", fmt::join(tuning_->options.motors, ", then "), step_A);
+    const std::string pulses = fmt::format("Motor {} gets a step of {:.1f} A for 20 ms",
+                                           fmt::join(tuning_->options.motors, ", then "), step_A);
     if (!suggested_) return pulses + " with the gains that the device holds now. Leave the stylus in the inkwell.";
     return pulses + " with the suggested gains. They are on the device for this test only; afterwards it holds the old "
                     "ones again until you apply the new ones. Leave the stylus in the inkwell.";
@@ -191,7 +198,8 @@ class TryGains final : public Step {
     if (!recorder_) {
       if (!holds_suggested(*now.parameters)) {
         if (now.refusal) throw device::Error(*now.refusal);
-        if (since_.seconds(*now.pose) > 3.0) throw device::Error("The device did not take the suggested gains. Reset the board.");
+        if (since_.seconds(*now.pose) > 3.0)
+          throw device::Error("The device did not take the suggested gains. Reset the board.");
         return false;
       }
       start_pulse(now, port);
@@ -233,10 +241,10 @@ class TryGains final : public Step {
 
   void start_pulse(const Observation& now, DevicePort& port) {
     const int motor = tuning_->options.motors[steps().size()];
-    recorder_.emplace(Command::test_current,
-                      TestPulse{static_cast<std::uint8_t>(motor), test_current_A(old_, motor), step_pulse_s},
-                      std::vector<Signal>{signal_of(Signal::current_reference_1_A, motor), signal_of(Signal::current_1_A, motor)},
-                      signal_of(Signal::current_reference_1_A, motor));
+    recorder_.emplace(
+        Command::test_current, TestPulse{static_cast<std::uint8_t>(motor), test_current_A(old_, motor), step_pulse_s},
+        std::vector<Signal>{signal_of(Signal::current_reference_1_A, motor), signal_of(Signal::current_1_A, motor)},
+        signal_of(Signal::current_reference_1_A, motor));
     recorder_->begin(*now.pose, port);
   }
 
@@ -249,7 +257,8 @@ class TryGains final : public Step {
     const char* when = suggested_ ? "after" : "before";
     Curve curve{fmt::format("motor {}, {}", motor, when), {}};
     constexpr double shown_ms = 4;
-    const auto begin = static_cast<double>(std::ranges::find_if(reference_A, [](double r) { return r != 0; }) - reference_A.begin());
+    const auto begin =
+        static_cast<double>(std::ranges::find_if(reference_A, [](double r) { return r != 0; }) - reference_A.begin());
     for (std::size_t i = 0; i < current_A.size(); ++i) {
       const double time_ms = 1e3 * (static_cast<double>(i) - begin) * period_s;
       if (time_ms <= shown_ms) curve.points.emplace_back(time_ms, current_A[i]);
@@ -277,10 +286,11 @@ class TryGains final : public Step {
     // The bridge holds a voltage for a period, which delays it by half of one in the mean.
     const double margin_deg = phase_margin_deg(tuning_->options.bandwidth_Hz, mean.delay_s + period_s / 2);
     for (const auto& [parameter, value] : gains_of(*tuning_->gains)) device::check_value(parameter, value);
-    findings_->sentences.push_back(
-        fmt::format("For {:.0f} Hz: Kp = L w = {:.3f} V/A, Ki = R w = {:.0f} V/(As); the delay leaves {:.0f} degrees of "
-                    "phase margin.", tuning_->options.bandwidth_Hz, tuning_->gains->proportional_V_per_A,
-                    tuning_->gains->integral_V_per_As, margin_deg));
+    findings_->sentences.push_back(fmt::format(
+        "For {:.0f} Hz: Kp = L w = {:.3f} V/A, Ki = R w = {:.0f} V/(As); the delay leaves {:.0f} degrees of "
+        "phase margin.",
+        tuning_->options.bandwidth_Hz, tuning_->gains->proportional_V_per_A, tuning_->gains->integral_V_per_As,
+        margin_deg));
     findings_->details["bandwidth_Hz"] = tuning_->options.bandwidth_Hz;
     findings_->details["proportional_gain_V_per_A"] = tuning_->gains->proportional_V_per_A;
     findings_->details["integral_gain_V_per_As"] = tuning_->gains->integral_V_per_As;
@@ -292,21 +302,23 @@ class TryGains final : public Step {
             {Parameter::current_integral_gain_V_per_As, static_cast<float>(gains.integral_V_per_As)}};
   }
   bool holds_suggested(const ParameterSet& set) const {
-    return std::ranges::all_of(gains_of(*tuning_->gains), [&](const auto& change) { return set[change.first] == change.second; });
+    return std::ranges::all_of(gains_of(*tuning_->gains),
+                               [&](const auto& change) { return set[change.first] == change.second; });
   }
 
   void propose() {
     for (std::size_t i = 0; i < tuning_->after.size(); ++i) {
       const auto& before = tuning_->before[i];
       const auto& after = tuning_->after[i];
-      findings_->sentences.push_back(
-          fmt::format("Motor {}, step of {:.1f} A: 63 % after {:.0f} us (before {:.0f} us), overshoot {:.1f} % (before {:.1f} "
-                      "%), steady error {:.1f} mA (before {:.1f} mA).", tuning_->options.motors[i], after.amplitude_A,
-                      1e6 * after.rise_time_s, 1e6 * before.rise_time_s, 1e2 * after.overshoot, 1e2 * before.overshoot,
-                      1e3 * after.steady_error_A, 1e3 * before.steady_error_A));
+      findings_->sentences.push_back(fmt::format(
+          "Motor {}, step of {:.1f} A: 63 % after {:.0f} us (before {:.0f} us), overshoot {:.1f} % (before {:.1f} "
+          "%), steady error {:.1f} mA (before {:.1f} mA).",
+          tuning_->options.motors[i], after.amplitude_A, 1e6 * after.rise_time_s, 1e6 * before.rise_time_s,
+          1e2 * after.overshoot, 1e2 * before.overshoot, 1e3 * after.steady_error_A, 1e3 * before.steady_error_A));
     }
     const std::string reason = fmt::format("for a bandwidth of {:.0f} Hz", tuning_->options.bandwidth_Hz);
-    findings_->propose(old_, Parameter::current_proportional_gain_V_per_A, tuning_->gains->proportional_V_per_A, reason);
+    findings_->propose(old_, Parameter::current_proportional_gain_V_per_A, tuning_->gains->proportional_V_per_A,
+                       reason);
     findings_->propose(old_, Parameter::current_integral_gain_V_per_As, tuning_->gains->integral_V_per_As, reason);
   }
 

@@ -25,9 +25,11 @@ class PulseMotor final : public Step {
 
   std::string title() const override { return fmt::format("Motor {}, {}", motor_, joint_name(motor_)); }
   std::string text() const override {
-    return fmt::format("Hold the stylus loosely, a little out of the inkwell. Motor {} gets a pulse of at most {:.1f} A for "
-                       "{:.0f} ms forward and another one back; {} will twitch by about a centimetre. The walls' force stays "
-                       "off.", motor_, pulse_A, 1e3f * pulse_s, joint_name(motor_));
+    return fmt::format(
+        "Hold the stylus loosely, a little out of the inkwell. Motor {} gets a pulse of at most {:.1f} A for "
+        "{:.0f} ms forward and another one back; {} will twitch by about a centimetre. The walls' force stays "
+        "off.",
+        motor_, pulse_A, 1e3f * pulse_s, joint_name(motor_));
   }
   bool asks_first() const override { return true; }
   UserTask user_task() const override { return {UserTask::Kind::hold_loosely, motor_}; }
@@ -81,11 +83,11 @@ class PulseMotor final : public Step {
 
   void start_pulse(const Observation& now, DevicePort& port) {
     const float amplitude_A = turned_rad_.empty() ? amplitude_A_ : -amplitude_A_;
-    recorder_.emplace(protocol::Command::test_current,
-                      protocol::TestPulse{static_cast<std::uint8_t>(motor_), amplitude_A, pulse_s},
-                      std::vector<Signal>{signal_of(Signal::current_reference_1_A, motor_),
-                                          signal_of(Signal::current_1_A, motor_), signal_of(Signal::joint_1_rad, motor_)},
-                      signal_of(Signal::current_reference_1_A, motor_));
+    recorder_.emplace(
+        protocol::Command::test_current, protocol::TestPulse{static_cast<std::uint8_t>(motor_), amplitude_A, pulse_s},
+        std::vector<Signal>{signal_of(Signal::current_reference_1_A, motor_), signal_of(Signal::current_1_A, motor_),
+                            signal_of(Signal::joint_1_rad, motor_)},
+        signal_of(Signal::current_reference_1_A, motor_));
     recorder_->begin(*now.pose, port);
   }
 
@@ -102,8 +104,10 @@ class PulseMotor final : public Step {
       measured_A += current_A[end];
     }
     if (std::abs(measured_A - asked_A) > 0.3 * std::abs(asked_A))
-      throw device::Error(fmt::format("The current of motor {} does not follow its reference. Check the motor's plug and "
-                                      "wiring, then tune the current loops.", motor_));
+      throw device::Error(
+          fmt::format("The current of motor {} does not follow its reference. Check the motor's plug and "
+                      "wiring, then tune the current loops.",
+                      motor_));
     return joint_rad[end - 1] - joint_rad[begin];
   }
 
@@ -111,8 +115,10 @@ class PulseMotor final : public Step {
   void judge(const Observation& now) {
     const double difference_rad = turned_rad_[0] - turned_rad_[1];
     if (std::abs(difference_rad) < smallest_turn_rad)
-      throw device::Error(fmt::format("Joint {} did not turn. Hold the stylus more loosely, check that the cable of the "
-                                      "transmission is on its capstan, and start the guide again.", motor_));
+      throw device::Error(
+          fmt::format("Joint {} did not turn. Hold the stylus more loosely, check that the cable of the "
+                      "transmission is on its capstan, and start the guide again.",
+                      motor_));
     const auto place = static_cast<std::size_t>(motor_ - 1);
     const bool encoder_wrong = (*reversed_)[place].value_or(false);
     const bool forward = (difference_rad > 0) != encoder_wrong;
@@ -120,15 +126,17 @@ class PulseMotor final : public Step {
     const bool held_reversed = (*now.parameters)[parameter] == 1.0f;
     // A test pulse is a motor current as it is, before motor_n_reversed.
     const bool right = forward != held_reversed;
-    findings_->sentences.push_back(fmt::format("A positive current turns joint {} {}, {}.", motor_, forward ? "forward" : "backward",
+    findings_->sentences.push_back(fmt::format("A positive current turns joint {} {}, {}.", motor_,
+                                               forward ? "forward" : "backward",
                                                right ? "as the parameters say" : "against what the parameters say"));
     findings_->details["motors"].push_back({{"motor", motor_},
                                             {"turned_by_positive_current_rad", turned_rad_[0]},
                                             {"turned_by_negative_current_rad", turned_rad_[1]},
                                             {"turns_forward", forward}});
     if (!right)
-      findings_->propose(*now.parameters, parameter, forward ? 0.0 : 1.0,
-                         fmt::format("a positive current turned joint {} {}", motor_, forward ? "forward" : "backward"));
+      findings_->propose(
+          *now.parameters, parameter, forward ? 0.0 : 1.0,
+          fmt::format("a positive current turned joint {} {}", motor_, forward ? "forward" : "backward"));
   }
 
   std::shared_ptr<Findings> findings_;
@@ -148,7 +156,8 @@ Guide direction_guide() {
   auto reversed = std::make_shared<ReversedEncoders>();
   std::vector<std::unique_ptr<Step>> steps;
   steps.push_back(std::make_unique<RestInInkwell>(findings, false));
-  for (int joint = 1; joint <= 3; ++joint) steps.push_back(std::make_unique<TurnJointForward>(findings, reversed, joint));
+  for (int joint = 1; joint <= 3; ++joint)
+    steps.push_back(std::make_unique<TurnJointForward>(findings, reversed, joint));
   for (int motor = 1; motor <= 3; ++motor) steps.push_back(std::make_unique<PulseMotor>(findings, reversed, motor));
   return {"directions", "Directions of motors and encoders", std::move(steps), findings};
 }

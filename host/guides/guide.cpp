@@ -89,7 +89,8 @@ void Guide::run(const Observation& now, DevicePort& port) {
   if (!now.connected && made_safe_) {
     const bool lent = begun_ && !step().to_put_back().empty();
     throw device::Disconnected(fmt::format(
-        "The device went away in the step \"{}\". No proposal was applied.{} Connect it again and start the guide anew.",
+        "The device went away in the step \"{}\". No proposal was applied.{} Connect it again and start the guide "
+        "anew.",
         step().title(), lent ? " Parameters that were on trial are still on it if it kept its power." : ""));
   }
   if (!now.connected || !now.pose || !now.parameters) return;  // it is still being connected
@@ -126,7 +127,8 @@ void Guide::leave_step(DevicePort& port) {
 }
 
 bool Guide::holds(const Observation& now, const std::vector<device::ParameterChange>& changes) {
-  return std::ranges::all_of(changes, [&](const auto& change) { return (*now.parameters)[change.first] == change.second; });
+  return std::ranges::all_of(changes,
+                             [&](const auto& change) { return (*now.parameters)[change.first] == change.second; });
 }
 
 void Guide::end(Phase phase, std::string outcome, DevicePort& port) {

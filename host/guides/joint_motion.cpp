@@ -28,7 +28,8 @@ const char* joint_name(int joint) {
 std::string forward_direction(const protocol::ParameterSet& parameters, int joint) {
   const control::Arm arm = control::prepare(parameters).arm;
   control::Triple angles{};
-  for (int i = 1; i <= 3; ++i) angles[static_cast<std::size_t>(i - 1)] = parameters[parameter_of(Parameter::inkwell_joint_1_rad, i)];
+  for (int i = 1; i <= 3; ++i)
+    angles[static_cast<std::size_t>(i - 1)] = parameters[parameter_of(Parameter::inkwell_joint_1_rad, i)];
   control::Triple turned = angles;
   turned[static_cast<std::size_t>(joint - 1)] += 0.1f;
   // The shoulder carries the elbow; the other two joints are seen best at the probe.
@@ -61,14 +62,16 @@ bool RestInInkwell::advance(const Observation& now, DevicePort&) {
   checks_ = {{"inkwell switch", closed ? 1.0 : 0.0, "", "closed", closed},
              {"state " + std::string(info(pose.state).name), referenced ? 1.0 : 0.0, "", "ready", referenced}};
   for (int joint = 1; joint <= 3; ++joint) {
-    const double expected_rad = static_cast<double>((*now.parameters)[parameter_of(Parameter::inkwell_joint_1_rad, joint)]);
+    const double expected_rad =
+        static_cast<double>((*now.parameters)[parameter_of(Parameter::inkwell_joint_1_rad, joint)]);
     const double measured_rad = joint_rad(pose, joint);
     checks_.push_back({fmt::format("joint {}", joint), measured_rad, "rad", fmt::format("{:.3f}", expected_rad),
                        std::abs(measured_rad - expected_rad) < 0.005});
   }
   if (since_.seconds(pose) > user_limit_s)
-    throw device::Error("The stylus did not come to rest in the inkwell. If it is in, check the inkwell's switch and its "
-                        "wiring, and start the guide again.");
+    throw device::Error(
+        "The stylus did not come to rest in the inkwell. If it is in, check the inkwell's switch and its "
+        "wiring, and start the guide again.");
   if (!closed || !referenced) {
     resting_.reset();
     return false;
@@ -77,8 +80,10 @@ bool RestInInkwell::advance(const Observation& now, DevicePort&) {
   if (resting_->seconds(pose) < resting_s) return false;
   if (reports_) {
     findings_->sentences.push_back(fmt::format(
-        "The inkwell's switch is closed and the arm is referenced there: joints at {:.4f}, {:.4f} and {:.4f} rad, probe at "
-        "{:.1f}, {:.1f}, {:.1f} mm.", joint_rad(pose, 1), joint_rad(pose, 2), joint_rad(pose, 3), 1e3 * static_cast<double>(pose.position_m[0]),
+        "The inkwell's switch is closed and the arm is referenced there: joints at {:.4f}, {:.4f} and {:.4f} rad, "
+        "probe at "
+        "{:.1f}, {:.1f}, {:.1f} mm.",
+        joint_rad(pose, 1), joint_rad(pose, 2), joint_rad(pose, 3), 1e3 * static_cast<double>(pose.position_m[0]),
         1e3 * static_cast<double>(pose.position_m[1]), 1e3 * static_cast<double>(pose.position_m[2])));
     findings_->details["inkwell"] = {{"joint_rad", {joint_rad(pose, 1), joint_rad(pose, 2), joint_rad(pose, 3)}},
                                      {"position_m", {pose.position_m[0], pose.position_m[1], pose.position_m[2]}}};
@@ -93,23 +98,27 @@ std::string TurnJointForward::title() const { return fmt::format("Encoder {}, {}
 std::string TurnJointForward::text() const {
   const std::string what = joint_ == 2 ? "the elbow" : "the stylus";
   if (direction_.empty())
-    return fmt::format("Take the stylus out of the inkwell and turn joint {}, {}, as you will be told. No current flows.",
-                       joint_, joint_name(joint_));
-  return fmt::format("Turn joint {}, {}, so that {} moves {}, by some 3 cm. No current flows.", joint_, joint_name(joint_),
-                     what, direction_);
+    return fmt::format(
+        "Take the stylus out of the inkwell and turn joint {}, {}, as you will be told. No current flows.", joint_,
+        joint_name(joint_));
+  return fmt::format("Turn joint {}, {}, so that {} moves {}, by some 3 cm. No current flows.", joint_,
+                     joint_name(joint_), what, direction_);
 }
 
 void TurnJointForward::begin(const Observation& now, DevicePort&) {
   direction_ = forward_direction(*now.parameters, joint_);
-  for (int joint = 1; joint <= 3; ++joint) began_rad_[static_cast<std::size_t>(joint - 1)] = joint_rad(*now.pose, joint);
+  for (int joint = 1; joint <= 3; ++joint)
+    began_rad_[static_cast<std::size_t>(joint - 1)] = joint_rad(*now.pose, joint);
   since_.start(*now.pose);
 }
 
 bool TurnJointForward::advance(const Observation& now, DevicePort&) {
   turned_rad_ = joint_rad(*now.pose, joint_) - began_rad_[static_cast<std::size_t>(joint_ - 1)];
   if (since_.seconds(*now.pose) > user_limit_s)
-    throw device::Error(fmt::format("Joint {} did not turn by {} rad. If you turned it, check the plug and the supply of "
-                                    "encoder {}.", joint_, turn_rad, joint_));
+    throw device::Error(
+        fmt::format("Joint {} did not turn by {} rad. If you turned it, check the plug and the supply of "
+                    "encoder {}.",
+                    joint_, turn_rad, joint_));
   if (std::abs(turned_rad_) < turn_rad) return false;
   const auto parameter = parameter_of(Parameter::encoder_1_reversed, joint_);
   const bool wrong = turned_rad_ < 0;

@@ -106,7 +106,8 @@ double mean_of_second_half(const std::vector<double>& values, const Segment& seg
 }
 
 /// When the voltage began to act, by the current that the segment starts with.
-double delay_of(const Segment& segment, double first_current_A, double final_A, double time_constant_s, double period_s) {
+double delay_of(const Segment& segment, double first_current_A, double final_A, double time_constant_s,
+                double period_s) {
   const double part = std::clamp(first_current_A / final_A, 0.0, 0.999);
   const double acting_s = -time_constant_s * std::log(1.0 - part);
   return static_cast<double>(segment.first - segment.begin) * period_s - acting_s;
@@ -148,7 +149,8 @@ MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_per
   circuit.resistance_ohm = std::exp(unknowns[0]);
   circuit.inductance_H = circuit.resistance_ohm * time_constant_s;
   circuit.dead_time_voltage_V = unknowns[2];
-  circuit.residual_A = std::sqrt((measured - model.currents(unknowns, count)).squaredNorm() / static_cast<double>(count));
+  circuit.residual_A =
+      std::sqrt((measured - model.currents(unknowns, count)).squaredNorm() / static_cast<double>(count));
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const double final_A = mean_of_second_half(segments[s].pulse->current_A, segments[s]);
     circuit.delay_s += delay_of(segments[s], unknowns[3 + static_cast<Eigen::Index>(s)], final_A, time_constant_s,

@@ -74,7 +74,8 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
   // From a little before the pulse to the end of the rest after it.
   const std::size_t from = begin > samples_before ? begin - samples_before : 0;
   recording_.values.resize((begin + needed) * width);
-  recording_.values.erase(recording_.values.begin(), recording_.values.begin() + static_cast<std::ptrdiff_t>(from * width));
+  recording_.values.erase(recording_.values.begin(),
+                          recording_.values.begin() + static_cast<std::ptrdiff_t>(from * width));
   state_ = State::done;
   return true;
 }

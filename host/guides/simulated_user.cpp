@@ -27,14 +27,16 @@ SimulatedUser::SimulatedUser(device::ControlClient control, const protocol::Para
   for (int axis = 1; axis <= 3; ++axis) {
     const auto of = [&](Parameter first) { return static_cast<double>(arm_[parameter_of(first, axis, 3)]); };
     // The wipers start in the middle of their tracks.
-    gimbal_rad_[static_cast<std::size_t>(axis - 1)] =
-        of(Parameter::gimbal_1_square_rad) / 4 + of(Parameter::gimbal_1_slope_rad) / 2 + of(Parameter::gimbal_1_offset_rad);
+    gimbal_rad_[static_cast<std::size_t>(axis - 1)] = of(Parameter::gimbal_1_square_rad) / 4 +
+                                                      of(Parameter::gimbal_1_slope_rad) / 2 +
+                                                      of(Parameter::gimbal_1_offset_rad);
   }
   joints_ = inkwell();
 }
 
 device::Vector3 SimulatedUser::probe_m(const Joints& joints) const {
-  const control::Triple angles{static_cast<float>(joints[0]), static_cast<float>(joints[1]), static_cast<float>(joints[2])};
+  const control::Triple angles{static_cast<float>(joints[0]), static_cast<float>(joints[1]),
+                               static_cast<float>(joints[2])};
   const auto probe = control::forward_kinematics(angles, control::prepare(arm_).arm).position_m;
   return {static_cast<double>(probe.x), static_cast<double>(probe.y), static_cast<double>(probe.z)};
 }
@@ -47,7 +49,8 @@ double SimulatedUser::limit_rad(int joint, bool upper) const {
 SimulatedUser::Joints SimulatedUser::inkwell() const {
   Joints joints{};
   for (int joint = 1; joint <= 3; ++joint)
-    joints[static_cast<std::size_t>(joint - 1)] = static_cast<double>(arm_[parameter_of(Parameter::inkwell_joint_1_rad, joint)]);
+    joints[static_cast<std::size_t>(joint - 1)] =
+        static_cast<double>(arm_[parameter_of(Parameter::inkwell_joint_1_rad, joint)]);
   return joints;
 }
 
@@ -88,7 +91,8 @@ void SimulatedUser::move_to_stops(int joint, double now_s) {
     return Joints{waist_rad, shoulder_rad, elbow_rad + (parallelogram ? shoulder_rad : 0)};
   };
   const auto with = [&](double angle_rad) {
-    return joints_at(joint == 1 ? angle_rad : 0, joint == 2 ? angle_rad : middle(2), joint == 3 ? angle_rad : middle(3));
+    return joints_at(joint == 1 ? angle_rad : 0, joint == 2 ? angle_rad : middle(2),
+                     joint == 3 ? angle_rad : middle(3));
   };
   const double lasts_s = move({with(middle(joint)), with(limit_rad(joint, false) - beyond_rad),
                                with(limit_rad(joint, true) + beyond_rad)}, firm_N_per_m);

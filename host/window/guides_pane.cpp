@@ -31,13 +31,16 @@ guides::SessionPort port_to(DeviceDesk& desk, std::vector<protocol::Signal>& sig
 
 std::vector<GuidesPane::Offer> GuidesPane::offers() const {
   return {
-      {"First connection", "Versions, supply, inkwell, encoders and buttons. No current flows.", guides::first_connection_guide},
-      {"Directions", "Each encoder while you turn its joint, then each motor with a small pulse of current.", guides::direction_guide},
+      {"First connection", "Versions, supply, inkwell, encoders and buttons. No current flows.",
+       guides::first_connection_guide},
+      {"Directions", "Each encoder while you turn its joint, then each motor with a small pulse of current.",
+       guides::direction_guide},
       {"Joint stops", "You move each joint to both its stops; they are compared with the limits.",
        [] { return guides::stops_guide(guides::StopsTrust::limits); }},
       {"Potentiometers", "You turn each axis of the gimbal to both its stops.",
        [] { return guides::potentiometer_guide({}); }},
-      {"Current-loop tuning", "Measures resistance and inductance of the motors and tries gains for the bandwidth below.",
+      {"Current-loop tuning",
+       "Measures resistance and inductance of the motors and tries gains for the bandwidth below.",
        [this] {
          guides::CurrentLoopOptions options;
          options.bandwidth_Hz = static_cast<double>(bandwidth_Hz_);
@@ -106,8 +109,11 @@ void GuidesPane::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk&
 
 void GuidesPane::draw_offers(const Style& style, const DeviceDesk& desk) {
   const bool connected = desk.view().connected();
-  wrapped_text(style.palette->text_quiet, connected ? "Each guide says what it will do before anything moves, and changes nothing until you apply its result."
-                                                    : "Guides need a device. Plug one in.");
+  wrapped_text(
+      style.palette->text_quiet,
+      connected
+          ? "Each guide says what it will do before anything moves, and changes nothing until you apply its result."
+          : "Guides need a device. Plug one in.");
   ImGui::Dummy({0, style.points(4)});
   ImGui::BeginDisabled(!connected);
   for (const Offer& offer : offers()) {
@@ -128,7 +134,8 @@ void GuidesPane::draw_offers(const Style& style, const DeviceDesk& desk) {
 void GuidesPane::draw_step(const Style& style) {
   const Palette& palette = *style.palette;
   const auto& step = guide_->step();
-  text(style.fonts.caption, palette.text_quiet, fmt::format("Step {} of {}", guide_->step_index() + 1, guide_->step_count()));
+  text(style.fonts.caption, palette.text_quiet,
+       fmt::format("Step {} of {}", guide_->step_index() + 1, guide_->step_count()));
   ImGui::PushStyleColor(ImGuiCol_PlotHistogram, packed(palette.accent));
   ImGui::ProgressBar(static_cast<float>(guide_->progress()), {-1, style.points(6)}, "");
   ImGui::PopStyleColor();
@@ -162,7 +169,8 @@ void GuidesPane::draw_checks(const Style& style) {
 void GuidesPane::draw_result(const Style& style) {
   const Palette& palette = *style.palette;
   const bool applied = guide_->applied() == guides::Applied::yes;
-  wrapped_text(outcome_colour(guide_->phase(), palette), applied ? "Finished, and the device holds the proposals." : guide_->outcome());
+  wrapped_text(outcome_colour(guide_->phase(), palette),
+               applied ? "Finished, and the device holds the proposals." : guide_->outcome());
   draw_curves(style);
   ImGui::Dummy({0, style.points(4)});
   for (const auto& sentence : guide_->findings().sentences) wrapped_text(palette.text, sentence);
@@ -171,8 +179,9 @@ void GuidesPane::draw_result(const Style& style) {
   text(style.fonts.strong, palette.text, applied ? "Applied" : "Proposed");
   for (const auto& proposal : guide_->findings().proposals) {
     text(palette.text, info(proposal.parameter).name);
-    wrapped_text(palette.text_quiet, fmt::format("{} instead of {}, {}", device::format_value(proposal.parameter, proposal.proposed),
-                                                 device::format_value(proposal.parameter, proposal.held), proposal.reason));
+    wrapped_text(palette.text_quiet,
+                 fmt::format("{} instead of {}, {}", device::format_value(proposal.parameter, proposal.proposed),
+                             device::format_value(proposal.parameter, proposal.held), proposal.reason));
   }
   if (!guide_->refusal().empty()) wrapped_text(palette.danger, guide_->refusal());
 }

@@ -59,7 +59,8 @@ TEST_CASE("a wider bandwidth rises faster, and is applied when asked") {
   const double before_s = result.at("steps")[0].at("rise_time_s"), after_s = result.at("steps")[1].at("rise_time_s");
   CHECK(after_s < 0.75 * before_s);
   REQUIRE(result.at("proposals").size() == 2);
-  CHECK(result.at("proposals")[0].at("proposed").get<double>() == doctest::Approx(0.238e-3 * 2 * 3.14159 * 1500).epsilon(0.05));
+  CHECK(result.at("proposals")[0].at("proposed").get<double>() ==
+        doctest::Approx(0.238e-3 * 2 * 3.14159 * 1500).epsilon(0.05));
 }
 
 TEST_CASE("a healthy simulated arm needs no change of directions") {

@@ -41,7 +41,8 @@ TEST_CASE("a potentiometer's curve is found from noisy points") {
 
 TEST_CASE("the curve's inverse leads back") {
   for (const PotentiometerCurve curve : {PotentiometerCurve{0, 4.91, -2.455}, {0.4, 2.25, -0.5}, {-0.3, -5.16, 2.58}})
-    for (double ratio = 0; ratio <= 1.0; ratio += 0.1) CHECK(curve.ratio(curve.angle_rad(ratio)) == doctest::Approx(ratio).epsilon(1e-9));
+    for (double ratio = 0; ratio <= 1.0; ratio += 0.1)
+      CHECK(curve.ratio(curve.angle_rad(ratio)) == doctest::Approx(ratio).epsilon(1e-9));
   CHECK_THROWS_AS(PotentiometerCurve{}.ratio(0.3), inkwell::device::Error);
 }
 

@@ -118,8 +118,10 @@ class FakeArm final : public guides::DevicePort {
     if (left_ > 0 && !is_voltage_) {
       reference_A_ = value;
       const double error_A = value - measured_A_;
-      integral_V_ += static_cast<double>(parameters()[protocol::Parameter::current_integral_gain_V_per_As]) * error_A * period_s;
-      wanted_V = static_cast<double>(parameters()[protocol::Parameter::current_proportional_gain_V_per_A]) * error_A + integral_V_;
+      integral_V_ +=
+          static_cast<double>(parameters()[protocol::Parameter::current_integral_gain_V_per_As]) * error_A * period_s;
+      wanted_V = static_cast<double>(parameters()[protocol::Parameter::current_proportional_gain_V_per_A]) * error_A +
+                 integral_V_;
     }
     if (left_ == 0) integral_V_ = 0;
     // What is computed now acts one period later.

@@ -197,7 +197,8 @@ TEST_CASE("encoders that count down and motors that turn backward are found") {
       INFO(guide.outcome(), " encoder ", encoder_wrong, " motor ", motor_wrong);
       REQUIRE(guide.phase() == Phase::finished);
       const auto proposes = [&](Parameter parameter) {
-        return std::ranges::any_of(guide.findings().proposals, [&](const auto& p) { return p.parameter == parameter && p.proposed == 1.0f; });
+        return std::ranges::any_of(guide.findings().proposals,
+                                   [&](const auto& p) { return p.parameter == parameter && p.proposed == 1.0f; });
       };
       CHECK(proposes(Parameter::encoder_1_reversed) == encoder_wrong);
       CHECK(proposes(Parameter::encoder_3_reversed) == encoder_wrong);

@@ -35,7 +35,8 @@ VoltagePulse pulse_of(const Motor& motor, double voltage_V, std::mt19937& random
       const double time_s = (k - before) * period_s + i * period_s / fine - delay_s;
       const double acting_V = time_s >= 0 && time_s < on * period_s ? voltage_V : 0.0;
       const double lost_V = motor.dead_time_V * std::clamp(current_A / ripple_A, -1.0, 1.0);
-      current_A += period_s / fine * (acting_V - emf_V - lost_V - motor.resistance_ohm * current_A) / motor.inductance_H;
+      current_A +=
+          period_s / fine * (acting_V - emf_V - lost_V - motor.resistance_ohm * current_A) / motor.inductance_H;
     }
   }
   return pulse;
@@ -55,7 +56,8 @@ std::vector<VoltagePulse> pulses_of(const Motor& motor, std::uint32_t seed, doub
 }  // namespace
 
 TEST_CASE("resistance and inductance are found through noise, dead time and back-EMF") {
-  for (const Motor& motor : {Motor{2.26, 0.238e-3}, Motor{0.9, 0.15e-3, 0.3}, Motor{8.0, 2.0e-3, 0.43, 0.2}, Motor{2.26, 0.238e-3, 0.43, 0.3}})
+  for (const Motor& motor : {Motor{2.26, 0.238e-3}, Motor{0.9, 0.15e-3, 0.3}, Motor{8.0, 2.0e-3, 0.43, 0.2},
+                             Motor{2.26, 0.238e-3, 0.43, 0.3}})
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
       const auto found = guides::identify(pulses_of(motor, seed), period_s, ripple_A);
       INFO("R ", motor.resistance_ohm, " L ", motor.inductance_H, " seed ", seed);
@@ -79,10 +81,12 @@ TEST_CASE("an unplugged motor, no pulse and nonsense are named") {
   std::mt19937 random(1);
   VoltagePulse open = pulse_of({2.26, 0.238e-3}, 2.0, random);
   for (double& current_A : open.current_A) current_A = 0;
-  CHECK_THROWS_WITH_AS(guides::identify({open}, period_s, ripple_A), doctest::Contains("No current flows"), device::Error);
+  CHECK_THROWS_WITH_AS(guides::identify({open}, period_s, ripple_A), doctest::Contains("No current flows"),
+                       device::Error);
   VoltagePulse silent = open;
   for (double& voltage_V : silent.voltage_V) voltage_V = 0;
-  CHECK_THROWS_WITH_AS(guides::identify({silent}, period_s, ripple_A), doctest::Contains("did not reach"), device::Error);
+  CHECK_THROWS_WITH_AS(guides::identify({silent}, period_s, ripple_A), doctest::Contains("did not reach"),
+                       device::Error);
   VoltagePulse wild = pulse_of({2.26, 0.238e-3}, 2.0, random);
   for (std::size_t i = 0; i < wild.current_A.size(); ++i) wild.current_A[i] += i % 3 == 0 ? 1.5 : 0.0;
   CHECK_THROWS_AS(guides::identify({wild}, period_s, ripple_A), device::Error);

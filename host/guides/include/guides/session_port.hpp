@@ -15,11 +15,15 @@ class SessionPort final : public DevicePort {
   SessionPort(device::Session& session, std::function<void(std::vector<protocol::Signal>)> select)
       : session_(session), select_(std::move(select)) {}
   explicit SessionPort(device::Session& session)
-      : SessionPort(session, [&session](std::vector<protocol::Signal> signals) { session.select_signals(std::move(signals)); }) {}
+      : SessionPort(session,
+                    [&session](std::vector<protocol::Signal> signals) { session.select_signals(std::move(signals)); }) {
+  }
 
   void send(protocol::Command command) override { session_.send(command); }
   void send(protocol::Command command, const protocol::TestPulse& pulse) override { session_.send(command, pulse); }
-  void set_parameters(std::vector<device::ParameterChange> changes) override { session_.set_parameters(std::move(changes)); }
+  void set_parameters(std::vector<device::ParameterChange> changes) override {
+    session_.set_parameters(std::move(changes));
+  }
   void select_signals(std::vector<protocol::Signal> signals) override { select_(std::move(signals)); }
 
  private:
