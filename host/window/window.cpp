@@ -1,5 +1,6 @@
 #include <window/window.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
@@ -85,11 +86,15 @@ void run(const WindowOptions& options) {
   FramePacer pacer(1.02 * display.refresh_rate_Hz());
 
   const double started_s = glfwGetTime();
+  // Of the frames at the full rate only: at rest there are few on purpose.
   std::uint64_t frames = 0;
+  double frames_s = 0.0;
   double drawing_s = 0.0;
+  double previous_s = started_s;
   double last_lively_s = started_s;
   while (glfwWindowShouldClose(display.handle()) == 0) {
-    if (glfwGetTime() - last_lively_s < lively_for_s) {
+    const bool is_lively = glfwGetTime() - last_lively_s < lively_for_s;
+    if (is_lively) {
       pacer.wait();
       glfwPollEvents();
     } else {
@@ -120,17 +125,21 @@ void run(const WindowOptions& options) {
     companion.draw_scene(renderer, static_cast<float>(width) / size.x, height, pacer.keeps_up() || is_last);
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    ++frames;
     if (is_last) write_screenshot(options.screenshot, width, height);
-    drawing_s += glfwGetTime() - now_s;
+    const double drawn_s = glfwGetTime();
     glfwSwapBuffers(display.handle());
+    if (is_lively) {
+      ++frames;
+      frames_s += now_s - previous_s;
+      drawing_s += drawn_s - now_s;
+    }
+    previous_s = now_s;
     if (is_last) break;
   }
   if (options.frames_report) {
-    const double elapsed_s = glfwGetTime() - started_s;
-    const auto count = static_cast<double>(frames);
-    fmt::print("{:.1f} frames per second over {:.1f} s, {:.1f} ms to draw one\n", count / elapsed_s, elapsed_s,
-               1000.0 * drawing_s / count);
+    const auto count = static_cast<double>(std::max<std::uint64_t>(frames, 1));
+    fmt::print("{:.1f} frames per second while something moved ({:.1f} s), {:.1f} ms to draw one\n",
+               count / std::max(frames_s, 1e-3), frames_s, 1000.0 * drawing_s / count);
     std::fflush(stdout);
   }
   if (options.persist_settings) remember_settings(companion.settings());
