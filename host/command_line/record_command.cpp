@@ -39,7 +39,9 @@ struct RecordOptions {
 class ScopeRecorder {
  public:
   ScopeRecorder(device::Device& device, recording::Recorder& recorder, double seconds)
-      : device_(device), recorder_(recorder), periods_(static_cast<std::uint32_t>(seconds * protocol::servo_rate_Hz + 0.5)) {
+      : device_(device),
+        recorder_(recorder),
+        periods_(static_cast<std::uint32_t>(seconds * protocol::servo_rate_Hz + 0.5)) {
     thread_ = std::thread([this] { read(); });
   }
   ~ScopeRecorder() {
@@ -82,7 +84,9 @@ class ScopeRecorder {
 };
 
 /// The board does not know which arm it is built into; the user may have said it.
-std::string arm_name(const DeviceOptions& options) { return options.arm.empty() ? std::string() : arms::read(options.arm).name; }
+std::string arm_name(const DeviceOptions& options) {
+  return options.arm.empty() ? std::string() : arms::read(options.arm).name;
+}
 
 std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
   if (options.all) return recording::signal_path();
@@ -91,8 +95,8 @@ std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
 }
 
 std::string progress_text(const RecorderStatus& status) {
-  std::string text = fmt::format("Recording: {:.1f} s, {:.1f} MB, {} lost", status.duration_s, 1e-6 * static_cast<double>(status.bytes),
-                                 status.lost);
+  std::string text = fmt::format("Recording: {:.1f} s, {:.1f} MB, {} lost", status.duration_s,
+                                 1e-6 * static_cast<double>(status.bytes), status.lost);
   if (status.marks > 0) text += fmt::format(", {} mark{}", status.marks, status.marks == 1 ? "" : "s");
   return text;
 }
@@ -103,12 +107,19 @@ void run(device::Device& device, recording::Recorder& recorder, const RecordOpti
   if (options.mark_key) keys.emplace(STDIN_FILENO);
   ScopeRecorder scope(device, recorder, options.seconds);
   ProgressBar progress;
+  const auto show = [&](const RecorderStatus& status) {
+    if (options.seconds == 0) return progress(progress_text(status) + ". Ctrl-C ends it.", std::nullopt);
+    // The last sample is one period before the end.
+    progress(progress_text(status),
+             std::min(1.0, (status.duration_s + 1.0 / protocol::servo_rate_Hz) / options.seconds));
+  };
   auto last_pose = std::chrono::steady_clock::now(), next_shown = last_pose;
   while (!scope.is_done() && !interrupt.was_asked_to_end() && recorder.status().running) {
     const auto now = std::chrono::steady_clock::now();
     device.keep_alive();
     if (device.read_pose(20ms)) last_pose = now;
-    if (now - last_pose > 2s) throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
+    if (now - last_pose > 2s)
+      throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
     while (keys) {
       const auto text = keys->next();
       if (!text) break;
@@ -116,17 +127,16 @@ void run(device::Device& device, recording::Recorder& recorder, const RecordOpti
     }
     if (now < next_shown) continue;
     next_shown = now + 100ms;
-    const auto status = recorder.status();
-    const auto done = options.seconds > 0 ? std::optional(std::min(1.0, status.duration_s / options.seconds)) : std::nullopt;
-    progress(progress_text(status) + (options.seconds > 0 ? "" : ". Ctrl-C ends it."), done);
+    show(recorder.status());
   }
+  show(recorder.status());
   progress.end();
 }
 
 ordered_json to_json(const RecordOptions& options, const RecorderStatus& status) {
-  ordered_json json{{"file", options.file},          {"duration_s", status.duration_s}, {"samples", status.samples},
-                    {"lost", status.lost},           {"bytes", status.bytes},           {"free_bytes", status.free_bytes},
-                    {"marks", status.marks},         {"complete", status.error.empty()}};
+  ordered_json json{{"file", options.file},  {"duration_s", status.duration_s}, {"samples", status.samples},
+                    {"lost", status.lost},   {"bytes", status.bytes},           {"free_bytes", status.free_bytes},
+                    {"marks", status.marks}, {"complete", status.error.empty()}};
   if (!status.error.empty()) json["error"] = status.error;
   return json;
 }
@@ -141,8 +151,8 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   }
   const auto connection = connect(device_options, true);
   auto& device = *connection.device;
-  const auto information = recording::describe(device.information(), device.parameters(), signals, arm_name(device_options),
-                                               connection.is_simulation);
+  const auto information = recording::describe(device.information(), device.parameters(), signals,
+                                               arm_name(device_options), connection.is_simulation);
   recording::Recorder recorder(options.file, information);
   device.select_signals(signals);
   std::string failure;
@@ -157,8 +167,8 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   if (device_options.json)
     fmt::print("{}\n", to_json(options, status).dump());
   else
-    fmt::print("{}: {:.2f} s, {} samples of {} signals, {} lost, {:.1f} MB\n", options.file, status.duration_s, status.samples,
-               signals.size(), status.lost, 1e-6 * static_cast<double>(status.bytes));
+    fmt::print("{}: {:.2f} s, {} samples of {} signals, {} lost, {:.1f} MB\n", options.file, status.duration_s,
+               status.samples, signals.size(), status.lost, 1e-6 * static_cast<double>(status.bytes));
   if (!status.error.empty()) throw device::Error(status.error);
   return 0;
 }
@@ -166,13 +176,16 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
 }  // namespace
 
 void add_record_command(CLI::App& program, const DeviceOptions& options, Action& action) {
-  auto* command = program.add_subcommand("record", "Record signals at every control period, until Ctrl-C or for a time");
+  auto* command =
+      program.add_subcommand("record", "Record signals at every control period, until Ctrl-C or for a time");
   const auto record_options = std::make_shared<RecordOptions>();
   command->add_option("FILE", record_options->file, "Ends in .h5 (HDF5) or .csv; it must not exist yet")->required();
   auto* signals = command->add_option("--signals", record_options->signals,
                                       "Names with commas between them; without it what replay and plots need");
-  command->add_flag("--all", record_options->all, "The whole signal path, from the encoders to the duties")->excludes(signals);
-  command->add_option("--seconds", record_options->seconds, "End after this time of the board")->check(CLI::PositiveNumber);
+  command->add_flag("--all", record_options->all, "The whole signal path, from the encoders to the duties")
+      ->excludes(signals);
+  command->add_option("--seconds", record_options->seconds, "End after this time of the board")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--mark-key", record_options->mark_key,
                     "The space bar sets a mark; from a pipe, each line does, with its text");
   command->callback([&options, &action, record_options] {

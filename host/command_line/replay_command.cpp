@@ -43,8 +43,8 @@ void print(const Recording& recording) {
   fmt::print("device              {}, firmware {}, protocol {}\n", about.serial_number, about.firmware_version,
              about.protocol_version);
   if (!about.arm.empty()) fmt::print("arm                 {}\n", about.arm);
-  fmt::print("duration            {:.3f} s, {} samples, {} lost{}\n", recording.duration_s(), recording.size(), recording.lost(),
-             recording.complete ? "" : "; its end is missing");
+  fmt::print("duration            {:.3f} s, {} samples, {} lost{}\n", recording.duration_s(), recording.size(),
+             recording.lost(), recording.complete ? "" : "; its end is missing");
   std::vector<std::string_view> names;
   for (const auto signal : about.signals) names.push_back(info(signal).name);
   fmt::print("{} signals          {}\n", names.size(), fmt::join(names, ", "));
@@ -68,12 +68,14 @@ int describe(const DeviceOptions& options, const std::string& file) {
 
 }  // namespace
 
-void add_replay_command(CLI::App& program, const DeviceOptions& options, const OpenWindow& open_window, Action& action) {
+void add_replay_command(CLI::App& program, const DeviceOptions& options, const OpenWindow& open_window,
+                        Action& action) {
   struct ReplayOptions {
     std::string file;
     bool information = false;
   };
-  auto* command = program.add_subcommand("replay", "Open the window on a recording; or, with --info or --json, say what it holds");
+  auto* command =
+      program.add_subcommand("replay", "Open the window on a recording; or, with --info or --json, say what it holds");
   const auto replay_options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", replay_options->file, "Written by `inkwell record`")->required();
   command->add_flag("--info", replay_options->information, "Only say what it holds");

@@ -69,7 +69,8 @@ class CsvReader {
     if (known && value)
       recording_.information.parameters[*known] = static_cast<float>(*value);
     else
-      recording_.remarks.push_back(fmt::format("The parameter {} of {} is not known here; it was left out.", name, name_));
+      recording_.remarks.push_back(
+          fmt::format("The parameter {} of {} is not known here; it was left out.", name, name_));
   }
   void column_names(std::string_view line) {
     columns_known_ = true;
@@ -79,7 +80,8 @@ class CsvReader {
       const auto name = line.substr(0, line.find(','));
       const auto signal = protocol::find_signal(name);
       if (!signal)
-        recording_.remarks.push_back(fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
+        recording_.remarks.push_back(
+            fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
       else
         recording_.information.signals.push_back(*signal);
       known_.push_back(signal.has_value());

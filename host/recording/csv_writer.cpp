@@ -52,8 +52,8 @@ class CsvWriter final : public Writer {
  private:
   void write_head(const Information& about) {
     auto out = std::back_inserter(text_);
-    fmt::format_to(out, "# {} = {}\n# created_utc = {}\n# firmware_version = {}\n# protocol_version = {}\n", format_name,
-                   format_version, about.created_utc, about.firmware_version, about.protocol_version);
+    fmt::format_to(out, "# {} = {}\n# created_utc = {}\n# firmware_version = {}\n# protocol_version = {}\n",
+                   format_name, format_version, about.created_utc, about.firmware_version, about.protocol_version);
     fmt::format_to(out, "# serial_number = {}\n# arm = {}\n# simulation = {}\n", about.serial_number, about.arm,
                    about.simulation ? 1 : 0);
     for (std::size_t i = 0; i < protocol::parameter_count; ++i)

@@ -69,7 +69,8 @@ void write_data(const Recording& recording, const std::vector<Signal>& signals, 
   std::size_t begin = shown.begin;
   for (std::size_t point = 0; point < points; ++point) {
     const double start_s = from_s - half_period_s + step_s * static_cast<double>(point);
-    const std::size_t end = point + 1 == points ? shown.end : std::min(shown.end, recording.sample_at(start_s + step_s));
+    const std::size_t end =
+        point + 1 == points ? shown.end : std::min(shown.end, recording.sample_at(start_s + step_s));
     fmt::format_to(std::back_inserter(text), "{:.7g}", start_s + 0.5 * step_s);
     for (const auto* column : columns) {
       const Band band = band_of(end - begin, [&](std::size_t i) { return static_cast<double>((*column)[begin + i]); });
@@ -112,21 +113,25 @@ std::string marks(const Recording& recording, double from_s, double to_s, bool w
     text += fmt::format("set arrow {0} from first {1:.6f}, graph 0 to first {1:.6f}, graph 1 nohead linecolor rgb grey "
                         "linewidth 1.2 dashtype 2 front\n", number, at_s);
     if (with_text)
-      text += fmt::format("set label {} {} at first {:.6f}, graph {} offset 0.4,-0.6 left font 'Inter,15' textcolor rgb grey "
-                          "noenhanced front\n", number, gnuplot_text(mark.text), at_s, 1 - 0.08 * (number % 4));
+      text += fmt::format(
+          "set label {} {} at first {:.6f}, graph {} offset 0.4,-0.6 left font 'Inter,15' textcolor rgb grey "
+          "noenhanced front\n",
+          number, gnuplot_text(mark.text), at_s, 1 - 0.08 * (number % 4));
     ++number;
   }
   return text;
 }
 
-std::string script(const Recording& recording, const std::vector<FigurePane>& panes, const std::string& name, double from_s,
-                   double to_s) {
+std::string script(const Recording& recording, const std::vector<FigurePane>& panes, const std::string& name,
+                   double from_s, double to_s) {
   const auto count = static_cast<int>(panes.size());
   const int height = titles_pixels + count * pane_pixels + (count - 1) * pane_gap_pixels + time_axis_pixels;
   std::string text = figure_head("data.csv", width_pixels, height);
-  text += fmt::format("set output 'figure.png'\nset multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.77\n"
-                      "set xrange [{:.6f}:{:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
-                      "set key at screen 0.785, graph 1 left top\n", from_s, to_s);
+  text += fmt::format(
+      "set output 'figure.png'\nset multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.77\n"
+      "set xrange [{:.6f}:{:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
+      "set key at screen 0.785, graph 1 left top\n",
+      from_s, to_s);
   text += figure_titles(name + (recording.information.simulation ? " (simulation)" : ""),
                         subtitle(recording), height);
   text += marks(recording, from_s, to_s, true);
@@ -138,9 +143,11 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
       // gnuplot would draw the first pane's labels again in every pane.
       text += "unset label\nunset arrow\n" + marks(recording, from_s, to_s, false);
     }
-    if (i + 1 == count) text += fmt::format("set format x '%g'\nset xlabel {} textcolor rgb ink\n", gnuplot_text(time_label(to_s - from_s)));
-    text += fmt::format("set tmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n", static_cast<double>(top) / height,
-                        static_cast<double>(top - pane_pixels) / height);
+    if (i + 1 == count)
+      text +=
+          fmt::format("set format x '%g'\nset xlabel {} textcolor rgb ink\n", gnuplot_text(time_label(to_s - from_s)));
+    text += fmt::format("set tmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n",
+                        static_cast<double>(top) / height, static_cast<double>(top - pane_pixels) / height);
     // A label instead of ylabel, which would stand elsewhere in each pane, as far out as the numbers push it.
     text += fmt::format("set label 3 {} at screen 0.018, graph 0.5 center rotate textcolor rgb ink noenhanced\n",
                         gnuplot_text(pane.label));
@@ -192,8 +199,8 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
   const double from_s = std::max(0.0, options.from_s), to_s = std::min(end_s, options.to_s.value_or(end_s));
   const Range shown{recording.sample_at(from_s), recording.sample_at(to_s + 0.5 / protocol::servo_rate_Hz)};
   if (shown.end <= shown.begin + 1)
-    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.3f} s.", options.from_s,
-                                    options.to_s.value_or(end_s), end_s));
+    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.3f} s.",
+                                    options.from_s, options.to_s.value_or(end_s), end_s));
 
   const WorkDirectory work;
   write_data(recording, signals, shown, from_s, to_s, work.path() / "data.csv");
@@ -203,9 +210,11 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
   stream.close();
   run_gnuplot(work.path() / "figure.gnuplot");
   std::error_code error;
-  std::filesystem::copy_file(work.path() / "figure.png", picture, std::filesystem::copy_options::overwrite_existing, error);
+  std::filesystem::copy_file(work.path() / "figure.png", picture, std::filesystem::copy_options::overwrite_existing,
+                             error);
   if (error)
-    throw device::Error(fmt::format("{} cannot be written: {}. Give another place with --out.", picture.string(), error.message()));
+    throw device::Error(
+        fmt::format("{} cannot be written: {}. Give another place with --out.", picture.string(), error.message()));
 }
 
 }  // namespace inkwell::recording

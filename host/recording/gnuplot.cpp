@@ -39,8 +39,9 @@ std::vector<std::string> band_columns(const std::string& name) {
 }
 
 std::string figure_head(const std::string& data_file, int width, int height) {
-  return fmt::format("data = {}\nset terminal pngcairo size {},{} font 'Inter,20' background '#ffffff' linewidth 1.4\n{}",
-                     gnuplot_text(data_file), width, height, style);
+  return fmt::format(
+      "data = {}\nset terminal pngcairo size {},{} font 'Inter,20' background '#ffffff' linewidth 1.4\n{}",
+      gnuplot_text(data_file), width, height, style);
 }
 
 std::string figure_titles(std::string_view title, std::string_view subtitle, int height) {
@@ -54,11 +55,13 @@ std::string figure_titles(std::string_view title, std::string_view subtitle, int
 std::string plot_command(const std::vector<Curve>& curves) {
   std::vector<std::string> parts;
   for (const auto& curve : curves)
-    parts.push_back(fmt::format("data using 'time_s':'{0}_minimum':'{0}_maximum' with filledcurves fillcolor rgb {1} notitle",
-                                curve.name, curve.style.substr(0, curve.style.find(' '))));
+    parts.push_back(
+        fmt::format("data using 'time_s':'{0}_minimum':'{0}_maximum' with filledcurves fillcolor rgb {1} notitle",
+                    curve.name, curve.style.substr(0, curve.style.find(' '))));
   for (const auto& curve : curves)
-    parts.push_back(fmt::format("data using 'time_s':'{0}_mean' with lines linewidth 2 linecolor rgb {1} {2}", curve.name,
-                                curve.style, curve.title.empty() ? "notitle" : "title " + gnuplot_text(curve.title)));
+    parts.push_back(fmt::format("data using 'time_s':'{0}_mean' with lines linewidth 2 linecolor rgb {1} {2}",
+                                curve.name, curve.style,
+                                curve.title.empty() ? "notitle" : "title " + gnuplot_text(curve.title)));
   return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
 }
 
@@ -79,7 +82,8 @@ void run_gnuplot(const std::filesystem::path& script) {
   while (const std::size_t length = std::fread(chunk.data(), 1, chunk.size(), pipe)) said.append(chunk.data(), length);
   const int status = pclose(pipe);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw device::Error(fmt::format("The figure was not drawn. Install gnuplot-nox if it is missing. The shell said: {}", said));
+    throw device::Error(
+        fmt::format("The figure was not drawn. Install gnuplot-nox if it is missing. The shell said: {}", said));
 }
 
 }  // namespace inkwell::recording

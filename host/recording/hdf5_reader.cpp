@@ -56,7 +56,8 @@ class Hdf5Reader {
     for (const auto& name : names("/parameters")) {
       const auto parameter = protocol::find_parameter(name);
       if (!parameter) {
-        recording_.remarks.push_back(fmt::format("The parameter {} of {} is not known here; it was left out.", name, name_));
+        recording_.remarks.push_back(
+            fmt::format("The parameter {} of {} is not known here; it was left out.", name, name_));
         continue;
       }
       read_scalar("/parameters/" + name, H5T_NATIVE_FLOAT, &about.parameters[*parameter]);
@@ -65,7 +66,8 @@ class Hdf5Reader {
       if (const auto signal = protocol::find_signal(name)) {
         about.signals.push_back(*signal);
       } else {
-        recording_.remarks.push_back(fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
+        recording_.remarks.push_back(
+            fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
       }
     }
     // HDF5 gives names in alphabetical order; in the table's order those that belong together stand together.

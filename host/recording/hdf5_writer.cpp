@@ -111,7 +111,8 @@ class Hdf5Writer final : public Writer {
     const Handle parameters = group(file.id(), "parameters");
     for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
       const auto& row = protocol::parameter_table[i];
-      const Handle value = scalar(parameters.id(), std::string(row.name), H5T_NATIVE_FLOAT, &about.parameters.values[i]);
+      const Handle value =
+          scalar(parameters.id(), std::string(row.name), H5T_NATIVE_FLOAT, &about.parameters.values[i]);
       write_attribute(value.id(), "unit", std::string(row.unit));
       write_attribute(value.id(), "help", std::string(row.help));
     }
@@ -142,7 +143,8 @@ class Hdf5Writer final : public Writer {
     };
     period_ = open("/period");
     time_ = open("/time_s");
-    for (const auto signal : about.signals) signals_.push_back(open(fmt::format("/signals/{}", protocol::info(signal).name)));
+    for (const auto signal : about.signals)
+      signals_.push_back(open(fmt::format("/signals/{}", protocol::info(signal).name)));
     mark_period_ = open("/marks/period");
     mark_text_ = open("/marks/text");
     complete_ = open("/complete");
@@ -172,7 +174,8 @@ class Hdf5Writer final : public Writer {
   }
   void close() {
     signals_.clear();
-    for (Handle* handle : {&period_, &time_, &mark_period_, &mark_text_, &complete_, &samples_, &file_}) *handle = Handle();
+    for (Handle* handle : {&period_, &time_, &mark_period_, &mark_text_, &complete_, &samples_, &file_})
+      *handle = Handle();
   }
   [[noreturn]] void fail() const {
     std::error_code error;

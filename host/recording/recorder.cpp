@@ -19,7 +19,9 @@ constexpr std::size_t queue_bytes_maximum = 64u << 20;
 /// Half of what a crash may cost.
 constexpr auto flush_interval = 500ms;
 
-std::size_t size_of(const device::ScopeSamples& samples) { return samples.values.size() * sizeof(float) + sizeof samples; }
+std::size_t size_of(const device::ScopeSamples& samples) {
+  return samples.values.size() * sizeof(float) + sizeof samples;
+}
 
 }  // namespace
 
@@ -49,7 +51,8 @@ struct Recorder::Implementation {
         if (last) writer->finish();
       } catch (const device::Error& problem) {
         lock.lock();
-        status.error = fmt::format("{} The recording holds everything up to the last half second before.", problem.what());
+        status.error =
+            fmt::format("{} The recording holds everything up to the last half second before.", problem.what());
         status.running = false;
         return;
       }
@@ -96,10 +99,12 @@ Recorder::~Recorder() { stop(); }
 void Recorder::push(const device::ScopeSamples& samples) {
   auto& self = *implementation_;
   const std::lock_guard lock(self.mutex);
-  if (!self.status.running || self.stopping || samples.signals != self.information.signals || samples.count == 0) return;
+  if (!self.status.running || self.stopping || samples.signals != self.information.signals || samples.count == 0)
+    return;
   const auto step = static_cast<std::int32_t>(samples.first_period - self.newest_period);
   if (self.first_period && step <= 0) {
-    self.status.error = "The board was restarted, so its time began anew. The recording ends with the last sample before.";
+    self.status.error =
+        "The board was restarted, so its time began anew. The recording ends with the last sample before.";
     self.stopping = true;
     self.wake.notify_one();
     return;

@@ -31,7 +31,8 @@ const std::vector<float>& Recording::column(protocol::Signal signal) const {
   if (found != recorded.end()) return columns[static_cast<std::size_t>(found - recorded.begin())];
   std::vector<std::string_view> names;
   for (const auto each : recorded) names.push_back(info(each).name);
-  throw device::Error(fmt::format("The recording does not hold {}. It holds {}.", info(signal).name, fmt::join(names, ", ")));
+  throw device::Error(
+      fmt::format("The recording does not hold {}. It holds {}.", info(signal).name, fmt::join(names, ", ")));
 }
 
 namespace {
@@ -65,7 +66,8 @@ void check_can_be_created(const std::filesystem::path& file) {
     throw device::Error(fmt::format("{} exists. Give the recording another name, or remove that file.", file.string()));
   const auto folder = std::filesystem::absolute(file).parent_path();
   if (!std::filesystem::is_directory(folder))
-    throw device::Error(fmt::format("The folder {} does not exist. Make it, or choose another place.", folder.string()));
+    throw device::Error(
+        fmt::format("The folder {} does not exist. Make it, or choose another place.", folder.string()));
 }
 
 std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information) {

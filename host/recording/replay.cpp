@@ -71,7 +71,8 @@ std::size_t Replay::present_sample() const {
 }
 
 std::optional<protocol::PoseReport> Replay::pose() const {
-  if (!column_of(Signal::joint_1_rad) || !column_of(Signal::joint_2_rad) || !column_of(Signal::joint_3_rad)) return std::nullopt;
+  if (!column_of(Signal::joint_1_rad) || !column_of(Signal::joint_2_rad) || !column_of(Signal::joint_3_rad))
+    return std::nullopt;
   const std::size_t present = present_sample();
   const auto value = [&](Signal signal) {
     const auto column = column_of(signal);
@@ -87,7 +88,8 @@ std::optional<protocol::PoseReport> Replay::pose() const {
   vector(pose.position_m, Signal::position_x_m);
   vector(pose.gimbal_rad, Signal::gimbal_1_rad);
   vector(pose.force_N, Signal::force_x_N);
-  const bool pushes = std::any_of(std::begin(pose.force_N), std::end(pose.force_N), [](float force_N) { return force_N != 0.0f; });
+  const bool pushes =
+      std::any_of(std::begin(pose.force_N), std::end(pose.force_N), [](float force_N) { return force_N != 0.0f; });
   pose.state = pushes ? protocol::State::active : protocol::State::ready;
   pose.fault = protocol::Fault::none;
   const float supply_dV = std::clamp(10.0f * value(Signal::supply_V), 0.0f, 255.0f);

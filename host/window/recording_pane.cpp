@@ -17,7 +17,8 @@ namespace {
 using recording::RecorderStatus;
 
 std::string name_from_time() {
-  return fmt::format("inkwell-{:%Y%m%d-%H%M%S}.h5", fmt::localtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  return fmt::format("inkwell-{:%Y%m%d-%H%M%S}.h5",
+                     fmt::localtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
 std::string size_text(std::uint64_t bytes) {
@@ -47,7 +48,8 @@ std::vector<std::string> describe_changes(const protocol::ParameterSet& before, 
 
 std::string time_left(const RecorderStatus& status) {
   if (status.duration_s < 1 || status.bytes == 0) return {};
-  const double left_s = static_cast<double>(status.free_bytes) / (static_cast<double>(status.bytes) / status.duration_s);
+  const double left_s =
+      static_cast<double>(status.free_bytes) / (static_cast<double>(status.bytes) / status.duration_s);
   if (left_s < 120) return fmt::format("room for {:.0f} s", left_s);
   if (left_s < 7200) return fmt::format("room for {:.0f} min", left_s / 60);
   return left_s < 48 * 3600.0 ? fmt::format("room for {:.0f} h", left_s / 3600) : "room for days";
@@ -98,7 +100,9 @@ void RecordingPane::follow(const DeviceView& view, const std::vector<device::Sco
     last_status_->error = "The device went away. The recording holds everything up to then.";
 }
 
-std::optional<std::filesystem::path> RecordingPane::take_replay_wish() { return std::exchange(replay_wish_, std::nullopt); }
+std::optional<std::filesystem::path> RecordingPane::take_replay_wish() {
+  return std::exchange(replay_wish_, std::nullopt);
+}
 
 void RecordingPane::draw(ImVec2 place, ImVec2 size, const Style& style, const DeviceView& view, bool scope_is_free,
                          const std::vector<protocol::Signal>& scope_signals) {
@@ -118,20 +122,23 @@ void RecordingPane::draw_choice(const Style& style, const DeviceView& view, bool
                                 const std::vector<protocol::Signal>& scope_signals) {
   const Palette& palette = *style.palette;
   const bool connected = view.connected() && view.status.information && view.parameters;
-  wrapped_text(palette.text_quiet, !connected       ? "A recording needs a device. Plug one in."
-                                   : !scope_is_free ? "A guide uses the scope. Finish or cancel it first."
-                                                    : "Every control period, with the parameters, into HDF5 (.h5) or CSV.");
+  wrapped_text(palette.text_quiet, !connected ? "A recording needs a device. Plug one in."
+                                   : !scope_is_free
+                                       ? "A guide uses the scope. Finish or cancel it first."
+                                       : "Every control period, with the parameters, into HDF5 (.h5) or CSV.");
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##file", "named after the time, in this folder", &file_);
   help_on_hover("File", fmt::format("Ends in .h5 or .csv, which chooses the format. This folder is {}.",
                                     std::filesystem::current_path().string()), style);
-  static constexpr const char* choices[] = {"What replay and plots need", "The whole signal path", "What the scope shows"};
+  static constexpr const char* choices[] = {"What replay and plots need", "The whole signal path",
+                                            "What the scope shows"};
   ImGui::SetNextItemWidth(-1);
   int chosen = static_cast<int>(choice_);
   if (ImGui::Combo("##signals", &chosen, choices, 3)) choice_ = static_cast<Choice>(chosen);
   help_on_hover("Signals", "What the scope shows is recorded with them in any case.", style);
   ImGui::BeginDisabled(!connected || !scope_is_free);
-  if (coloured_button("Start recording", palette.danger, palette.on_danger, {-1, style.points(34)})) start(view, scope_signals);
+  if (coloured_button("Start recording", palette.danger, palette.on_danger, {-1, style.points(34)}))
+    start(view, scope_signals);
   ImGui::EndDisabled();
   if (!start_error_.empty()) wrapped_text(palette.danger, start_error_);
   if (!last_status_) return;
@@ -151,7 +158,8 @@ void RecordingPane::draw_progress(const Style& style) {
   ImGui::Dummy({0, style.points(4)});
   const float button = style.points(64);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
-  const bool entered = ImGui::InputTextWithHint("##mark", "what happens now", &mark_text_, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered =
+      ImGui::InputTextWithHint("##mark", "what happens now", &mark_text_, ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
   if (ImGui::Button("Mark", {button, 0}) || entered) {
     recorder_->mark(mark_text_.empty() ? fmt::format("mark {}", recorder_->status().marks + 1) : mark_text_);
@@ -174,7 +182,8 @@ void RecordingPane::draw_numbers(const Style& style, const RecorderStatus& statu
 
 void RecordingPane::draw_replay(const Style& style) {
   ImGui::SetNextItemWidth(-1);
-  const bool entered = ImGui::InputTextWithHint("##replay", "a recording, .h5 or .csv", &replay_file_, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered = ImGui::InputTextWithHint("##replay", "a recording, .h5 or .csv", &replay_file_,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::BeginDisabled(replay_file_.empty());
   if (ImGui::Button("Open", {-1, style.points(30)}) || (entered && !replay_file_.empty())) {
     replay_error_.clear();

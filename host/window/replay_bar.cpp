@@ -46,7 +46,8 @@ void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePanel& 
   if (right - corner.x > style.points(40)) draw_track(corner, {right - corner.x, ImGui::GetFrameHeight()}, style);
   ImGui::SetCursorScreenPos({right + gap, corner.y});
   ImGui::AlignTextToFramePadding();
-  right_text(style.palette->text_quiet, fmt::format("{:.2f} of {:.2f} s", replay_->position_s(), replay_->duration_s()), time_width);
+  right_text(style.palette->text_quiet, fmt::format("{:.2f} of {:.2f} s", replay_->position_s(), replay_->duration_s()),
+             time_width);
   ImGui::SetCursorScreenPos({right + gap + time_width + gap, corner.y});
   const bool is_to_be_closed = ImGui::Button("Close", {close_width, 0});
   help_on_hover("Close", "Back to the device.", style);
@@ -79,7 +80,8 @@ void ReplayBar::draw_controls(const Style& style) {
   if (recording.information.simulation) name += " (simulation)";
   if (!recording.complete) name += ", end missing";
   text(style.fonts.strong, style.palette->text, name);
-  if (!recording.remarks.empty()) help_on_hover("Not understood", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
+  if (!recording.remarks.empty())
+    help_on_hover("Not understood", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
 }
 
 /// The whole recording as a line with its marks; a click or drag goes there.
@@ -101,14 +103,15 @@ void ReplayBar::draw_track(ImVec2 corner, ImVec2 size, const Style& style) {
   float nearest_pixels = style.points(6);
   for (const auto& mark : recording.marks) {
     const float at = x_of(recording.elapsed_s_at(mark.period));
-    list.AddRectFilled({at - style.points(1), middle - style.points(8)}, {at + style.points(1), middle + style.points(8)},
-                       packed(palette.caution));
+    list.AddRectFilled({at - style.points(1), middle - style.points(8)},
+                       {at + style.points(1), middle + style.points(8)}, packed(palette.caution));
     if (!ImGui::IsItemHovered() || std::abs(mouse - at) >= nearest_pixels) continue;
     nearest = &mark;
     nearest_pixels = std::abs(mouse - at);
   }
   list.AddCircleFilled({x, middle}, style.points(7), packed(palette.text));
-  if (nearest != nullptr) help_on_hover(fmt::format("{:.3f} s", recording.elapsed_s_at(nearest->period)), nearest->text, style);
+  if (nearest != nullptr)
+    help_on_hover(fmt::format("{:.3f} s", recording.elapsed_s_at(nearest->period)), nearest->text, style);
 }
 
 }  // namespace inkwell::window

@@ -49,7 +49,8 @@ TEST_CASE("a recording holds every control period, and says where it comes from"
   CHECK(recording.information.signals == recording::standard_signals());
   // The stylus rests in the inkwell: the joints do not move, the measured currents are noise of the converter.
   const auto& joint_rad = recording.column(Signal::joint_2_rad);
-  CHECK(joint_rad.back() == doctest::Approx(recording.information.parameters[protocol::Parameter::inkwell_joint_2_rad]).epsilon(0.02));
+  CHECK(joint_rad.back() ==
+        doctest::Approx(recording.information.parameters[protocol::Parameter::inkwell_joint_2_rad]).epsilon(0.02));
   bool current_varies = false;
   for (const float current_A : recording.column(Signal::current_1_A)) {
     REQUIRE(std::abs(current_A) < 0.05f);
@@ -68,7 +69,9 @@ TEST_CASE("a recording holds every control period, and says where it comes from"
   }
   SUBCASE("plot draws it") {
     const auto picture = directory.file("a.png");
-    REQUIRE(run_program("inkwell", {"plot", file, "--signals", "current_1_A,joint_2_rad", "--from", "0.2", "--to", "0.4"}).exit_code == 0);
+    REQUIRE(
+        run_program("inkwell", {"plot", file, "--signals", "current_1_A,joint_2_rad", "--from", "0.2", "--to", "0.4"})
+            .exit_code == 0);
     CHECK(std::filesystem::file_size(picture) > 10'000);
     CHECK(read_file(picture).substr(1, 3) == "PNG");
   }
@@ -76,8 +79,9 @@ TEST_CASE("a recording holds every control period, and says where it comes from"
     const auto damaged = directory.file("damaged.h5");
     std::ofstream(damaged, std::ios::binary) << read_file(file).substr(0, 700);
     for (const char* command : {"replay", "plot"}) {
-      const auto refused = run_program("inkwell", command == std::string("replay") ? std::vector<std::string>{command, damaged, "--json"}
-                                                                                  : std::vector<std::string>{command, damaged});
+      const auto refused =
+          run_program("inkwell", command == std::string("replay") ? std::vector<std::string>{command, damaged, "--json"}
+                                                                  : std::vector<std::string>{command, damaged});
       CHECK(refused.exit_code == 1);
       CHECK(refused.err.find("damaged.h5 is damaged") != std::string::npos);
     }

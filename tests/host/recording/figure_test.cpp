@@ -41,7 +41,8 @@ std::uint32_t png_size(const std::filesystem::path& file, std::size_t at) {
   std::array<unsigned char, 24> head{};
   stream.read(reinterpret_cast<char*>(head.data()), head.size());
   REQUIRE(head[1] == 'P');
-  return (std::uint32_t{head[at]} << 24) | (std::uint32_t{head[at + 1]} << 16) | (std::uint32_t{head[at + 2]} << 8) | head[at + 3];
+  return (std::uint32_t{head[at]} << 24) | (std::uint32_t{head[at + 1]} << 16) | (std::uint32_t{head[at + 2]} << 8) |
+         head[at + 3];
 }
 
 std::string error_of(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture) {
@@ -83,9 +84,10 @@ TEST_CASE("a figure grows with its panes and shows what is asked for") {
 TEST_CASE("what cannot be drawn is said in a sentence") {
   const Directory directory;
   const auto recording = wave(3000);
-  CHECK(error_of(recording, {.signals = {Signal::torque_1_Nm}}, directory / "a.png").find("position_x_m, force_N, duty_1") !=
+  CHECK(error_of(recording, {.signals = {Signal::torque_1_Nm}}, directory / "a.png")
+            .find("position_x_m, force_N, duty_1") != std::string::npos);
+  CHECK(error_of(recording, {.signals = {}, .from_s = 5}, directory / "a.png").find("takes 0.150 s") !=
         std::string::npos);
-  CHECK(error_of(recording, {.signals = {}, .from_s = 5}, directory / "a.png").find("takes 0.150 s") != std::string::npos);
   CHECK(error_of(recording, {.signals = {}, .from_s = 0.1, .to_s = 0.05}, directory / "a.png").find("no samples") !=
         std::string::npos);
   CHECK(error_of(recording, {}, directory / "nowhere" / "a.png").find("--out") != std::string::npos);

@@ -14,7 +14,8 @@ using protocol::Signal;
 namespace {
 
 /// Every value is the sample's control period, plus a thousandth for each place in the list of signals.
-Recording recorded(std::vector<Signal> signals, std::initializer_list<std::pair<std::uint32_t, std::uint32_t>> stretches) {
+Recording recorded(std::vector<Signal> signals,
+                   std::initializer_list<std::pair<std::uint32_t, std::uint32_t>> stretches) {
   Recording recording;
   recording.information.signals = std::move(signals);
   recording.columns.resize(recording.information.signals.size());

@@ -29,7 +29,8 @@ class Recorder {
   ~Recorder();
 
   /// Samples of the signals that the recording was opened with; others are passed over. A board that was restarted
-  /// ends the recording. Never waits: if the disk falls behind by more than 64 MB, samples are dropped and counted as lost.
+  /// ends the recording. Never waits: if the disk falls behind by more than 64 MB, samples are dropped and counted as
+  /// lost.
   void push(const device::ScopeSamples& samples);
   /// Marks the newest sample. Without one yet there is nothing to mark.
   void mark(const std::string& text);
