@@ -11,8 +11,8 @@ namespace {
 
 constexpr int samples_when_smooth = 4;
 constexpr float floor_radius_m = 0.8f;
-constexpr float floor_grid_m = 0.05f;
-constexpr float wall_grid_m = 0.02f;
+constexpr float floor_grid_m = 0.1f;
+constexpr float wall_grid_m = 0.04f;
 
 // A wall and what of it has to be drawn, in view space.
 struct WallPicture {
@@ -82,7 +82,7 @@ void Renderer::draw_floor(const SceneModel& scene, const SceneLook& look) {
     const float distance = std::hypot(static_cast<float>(i), static_cast<float>(j)) / static_cast<float>(count);
     return glm::vec4{glm::vec3{colour}, 0.85f * std::clamp(1.15f * (1.0f - distance), 0.0f, 1.0f)};
   };
-  constexpr int step = 4;  // cells for one piece of line
+  constexpr int step = 2;  // cells for one piece of line
   for (int i = -count; i <= count; ++i) {
     for (int j = -count; j < count; j += step) {
       if (std::hypot(static_cast<float>(i), static_cast<float>(std::abs(j + step / 2))) > static_cast<float>(count))

@@ -1,7 +1,9 @@
 #include "status_bar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
+#include <utility>
 
 namespace inkwell::window {
 
@@ -9,6 +11,8 @@ using device::Connection;
 using protocol::State;
 
 namespace {
+
+constexpr float buttons_points = 398.0f;  // what the buttons at the right end take
 
 const char* title_of(Connection connection) {
   switch (connection) {
@@ -35,7 +39,7 @@ Colour colour_of(State state, const Palette& palette) {
 }
 
 // A number with its caption above, in a column of fixed width.
-void gauge(const char* caption, const std::string& value, Colour colour, const char* help, float width,
+void gauge(const char* caption, const std::string& value, Colour colour, const std::string& help, float width,
            const Style& style) {
   ImGui::BeginGroup();
   text(style.fonts.caption, style.palette->text_quiet, caption);
@@ -104,6 +108,53 @@ void StatusBar::draw_device(const Style& style, DeviceDesk& desk) {
   draw_device_list(style, desk);
 }
 
+void StatusBar::draw_gauges(float limit_x, const Style& style, const DeviceView& view) const {
+  const Palette& palette = *style.palette;
+  const bool alive = view.connected() && view.pose.has_value();
+  const auto show = [&](const char* caption, const std::string& value, Colour colour, const std::string& help,
+                        float width_points) {
+    const float width = style.points(width_points);
+    if (ImGui::GetCursorScreenPos().x + width < limit_x)
+      gauge(caption, alive ? value : "—", alive ? colour : palette.text_quiet, help, width, style);
+  };
+  const protocol::PoseReport pose = view.pose.value_or(protocol::PoseReport{});
+  const protocol::StateInfo& state = protocol::info(pose.state);
+  show("State", std::string(state.name), colour_of(pose.state, palette),
+       alive ? std::string(state.meaning) : "No device is connected.", 96);
+  const double load_percent = 100.0 * pose.servo_load / 255.0;
+  show("Servo load", fmt::format("{:.0f} %", load_percent), load_percent > 80 ? palette.caution : palette.text,
+       "The longest control interrupt of the last millisecond, as a part of its period.", 74);
+  show("Supply", fmt::format("{:.1f} V", pose.supply_dV / 10.0), palette.text,
+       "Voltage of the bridges' supply, 18 V nominal.", 64);
+  const device::SessionStatus& status = view.status;
+  show("Poses", fmt::format("{:.0f} Hz", status.pose_rate_Hz), palette.text,
+       "Pose reports received in the last second; the device sends 1000.", 72);
+  const std::uint64_t lost = status.poses_lost + status.scope_samples_lost;
+  show("Lost", fmt::format("{}", lost), lost > 0 ? palette.caution : palette.text,
+       fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost, status.scope_samples_lost,
+                   status.scope_samples_received + status.scope_samples_lost),
+       56);
+}
+
+void StatusBar::draw_switches(float left_x, float right_x, float y, const Style& style, std::uint8_t switches) const {
+  static constexpr std::array<std::pair<const char*, protocol::Switch>, 3> all{
+      {{"1", protocol::Switch::button_1}, {"2", protocol::Switch::button_2}, {"inkwell", protocol::Switch::inkwell}}};
+  if (right_x - left_x < style.points(132)) return;
+  const Palette& palette = *style.palette;
+  ImFont* font = style.fonts.caption;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  float right = right_x - style.points(14);
+  for (auto each = all.rbegin(); each != all.rend(); ++each) {
+    right -= font->CalcTextSizeA(font->FontSize, 1e4f, 0, each->first).x;
+    const bool on = (switches & static_cast<std::uint8_t>(each->second)) != 0;
+    list.AddText(font, font->FontSize, {right, y + style.points(11)}, packed(on ? palette.text : palette.text_quiet),
+                 each->first);
+    list.AddCircleFilled({right - style.points(8), y + style.points(18)}, style.points(3.2f),
+                         packed(on ? palette.accent : palette.raised_active));
+    right -= style.points(24);
+  }
+}
+
 StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk, bool scope_is_shown) {
   const Palette& palette = *style.palette;
   const DeviceView& view = desk.view();
@@ -115,82 +166,41 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   ground.PushClipRectFullScreen();
   ground.AddLine({place.x, place.y + size.y - 1}, {place.x + size.x, place.y + size.y - 1}, packed(palette.line));
   ground.PopClipRect();
-  draw_device(style, desk);
-  ImGui::SameLine(0, style.points(14));
-
-  const bool alive = view.connected() && view.pose.has_value();
-  const auto& state = protocol::info(view.state());
-  gauge("State", alive ? std::string(state.name) : "—", alive ? colour_of(view.state(), palette) : palette.text_quiet,
-        alive ? state.meaning.data() : "No device is connected.", style.points(96), style);
-  const auto& status = view.status;
-  const double load = alive ? view.pose->servo_load / 2.55 : 0.0;
-  gauge("Servo load", alive ? fmt::format("{:.0f} %", load) : "—", load > 80 ? palette.caution : palette.text,
-        "The longest control interrupt of the last millisecond, as a part of its period.", style.points(74), style);
-  gauge("Supply", alive ? fmt::format("{:.1f} V", view.pose->supply_dV / 10.0) : "—", palette.text,
-        "Voltage of the bridges' supply, 18 V nominal.", style.points(64), style);
-  gauge("Poses", alive ? fmt::format("{:.0f} Hz", status.pose_rate_Hz) : "—", palette.text,
-        "Pose reports received in the last second; the device sends 1000.", style.points(72), style);
-  const std::uint64_t lost = status.poses_lost + status.scope_samples_lost;
-  gauge("Lost", alive ? fmt::format("{}", lost) : "—", lost > 0 ? palette.caution : palette.text,
-        fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost,
-                    status.scope_samples_lost, status.scope_samples_received + status.scope_samples_lost)
-            .c_str(),
-        style.points(56), style);
 
   const float height = style.points(38);
-  const float stop_width = style.points(118);
-  const float force_width = style.points(116);
   const float gap = style.points(8);
-  const auto switches = alive ? view.pose->switches : std::uint8_t{0};
-  const auto is_pressed = [switches](protocol::Switch which) {
-    return (switches & static_cast<std::uint8_t>(which)) != 0;
-  };
-  float x = place.x + size.x - style.points(12) - stop_width;
   const float y = place.y + style.points(8);
-  ImGui::SetCursorScreenPos({x, y});
+  const float buttons_left = place.x + size.x - style.points(buttons_points);
+  const bool alive = view.connected() && view.pose.has_value();
+  draw_device(style, desk);
+  ImGui::SameLine(0, style.points(14));
+  draw_gauges(buttons_left, style, view);
+  if (alive) draw_switches(ImGui::GetCursorScreenPos().x, buttons_left, y, style, view.pose->switches);
+
+  float x = place.x + size.x - style.points(12);
+  const auto make_room = [&](float width) {
+    x -= width;
+    ImGui::SetCursorScreenPos({x, y});
+    x -= gap;
+    return ImVec2{width, height};
+  };
   ImGui::PushFont(style.fonts.strong);
-  if (coloured_button("STOP", palette.danger, palette.on_danger, {stop_width, height})) outcome.stop = true;
+  outcome.stop = coloured_button("STOP", palette.danger, palette.on_danger, make_room(style.points(118)));
   ImGui::PopFont();
   help_on_hover("Stop", "Switches the force off at once. The space bar does the same, whatever has the focus.", style);
 
-  x -= force_width + gap;
-  ImGui::SetCursorScreenPos({x, y});
   const bool active = alive && view.state() == State::active;
+  const ImVec2 force_size = make_room(style.points(116));
   ImGui::BeginDisabled(!alive || (view.state() != State::ready && !active));
-  if (active ? coloured_button("Force is on", palette.good, palette.on_danger, {force_width, height})
-             : ImGui::Button("Switch force on", {force_width, height})) {
+  if (active ? coloured_button("Force is on", palette.good, palette.on_danger, force_size)
+             : ImGui::Button("Switch force on", force_size)) {
     outcome.switch_force_on = !active;
     outcome.stop = active;
   }
   ImGui::EndDisabled();
   help_on_hover("Force", "While it is on the walls push back. It rises gently and goes off at once.", style);
-
-  const float small = style.points(60);
-  x -= small + gap;
-  ImGui::SetCursorScreenPos({x, y});
-  if (toggle_button("Scope", scope_is_shown, style, {small, height})) outcome.toggle_scope = true;
-  x -= small + gap;
-  ImGui::SetCursorScreenPos({x, y});
-  if (ImGui::Button(style.palette == &dark_palette ? "Light" : "Dark", {small, height})) outcome.toggle_theme = true;
-
-  // The stylus' two buttons and the inkwell, as the board feels them.
-  if (alive) {
-    const char* names[] = {"1", "2", "inkwell"};
-    const protocol::Switch which[] = {protocol::Switch::button_1, protocol::Switch::button_2,
-                                      protocol::Switch::inkwell};
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    float right = x - style.points(14);
-    for (int i = 2; i >= 0; --i) {
-      const ImVec2 taken = style.fonts.caption->CalcTextSizeA(style.fonts.caption->FontSize, 1e4f, 0, names[i]);
-      right -= taken.x;
-      const bool on = is_pressed(which[i]);
-      list.AddText(style.fonts.caption, style.fonts.caption->FontSize, {right, y + style.points(11)},
-                   packed(on ? palette.text : palette.text_quiet), names[i]);
-      list.AddCircleFilled({right - style.points(8), y + style.points(18)}, style.points(3.2f),
-                           packed(on ? palette.accent : palette.raised_active));
-      right -= style.points(24);
-    }
-  }
+  outcome.toggle_scope = toggle_button("Scope", scope_is_shown, style, make_room(style.points(60)));
+  outcome.toggle_theme = ImGui::Button(style.palette == &dark_palette ? "Light" : "Dark", make_room(style.points(60)));
   end_pane();
   return outcome;
 }

@@ -24,6 +24,10 @@ class StatusBar {
  private:
   void draw_device(const Style& style, DeviceDesk& desk);
   void draw_device_list(const Style& style, DeviceDesk& desk);
+  /// As many as there is room for left of `limit_x`.
+  void draw_gauges(float limit_x, const Style& style, const DeviceView& view) const;
+  /// The stylus' two buttons and the inkwell, as the board feels them.
+  void draw_switches(float left_x, float right_x, float y, const Style& style, std::uint8_t switches) const;
 };
 
 /// Draws the fault with its cause and remedy; true when "Clear fault" was pressed.

@@ -126,6 +126,7 @@ void run(const WindowOptions& options) {
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     if (is_last) write_screenshot(options.screenshot, width, height);
+    if (options.frames_report) glFinish();  // so that the time is that of drawing, not that of asking for it
     const double drawn_s = glfwGetTime();
     glfwSwapBuffers(display.handle());
     if (is_lively) {
