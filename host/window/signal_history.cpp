@@ -14,8 +14,11 @@ constexpr int bits_per_level = 4;
 constexpr std::size_t branching = std::size_t{1} << bits_per_level;
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 
-// fmin and fmax pass over a NaN, which is how lost samples are passed over.
-Extremes merge(Extremes a, Extremes b) { return {std::fmin(a.minimum, b.minimum), std::fmax(a.maximum, b.maximum)}; }
+// A NaN, which stands for lost samples, is passed over: a comparison with it is false. Written out because it runs
+// for every sample of every pane in every frame, where fmin and fmax would be calls.
+float smaller(float a, float b) { return b < a || a != a ? b : a; }
+float larger(float a, float b) { return b > a || a != a ? b : a; }
+Extremes merge(Extremes a, Extremes b) { return {smaller(a.minimum, b.minimum), larger(a.maximum, b.maximum)}; }
 
 }  // namespace
 
@@ -51,19 +54,26 @@ Extremes SignalSeries::extremes(std::uint64_t first, std::uint64_t last) const {
   first = std::max(first, begin());
   last = std::min(last, end_);
   while (first < last) {
+    // Up the levels as far as a whole block starts here and fits.
     std::size_t level = 0;
-    std::uint64_t size = 1;
-    while (level < levels_.size() && first % (size * branching) == 0 && first + size * branching <= last) {
-      size *= branching;
+    int shift = 0;
+    while (level < levels_.size() && (first & ((std::uint64_t{branching} << shift) - 1)) == 0 &&
+           first + (std::uint64_t{branching} << shift) <= last) {
+      shift += bits_per_level;
       ++level;
     }
     if (level == 0) {
-      const float sample = (*this)[first];
-      result = merge(result, {sample, sample});
-    } else {
-      result = merge(result, levels_[level - 1].blocks[(first / size) & levels_[level - 1].mask]);
+      // Samples one by one, to the start of the next block at most.
+      const std::uint64_t stop = std::min(last, (first | (branching - 1)) + 1);
+      for (; first < stop; ++first) {
+        const float sample = (*this)[first];
+        result = merge(result, {sample, sample});
+      }
+      continue;
     }
-    first += size;
+    const Level& blocks = levels_[level - 1];
+    result = merge(result, blocks.blocks[(first >> shift) & blocks.mask]);
+    first += std::uint64_t{1} << shift;
   }
   return result;
 }
