@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <temporary_directory.hpp>
+
 namespace inkwell::tests {
 
 struct ProgramResult {
@@ -19,19 +21,5 @@ ProgramResult run_program(const std::string& program, const std::vector<std::str
 
 /// The directory of this executable: build/pc.
 std::string build_directory();
-
-/// A new empty directory that goes away with this object.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory();
-  ~TemporaryDirectory();
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 }  // namespace inkwell::tests

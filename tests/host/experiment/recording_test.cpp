@@ -1,27 +1,18 @@
 #include <doctest/doctest.h>
 
-#include <stdlib.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <experiment/figures.hpp>
 #include <experiment/recording.hpp>
+#include <temporary_directory.hpp>
 
 using namespace inkwell;
 using namespace inkwell::experiment;
+using inkwell::tests::TemporaryDirectory;
 
 namespace {
-
-struct TemporaryDirectory {
-  TemporaryDirectory() {
-    char pattern[] = "/tmp/inkwell-recording-XXXXXX";
-    path = mkdtemp(pattern);
-  }
-  ~TemporaryDirectory() { std::filesystem::remove_all(path); }
-  std::filesystem::path path;
-};
 
 std::string read_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -57,8 +48,8 @@ device::Trace trace_of(std::uint64_t first_period, std::size_t rows) {
 TEST_CASE("the columns of a recording are those that users read, in that order") {
   const auto trace = trace_of(10, 3);
   const TemporaryDirectory directory;
-  write_csv(make_recording(scope_of(2, 11), &trace), directory.path / "recording.csv");
-  const std::string text = read_file(directory.path / "recording.csv");
+  write_csv(make_recording(scope_of(2, 11), &trace), directory / "recording.csv");
+  const std::string text = read_file(directory / "recording.csv");
   CHECK(text.substr(0, text.find('\n')) ==
         "time_s,encoder_1_counts,encoder_2_counts,encoder_3_counts,joint_1_rad,joint_2_rad,joint_3_rad,"
         "position_x_m,position_y_m,position_z_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
@@ -122,9 +113,9 @@ TEST_CASE("gnuplot draws the four figures") {
   options.arm = "an arm's name with 'quotes'";
   options.parameters = protocol::default_parameters();
   options.shown = {0, 0.05};
-  draw_figures(make_recording(scope_of(1000, 0), nullptr), options, directory.path);
+  draw_figures(make_recording(scope_of(1000, 0), nullptr), options, directory.path());
   for (int number = 11; number <= 14; ++number) {
-    const auto file = directory.path / ("figure-" + std::to_string(number) + ".png");
+    const auto file = directory / ("figure-" + std::to_string(number) + ".png");
     REQUIRE(std::filesystem::exists(file));
     CHECK(std::filesystem::file_size(file) > 10'000);
     CHECK(read_file(file).substr(1, 3) == "PNG");

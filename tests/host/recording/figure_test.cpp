@@ -9,11 +9,11 @@
 #include <recording/figure.hpp>
 #include <recording/gnuplot.hpp>
 
-#include "directory.hpp"
+#include <temporary_directory.hpp>
 
 using namespace inkwell;
 using namespace inkwell::recording;
-using inkwell::tests::Directory;
+using inkwell::tests::TemporaryDirectory;
 using protocol::Signal;
 
 namespace {
@@ -71,7 +71,7 @@ TEST_CASE("there is one pane for each unit, and its axis says quantity and unit"
 }
 
 TEST_CASE("a figure grows with its panes and shows what is asked for") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   const auto recording = wave(30'000);
   draw_figure(recording, {}, directory / "all.png");
   draw_figure(recording, {.signals = {Signal::force_N}, .from_s = 0.1, .to_s = 0.11}, directory / "one.png");
@@ -82,7 +82,7 @@ TEST_CASE("a figure grows with its panes and shows what is asked for") {
 }
 
 TEST_CASE("what cannot be drawn is said in a sentence") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   const auto recording = wave(3000);
   CHECK(error_of(recording, {.signals = {Signal::torque_1_Nm}}, directory / "a.png")
             .find("position_x_m, force_N, duty_1") != std::string::npos);
@@ -105,7 +105,7 @@ TEST_CASE("a band holds mean and extremes, and nothing where there are no sample
 }
 
 TEST_CASE("gnuplot's own words come back when it fails") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   std::ofstream(directory / "wrong.gnuplot") << "plot nonsense(\n";
   try {
     run_gnuplot(directory / "wrong.gnuplot");

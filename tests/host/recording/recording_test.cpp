@@ -15,11 +15,11 @@
 #include <recording/recording.hpp>
 #include <recording/writer.hpp>
 
-#include "directory.hpp"
+#include <temporary_directory.hpp>
 
 using namespace inkwell;
 using namespace inkwell::recording;
-using inkwell::tests::Directory;
+using inkwell::tests::TemporaryDirectory;
 using protocol::Parameter;
 using protocol::Signal;
 
@@ -71,7 +71,7 @@ std::string error_of(const fs::path& file) {
 }  // namespace
 
 TEST_CASE("a recording comes back as it was written") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   for (const char* name : {"a.h5", "a.csv"}) {
     CAPTURE(name);
     const auto file = directory / name;
@@ -104,7 +104,7 @@ TEST_CASE("a recording comes back as it was written") {
 }
 
 TEST_CASE("samples that were lost show as a gap and are counted") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   Recorder recorder(directory / "a.h5", about());
   auto first = samples(100, 10);
   first.lost_before = 77;  // before the recording began: not its loss
@@ -117,7 +117,7 @@ TEST_CASE("samples that were lost show as a gap and are counted") {
 }
 
 TEST_CASE("a board that was restarted ends the recording") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   Recorder recorder(directory / "a.h5", about());
   recorder.mark("before the first sample there is nothing to mark");
   recorder.push(samples(1000, 100));
@@ -131,7 +131,7 @@ TEST_CASE("a board that was restarted ends the recording") {
 }
 
 TEST_CASE("the wrap of the board's time is no restart") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   Recorder recorder(directory / "a.h5", about());
   recorder.push(samples(0xFFFFFFF0u, 16));
   recorder.push(samples(0, 4));
@@ -165,7 +165,7 @@ TEST_CASE("samples are found by their time") {
 }
 
 TEST_CASE("an existing file is not overwritten, an unknown ending not guessed") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   std::ofstream(directory / "a.h5") << "precious";
   CHECK_THROWS_AS(Recorder(directory / "a.h5", about()), device::Error);
   CHECK_THROWS_AS(Recorder(directory / "a.mat", about()), device::Error);
@@ -174,7 +174,7 @@ TEST_CASE("an existing file is not overwritten, an unknown ending not guessed") 
 }
 
 TEST_CASE("a recording survives the death of its program") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   for (const char* name : {"a.h5", "a.csv"}) {
     CAPTURE(name);
     const auto file = directory / name;
@@ -199,7 +199,7 @@ TEST_CASE("a recording survives the death of its program") {
 }
 
 TEST_CASE("a full disk ends the recording with a sentence and keeps what was written") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   for (const char* name : {"a.h5", "a.csv"}) {
     CAPTURE(name);
     const auto file = directory / name;
@@ -234,7 +234,7 @@ TEST_CASE("a full disk ends the recording with a sentence and keeps what was wri
 }
 
 TEST_CASE("a file that is no recording, or a damaged one, is refused with a sentence") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   CHECK(error_of(directory / "none.h5").find("none.h5") != std::string::npos);
   std::ofstream(directory / "text.h5") << "hello";
   CHECK(error_of(directory / "text.h5").find("no recording") != std::string::npos);
@@ -254,7 +254,7 @@ TEST_CASE("a file that is no recording, or a damaged one, is refused with a sent
 }
 
 TEST_CASE("what a newer version wrote is read as far as it is known, and the rest is named") {
-  const Directory directory;
+  const TemporaryDirectory directory;
   std::ofstream(directory / "a.csv") << "# inkwell recording = 99\n# parameter wobble_m = 3\n"
                                         "time_s,force_N,wobble_N,duty_1\n0.00005,1.5,9,0.25\n";
   const auto recording = read(directory / "a.csv");

@@ -1,4 +1,4 @@
-// A directory for the files of one test.
+// A new empty directory for the files of one test, which goes away with this object.
 #pragma once
 
 #include <cstdlib>
@@ -8,17 +8,23 @@
 
 namespace inkwell::tests {
 
-class Directory {
+class TemporaryDirectory {
  public:
-  Directory() {
+  TemporaryDirectory() {
     std::string pattern = (std::filesystem::temp_directory_path() / "inkwell-XXXXXX").string();
     if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary directory could be made");
     path_ = pattern;
   }
-  ~Directory() { std::filesystem::remove_all(path_); }
-  Directory(const Directory&) = delete;
-  Directory& operator=(const Directory&) = delete;
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  std::string path() const { return path_.string(); }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
 
  private:
   std::filesystem::path path_;
