@@ -5,7 +5,6 @@
 
 #include "bus.hpp"
 #include "flash.hpp"
-#include "unicorn_page_lock.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -40,7 +39,6 @@ constexpr std::uint16_t send_event = 0xBF40;
 
 Processor::Processor(Machine& machine, Bus& bus) : machine_(machine), block_lengths_(flash_bytes / 2) {
   machine.clock_users.push_back(this);
-  link_page_lock();
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
   // UC_MODE_MCLASS would force another model; the model alone makes it M-profile.
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "be a Cortex-M4");
@@ -121,7 +119,11 @@ Outcome Processor::run(std::uint64_t cycles) {
   stopped_ = false;
   outcome_ = Outcome::slice_over;
   if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
-  const uc_err error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
+  uc_err error;
+  {
+    const PlainStores::Use use(plain_stores_);
+    error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
+  }
   program_counter_ = read(UC_ARM_REG_PC) & ~1u;
   if (!flash_stores_.empty()) finish_flash_stores();
   if (outcome_ != Outcome::slice_over) return outcome_;
@@ -151,7 +153,10 @@ unsigned Processor::count_instructions(std::uint32_t address, std::uint32_t byte
 
 unsigned Processor::instructions_of(std::uint32_t address, std::uint32_t bytes) {
   const std::uint32_t offset = address < flash_bytes ? address : address - flash_base;
-  if (offset >= flash_bytes) return count_instructions(address, bytes);
+  if (offset >= flash_bytes) {
+    plain_stores_.code_runs_at(address, bytes);
+    return count_instructions(address, bytes);
+  }
   BlockLength& known = block_lengths_[offset / 2];
   if (known.bytes != bytes)
     known = {static_cast<std::uint16_t>(bytes), static_cast<std::uint16_t>(count_instructions(address, bytes))};
@@ -171,8 +176,9 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   self.cycles_ += self.instructions_of(static_cast<std::uint32_t>(address), size);
 }
 
-void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t, void* pointer) {
+void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
+  if (address >= sram_base) self.plain_stores_.code_runs_at(static_cast<std::uint32_t>(address), bytes);
   if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) self.stop();
   else {
     self.last_code_address_ = static_cast<std::uint32_t>(address);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "machine_parts.hpp"
+#include "plain_stores.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -131,6 +132,7 @@ class Processor final : public ClockUser {
     std::uint16_t bytes, instructions;
   };
   std::vector<BlockLength> block_lengths_;
+  PlainStores plain_stores_;
   /// Unicorn makes stores into the flash by itself; what the flash made of them is put right after the slice.
   struct FlashStore {
     std::uint32_t address, content;

@@ -66,6 +66,19 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(rig.chip.run_until(rig.chip.now() + ticks(10e-6)) == Stop::time_reached);
   }
 
+  TEST_CASE("code in RAM that is written anew runs anew") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      Rig rig("code_in_ram", mode);
+      rig.run_for(0.01);
+      REQUIRE(rig.result(0) == finished);
+      CHECK(rig.result(1) == 0);
+      CHECK(rig.result(2) == 7 + 1 + 16);
+      CHECK(rig.result(3) == 7 + 1 + 32);
+      CHECK(rig.log.empty());
+    }
+  }
+
   TEST_CASE("exact mode: the same state after each run, to the instruction") {
     std::uint64_t hashes[2];
     for (auto& hash : hashes) {
