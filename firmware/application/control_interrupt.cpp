@@ -65,7 +65,7 @@ extern "C" void control_interrupt() {
 
   const bool overrun = bridges.period_is_over();
   if (overrun) controller.raise(protocol::Fault::servo_overrun);
-  host_link.status.record(controller.state(), controller.servo_cycles(), overrun);
+  host_link.status.record(controller.state(), controller.motor_heat(), controller.servo_cycles(), overrun);
   completed_periods.store(controller.periods());
 }
 

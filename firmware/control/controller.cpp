@@ -77,6 +77,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
     const GimbalCurve& curve = settings.gimbal[i];
     gimbal_rad_[i] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
   }
+  update_heat(heat_, current_A_, settings.heat);
   // While walls push, a new reference would move the probe under the hand.
   if (!force_is_on())
     update_reference(reference_, encoder_counts_, is_closed(switches_.closed, protocol::Switch::inkwell));
@@ -88,9 +89,10 @@ void Controller::find_pose(const Settings& settings) {
     update(speeds_[i], encoder_counts_[i], periods_, i == joint_to_fit_);
     joint_speed_rad_per_s_[i] =
         speeds_[i].counts_per_period * settings.encoders.rad_per_count[i] * periods_per_s;
+    counts_since_inkwell_[i] = encoder_counts_[i] - reference_.counts[i];
   }
   joint_to_fit_ = joint_to_fit_ == 2 ? 0 : joint_to_fit_ + 1;
-  joint_rad_ = joint_angles(counts_since_inkwell(), settings.encoders);
+  joint_rad_ = joint_angles(counts_since_inkwell_, settings.encoders);
   pose_ = forward_kinematics(joint_rad_, settings.arm);
   velocity_m_per_s_ = probe_velocity(pose_.jacobian, joint_speed_rad_per_s_);
 }
@@ -160,14 +162,8 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   if (supervisor_.state != before.state) drive_ = {};
 }
 
-std::array<std::int32_t, 3> Controller::counts_since_inkwell() const {
-  std::array<std::int32_t, 3> counts{};
-  for (std::size_t i = 0; i < 3; ++i) counts[i] = encoder_counts_[i] - reference_.counts[i];
-  return counts;
-}
-
 void Controller::write_signals() {
-  const std::array<std::int32_t, 3> counts = counts_since_inkwell();
+  const auto& counts = counts_since_inkwell_;
   put(signals_, Signal::encoder_1_counts,
       Triple{static_cast<float>(counts[0]), static_cast<float>(counts[1]), static_cast<float>(counts[2])});
   put(signals_, Signal::joint_1_rad, joint_rad_);
@@ -182,6 +178,7 @@ void Controller::write_signals() {
   put(signals_, Signal::duty_1, drive_.duty);
   put(signals_, Signal::gimbal_1_rad, gimbal_rad_);
   put(signals_, Signal::joint_speed_1_rad_s, joint_speed_rad_per_s_);
+  put(signals_, Signal::motor_heat_1, heat_.heat);
   signals_[Signal::supply_V] = supply_.supply_V;
   signals_[Signal::servo_cycles] = static_cast<float>(servo_cycles_);
   for (std::size_t i = 0; i < stage_count; ++i)

@@ -75,6 +75,15 @@ Motors motors(const ParameterSet& set) {
   return motors;
 }
 
+HeatScale heat(const ParameterSet& set) {
+  const Triple continuous_A = rows(set, Parameter::continuous_current_1_A);
+  constexpr auto readings = static_cast<float>(MotorHeat::periods_per_update);
+  HeatScale scale{{}, readings * protocol::servo_period_s / set[Parameter::winding_time_constant_s]};
+  for (std::size_t i = 0; i < 3; ++i)
+    scale.per_square_sum[i] = 1.0f / (readings * continuous_A[i] * continuous_A[i]);
+  return scale;
+}
+
 Limits limits(const ParameterSet& set) {
   // Half above the limit, but never so low that the sensors' noise reaches it.
   constexpr float over_current_ratio = 1.5f;
@@ -111,6 +120,7 @@ Settings prepare(const ParameterSet& parameters) {
                    parameters[Parameter::force_limit_N]},
           .ramp_per_period = ramp_per_period(parameters[Parameter::force_ramp_s]),
           .motors = motors(parameters),
+          .heat = heat(parameters),
           .current_loop = {parameters[Parameter::current_proportional_gain_V_per_A],
                            parameters[Parameter::current_integral_gain_V_per_As] * protocol::servo_period_s * 0.5f,
                            parameters[Parameter::voltage_limit_V]},

@@ -97,6 +97,7 @@ protocol::InformationReport Device::information() const {
   report.pose_reports_dropped = link_.poses.dropped();
   report.servo_overruns = link_.status.overruns();
   report.reset_cause = identity_.reset_cause;
+  for (std::size_t i = 0; i < 3; ++i) report.motor_heat[i] = link_.status.motor_heat(i);
   return report;
 }
 

@@ -25,7 +25,8 @@ ordered_json to_json(const device::Information& information, const std::optional
                     {"servo_overruns", report.servo_overruns},
                     {"pose_reports_dropped", report.pose_reports_dropped},
                     {"scope_samples_dropped", report.scope_samples_dropped},
-                    {"reset_cause", report.reset_cause}};
+                    {"reset_cause", report.reset_cause},
+                    {"motor_heat", report.motor_heat}};
   if (pose) {
     json["state"] = info(pose->state).name;
     json["fault"] = info(pose->fault).name;
@@ -45,6 +46,8 @@ void print(const device::Information& information, const std::optional<protocol:
              report.servo_overruns);
   fmt::print("dropped             {} pose reports, {} scope samples, since the board started\n",
              report.pose_reports_dropped, report.scope_samples_dropped);
+  fmt::print("motor heat          {:.0f} %, {:.0f} %, {:.0f} % of what the continuous current leads to\n",
+             100.0 * report.motor_heat[0], 100.0 * report.motor_heat[1], 100.0 * report.motor_heat[2]);
   if (!pose) {
     fmt::print("state               unknown: the device sends no pose\n");
     return;

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <board/omni_driver.hpp>
 
@@ -11,6 +12,20 @@ using namespace inkwell;
 using namespace inkwell::tests;
 using protocol::Parameter;
 using protocol::Signal;
+
+namespace {
+
+double mean_square(const device::Trace& trace, const std::string& column) {
+  const auto found = std::find(trace.columns.begin(), trace.columns.end(), column);
+  REQUIRE(found != trace.columns.end());
+  REQUIRE(trace.row_count() > 0);
+  double sum = 0;
+  for (auto i = static_cast<std::size_t>(found - trace.columns.begin()); i < trace.values.size(); i += trace.columns.size())
+    sum += trace.values[i] * trace.values[i];
+  return sum / static_cast<double>(trace.row_count());
+}
+
+}  // namespace
 
 TEST_CASE("the longest control interrupt stays under half of its period, in contact and with a full scope") {
   Rig rig;
@@ -29,6 +44,29 @@ TEST_CASE("the longest control interrupt stays under half of its period, in cont
   CHECK(report.servo_cycles_longest > 500);  // it did run and was measured
   CHECK(report.servo_cycles_longest < board::servo_cycles / 2);
   CHECK(report.servo_overruns == 0);
+}
+
+TEST_CASE("a motor that holds against a wall warms as its true current says") {
+  Rig rig;
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.set({{Parameter::box_maximum_z_m, -0.04f}, {Parameter::winding_time_constant_s, 0.25f}});
+  rig.run(2.0);
+  rig.control.trace_start();
+  rig.run(0.1);
+  const device::Trace trace = rig.control.trace_read(100'000);
+  const auto report = rig.call([](device::Device& arm) { return arm.information(); }).report;
+  const auto parameters = rig.call([](device::Device& arm) { return arm.parameters(); });
+  const double bears_A = parameters[Parameter::continuous_current_1_A];
+  double hottest = 0;
+  for (std::size_t motor = 0; motor < 3; ++motor) {
+    const double heat = mean_square(trace, "true_current_" + std::to_string(motor + 1) + "_A") / (bears_A * bears_A);
+    CAPTURE(motor);
+    CHECK(std::fabs(report.motor_heat[motor] - heat) < 0.02 + 0.03 * heat);
+    hottest = std::max(hottest, heat);
+  }
+  MESSAGE("simulation: heat of the hottest motor ", hottest, " of what its continuous current leads to");
+  CHECK(hottest > 0.1);
 }
 
 TEST_CASE("exact mode gives the same run for the same seed, to the instruction") {

@@ -20,7 +20,7 @@ namespace inkwell::protocol {
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 1;
+inline constexpr std::uint16_t protocol_version = 2;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -109,6 +109,7 @@ struct InformationReport {
   std::uint32_t pose_reports_dropped;   ///< because the host did not poll
   std::uint32_t servo_overruns;
   std::uint32_t reset_cause;            ///< RCC_CSR bits 31..24 as found at start-up
+  float motor_heat[3];                  ///< now; 1 is what the continuous current leads to
 };
 
 enum class ParameterOperation : std::uint8_t {
@@ -155,7 +156,7 @@ constexpr std::size_t parameters_report_size(std::size_t count) {
 static_assert(sizeof(PoseReport) == 64);
 static_assert(sizeof(SignalSelection) == 33 && sizeof(TestPulse) == 9);
 static_assert(sizeof(CommandReport) == 37);
-static_assert(sizeof(InformationReport) == 44);
+static_assert(sizeof(InformationReport) == 56);
 static_assert(sizeof(ParameterEntry) == 8);
 static_assert(sizeof(ParametersReport) == 8 + 8 * parameter_entries_maximum);
 static_assert(sizeof(TransactionReport) == 16);

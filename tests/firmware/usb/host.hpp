@@ -128,7 +128,7 @@ struct Bench {
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
       link.poses.record(signals, {state, protocol::Fault::none, 0, link.commands.last_token(), periods, 100});
       link.scope.record(signals, periods++);
-      link.status.record(state, 100, false);
+      link.status.record(state, {}, 100, false);
     }
   }
 

@@ -173,7 +173,7 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   Bench bench;
   bench.configure();
   bench.run(5);
-  bench.link.status.record(protocol::State::ready, 4321, true);
+  bench.link.status.record(protocol::State::ready, {0.25f, 0.5f, 1.5f}, 4321, true);
   const auto report = bench.get_feature<protocol::InformationReport>(protocol::ReportId::information);
   CHECK(report.report_id == protocol::ReportId::information);
   CHECK(report.version == protocol::protocol_version);
@@ -188,6 +188,8 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   CHECK(report.scope_samples_dropped == 0);
   CHECK(report.pose_reports_dropped == 0);
   CHECK(report.reset_cause == 0x14);
+  CHECK(report.motor_heat[0] == 0.25f);
+  CHECK(report.motor_heat[2] == 1.5f);
 }
 
 TEST_CASE("HID: parameters are read, set as a transaction and its result is told") {

@@ -63,6 +63,7 @@ class Controller {
   std::uint8_t switches() const { return switches_.closed; }  ///< bits of protocol::Switch, debounced
   std::uint32_t periods() const { return periods_; }          ///< control periods completed since the start
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
+  const Triple& motor_heat() const { return heat_.heat; }  ///< 1 is what the continuous current leads to
   bool force_is_on() const { return supervisor_.state == protocol::State::active; }
 
  private:
@@ -75,7 +76,6 @@ class Controller {
   void regulate_currents(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void write_signals();
-  std::array<std::int32_t, 3> counts_since_inkwell() const;
 
   BoardLimits board_;
 
@@ -88,6 +88,7 @@ class Controller {
   std::array<SpeedEstimate, 3> speeds_{};
   std::size_t joint_to_fit_ = 0;  ///< joints take turns, see update()
   std::array<CurrentLoop, 3> loops_{};
+  MotorHeat heat_;
   TestPulse test_;
   Supervisor supervisor_;
   Requests requests_;
@@ -96,6 +97,7 @@ class Controller {
 
   // Results of this period, in the order of the path.
   std::array<std::int32_t, 3> encoder_counts_{};  ///< since power-up
+  std::array<std::int32_t, 3> counts_since_inkwell_{};
   Triple current_A_{};
   Triple gimbal_rad_{};
   Triple joint_rad_{};

@@ -7,6 +7,7 @@
 #include <control/current_loop.hpp>
 #include <control/encoders.hpp>
 #include <control/kinematics.hpp>
+#include <control/motor_heat.hpp>
 #include <control/torque.hpp>
 #include <protocol/parameters.hpp>
 
@@ -36,6 +37,7 @@ struct Settings {
   Wall wall;
   float ramp_per_period;        ///< rise of the force's gain in one control period
   Motors motors;
+  HeatScale heat;
   CurrentLoopGains current_loop;
   Limits limits;
 };

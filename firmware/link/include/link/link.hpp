@@ -7,7 +7,7 @@
 //   if (command = link.commands.take()) controller.carry_out(*command)
 //   controller.step(...)
 //   link.poses.record(controller.signals(), {...}); link.scope.record(controller.signals(), periods)
-//   link.status.record(controller.state(), cycles, overrun)
+//   link.status.record(controller.state(), motor_heat, cycles, overrun)
 //
 // About 68 KB, most of it scope frames: it lives in main memory, not in the core-coupled one.
 #pragma once

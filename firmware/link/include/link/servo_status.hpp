@@ -1,6 +1,8 @@
 // What the main loop may know about the control interrupt.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <link/shared.hpp>
@@ -13,9 +15,11 @@ class ServoStatus {
  public:
   // ---- control interrupt ----
 
-  /// `cycles`: processor cycles of this interrupt; `overrun`: it did not finish within its period.
-  void record(protocol::State state, std::uint32_t cycles, bool overrun) {
+  /// `motor_heat`: 1 is what the continuous current leads to; `cycles`: processor cycles of this interrupt;
+  /// `overrun`: it did not finish within its period.
+  void record(protocol::State state, const std::array<float, 3>& motor_heat, std::uint32_t cycles, bool overrun) {
     state_.store(state);
+    for (std::size_t i = 0; i < motor_heat.size(); ++i) motor_heat_[i].store(motor_heat[i]);
     if (cycles > longest_cycles_.load()) longest_cycles_.store(cycles);
     if (overrun) overruns_.store(overruns_.load() + 1u);
   }
@@ -23,11 +27,13 @@ class ServoStatus {
   // ---- main loop ----
 
   protocol::State state() const { return state_.load(); }
+  float motor_heat(std::size_t motor) const { return motor_heat_[motor].load(); }
   std::uint32_t longest_cycles() const { return longest_cycles_.load(); }
   std::uint32_t overruns() const { return overruns_.load(); }
 
  private:
   Shared<protocol::State> state_{protocol::State::starting};
+  std::array<Shared<float>, 3> motor_heat_{Shared{0.0f}, Shared{0.0f}, Shared{0.0f}};
   Shared<std::uint32_t> longest_cycles_{0};
   Shared<std::uint32_t> overruns_{0};
 };
