@@ -5,6 +5,8 @@
 
 #include <GLFW/glfw3.h>
 
+#include <window/frame_rhythm.hpp>
+
 namespace inkwell::window {
 
 namespace {
@@ -13,19 +15,6 @@ constexpr float tabs_points = 40.0f;
 constexpr float tuning_minimum_points = 300.0f;
 constexpr float scope_minimum_points = 150.0f;
 constexpr float scene_minimum_points = 240.0f;
-
-// True if a person could see the difference.
-bool looks_different(const protocol::PoseReport& a, const protocol::PoseReport& b) {
-  constexpr float visible_m = 2e-4f;
-  constexpr float visible_N = 0.02f;
-  constexpr float visible_rad = 0.02f;
-  if (a.state != b.state || a.fault != b.fault || a.switches != b.switches) return true;
-  for (int i = 0; i < 3; ++i)
-    if (std::abs(a.position_m[i] - b.position_m[i]) > visible_m || std::abs(a.force_N[i] - b.force_N[i]) > visible_N ||
-        std::abs(a.gimbal_rad[i] - b.gimbal_rad[i]) > visible_rad)
-      return true;
-  return false;
-}
 
 }  // namespace
 
@@ -218,21 +207,37 @@ void Companion::draw(ImVec2 size, double now_s) {
     scope_panel_.draw({0, scene_end + gap}, {left_width, size.y - scene_end - gap}, style_);
   }
 
-  const bool scope_runs = settings_.scope_is_shown && view.connected() && !scope_panel_.is_paused();
-  is_moving_ = scope_runs || guides_pane_.is_running() || recording_pane_.is_recording() || replay_bar_.is_playing() ||
-               drawn_pose_.has_value() != pose.has_value() || (drawn_pose_ && looks_different(*drawn_pose_, *pose));
-  if (is_moving_) drawn_pose_ = pose;
+  const bool scene_moves = looks_different(drawn_pose_, pose);
+  is_moving_ = scene_moves || guides_pane_.is_running() || replay_bar_.is_playing() ||
+               (settings_.scope_is_shown && scope_panel_.take_motion());
+  if (scene_moves) drawn_pose_ = pose;
 
   carry_out(outcome);
   if (auto changes = editor_.take_changes(); !changes.empty()) desk_.session().set_parameters(std::move(changes));
 }
 
-void Companion::draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool smooth) const {
+bool Companion::device_moves() const {
+  return guides_pane_.is_running() || (!replay_bar_.is_open() && looks_different(drawn_pose_, desk_.newest_pose()));
+}
+
+std::uint64_t Companion::scene_digest() const {
+  PictureDigest digest;
+  if (drawn_pose_) digest.add_bytes(&*drawn_pose_, sizeof *drawn_pose_);
+  const auto parameters = (replay_bar_.is_open() ? replay_bar_.editor() : editor_).shown();
+  digest.add_bytes(parameters.values.data(), parameters.values.size() * sizeof parameters.values[0]);
+  digest.add(style_.palette);
+  for (const float each : {scene_place_.x, scene_place_.y, scene_size_.x, scene_size_.y}) digest.add(each);
+  scene_pane_.add_to(digest);
+  return digest.value();
+}
+
+void Companion::draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool smooth,
+                           bool is_as_before) const {
   const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const int height = pixels(scene_size_.y);
   scene_pane_.draw_scene(renderer,
                          {pixels(scene_place_.x), framebuffer_height - pixels(scene_place_.y) - height, pixels(scene_size_.x), height},
-                         {*style_.palette, options_.flat_colours, smooth && !options_.flat_colours, std::nullopt});
+                         {*style_.palette, options_.flat_colours, smooth && !options_.flat_colours, is_as_before, std::nullopt});
 }
 
 }  // namespace inkwell::window

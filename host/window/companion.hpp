@@ -28,11 +28,17 @@ class Companion {
   /// Lays out and draws every pane; ImGui's frame is open.
   void draw(ImVec2 size, double now_s);
   /// The picture under the panes; the framebuffer is bound. `pixels_per_unit`: framebuffer over screen coordinates.
-  void draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool smooth) const;
+  /// `is_as_before`: the scene is the one that was drawn last, by its digest.
+  void draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool smooth,
+                  bool is_as_before) const;
+  /// Of all that the scene is made of, as it was laid out last.
+  std::uint64_t scene_digest() const;
 
   /// A key went down or up, whatever has the focus. The space bar stops at once.
   void key(int key, bool down);
-  /// Something in the picture changes by itself, so that it has to be drawn at the full rate.
+  /// Whether the device differs visibly from the last picture of it. Cheap: it needs no frame.
+  bool device_moves() const;
+  /// Something in the frame that was laid out changes by itself, so that it has to be drawn at the full rate.
   bool is_moving() const { return is_moving_; }
   const Palette& colours() const { return *style_.palette; }
   /// As they stand now, to be remembered.

@@ -37,6 +37,8 @@ class DeviceDesk {
   const DeviceView& refresh();
   const DeviceView& view() const { return view_; }
   device::Session& session() { return *session_; }
+  /// As of now, which may be newer than the view; none while not connected.
+  std::optional<protocol::PoseReport> newest_pose() const { return session_->newest_pose(); }
 
   /// Connects to another device; the session with the present one ends.
   void choose(const std::string& serial_number);

@@ -46,8 +46,24 @@ Display::Display(int width, int height, const std::string& title) {
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-    const auto* display = static_cast<const Display*>(glfwGetWindowUserPointer(window));
+    auto* display = static_cast<Display*>(glfwGetWindowUserPointer(window));
+    display->had_input_ = true;
     if (display->on_key_ && action != GLFW_REPEAT) display->on_key_(key, action == GLFW_PRESS);
+  });
+  // ImGui's back end calls these before its own.
+  static constexpr auto note_input = [](GLFWwindow* window) {
+    static_cast<Display*>(glfwGetWindowUserPointer(window))->had_input_ = true;
+  };
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double, double) { note_input(window); });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int, int, int) { note_input(window); });
+  glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double) { note_input(window); });
+  glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned) { note_input(window); });
+  glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int) { note_input(window); });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int) { note_input(window); });
+  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) { note_input(window); });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) {
+    note_input(window);
+    static_cast<Display*>(glfwGetWindowUserPointer(window))->lost_picture_ = true;
   });
 }
 
@@ -91,8 +107,7 @@ void FramePacer::wait() {
   if (next_s_ > now_s) std::this_thread::sleep_for(std::chrono::duration<double>(next_s_ - now_s));
 
   if (const double measured_s = now_s - half_second_began_s_; measured_s > 0.5) {
-    // A single wait of half a second is a window that was idle, not a slow one.
-    if (frames_in_it_ > 4 && measured_s > 1.2 * period_s_ * frames_in_it_) keeps_up_ = false;
+    if (half_second_began_s_ > 0.0 && measured_s > 1.2 * period_s_ * frames_in_it_) keeps_up_ = false;
     half_second_began_s_ = now_s;
     frames_in_it_ = 0;
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 struct GLFWwindow;
 
@@ -28,12 +29,19 @@ class Display {
   float content_scale() const;  ///< pixels of text for one point, 1 on an ordinary display
   double refresh_rate_Hz() const;
 
+  /// True if the user or the window system did something since the last call.
+  bool take_input() { return std::exchange(had_input_, false); }
+  /// True if the screen lost the picture, so that it has to be drawn again though it stays the same.
+  bool take_lost_picture() { return std::exchange(lost_picture_, false); }
+
   /// `pressed(key)` is called for every key that goes down, before the panes see it.
   void on_key(std::function<void(int key, bool down)> pressed) { on_key_ = std::move(pressed); }
 
  private:
   GLFWwindow* window_ = nullptr;
   std::function<void(int, bool)> on_key_;
+  bool had_input_ = true;
+  bool lost_picture_ = true;
 };
 
 /// Writes the whole framebuffer as it stands. Throws DisplayError.
@@ -44,6 +52,8 @@ class FramePacer {
  public:
   explicit FramePacer(double frames_per_second) : period_s_(1.0 / frames_per_second) {}
   void wait();
+  /// No frame is wanted for a while: what passes until the next `wait` is no slowness.
+  void rest() { half_second_began_s_ = 0.0; }
 
   /// True while the frames come as they should; false once half a second of them was a fifth too slow, for good.
   bool keeps_up() const { return keeps_up_; }

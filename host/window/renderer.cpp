@@ -41,8 +41,8 @@ Renderer::~Renderer() {
   glDeleteRenderbuffers(2, target_buffers_.data());
 }
 
-void Renderer::size_target(int width, int height) {
-  if (width == target_width_ && height == target_height_) return;
+bool Renderer::size_target(int width, int height) {
+  if (width == target_width_ && height == target_height_) return false;
   target_width_ = width;
   target_height_ = height;
   glBindRenderbuffer(GL_RENDERBUFFER, target_buffers_[0]);
@@ -52,6 +52,7 @@ void Renderer::size_target(int width, int height) {
   glBindFramebuffer(GL_FRAMEBUFFER, target_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target_buffers_[0]);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, target_buffers_[1]);
+  return true;
 }
 
 void Renderer::prepare_solids(const Camera& camera, const SceneLook& look) const {
@@ -179,11 +180,13 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
   if (viewport.width < 2 || viewport.height < 2) return;
   size_pixels_ = {viewport.width, viewport.height};
   if (look.smooth) {
-    size_target(viewport.width, viewport.height);
+    const bool is_fresh = size_target(viewport.width, viewport.height);
+    if (look.is_as_before && target_is_drawn_ && !is_fresh) return show_target(viewport);
     glBindFramebuffer(GL_FRAMEBUFFER, target_);
     glViewport(0, 0, viewport.width, viewport.height);
     glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   } else {
+    target_is_drawn_ = false;
     glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
   }
   glDisable(GL_SCISSOR_TEST);
@@ -214,6 +217,12 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
   glUseProgram(0);
 
   if (!look.smooth) return;
+  target_is_drawn_ = true;
+  show_target(viewport);
+}
+
+void Renderer::show_target(const Viewport& viewport) const {
+  glDisable(GL_SCISSOR_TEST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glBlitFramebuffer(0, 0, viewport.width, viewport.height, viewport.x, viewport.y, viewport.x + viewport.width,

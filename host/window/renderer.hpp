@@ -26,6 +26,7 @@ struct SceneLook {
   const Palette& palette;
   bool flat_colours;                ///< no lighting, frames of the walls opaque
   bool smooth;                      ///< with multisampling, in a buffer of its own: dear without a graphics card
+  bool is_as_before;                ///< the same scene as in the last call, which need not be drawn anew
   std::optional<int> marked_wall;   ///< under the mouse: index into SceneModel::walls
 };
 
@@ -41,7 +42,9 @@ class Renderer {
             const Viewport& viewport);
 
  private:
-  void size_target(int width, int height);
+  void show_target(const Viewport& viewport) const;
+  /// False if the target had that size, and so its picture, before.
+  bool size_target(int width, int height);
   void prepare_solids(const Camera& camera, const SceneLook& look) const;
   void draw_sky(const Palette& palette) const;
   void draw_floor(const SceneModel& scene, const SceneLook& look);
@@ -53,6 +56,7 @@ class Renderer {
   std::array<GLuint, 2> target_buffers_{};  // colour, depth with stencil
   int target_width_ = 0;
   int target_height_ = 0;
+  bool target_is_drawn_ = false;
   glm::vec2 size_pixels_{1.0f};
   glm::mat4 to_clip_{1.0f};
   ShaderProgram sky_;

@@ -27,6 +27,7 @@ class ReplayBar {
   std::optional<protocol::PoseReport> pose() const { return replay_->pose(); }
   /// Holds the recording's parameters. What is edited in it goes nowhere.
   ParameterEditor& editor() { return editor_; }
+  const ParameterEditor& editor() const { return editor_; }
 
   /// Draws the bar and does what is pressed in it, which may be to close the recording.
   void draw(ImVec2 place, ImVec2 size, const Style& style, ScopePanel& scope);

@@ -251,6 +251,16 @@ void ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
   end_pane();
 }
 
+void ScenePane::add_to(PictureDigest& digest) const {
+  static_assert(sizeof camera_ == 6 * sizeof(float));
+  digest.add_bytes(&camera_, sizeof camera_);
+  if (hand_view_) {
+    digest.add_bytes(&hand_view_->target_m, sizeof hand_view_->target_m);
+    digest.add(hand_view_->held);
+  }
+  digest.add(drag_ == Drag::wall ? dragged_wall_ : marked_wall_.value_or(-1));
+}
+
 void ScenePane::draw_scene(Renderer& renderer, const Viewport& viewport, SceneLook look) const {
   look.marked_wall = drag_ == Drag::wall ? std::optional(dragged_wall_) : marked_wall_;
   renderer.draw(scene_, hand_view_, camera_, look, viewport);

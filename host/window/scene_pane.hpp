@@ -8,6 +8,7 @@
 #include <window/scene_model.hpp>
 
 #include "mouse_hand.hpp"
+#include "picture_digest.hpp"
 #include "renderer.hpp"
 #include "style.hpp"
 
@@ -26,6 +27,8 @@ class ScenePane {
   /// Handles the mouse and draws the labels; the picture below them comes from draw_scene.
   void draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input);
   void draw_scene(Renderer& renderer, const Viewport& viewport, SceneLook look) const;
+  /// What of the picture depends on the mouse and the hand.
+  void add_to(PictureDigest& digest) const;
   void reset_view() { view_is_to_be_reset_ = true; }
 
  private:

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <protocol/reports.hpp>
+#include <window/frame_rhythm.hpp>
 
 namespace inkwell::window {
 
@@ -14,6 +15,7 @@ constexpr double rate_Hz = protocol::servo_rate_Hz;
 constexpr double span_minimum_s = 0.001;
 constexpr double span_maximum_s = 100.0;
 constexpr double numbers_every_s = 0.2;
+constexpr double range_remembered_s = 1.0;  // for telling motion from noise
 constexpr float header_points = 24.0f;
 constexpr float y_axis_points = 52.0f;
 constexpr float x_axis_points = 21.0f;
@@ -193,6 +195,7 @@ void ScopePanel::draw_time(std::size_t index, PlotArea area, const Stretch& stre
   }
   area.x = {(stretch.first - stretch.zero) / rate_Hz, (stretch.last - stretch.zero) / rate_Hz};
   area.y = memory.y.update(static_cast<double>(all.minimum), static_cast<double>(all.maximum), ImGui::GetTime());
+  judge_motion(pane, area);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   draw_axes(list, area, style, "s", "");
   if (trigger_settings_.mode != TriggerMode::off &&
@@ -230,6 +233,18 @@ void ScopePanel::draw_time(std::size_t index, PlotArea area, const Stretch& stre
                        {corner.x + taken.x + style.points(3), corner.y + taken.y},
                        packed(style.palette->panel.with_alpha(210)));
     list.AddText(font, font->FontSize, corner, packed(line_colour(style, i)), line.c_str());
+  }
+}
+
+void ScopePanel::judge_motion(const Pane& pane, const PlotArea& area) {
+  if (paused_) return;
+  const auto span = static_cast<std::uint64_t>(std::max(span_s_, range_remembered_s) * rate_Hz);
+  for (protocol::Signal signal : pane.signals) {
+    const SignalSeries* series = history_.find(signal);
+    if (series == nullptr || judged_end_ == 0) continue;
+    const Extremes before = series->extremes(judged_end_ - std::min(judged_end_, span), judged_end_);
+    const Extremes newest = series->extremes(judged_end_, series->end());
+    has_motion_ |= leaves_range(newest, before, area.y.extent() / static_cast<double>(area.height()));
   }
 }
 
@@ -361,6 +376,7 @@ void ScopePanel::draw(ImVec2 place, ImVec2 size, const Style& style) {
               {left + static_cast<float>(i % columns) * (width + gap),
                top + static_cast<float>(i / columns) * (height + style.points(6))},
               {width, height}, shown, style);
+  judged_end_ = history_.end();
   if (removed_pane_) {
     layout_.panes.erase(layout_.panes.begin() + static_cast<std::ptrdiff_t>(*removed_pane_));
     memory_.erase(memory_.begin() + static_cast<std::ptrdiff_t>(*removed_pane_));

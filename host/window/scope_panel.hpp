@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <window/analysis.hpp>
@@ -30,6 +31,8 @@ class ScopePanel {
   void store(WindowSettings& settings) const;
   bool is_paused() const { return paused_; }
   double span_s() const { return span_s_; }
+  /// True if a signal left its range since the last call, rather than only scrolled.
+  bool take_motion() { return std::exchange(has_motion_, false); }
   /// Forgets what was received: what comes next does not continue it.
   void start_anew();
 
@@ -54,6 +57,7 @@ class ScopePanel {
   void pause(bool paused);
   void choose_layout(const ScopeLayout& layout);
 
+  void judge_motion(const Pane& pane, const PlotArea& area);
   void draw_toolbar(const Style& style);
   void draw_trigger_tools(const Style& style);
   void draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const Stretch& stretch, const Style& style);
@@ -72,6 +76,8 @@ class ScopePanel {
   std::vector<PaneMemory> memory_;
   double span_s_;
   bool paused_ = false;
+  bool has_motion_ = false;
+  std::uint64_t judged_end_ = 0;           // end of the history in the frame before
   double paused_last_ = 0.0;               // right end of the picture while paused
   bool cursors_are_shown_ = false;
   std::array<double, 2> cursors_{-0.66, -0.33};  // in parts of the span, from the right end

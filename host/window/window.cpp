@@ -13,16 +13,18 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <window/frame_rhythm.hpp>
+
 #include "companion.hpp"
 #include "display.hpp"
+#include "picture_digest.hpp"
 #include "renderer.hpp"
 
 namespace inkwell::window {
 
 namespace {
 
-constexpr double lively_for_s = 0.5;
-constexpr double idle_period_s = 0.1;
+constexpr double look_period_s = 1.0 / 60.0;  // at rest: how often it is looked whether the device moves
 
 /// ImGui with its two back ends, for as long as the window is open.
 class ImGuiScope {
@@ -86,24 +88,28 @@ void run(const WindowOptions& options) {
   FramePacer pacer(1.02 * display.refresh_rate_Hz());
 
   const double started_s = glfwGetTime();
+  FrameRhythm rhythm;
   // Of the frames at the full rate only: at rest there are few on purpose.
   std::uint64_t frames = 0;
   double frames_s = 0.0;
   double drawing_s = 0.0;
   double previous_s = started_s;
-  double last_lively_s = started_s;
+  std::uint64_t scene_on_screen = 0;
+  std::uint64_t panes_on_screen = 0;
+  bool smooth_on_screen = false;
   while (glfwWindowShouldClose(display.handle()) == 0) {
-    const bool is_lively = glfwGetTime() - last_lively_s < lively_for_s;
+    const bool is_lively = rhythm.is_lively(glfwGetTime());
     if (is_lively) {
       pacer.wait();
       glfwPollEvents();
     } else {
-      // Nothing moves: a few frames a second are enough to see it when something does.
-      const double before_s = glfwGetTime();
-      glfwWaitEventsTimeout(idle_period_s);
-      if (glfwGetTime() - before_s < 0.9 * idle_period_s) last_lively_s = glfwGetTime();
+      pacer.rest();
+      glfwWaitEventsTimeout(look_period_s);
     }
     const double now_s = glfwGetTime();
+    const bool is_last = !options.screenshot.empty() && now_s - started_s >= options.after_seconds;
+    FrameEvidence evidence{.input = display.take_input()};
+    if (!rhythm.is_due(evidence.input || is_last || companion.device_moves(), now_s)) continue;
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(display.handle(), &width, &height);
@@ -115,20 +121,31 @@ void run(const WindowOptions& options) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     companion.draw(size, now_s);
     ImGui::Render();
-    if (companion.is_moving()) last_lively_s = now_s;
 
-    const bool is_last = !options.screenshot.empty() && now_s - started_s >= options.after_seconds;
+    // At rest there is time for a smooth picture.
+    const bool smooth = pacer.keeps_up() || !is_lively || is_last;
+    const std::uint64_t scene = companion.scene_digest();
+    PictureDigest panes;
+    panes.add(*ImGui::GetDrawData());
+    evidence.moves = companion.is_moving();
+    evidence.differs = scene != scene_on_screen || panes.value() != panes_on_screen || smooth != smooth_on_screen ||
+                       display.take_lost_picture() || is_last;
+    if (!rhythm.is_to_be_drawn(evidence, now_s)) continue;
+
     const ImVec4 ground = vector(companion.colours().panel);
     glClearColor(ground.x, ground.y, ground.z, 1.0f);
     glDisable(GL_SCISSOR_TEST);  // ImGui's back end leaves it on; a whole buffer is cleared fastest
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-    companion.draw_scene(renderer, static_cast<float>(width) / size.x, height, pacer.keeps_up() || is_last);
+    companion.draw_scene(renderer, static_cast<float>(width) / size.x, height, smooth, scene == scene_on_screen);
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     if (is_last) write_screenshot(options.screenshot, width, height);
     if (options.frames_report) glFinish();  // so that the time is that of drawing, not that of asking for it
     const double drawn_s = glfwGetTime();
     glfwSwapBuffers(display.handle());
+    scene_on_screen = scene;
+    panes_on_screen = panes.value();
+    smooth_on_screen = smooth;
     if (is_lively) {
       ++frames;
       frames_s += now_s - previous_s;

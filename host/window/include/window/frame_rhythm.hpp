@@ -1,0 +1,44 @@
+// When the window lays out a frame, and when it draws it. Drawing is dear without a graphics card, so a window at rest
+// does it seldom: at the full rate while something moves, a few times a second while only resting signals scroll, and
+// not at all while the picture would stay the same.
+#pragma once
+
+#include <optional>
+
+#include <protocol/reports.hpp>
+#include <window/signal_history.hpp>
+
+namespace inkwell::window {
+
+/// What is known of a frame before it is drawn.
+struct FrameEvidence {
+  bool input = false;    ///< from the user or the window system
+  bool moves = false;    ///< something changes by itself, by more than a pixel shows
+  bool differs = false;  ///< the picture is not the one that is on the screen
+};
+
+class FrameRhythm {
+ public:
+  /// Whether a frame is to be laid out now. `something_happened`: input, or a device that moves.
+  bool is_due(bool something_happened, double now_s) const;
+  /// Whether the frame that was laid out is to be drawn.
+  bool is_to_be_drawn(const FrameEvidence& evidence, double now_s);
+  /// Frames follow one another at the full rate.
+  bool is_lively(double now_s) const { return now_s < lively_until_s_; }
+
+  static constexpr double lively_for_s = 0.5;  ///< after the last input or motion
+  static constexpr double resting_period_s = 1.0 / 6.0;
+
+ private:
+  double lively_until_s_ = 0.0;
+  double laid_out_s_ = -1.0;
+};
+
+/// True if a person could see the difference in the scene.
+bool looks_different(const std::optional<protocol::PoseReport>& a, const std::optional<protocol::PoseReport>& b);
+
+/// True if the newest samples of a signal leave the range that it had before. Noise widens its range now and then by
+/// a little, which is not motion.
+bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel);
+
+}  // namespace inkwell::window

@@ -1,0 +1,43 @@
+// A number that tells whether two pictures are the same, without drawing either.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <type_traits>
+
+#include <imgui.h>
+
+namespace inkwell::window {
+
+class PictureDigest {
+ public:
+  void add_bytes(const void* data, std::size_t size) {
+    const std::string_view bytes{static_cast<const char*>(data), size};
+    value_ = value_ * 0x9E3779B97F4A7C15u + std::hash<std::string_view>{}(bytes);
+  }
+  /// For values without padding, whose bytes are all their own.
+  template <class Value>
+  void add(const Value& value) {
+    static_assert(std::has_unique_object_representations_v<Value> || std::is_floating_point_v<Value>);
+    add_bytes(&value, sizeof value);
+  }
+  void add(const ImDrawData& data) {
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+      const ImDrawList& list = *data.CmdLists[i];
+      add_bytes(list.VtxBuffer.Data, static_cast<std::size_t>(list.VtxBuffer.size_in_bytes()));
+      add_bytes(list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.size_in_bytes()));
+      for (const ImDrawCmd& command : list.CmdBuffer) {
+        add_bytes(&command.ClipRect, sizeof command.ClipRect);
+        add(command.ElemCount);
+      }
+    }
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0;
+};
+
+}  // namespace inkwell::window
