@@ -15,6 +15,10 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
     board = std::make_unique<device::VirtualBoard>(options.virtual_board(device::SimulationMode::fast, true));
     control_port = board->control_port();
     if (window_options.parameters_file.empty()) window_options.parameters_file = options.arm;
+    window_options.simulated_arm = protocol::default_parameters();
+    if (!options.arm.empty())
+      for (const auto& [parameter, value] : arm_parameters(options.arm))
+        (*window_options.simulated_arm)[parameter] = value;
   }
   if (!theme.empty()) window_options.theme = theme == "light" ? window::Theme::light : window::Theme::dark;
   window_options.serial_number = options.serial_number;

@@ -129,6 +129,7 @@ struct Session::Implementation {
         last_check = now;
       }
     }
+    send_requests(*served);  // what was asked for last, such as to put parameters back
   }
 
   void take_pose(const protocol::PoseReport& pose, std::optional<std::uint32_t>& sequence) {

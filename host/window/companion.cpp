@@ -25,7 +25,7 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       desk_(options.list_devices, options.serial_number),
       tuning_panel_(settings.parameters_file),
       scope_panel_(settings),
-      guides_pane_(options.virtual_board_control_port),
+      guides_pane_(desk_, options.virtual_board_control_port, options.simulated_arm),
       file_is_to_be_sent_(!options.parameters_file.empty()) {
   if (options.virtual_board_control_port != 0) hand_.emplace(options.virtual_board_control_port);
   use_theme(settings.theme);
@@ -49,7 +49,7 @@ WindowSettings Companion::settings() const {
 }
 
 void Companion::stop() {
-  guides_pane_.cancel(desk_);
+  guides_pane_.cancel();
   desk_.session().send(protocol::Command::disable_force);
 }
 
@@ -62,6 +62,10 @@ void Companion::key(int key, bool down) {
 }
 
 void Companion::follow_device(double now_s) {
+  if (desk_.has_choice()) {
+    guides_pane_.cancel();  // while its device is still there to take back what was on trial
+    desk_.follow_choice();
+  }
   const DeviceView& view = desk_.refresh();
   if (!view.connected() || !view.parameters) {
     editor_.disconnected();
@@ -79,7 +83,7 @@ void Companion::follow_device(double now_s) {
   }
   editor_.forget_unconfirmed(now_s);
   const auto frames = desk_.take_scope();
-  guides_pane_.follow(desk_, frames);
+  guides_pane_.follow(frames);
   const bool guide_has_scope = !guides_pane_.signals().empty();
   recording_pane_.follow(view, frames);
   desk_.select_signals(guide_has_scope                  ? guides_pane_.signals()
@@ -194,7 +198,7 @@ void Companion::draw(ImVec2 size, double now_s) {
       tuning_panel_.draw(pane_place, pane_size, style_, editor,
                          replays ? "These parameters are the recording's. Close it to tune the device." : seen_refusal_, now_s);
       break;
-    case Tab::guides: guides_pane_.draw(pane_place, pane_size, style_, desk_); break;
+    case Tab::guides: guides_pane_.draw(pane_place, pane_size, style_); break;
     case Tab::recording:
       recording_pane_.draw(pane_place, pane_size, style_, view, guides_pane_.signals().empty(), scope_panel_.signals());
       break;

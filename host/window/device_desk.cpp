@@ -72,8 +72,8 @@ const DeviceView& DeviceDesk::refresh() {
   return view_;
 }
 
-void DeviceDesk::choose(const std::string& serial_number) {
-  wanted_ = serial_number;
+void DeviceDesk::follow_choice() {
+  wanted_ = *std::exchange(choice_, std::nullopt);
   session_.reset();  // the old one lets go of the device before the new one asks for it
   view_ = DeviceView{};
   {

@@ -40,8 +40,11 @@ class DeviceDesk {
   /// As of now, which may be newer than the view; none while not connected.
   std::optional<protocol::PoseReport> newest_pose() const { return session_->newest_pose(); }
 
-  /// Connects to another device; the session with the present one ends.
-  void choose(const std::string& serial_number);
+  /// Asks for another device, or for any with an empty number; follow_choice then connects to it.
+  void choose(const std::string& serial_number) { choice_ = serial_number; }
+  bool has_choice() const { return choice_.has_value(); }
+  /// The session with the present device ends.
+  void follow_choice();
   const std::string& wanted_serial_number() const { return wanted_; }
   /// Looks for devices while this is true, for the list that is open.
   void keep_looking(bool looking) { looking_ = looking; }
@@ -57,6 +60,7 @@ class DeviceDesk {
 
   std::function<std::vector<device::Endpoint>()> list_devices_;
   std::string wanted_;
+  std::optional<std::string> choice_;
   DeviceView view_;
   std::vector<protocol::Signal> signals_;
 

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <device/parameter_file.hpp>
-#include <guides/session_port.hpp>
 
 #include "plot.hpp"
 
@@ -23,11 +22,11 @@ Colour outcome_colour(Phase phase, const Palette& palette) {
   }
 }
 
-guides::SessionPort port_to(DeviceDesk& desk, std::vector<protocol::Signal>& signals) {
-  return {desk.session(), [&signals](std::vector<protocol::Signal> wanted) { signals = std::move(wanted); }};
-}
-
 }  // namespace
+
+guides::SessionPort GuidesPane::port() {
+  return {desk_.session(), [this](std::vector<protocol::Signal> wanted) { signals_ = std::move(wanted); }};
+}
 
 std::vector<GuidesPane::Offer> GuidesPane::offers() const {
   return {
@@ -56,7 +55,9 @@ void GuidesPane::start(guides::Guide guide) {
   signals_.clear();
   if (control_port_ == 0 || !hand_helps_) return;
   try {
-    user_.emplace(device::ControlClient("127.0.0.1", control_port_), protocol::default_parameters());
+    const auto& held = desk_.view().parameters;
+    user_.emplace(device::ControlClient("127.0.0.1", control_port_),
+                  simulated_arm_ ? *simulated_arm_ : held.value_or(protocol::default_parameters()));
   } catch (const device::Error& error) {
     user_problem_ = error.what();
   }
@@ -72,24 +73,24 @@ void GuidesPane::run_simulated_user() {
   }
 }
 
-void GuidesPane::follow(DeviceDesk& desk, const std::vector<device::ScopeSamples>& frames) {
+void GuidesPane::follow(const std::vector<device::ScopeSamples>& frames) {
   if (!guide_) return;
   for (const auto& samples : frames) guide_->receive(samples);
-  auto port = port_to(desk, signals_);
-  guide_->advance(guides::observe(desk.session()), port);
+  auto to_device = port();
+  guide_->advance(guides::observe(desk_.session()), to_device);
   run_simulated_user();
 }
 
-void GuidesPane::cancel(DeviceDesk& desk) {
+void GuidesPane::cancel() {
   if (!is_running()) return;
-  auto port = port_to(desk, signals_);
-  guide_->cancel(port);
+  auto to_device = port();
+  guide_->cancel(to_device);
 }
 
-void GuidesPane::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk) {
+void GuidesPane::draw(ImVec2 place, ImVec2 size, const Style& style) {
   begin_pane("guides", place, size);
   if (!guide_) {
-    draw_offers(style, desk);
+    draw_offers(style);
   } else {
     text(style.fonts.strong, style.palette->text, guide_->title());
     const float room = ImGui::GetFrameHeightWithSpacing() + style.points(6);
@@ -102,13 +103,13 @@ void GuidesPane::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk&
       }
     }
     ImGui::EndChild();
-    draw_buttons(style, desk);
+    draw_buttons(style);
   }
   end_pane();
 }
 
-void GuidesPane::draw_offers(const Style& style, const DeviceDesk& desk) {
-  const bool connected = desk.view().connected();
+void GuidesPane::draw_offers(const Style& style) {
+  const bool connected = desk_.view().connected();
   wrapped_text(
       style.palette->text_quiet,
       connected
@@ -216,22 +217,24 @@ void GuidesPane::draw_curves(const Style& style) {
   }
 }
 
-void GuidesPane::draw_buttons(const Style& style, DeviceDesk& desk) {
+void GuidesPane::draw_buttons(const Style& style) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 half{0.5f * (ImGui::GetContentRegionAvail().x - gap), 0};
-  auto port = port_to(desk, signals_);
   if (!guide_->is_over()) {
     ImGui::BeginDisabled(!guide_->takes_confirmation());
     if (coloured_button("Confirm", style.palette->accent, style.palette->on_danger, half)) guide_->confirm();
     ImGui::EndDisabled();
     ImGui::SameLine();
-    if (ImGui::Button("Cancel", half)) guide_->cancel(port);
+    if (ImGui::Button("Cancel", half)) cancel();
     return;
   }
   const bool applicable = guide_->phase() == Phase::finished && !guide_->findings().proposals.empty() &&
                           (guide_->applied() == guides::Applied::no || guide_->applied() == guides::Applied::refused);
-  ImGui::BeginDisabled(!applicable || !desk.view().connected());
-  if (coloured_button("Apply", style.palette->accent, style.palette->on_danger, half)) guide_->apply(port);
+  ImGui::BeginDisabled(!applicable || !desk_.view().connected());
+  if (coloured_button("Apply", style.palette->accent, style.palette->on_danger, half)) {
+    auto to_device = port();
+    guide_->apply(to_device);
+  }
   ImGui::EndDisabled();
   ImGui::SameLine();
   if (ImGui::Button("Back", half)) guide_.reset();

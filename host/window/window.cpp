@@ -1,6 +1,7 @@
 #include <window/window.hpp>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fstream>
@@ -76,7 +77,11 @@ void remember_settings(const WindowSettings& settings) {
   }
 }
 
+volatile std::sig_atomic_t asked_to_end = 0;
+
 void run(const WindowOptions& options) {
+  // Ended from a terminal it closes as by its button: force off, parameters on trial put back, settings kept.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
   Display display(options.width, options.height, "Inkwell");
   const ImGuiScope imgui(display.handle());
   const float scale = options.scale > 0.0f ? options.scale : display.content_scale();
@@ -97,7 +102,7 @@ void run(const WindowOptions& options) {
   std::uint64_t scene_on_screen = 0;
   std::uint64_t panes_on_screen = 0;
   bool smooth_on_screen = false;
-  while (glfwWindowShouldClose(display.handle()) == 0) {
+  while (glfwWindowShouldClose(display.handle()) == 0 && asked_to_end == 0) {
     const bool is_lively = rhythm.is_lively(glfwGetTime());
     if (is_lively) {
       pacer.wait();

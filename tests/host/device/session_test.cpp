@@ -1,6 +1,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
 
 #include <device/session.hpp>
 
@@ -86,6 +89,25 @@ TEST_CASE("a session comes back by itself, selects its signals again, and repeat
   REQUIRE(eventually([&] { return server.imports() == 2 && is_connected(session); }));
   CHECK(eventually([&] { return count_of(server, protocol::Command::select_signals) == 2; }));
   CHECK(count_of(server, protocol::Command::enable_force) == 1);
+}
+
+TEST_CASE("what was asked for last still reaches the device when the session ends") {
+  FakeUsbipServer server;
+  std::atomic<bool> judging = false;
+  server.judge = [&](const protocol::ParametersReport&) {
+    judging = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // the session ends meanwhile
+    return protocol::Refusal::accepted;
+  };
+  {
+    device::Session session([&] { return std::optional(server.endpoint()); });
+    session.set_parameters({{Parameter::force_limit_N, 3.0f}});
+    REQUIRE(eventually([&] { return judging.load(); }));
+    session.send(protocol::Command::disable_force);
+    session.set_parameters({{Parameter::force_limit_N, 1.5f}});
+  }
+  CHECK(was_sent(server, protocol::Command::disable_force));
+  CHECK(server.parameters[Parameter::force_limit_N] == 1.5f);
 }
 
 TEST_CASE("a session says why it is not connected") {

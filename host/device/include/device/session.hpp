@@ -33,6 +33,7 @@ class Session {
  public:
   /// `find` is asked again and again for the device to connect to while there is none.
   explicit Session(std::function<std::optional<Endpoint>()> find);
+  /// Sends what is still queued, if the device is there.
   ~Session();
 
   SessionStatus status() const;

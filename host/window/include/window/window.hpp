@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <device/link.hpp>
+#include <protocol/parameters.hpp>
 
 namespace inkwell::window {
 
@@ -24,6 +25,10 @@ struct WindowOptions {
   /// Control port of a virtual board on this machine, through which the mouse moves the simulated hand and
   /// the keyboard presses the stylus' buttons; 0: there is none.
   std::uint16_t virtual_board_control_port = 0;
+
+  /// The arm that this virtual board simulates, for the simulated hand of the guides; without it, the arm that the
+  /// device's parameters describe.
+  std::optional<protocol::ParameterSet> simulated_arm;
 
   int width = 1280;              ///< in screen coordinates
   int height = 800;
