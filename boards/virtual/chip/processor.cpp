@@ -1,6 +1,7 @@
 #include "processor.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "bus.hpp"
@@ -179,11 +180,24 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
 void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
   if (address >= sram_base) self.plain_stores_.code_runs_at(static_cast<std::uint32_t>(address), bytes);
-  if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) self.stop();
-  else {
-    self.last_code_address_ = static_cast<std::uint32_t>(address);
-    ++self.cycles_;
-  }
+  const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
+  if (due && !self.in_if_then_block(static_cast<std::uint32_t>(address))) return self.stop();
+  self.last_code_address_ = static_cast<std::uint32_t>(address);
+  self.recent_addresses_[self.cycles_ % self.recent_addresses_.size()] = self.last_code_address_;
+  ++self.cycles_;
+}
+
+bool Processor::in_if_then_block(std::uint32_t address) const {
+  return std::any_of(recent_addresses_.begin(), recent_addresses_.end(), [&](std::uint32_t recent) {
+    const std::uint16_t instruction = machine_.memory.half_word(recent);
+    // IT (ARMv7-M, A7.7.38): the lowest bit that is set in the mask ends the block.
+    const unsigned mask = instruction & 0xFu;
+    if ((instruction & 0xFF00u) != 0xBF00u || mask == 0 || address <= recent) return false;
+    std::uint32_t end = recent + 2;
+    for (int left = 4 - std::countr_zero(mask); left > 0; --left)
+      end += is_wide(machine_.memory.half_word(end)) ? 4 : 2;
+    return address < end;
+  });
 }
 
 void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* pointer) {

@@ -3,6 +3,7 @@
 
 #include <unicorn/unicorn.h>
 
+#include <array>
 #include <chip/chip.hpp>
 #include <cstdint>
 #include <string>
@@ -104,6 +105,8 @@ class Processor final : public ClockUser {
                           void* self);
   static bool invalid_hook(uc_engine*, void* self);
   bool masks_open();
+  /// Unicorn loses the conditions of an if-then block in which it is stopped.
+  bool in_if_then_block(std::uint32_t address) const;
   void finish_flash_stores();
   unsigned instructions_of(std::uint32_t address, std::uint32_t bytes);
   unsigned count_instructions(std::uint32_t address, std::uint32_t bytes) const;
@@ -124,6 +127,7 @@ class Processor final : public ClockUser {
   std::uint32_t program_counter_ = 0;
   unsigned current_exception_ = 0;
   std::uint32_t last_code_address_ = 0;
+  std::array<std::uint32_t, 4> recent_addresses_{};  ///< of the newest instructions; an if-then block holds up to four
   std::uint32_t fault_address_ = 0;
   Outcome outcome_ = Outcome::slice_over;
   bool stopped_ = false, watch_masks_ = false, masks_opened_ = false, event_register_ = false;

@@ -66,6 +66,21 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(rig.chip.run_until(rig.chip.now() + ticks(10e-6)) == Stop::time_reached);
   }
 
+  TEST_CASE("an if-then block that is stopped or interrupted in its middle goes on as it began") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      Rig rig("conditional", mode);
+      // In steps of 22 cycles, so that most stops come without an interrupt.
+      for (int step = 0; step < 60'000 && rig.result(0) != finished; ++step) rig.run_for(1.375e-6);
+      REQUIRE(rig.result(0) == finished);
+      CHECK(rig.result(1) == 10'000u * (1 + 256 + 4096));
+      CHECK(rig.result(2) == 10'000u * (1 + 256 + 2 + 512));
+      CHECK(rig.result(3) > 1000);
+      CHECK(rig.result(4) == 10'000u * (3 + 256));
+      CHECK(rig.log.empty());
+    }
+  }
+
   TEST_CASE("code in RAM that is written anew runs anew") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
