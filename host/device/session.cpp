@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto search_interval = 200ms;
-constexpr auto transaction_check_interval = 1s;  // another program may have changed the parameters
+constexpr auto refresh_interval = 1s;  // another program may have changed the parameters
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
 
@@ -124,8 +124,9 @@ struct Session::Implementation {
         window_start = now;
         poses_in_window = 0;
       }
-      if (now - last_check >= transaction_check_interval && now - last_pose < silence_limit) {
+      if (now - last_check >= refresh_interval && now - last_pose < silence_limit) {
         refresh_parameters(*served);
+        refresh_information(*served);
         last_check = now;
       }
     }
@@ -180,6 +181,13 @@ struct Session::Implementation {
     if (parameter_set == held) return;
     parameter_set = held;
     ++revision;
+  }
+
+  /// Counters and the motors' heat change; the rest of it stays.
+  void refresh_information(Device& from) {
+    const auto information = from.information();
+    const std::lock_guard lock(mutex);
+    state.information = information;
   }
 
   void set_connection(Connection connection, const std::string& message) {

@@ -163,11 +163,12 @@ void Companion::draw(ImVec2 size, double now_s) {
   const DeviceView& view = desk_.view();
   StatusBarOutcome outcome;
 
-  const float bar = style_.points(status_bar_points);
+  const float bar = status_bar_.height(size.x, style_);
   const float gap = style_.points(splitter_points);
-  const bool fault = view.pose && view.pose->state == protocol::State::fault;
-  const float top = bar + (fault ? style_.points(fault_banner_points) : 0.0f);
-  const float tuning_width = std::clamp(style_.points(settings_.tuning_width), style_.points(tuning_minimum_points), 0.5f * size.x);
+  const std::optional<Banner> banner = banner_of(view);
+  const float top = bar + (banner ? banner_height(size.x, style_, *banner) : 0.0f);
+  const float tuning_width =
+      std::min(style_.points(std::max(settings_.tuning_width, tuning_minimum_points)), 0.5f * size.x);
   const float scope_room = size.y - top - style_.points(scene_minimum_points);
   const float scope_height = settings_.scope_is_shown
                                  ? std::max(style_.points(scope_minimum_points), std::min(style_.points(settings_.scope_height), scope_room))
@@ -179,7 +180,7 @@ void Companion::draw(ImVec2 size, double now_s) {
   const float scene_height = scene_end - top - replay_height;
 
   outcome = status_bar_.draw({0, 0}, {size.x, bar}, style_, desk_, settings_.scope_is_shown);
-  if (fault) outcome.clear_fault = draw_fault_banner({0, bar}, {size.x, top - bar}, style_, view.pose->fault);
+  if (banner) outcome.clear_fault = draw_banner({0, bar}, {size.x, top - bar}, style_, *banner);
 
   scene_place_ = {0, top};
   scene_size_ = {left_width, scene_height};
@@ -204,7 +205,8 @@ void Companion::draw(ImVec2 size, double now_s) {
       break;
   }
   settings_.tuning_width -= splitter("tuning splitter", {left_width, top}, {gap, size.y - top}, true);
-  settings_.tuning_width = std::clamp(settings_.tuning_width, tuning_minimum_points, 0.5f * size.x / style_.scale);
+  settings_.tuning_width =
+      std::max(tuning_minimum_points, std::min(settings_.tuning_width, 0.5f * size.x / style_.scale));
   if (settings_.scope_is_shown) {
     settings_.scope_height -= splitter("scope splitter", {0, scene_end}, {left_width, gap}, false);
     settings_.scope_height = std::clamp(settings_.scope_height, scope_minimum_points, std::max(scope_minimum_points, scope_room / style_.scale));

@@ -46,10 +46,10 @@ void ScopePanel::draw_toolbar(const Style& style) {
     ImGui::EndCombo();
   }
   help_on_hover("Layout", "What the panes show. \"paper\" has the paper's figures 11 to 14.", style);
-  ImGui::SameLine();
+  same_line_if_room(style.points(58));
   if (toggle_button(paused_ ? "Run" : "Pause", paused_, style, {style.points(58), 0})) pause(!paused_);
   help_on_hover("", "A pause keeps the picture; drag to move in it, wheel to zoom, double click to run again.", style);
-  ImGui::SameLine();
+  same_line_if_room(style.points(84));
   ImGui::SetNextItemWidth(style.points(84));
   if (ImGui::BeginCombo("##span", span_label(span_s_).c_str(), ImGuiComboFlags_HeightLarge)) {
     for (double span_s : spans_s)
@@ -57,18 +57,17 @@ void ScopePanel::draw_toolbar(const Style& style) {
     ImGui::EndCombo();
   }
   help_on_hover("Time shown", "The wheel over a pane changes it too.", style);
-  ImGui::SameLine();
-  if (toggle_button("Cursors", cursors_are_shown_, style)) cursors_are_shown_ = !cursors_are_shown_;
-  ImGui::SameLine();
-  if (toggle_button("Statistics", statistics_are_shown_, style)) statistics_are_shown_ = !statistics_are_shown_;
-  ImGui::SameLine();
+  same_line_if_room(style.points(66));
+  if (toggle_button("Cursors", cursors_are_shown_, style, {style.points(66), 0})) cursors_are_shown_ = !cursors_are_shown_;
+  same_line_if_room(style.points(72));
+  if (toggle_button("Statistics", statistics_are_shown_, style, {style.points(72), 0})) statistics_are_shown_ = !statistics_are_shown_;
   draw_trigger_tools(style);
   if (cursors_are_shown_) {
     const double apart_s = std::abs(cursors_[1] - cursors_[0]) * span_s_;
-    ImGui::SameLine();
+    const std::string apart = fmt::format("{:.5g} ms, {:.4g} Hz", 1000.0 * apart_s, 1.0 / std::max(apart_s, 1e-9));
+    same_line_if_room(ImGui::CalcTextSize(apart.c_str()).x);
     ImGui::AlignTextToFramePadding();
-    text(style.fonts.caption, style.palette->text,
-         fmt::format("{:.5g} ms, {:.4g} Hz", 1000.0 * apart_s, 1.0 / std::max(apart_s, 1e-9)));
+    text(style.fonts.caption, style.palette->text, apart);
   }
   ImGui::PopStyleVar();
 }
@@ -76,6 +75,7 @@ void ScopePanel::draw_toolbar(const Style& style) {
 void ScopePanel::draw_trigger_tools(const Style& style) {
   static constexpr std::array<const char*, 3> modes{"no trigger", "trigger", "single"};
   auto mode = static_cast<int>(trigger_settings_.mode);
+  same_line_if_room(style.points(100));
   ImGui::SetNextItemWidth(style.points(100));
   if (ImGui::Combo("##mode", &mode, modes.data(), static_cast<int>(modes.size()))) {
     trigger_settings_.mode = static_cast<TriggerMode>(mode);
@@ -83,27 +83,27 @@ void ScopePanel::draw_trigger_tools(const Style& style) {
   }
   help_on_hover("Trigger", "Aligns the picture to the moment at which a signal crosses a level.", style);
   if (trigger_settings_.mode == TriggerMode::off) return;
-  ImGui::SameLine();
-  if (choose_signal("##signal", trigger_settings_.signal, style.points(130))) trigger_.arm();
-  ImGui::SameLine();
+  same_line_if_room(style.points(150));
+  if (choose_signal("##signal", trigger_settings_.signal, style.points(150))) trigger_.arm();
+  same_line_if_room(style.points(62));
   const bool rising = trigger_settings_.edge == TriggerEdge::rising;
-  if (ImGui::Button(rising ? "rising" : "falling")) {
+  if (ImGui::Button(rising ? "rising" : "falling", {style.points(62), 0})) {
     trigger_settings_.edge = rising ? TriggerEdge::falling : TriggerEdge::rising;
     trigger_.arm();
   }
-  ImGui::SameLine();
+  same_line_if_room(style.points(70));
   ImGui::SetNextItemWidth(style.points(70));
   if (ImGui::DragFloat("##level", &trigger_settings_.level, 0.01f, 0.0f, 0.0f, "%.3g")) trigger_.arm();
   help_on_hover("Level", std::string(protocol::info(trigger_settings_.signal).unit), style);
-  ImGui::SameLine();
+  same_line_if_room(style.points(64));
   float percent = 100.0f * trigger_settings_.pre_trigger;
   ImGui::SetNextItemWidth(style.points(64));
   if (ImGui::SliderFloat("##before", &percent, 0.0f, 100.0f, "%.0f %%"))
     trigger_settings_.pre_trigger = percent / 100.0f;
   help_on_hover("Before the event", "Part of the picture that lies before the event.", style);
   if (trigger_settings_.mode != TriggerMode::single) return;
-  ImGui::SameLine();
-  if (ImGui::Button("Arm")) trigger_.arm();
+  same_line_if_room(style.points(48));
+  if (ImGui::Button("Arm", {style.points(48), 0})) trigger_.arm();
 }
 
 void ScopePanel::draw_pane_menu(std::size_t index, const Style& style) {

@@ -4,6 +4,10 @@
 #include <array>
 #include <fmt/format.h>
 #include <utility>
+#include <vector>
+
+#include <window/flow_layout.hpp>
+#include <window/motor_heat_view.hpp>
 
 namespace inkwell::window {
 
@@ -12,7 +16,23 @@ using protocol::State;
 
 namespace {
 
-constexpr float buttons_points = 398.0f;  // what the buttons at the right end take
+constexpr float margin_points = 12.0f;
+constexpr float item_points = 38.0f;       // height of the buttons and of a row of gauges
+constexpr float row_points = 46.0f;
+constexpr float gap_points = 8.0f;
+constexpr float buttons_points = 398.0f;   // what the buttons at the right end take
+constexpr float banner_button_points = 118.0f;
+
+/// Device, gauges, switches: from left to right.
+enum Item : std::size_t { device_item, state_item, load_item, supply_item, heat_item, poses_item, lost_item, switches_item };
+constexpr std::array<float, 8> item_widths_points{214, 92, 72, 54, 78, 62, 44, 122};
+
+std::vector<FlowPlace> places_of(float width, const Style& style) {
+  std::vector<float> widths;
+  for (float points : item_widths_points) widths.push_back(style.points(points));
+  const float row = width - style.points(2 * margin_points);
+  return flow(widths, row - style.points(buttons_points - margin_points), row, style.points(gap_points));
+}
 
 const char* title_of(Connection connection) {
   switch (connection) {
@@ -38,18 +58,61 @@ Colour colour_of(State state, const Palette& palette) {
   }
 }
 
-// A number with its caption above, in a column of fixed width.
-void gauge(const char* caption, const std::string& value, Colour colour, const std::string& help, float width,
-           const Style& style) {
-  ImGui::BeginGroup();
-  text(style.fonts.caption, style.palette->text_quiet, caption);
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() - style.points(6));
-  text(style.fonts.body, colour, value);
-  ImGui::SameLine(0, 0);
-  ImGui::Dummy({std::max(0.0f, width - ImGui::CalcTextSize(value.c_str()).x), 1});
-  ImGui::EndGroup();
-  help_on_hover(caption, help, style);
-  ImGui::SameLine(0, style.points(8));
+struct Gauge {
+  const char* caption;
+  std::string value;
+  Colour colour;
+  std::string help;
+  bool warns = false;  ///< told by a sign as well as by the colour
+};
+
+// A number with its caption above.
+void draw_gauge(const Gauge& gauge, ImVec2 corner, float width, const Style& style) {
+  ImGui::SetCursorScreenPos(corner);
+  ImGui::InvisibleButton(gauge.caption, {width, style.points(item_points)});
+  help_on_hover(gauge.caption, gauge.help, style);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText(style.fonts.caption, style.fonts.caption->FontSize, {corner.x, corner.y + style.points(1)},
+               packed(style.palette->text_quiet), gauge.caption);
+  float left = corner.x;
+  const float top = corner.y + style.points(16);
+  if (gauge.warns) left += warning_sign({left, top}, gauge.colour, style);
+  list.AddText(style.fonts.body, style.fonts.body->FontSize, {left, top}, packed(gauge.colour), gauge.value.c_str());
+}
+
+Colour colour_of(HeatLevel level, const Palette& palette) {
+  return level == HeatLevel::hot ? palette.danger : level == HeatLevel::warm ? palette.caution : palette.text;
+}
+
+// In the order of the items from state_item on.
+std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette) {
+  const bool alive = view.connected() && view.pose.has_value() && view.status.information.has_value();
+  const protocol::PoseReport pose = view.pose.value_or(protocol::PoseReport{});
+  const device::SessionStatus& status = view.status;
+  const MotorHeatView heat = alive ? motor_heat_view(status.information->report) : MotorHeatView{};
+  const double load_percent = 100.0 * pose.servo_load / 255.0;
+  const std::uint64_t lost = status.poses_lost + status.scope_samples_lost;
+  const protocol::StateInfo& state = protocol::info(pose.state);
+  const std::string advice = heat_advice(heat);
+  std::vector<Gauge> gauges{
+      {"State", std::string(state.name), colour_of(pose.state, palette),
+       alive ? std::string(state.meaning) : "No device is connected.", pose.state == State::fault},
+      {"Servo load", fmt::format("{:.0f} %", load_percent), load_percent > 80 ? palette.caution : palette.text,
+       "The longest control interrupt of the last millisecond, as a part of its period.", load_percent > 80},
+      {"Supply", fmt::format("{:.1f} V", pose.supply_dV / 10.0), palette.text,
+       "Voltage of the bridges' supply, 18 V nominal."},
+      {"Motor heat", fmt::format("{:.0f} %", 100.0f * heat.hottest), colour_of(heat.level, palette),
+       fmt::format("Of the hottest motor, number {}. 100 % is what its continuous current leads to.{}{}", heat.motor,
+                   advice.empty() ? "" : "\n", advice),
+       heat.level != HeatLevel::cool},
+      {"Poses", fmt::format("{:.0f} Hz", status.pose_rate_Hz), palette.text,
+       "Pose reports received in the last second; the device sends 1000."},
+      {"Lost", fmt::format("{}", lost), lost > 0 ? palette.caution : palette.text,
+       fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost,
+                   status.scope_samples_lost, status.scope_samples_received + status.scope_samples_lost)}};
+  if (!alive)
+    for (Gauge& gauge : gauges) gauge = {gauge.caption, "—", palette.text_quiet, gauge.help};
+  return gauges;
 }
 
 }  // namespace
@@ -86,13 +149,13 @@ void StatusBar::draw_device_list(const Style& style, DeviceDesk& desk) {
   ImGui::EndPopup();
 }
 
-void StatusBar::draw_device(const Style& style, DeviceDesk& desk) {
+void StatusBar::draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk) {
   const DeviceView& view = desk.view();
   const Palette& palette = *style.palette;
   const Connection connection = view.status.connection;
   const std::string serial = view.status.information ? view.status.information->serial_number : std::string{};
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ImVec2 area{style.points(236), style.points(38)};
+  const ImVec2 area{style.points(item_widths_points[device_item]), style.points(item_points)};
+  ImGui::SetCursorScreenPos(corner);
   ImGui::PushStyleColor(ImGuiCol_Button, packed(palette.panel));
   if (ImGui::Button("##device", area)) ImGui::OpenPopup("devices");
   ImGui::PopStyleColor();
@@ -108,51 +171,29 @@ void StatusBar::draw_device(const Style& style, DeviceDesk& desk) {
   draw_device_list(style, desk);
 }
 
-void StatusBar::draw_gauges(float limit_x, const Style& style, const DeviceView& view) const {
-  const Palette& palette = *style.palette;
-  const bool alive = view.connected() && view.pose.has_value();
-  const auto show = [&](const char* caption, const std::string& value, Colour colour, const std::string& help,
-                        float width_points) {
-    const float width = style.points(width_points);
-    if (ImGui::GetCursorScreenPos().x + width < limit_x)
-      gauge(caption, alive ? value : "—", alive ? colour : palette.text_quiet, help, width, style);
-  };
-  const protocol::PoseReport pose = view.pose.value_or(protocol::PoseReport{});
-  const protocol::StateInfo& state = protocol::info(pose.state);
-  show("State", std::string(state.name), colour_of(pose.state, palette),
-       alive ? std::string(state.meaning) : "No device is connected.", 96);
-  const double load_percent = 100.0 * pose.servo_load / 255.0;
-  show("Servo load", fmt::format("{:.0f} %", load_percent), load_percent > 80 ? palette.caution : palette.text,
-       "The longest control interrupt of the last millisecond, as a part of its period.", 74);
-  show("Supply", fmt::format("{:.1f} V", pose.supply_dV / 10.0), palette.text,
-       "Voltage of the bridges' supply, 18 V nominal.", 64);
-  const device::SessionStatus& status = view.status;
-  show("Poses", fmt::format("{:.0f} Hz", status.pose_rate_Hz), palette.text,
-       "Pose reports received in the last second; the device sends 1000.", 72);
-  const std::uint64_t lost = status.poses_lost + status.scope_samples_lost;
-  show("Lost", fmt::format("{}", lost), lost > 0 ? palette.caution : palette.text,
-       fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost, status.scope_samples_lost,
-                   status.scope_samples_received + status.scope_samples_lost),
-       56);
-}
-
-void StatusBar::draw_switches(float left_x, float right_x, float y, const Style& style, std::uint8_t switches) const {
+void StatusBar::draw_switches(ImVec2 corner, const Style& style, std::uint8_t switches) const {
   static constexpr std::array<std::pair<const char*, protocol::Switch>, 3> all{
       {{"1", protocol::Switch::button_1}, {"2", protocol::Switch::button_2}, {"inkwell", protocol::Switch::inkwell}}};
-  if (right_x - left_x < style.points(132)) return;
   const Palette& palette = *style.palette;
   ImFont* font = style.fonts.caption;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  float right = right_x - style.points(14);
-  for (auto each = all.rbegin(); each != all.rend(); ++each) {
-    right -= font->CalcTextSizeA(font->FontSize, 1e4f, 0, each->first).x;
-    const bool on = (switches & static_cast<std::uint8_t>(each->second)) != 0;
-    list.AddText(font, font->FontSize, {right, y + style.points(11)}, packed(on ? palette.text : palette.text_quiet),
-                 each->first);
-    list.AddCircleFilled({right - style.points(8), y + style.points(18)}, style.points(3.2f),
+  float x = corner.x;
+  for (const auto& [name, which] : all) {
+    const bool on = (switches & static_cast<std::uint8_t>(which)) != 0;
+    list.AddCircleFilled({x + style.points(4), corner.y + style.points(19)}, style.points(3.2f),
                          packed(on ? palette.accent : palette.raised_active));
-    right -= style.points(24);
+    list.AddText(font, font->FontSize, {x + style.points(12), corner.y + style.points(12)},
+                 packed(on ? palette.text : palette.text_quiet), name);
+    x += font->CalcTextSizeA(font->FontSize, 1e4f, 0, name).x + style.points(24);
   }
+  ImGui::SetCursorScreenPos(corner);
+  ImGui::InvisibleButton("switches", {x - corner.x, style.points(item_points)});
+  help_on_hover("Switches", "The two buttons of the stylus, and the inkwell that feels it.", style);
+}
+
+float StatusBar::height(float width, const Style& style) const {
+  const int rows = places_of(width, style).back().row + 1;
+  return style.points(gap_points + row_points * static_cast<float>(rows));
 }
 
 StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk, bool scope_is_shown) {
@@ -167,15 +208,22 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   ground.AddLine({place.x, place.y + size.y - 1}, {place.x + size.x, place.y + size.y - 1}, packed(palette.line));
   ground.PopClipRect();
 
-  const float height = style.points(38);
-  const float gap = style.points(8);
-  const float y = place.y + style.points(8);
-  const float buttons_left = place.x + size.x - style.points(buttons_points);
+  const float height = style.points(item_points);
+  const float gap = style.points(gap_points);
+  const float y = place.y + gap;
   const bool alive = view.connected() && view.pose.has_value();
-  draw_device(style, desk);
-  ImGui::SameLine(0, style.points(14));
-  draw_gauges(buttons_left, style, view);
-  if (alive) draw_switches(ImGui::GetCursorScreenPos().x, buttons_left, y, style, view.pose->switches);
+  const std::vector<FlowPlace> places = places_of(size.x, style);
+  const auto corner = [&](Item item) {
+    return ImVec2{place.x + style.points(margin_points) + places[item].x,
+                  y + style.points(row_points) * static_cast<float>(places[item].row)};
+  };
+  draw_device(corner(device_item), style, desk);
+  const std::vector<Gauge> gauges = gauges_of(view, palette);
+  for (std::size_t i = 0; i < gauges.size(); ++i) {
+    const auto item = static_cast<Item>(state_item + i);
+    draw_gauge(gauges[i], corner(item), style.points(item_widths_points[item]), style);
+  }
+  if (alive) draw_switches(corner(switches_item), style, view.pose->switches);
 
   float x = place.x + size.x - style.points(12);
   const auto make_room = [&](float width) {
@@ -205,23 +253,56 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   return outcome;
 }
 
-bool draw_fault_banner(ImVec2 place, ImVec2 size, const Style& style, protocol::Fault fault) {
+std::optional<Banner> banner_of(const DeviceView& view) {
+  if (view.pose && view.pose->state == State::fault) {
+    const protocol::CodeInfo& info = protocol::info(view.pose->fault);
+    return Banner{std::string(info.cause), std::string(info.remedy), true};
+  }
+  if (!view.connected() || !view.status.information) return std::nullopt;
+  const MotorHeatView heat = motor_heat_view(view.status.information->report);
+  if (heat.level != HeatLevel::hot) return std::nullopt;
+  return Banner{fmt::format("Motor {} is hot: {:.0f} %.", heat.motor, 100.0f * heat.hottest), heat_advice(heat), false};
+}
+
+namespace {
+
+float banner_text_width(float width, const Style& style, const Banner& banner) {
+  return width - style.points(44 + (banner.is_fault ? banner_button_points + 2 * margin_points : margin_points));
+}
+
+}  // namespace
+
+float banner_height(float width, const Style& style, const Banner& banner) {
+  const float room = banner_text_width(width, style, banner);
+  const auto taken = [room](ImFont* font, const std::string& text) {
+    return font->CalcTextSizeA(font->FontSize, 1e4f, room, text.c_str()).y;
+  };
+  return taken(style.fonts.strong, banner.what) + taken(style.fonts.body, banner.remedy) + style.points(26);
+}
+
+bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner) {
   const Palette& palette = *style.palette;
-  const protocol::CodeInfo& info = protocol::info(fault);
-  begin_pane("fault", place, size);
+  const Colour colour = banner.is_fault ? palette.danger : palette.caution;
+  begin_pane("banner", place, size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
   list.AddRectFilled(place, {place.x + size.x, place.y + size.y}, packed(palette.raised));
-  list.AddRectFilled(place, {place.x + style.points(5), place.y + size.y}, packed(palette.danger));
+  list.AddRectFilled(place, {place.x + style.points(5), place.y + size.y}, packed(colour));
   list.PopClipRect();
-  ImGui::SetCursorPos({style.points(18), style.points(9)});
+  warning_sign({place.x + style.points(18), place.y + style.points(10)}, colour, style);
+  ImGui::SetCursorPos({style.points(44), style.points(9)});
   ImGui::BeginGroup();
-  text(style.fonts.strong, palette.text, info.cause);
-  text(palette.text_quiet, info.remedy);
+  ImGui::PushTextWrapPos(style.points(44) + banner_text_width(size.x, style, banner));
+  text(style.fonts.strong, palette.text, banner.what);
+  text(palette.text_quiet, banner.remedy);
+  ImGui::PopTextWrapPos();
   ImGui::EndGroup();
-  ImGui::SetCursorPos({size.x - style.points(130), style.points(14)});
-  const bool pressed =
-      coloured_button("Clear fault", palette.danger, palette.on_danger, {style.points(118), style.points(34)});
+  bool pressed = false;
+  if (banner.is_fault) {
+    ImGui::SetCursorPos({size.x - style.points(banner_button_points + margin_points), style.points(14)});
+    pressed = coloured_button("Clear fault", palette.danger, palette.on_danger,
+                              {style.points(banner_button_points), style.points(34)});
+  }
   end_pane();
   return pressed;
 }

@@ -1,6 +1,9 @@
 // The bar on top: which device, how it is, force on and off, stop; and under it the fault, if there is one.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "device_desk.hpp"
 #include "style.hpp"
 
@@ -14,24 +17,29 @@ struct StatusBarOutcome {
   bool toggle_scope = false;
 };
 
-inline constexpr float status_bar_points = 54.0f;
-inline constexpr float fault_banner_points = 62.0f;
-
 class StatusBar {
  public:
+  /// The gauges wrap where the window is narrow or its text large.
+  float height(float width, const Style& style) const;
   StatusBarOutcome draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk, bool scope_is_shown);
 
  private:
-  void draw_device(const Style& style, DeviceDesk& desk);
+  void draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk);
   void draw_device_list(const Style& style, DeviceDesk& desk);
-  /// As many as there is room for left of `limit_x`.
-  void draw_gauges(float limit_x, const Style& style, const DeviceView& view) const;
   /// The stylus' two buttons and the inkwell, as the board feels them.
-  void draw_switches(float left_x, float right_x, float y, const Style& style, std::uint8_t switches) const;
+  void draw_switches(ImVec2 corner, const Style& style, std::uint8_t switches) const;
 };
 
-/// Draws the fault with its cause and remedy; true when "Clear fault" was pressed.
-bool draw_fault_banner(ImVec2 place, ImVec2 size, const Style& style, protocol::Fault fault);
+/// What has to be said over the whole width: a fault with its cause and remedy, or a motor that is hot.
+struct Banner {
+  std::string what;
+  std::string remedy;
+  bool is_fault;
+};
+std::optional<Banner> banner_of(const DeviceView& view);
+float banner_height(float width, const Style& style, const Banner& banner);
+/// True when "Clear fault" was pressed.
+bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);
 
 /// A card in the middle of the scene that says why no device is connected and what to do.
 void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view);

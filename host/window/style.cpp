@@ -154,6 +154,24 @@ void right_text(Colour colour, std::string_view content, float width) {
   text(colour, content);
 }
 
+float warning_sign(ImVec2 corner, Colour colour, const Style& style) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float size = style.points(14);
+  const float middle = corner.x + 0.5f * size;
+  const float top = corner.y + style.points(3);
+  list.AddTriangleFilled({middle, top}, {corner.x + size, top + 0.9f * size}, {corner.x, top + 0.9f * size},
+                         packed(colour));
+  const ImU32 mark = packed(style.palette->panel);
+  list.AddLine({middle, top + 0.33f * size}, {middle, top + 0.6f * size}, mark, style.points(1.6f));
+  list.AddCircleFilled({middle, top + 0.74f * size}, style.points(1.0f), mark);
+  return size + style.points(4);
+}
+
+void same_line_if_room(float width) {
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();
+}
+
 void help_on_hover(std::string_view title, std::string_view help, const Style& style) {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsItemActive()) return;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(11), style.points(9)});

@@ -39,6 +39,12 @@ void wrapped_text(Colour colour, std::string_view content);
 /// Text whose right end is at the cursor's x plus `width`.
 void right_text(Colour colour, std::string_view content, float width);
 
+/// A triangle with an exclamation mark, for what must not be told by colour alone. Returns the width it takes.
+float warning_sign(ImVec2 corner, Colour colour, const Style& style);
+
+/// The next item of this width goes beside the last one if there is room, else below.
+void same_line_if_room(float width);
+
 /// Explains the last item after the mouse has rested on it.
 void help_on_hover(std::string_view title, std::string_view help, const Style& style);
 

@@ -19,7 +19,7 @@ enum class Connection : std::uint8_t { searching, connected, incompatible, no_pe
 struct SessionStatus {
   Connection connection = Connection::searching;
   std::string message;  ///< a sentence for the user, with the remedy where there is one
-  std::optional<Information> information;
+  std::optional<Information> information;  ///< read anew every second
   bool is_simulation = false;  ///< connected to a virtual board
   double pose_rate_Hz = 0;
   std::uint64_t poses_received = 0;

@@ -1,0 +1,41 @@
+// What the status bar says and where it puts it.
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include <window/flow_layout.hpp>
+#include <window/motor_heat_view.hpp>
+
+using namespace inkwell;
+using namespace inkwell::window;
+
+TEST_CASE("items stand in one row where they fit, and wrap into whole rows where they do not") {
+  const std::vector<float> widths{200, 100, 100, 100};
+  for (const FlowPlace& place : flow(widths, 530, 900, 10)) CHECK(place.row == 0);
+  CHECK(flow(widths, 530, 900, 10).back().x == 430);
+
+  const auto two_rows = flow(widths, 529, 900, 10);
+  CHECK(two_rows[0].row == 0);
+  for (std::size_t i = 1; i < 4; ++i) CHECK(two_rows[i].row == 1);
+  CHECK(two_rows[1].x == 0);
+
+  const auto narrow = flow(widths, 150, 220, 10);
+  CHECK(narrow[0].row == 1);  // the first row has no room for it
+  CHECK(narrow[1].row == 2);
+  CHECK(narrow[2].row == 2);
+  CHECK(narrow[3].row == 3);
+  CHECK(flow({}, 100, 100, 10).empty());
+}
+
+TEST_CASE("the hottest motor is told, with what to do in time") {
+  protocol::InformationReport report{};
+  CHECK(heat_advice(motor_heat_view(report)).empty());
+  report.motor_heat[1] = 0.85f;
+  CHECK(motor_heat_view(report).level == HeatLevel::warm);
+  CHECK(motor_heat_view(report).motor == 2);
+  report.motor_heat[2] = 1.2f;
+  const MotorHeatView heat = motor_heat_view(report);
+  CHECK(heat.level == HeatLevel::hot);
+  CHECK(heat_advice(heat).find("Motor 3") == 0);
+  CHECK(heat_advice(heat).find("off") != std::string::npos);
+}
