@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstring>
 #include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -18,7 +17,7 @@ using protocol::ReportId;
 
 constexpr auto heartbeat_interval = 10ms;
 constexpr std::uint32_t heartbeat_periods = protocol::servo_rate_Hz / 100;
-constexpr auto transaction_timeout = 2s;
+constexpr auto busy_timeout = 2s;
 
 std::string refusal_sentence(const protocol::TransactionReport& report) {
   const auto& refusal = protocol::info(report.refusal);
@@ -76,31 +75,23 @@ struct Device::Implementation {
     return report;
   }
 
-  /// The report counts transactions, so it is known which one it speaks of.
-  protocol::TransactionReport wait_for_transaction(std::uint32_t transactions_before) {
-    const auto give_up_at = Clock::now() + transaction_timeout;
-    for (;;) {
-      const auto report = transaction_report();
-      if (report.transactions != transactions_before) return report;
-      if (Clock::now() > give_up_at) throw Error("The device did not take the parameters in 2 s. Reset the board.");
-      std::this_thread::sleep_for(1ms);
-    }
-  }
-
+  /// The device judges a transaction before it acknowledges its data, so the report read next speaks of this one.
+  /// Nothing is read before: that would cost a frame on the way from a slider to the interrupt.
   protocol::TransactionReport transact(const protocol::ParametersReport& report) {
     const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::parameters_report_size(report.count));
-    const auto give_up_at = Clock::now() + transaction_timeout;
+    const auto give_up_at = Clock::now() + busy_timeout;
     for (;;) {
-      const std::uint32_t before = transaction_report().transactions;
       std::optional<Stalled> stalled;
       try {
         link->set_feature(bytes);
       } catch (const Stalled& error) {
         stalled = error;  // a device may refuse by a stall; the report below says why
       }
-      if (stalled && transaction_report().transactions == before) throw *stalled;
-      const auto result = wait_for_transaction(before);
-      if (result.refusal == protocol::Refusal::accepted) return result;
+      const auto result = transaction_report();
+      if (result.refusal == protocol::Refusal::accepted) {
+        if (stalled) throw *stalled;
+        return result;
+      }
       if (result.refusal != protocol::Refusal::busy || Clock::now() > give_up_at) throw Refused(result);
     }
   }

@@ -156,21 +156,23 @@ struct Session::Implementation {
         to.send(queued.command);
     }
     if (taken.select) to.select_signals(selection);
-    if (taken.restore_defaults) transact(to, [&] { to.restore_default_parameters(); });
-    if (!taken.changes.empty()) transact(to, [&] { to.set_parameters(taken.changes); });
+    if (taken.restore_defaults) transact(to, [&] { return to.restore_default_parameters(); });
+    if (!taken.changes.empty()) transact(to, [&] { return to.set_parameters(taken.changes); });
   }
 
   template <class Transaction>
   void transact(Device& with, Transaction transaction) {
     std::optional<std::string> refused;
+    std::optional<std::uint32_t> applied_at_periods;
     try {
-      transaction();
+      applied_at_periods = transaction().applied_at_periods;
     } catch (const Refused& error) {
       refused = error.what();
     }
     const auto held = with.parameters();
     const std::lock_guard lock(mutex);
     newest_refusal = refused;
+    if (applied_at_periods) state.applied_at_periods = applied_at_periods;
     parameter_set = held;
     ++revision;
   }
@@ -200,6 +202,7 @@ struct Session::Implementation {
     const std::lock_guard lock(mutex);
     device.reset();
     state.information.reset();
+    state.applied_at_periods.reset();
     state.pose_rate_Hz = 0;
     newest.reset();
     if (state.connection == Connection::connected) state.connection = Connection::searching;

@@ -21,6 +21,8 @@ struct SessionStatus {
   std::string message;  ///< a sentence for the user, with the remedy where there is one
   std::optional<Information> information;  ///< read anew every second
   bool is_simulation = false;  ///< connected to a virtual board
+  /// The control period at which the newest transaction of this session took effect; none before the first.
+  std::optional<std::uint32_t> applied_at_periods;
   double pose_rate_Hz = 0;
   std::uint64_t poses_received = 0;
   std::uint64_t poses_lost = 0;
