@@ -61,6 +61,10 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
       ->check(CLI::NonNegativeNumber)->capture_default_str()->group(group);
   program.add_flag("--frames-report", window.frames_report, "Print the frames a second when the window closes")
       ->group(group);
+  program
+      .add_flag("--inspect", window.inspect,
+                "Answer `look`, `picture FILE` and `close` on standard input with a line of JSON each, for tests")
+      ->group(group);
   program.add_flag("--flat-colours", window.flat_colours, "Draw the scene without lighting")->group(group);
   program.add_flag("--forget-settings", settings->forget, "Neither read nor write the window's settings")->group(group);
   program

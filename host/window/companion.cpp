@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <GLFW/glfw3.h>
+#include <nlohmann/json.hpp>
 
 #include <window/frame_rhythm.hpp>
 
@@ -46,6 +47,20 @@ WindowSettings Companion::settings() const {
   now.parameters_file = tuning_panel_.parameters_file();
   scope_panel_.store(now);
   return now;
+}
+
+nlohmann::json Companion::inspect() const {
+  const DeviceView& view = desk_.view();
+  nlohmann::json known{{"connected", view.connected()}, {"state", protocol::info(view.state()).name}};
+  if (view.pose) known["pose_at_periods"] = view.pose->time_periods;
+  if (view.status.applied_at_periods) known["applied_at_periods"] = *view.status.applied_at_periods;
+  return known;
+}
+
+std::optional<double> Companion::pose_age_s() {
+  const auto newest = desk_.session().newest_pose();
+  if (!newest || !desk_.view().pose || replay_bar_.is_open()) return std::nullopt;
+  return static_cast<double>(newest->time_periods - desk_.view().pose->time_periods) / protocol::servo_rate_Hz;
 }
 
 void Companion::stop() {

@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <window/parameter_editor.hpp>
 #include <window/window.hpp>
 #include <window/window_settings.hpp>
@@ -40,6 +42,11 @@ class Companion {
   bool device_moves() const;
   /// Something in the frame that was laid out changes by itself, so that it has to be drawn at the full rate.
   bool is_moving() const { return is_moving_; }
+  /// What is known of the device in this frame, for an inspection.
+  nlohmann::json inspect() const;
+  /// How much newer the newest report that has arrived by now is than the one that this frame shows, in board
+  /// time; none while there is no device to show.
+  std::optional<double> pose_age_s();
   const Palette& colours() const { return *style_.palette; }
   /// As they stand now, to be remembered.
   WindowSettings settings() const;

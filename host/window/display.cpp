@@ -85,6 +85,13 @@ double Display::refresh_rate_Hz() const {
   return mode == nullptr || mode->refreshRate < 30 ? 60.0 : mode->refreshRate;
 }
 
+ImVec2 Display::corner() const {
+  int x = 0;
+  int y = 0;
+  glfwGetWindowPos(window_, &x, &y);
+  return {static_cast<float>(x), static_cast<float>(y)};
+}
+
 void write_screenshot(const std::filesystem::path& path, int width, int height) {
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);

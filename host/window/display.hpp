@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <imgui.h>
+
 struct GLFWwindow;
 
 namespace inkwell::window {
@@ -28,6 +30,7 @@ class Display {
   GLFWwindow* handle() const { return window_; }
   float content_scale() const;  ///< pixels of text for one point, 1 on an ordinary display
   double refresh_rate_Hz() const;
+  ImVec2 corner() const;  ///< top left of what is drawn, on the screen
 
   /// True if the user or the window system did something since the last call.
   bool take_input() { return std::exchange(had_input_, false); }

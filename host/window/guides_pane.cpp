@@ -7,6 +7,7 @@
 
 #include <device/parameter_file.hpp>
 
+#include "inspection.hpp"
 #include "plot.hpp"
 
 namespace inkwell::window {
@@ -118,7 +119,7 @@ void GuidesPane::draw_offers(const Style& style) {
   ImGui::Dummy({0, style.points(4)});
   ImGui::BeginDisabled(!connected);
   for (const Offer& offer : offers()) {
-    if (ImGui::Button(offer.title, {ImGui::GetContentRegionAvail().x, style.points(30)})) start(offer.make());
+    if (button(offer.title, {ImGui::GetContentRegionAvail().x, style.points(30)})) start(offer.make());
     wrapped_text(style.palette->text_quiet, offer.help);
     ImGui::Dummy({0, style.points(4)});
   }
@@ -130,6 +131,7 @@ void GuidesPane::draw_offers(const Style& style) {
   if (control_port_ == 0) return;
   ImGui::Dummy({0, style.points(4)});
   ImGui::Checkbox("The simulated hand does my part", &hand_helps_);
+  note_item("hand helps");
 }
 
 void GuidesPane::draw_step(const Style& style) {
@@ -225,7 +227,7 @@ void GuidesPane::draw_buttons(const Style& style) {
     if (coloured_button("Confirm", style.palette->accent, style.palette->on_danger, half)) guide_->confirm();
     ImGui::EndDisabled();
     ImGui::SameLine();
-    if (ImGui::Button("Cancel", half)) cancel();
+    if (button("Cancel", half)) cancel();
     return;
   }
   const bool applicable = guide_->phase() == Phase::finished && !guide_->findings().proposals.empty() &&
@@ -237,7 +239,7 @@ void GuidesPane::draw_buttons(const Style& style) {
   }
   ImGui::EndDisabled();
   ImGui::SameLine();
-  if (ImGui::Button("Back", half)) guide_.reset();
+  if (button("Back", half)) guide_.reset();
 }
 
 }  // namespace inkwell::window

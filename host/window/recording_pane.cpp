@@ -11,6 +11,8 @@
 #include <device/parameter_file.hpp>
 #include <recording/signals.hpp>
 
+#include "inspection.hpp"
+
 namespace inkwell::window {
 namespace {
 
@@ -128,6 +130,7 @@ void RecordingPane::draw_choice(const Style& style, const DeviceView& view, bool
                                        : "Every control period, with the parameters, into HDF5 (.h5) or CSV.");
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##file", "named after the time, in this folder", &file_);
+  note_item("file");
   help_on_hover("File", fmt::format("Ends in .h5 or .csv, which chooses the format. This folder is {}.",
                                     std::filesystem::current_path().string()), style);
   static constexpr const char* choices[] = {"What replay and plots need", "The whole signal path",
@@ -156,12 +159,13 @@ void RecordingPane::draw_progress(const Style& style) {
   draw_numbers(style, recorder_->status());
   if (coloured_button("Stop recording", palette.raised_active, palette.text, {-1, style.points(34)})) return stop();
   ImGui::Dummy({0, style.points(4)});
-  const float button = style.points(64);
-  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
+  const float button_width = style.points(64);
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button_width - ImGui::GetStyle().ItemSpacing.x);
   const bool entered =
       ImGui::InputTextWithHint("##mark", "what happens now", &mark_text_, ImGuiInputTextFlags_EnterReturnsTrue);
+  note_item("mark text");
   ImGui::SameLine();
-  if (ImGui::Button("Mark", {button, 0}) || entered) {
+  if (button("Mark", {button_width, 0}) || entered) {
     recorder_->mark(mark_text_.empty() ? fmt::format("mark {}", recorder_->status().marks + 1) : mark_text_);
     mark_text_.clear();
   }
@@ -184,8 +188,9 @@ void RecordingPane::draw_replay(const Style& style) {
   ImGui::SetNextItemWidth(-1);
   const bool entered = ImGui::InputTextWithHint("##replay", "a recording, .h5 or .csv", &replay_file_,
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
+  note_item("replay file");
   ImGui::BeginDisabled(replay_file_.empty());
-  if (ImGui::Button("Open", {-1, style.points(30)}) || (entered && !replay_file_.empty())) {
+  if (button("Open", {-1, style.points(30)}) || (entered && !replay_file_.empty())) {
     replay_error_.clear();
     replay_wish_ = replay_file_;
   }

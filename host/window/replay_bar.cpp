@@ -49,7 +49,7 @@ void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePanel& 
   right_text(style.palette->text_quiet, fmt::format("{:.2f} of {:.2f} s", replay_->position_s(), replay_->duration_s()),
              time_width);
   ImGui::SetCursorScreenPos({right + gap + time_width + gap, corner.y});
-  const bool is_to_be_closed = ImGui::Button("Close", {close_width, 0});
+  const bool is_to_be_closed = button("Close", {close_width, 0});
   help_on_hover("Close", "Back to the device.", style);
   end_pane();
   if (!is_to_be_closed) return;

@@ -4,6 +4,8 @@
 #include <array>
 #include <fmt/format.h>
 
+#include "inspection.hpp"
+
 namespace inkwell::window {
 
 namespace {
@@ -147,6 +149,16 @@ void ScenePane::draw_axes(ImDrawList& list, const Style& style) const {
   }
 }
 
+// Where the mouse has to go to take the sphere or a wall.
+void ScenePane::note_handles() const {
+  const auto note_point = [](std::string_view name, ImVec2 point) { note_place(name, point, point); };
+  note_place("view", {origin_.x, origin_.y}, {origin_.x + size_.x, origin_.y + size_.y});
+  note_point("sphere", on_screen(scene_.probe_m));
+  for (const WallView& wall : scene_.walls)
+    note_point(protocol::info(wall_parameter(wall.axis, wall.upper)).name,
+               on_screen(wall_handle(2 * wall.axis + (wall.upper ? 1 : 0))));
+}
+
 void ScenePane::draw_labels(const ScenePaneInput& input) const {
   const Style& style = input.style;
   const Palette& palette = *style.palette;
@@ -210,18 +222,18 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
 void ScenePane::draw_tools(const ScenePaneInput& input) {
   const Style& style = input.style;
   ImGui::SetCursorScreenPos({origin_.x + style.points(14), origin_.y + style.points(12)});
-  if (ImGui::Button("Reset view")) reset_view();
+  if (button("Reset view")) reset_view();
   help_on_hover("", "Shows the whole box again. A double click in the scene does the same.", style);
   if (input.hand == nullptr) return;
   ImGui::SameLine();
   ImGui::BeginDisabled(!input.hand->target_m());
-  if (ImGui::Button("Let go")) input.hand->let_go();
+  if (button("Let go")) input.hand->let_go();
   ImGui::EndDisabled();
   help_on_hover("", "The simulated hand lets go of the stylus, and the arm falls as its weight and friction have it.",
                 style);
   ImGui::SameLine();
   ImGui::BeginDisabled(input.hand->is_docked());
-  if (ImGui::Button("Into the inkwell")) input.hand->put_into_inkwell();
+  if (button("Into the inkwell")) input.hand->put_into_inkwell();
   ImGui::EndDisabled();
   help_on_hover("", "The simulated hand puts the stylus into the inkwell, where the board learns where the arm is.",
                 style);
@@ -246,6 +258,7 @@ void ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
   }
   begin_pane("scene", place, size, ImGuiWindowFlags_NoScrollWithMouse);
   handle_mouse(input);
+  note_handles();
   draw_labels(input);
   draw_tools(input);
   end_pane();

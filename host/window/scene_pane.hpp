@@ -41,6 +41,7 @@ class ScenePane {
   std::optional<int> wall_under(glm::vec2 mouse, float reach) const;
   glm::vec3 wall_handle(int wall) const;
 
+  void note_handles() const;
   void draw_labels(const ScenePaneInput& input) const;
   void draw_axes(ImDrawList& list, const Style& style) const;
   void draw_tools(const ScenePaneInput& input);

@@ -330,7 +330,7 @@ void ScopePanel::draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const S
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(6), style.points(2)});
   ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->panel));
   ImGui::PushFont(style.fonts.strong);
-  if (ImGui::Button((pane.title.empty() ? "Pane" : pane.title).c_str())) ImGui::OpenPopup("pane menu");
+  if (button((pane.title.empty() ? "Pane" : pane.title).c_str())) ImGui::OpenPopup("pane menu");
   ImGui::PopFont();
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();

@@ -87,7 +87,7 @@ void ScopePanel::draw_trigger_tools(const Style& style) {
   if (choose_signal("##signal", trigger_settings_.signal, style.points(150))) trigger_.arm();
   same_line_if_room(style.points(62));
   const bool rising = trigger_settings_.edge == TriggerEdge::rising;
-  if (ImGui::Button(rising ? "rising" : "falling", {style.points(62), 0})) {
+  if (button(rising ? "rising" : "falling", {style.points(62), 0})) {
     trigger_settings_.edge = rising ? TriggerEdge::falling : TriggerEdge::rising;
     trigger_.arm();
   }
@@ -103,7 +103,7 @@ void ScopePanel::draw_trigger_tools(const Style& style) {
   help_on_hover("Before the event", "Part of the picture that lies before the event.", style);
   if (trigger_settings_.mode != TriggerMode::single) return;
   same_line_if_room(style.points(48));
-  if (ImGui::Button("Arm", {style.points(48), 0})) trigger_.arm();
+  if (button("Arm", {style.points(48), 0})) trigger_.arm();
 }
 
 void ScopePanel::draw_pane_menu(std::size_t index, const Style& style) {

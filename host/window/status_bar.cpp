@@ -157,7 +157,7 @@ void StatusBar::draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk)
   const ImVec2 area{style.points(item_widths_points[device_item]), style.points(item_points)};
   ImGui::SetCursorScreenPos(corner);
   ImGui::PushStyleColor(ImGuiCol_Button, packed(palette.panel));
-  if (ImGui::Button("##device", area)) ImGui::OpenPopup("devices");
+  if (button("##device", area)) ImGui::OpenPopup("devices");
   ImGui::PopStyleColor();
   if (!view.status.message.empty()) help_on_hover(title_of(connection), view.status.message, style);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -241,14 +241,14 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   const ImVec2 force_size = make_room(style.points(116));
   ImGui::BeginDisabled(!alive || (view.state() != State::ready && !active));
   if (active ? coloured_button("Force is on", palette.good, palette.on_danger, force_size)
-             : ImGui::Button("Switch force on", force_size)) {
+             : button("Switch force on", force_size)) {
     outcome.switch_force_on = !active;
     outcome.stop = active;
   }
   ImGui::EndDisabled();
   help_on_hover("Force", "While it is on the walls push back. It rises gently and goes off at once.", style);
   outcome.toggle_scope = toggle_button("Scope", scope_is_shown, style, make_room(style.points(60)));
-  outcome.toggle_theme = ImGui::Button(style.palette == &dark_palette ? "Light" : "Dark", make_room(style.points(60)));
+  outcome.toggle_theme = button(style.palette == &dark_palette ? "Light" : "Dark", make_room(style.points(60)));
   end_pane();
   return outcome;
 }

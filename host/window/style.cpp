@@ -8,6 +8,8 @@
 #include <imgui_freetype.h>
 #include <imgui_internal.h>
 
+#include "inspection.hpp"
+
 namespace inkwell::window {
 
 namespace {
@@ -131,6 +133,7 @@ void apply_theme(const Palette& palette, float scale) {
 }
 
 void text(Colour colour, std::string_view content) {
+  note_text(content);
   ImGui::PushStyleColor(ImGuiCol_Text, packed(colour));
   ImGui::TextUnformatted(content.data(), content.data() + content.size());
   ImGui::PopStyleColor();
@@ -184,10 +187,16 @@ void help_on_hover(std::string_view title, std::string_view help, const Style& s
   ImGui::PopStyleVar();
 }
 
+bool button(const char* label, ImVec2 size) {
+  const bool pressed = ImGui::Button(label, size);
+  note_item(label);
+  return pressed;
+}
+
 bool quiet_button(const char* label, const Style& style) {
   ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->panel.with_alpha(0)));
   ImGui::PushStyleColor(ImGuiCol_Text, packed(style.palette->text_quiet));
-  const bool pressed = ImGui::Button(label);
+  const bool pressed = button(label);
   ImGui::PopStyleColor(2);
   return pressed;
 }
@@ -201,14 +210,14 @@ bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec
   ImGui::PushStyleColor(ImGuiCol_ButtonHovered, packed(lighter(colour, 16)));
   ImGui::PushStyleColor(ImGuiCol_ButtonActive, packed(lighter(colour, -16)));
   ImGui::PushStyleColor(ImGuiCol_Text, packed(text_colour));
-  const bool pressed = ImGui::Button(label, size);
+  const bool pressed = button(label, size);
   ImGui::PopStyleColor(4);
   return pressed;
 }
 
 bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size) {
   if (on) return coloured_button(label, style.palette->accent, style.palette->panel, size);
-  return ImGui::Button(label, size);
+  return button(label, size);
 }
 
 bool bar_slider(const char* label, float& value, float minimum, float maximum, const char* format,
@@ -238,7 +247,9 @@ bool bar_slider(const char* label, float& value, float minimum, float maximum, c
                           ImGuiCol_SliderGrabActive})
       ImGui::PushStyleColor(slot, nothing);
   ImGui::SetNextItemWidth(width);
+  ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 1.0f);  // the bar's edge is the grab, and stays under the mouse
   const bool edited = ImGui::SliderFloat(label, &value, minimum, maximum, format, flags);
+  ImGui::PopStyleVar();
   if (!typing) ImGui::PopStyleColor(5);
   return edited;
 }

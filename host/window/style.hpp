@@ -48,6 +48,8 @@ void same_line_if_room(float width);
 /// Explains the last item after the mouse has rested on it.
 void help_on_hover(std::string_view title, std::string_view help, const Style& style);
 
+/// A button of ImGui, with a name for inspections as all that follow.
+bool button(const char* label, ImVec2 size = {0, 0});
 /// A button without a frame until the mouse is over it.
 bool quiet_button(const char* label, const Style& style);
 /// A button in a colour of its own, such as the stop button.

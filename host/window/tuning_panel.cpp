@@ -7,6 +7,8 @@
 
 #include <device/parameter_file.hpp>
 
+#include "inspection.hpp"
+
 namespace inkwell::window {
 
 using device::ParameterChange;
@@ -116,7 +118,7 @@ void TuningPanel::draw_presets(const Style& style, ParameterEditor& editor, doub
     help_on_hover(preset.name, preset.help, style);
     ImGui::SameLine();
   }
-  if (ImGui::Button("Defaults", {width, 0})) {
+  if (button("Defaults", {width, 0})) {
     std::vector<ParameterChange> changes;
     for (std::size_t i = 0; i < protocol::parameter_count; ++i)
       changes.emplace_back(static_cast<Parameter>(i), protocol::parameter_table[i].default_value);
@@ -172,6 +174,7 @@ void TuningPanel::draw_row(Parameter parameter, const Style& style, ParameterEdi
     const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
     edited = bar_slider("##value", value, info.minimum, info.maximum, fmt::format("%.{}f", decimals_of(info)).c_str(),
                         flags, field_width, style);
+    note_item(info.name);
     if (ImGui::IsItemActivated()) editor.begin_step(label);
     if (edited) {
       const ParameterChange change{parameter, info.kind == ParameterKind::whole ? std::round(value) : value};
@@ -241,6 +244,7 @@ void TuningPanel::draw_file_dialog(const Style& style, ParameterEditor& editor, 
   ImGui::SetNextItemWidth(-1);
   const bool entered =
       ImGui::InputTextWithHint("##path", "parameters.toml", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
+  note_item("path");
   const std::filesystem::path folder = std::filesystem::path(path_).has_parent_path()
                                            ? std::filesystem::path(path_).parent_path()
                                            : std::filesystem::current_path();
@@ -259,7 +263,7 @@ void TuningPanel::draw_file_dialog(const Style& style, ParameterEditor& editor, 
       entered;
   ImGui::SameLine();
   const bool cancelled =
-      ImGui::Button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+      button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
   if (confirmed && !path_.empty()) {
     if (saving)
       save(editor);

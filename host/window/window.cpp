@@ -18,6 +18,8 @@
 
 #include "companion.hpp"
 #include "display.hpp"
+#include "frames_report.hpp"
+#include "inspection.hpp"
 #include "picture_digest.hpp"
 #include "renderer.hpp"
 
@@ -89,15 +91,15 @@ void run(const WindowOptions& options) {
   Companion companion(options, settings, scale);
   display.on_key([&companion](int key, bool down) { companion.key(key, down); });
   Renderer renderer;
+  std::optional<Inspection> inspection;
+  if (options.inspect) inspection.emplace(&glfwPostEmptyEvent);
   // A little faster than the display, which then sets the pace; without a display that does, it is the pace.
   FramePacer pacer(1.02 * display.refresh_rate_Hz());
 
   const double started_s = glfwGetTime();
   FrameRhythm rhythm;
   // Of the frames at the full rate only: at rest there are few on purpose.
-  std::uint64_t frames = 0;
-  double frames_s = 0.0;
-  double drawing_s = 0.0;
+  FramesReport frames_report;
   double previous_s = started_s;
   std::uint64_t scene_on_screen = 0;
   std::uint64_t panes_on_screen = 0;
@@ -114,7 +116,8 @@ void run(const WindowOptions& options) {
     const double now_s = glfwGetTime();
     const bool is_last = !options.screenshot.empty() && now_s - started_s >= options.after_seconds;
     FrameEvidence evidence{.input = display.take_input()};
-    if (!rhythm.is_due(evidence.input || is_last || companion.device_moves(), now_s)) continue;
+    const bool is_asked = inspection && inspection->is_asked();
+    if (!rhythm.is_due(evidence.input || is_last || is_asked || companion.device_moves(), now_s)) continue;
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(display.handle(), &width, &height);
@@ -124,6 +127,7 @@ void run(const WindowOptions& options) {
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
+    if (inspection) inspection->begin_frame(display.corner());
     companion.draw(size, now_s);
     ImGui::Render();
 
@@ -134,7 +138,7 @@ void run(const WindowOptions& options) {
     panes.add(*ImGui::GetDrawData());
     evidence.moves = companion.is_moving();
     evidence.differs = scene != scene_on_screen || panes.value() != panes_on_screen || smooth != smooth_on_screen ||
-                       display.take_lost_picture() || is_last;
+                       display.take_lost_picture() || is_last || is_asked;
     if (!rhythm.is_to_be_drawn(evidence, now_s)) continue;
 
     const ImVec4 ground = vector(companion.colours().panel);
@@ -145,24 +149,20 @@ void run(const WindowOptions& options) {
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     if (is_last) write_screenshot(options.screenshot, width, height);
+    if (inspection && !inspection->end_frame(companion.inspect(), width, height))
+      glfwSetWindowShouldClose(display.handle(), GLFW_TRUE);
     if (options.frames_report) glFinish();  // so that the time is that of drawing, not that of asking for it
     const double drawn_s = glfwGetTime();
     glfwSwapBuffers(display.handle());
     scene_on_screen = scene;
     panes_on_screen = panes.value();
     smooth_on_screen = smooth;
-    if (is_lively) {
-      ++frames;
-      frames_s += now_s - previous_s;
-      drawing_s += drawn_s - now_s;
-    }
+    if (is_lively) frames_report.add(now_s - previous_s, drawn_s - now_s, companion.pose_age_s());
     previous_s = now_s;
     if (is_last) break;
   }
   if (options.frames_report) {
-    const auto count = static_cast<double>(std::max<std::uint64_t>(frames, 1));
-    fmt::print("{:.1f} frames per second while something moved ({:.1f} s), {:.1f} ms to draw one\n",
-               count / std::max(frames_s, 1e-3), frames_s, 1000.0 * drawing_s / count);
+    fmt::print("{}", frames_report.text());
     std::fflush(stdout);
   }
   if (options.persist_settings) remember_settings(companion.settings());

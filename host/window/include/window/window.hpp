@@ -44,6 +44,7 @@ struct WindowOptions {
   std::filesystem::path screenshot;  ///< with it: write the framebuffer to this PNG and close
   double after_seconds = 3.0;        ///< when the screenshot is taken, from the first frame on
   std::filesystem::path parameters_file;  ///< sent to the device as soon as one is connected
+  bool inspect = false;              ///< answer questions on standard input, for tests; see inspection.hpp
   bool frames_report = false;        ///< print the measured frames per second when closing
 };
 
