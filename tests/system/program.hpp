@@ -1,7 +1,8 @@
-// Runs one of the built programs and keeps what it said.
+// Runs programs: one of the built ones to its end, or one that is talked to while it runs.
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,29 @@ struct ProgramResult {
 /// Runs build/pc/`program`, or the program of an absolute path, with the arguments. Ends it after `limit`, which no healthy run reaches.
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments,
                           std::chrono::seconds limit = std::chrono::seconds(120));
+
+/// A program that runs until this object ends it. Its standard error goes where the test's goes.
+class RunningProgram {
+ public:
+  /// `words`: the program, by name or by path, and its arguments. `environment`: "NAME=VALUE", added to the test's.
+  RunningProgram(const std::vector<std::string>& words, const std::vector<std::string>& environment = {});
+  ~RunningProgram();
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  void write_line(const std::string& line);
+  /// The next line of standard output; throws std::runtime_error if none comes within `limit`.
+  std::string read_line(std::chrono::seconds limit = std::chrono::seconds(60));
+  /// Waits for its end; the exit code, or none if it was ended by a signal or still runs after `limit`.
+  std::optional<int> wait(std::chrono::seconds limit = std::chrono::seconds(60));
+
+ private:
+  std::string name_;
+  int process_ = -1;
+  int input_ = -1;
+  int output_ = -1;
+  std::string received_;
+};
 
 /// The directory of this executable: build/pc.
 std::string build_directory();

@@ -1,67 +1,86 @@
-// The real window under Xvfb, on software OpenGL, with the virtual board: what it draws is looked for by colour.
+// What the real window draws, on software OpenGL under Xvfb: looked for by colour, judged by the board's truth.
 #include <doctest/doctest.h>
 
 #include <fstream>
 #include <string>
-#include <vector>
 
 #include <window/palette.hpp>
 
-#include "image.hpp"
-#include "program.hpp"
+#include "window_rig.hpp"
 
+using namespace inkwell;
 using namespace inkwell::tests;
+using protocol::Parameter;
 namespace colours = inkwell::window::scene_colours;
 
 namespace {
 
-/// The scene lies left of the panels and between the status bar and the scope, at 1280 x 800.
-Image scene_of(const Image& window) {
-  REQUIRE(window.width == 1280);
-  REQUIRE(window.height == 800);
-  Image scene{900, 430, {}};
-  for (std::size_t y = 60; y < 490; ++y)
-    scene.rgb.insert(scene.rgb.end(), window.rgb.begin() + static_cast<std::ptrdiff_t>(3 * y * window.width),
-                     window.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (y * window.width + 900)));
-  return scene;
-}
-
-std::size_t count(const Image& image, inkwell::window::Colour colour) {
+std::size_t count(const Image& image, window::Colour colour) {
   return image.count({colour.red, colour.green, colour.blue}, 2);
 }
 
-/// Opens the window for a while; `input` is a shell command with which xdotool plays the user.
-Image window_after(const TemporaryDirectory& directory, const std::string& options, const std::string& input) {
-  const std::string picture = directory.file("window.png");
-  const std::string script = build_directory() + "/inkwell --virtual --flat-colours --forget-settings --screenshot " + picture +
-                             " --after-seconds 15 " + options + " & " + input + "; wait $!";
-  const auto result =
-      run_program("/usr/bin/env", {"LIBGL_ALWAYS_SOFTWARE=1", "xvfb-run", "--auto-servernum",
-                                   "--server-args=-screen 0 1280x800x24", "sh", "-c", script});
-  INFO("standard error: ", result.err);
-  REQUIRE(result.exit_code == 0);
-  return read_png(picture);
+/// The part of the picture with the arm, the sphere and the walls: the scope has lines of the same colours.
+Image scene_of(WindowRig& rig) {
+  const Image whole = rig.picture();
+  const auto scene = rig.look().item("scene/view");
+  const auto left = static_cast<std::size_t>(scene.x), top = static_cast<std::size_t>(scene.y);
+  Image part{static_cast<std::size_t>(scene.width), static_cast<std::size_t>(scene.height), {}};
+  for (std::size_t y = top; y < top + part.height; ++y) {
+    const auto row = whole.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (y * whole.width + left));
+    part.rgb.insert(part.rgb.end(), row, row + static_cast<std::ptrdiff_t>(3 * part.width));
+  }
+  return part;
 }
+
+const float wall_x_m = protocol::info(Parameter::box_maximum_x_m).default_value;
+const float radius_m = protocol::info(Parameter::sphere_radius_m).default_value;
+
+/// Drags the sphere from where it is to the middle of the box, and from there through the wall on the right.
+void drag_through_the_right_wall(WindowRig& rig) {
+  const auto sight = rig.look();
+  const auto left = sight.item("scene/box_minimum_x_m").centre(), right = sight.item("scene/box_maximum_x_m").centre();
+  const Point middle{0.5 * (left.x + right.x), 0.5 * (left.y + right.y)};
+  rig.drag(sight.item("scene/sphere").centre(), middle, 12);
+  rig.look_until("the sphere has come to the middle", [&](const Sight& now) {
+    return std::abs(now.item("scene/sphere").x - middle.x) < 20 && std::abs(now.item("scene/sphere").y - middle.y) < 20;
+  });
+  for (int step = 1; step <= 16; ++step)
+    rig.move_to({middle.x + 0.125 * step * (right.x - middle.x), middle.y + 0.125 * step * (right.y - middle.y)});
+}
+
+double hand_target_x_m(WindowRig& rig) { return rig.control.truth().at("hand_target_x_m"); }
 
 }  // namespace
 
 TEST_CASE("the window draws the box and the sphere, and no wall pushes while the force is off") {
-  const TemporaryDirectory directory;
-  const auto window = window_after(directory, "", "true");
-  const auto scene = scene_of(window);
+  WindowRig rig;
+  const auto scene = scene_of(rig);
   CHECK(count(scene, colours::probe) > 50);
   CHECK(count(scene, colours::wall_idle) > 300);
   CHECK(count(scene, colours::wall_touched) == 0);
-  CHECK(window.colours() > 200);
+  CHECK(scene.colours() > 200);
 }
 
-TEST_CASE("with the force on, the wall that the sphere is pressed into lights up") {
-  const TemporaryDirectory directory;
-  // The floor of the box is raised above the sphere in the inkwell, the user clicks "Switch force on".
-  const std::string parameters = directory.file("parameters.toml");
-  std::ofstream(parameters) << "[parameters]\nbox_minimum_y_m = -0.072\n";
-  const auto scene = scene_of(
-      window_after(directory, "--parameters " + parameters, "sleep 8; xdotool mousemove 1083 27; sleep 1; xdotool click 1"));
+TEST_CASE("with the force off the mouse drags the sphere through a wall") {
+  WindowRig rig;
+  drag_through_the_right_wall(rig);
+  rig.look_until("the sphere is behind the wall", [&](const Sight&) { return rig.true_probe_m()[0] > wall_x_m; });
+  CHECK(count(scene_of(rig), colours::wall_touched) == 0);
+}
+
+TEST_CASE("with the force on the hand goes on, the sphere stays at the wall, and the wall lights up") {
+  WindowRig rig;
+  rig.switch_force_on();
+  drag_through_the_right_wall(rig);
+  rig.look_until("the hand is behind the wall", [&](const Sight&) { return hand_target_x_m(rig) > wall_x_m + 0.004; });
+  rig.control.run(0.5);  // the arm comes to rest
+  const double probe_x_m = rig.true_probe_m()[0];
+  CHECK(probe_x_m > wall_x_m - radius_m);          // the wall is touched,
+  CHECK(probe_x_m < wall_x_m - radius_m + 0.008);  // and gives way no more than a spring of its stiffness does
+  CHECK(hand_target_x_m(rig) > probe_x_m + 0.008);
+  rig.control.resume();
+  const auto scene = scene_of(rig);
   CHECK(count(scene, colours::wall_touched) > 100);
-  CHECK(count(scene, colours::wall_idle) > 100);  // the other five stay as they were
+  CHECK(count(scene, colours::wall_idle) > 100);  // the others stay as they were
+  CHECK(count(scene, colours::hand) > 20);        // the spring to the hand
 }

@@ -1,0 +1,103 @@
+// The window and a device that comes and goes; recordings and guides as the user runs them.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+
+#include <recording/recording.hpp>
+
+#include "window_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+namespace {
+
+void unplug(WindowRig& rig) {
+  rig.control.usb(false);
+  rig.look_until("the window notices", [](const Sight& now) { return !now.connected(); });
+}
+
+void plug_in(WindowRig& rig) {
+  rig.control.usb(true);
+  rig.look_until("the window is connected again", [](const Sight& now) { return now.state() == "ready"; });
+}
+
+}  // namespace
+
+TEST_CASE("an unplugged device is told, and it is connected again by itself") {
+  WindowRig rig;
+  rig.switch_force_on();
+  unplug(rig);
+  rig.look_until("it says so", [](const Sight& now) { return now.says("Looking for a device"); });
+  CHECK_FALSE(rig.look().can_click("status/Switch force on"));
+  plug_in(rig);  // the arm still knows where it is, and the force is off
+  CHECK(rig.look().can_click("status/Switch force on"));
+  CHECK_FALSE(rig.look().says("Looking for a device"));
+}
+
+TEST_CASE("a recording is started, marked, stopped and replayed") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("push.h5");
+  WindowRig rig;
+  rig.click("tabs/Recording");
+  rig.enter("recording/file", file);
+  rig.click("recording/Start recording");
+  rig.enter("recording/mark text", "here");
+  rig.click("recording/Mark");
+  rig.control.run(0.5);
+  rig.control.resume();
+  rig.click("recording/Stop recording");
+  rig.look_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
+
+  const auto recording = recording::read(file);
+  CHECK(recording.complete);
+  CHECK(recording.size() > 10'000);  // half a second and what the clicks took
+  CHECK(recording.lost() == 0);
+  CHECK(recording.information.simulation);
+  REQUIRE(recording.marks.size() == 1);
+  CHECK(recording.marks[0].text == "here");
+
+  rig.click("recording/Open");
+  rig.look_until("it plays to its end", [](const Sight& now) { return now.has("replay/Play"); });
+  CHECK(rig.look().says("push (simulation)"));
+  rig.click("tabs/Tuning");
+  CHECK(rig.look().says("These parameters are the recording's."));
+  rig.click("replay/Close");
+  CHECK_FALSE(rig.look().says("These parameters are the recording's."));
+}
+
+TEST_CASE("a recording whose device is unplugged holds everything up to then") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("cut.h5");
+  WindowRig rig;
+  rig.click("tabs/Recording");
+  rig.enter("recording/file", file);
+  rig.click("recording/Start recording");
+  rig.control.run(0.5);
+  rig.control.resume();
+  unplug(rig);
+  rig.look_until("it says so", [](const Sight& now) { return now.says("The device went away."); });
+  const auto recording = recording::read(file);
+  CHECK(recording.complete);
+  CHECK(recording.size() > 9'000);
+  CHECK(recording.lost() == 0);
+}
+
+TEST_CASE("a guide whose device is unplugged says so, and the parameters on trial are put back") {
+  WindowRig rig;
+  rig.click("tabs/Guides");
+  rig.click("guides/Current-loop tuning");
+  // Each step waits for a confirmation; gains are on trial once a transaction was applied.
+  rig.look_until("gains are on trial", [&](const Sight& now) {
+    if (now.can_click("guides/Confirm")) rig.click("guides/Confirm");
+    return now.all.contains("applied_at_periods");
+  });
+  unplug(rig);
+  rig.look_until("it says so", [](const Sight& now) { return now.says("The device went away in the step"); });
+  plug_in(rig);
+  rig.look_until("they are put back", [](const Sight& now) { return now.all.contains("applied_at_periods"); });
+  rig.click("guides/Back");
+  CHECK(rig.look().can_click("guides/Current-loop tuning"));
+  CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
+}

@@ -1,0 +1,152 @@
+// The user's hands on the window: sliders, files, the stop button, and how quickly it all takes effect.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "window_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using protocol::Parameter;
+
+namespace {
+
+const std::string stiffness_slider = "tuning/wall_stiffness_N_per_m";
+constexpr std::uint32_t periods_per_usb_frame = protocol::servo_rate_Hz / 1000;
+
+/// The control period in which the board is, as the board itself counts: its trace has a row for each.
+class BoardClock {
+ public:
+  explicit BoardClock(device::ControlClient& control) : control_(control) { control_.trace_start(); }
+  std::uint32_t newest_period() {
+    for (;;) {
+      const auto trace = control_.trace_read(5000);
+      if (trace.row_count() == 0) return newest_;
+      newest_ = static_cast<std::uint32_t>(trace.values[(trace.row_count() - 1) * trace.columns.size()]);
+    }
+  }
+
+ private:
+  device::ControlClient& control_;
+  std::uint32_t newest_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("the device holds the value to which a slider was dragged") {
+  WindowRig rig;
+  const auto slider = rig.look().item(stiffness_slider);
+  rig.drag(slider.at(0.3, 0.5), slider.at(0.75, 0.5));
+  rig.release_mouse();
+  rig.look_until("a transaction was applied", [](const Sight& now) { return now.all.contains("applied_at_periods"); });
+  const auto held = rig.close_and_read_parameters();
+  const auto& info = protocol::info(Parameter::wall_stiffness_N_per_m);
+  const float wanted = info.minimum + 0.75f * (info.maximum - info.minimum);
+  CHECK(held[Parameter::wall_stiffness_N_per_m] == doctest::Approx(wanted).epsilon(0.03));
+  auto expected = protocol::default_parameters();
+  expected[Parameter::wall_stiffness_N_per_m] = held[Parameter::wall_stiffness_N_per_m];
+  CHECK(held == expected);  // and nothing else changed
+}
+
+TEST_CASE("a moved slider is in the interrupt within two USB frames of board time") {
+  WindowRig rig;
+  BoardClock clock(rig.control);
+  const auto slider = rig.look().item(stiffness_slider);
+  const auto applied_at = [](const Sight& sight) { return sight.all.value("applied_at_periods", 0u); };
+  std::vector<std::uint32_t> latencies;
+  for (int attempt = 0; attempt < 9; ++attempt) {
+    const double part = 0.1 + 0.08 * attempt;
+    const auto before = applied_at(rig.look());
+    rig.move_to(slider.at(part, 0.5));
+    rig.press_mouse();
+    const auto pressed =
+        rig.look_until("the press took effect", [&](const Sight& now) { return applied_at(now) != before; });
+    // Board time stands still while the event is made and handled, each time in another part of a USB frame.
+    rig.control.run(1e-4 * (attempt + 1));
+    const auto moved_at = clock.newest_period();
+    rig.move_to(slider.at(part + 0.05, 0.5));
+    auto now = rig.look();
+    while (applied_at(now) == applied_at(pressed)) {
+      REQUIRE(clock.newest_period() < moved_at + 1000);
+      rig.control.run(1e-4);
+      now = rig.look();
+    }
+    latencies.push_back(applied_at(now) - moved_at);
+    rig.control.resume();
+    rig.release_mouse();
+  }
+  std::ranges::sort(latencies);
+  MESSAGE("simulation: from the mouse's event to the interrupt in ", latencies.front(), " to ", latencies.back(),
+          " control periods, ", latencies[latencies.size() / 2], " at the median");
+  // Not the longest: a busy host's heartbeats pile up while board time stands still, and then go first.
+  CHECK(latencies[latencies.size() / 2] <= 2 * periods_per_usb_frame);
+}
+
+TEST_CASE("a frame shows the newest pose that had arrived when it began") {
+  WindowRig rig;
+  BoardClock clock(rig.control);
+  std::vector<std::uint32_t> ages;
+  for (int attempt = 0; attempt < 9; ++attempt) {
+    rig.control.run(0.015);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for the reports that are on their way to the window
+    ages.push_back(clock.newest_period() - rig.look().all.at("pose_at_periods").get<std::uint32_t>());
+    rig.control.resume();
+  }
+  std::ranges::sort(ages);
+  MESSAGE("simulation: the drawn pose is ", ages.front(), " to ", ages.back(), " control periods old");
+  CHECK(ages[ages.size() / 2] <= 2 * periods_per_usb_frame);  // one until it is sent, one until it has arrived
+}
+
+TEST_CASE("a parameter file loaded in the window is what the device then holds, and unknown names are told") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("honey.toml");
+  std::ofstream(file) << "[parameters]\nwall_damping_Ns_per_m = 3.5\nforce_limit_N = 2.25\nstickiness_N = 1.0\n";
+  WindowRig rig;
+  rig.click("tuning/Load");
+  rig.enter("file/path", file);
+  rig.click("file/Load");
+  rig.look_until("the device took them", [](const Sight& now) { return now.all.contains("applied_at_periods"); });
+  CHECK(rig.look().says("stickiness_N"));
+  auto expected = protocol::default_parameters();
+  expected[Parameter::wall_damping_Ns_per_m] = 3.5f;
+  expected[Parameter::force_limit_N] = 2.25f;
+  CHECK(rig.close_and_read_parameters() == expected);
+}
+
+TEST_CASE("a damaged parameter file is told, and the device keeps its values") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("damaged.toml");
+  std::ofstream(file) << "[parameters]\nwall_damping_Ns_per_m = 3.\nforce_limit_N = = 2\n";
+  WindowRig rig;
+  rig.click("tuning/Load");
+  rig.enter("file/path", file);
+  rig.click("file/Load");
+  rig.look_until("it says which file", [&](const Sight& now) { return now.says("damaged.toml"); });
+  CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
+}
+
+TEST_CASE("the stop button and the space bar switch the force off, also while a text field has the focus") {
+  WindowRig rig;
+  const auto has_stopped = [](const Sight& now) { return now.state() == "ready"; };
+  rig.switch_force_on();
+  rig.click("status/STOP");
+  rig.look_until("the button stopped it", has_stopped);
+
+  rig.switch_force_on();
+  rig.click("tabs/Recording");
+  rig.enter("recording/file", "push");
+  CHECK(rig.look().state() == "active");
+  rig.press_key("space");
+  rig.look_until("the space bar stopped it", has_stopped);
+
+  rig.switch_force_on();
+  rig.click("tabs/Tuning");
+  rig.click("tuning/Load");  // a dialog over everything
+  rig.press_key("space");
+  rig.look_until("the space bar stopped it", has_stopped);
+}

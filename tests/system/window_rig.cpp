@@ -1,0 +1,156 @@
+#include "window_rig.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/format.h>
+
+namespace inkwell::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+constexpr auto patience = 60s;
+
+device::VirtualBoardOptions board_options() {
+  device::VirtualBoardOptions options;
+  options.mode = device::SimulationMode::fast;
+  options.real_time = true;  // the mouse is the hand, so board time must be the user's time
+  return options;
+}
+
+std::vector<std::string> window_words(const device::VirtualBoard& board, const std::vector<std::string>& options) {
+  std::vector<std::string> words{build_directory() + "/inkwell",
+                                 "--usbip", fmt::format("127.0.0.1:{}", board.usbip_port()),
+                                 "--control", std::to_string(board.control_port()),
+                                 "--forget-settings", "--flat-colours", "--inspect"};
+  words.insert(words.end(), options.begin(), options.end());
+  return words;
+}
+
+}  // namespace
+
+Item Sight::item(const std::string& name) const {
+  if (!has(name)) throw std::runtime_error(fmt::format("{} cannot be seen in {}", name, all.dump()));
+  const json& place = all["items"][name];
+  return {place["x"], place["y"], place["width"], place["height"], place["enabled"]};
+}
+
+bool Sight::says(const std::string& part) const {
+  return std::ranges::any_of(all.at("texts"),
+                             [&](const json& text) { return text.get<std::string>().find(part) != std::string::npos; });
+}
+
+// The display says its number in a line of its own, once it is ready.
+WindowRig::WindowRig(const std::vector<std::string>& options)
+    : board(board_options()),
+      control(board.control()),
+      display_({"Xvfb", "-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"}),
+      display_name_("DISPLAY=:" + display_.read_line()),
+      window_(window_words(board, options), {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
+  look_until("the device is ready", [](const Sight& sight) { return sight.state() == "ready"; });
+}
+
+json WindowRig::ask(const std::string& question) {
+  window_.write_line(question);
+  const json answer = json::parse(window_.read_line());
+  if (answer.contains("error")) throw std::runtime_error(answer["error"].get<std::string>());
+  return answer;
+}
+
+Sight WindowRig::look() { return {ask("look")}; }
+
+Sight WindowRig::look_until(const std::string& what, const std::function<bool(const Sight&)>& condition) {
+  const auto give_up_at = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    Sight sight = look();
+    if (condition(sight)) return sight;
+    if (std::chrono::steady_clock::now() > give_up_at)
+      throw std::runtime_error(fmt::format("It did not come to this: {}. The window: {}", what, sight.all.dump()));
+    std::this_thread::sleep_for(20ms);
+  }
+}
+
+void WindowRig::picture(const std::string& file) { ask("picture " + file); }
+
+Image WindowRig::picture() {
+  const std::string file = directory_.file("picture.png");
+  picture(file);
+  return read_png(file);
+}
+
+// Each event is followed by a frame: in one frame a click's press and release would cancel each other out.
+void WindowRig::play(const std::vector<std::string>& events) {
+  std::vector<std::string> words{display_name_, "xdotool"};
+  words.insert(words.end(), events.begin(), events.end());
+  const auto result = run_program("/usr/bin/env", words);
+  if (result.exit_code != 0) throw std::runtime_error("xdotool: " + result.err);
+  look();
+}
+
+void WindowRig::move_to(Point point) {
+  play({"mousemove", std::to_string(std::lround(point.x)), std::to_string(std::lround(point.y))});
+}
+void WindowRig::press_mouse() { play({"mousedown", "1"}); }
+void WindowRig::release_mouse() { play({"mouseup", "1"}); }
+
+void WindowRig::click(Point point) {
+  move_to(point);
+  press_mouse();
+  release_mouse();
+}
+
+void WindowRig::click(const std::string& item) {
+  const auto sight = look_until(item + " can be clicked", [&](const Sight& now) { return now.can_click(item); });
+  click(sight.item(item).centre());
+}
+
+void WindowRig::drag(Point from, Point to, int steps) {
+  move_to(from);
+  press_mouse();
+  for (int step = 1; step <= steps; ++step) {
+    const double part = static_cast<double>(step) / steps;
+    move_to({std::lerp(from.x, to.x, part), std::lerp(from.y, to.y, part)});
+  }
+}
+
+void WindowRig::scroll_down(Point over, int steps) {
+  move_to(over);
+  for (int step = 0; step < steps; ++step) play({"click", "5"});
+}
+
+void WindowRig::press_key(const std::string& key) {
+  play({"keydown", key});
+  play({"keyup", key});
+}
+
+void WindowRig::enter(const std::string& field, const std::string& text) {
+  click(field);
+  play({"keydown", "ctrl"});
+  press_key("a");
+  play({"keyup", "ctrl"});
+  play({"type", "--delay", "30", text});
+}
+
+void WindowRig::switch_force_on() {
+  click("status/Switch force on");
+  look_until("the force is on", [](const Sight& sight) { return sight.state() == "active"; });
+}
+
+device::Vector3 WindowRig::true_probe_m() {
+  const auto truth = control.truth();
+  return {truth.at("true_position_x_m"), truth.at("true_position_y_m"), truth.at("true_position_z_m")};
+}
+
+protocol::ParameterSet WindowRig::close_and_read_parameters() {
+  ask("close");
+  if (window_.wait(patience) != 0) throw std::runtime_error("the window did not close well");
+  const auto endpoint = board.find();
+  if (!endpoint) throw std::runtime_error("the device is gone");
+  return device::Device::open(*endpoint)->parameters();
+}
+
+}  // namespace inkwell::tests

@@ -1,0 +1,89 @@
+// The real window on a virtual display, with a virtual board, played by input events as a user's mouse and
+// keyboard make them. Where to click is asked of the window, so that a new layout breaks no test.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <device/control_client.hpp>
+#include <device/device.hpp>
+#include <device/virtual_board.hpp>
+
+#include "image.hpp"
+#include "program.hpp"
+
+namespace inkwell::tests {
+
+struct Point {
+  double x = 0, y = 0;
+};
+
+/// A part of the window, on the screen.
+struct Item {
+  double x, y, width, height;
+  bool enabled;
+  Point at(double part_x, double part_y) const { return {x + part_x * width, y + part_y * height}; }
+  Point centre() const { return at(0.5, 0.5); }
+};
+
+/// What one frame shows, with what the window knew of the device then.
+struct Sight {
+  nlohmann::json all;
+
+  bool connected() const { return all.at("connected"); }
+  std::string state() const { return all.at("state"); }
+  bool has(const std::string& item) const { return all.at("items").contains(item); }
+  /// Throws if it cannot be seen, with what can.
+  Item item(const std::string& name) const;
+  bool can_click(const std::string& name) const { return has(name) && item(name).enabled; }
+  /// Whether a text that contains this stands anywhere in the window.
+  bool says(const std::string& part) const;
+};
+
+class WindowRig {
+ public:
+  /// Starts everything and waits until the window is connected and its device knows where it is.
+  explicit WindowRig(const std::vector<std::string>& options = {});
+
+  /// A frame that began after all events so far.
+  Sight look();
+  /// Looks until the condition is met; throws after a time that no healthy run takes.
+  Sight look_until(const std::string& what, const std::function<bool(const Sight&)>& condition);
+  Image picture();
+  void picture(const std::string& file);
+
+  void move_to(Point point);
+  void press_mouse();
+  void release_mouse();
+  void click(Point point);
+  /// Waits until it can be clicked.
+  void click(const std::string& item);
+  /// Moves with the button down in `steps`, each in a frame of its own, and leaves it down.
+  void drag(Point from, Point to, int steps = 8);
+  void scroll_down(Point over, int steps);
+  void press_key(const std::string& key);
+  /// Takes the place of what the text field held.
+  void enter(const std::string& field, const std::string& text);
+
+  void switch_force_on();
+  device::Vector3 true_probe_m();
+  /// Closes the window as its user would have to, and returns what the device holds then.
+  protocol::ParameterSet close_and_read_parameters();
+
+  device::VirtualBoard board;
+  device::ControlClient control;
+
+ private:
+  nlohmann::json ask(const std::string& question);
+  void play(const std::vector<std::string>& events);
+
+  TemporaryDirectory directory_;
+  RunningProgram display_;
+  std::string display_name_;
+  RunningProgram window_;
+};
+
+}  // namespace inkwell::tests
