@@ -203,19 +203,22 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
       plate(list, style, {left, place.y - style.points(22)}, palette.text_quiet, label);
     }
   }
+  float room_x = origin_.x + size_.x - style.points(16);
   if (input.pose && is_referenced(*input.pose)) {
     const std::string position = fmt::format("x {:+6.1f}   y {:+6.1f}   z {:+6.1f} mm", 1000.0f * scene_.probe_m.x,
                                              1000.0f * scene_.probe_m.y, 1000.0f * scene_.probe_m.z);
     const ImVec2 taken = ImGui::CalcTextSize(position.c_str());
-    list.AddText({origin_.x + size_.x - taken.x - style.points(16), origin_.y + size_.y - taken.y - style.points(12)},
-                 packed(palette.text), position.c_str());
+    room_x -= taken.x;
+    list.AddText({room_x, origin_.y + size_.y - taken.y - style.points(12)}, packed(palette.text), position.c_str());
+    room_x -= style.points(16);
   }
   const char* help =
       input.hand == nullptr
           ? "Drag to turn, right drag to move, wheel to zoom"
           : "Drag the sphere to move the hand (wheel: depth), drag elsewhere to turn, right drag to move";
-  list.AddText({origin_.x + style.points(88), origin_.y + size_.y - style.points(27)},
-               packed(palette.text_quiet.with_alpha(170)), help);
+  const float help_x = origin_.x + style.points(88);
+  if (help_x + ImGui::CalcTextSize(help).x < room_x)
+    list.AddText({help_x, origin_.y + size_.y - style.points(27)}, packed(palette.text_quiet.with_alpha(170)), help);
   ImGui::PopFont();
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include <protocol/reports.hpp>
 
@@ -36,6 +39,49 @@ const ScopeLayout& built_in_layout(std::string_view name) {
   const auto layouts = built_in_layouts();
   const auto found = std::ranges::find(layouts, name, &ScopeLayout::name);
   return found == layouts.end() ? layouts.front() : *found;
+}
+
+OwnLayouts::OwnLayouts(std::vector<ScopeLayout> layouts) {
+  for (ScopeLayout& layout : layouts)
+    if (refusal(layout.name).empty()) save(std::move(layout));
+}
+
+const ScopeLayout* OwnLayouts::find(std::string_view name) const {
+  const auto found = std::ranges::find(layouts_, name, &ScopeLayout::name);
+  return found == layouts_.end() ? nullptr : &*found;
+}
+
+std::string OwnLayouts::refusal(std::string_view name) {
+  if (name.find_first_not_of(' ') == std::string_view::npos) return "Give the layout a name.";
+  if (std::ranges::find(built_in_layouts(), name, &ScopeLayout::name) != built_in_layouts().end())
+    return fmt::format("\"{}\" comes with the window and stays as it is. Choose another name.", name);
+  return {};
+}
+
+void OwnLayouts::save(ScopeLayout layout) {
+  const auto found = std::ranges::find(layouts_, layout.name, &ScopeLayout::name);
+  if (found == layouts_.end())
+    layouts_.push_back(std::move(layout));
+  else
+    *found = std::move(layout);
+}
+
+std::string OwnLayouts::rename(std::string_view from, std::string_view to) {
+  if (from == to) return {};
+  if (std::string reason = refusal(to); !reason.empty()) return reason;
+  if (find(to) != nullptr) return fmt::format("There is a layout \"{}\" already. Choose another name.", to);
+  if (const auto found = std::ranges::find(layouts_, from, &ScopeLayout::name); found != layouts_.end())
+    found->name = std::string(to);
+  return {};
+}
+
+void OwnLayouts::remove(std::string_view name) {
+  std::erase_if(layouts_, [name](const ScopeLayout& layout) { return layout.name == name; });
+}
+
+const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own) {
+  const ScopeLayout* found = own.find(name);
+  return found == nullptr ? built_in_layout(name) : *found;
 }
 
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout) {

@@ -19,6 +19,8 @@ constexpr double range_remembered_s = 1.0;  // for telling motion from noise
 constexpr float header_points = 24.0f;
 constexpr float y_axis_points = 52.0f;
 constexpr float x_axis_points = 21.0f;
+constexpr float pane_minimum_width_points = 230.0f;
+constexpr float pane_minimum_height_points = 92.0f;
 
 std::string formatted(double value) { return std::isnan(value) ? "—" : fmt::format("{:.4g}", value); }
 
@@ -46,7 +48,7 @@ Colour line_colour(const Style& style, std::size_t index) {
 }  // namespace
 
 ScopePanel::ScopePanel(const WindowSettings& settings)
-    : trigger_settings_(settings.trigger), span_s_(settings.scope_span_s) {
+    : trigger_settings_(settings.trigger), own_layouts_(settings.own_layouts), span_s_(settings.scope_span_s) {
   choose_layout(settings.layout);
 }
 
@@ -59,6 +61,7 @@ void ScopePanel::store(WindowSettings& settings) const {
   settings.trigger = trigger_settings_;
   settings.scope_span_s = span_s_;
   settings.layout = layout_;
+  settings.own_layouts = own_layouts_;
 }
 
 std::vector<protocol::Signal> ScopePanel::signals() const {
@@ -118,10 +121,19 @@ void ScopePanel::draw_legend(std::size_t index, ImVec2 place, float width, const
   float right = place.x + width;
   const std::string unit = common_unit(pane);
   list.AddText(font, font->FontSize, {place.x + style.points(2), place.y}, packed(palette.text_quiet), unit.c_str());
+  std::vector<std::string> names;
+  float wanted = 0.0f;
+  for (const protocol::Signal signal : pane.signals) {
+    names.push_back(short_name(protocol::info(signal), !unit.empty()));
+    wanted += font->CalcTextSizeA(font->FontSize, 1e4f, 0, names.back().c_str()).x + style.points(24);
+  }
+  // "penetration_x" -> "x", where the pane is narrow: its title tells the rest.
+  const float unit_width = font->CalcTextSizeA(font->FontSize, 1e4f, 0, unit.c_str()).x;
+  if (wanted > width - unit_width - style.points(8) && names.size() > 1)
+    for (std::string& name : names) name.erase(0, name.rfind('_') + 1);
   for (std::size_t i = pane.signals.size(); i-- > 0;) {
-    const auto& info = protocol::info(pane.signals[i]);
     const SignalSeries* series = history_.find(pane.signals[i]);
-    std::string label = short_name(info, !unit.empty());
+    std::string label = names[i];
     if (cursors_are_shown_ && series != nullptr && pane.kind == PaneKind::time) {
       const auto at = [&](double cursor) {
         const double index_at = stretch.last + cursor * stretch.span();
@@ -356,26 +368,34 @@ void ScopePanel::draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const S
   ImGui::PopID();
 }
 
+void ScopePanel::draw_panes(const Stretch& shown, const Style& style) {
+  // Where there is too little room for all of them, they keep a size that can be read, and the panel scrolls.
+  ImGui::BeginChild("panes", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse);
+  const ImVec2 place = ImGui::GetCursorScreenPos();
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 gap{style.points(12), style.points(6)};
+  const auto count = static_cast<int>(layout_.panes.size());
+  const int fitting = static_cast<int>((room.x + gap.x) / (style.points(pane_minimum_width_points) + gap.x));
+  const int columns = std::clamp(std::min(layout_.columns, fitting), 1, std::max(1, count));
+  const int rows = (count + columns - 1) / columns;
+  const float width = (room.x - gap.x * static_cast<float>(columns - 1)) / static_cast<float>(columns);
+  const float height = std::max((room.y - gap.y * static_cast<float>(rows - 1)) / static_cast<float>(rows),
+                                std::min(room.y, style.points(pane_minimum_height_points)));
+  for (int i = 0; i < count; ++i)
+    draw_pane(static_cast<std::size_t>(i),
+              {place.x + static_cast<float>(i % columns) * (width + gap.x),
+               place.y + static_cast<float>(i / columns) * (height + gap.y)},
+              {width, height}, shown, style);
+  ImGui::EndChild();
+}
+
 void ScopePanel::draw(ImVec2 place, ImVec2 size, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(8)});
   begin_pane("scope", place, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   draw_toolbar(style);
   const Stretch shown = stretch();
-  const float top = ImGui::GetCursorScreenPos().y + style.points(2);
-  const auto count = static_cast<int>(layout_.panes.size());
-  const int columns = std::clamp(layout_.columns, 1, std::max(1, count));
-  const int rows = (count + columns - 1) / columns;
-  const float gap = style.points(12);
-  const float left = place.x + style.points(12);
-  const float width = (size.x - style.points(24) - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
-  const float height = (place.y + size.y - top - style.points(6) - style.points(6) * static_cast<float>(rows - 1)) /
-                       static_cast<float>(rows);
-  for (int i = 0; i < count; ++i)
-    draw_pane(static_cast<std::size_t>(i),
-              {left + static_cast<float>(i % columns) * (width + gap),
-               top + static_cast<float>(i / columns) * (height + style.points(6))},
-              {width, height}, shown, style);
+  draw_panes(shown, style);
   judged_end_ = history_.end();
   if (removed_pane_) {
     layout_.panes.erase(layout_.panes.begin() + static_cast<std::ptrdiff_t>(*removed_pane_));

@@ -60,6 +60,9 @@ class ScopePanel {
   void judge_motion(const Pane& pane, const PlotArea& area);
   void draw_toolbar(const Style& style);
   void draw_trigger_tools(const Style& style);
+  void draw_layout_menu(const Style& style);
+  void draw_layout_name(const Style& style);
+  void draw_panes(const Stretch& shown, const Style& style);
   void draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const Stretch& stretch, const Style& style);
   void draw_pane_menu(std::size_t index, const Style& style);
   void draw_legend(std::size_t index, ImVec2 place, float width, const Stretch& stretch, const Style& style) const;
@@ -73,6 +76,10 @@ class ScopePanel {
   Trigger trigger_;
   TriggerSettings trigger_settings_;
   ScopeLayout layout_;
+  OwnLayouts own_layouts_;
+  enum class NameTask : std::uint8_t { none, save, rename } name_task_ = NameTask::none;
+  std::string name_;                       // that is typed for a layout
+  std::string name_refusal_;
   std::vector<PaneMemory> memory_;
   double span_s_;
   bool paused_ = false;

@@ -34,18 +34,7 @@ bool choose_signal(const char* label, protocol::Signal& signal, float width) {
 
 void ScopePanel::draw_toolbar(const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(3)});
-  ImGui::SetNextItemWidth(style.points(104));
-  if (ImGui::BeginCombo("##layout", layout_.name.c_str())) {
-    for (const ScopeLayout& layout : built_in_layouts())
-      if (ImGui::Selectable(layout.name.c_str(), layout.name == layout_.name)) choose_layout(layout);
-    ImGui::Separator();
-    if (ImGui::Selectable("add a pane")) {
-      layout_.panes.push_back({PaneKind::time, "Pane", {protocol::Signal::force_N}});
-      memory_.emplace_back();
-    }
-    ImGui::EndCombo();
-  }
-  help_on_hover("Layout", "What the panes show. \"paper\" has the paper's figures 11 to 14.", style);
+  draw_layout_menu(style);
   same_line_if_room(style.points(58));
   if (toggle_button(paused_ ? "Run" : "Pause", paused_, style, {style.points(58), 0})) pause(!paused_);
   help_on_hover("", "A pause keeps the picture; drag to move in it, wheel to zoom, double click to run again.", style);

@@ -238,8 +238,8 @@ bool bar_slider(const char* label, float& value, float minimum, float maximum, c
     list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
     list.PopClipRect();
   }
-  list.AddLine({edge, corner.y + style.points(3)}, {edge, end.y - style.points(3)}, packed(palette.accent),
-               style.points(2));
+  // Low, so that it does not cross the number.
+  list.AddLine({edge, end.y - style.points(4)}, {edge, end.y}, packed(palette.accent), style.points(2));
   const ImU32 nothing = packed(palette.raised.with_alpha(0));
   const bool typing = ImGui::TempInputIsActive(ImGui::GetID(label));
   if (!typing)

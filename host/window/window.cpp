@@ -56,7 +56,7 @@ WindowSettings remembered_settings(const WindowOptions& options) {
     settings = parse_settings(text.str());
   }
   if (options.theme) settings.theme = *options.theme;
-  if (!options.layout.empty()) settings.layout = built_in_layout(options.layout);
+  if (!options.layout.empty()) settings.layout = layout_named(options.layout, settings.own_layouts);
   return settings;
 }
 

@@ -51,6 +51,23 @@ std::optional<Pane> pane_from(const toml::table& table) {
   return pane;
 }
 
+toml::array to_toml(const std::vector<Pane>& panes) {
+  toml::array array;
+  for (const Pane& pane : panes) array.push_back(to_toml(pane));
+  return array;
+}
+
+std::optional<ScopeLayout> layout_from(const toml::table& table) {
+  ScopeLayout layout{table["name"].value_or(std::string{}), 2, {}};
+  read_number(table["columns"], 1, 4, layout.columns);
+  if (const toml::array* panes = table["panes"].as_array())
+    for (const auto& each : *panes)
+      if (const toml::table* pane_table = each.as_table())
+        if (auto pane = pane_from(*pane_table)) layout.panes.push_back(std::move(*pane));
+  if (layout.panes.empty()) return std::nullopt;
+  return layout;
+}
+
 }  // namespace
 
 std::filesystem::path window_settings_path() {
@@ -62,8 +79,10 @@ std::filesystem::path window_settings_path() {
 }
 
 std::string format_settings(const WindowSettings& settings) {
-  toml::array panes;
-  for (const Pane& pane : settings.layout.panes) panes.push_back(to_toml(pane));
+  toml::array own_layouts;
+  for (const ScopeLayout& layout : settings.own_layouts.all())
+    own_layouts.push_back(
+        toml::table{{"name", layout.name}, {"columns", layout.columns}, {"panes", to_toml(layout.panes)}});
   const toml::table file{
       {"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
                              {"tuning_width", settings.tuning_width},
@@ -73,7 +92,8 @@ std::string format_settings(const WindowSettings& settings) {
       {"scope", toml::table{{"name", settings.layout.name},
                             {"columns", settings.layout.columns},
                             {"span_s", settings.scope_span_s},
-                            {"panes", std::move(panes)}}},
+                            {"panes", to_toml(settings.layout.panes)},
+                            {"layouts", std::move(own_layouts)}}},
       {"trigger", toml::table{{"mode", name_of(settings.trigger.mode, trigger_mode_names)},
                               {"signal", protocol::info(settings.trigger.signal).name},
                               {"edge", name_of(settings.trigger.edge, trigger_edge_names)},
@@ -102,13 +122,14 @@ WindowSettings parse_settings(const std::string& text) {
 
   const auto scope = root["scope"];
   read_number(scope["span_s"], 0.001, 100.0, settings.scope_span_s);
-  if (const toml::array* panes = scope["panes"].as_array()) {
-    ScopeLayout layout{scope["name"].value_or(std::string{}), 2, {}};
-    read_number(scope["columns"], 1, 4, layout.columns);
-    for (const auto& each : *panes)
+  if (const toml::table* table = scope.as_table())
+    if (auto layout = layout_from(*table)) settings.layout = std::move(*layout);
+  if (const toml::array* layouts = scope["layouts"].as_array()) {
+    std::vector<ScopeLayout> own;
+    for (const auto& each : *layouts)
       if (const toml::table* table = each.as_table())
-        if (auto pane = pane_from(*table)) layout.panes.push_back(std::move(*pane));
-    if (!layout.panes.empty()) settings.layout = std::move(layout);
+        if (auto layout = layout_from(*table)) own.push_back(std::move(*layout));
+    settings.own_layouts = OwnLayouts(std::move(own));
   }
 
   const auto trigger = root["trigger"];

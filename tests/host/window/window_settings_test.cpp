@@ -20,6 +20,10 @@ TEST_CASE("settings come back as they were written") {
   settings.layout = built_in_layout("currents");
   settings.layout.panes.push_back(
       {PaneKind::xy, "x against \"y\"", {protocol::Signal::position_x_m, protocol::Signal::position_y_m}});
+  ScopeLayout mine = built_in_layout("paper");
+  mine.name = "My \"paper\"";
+  mine.columns = 1;
+  settings.own_layouts.save(mine);
   settings.parameters_file = "/home/someone/soft wall.toml";
   CHECK(parse_settings(format_settings(settings)) == settings);
 }
@@ -42,6 +46,35 @@ TEST_CASE("layouts name existing signals, and fit into one selection") {
   }
   CHECK(built_in_layout("paper").panes.size() == 4);
   CHECK(built_in_layout("none of them").name == built_in_layouts().front().name);
+}
+
+TEST_CASE("layouts of one's own are saved, replaced, renamed and removed; the built-in ones stay") {
+  OwnLayouts own;
+  ScopeLayout layout = built_in_layout("currents");
+  layout.name = "mine";
+  own.save(layout);
+  layout.columns = 1;
+  own.save(layout);
+  REQUIRE(own.all().size() == 1);
+  CHECK(layout_named("mine", own).columns == 1);
+  CHECK(layout_named("paper", own) == built_in_layout("paper"));
+
+  CHECK_FALSE(OwnLayouts::refusal("paper").empty());
+  CHECK_FALSE(OwnLayouts::refusal("  ").empty());
+  CHECK(OwnLayouts::refusal("mine").empty());
+  layout.name = "other";
+  own.save(layout);
+  CHECK_FALSE(own.rename("other", "mine").empty());
+  CHECK_FALSE(own.rename("other", "paper").empty());
+  CHECK(own.rename("other", "third").empty());
+  CHECK(own.find("other") == nullptr);
+  REQUIRE(own.find("third") != nullptr);
+  own.remove("third");
+  CHECK(own.all().size() == 1);
+  CHECK(built_in_layout("paper").panes.size() == 4);
+
+  layout.name = "paper";  // from a file that somebody edited
+  CHECK(OwnLayouts({layout}).all().empty());
 }
 
 TEST_CASE("a layout with too many signals asks for as many as can be streamed, each once") {

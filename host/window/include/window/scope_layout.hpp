@@ -36,6 +36,31 @@ std::span<const ScopeLayout> built_in_layouts();
 /// The built-in layout of that name, the first one if there is none.
 const ScopeLayout& built_in_layout(std::string_view name);
 
+/// The layouts that the user has named and saved. Those that come with the window keep their names and contents.
+class OwnLayouts {
+ public:
+  OwnLayouts() = default;
+  explicit OwnLayouts(std::vector<ScopeLayout> layouts);  ///< those whose name is refused are left out
+
+  std::span<const ScopeLayout> all() const { return layouts_; }
+  const ScopeLayout* find(std::string_view name) const;
+
+  /// Why no layout may be saved under this name; empty if one may. A layout of one's own is replaced.
+  static std::string refusal(std::string_view name);
+  void save(ScopeLayout layout);
+  /// Why `from` cannot be called `to`; empty once it is.
+  std::string rename(std::string_view from, std::string_view to);
+  void remove(std::string_view name);
+
+  bool operator==(const OwnLayouts&) const = default;
+
+ private:
+  std::vector<ScopeLayout> layouts_;
+};
+
+/// The layout of that name, one's own or built in; the first of the built-in ones if there is none.
+const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own);
+
 /// Every signal of the layout once, at most as many as the scope can stream; those beyond are left out.
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout);
 

@@ -17,7 +17,8 @@ struct WindowSettings {
   bool scope_is_shown = true;
   double scope_span_s = 2.0;
   TriggerSettings trigger;
-  ScopeLayout layout = built_in_layout("contact");
+  ScopeLayout layout = built_in_layout("contact");  ///< as it stands, saved under its name or not
+  OwnLayouts own_layouts;
   std::filesystem::path parameters_file;  ///< the one loaded or saved last
   bool operator==(const WindowSettings&) const = default;
 };
