@@ -89,15 +89,16 @@ TEST_CASE("a guide whose device is unplugged says so, and the parameters on tria
   rig.click("tabs/Guides");
   rig.click("guides/Current-loop tuning");
   // Each step waits for a confirmation; gains are on trial once a transaction was applied.
+  const auto before = rig.look().applied_at_periods();
   rig.look_until("gains are on trial", [&](const Sight& now) {
-    if (now.can_click("guides/Confirm")) rig.click("guides/Confirm");
-    return now.all.contains("applied_at_periods");
+    if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
+    return now.applied_at_periods() != before;
   });
   unplug(rig);
   rig.look_until("it says so", [](const Sight& now) { return now.says("The device went away in the step"); });
   plug_in(rig);
-  rig.look_until("they are put back", [](const Sight& now) { return now.all.contains("applied_at_periods"); });
+  rig.look_until("they are put back", [](const Sight& now) { return now.applied_at_periods() != 0; });
   rig.click("guides/Back");
   CHECK(rig.look().can_click("guides/Current-loop tuning"));
-  CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
+  CHECK(rig.close_and_read_parameters() == rig.parameters_at_start());
 }

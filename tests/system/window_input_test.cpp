@@ -43,12 +43,13 @@ TEST_CASE("the device holds the value to which a slider was dragged") {
   const auto slider = rig.look().item(stiffness_slider);
   rig.drag(slider.at(0.3, 0.5), slider.at(0.75, 0.5));
   rig.release_mouse();
-  rig.look_until("a transaction was applied", [](const Sight& now) { return now.all.contains("applied_at_periods"); });
+  rig.control.run(0.1);  // for the last of its transactions
+  rig.control.resume();
   const auto held = rig.close_and_read_parameters();
   const auto& info = protocol::info(Parameter::wall_stiffness_N_per_m);
   const float wanted = info.minimum + 0.75f * (info.maximum - info.minimum);
   CHECK(held[Parameter::wall_stiffness_N_per_m] == doctest::Approx(wanted).epsilon(0.03));
-  auto expected = protocol::default_parameters();
+  auto expected = rig.parameters_at_start();
   expected[Parameter::wall_stiffness_N_per_m] = held[Parameter::wall_stiffness_N_per_m];
   CHECK(held == expected);  // and nothing else changed
 }
@@ -57,26 +58,25 @@ TEST_CASE("a moved slider is in the interrupt within two USB frames of board tim
   WindowRig rig;
   BoardClock clock(rig.control);
   const auto slider = rig.look().item(stiffness_slider);
-  const auto applied_at = [](const Sight& sight) { return sight.all.value("applied_at_periods", 0u); };
   std::vector<std::uint32_t> latencies;
   for (int attempt = 0; attempt < 9; ++attempt) {
     const double part = 0.1 + 0.08 * attempt;
-    const auto before = applied_at(rig.look());
+    const auto before = rig.look().applied_at_periods();
     rig.move_to(slider.at(part, 0.5));
     rig.press_mouse();
     const auto pressed =
-        rig.look_until("the press took effect", [&](const Sight& now) { return applied_at(now) != before; });
+        rig.look_until("the press took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
     // Board time stands still while the event is made and handled, each time in another part of a USB frame.
     rig.control.run(1e-4 * (attempt + 1));
     const auto moved_at = clock.newest_period();
     rig.move_to(slider.at(part + 0.05, 0.5));
     auto now = rig.look();
-    while (applied_at(now) == applied_at(pressed)) {
+    while (now.applied_at_periods() == pressed.applied_at_periods()) {
       REQUIRE(clock.newest_period() < moved_at + 1000);
       rig.control.run(1e-4);
       now = rig.look();
     }
-    latencies.push_back(applied_at(now) - moved_at);
+    latencies.push_back(now.applied_at_periods() - moved_at);
     rig.control.resume();
     rig.release_mouse();
   }
@@ -109,10 +109,11 @@ TEST_CASE("a parameter file loaded in the window is what the device then holds, 
   WindowRig rig;
   rig.click("tuning/Load");
   rig.enter("file/path", file);
+  const auto before = rig.look().applied_at_periods();
   rig.click("file/Load");
-  rig.look_until("the device took them", [](const Sight& now) { return now.all.contains("applied_at_periods"); });
+  rig.look_until("the device took them", [&](const Sight& now) { return now.applied_at_periods() != before; });
   CHECK(rig.look().says("stickiness_N"));
-  auto expected = protocol::default_parameters();
+  auto expected = rig.parameters_at_start();
   expected[Parameter::wall_damping_Ns_per_m] = 3.5f;
   expected[Parameter::force_limit_N] = 2.25f;
   CHECK(rig.close_and_read_parameters() == expected);
@@ -127,7 +128,7 @@ TEST_CASE("a damaged parameter file is told, and the device keeps its values") {
   rig.enter("file/path", file);
   rig.click("file/Load");
   rig.look_until("it says which file", [&](const Sight& now) { return now.says("damaged.toml"); });
-  CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
+  CHECK(rig.close_and_read_parameters() == rig.parameters_at_start());
 }
 
 TEST_CASE("the stop button and the space bar switch the force off, also while a text field has the focus") {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <device/parameter_file.hpp>
+
 namespace inkwell::tests {
 namespace {
 
@@ -22,13 +24,13 @@ device::VirtualBoardOptions board_options() {
   return options;
 }
 
-std::vector<std::string> window_words(const device::VirtualBoard& board, const std::vector<std::string>& options) {
-  std::vector<std::string> words{build_directory() + "/inkwell",
-                                 "--usbip", fmt::format("127.0.0.1:{}", board.usbip_port()),
-                                 "--control", std::to_string(board.control_port()),
-                                 "--forget-settings", "--flat-colours", "--inspect"};
-  words.insert(words.end(), options.begin(), options.end());
-  return words;
+std::vector<std::string> window_words(const device::VirtualBoard& board, const std::string& parameters_file) {
+  device::save_parameters(parameters_file, WindowRig::parameters_at_start());
+  return {build_directory() + "/inkwell",
+          "--usbip", fmt::format("127.0.0.1:{}", board.usbip_port()),
+          "--control", std::to_string(board.control_port()),
+          "--parameters", parameters_file,
+          "--forget-settings", "--flat-colours", "--inspect"};
 }
 
 }  // namespace
@@ -45,13 +47,21 @@ bool Sight::says(const std::string& part) const {
 }
 
 // The display says its number in a line of its own, once it is ready.
-WindowRig::WindowRig(const std::vector<std::string>& options)
+WindowRig::WindowRig()
     : board(board_options()),
       control(board.control()),
       display_({"Xvfb", "-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"}),
       display_name_("DISPLAY=:" + display_.read_line()),
-      window_(window_words(board, options), {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
-  look_until("the device is ready", [](const Sight& sight) { return sight.state() == "ready"; });
+      window_(window_words(board, directory_.file("parameters.toml")), {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
+  look_until("the device is ready and has the parameters", [](const Sight& sight) {
+    return sight.state() == "ready" && sight.applied_at_periods() != 0;
+  });
+}
+
+protocol::ParameterSet WindowRig::parameters_at_start() {
+  auto set = protocol::default_parameters();
+  set[protocol::Parameter::host_timeout_s] = 2.0f;  // tests decide when the host is silent; a busy machine does not
+  return set;
 }
 
 json WindowRig::ask(const std::string& question) {
@@ -69,7 +79,8 @@ Sight WindowRig::look_until(const std::string& what, const std::function<bool(co
     Sight sight = look();
     if (condition(sight)) return sight;
     if (std::chrono::steady_clock::now() > give_up_at)
-      throw std::runtime_error(fmt::format("It did not come to this: {}. The window: {}", what, sight.all.dump()));
+      throw std::runtime_error(fmt::format("It did not come to this: {}. The window is {} and says {}", what,
+                                           sight.state(), sight.all["texts"].dump()));
     std::this_thread::sleep_for(20ms);
   }
 }

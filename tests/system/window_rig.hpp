@@ -35,6 +35,8 @@ struct Sight {
 
   bool connected() const { return all.at("connected"); }
   std::string state() const { return all.at("state"); }
+  /// The control period at which the window's newest transaction took effect; 0 before the first.
+  std::uint32_t applied_at_periods() const { return all.value("applied_at_periods", 0u); }
   bool has(const std::string& item) const { return all.at("items").contains(item); }
   /// Throws if it cannot be seen, with what can.
   Item item(const std::string& name) const;
@@ -46,7 +48,7 @@ struct Sight {
 class WindowRig {
  public:
   /// Starts everything and waits until the window is connected and its device knows where it is.
-  explicit WindowRig(const std::vector<std::string>& options = {});
+  WindowRig();
 
   /// A frame that began after all events so far.
   Sight look();
@@ -68,9 +70,11 @@ class WindowRig {
   /// Takes the place of what the text field held.
   void enter(const std::string& field, const std::string& text);
 
+  /// The parameters that the device holds unless a test changes them.
+  static protocol::ParameterSet parameters_at_start();
   void switch_force_on();
   device::Vector3 true_probe_m();
-  /// Closes the window as its user would have to, and returns what the device holds then.
+  /// Closes the window and returns what the device holds then.
   protocol::ParameterSet close_and_read_parameters();
 
   device::VirtualBoard board;
