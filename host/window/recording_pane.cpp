@@ -23,11 +23,6 @@ std::string name_from_time() {
                      fmt::localtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
-std::string size_text(std::uint64_t bytes) {
-  const auto count = static_cast<double>(bytes);
-  return bytes < 1'000'000'000 ? fmt::format("{:.1f} MB", 1e-6 * count) : fmt::format("{:.1f} GB", 1e-9 * count);
-}
-
 void number(const char* name, const std::string& value, Colour colour, const Style& style) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   text(style.palette->text_quiet, name);
@@ -66,9 +61,14 @@ void RecordingPane::start(const DeviceView& view, const std::vector<protocol::Si
     if (std::find(signals_.begin(), signals_.end(), signal) == signals_.end() &&
         signals_.size() < protocol::scope_signals_maximum)
       signals_.push_back(signal);
-  written_file_ = file_.empty() ? name_from_time() : file_;
+  written_file_ = file_.empty() ? name_from_time() : typed_path(std::filesystem::current_path(), file_).string();
   if (!std::filesystem::path(written_file_).has_extension()) written_file_ += ".h5";
   try {
+    if (may_be_replaced_ == written_file_) {
+      std::error_code error;  // if it cannot be removed, the recorder says that it exists
+      std::filesystem::remove(written_file_, error);
+    }
+    may_be_replaced_.reset();
     const auto about = recording::describe(*view.status.information, *view.parameters, signals_, "",
                                            view.status.is_simulation);
     recorder_ = std::make_unique<recording::Recorder>(written_file_, about);
@@ -82,7 +82,6 @@ void RecordingPane::stop() {
   last_status_ = recorder_->stop();
   recorder_.reset();
   signals_.clear();
-  replay_file_ = written_file_;
   file_.clear();
 }
 
@@ -128,11 +127,22 @@ void RecordingPane::draw_choice(const Style& style, const DeviceView& view, bool
                                    : !scope_is_free
                                        ? "A guide uses the scope. Finish or cancel it first."
                                        : "Every control period, with the parameters, into HDF5 (.h5) or CSV.");
-  ImGui::SetNextItemWidth(-1);
-  ImGui::InputTextWithHint("##file", "named after the time, in this folder", &file_);
+  const float button = style.points(74);
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
+  ImGui::InputTextWithHint("##file", "named after the time", &file_);
   note_item("file");
   help_on_hover("File", fmt::format("Ends in .h5 or .csv, which chooses the format. This folder is {}.",
                                     std::filesystem::current_path().string()), style);
+  ImGui::SameLine();
+  if (ImGui::Button("Choose", {button, 0})) {
+    task_ = FileTask::record;
+    chooser_.ask({.title = "Record into a file",
+                  .help = "Its ending chooses the format: HDF5 (.h5) or CSV (.csv).",
+                  .button = "Choose",
+                  .endings = {".h5", ".csv"},
+                  .is_new_file = true,
+                  .suggestion = file_.empty() ? name_from_time() : file_});
+  }
   static constexpr const char* choices[] = {"What replay and plots need", "The whole signal path",
                                             "What the scope shows"};
   ImGui::SetNextItemWidth(-1);
@@ -185,17 +195,25 @@ void RecordingPane::draw_numbers(const Style& style, const RecorderStatus& statu
 }
 
 void RecordingPane::draw_replay(const Style& style) {
-  ImGui::SetNextItemWidth(-1);
-  const bool entered = ImGui::InputTextWithHint("##replay", "a recording, .h5 or .csv", &replay_file_,
-                                                ImGuiInputTextFlags_EnterReturnsTrue);
-  note_item("replay file");
-  ImGui::BeginDisabled(replay_file_.empty());
-  if (button("Open", {-1, style.points(30)}) || (entered && !replay_file_.empty())) {
+  const auto replay = [this](const std::filesystem::path& file) {
     replay_error_.clear();
-    replay_wish_ = replay_file_;
+    replay_wish_ = file;
+  };
+  if (ImGui::Button("Open a recording", {-1, style.points(30)})) {
+    task_ = FileTask::replay;
+    chooser_.ask({.title = "Replay a recording",
+                  .help = "It plays in place of the device, with its parameters, signals and marks.",
+                  .button = "Open",
+                  .endings = {".h5", ".csv"},
+                  .suggestion = written_file_});
   }
-  ImGui::EndDisabled();
+  if (!recorder_ && last_status_ && ImGui::Button("Replay the last one", {-1, style.points(30)})) replay(written_file_);
   if (!replay_error_.empty()) wrapped_text(style.palette->danger, replay_error_);
+  const auto chosen = chooser_.draw(style);
+  if (!chosen) return;
+  if (task_ == FileTask::replay) return replay(*chosen);
+  file_ = chosen->string();
+  may_be_replaced_ = *chosen;  // the chooser asked, if there is such a file
 }
 
 }  // namespace inkwell::window

@@ -11,6 +11,7 @@
 #include <recording/recorder.hpp>
 
 #include "device_desk.hpp"
+#include "file_chooser.hpp"
 #include "style.hpp"
 
 namespace inkwell::window {
@@ -53,7 +54,9 @@ class RecordingPane {
   std::string written_file_;             ///< the recording that runs, or ran last
   std::optional<recording::RecorderStatus> last_status_;
   std::string start_error_;
-  std::string replay_file_;
+  enum class FileTask : std::uint8_t { record, replay } task_ = FileTask::replay;
+  FileChooser chooser_;
+  std::optional<std::filesystem::path> may_be_replaced_;
   std::string replay_error_;
   std::optional<std::filesystem::path> replay_wish_;
 };

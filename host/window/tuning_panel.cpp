@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
-#include <imgui_stdlib.h>
 
 #include <device/parameter_file.hpp>
 
@@ -97,9 +96,9 @@ void TuningPanel::draw_heading(const Style& style, ParameterEditor& editor, doub
   if (editor.can_redo()) help_on_hover("", fmt::format("Does again: {}. Ctrl+Shift+Z", editor.redo_title()), style);
   ImGui::SameLine();
   ImGui::BeginDisabled(!editor.known());
-  if (quiet_button("Load", style)) task_ = FileTask::load;
+  if (quiet_button("Load", style)) ask_for_file(FileTask::load);
   ImGui::SameLine();
-  if (quiet_button("Save", style)) task_ = FileTask::save;
+  if (quiet_button("Save", style)) ask_for_file(FileTask::save);
   ImGui::EndDisabled();
   ImGui::PopStyleVar();
 }
@@ -230,51 +229,24 @@ void TuningPanel::draw_group(std::string_view group, const Style& style, Paramet
   ImGui::Unindent(style.points(12));
 }
 
+void TuningPanel::ask_for_file(FileTask task) {
+  task_ = task;
+  const bool saving = task == FileTask::save;
+  chooser_.ask({.title = saving ? "Save the parameters" : "Load parameters",
+                .help = saving ? "A TOML file with every parameter, its unit, range and default."
+                               : "A file saved here, or an arm's description.",
+                .button = saving ? "Save" : "Load",
+                .endings = {".toml"},
+                .is_new_file = saving,
+                .suggestion = path_});
+}
+
 void TuningPanel::draw_file_dialog(const Style& style, ParameterEditor& editor, double now_s) {
-  const bool saving = task_ == FileTask::save;
-  if (task_ != FileTask::none && !ImGui::IsPopupOpen("file")) ImGui::OpenPopup("file");
-  ImGui::SetNextWindowSize({style.points(460), 0});
-  const ImVec2 centre = ImGui::GetMainViewport()->GetCenter();
-  ImGui::SetNextWindowPos(centre, ImGuiCond_Always, {0.5f, 0.5f});
-  if (!ImGui::BeginPopupModal("file", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove)) return;
-  text(style.fonts.strong, style.palette->text, saving ? "Save the parameters" : "Load parameters");
-  wrapped_text(style.palette->text_quiet, saving ? "A TOML file with every parameter, its unit, range and default."
-                                                 : "A file saved here, or an arm's description.");
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-  ImGui::SetNextItemWidth(-1);
-  const bool entered =
-      ImGui::InputTextWithHint("##path", "parameters.toml", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
-  note_item("path");
-  const std::filesystem::path folder = std::filesystem::path(path_).has_parent_path()
-                                           ? std::filesystem::path(path_).parent_path()
-                                           : std::filesystem::current_path();
-  std::error_code error;
-  if (ImGui::BeginChild("files", {0, style.points(150)})) {
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-      if (entry.path().extension() != ".toml") continue;
-      if (ImGui::Selectable(entry.path().filename().c_str(), false, ImGuiSelectableFlags_DontClosePopups))
-        path_ = entry.path().string();
-    }
-    if (error) text(style.palette->text_quiet, "This folder does not exist.");
-  }
-  ImGui::EndChild();
-  const bool confirmed =
-      coloured_button(saving ? "Save" : "Load", style.palette->accent, style.palette->panel, {style.points(100), 0}) ||
-      entered;
-  ImGui::SameLine();
-  const bool cancelled =
-      button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-  if (confirmed && !path_.empty()) {
-    if (saving)
-      save(editor);
-    else
-      load(path_, editor, now_s);
-  }
-  if ((confirmed && !path_.empty()) || cancelled) {
-    task_ = FileTask::none;
-    ImGui::CloseCurrentPopup();
-  }
-  ImGui::EndPopup();
+  const auto chosen = chooser_.draw(style);
+  if (!chosen) return;
+  if (task_ == FileTask::load) return load(*chosen, editor, now_s);
+  path_ = chosen->string();
+  save(editor);
 }
 
 void TuningPanel::draw(ImVec2 place, ImVec2 size, const Style& style, ParameterEditor& editor,

@@ -7,6 +7,7 @@
 
 #include <window/parameter_editor.hpp>
 
+#include "file_chooser.hpp"
 #include "style.hpp"
 
 namespace inkwell::window {
@@ -24,18 +25,20 @@ class TuningPanel {
   std::filesystem::path parameters_file() const { return path_; }
 
  private:
-  enum class FileTask : std::uint8_t { none, load, save };
+  enum class FileTask : std::uint8_t { load, save };
 
   void draw_heading(const Style& style, ParameterEditor& editor, double now_s);
   void draw_presets(const Style& style, ParameterEditor& editor, double now_s);
   void draw_messages(const Style& style, const std::string& refusal);
   void draw_group(std::string_view group, const Style& style, ParameterEditor& editor, double now_s);
   void draw_row(protocol::Parameter parameter, const Style& style, ParameterEditor& editor, double now_s);
+  void ask_for_file(FileTask task);
   void draw_file_dialog(const Style& style, ParameterEditor& editor, double now_s);
   void save(const ParameterEditor& editor);
 
   std::string path_;
-  FileTask task_ = FileTask::none;
+  FileTask task_ = FileTask::load;
+  FileChooser chooser_;
   std::vector<std::string> messages_;  // about the file loaded or saved last
   bool message_is_error_ = false;
 };

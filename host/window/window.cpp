@@ -15,6 +15,7 @@
 #include <imgui.h>
 
 #include <window/frame_rhythm.hpp>
+#include <window/key_taps.hpp>
 
 #include "companion.hpp"
 #include "display.hpp"
@@ -89,7 +90,11 @@ void run(const WindowOptions& options) {
   const float scale = options.scale > 0.0f ? options.scale : display.content_scale();
   const WindowSettings settings = remembered_settings(options);
   Companion companion(options, settings, scale);
-  display.on_key([&companion](int key, bool down) { companion.key(key, down); });
+  KeyTaps taps;
+  display.on_key([&companion, &taps](int key, bool down) {
+    if (down) taps.note(key);
+    companion.key(key, down);
+  });
   Renderer renderer;
   std::optional<Inspection> inspection;
   if (options.inspect) inspection.emplace(&glfwPostEmptyEvent);
@@ -125,6 +130,10 @@ void run(const WindowOptions& options) {
 
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    ImGuiIO& io = ImGui::GetIO();
+    taps.apply(io.KeysDown);
+    io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
+    io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
     ImGui::NewFrame();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     if (inspection) inspection->begin_frame(display.corner());
