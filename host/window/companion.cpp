@@ -49,16 +49,17 @@ WindowSettings Companion::settings() const {
   return now;
 }
 
-nlohmann::json Companion::inspect() const {
+nlohmann::json Companion::inspect(const std::optional<protocol::PoseReport>& arrived) const {
   const DeviceView& view = desk_.view();
   nlohmann::json known{{"connected", view.connected()}, {"state", protocol::info(view.state()).name}};
   if (view.pose) known["pose_at_periods"] = view.pose->time_periods;
+  if (arrived) known["arrived_at_periods"] = arrived->time_periods;
   if (view.status.applied_at_periods) known["applied_at_periods"] = *view.status.applied_at_periods;
   return known;
 }
 
 std::optional<double> Companion::pose_age_s() {
-  const auto newest = desk_.session().newest_pose();
+  const auto newest = newest_arrived();
   if (!newest || !desk_.view().pose || replay_bar_.is_open()) return std::nullopt;
   return static_cast<double>(newest->time_periods - desk_.view().pose->time_periods) / protocol::servo_rate_Hz;
 }

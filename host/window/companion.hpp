@@ -42,8 +42,10 @@ class Companion {
   bool device_moves() const;
   /// Something in the frame that was laid out changes by itself, so that it has to be drawn at the full rate.
   bool is_moving() const { return is_moving_; }
-  /// What is known of the device in this frame, for an inspection.
-  nlohmann::json inspect() const;
+  /// The newest report that has arrived by now; `draw` takes it up.
+  std::optional<protocol::PoseReport> newest_arrived() { return desk_.session().newest_pose(); }
+  /// What is known of the device in this frame, for an inspection; `arrived`: the newest report when it began.
+  nlohmann::json inspect(const std::optional<protocol::PoseReport>& arrived) const;
   /// How much newer the newest report that has arrived by now is than the one that this frame shows, in board
   /// time; none while there is no device to show.
   std::optional<double> pose_age_s();

@@ -136,6 +136,7 @@ void run(const WindowOptions& options) {
     io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
     ImGui::NewFrame();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const auto arrived = companion.newest_arrived();
     if (inspection) inspection->begin_frame(display.corner());
     companion.draw(size, now_s);
     ImGui::Render();
@@ -158,7 +159,7 @@ void run(const WindowOptions& options) {
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     if (is_last) write_screenshot(options.screenshot, width, height);
-    if (inspection && !inspection->end_frame(companion.inspect(), width, height))
+    if (inspection && !inspection->end_frame(companion.inspect(arrived), width, height))
       glfwSetWindowShouldClose(display.handle(), GLFW_TRUE);
     if (options.frames_report) glFinish();  // so that the time is that of drawing, not that of asking for it
     const double drawn_s = glfwGetTime();

@@ -89,17 +89,26 @@ TEST_CASE("a moved slider is in the interrupt within two USB frames of board tim
 
 TEST_CASE("a frame shows the newest pose that had arrived when it began") {
   WindowRig rig;
+  for (int frame = 0; frame < 50; ++frame) {
+    const auto sight = rig.look().all;
+    const std::uint32_t shown = sight.at("pose_at_periods"), arrived = sight.at("arrived_at_periods");
+    CHECK(shown >= arrived);  // or one that came while the frame was begun
+  }
+}
+
+TEST_CASE("a pose is at most three USB frames of board time old when it can be drawn") {
+  WindowRig rig;
   BoardClock clock(rig.control);
   std::vector<std::uint32_t> ages;
   for (int attempt = 0; attempt < 9; ++attempt) {
-    rig.control.run(0.015);
+    rig.control.run(0.015 + 1e-4 * attempt);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for the reports that are on their way to the window
     ages.push_back(clock.newest_period() - rig.look().all.at("pose_at_periods").get<std::uint32_t>());
     rig.control.resume();
   }
   std::ranges::sort(ages);
   MESSAGE("simulation: the drawn pose is ", ages.front(), " to ", ages.back(), " control periods old");
-  CHECK(ages[ages.size() / 2] <= 2 * periods_per_usb_frame);  // one until it is sent, one until it has arrived
+  CHECK(ages[ages.size() / 2] <= 3 * periods_per_usb_frame);  // it waits to be asked for, is sent, and is handed over
 }
 
 TEST_CASE("a parameter file loaded in the window is what the device then holds, and unknown names are told") {
