@@ -74,6 +74,8 @@ void ControlClient::buttons(bool first, bool second) {
   call({{"command", "buttons"}, {"pressed", {first, second}}});
 }
 void ControlClient::supply(double voltage_V) { call({{"command", "supply"}, {"voltage_V", voltage_V}}); }
+void ControlClient::bridge_fault(bool fault) { call({{"command", "bridge_fault"}, {"fault", fault}}); }
+void ControlClient::jump(std::uint32_t address) { call({{"command", "jump"}, {"address", address}}); }
 void ControlClient::gimbal(const Vector3& angles_rad) { call({{"command", "gimbal"}, {"angles_rad", angles_rad}}); }
 void ControlClient::dock(bool docked) { call({{"command", "dock"}, {"docked", docked}}); }
 

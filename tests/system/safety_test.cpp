@@ -1,8 +1,15 @@
 // What keeps a hand safe: no force before the reference, none without a host, bridges off on a fault.
 #include <doctest/doctest.h>
 
-#include <cmath>
+#include <elf.h>
 
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "program.hpp"
 #include "rig.hpp"
 
 using namespace inkwell;
@@ -20,14 +27,9 @@ double largest_current_A(device::ControlClient& control) {
   return largest;
 }
 
-}  // namespace
-
-TEST_CASE("an arm that has not been in the inkwell gets no force") {
-  Rig rig;
-  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
-  rig.take_to(free_point_m);
+/// After a restart of the board: waits until its USB is back and opens the device again.
+void reconnect(Rig& rig) {
   rig.device.reset();
-  rig.control.reset();
   rig.control.run(0.02);  // long enough for the bus to see that the device is gone
   rig.control.resume();
   std::optional<device::Endpoint> endpoint;
@@ -35,6 +37,85 @@ TEST_CASE("an arm that has not been in the inkwell gets no force") {
   rig.device = device::Device::open(*endpoint);
   rig.device->set_parameters(std::vector<device::ParameterChange>{{Parameter::host_timeout_s, 2.0f}});
   rig.control.pause();
+}
+
+constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
+
+bool any_leg_high(device::ControlClient& control) {
+  const auto truth = control.truth();
+  bool high = false;
+  for (const auto& legs : truth.at("bridge_legs"))
+    for (const auto& level : legs) high |= level == "high";
+  return high;
+}
+
+/// Looks at the inputs of the bridges at 20 instants over a time; says whether any of them was high at any of them.
+bool any_leg_high_within(device::ControlClient& control, double time_s) {
+  bool high = false;
+  for (int i = 0; i < 20; ++i) {
+    control.run(time_s / 20);
+    high |= any_leg_high(control);
+  }
+  return high;
+}
+
+bool bridges_enabled(device::ControlClient& control) { return control.truth().at("bridges_enabled").get<bool>(); }
+
+/// The sphere pressed into a wall by the hand: all three bridges switch, and at least one motor has current.
+void press_into_wall(Rig& rig) {
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.set({{Parameter::box_minimum_z_m, -0.015f}});
+  rig.run(0.1);
+  REQUIRE(rig.pose().state == State::active);
+  REQUIRE(largest_current_A(rig.control) > 0.1);
+  REQUIRE(bridges_enabled(rig.control));
+  REQUIRE(any_leg_high_within(rig.control, control_period_s));
+}
+
+/// What `inkwell info` tells a user about the device of this rig.
+std::string told_by_info(Rig& rig) {
+  rig.device.reset();
+  rig.control.resume();
+  const auto result = run_program("inkwell", {"info", "--usbip", "127.0.0.1:" + std::to_string(rig.board.usbip_port())});
+  rig.control.pause();
+  CHECK(result.exit_code == 0);
+  return result.out;
+}
+
+void check_tells(const std::string& text, protocol::Fault fault) {
+  INFO("inkwell info: ", text);
+  CHECK(text.find(std::string(info(fault).cause)) != std::string::npos);
+  CHECK(text.find(std::string(info(fault).remedy)) != std::string::npos);
+}
+
+/// Where the firmware waits for the reset that it has asked for: "dsb", and a branch back to it.
+std::uint32_t endless_loop_address() {
+  constexpr std::string_view loop = "\xBF\xF3\x4F\x8F\xFC\xE7";
+  std::ifstream file(build_directory() + "/../board/inkwell.elf", std::ios::binary);
+  const std::string image{std::istreambuf_iterator<char>(file), {}};
+  Elf32_Ehdr header;
+  REQUIRE(image.size() > sizeof header);
+  std::memcpy(&header, image.data(), sizeof header);
+  for (unsigned i = 0; i < header.e_phnum; ++i) {
+    Elf32_Phdr segment;
+    std::memcpy(&segment, image.data() + header.e_phoff + i * sizeof segment, sizeof segment);
+    if (segment.p_type != PT_LOAD || (segment.p_flags & PF_X) == 0) continue;
+    for (std::uint32_t offset = 0; offset + loop.size() <= segment.p_filesz; offset += 2)
+      if (image.compare(segment.p_offset + offset, loop.size(), loop) == 0) return segment.p_paddr + offset;
+  }
+  FAIL("the firmware holds no endless loop to jump to");
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("an arm that has not been in the inkwell gets no force") {
+  Rig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  rig.take_to(free_point_m);
+  rig.control.reset();
+  reconnect(rig);
   rig.run(0.3);
   CHECK(rig.pose().state == State::unreferenced);
   rig.command(protocol::Command::enable_force);
@@ -89,4 +170,74 @@ TEST_CASE("refused parameters do not move a motor") {
     rig.run(0.05);
     CHECK(largest_current_A(rig.control) < 0.05);
   }
+}
+
+TEST_CASE("a bridge that reports a fault stops all of them within one control period") {
+  Rig rig;
+  press_into_wall(rig);
+  rig.control.bridge_fault(true);
+  rig.control.run(control_period_s);
+  CHECK_FALSE(bridges_enabled(rig.control));
+  CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
+  rig.run(0.02);
+  CHECK(rig.pose().state == State::fault);
+  CHECK(rig.pose().fault == protocol::Fault::bridge_fault);
+  CHECK(largest_current_A(rig.control) < 0.02);
+
+  // While the cause lasts the fault cannot be cleared.
+  rig.command(protocol::Command::clear_fault);
+  rig.run(0.05);
+  CHECK(rig.pose().state == State::fault);
+  rig.control.bridge_fault(false);
+  rig.run(0.05);
+  CHECK(rig.pose().state == State::fault);
+  rig.command(protocol::Command::clear_fault);
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
+
+  rig.control.bridge_fault(true);
+  rig.run(0.05);
+  check_tells(told_by_info(rig), protocol::Fault::bridge_fault);
+}
+
+TEST_CASE("a processor fault with the bridges on switches them off first, and is told after the restart") {
+  Rig rig(device::SimulationMode::exact);
+  press_into_wall(rig);
+  constexpr std::uint32_t nothing_there = 0x60000000;
+  rig.control.jump(nothing_there);
+  const auto restarts = [&] { return rig.control.status().all.at("resets").get<int>(); };
+  constexpr double step_s = 50e-9;  // eight instructions
+  for (int step = 0; step < 20 && bridges_enabled(rig.control); ++step) rig.control.run(step_s);
+  rig.control.run(step_s);
+  CHECK_FALSE(bridges_enabled(rig.control));
+  CHECK_FALSE(any_leg_high(rig.control));
+  CHECK(restarts() == 0);  // so it was the handler that switched them off, not the reset
+  CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
+  CHECK_FALSE(any_leg_high_within(rig.control, 0.02));
+  CHECK(largest_current_A(rig.control) < 0.02);
+  CHECK(restarts() == 1);
+  CHECK(rig.control.status().all.at("watchdog_resets") == 0);
+
+  reconnect(rig);
+  rig.run(0.3);
+  CHECK(rig.pose().state == State::fault);
+  CHECK(rig.pose().fault == protocol::Fault::processor_fault);
+  check_tells(told_by_info(rig), protocol::Fault::processor_fault);
+}
+
+TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog, and says so") {
+  Rig rig;
+  press_into_wall(rig);
+  rig.control.jump(endless_loop_address());
+  rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
+  CHECK(rig.control.status().all.at("watchdog_resets") == 1);
+  CHECK_FALSE(bridges_enabled(rig.control));
+  CHECK_FALSE(any_leg_high_within(rig.control, 0.02));
+  CHECK(largest_current_A(rig.control) < 0.02);
+
+  reconnect(rig);
+  rig.run(0.3);
+  CHECK(rig.pose().state == State::fault);
+  CHECK(rig.pose().fault == protocol::Fault::watchdog);
+  check_tells(told_by_info(rig), protocol::Fault::watchdog);
 }

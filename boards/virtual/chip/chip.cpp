@@ -48,6 +48,7 @@ void Chip::reset(ResetCause cause) {
 }
 
 Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
+void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
 void Chip::request_stop() { parts_->execution.request_stop(); }
 
 Scheduler& Chip::scheduler() { return parts_->events; }

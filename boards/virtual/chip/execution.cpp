@@ -40,6 +40,13 @@ void Execution::reset(ResetCause cause) {
   if (on_reset) on_reset(cause);
 }
 
+void Execution::jump(std::uint32_t address) {
+  if (state_ == State::locked_up || state_ == State::exited) return;
+  if (state_ != State::runs) processor_.anchor(machine_.timeline.now());
+  state_ = State::runs;
+  processor_.set_program_counter(address);
+}
+
 void Execution::reset_if_requested() {
   if (machine_.reset_requested) reset(machine_.reset_cause);
 }

@@ -21,6 +21,7 @@ class Execution {
 
   Stop run_until(Ticks when);
   void reset(ResetCause cause);
+  void jump(std::uint32_t address);
   void request_stop() {
     stop_requested_ = true;
     if (running_) processor_.end_slice();

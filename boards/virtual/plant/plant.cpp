@@ -313,6 +313,8 @@ Truth Plant::truth(Ticks now) {
   t.inkwell_switch = inkwell_.switch_closed(t.position_m);
   t.bridge_fault = bridge_fault_;
   t.buttons = buttons_;
+  t.bridges_enabled = bridges_enabled_;
+  t.leg_levels = leg_pins_;
   return t;
 }
 

@@ -186,6 +186,20 @@ json hand_path(const json& request, Simulation& simulation) {
   return {};
 }
 
+json jump(const json& request, Simulation& simulation) {
+  if (simulation.board().locked_up()) throw Refused("the processor is locked up; reset it first");
+  simulation.board().chip().jump(static_cast<std::uint32_t>(number(request, "address", 0.0, 4294967295.0)));
+  return {};
+}
+
+std::string_view name_of(PinLevel level) {
+  switch (level) {
+    case PinLevel::low: return "low";
+    case PinLevel::high: return "high";
+    default: return "floating";
+  }
+}
+
 json gimbal(const json& request, Simulation& simulation) {
   simulation.board().plant().turn_gimbal(vector(request, "angles_rad", 20.0));
   return {};
@@ -204,7 +218,9 @@ json truth(const json&, Simulation& simulation) {
              {"docked", t.docked},
              {"inkwell_switch", t.inkwell_switch},
              {"bridge_fault", t.bridge_fault},
-             {"buttons", t.buttons}};
+             {"buttons", t.buttons},
+             {"bridges_enabled", t.bridges_enabled}};
+  for (const auto& legs : t.leg_levels) reply["bridge_legs"].push_back({name_of(legs[0]), name_of(legs[1])});
   const auto values = traced_values(t);
   for (std::size_t i = 0; i < values.size(); ++i) reply[std::string(traced_quantities[i])] = values[i];
   return reply;
@@ -252,6 +268,7 @@ const std::vector<Command>& commands() {
       {"buttons", buttons, {"pressed"}},
       {"supply", supply, {"voltage_V"}},
       {"bridge_fault", bridge_fault, {"fault"}},
+      {"jump", jump, {"address"}},
       {"hand", hand, {"holds", "target_m", "stiffness_N_per_m", "damping_Ns_per_m"}},
       {"hand_path", hand_path, {"points"}},
       {"gimbal", gimbal, {"angles_rad"}},

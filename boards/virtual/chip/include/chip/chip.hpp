@@ -95,6 +95,9 @@ class Chip {
   /// Runs until board time reaches `when`, or the firmware exits. Calls of the circuit, of
   /// peripherals and of scheduled events come from inside it.
   Stop run_until(Ticks when);
+  /// Sets the program counter, as a debugger does between two instructions, or a particle that flips a bit of it.
+  /// Not from inside run_until().
+  void jump(std::uint32_t address);
   /// From inside a callback: run_until() returns as soon as it can.
   void request_stop();
 
