@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 #include <imgui_stdlib.h>
 
+#include "inspection.hpp"
+
 namespace inkwell::window {
 
 namespace fs = std::filesystem;
@@ -136,13 +138,13 @@ bool FileChooser::draw_buttons(const Style& style) {
     if (coloured_button("Replace", style.palette->danger, style.palette->on_danger, size))
       chosen_ = std::exchange(to_be_replaced_, std::nullopt);
     ImGui::SameLine();
-    if (ImGui::Button("Keep it", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
+    if (button("Keep it", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
       to_be_replaced_.reset();
     return false;
   }
   if (coloured_button(question_.button.c_str(), style.palette->accent, style.palette->panel, size)) accept();
   ImGui::SameLine();
-  return ImGui::Button("Cancel", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  return button("Cancel", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
 }
 
 std::optional<fs::path> FileChooser::draw(const Style& style) {
@@ -162,6 +164,7 @@ std::optional<fs::path> FileChooser::draw(const Style& style) {
   ImGui::BeginDisabled(to_be_replaced_.has_value());
   const bool entered = ImGui::InputTextWithHint("##path", question_.is_new_file ? "name of the file" : "name or path",
                                                 &typed_, ImGuiInputTextFlags_EnterReturnsTrue);
+  note_item("path");
   ImGui::EndDisabled();
   if (!question_.endings.empty()) ImGui::SameLine();
   if (draw_filter(style)) listed_at_s_ = -list_again_after_s;

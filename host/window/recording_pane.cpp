@@ -127,14 +127,14 @@ void RecordingPane::draw_choice(const Style& style, const DeviceView& view, bool
                                    : !scope_is_free
                                        ? "A guide uses the scope. Finish or cancel it first."
                                        : "Every control period, with the parameters, into HDF5 (.h5) or CSV.");
-  const float button = style.points(74);
-  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x);
+  const float button_width = style.points(74);
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button_width - ImGui::GetStyle().ItemSpacing.x);
   ImGui::InputTextWithHint("##file", "named after the time", &file_);
   note_item("file");
   help_on_hover("File", fmt::format("Ends in .h5 or .csv, which chooses the format. This folder is {}.",
                                     std::filesystem::current_path().string()), style);
   ImGui::SameLine();
-  if (ImGui::Button("Choose", {button, 0})) {
+  if (button("Choose", {button_width, 0})) {
     task_ = FileTask::record;
     chooser_.ask({.title = "Record into a file",
                   .help = "Its ending chooses the format: HDF5 (.h5) or CSV (.csv).",
@@ -199,7 +199,7 @@ void RecordingPane::draw_replay(const Style& style) {
     replay_error_.clear();
     replay_wish_ = file;
   };
-  if (ImGui::Button("Open a recording", {-1, style.points(30)})) {
+  if (button("Open a recording", {-1, style.points(30)})) {
     task_ = FileTask::replay;
     chooser_.ask({.title = "Replay a recording",
                   .help = "It plays in place of the device, with its parameters, signals and marks.",
@@ -207,7 +207,7 @@ void RecordingPane::draw_replay(const Style& style) {
                   .endings = {".h5", ".csv"},
                   .suggestion = written_file_});
   }
-  if (!recorder_ && last_status_ && ImGui::Button("Replay the last one", {-1, style.points(30)})) replay(written_file_);
+  if (!recorder_ && last_status_ && button("Replay the last one", {-1, style.points(30)})) replay(written_file_);
   if (!replay_error_.empty()) wrapped_text(style.palette->danger, replay_error_);
   const auto chosen = chooser_.draw(style);
   if (!chosen) return;

@@ -62,7 +62,7 @@ void ScopePanel::draw_layout_name(const Style& style) {
   const bool confirmed = coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->panel,
                                          {style.points(100), 0});
   ImGui::SameLine();
-  bool is_done = ImGui::Button("Cancel", {style.points(100), 0}) ||
+  bool is_done = button("Cancel", {style.points(100), 0}) ||
                  ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
   if (!is_done && (confirmed || entered)) {
     name_refusal_ = renames ? own_layouts_.rename(layout_.name, name_) : OwnLayouts::refusal(name_);

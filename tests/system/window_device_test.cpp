@@ -58,7 +58,9 @@ TEST_CASE("a recording is started, marked, stopped and replayed") {
   REQUIRE(recording.marks.size() == 1);
   CHECK(recording.marks[0].text == "here");
 
-  rig.click("recording/Open");
+  rig.click("recording/Open a recording");
+  rig.enter("choose a file/path", file);
+  rig.click("choose a file/Open");
   rig.look_until("it plays to its end", [](const Sight& now) { return now.has("replay/Play"); });
   CHECK(rig.look().says("push (simulation)"));
   rig.click("tabs/Tuning");

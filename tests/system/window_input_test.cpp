@@ -117,9 +117,9 @@ TEST_CASE("a parameter file loaded in the window is what the device then holds, 
   std::ofstream(file) << "[parameters]\nwall_damping_Ns_per_m = 3.5\nforce_limit_N = 2.25\nstickiness_N = 1.0\n";
   WindowRig rig;
   rig.click("tuning/Load");
-  rig.enter("file/path", file);
+  rig.enter("choose a file/path", file);
   const auto before = rig.look().applied_at_periods();
-  rig.click("file/Load");
+  rig.click("choose a file/Load");
   rig.look_until("the device took them", [&](const Sight& now) { return now.applied_at_periods() != before; });
   CHECK(rig.look().says("stickiness_N"));
   auto expected = rig.parameters_at_start();
@@ -134,8 +134,8 @@ TEST_CASE("a damaged parameter file is told, and the device keeps its values") {
   std::ofstream(file) << "[parameters]\nwall_damping_Ns_per_m = 3.\nforce_limit_N = = 2\n";
   WindowRig rig;
   rig.click("tuning/Load");
-  rig.enter("file/path", file);
-  rig.click("file/Load");
+  rig.enter("choose a file/path", file);
+  rig.click("choose a file/Load");
   rig.look_until("it says which file", [&](const Sight& now) { return now.says("damaged.toml"); });
   CHECK(rig.close_and_read_parameters() == rig.parameters_at_start());
 }
