@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 #include <set>
+#include <stdexcept>
 
-#include <doctest/doctest.h>
 #include <png.h>
 
 namespace inkwell::tests {
@@ -25,10 +25,13 @@ std::size_t Image::colours() const {
 Image read_png(const std::string& path) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
-  REQUIRE_MESSAGE(png_image_begin_read_from_file(&png, path.c_str()), path, ": ", std::string(png.message));
+  const auto check = [&](int done) {
+    if (!done) throw std::runtime_error(path + ": " + png.message);
+  };
+  check(png_image_begin_read_from_file(&png, path.c_str()));
   png.format = PNG_FORMAT_RGB;
   Image image{png.width, png.height, std::vector<std::uint8_t>(PNG_IMAGE_SIZE(png))};
-  REQUIRE(png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr));
+  check(png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr));
   return image;
 }
 

@@ -27,7 +27,7 @@ struct Image {
   std::size_t colours() const;
 };
 
-/// Fails the test if the file is no PNG.
+/// Throws std::runtime_error if the file is no PNG.
 Image read_png(const std::string& path);
 
 }  // namespace inkwell::tests

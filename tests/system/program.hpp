@@ -34,6 +34,7 @@ class RunningProgram {
   std::string read_line(std::chrono::seconds limit = std::chrono::seconds(60));
   /// Waits for its end; the exit code, or none if it was ended by a signal or still runs after `limit`.
   std::optional<int> wait(std::chrono::seconds limit = std::chrono::seconds(60));
+  int process() const { return process_; }
 
  private:
   std::string name_;

@@ -24,13 +24,16 @@ device::VirtualBoardOptions board_options() {
   return options;
 }
 
-std::vector<std::string> window_words(const device::VirtualBoard& board, const std::string& parameters_file) {
+std::vector<std::string> window_words(const device::VirtualBoard& board, const std::string& parameters_file,
+                                      const std::vector<std::string>& options) {
   device::save_parameters(parameters_file, WindowRig::parameters_at_start());
-  return {build_directory() + "/inkwell",
+  std::vector<std::string> words{build_directory() + "/inkwell",
           "--usbip", fmt::format("127.0.0.1:{}", board.usbip_port()),
           "--control", std::to_string(board.control_port()),
           "--parameters", parameters_file,
-          "--forget-settings", "--flat-colours", "--inspect"};
+          "--forget-settings", "--inspect"};
+  words.insert(words.end(), options.begin(), options.end());
+  return words;
 }
 
 }  // namespace
@@ -47,12 +50,13 @@ bool Sight::says(const std::string& part) const {
 }
 
 // The display says its number in a line of its own, once it is ready.
-WindowRig::WindowRig()
+WindowRig::WindowRig(const std::vector<std::string>& options)
     : board(board_options()),
       control(board.control()),
       display_({"Xvfb", "-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"}),
       display_name_("DISPLAY=:" + display_.read_line()),
-      window_(window_words(board, directory_.file("parameters.toml")), {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
+      window_(window_words(board, directory_.file("parameters.toml"), options),
+              {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
   look_until("the device is ready and has the parameters", [](const Sight& sight) {
     return sight.state() == "ready" && sight.applied_at_periods() != 0;
   });
@@ -154,6 +158,13 @@ void WindowRig::switch_force_on() {
 device::Vector3 WindowRig::true_probe_m() {
   const auto truth = control.truth();
   return {truth.at("true_position_x_m"), truth.at("true_position_y_m"), truth.at("true_position_z_m")};
+}
+
+std::string WindowRig::close_and_read_lines(int lines) {
+  ask("close");
+  std::string text;
+  for (int line = 0; line < lines; ++line) text += window_.read_line() + "\n";
+  return text;
 }
 
 protocol::ParameterSet WindowRig::close_and_read_parameters() {

@@ -47,8 +47,9 @@ struct Sight {
 
 class WindowRig {
  public:
-  /// Starts everything and waits until the window is connected and its device knows where it is.
-  WindowRig();
+  /// Starts everything and waits until the window is connected and its device knows where it is. `options` are
+  /// further ones of the window.
+  explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"});
 
   /// A frame that began after all events so far.
   Sight look();
@@ -76,6 +77,9 @@ class WindowRig {
   device::Vector3 true_probe_m();
   /// Closes the window and returns what the device holds then.
   protocol::ParameterSet close_and_read_parameters();
+  /// Closes the window and returns the lines that it printed, of which there are so many.
+  std::string close_and_read_lines(int lines);
+  int window_process() const { return window_.process(); }
 
   device::VirtualBoard board;
   device::ControlClient control;

@@ -1,0 +1,64 @@
+// The window on software OpenGL beside the virtual board: its frames while all moves, its share of a core at rest.
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include <unistd.h>
+
+#include "window_rig.hpp"
+
+namespace {
+
+using namespace inkwell;
+using namespace std::chrono_literals;
+
+constexpr auto measured_for = 10s;
+
+/// Processor time of all threads of a process so far (proc(5), /proc/PID/stat, utime and stime).
+double processor_time_s(int process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  std::istringstream fields(text.substr(text.rfind(')') + 2));
+  std::string skipped;
+  for (int field = 3; field < 14; ++field) fields >> skipped;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+double share_of_a_core(int process) {
+  const double before_s = processor_time_s(process);
+  std::this_thread::sleep_for(measured_for);
+  return (processor_time_s(process) - before_s) / std::chrono::duration<double>(measured_for).count();
+}
+
+/// The hand pushes the sphere into the wall on the right and along it, again and again.
+void push_for(device::ControlClient& control, double time_s) {
+  const device::Vector3 start_m{0.0, 0.0, -0.03};
+  control.hand({.holds = true, .target_m = start_m, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
+  control.dock(false);
+  std::vector<device::HandWaypoint> path{{0.0, start_m}};
+  for (int i = 1; 0.3 * i < time_s; ++i) path.push_back({0.3 * i, {i % 2 ? 0.09 : 0.05, i % 4 < 2 ? 0.02 : -0.02, -0.03}});
+  control.hand_path(path);
+}
+
+void measure(const std::string& layout) {
+  tests::WindowRig rig({"--layout", layout, "--frames-report"});
+  rig.switch_force_on();
+  std::this_thread::sleep_for(2s);
+  std::printf("layout %s\n  at rest: %.0f %% of a core\n", layout.c_str(), 100 * share_of_a_core(rig.window_process()));
+  push_for(rig.control, 1.5 * std::chrono::duration<double>(measured_for).count());
+  const double moving = share_of_a_core(rig.window_process());
+  std::printf("  moving:  %.0f %% of a core; %s", 100 * moving, rig.close_and_read_lines(2).c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main() {
+  std::printf("Window on software OpenGL at 1280x800, 10 s at rest and 10 s moving, beside the virtual board "
+              "(simulation, real time):\n");
+  for (const char* layout : {"contact", "paper"}) measure(layout);
+}
