@@ -115,6 +115,22 @@ std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette) {
   return gauges;
 }
 
+// Works on the press, not on the release, and also while a dialog or an open list keeps the mouse to itself.
+bool stop_button(ImVec2 size, const Style& style) {
+  const Palette& palette = *style.palette;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 end{corner.x + size.x, corner.y + size.y};
+  coloured_button("STOP", palette.danger, palette.on_danger, size);
+  if (is_dialog_open()) {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    const ImVec2 taken = ImGui::CalcTextSize("STOP");
+    list.AddRectFilled(corner, end, packed(palette.danger), ImGui::GetStyle().FrameRounding);
+    list.AddText({corner.x + 0.5f * (size.x - taken.x), corner.y + 0.5f * (size.y - taken.y)},
+                 packed(palette.on_danger), "STOP");
+  }
+  return ImGui::IsMouseClicked(ImGuiMouseButton_Left) && ImGui::IsMouseHoveringRect(corner, end, false);
+}
+
 }  // namespace
 
 void StatusBar::draw_device_list(const Style& style, DeviceDesk& desk) {
@@ -233,7 +249,7 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
     return ImVec2{width, height};
   };
   ImGui::PushFont(style.fonts.strong);
-  outcome.stop = coloured_button("STOP", palette.danger, palette.on_danger, make_room(style.points(118)));
+  outcome.stop = stop_button(make_room(style.points(118)), style);
   ImGui::PopFont();
   help_on_hover("Stop", "Switches the force off at once. The space bar does the same, whatever has the focus.", style);
 

@@ -170,6 +170,8 @@ float warning_sign(ImVec2 corner, Colour colour, const Style& style) {
   return size + style.points(4);
 }
 
+bool is_dialog_open() { return ImGui::GetTopMostPopupModal() != nullptr; }
+
 void same_line_if_room(float width) {
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
   if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();

@@ -42,6 +42,9 @@ void right_text(Colour colour, std::string_view content, float width);
 /// A triangle with an exclamation mark, for what must not be told by colour alone. Returns the width it takes.
 float warning_sign(ImVec2 corner, Colour colour, const Style& style);
 
+/// True while a dialog darkens the rest of the window.
+bool is_dialog_open();
+
 /// The next item of this width goes beside the last one if there is room, else below.
 void same_line_if_room(float width);
 

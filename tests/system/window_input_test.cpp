@@ -159,4 +159,10 @@ TEST_CASE("the stop button and the space bar switch the force off, also while a 
   rig.click("tuning/Load");  // a dialog over everything
   rig.press_key("space");
   rig.look_until("the space bar stopped it", has_stopped);
+
+  rig.click("choose a file/Cancel");
+  rig.switch_force_on();
+  rig.click("tuning/Load");
+  rig.click("status/STOP");
+  rig.look_until("the button stopped it, though a dialog has the mouse", has_stopped);
 }
