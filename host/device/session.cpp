@@ -8,6 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include "thread_precedence.hpp"
+
 namespace inkwell::device {
 namespace {
 
@@ -64,6 +66,7 @@ struct Session::Implementation {
   // ---- the report thread: connects, reads poses, sends what was asked for --------------------------------
 
   void report_loop() {
+    ask_for_precedence();
     while (!stopping) {
       try {
         if (const auto endpoint = find())

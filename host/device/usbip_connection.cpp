@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "thread_precedence.hpp"
+
 namespace inkwell::device {
 namespace {
 
@@ -164,6 +166,7 @@ void UsbipConnection::control_out(const Setup& setup, std::span<const std::byte>
 }
 
 void UsbipConnection::receive_answers() {
+  ask_for_precedence();
   std::string reason;
   try {
     for (;;) receive_answer();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace inkwell::window {
 
 namespace {
@@ -70,10 +72,16 @@ void draw_columns(ImDrawList& list, const PlotArea& area, const std::vector<Extr
   }
 }
 
+// 3 -> "1k"
+std::string power_label(double exponent) {
+  return exponent < 3.0 ? fmt::format("{:g}", std::pow(10.0, exponent))
+                        : fmt::format("{:g}k", std::pow(10.0, exponent - 3.0));
+}
+
 }  // namespace
 
 void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
-               const std::string& y_unit) {
+               const std::string& y_unit, bool x_is_logarithm) {
   const Palette& palette = *style.palette;
   ImFont* font = style.fonts.caption;
   const float size = font->FontSize;
@@ -95,7 +103,8 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const
   for (double value : x_ticks) {
     const float x = std::round(area.to_x(value));
     list.AddLine({x, area.minimum.y}, {x, area.maximum.y}, packed(palette.plot_grid));
-    std::string label = tick_label(value, x_step);
+    if (x_is_logarithm && value != std::round(value)) continue;
+    std::string label = x_is_logarithm ? power_label(value) : tick_label(value, x_step);
     if (value == x_ticks.back()) label += " " + x_unit;
     const ImVec2 taken = font->CalcTextSizeA(size, 1e4f, 0, label.c_str());
     const float left =

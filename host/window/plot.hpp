@@ -25,8 +25,9 @@ struct PlotArea {
 };
 
 /// Ground, grid and the numbers on both axes. `x_unit` and `y_unit` stand at the ends of the axes.
+/// `x_is_logarithm`: the x axis holds powers of ten, which are written out.
 void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
-               const std::string& y_unit);
+               const std::string& y_unit, bool x_is_logarithm = false);
 
 /// A signal over [first, last) of its samples, which the whole width shows. Columns with many samples are drawn
 /// from their smallest to their largest value, so no spike is lost.

@@ -19,6 +19,7 @@ constexpr double range_remembered_s = 1.0;  // for telling motion from noise
 constexpr float header_points = 24.0f;
 constexpr float y_axis_points = 52.0f;
 constexpr float x_axis_points = 21.0f;
+constexpr float statistics_line_points = 15.0f;
 constexpr float pane_minimum_width_points = 230.0f;
 constexpr float pane_minimum_height_points = 92.0f;
 
@@ -232,20 +233,21 @@ void ScopePanel::draw_time(std::size_t index, PlotArea area, const Stretch& stre
         memory.statistics.push_back(statistics(*series, static_cast<std::uint64_t>(std::max(stretch.first, 0.0)),
                                                static_cast<std::uint64_t>(stretch.last)));
   }
+  // Above the plot, where they hide nothing of it.
   ImFont* font = style.fonts.caption;
-  float y = area.minimum.y + style.points(18);
-  for (std::size_t i = 0; i < memory.statistics.size(); ++i, y += font->FontSize + style.points(1)) {
+  float y = area.minimum.y - statistics_height(pane, style);
+  for (std::size_t i = 0; i < memory.statistics.size(); ++i, y += style.points(statistics_line_points)) {
     const Statistics& each = memory.statistics[i];
     const std::string line = fmt::format("mean {}   rms {}   deviation {}   {} to {}", formatted(each.mean),
                                          formatted(each.root_mean_square), formatted(each.standard_deviation),
                                          formatted(each.minimum), formatted(each.maximum));
-    const ImVec2 taken = font->CalcTextSizeA(font->FontSize, 1e4f, 0, line.c_str());
-    const ImVec2 corner{area.minimum.x + style.points(6), y};
-    list.AddRectFilled({corner.x - style.points(3), corner.y},
-                       {corner.x + taken.x + style.points(3), corner.y + taken.y},
-                       packed(style.palette->panel.with_alpha(210)));
-    list.AddText(font, font->FontSize, corner, packed(line_colour(style, i)), line.c_str());
+    list.AddText(font, font->FontSize, {area.minimum.x, y}, packed(line_colour(style, i)), line.c_str());
   }
+}
+
+float ScopePanel::statistics_height(const Pane& pane, const Style& style) const {
+  if (!statistics_are_shown_ || pane.kind != PaneKind::time) return 0.0f;
+  return style.points(statistics_line_points) * static_cast<float>(pane.signals.size());
 }
 
 void ScopePanel::judge_motion(const Pane& pane, const PlotArea& area) {
@@ -282,7 +284,7 @@ void ScopePanel::draw_spectrum(std::size_t index, PlotArea area, const Stretch& 
   area.x = {1.0, std::log10(0.5 * rate_Hz)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   PlotArea labels = area;
-  draw_axes(list, labels, style, "log Hz", "dB " + common_unit(pane));
+  draw_axes(list, labels, style, "Hz", "dB " + common_unit(pane), true);
   for (std::size_t j = 0; j < memory.spectra.size(); ++j) {
     const Spectrum& each = memory.spectra[j];
     std::vector<std::pair<double, double>> points;
@@ -352,7 +354,7 @@ void ScopePanel::draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const S
   draw_legend(index, {place.x + title_width, place.y + style.points(4)}, size.x - title_width - style.points(6),
               stretch, style);
 
-  const PlotArea area{{place.x + style.points(y_axis_points), place.y + style.points(header_points)},
+  const PlotArea area{{place.x + style.points(y_axis_points), place.y + style.points(header_points) + statistics_height(pane, style)},
                       {place.x + size.x - style.points(6), place.y + size.y - style.points(x_axis_points)},
                       {0, 1},
                       {0, 1}};
@@ -379,8 +381,10 @@ void ScopePanel::draw_panes(const Stretch& shown, const Style& style) {
   const int columns = std::clamp(std::min(layout_.columns, fitting), 1, std::max(1, count));
   const int rows = (count + columns - 1) / columns;
   const float width = (room.x - gap.x * static_cast<float>(columns - 1)) / static_cast<float>(columns);
+  float numbers = 0.0f;
+  for (const Pane& pane : layout_.panes) numbers = std::max(numbers, statistics_height(pane, style));
   const float height = std::max((room.y - gap.y * static_cast<float>(rows - 1)) / static_cast<float>(rows),
-                                std::min(room.y, style.points(pane_minimum_height_points)));
+                                std::min(room.y, style.points(pane_minimum_height_points) + numbers));
   for (int i = 0; i < count; ++i)
     draw_pane(static_cast<std::size_t>(i),
               {place.x + static_cast<float>(i % columns) * (width + gap.x),

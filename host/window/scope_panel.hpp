@@ -68,6 +68,7 @@ class ScopePanel {
   void draw_legend(std::size_t index, ImVec2 place, float width, const Stretch& stretch, const Style& style) const;
   void draw_time(std::size_t index, PlotArea area, const Stretch& stretch, const Style& style);
   void draw_spectrum(std::size_t index, PlotArea area, const Stretch& stretch, const Style& style);
+  float statistics_height(const Pane& pane, const Style& style) const;
   void draw_xy(std::size_t index, PlotArea area, const Stretch& stretch, const Style& style);
   void draw_cursors(const PlotArea& area, const Style& style);
   void handle_mouse(const PlotArea& area, const Stretch& stretch);

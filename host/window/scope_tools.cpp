@@ -84,10 +84,10 @@ void ScopePanel::draw_trigger_tools(const Style& style) {
   ImGui::SetNextItemWidth(style.points(70));
   if (ImGui::DragFloat("##level", &trigger_settings_.level, 0.01f, 0.0f, 0.0f, "%.3g")) trigger_.arm();
   help_on_hover("Level", std::string(protocol::info(trigger_settings_.signal).unit), style);
-  same_line_if_room(style.points(64));
+  same_line_if_room(style.points(92));
   float percent = 100.0f * trigger_settings_.pre_trigger;
-  ImGui::SetNextItemWidth(style.points(64));
-  if (ImGui::SliderFloat("##before", &percent, 0.0f, 100.0f, "%.0f %%"))
+  ImGui::SetNextItemWidth(style.points(92));
+  if (ImGui::DragFloat("##before", &percent, 0.5f, 0.0f, 100.0f, "%.0f %% before", ImGuiSliderFlags_AlwaysClamp))
     trigger_settings_.pre_trigger = percent / 100.0f;
   help_on_hover("Before the event", "Part of the picture that lies before the event.", style);
   if (trigger_settings_.mode != TriggerMode::single) return;
