@@ -6,6 +6,8 @@
 #include <GLFW/glfw3.h>
 #include <nlohmann/json.hpp>
 
+#include "inspection.hpp"
+
 #include <window/frame_rhythm.hpp>
 
 namespace inkwell::window {
@@ -144,6 +146,7 @@ float Companion::splitter(const char* name, ImVec2 place, ImVec2 size, bool vert
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2{1, 1});
   begin_pane(name, place, size);
   ImGui::InvisibleButton("handle", size);
+  note_item("handle");
   const bool lively = ImGui::IsItemHovered() || ImGui::IsItemActive();
   if (lively) ImGui::SetMouseCursor(vertical ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
   ImGui::GetWindowDrawList()->AddRectFilled(place, {place.x + size.x, place.y + size.y},

@@ -29,11 +29,11 @@ TEST_CASE("an unplugged device is told, and it is connected again by itself") {
   WindowRig rig;
   rig.switch_force_on();
   unplug(rig);
-  rig.look_until("it says so", [](const Sight& now) { return now.says("Looking for a device"); });
+  rig.look_until("it says so", [](const Sight& now) { return now.says("No arm was found. Plug one in"); });
   CHECK_FALSE(rig.look().can_click("status/Switch force on"));
   plug_in(rig);  // the arm still knows where it is, and the force is off
   CHECK(rig.look().can_click("status/Switch force on"));
-  CHECK_FALSE(rig.look().says("Looking for a device"));
+  CHECK_FALSE(rig.look().says("No arm was found"));
 }
 
 TEST_CASE("a recording is started, marked, stopped and replayed") {

@@ -28,10 +28,10 @@ std::vector<std::string> window_words(const device::VirtualBoard& board, const s
                                       const std::vector<std::string>& options) {
   device::save_parameters(parameters_file, WindowRig::parameters_at_start());
   std::vector<std::string> words{build_directory() + "/inkwell",
-          "--usbip", fmt::format("127.0.0.1:{}", board.usbip_port()),
-          "--control", std::to_string(board.control_port()),
-          "--parameters", parameters_file,
-          "--forget-settings", "--inspect"};
+                                 "--usbip", fmt::format("127.0.0.1:{}", board.usbip_port()),
+                                 "--control", std::to_string(board.control_port()),
+                                 "--parameters", parameters_file,
+                                 "--forget-settings", "--inspect"};
   words.insert(words.end(), options.begin(), options.end());
   return words;
 }
@@ -49,11 +49,11 @@ bool Sight::says(const std::string& part) const {
                              [&](const json& text) { return text.get<std::string>().find(part) != std::string::npos; });
 }
 
-// The display says its number in a line of its own, once it is ready.
+// The display says its number in a line of its own, once it is ready; what it says of numbers taken is no error.
 WindowRig::WindowRig(const std::vector<std::string>& options)
     : board(board_options()),
       control(board.control()),
-      display_({"Xvfb", "-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"}),
+      display_({"sh", "-c", "exec Xvfb -displayfd 1 -screen 0 1280x800x24 -nolisten tcp 2>/dev/null"}),
       display_name_("DISPLAY=:" + display_.read_line()),
       window_(window_words(board, directory_.file("parameters.toml"), options),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {

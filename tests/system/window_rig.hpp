@@ -47,8 +47,8 @@ struct Sight {
 
 class WindowRig {
  public:
-  /// Starts everything and waits until the window is connected and its device knows where it is. `options` are
-  /// further ones of the window.
+  /// Starts everything and waits until the window is connected and its device knows where it is. `options`:
+  /// of the window; with flat colours a picture's pixels have exactly the colours of palette.hpp.
   explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"});
 
   /// A frame that began after all events so far.

@@ -1,0 +1,109 @@
+// Not a test: tools/pictures runs this to photograph the window's panes, with the virtual board under the mouse.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+
+#include "window_rig.hpp"
+
+using namespace inkwell::tests;
+
+namespace {
+
+std::string picture_file(const std::string& name) {
+  const char* folder = std::getenv("INKWELL_PICTURES");
+  return (folder == nullptr ? std::string(".") : std::string(folder)) + "/" + name + ".png";
+}
+
+/// Where the mouse hides nothing and asks for no help.
+constexpr Point aside{840, 40};
+
+/// The hand presses the sphere into the right wall and the floor, and moves it along the edge between them.
+void push_into_two_walls(WindowRig& rig) {
+  rig.switch_force_on();
+  const auto sight = rig.look();
+  const auto sphere = sight.item("scene/sphere").centre();
+  const auto right = sight.item("scene/box_maximum_x_m").centre();
+  const Point edge{right.x + 25, sphere.y + 45};
+  rig.drag(sphere, {sphere.x + 20, sphere.y - 40}, 12);
+  for (int step = 1; step <= 48; ++step) {
+    const double angle_rad = 2 * std::numbers::pi * step / 16;
+    const double part = std::min(1.0, step / 16.0);
+    rig.move_to({std::lerp(sphere.x + 20, edge.x, part) + 10 * std::sin(angle_rad),
+                 std::lerp(sphere.y - 40, edge.y, part) + 6 * std::sin(0.5 * angle_rad)});
+  }
+}
+
+}  // namespace
+
+TEST_CASE("pictures: the whole window, dark and light" * doctest::skip()) {
+  for (const std::string theme : {"dark", "light"}) {
+    WindowRig rig({"--layout", "paper", "--theme", theme});
+    rig.click("tuning/Soft");
+    push_into_two_walls(rig);
+    rig.picture(picture_file(theme == "dark" ? "window" : "light"));
+  }
+}
+
+TEST_CASE("pictures: the scope with statistics and cursors" * doctest::skip()) {
+  WindowRig rig({"--layout", "paper"});
+  rig.drag(rig.look().item("scope splitter/handle").centre(), {400, 330});
+  rig.release_mouse();
+  push_into_two_walls(rig);
+  rig.release_mouse();
+  rig.click("scope/Pause");
+  rig.click("scope/Statistics");
+  rig.click("scope/Cursors");
+  rig.move_to(aside);
+  rig.picture(picture_file("scope"));
+}
+
+TEST_CASE("pictures: a guide with its result" * doctest::skip()) {
+  WindowRig rig({"--layout", "paper"});
+  rig.click("tabs/Guides");
+  rig.move_to(aside);
+  rig.picture(picture_file("guides"));
+  rig.click("guides/Current-loop tuning");
+  rig.look_until("the guide has finished", [&](const Sight& now) {
+    if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
+    return now.has("guides/Apply");
+  });
+  rig.move_to(aside);
+  rig.picture(picture_file("guide"));
+}
+
+TEST_CASE("pictures: recording and replay" * doctest::skip()) {
+  const TemporaryDirectory directory;
+  WindowRig rig({"--layout", "paper"});
+  rig.click("tabs/Recording");
+  rig.enter("recording/file", directory.file("push.h5"));
+  rig.click("recording/Start recording");
+  push_into_two_walls(rig);
+  rig.release_mouse();
+  rig.enter("recording/mark text", "in the corner");
+  rig.click("recording/Mark");
+  rig.move_to(aside);
+  rig.picture(picture_file("recording"));
+  rig.click("recording/Stop recording");
+  rig.click("recording/Replay the last one");
+  rig.move_to(aside);
+  rig.control.run(2.0);
+  rig.control.resume();
+  rig.picture(picture_file("replay"));
+}
+
+TEST_CASE("pictures: a fault, no device, and choosing a file" * doctest::skip()) {
+  WindowRig rig({"--layout", "paper"});
+  rig.click("tuning/Load");
+  rig.picture(picture_file("file"));
+  rig.click("choose a file/Cancel");
+  rig.move_to(aside);
+  rig.control.supply(6.0);
+  rig.look_until("a fault", [](const Sight& now) { return now.state() == "fault"; });
+  rig.picture(picture_file("fault"));
+  rig.control.usb(false);
+  rig.look_until("it says so", [](const Sight& now) { return now.says("No arm was found"); });
+  rig.picture(picture_file("unplugged"));
+}
