@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <fmt/format.h>
 
 namespace inkwell::window {
@@ -59,7 +60,11 @@ AxisRange SteadyRange::update(double minimum, double maximum, double now_s) {
   const AxisRange wanted = enclosing_range(minimum, maximum);
   const bool fits = range_.extent() > 0.0 && wanted.minimum >= range_.minimum && wanted.maximum <= range_.maximum;
   const bool is_much_smaller = wanted.extent() < 0.8 * range_.extent();
-  if (!fits) {
+  const bool was_guess = std::exchange(is_guess_, !(minimum < maximum));
+  if (was_guess && !is_guess_) {
+    range_ = wanted;
+    small_since_s_ = now_s;
+  } else if (!fits) {
     // Grow at once; on the side where there is room, keep what was shown.
     range_ = range_.extent() > 0.0
                  ? AxisRange{std::min(wanted.minimum, range_.minimum), std::max(wanted.maximum, range_.maximum)}

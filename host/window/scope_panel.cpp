@@ -7,6 +7,8 @@
 #include <protocol/reports.hpp>
 #include <window/frame_rhythm.hpp>
 
+#include "scope_legend.hpp"
+
 namespace inkwell::window {
 
 namespace {
@@ -22,29 +24,6 @@ constexpr float x_axis_points = 21.0f;
 constexpr float statistics_line_points = 15.0f;
 constexpr float pane_minimum_width_points = 230.0f;
 constexpr float pane_minimum_height_points = 92.0f;
-
-std::string formatted(double value) { return std::isnan(value) ? "—" : fmt::format("{:.4g}", value); }
-
-// Signals of one pane usually share a unit, which then stands once at the axis.
-std::string common_unit(const Pane& pane) {
-  std::string_view unit = protocol::info(pane.signals.front()).unit;
-  for (protocol::Signal signal : pane.signals)
-    if (protocol::info(signal).unit != unit) return "";
-  return std::string(unit);
-}
-
-// "force_N" -> "force": the unit stands beside the pane's title if all its signals have the same.
-std::string short_name(const protocol::SignalInfo& info, bool unit_is_told) {
-  std::string ending = fmt::format("_{}", info.unit);
-  std::ranges::replace(ending, '/', '_');
-  std::string name{info.name};
-  if (unit_is_told && !info.unit.empty() && name.ends_with(ending)) name.resize(name.size() - ending.size());
-  return name;
-}
-
-Colour line_colour(const Style& style, std::size_t index) {
-  return style.palette->lines[index % style.palette->lines.size()];
-}
 
 }  // namespace
 
@@ -111,50 +90,6 @@ ScopePanel::Stretch ScopePanel::stretch() {
   const double part = std::max(1.0, std::floor(span / 2048.0));
   const double last = std::floor(end / part) * part;
   return {last - span, last, last};
-}
-
-void ScopePanel::draw_legend(std::size_t index, ImVec2 place, float width, const Stretch& stretch,
-                             const Style& style) const {
-  const Pane& pane = layout_.panes[index];
-  const Palette& palette = *style.palette;
-  ImFont* font = style.fonts.caption;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  float right = place.x + width;
-  const std::string unit = common_unit(pane);
-  list.AddText(font, font->FontSize, {place.x + style.points(2), place.y}, packed(palette.text_quiet), unit.c_str());
-  std::vector<std::string> names;
-  float wanted = 0.0f;
-  for (const protocol::Signal signal : pane.signals) {
-    names.push_back(short_name(protocol::info(signal), !unit.empty()));
-    wanted += font->CalcTextSizeA(font->FontSize, 1e4f, 0, names.back().c_str()).x + style.points(24);
-  }
-  // "penetration_x" -> "x", where the pane is narrow: its title tells the rest.
-  const float unit_width = font->CalcTextSizeA(font->FontSize, 1e4f, 0, unit.c_str()).x;
-  if (wanted > width - unit_width - style.points(8) && names.size() > 1)
-    for (std::string& name : names) name.erase(0, name.rfind('_') + 1);
-  for (std::size_t i = pane.signals.size(); i-- > 0;) {
-    const SignalSeries* series = history_.find(pane.signals[i]);
-    std::string label = names[i];
-    if (cursors_are_shown_ && series != nullptr && pane.kind == PaneKind::time) {
-      const auto at = [&](double cursor) {
-        const double index_at = stretch.last + cursor * stretch.span();
-        return index_at < static_cast<double>(series->begin()) || index_at >= static_cast<double>(series->end())
-                   ? std::nan("")
-                   : static_cast<double>((*series)[static_cast<std::uint64_t>(index_at)]);
-      };
-      label = fmt::format("{}  {}  {}  diff. {}", label, formatted(at(cursors_[0])), formatted(at(cursors_[1])),
-                          formatted(at(cursors_[1]) - at(cursors_[0])));
-    }
-    const float taken = font->CalcTextSizeA(font->FontSize, 1e4f, 0, label.c_str()).x;
-    right -= taken;
-    if (right < place.x + style.points(24)) break;
-    list.AddText(font, font->FontSize, {right, place.y}, packed(palette.text_quiet), label.c_str());
-    right -= style.points(14);
-    const float middle = place.y + 0.5f * font->FontSize + style.points(1);
-    list.AddRectFilled({right, middle - style.points(1.5f)}, {right + style.points(9), middle + style.points(1.5f)},
-                       packed(line_colour(style, i)), style.points(1.5f));
-    right -= style.points(10);
-  }
 }
 
 void ScopePanel::handle_mouse(const PlotArea& area, const Stretch& stretch) {

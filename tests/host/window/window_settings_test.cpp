@@ -115,3 +115,9 @@ TEST_CASE("an axis grows at once and shrinks only after a while") {
   CHECK(axis.update(0.0, 1.0, 1.0).maximum >= 10.0);
   CHECK(axis.update(0.0, 1.0, 2.0).maximum < 2.0);
 }
+
+TEST_CASE("the room around a constant gives way to the first change, however small") {
+  SteadyRange axis;
+  axis.update(0.0, 0.0, 0.0);
+  CHECK(axis.update(0.0, 0.003, 0.1).extent() < 0.01);
+}

@@ -26,13 +26,15 @@ AxisRange enclosing_range(double minimum, double maximum);
 /// A tick's number with as many digits as its neighbours need to differ, e.g. "0.25", "1500", "2e-06".
 std::string tick_label(double value, double step);
 
-/// Follows the data, but shrinks only after the data has been small for a while, so that axes do not tremble.
+/// Follows the data, but shrinks only after the data has been small for a while, so that axes do not tremble. The room
+/// around a constant is a guess, which the first change replaces.
 class SteadyRange {
  public:
   AxisRange update(double minimum, double maximum, double now_s);
 
  private:
   AxisRange range_{0.0, 0.0};
+  bool is_guess_ = false;
   double small_since_s_ = 0.0;
 };
 
