@@ -30,18 +30,27 @@ std::pair<std::string, std::uint16_t> split_address(const std::string& address) 
 }  // namespace
 
 void DeviceOptions::add_to(CLI::App& app) {
-  auto* is_virtual_flag = app.add_flag("--virtual", is_virtual, "Start a virtual board and use its arm");
+  auto* is_virtual_flag = app.add_flag("--virtual", is_virtual, "Start a virtual board (a simulation) and use its arm");
   const char* group = "Virtual board (with --virtual)";
-  app.add_option("--elf", elf, "Firmware that it runs, instead of ../board/inkwell.elf")->needs(is_virtual_flag)->group(group);
+  app.add_option("--elf", elf, "Firmware that it runs; the one built beside this program unless given")
+      ->type_name("FILE")->needs(is_virtual_flag)->group(group);
   app.add_option("--arm", arm, "Arm description (TOML) that it simulates; the firmware gets its parameters")
-      ->needs(is_virtual_flag)->group(group);
-  app.add_option("--mode", mode, "exact: the same seed gives the same run; fast")
+      ->type_name("FILE")->needs(is_virtual_flag)->group(group);
+  app.add_option("--mode", mode,
+                 "exact: interrupts come at any instruction; fast: between blocks of them, and quicker")
       ->check(CLI::IsMember({"exact", "fast"}))->needs(is_virtual_flag)->group(group);
-  app.add_option("--seed", seed, "Seed of its noise")->capture_default_str()->needs(is_virtual_flag)->group(group);
-  app.add_flag("--real-time", real_time, "Pace it to the wall clock")->needs(is_virtual_flag)->group(group);
-  app.add_option("--usbip", usbip, "HOST:PORT of a USB/IP server, such as a virtual board that runs already")
+  app.add_option("--seed", seed, "Seed of its noise")
+      ->type_name("NUMBER")
+      ->capture_default_str()
+      ->needs(is_virtual_flag)
+      ->group(group);
+  app.add_flag("--real-time", real_time, "Pace it to the clock on the wall")->needs(is_virtual_flag)->group(group);
+  app.add_option("--usbip", usbip,
+                 "HOST:PORT of a USB/IP server, such as a virtual board that runs already; not with --virtual")
+      ->type_name("ADDRESS")
       ->excludes(is_virtual_flag);
-  app.add_option("--serial", serial_number, "Use the arm with this serial number")->excludes(is_virtual_flag);
+  app.add_option("--serial", serial_number, "Use the arm with this serial number; not with --virtual")
+      ->type_name("NUMBER")->excludes(is_virtual_flag);
   app.add_flag("--json", json, "Write JSON for programs instead of text for people");
 }
 
@@ -50,7 +59,9 @@ device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode 
   device::VirtualBoardOptions board;
   board.elf = elf;
   board.arm = arm;
-  board.mode = mode.empty() ? default_mode : mode == "exact" ? device::SimulationMode::exact : device::SimulationMode::fast;
+  board.mode = mode.empty()      ? default_mode
+               : mode == "exact" ? device::SimulationMode::exact
+                                 : device::SimulationMode::fast;
   board.seed = seed;
   board.real_time = real_time || real_time_by_default;
   return board;

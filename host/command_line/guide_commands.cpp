@@ -18,6 +18,7 @@
 #include <guides/session_port.hpp>
 #include <guides/simulated_user.hpp>
 
+#include "help.hpp"
 #include "interrupt.hpp"
 
 namespace inkwell::command_line {
@@ -306,18 +307,22 @@ void add_calibrate_command(CLI::App& program, const DeviceOptions& options, Acti
   };
   const auto settings = std::make_shared<Settings>();
   auto* command = program.add_subcommand(
-      "calibrate", "Guides through the calibration: inkwell reference, joint stops, potentiometers of the gimbal.\n"
+      "calibrate", "Guides through the calibration: inkwell, joint stops, potentiometers of the gimbal\n"
                    "You move the arm and press button 1; with --virtual a simulated hand does.");
-  command->add_option("WHAT", settings->what, "inkwell, stops, pots or all")
+  command->add_option("WHAT", settings->what, "What to calibrate")
       ->check(CLI::IsMember({"inkwell", "stops", "pots", "all"}))->capture_default_str();
-  command->add_option("--trust", settings->trust, "What is right when the stops lie elsewhere: limits or encoders")
+  command->add_option("--trust", settings->trust, "What is right when the stops lie elsewhere than described")
       ->check(CLI::IsMember({"limits", "encoders"}))->capture_default_str();
   const char* names[] = {"--yaw-range", "--pitch-range", "--roll-range"};
   for (std::size_t axis = 0; axis < 3; ++axis)
-    command->add_option(names[axis], settings->range[axis], "MINIMUM:MAXIMUM in radians between its stops");
+    command->add_option(names[axis], settings->range[axis], "MINIMUM:MAXIMUM, the angles of its stops in radians")
+        ->type_name("RANGE");
   command->add_flag("--quadratic", settings->quadratic,
                     "Fit the potentiometers' square term, with a third point in the middle");
   settings->add_to(*command);
+  add_examples(*command, "inkwell calibrate\n"
+                         "inkwell calibrate pots --roll-range -2.58:2.58 --apply\n"
+                         "inkwell calibrate all --virtual --yes --json");
   command->callback([&options, &action, settings] {
     action = [&options, settings] {
       guides::PotentiometerOptions pots;
@@ -344,15 +349,21 @@ void add_tune_command(CLI::App& program, const DeviceOptions& options, Action& a
   const auto settings = std::make_shared<Settings>();
   auto* command = program.add_subcommand("tune", "Guides that find parameters by measuring");
   command->require_subcommand(1);
+  add_examples(*command, "inkwell tune current-loop");
   auto* loop = command->add_subcommand(
       "current-loop",
-      "Identifies resistance and inductance of the motors from pulses of voltage, suggests the gains of the\n"
-      "current loops and tries them with steps of current.");
+      "Measures the motors' resistance and inductance and suggests gains of the current loops\n"
+      "Pulses of voltage go through the motors, and steps of current try the gains. The arm may twitch.");
   loop->add_option("--motor", settings->motor, "This motor only, 1 to 3; all three unless given")
-      ->check(CLI::Range(1, 3));
-  loop->add_option("--bandwidth", settings->loop.bandwidth_Hz, "Bandwidth of the current loops in Hz")
-      ->check(CLI::Range(guides::bandwidth_minimum_Hz, guides::bandwidth_maximum_Hz))->capture_default_str();
+      ->type_name("NUMBER")->check(CLI::Range(1, 3));
+  loop->add_option("--bandwidth", settings->loop.bandwidth_Hz, fmt::format("Bandwidth of the current loops, {} to {} Hz", guides::bandwidth_minimum_Hz,
+                               guides::bandwidth_maximum_Hz))
+      ->type_name("HZ")
+      ->check(CLI::Range(guides::bandwidth_minimum_Hz, guides::bandwidth_maximum_Hz))
+      ->capture_default_str();
   settings->add_to(*loop);
+  add_examples(*loop, "inkwell tune current-loop\n"
+                      "inkwell tune current-loop --motor 2 --bandwidth 1500 --yes --apply");
   loop->callback([&options, &action, settings] {
     action = [&options, settings] {
       if (settings->motor != 0) settings->loop.motors = {settings->motor};
@@ -367,9 +378,11 @@ void add_check_command(CLI::App& program, const DeviceOptions& options, Action& 
   const auto settings = std::make_shared<GuideOptions>();
   auto* command = program.add_subcommand("check", "Guides that look whether the arm is wired and described as it is");
   command->require_subcommand(1);
+  add_examples(*command, "inkwell check connection\ninkwell check directions");
   const auto add = [&](const char* name, const char* help, Guide (*make)()) {
     auto* check = command->add_subcommand(name, help);
     settings->add_to(*check);
+    add_examples(*check, fmt::format("inkwell check {0}\ninkwell check {0} --virtual --yes --json", name));
     check->callback([&options, &action, settings, make] {
       action = [&options, settings, make] {
         std::vector<Guide> all;

@@ -7,6 +7,8 @@
 
 #include <protocol/reports.hpp>
 
+#include "help.hpp"
+
 namespace inkwell::command_line {
 namespace {
 
@@ -62,7 +64,9 @@ void print(const device::Information& information, const std::optional<protocol:
 }  // namespace
 
 void add_info_command(CLI::App& program, const DeviceOptions& options, Action& action) {
-  auto* command = program.add_subcommand("info", "Who is connected: versions, counters, state and fault with its remedy");
+  auto* command =
+      program.add_subcommand("info", "Who is connected: versions, counters, state and fault with its remedy");
+  add_examples(*command, "inkwell info\ninkwell info --virtual --json");
   command->callback([&] {
     action = [&] {
       const auto connection = connect(options);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "help.hpp"
 
 namespace {
 
@@ -22,11 +23,23 @@ int complain(const std::exception& error, int exit_code) {
 int main(int argument_count, char** arguments) {
   using namespace inkwell::command_line;
 
-  CLI::App program("Companion of an Inkwell haptic arm. Without a command it opens the window.\n", "inkwell");
-  program.set_version_flag("--version", INKWELL_VERSION, "Print the version and exit");
-  program.footer("Exit code: 0 done, 1 the device or the work failed, 2 wrong usage.\n"
-                 "No board at hand? Add --virtual: it runs the firmware on a simulated board, arm and hand.");
-  program.get_formatter()->column_width(36);
+  CLI::App program(
+      "Companion of an Inkwell haptic arm: a robot arm whose stylus you hold and whose motors let you feel walls.\n"
+      "Alone it opens the window; its commands do the same work for scripts and terminals.",
+      "inkwell");
+  set_help_style(program);
+  program.set_version_flag("--version", INKWELL_VERSION, "Print the version");
+  program.set_help_flag("-h,--help", "Print this help");
+  program.footer(
+      "Examples:\n"
+      "  inkwell --virtual                            the window, on a simulated board, arm and hand\n"
+      "  inkwell info                                 is an arm there, and is it well?\n"
+      "  inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
+      "  inkwell experiment wall --virtual --out results\n\n"
+      "`inkwell COMMAND --help` explains a command. The options above may stand before or behind it.\n"
+      "Lengths are in metres, angles in radians, forces in newtons, times in seconds of the board; names of\n"
+      "parameters and signals end in their unit.\n"
+      "Exit code: 0 done, 1 the device or the work failed (the reason is on standard error), 2 wrong usage.");
   program.require_subcommand(0, 1);
   program.fallthrough();  // the device's options may stand behind the command as well
 

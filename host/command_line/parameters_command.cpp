@@ -7,6 +7,8 @@
 
 #include <device/parameter_file.hpp>
 
+#include "help.hpp"
+
 namespace inkwell::command_line {
 namespace {
 
@@ -38,7 +40,8 @@ int list(const DeviceOptions& options) {
       fmt::print("{}{:<34} {:>14}   {:>12}   {:<24} {}\n", group.empty() ? "" : "\n", row.group, "value", "default",
                  "range", "unit");
     group = row.group;
-    const std::string range = fmt::format("{} to {}", format_value(parameter, row.minimum), format_value(parameter, row.maximum));
+    const std::string range =
+        fmt::format("{} to {}", format_value(parameter, row.minimum), format_value(parameter, row.maximum));
     fmt::print("  {:<32} {:>14} {} {:>12}   {:<24} {}\n", row.name, format_value(parameter, held.values[i]),
                held.values[i] == row.default_value ? ' ' : '*', format_value(parameter, row.default_value), range,
                row.unit);
@@ -79,7 +82,8 @@ int get(const DeviceOptions& options, const std::vector<std::string>& names) {
 
 void report(const DeviceOptions& options, std::size_t count, const protocol::TransactionReport& transaction) {
   if (options.json)
-    fmt::print("{}\n", ordered_json{{"accepted", count}, {"applied_at_periods", transaction.applied_at_periods}}.dump());
+    fmt::print("{}\n",
+               ordered_json{{"accepted", count}, {"applied_at_periods", transaction.applied_at_periods}}.dump());
   else
     fmt::print("{} parameter{} took effect together.\n", count, count == 1 ? "" : "s");
 }
@@ -113,7 +117,10 @@ device::ParameterFile load_and_complain(const std::string& file) {
 int save(const DeviceOptions& options, const std::string& file) {
   const auto connection = connect(options);
   device::save_parameters(file, connection.device->parameters());
-  if (!options.json) fmt::print("{} parameters were written to {}.\n", protocol::parameter_count, file);
+  if (options.json)
+    fmt::print("{}\n", ordered_json{{"file", file}, {"parameters", protocol::parameter_count}}.dump());
+  else
+    fmt::print("{} parameters were written to {}.\n", protocol::parameter_count, file);
   return 0;
 }
 
@@ -127,7 +134,8 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
     if (options.json)
       json.push_back({{"name", row.name}, {"file", difference.in_file}, {"device", difference.in_device}});
     else
-      fmt::print("{:<34} file {:>12}   device {:>12} {}\n", row.name, format_value(difference.parameter, difference.in_file),
+      fmt::print("{:<34} file {:>12}   device {:>12} {}\n", row.name,
+                 format_value(difference.parameter, difference.in_file),
                  format_value(difference.parameter, difference.in_device), row.unit);
   }
   if (options.json)
@@ -147,27 +155,41 @@ void add_parameters_command(CLI::App& program, const DeviceOptions& options, Act
     if (command->get_subcommands().empty()) action = [&options] { return list(options); };
   });
 
+  add_examples(*command, "inkwell parameters\n"
+                         "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
+                         "inkwell parameters save soft.toml");
+
   const auto words = std::make_shared<std::vector<std::string>>();
   const auto file = std::make_shared<std::string>();
-  const auto add = [&](const char* name, const char* help, std::function<int()> run) {
+  const auto add = [&](const char* name, const char* help, const char* examples,
+                       std::function<int()> run) {
     auto* subcommand = command->add_subcommand(name, help);
+    add_examples(*subcommand, examples);
     subcommand->callback([&action, run] { action = run; });
     return subcommand;
   };
-  add("get", "The value of one or more parameters", [&options, words] { return get(options, *words); })
-      ->add_option("NAME", *words, "Names of parameters")->required();
+  add("get", "The value of one or more parameters", "inkwell parameters get wall_stiffness_N_per_m box_maximum_z_m",
+      [&options, words] { return get(options, *words); })
+      ->add_option("NAME", *words, "Names of parameters")
+      ->required();
   add("set", "Change parameters in one transaction: all of them take effect together, or none",
+      "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3",
       [&options, words] { return set(options, *words); })
-      ->add_option("NAME=VALUE", *words, "For example wall_stiffness_N_per_m=600")->required();
-  add("defaults", "Give every parameter its default", [&options] { return restore_defaults(options); });
-  add("load", "Send the parameters of a TOML file in one transaction",
+      ->add_option("NAME=VALUE", *words, "A parameter and its new value, in the unit that its name ends in")
+      ->required();
+  add("defaults", "Give every parameter its default", "inkwell parameters defaults",
+      [&options] { return restore_defaults(options); });
+  add("load", "Send the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
       [&options, file] { return send(options, load_and_complain(*file).changes); })
       ->add_option("FILE", *file, "Written by `inkwell parameters save`")->required();
-  add("save", "Write the device's parameters to a TOML file", [&options, file] { return save(options, *file); })
+  add("save", "Write the device's parameters to a TOML file", "inkwell parameters save soft.toml",
+      [&options, file] { return save(options, *file); })
       ->add_option("FILE", *file, "It is replaced if it exists")->required();
-  add("diff", "Show where a TOML file and the device differ", [&options, file] { return show_differences(options, *file); })
+  add("diff", "Show where a TOML file and the device differ", "inkwell parameters diff soft.toml",
+      [&options, file] { return show_differences(options, *file); })
       ->add_option("FILE", *file, "Written by `inkwell parameters save`")->required();
   add("arm", "Send the geometry, limits and box of an arm description in one transaction",
+      "inkwell parameters arm boards/arms/paper.toml",
       [&options, file] { return send(options, arm_parameters(*file)); })
       ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")->required();
 }

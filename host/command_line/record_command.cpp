@@ -15,6 +15,7 @@
 #include <recording/recorder.hpp>
 #include <recording/signals.hpp>
 
+#include "help.hpp"
 #include "interrupt.hpp"
 #include "mark_keys.hpp"
 #include "progress_bar.hpp"
@@ -179,15 +180,23 @@ void add_record_command(CLI::App& program, const DeviceOptions& options, Action&
   auto* command =
       program.add_subcommand("record", "Record signals at every control period, until Ctrl-C or for a time");
   const auto record_options = std::make_shared<RecordOptions>();
-  command->add_option("FILE", record_options->file, "Ends in .h5 (HDF5) or .csv; it must not exist yet")->required();
+  command
+      ->add_option("FILE", record_options->file,
+                   "Its ending chooses the format: .h5 (HDF5) or .csv. It must not exist yet")
+      ->required();
   auto* signals = command->add_option("--signals", record_options->signals,
-                                      "Names with commas between them; without it what replay and plots need");
-  command->add_flag("--all", record_options->all, "The whole signal path, from the encoders to the duties")
+                                      "Names with commas between them; what replay and plots need unless given")
+                      ->type_name("NAMES");
+  command
+      ->add_flag("--all", record_options->all,
+                 "The whole signal path, from the encoders to the duties; not with --signals")
       ->excludes(signals);
   command->add_option("--seconds", record_options->seconds, "End after this time of the board")
-      ->check(CLI::PositiveNumber);
+      ->type_name("SECONDS")->check(CLI::PositiveNumber);
   command->add_flag("--mark-key", record_options->mark_key,
                     "The space bar sets a mark; from a pipe, each line does, with its text");
+  add_examples(*command, "inkwell record push.h5 --mark-key\n"
+                         "inkwell record push.csv --signals force_N,position_z_m --seconds 10");
   command->callback([&options, &action, record_options] {
     action = [&options, record_options] { return record(options, *record_options); };
   });

@@ -7,6 +7,8 @@
 
 #include <recording/recording.hpp>
 
+#include "help.hpp"
+
 namespace inkwell::command_line {
 namespace {
 
@@ -79,6 +81,7 @@ void add_replay_command(CLI::App& program, const DeviceOptions& options, const O
   const auto replay_options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", replay_options->file, "Written by `inkwell record`")->required();
   command->add_flag("--info", replay_options->information, "Only say what it holds");
+  add_examples(*command, "inkwell replay push.h5\ninkwell replay push.h5 --info");
   command->callback([&options, &action, open_window, replay_options] {
     action = [&options, open_window, replay_options] {
       return options.json || replay_options->information ? describe(options, replay_options->file)

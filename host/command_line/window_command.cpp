@@ -42,33 +42,39 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
   auto& window = settings->window;
   const char* group = "Window (without a command)";
   program.add_option("--parameters", window.parameters_file, "Send this TOML file to the device once it is connected")
+      ->type_name("FILE")
       ->group(group);
-  program.add_option("--layout", window.layout, "Layout of the scope to begin with, for example paper")->group(group);
+  program.add_option("--layout", window.layout, "Layout of the scope to begin with, for example paper")
+      ->type_name("NAME")->group(group);
   program.add_option("--theme", settings->theme, "Colours")->check(CLI::IsMember({"dark", "light"}))->group(group);
-  program.add_option("--scale", window.scale, "Size of fonts and spacing; the display's own unless given")
-      ->check(CLI::Range(0.5, 4.0))->group(group);
+  program.add_option("--scale", window.scale, "Size of fonts and spacing, 0.5 to 4; the display's own unless given")
+      ->type_name("FACTOR")->check(CLI::Range(0.5, 4.0))->group(group);
   program.add_option("--width", window.width, "Width of the window")
+      ->type_name("PIXELS")
       ->check(CLI::Range(320, 16384))
       ->capture_default_str()
       ->group(group);
   program.add_option("--height", window.height, "Height of the window")
+      ->type_name("PIXELS")
       ->check(CLI::Range(240, 16384))
       ->capture_default_str()
       ->group(group);
   program.add_option("--screenshot", window.screenshot, "Write a picture of the window to this PNG file and close")
+      ->type_name("FILE")
       ->group(group);
   program.add_option("--after-seconds", window.after_seconds, "When the picture is taken")
-      ->check(CLI::NonNegativeNumber)->capture_default_str()->group(group);
+      ->type_name("SECONDS")->check(CLI::NonNegativeNumber)->capture_default_str()->group(group);
   program.add_flag("--frames-report", window.frames_report, "Print the frames a second when the window closes")
       ->group(group);
   program
       .add_flag("--inspect", window.inspect,
-                "Answer `look`, `picture FILE` and `close` on standard input with a line of JSON each, for tests")
+                "For tests: answer `look`, `picture FILE` and `close` on standard input with JSON lines")
       ->group(group);
   program.add_flag("--flat-colours", window.flat_colours, "Draw the scene without lighting")->group(group);
   program.add_flag("--forget-settings", settings->forget, "Neither read nor write the window's settings")->group(group);
   program
       .add_option("--control", settings->control_port, "Control port of the virtual board at --usbip, for the mouse")
+      ->type_name("PORT")
       ->group(group);
   const OpenWindow open = [&options, settings](const std::filesystem::path& recording) {
     settings->window.recording = recording;

@@ -64,7 +64,8 @@ std::string head(const FigureOptions& options, int number, const char* title) {
 }
 
 std::string script(const FigureOptions& options, const Recording& data) {
-  std::string text = "# Draws figure-11.png to figure-14.png. Made by `inkwell experiment`; run it with: gnuplot figures.gnuplot\n";
+  std::string text =
+      "# Draws figure-11.png to figure-14.png. Made by `inkwell experiment`; run it with: gnuplot figures.gnuplot\n";
   text += recording::figure_head("figure-data.csv", width_pixels, height_pixels) + layout;
   text += fmt::format("set xrange [{:.3f}:{:.3f}]\n", options.shown.from_s, options.shown.to_s);
 
@@ -72,13 +73,14 @@ std::string script(const FigureOptions& options, const Recording& data) {
   const double deepest_mm = std::max(0.5, largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end()));
   // The free movement is centimetres, the penetration millimetres: the paper's question is about the latter.
   text += head(options, 11, "Position of the sphere relative to the wall");
-  text += fmt::format("set ylabel 'sphere’s surface beyond the wall  /  mm' textcolor rgb ink\n"
-                      "set yrange [{0:.3f}:{1:.3f}]\n"
-                      "set object 1 rectangle from graph 0, first 0 to graph 1, first {1:.3f} behind fillcolor rgb pale "
-                      "fillstyle solid 0.55 noborder\n"
-                      "set label 3 'inside the wall' at graph 0.012, first {2:.3f} left textcolor rgb grey\n"
-                      "set arrow 1 from graph 0, first 0 to graph 1, first 0 nohead linecolor rgb ink linewidth 1.2 front\n",
-                      -2.0 * deepest_mm, 1.3 * deepest_mm, 1.17 * deepest_mm);
+  text += fmt::format(
+      "set ylabel 'sphere’s surface beyond the wall  /  mm' textcolor rgb ink\n"
+      "set yrange [{0:.3f}:{1:.3f}]\n"
+      "set object 1 rectangle from graph 0, first 0 to graph 1, first {1:.3f} behind fillcolor rgb pale "
+      "fillstyle solid 0.55 noborder\n"
+      "set label 3 'inside the wall' at graph 0.012, first {2:.3f} left textcolor rgb grey\n"
+      "set arrow 1 from graph 0, first 0 to graph 1, first 0 nohead linecolor rgb ink linewidth 1.2 front\n",
+      -2.0 * deepest_mm, 1.3 * deepest_mm, 1.17 * deepest_mm);
   text += recording::plot_command({{"distance_mm", "blue", ""}});
   text += "unset object 1\nunset arrow 1\nset yrange [*:*]\n";
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -56,7 +58,8 @@ class TruthRows {
 
 std::vector<protocol::Signal> recorded_signals() {
   std::vector<protocol::Signal> signals;
-  for (auto i = static_cast<int>(protocol::Signal::encoder_1_counts); i <= static_cast<int>(protocol::Signal::duty_3); ++i)
+  for (auto i = static_cast<int>(protocol::Signal::encoder_1_counts); i <= static_cast<int>(protocol::Signal::duty_3);
+       ++i)
     signals.push_back(static_cast<protocol::Signal>(i));
   return signals;
 }
@@ -98,6 +101,31 @@ Recording make_recording(const ScopeRecording& scope, const device::Trace* truth
     row.insert(row.end(), scope.values.begin() + static_cast<std::ptrdiff_t>(i * width),
                scope.values.begin() + static_cast<std::ptrdiff_t>((i + 1) * width));
     if (truth_rows) truth_rows->append(std::uint64_t{scope.first_period} + i, row);
+    recording.append(row);
+  }
+  return recording;
+}
+
+Recording read_csv(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string line;
+  if (!std::getline(stream, line)) throw device::Error(fmt::format("{} cannot be read.", file.string()));
+  std::vector<std::string> columns;
+  std::string cell;
+  for (std::istringstream cells(line); std::getline(cells, cell, ',');) columns.push_back(cell);
+  Recording recording(columns);
+  std::vector<double> row(columns.size());
+  for (std::size_t number = 2; std::getline(stream, line); ++number) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const auto [next, error] = std::from_chars(at, end, row[i]);
+      const bool is_last = i + 1 == row.size();
+      if (error != std::errc{} || (is_last ? next != end : next == end || *next != ','))
+        throw device::Error(fmt::format("{} is damaged in line {}. Run the experiment again, or use a whole copy.",
+                                        file.string(), number));
+      at = next + 1;
+    }
     recording.append(row);
   }
   return recording;

@@ -106,7 +106,8 @@ CurrentStep current_step(const std::vector<double>& reference_A, const std::vect
     step.overshoot = std::max(step.overshoot, part - 1.0);
     if (i >= middle) sum += current_A[i] - reference_A[i];
   }
-  if (!risen) throw device::Error("The motor's current does not follow its reference. Check the motor's wiring and supply.");
+  if (!risen)
+    throw device::Error("The motor's current does not follow its reference. Check the motor's wiring and supply.");
   step.steady_error_A = sum / static_cast<double>(last - middle);
   return step;
 }

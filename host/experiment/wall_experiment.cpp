@@ -96,7 +96,9 @@ arms::Description read_arm(const std::filesystem::path& file) {
   }
 }
 
-std::size_t samples_of(double time_s) { return static_cast<std::size_t>(std::lround(time_s * protocol::servo_rate_Hz)); }
+std::size_t samples_of(double time_s) {
+  return static_cast<std::size_t>(std::lround(time_s * protocol::servo_rate_Hz));
+}
 
 /// One pulse of current in each motor while the stylus rests in the inkwell.
 Recording record_current_steps(Rig& rig, device::Device& device) {
@@ -208,23 +210,28 @@ void stop_at_whole_second(device::ControlClient& control) {
 bool is_clear(const protocol::PoseReport& pose, const ParameterSet& parameters) {
   for (int axis = 0; axis < 3; ++axis) {
     const double position_m = static_cast<double>(pose.position_m[axis]);
-    if (position_m > contact_m(parameters, {axis, 1}) - clear_m || position_m < contact_m(parameters, {axis, -1}) + clear_m)
+    if (position_m > contact_m(parameters, {axis, 1}) - clear_m ||
+        position_m < contact_m(parameters, {axis, -1}) + clear_m)
       return false;
   }
   return true;
 }
 
-Push push_by_user(Rig& rig, device::Device& device, const ParameterSet& parameters, Wall wall, const Progress& progress) {
+Push push_by_user(Rig& rig, device::Device& device, const ParameterSet& parameters, Wall wall,
+                  const Progress& progress) {
   progress("Take the stylus out of the inkwell to the middle of the box. The force will come on there.", 0.25);
   const auto in_the_middle = [&](const auto& pose) {
     return is_clear(pose, parameters) && (pose.switches & static_cast<std::uint8_t>(protocol::Switch::inkwell)) == 0;
   };
-  rig.wait_until(in_the_middle, user_limit_s, "The stylus did not come to the middle of the box. Run the experiment again.");
+  rig.wait_until(in_the_middle, user_limit_s,
+                 "The stylus did not come to the middle of the box. Run the experiment again.");
   switch_force_on(rig, parameters);
 
   ScopeCapture capture(device);
   rig.select_signals(recorded_signals());
-  progress(fmt::format("Push into the wall {}, harder and harder, hold still for a second, then let go.", wall_name(wall)), 0.4);
+  progress(
+      fmt::format("Push into the wall {}, harder and harder, hold still for a second, then let go.", wall_name(wall)),
+      0.4);
   const auto beyond_m = [&](const protocol::PoseReport& pose) {
     return wall.side * (static_cast<double>(pose.position_m[wall.axis]) - contact_m(parameters, wall));
   };
@@ -253,8 +260,8 @@ nlohmann::ordered_json run_wall_experiment(const WallOptions& options, const Pro
   std::error_code code;
   std::filesystem::create_directories(directory, code);
   if (!std::filesystem::is_directory(directory))
-    throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with --out.", directory.string(),
-                                    code.message()));
+    throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with --out.",
+                                    directory.string(), code.message()));
 
   Circumstances circumstances;
   circumstances.arm = arm_defaults::name;
@@ -318,10 +325,9 @@ nlohmann::ordered_json run_wall_experiment(const WallOptions& options, const Pro
   write_csv(steps_recording, directory / "current-step.csv");
   write_csv(push.recording, directory / "recording.csv");
   progress("The figures are drawn.", 0.94);
-  constexpr double margin_s = 0.25;
-  const Interval shown{std::max(0.0, result.contact->from_s - margin_s),
-                       std::min(static_cast<double>(result.samples) / protocol::servo_rate_Hz, result.contact->to_s + margin_s)};
-  draw_figures(push.recording, {circumstances.simulation, circumstances.arm, circumstances.wall, circumstances.parameters, shown},
+  draw_figures(push.recording,
+               {circumstances.simulation, circumstances.arm, circumstances.wall, circumstances.parameters,
+                interval_to_show(*result.contact, result.samples)},
                directory);
   const auto summary = summary_json(circumstances, result, steps);
   write_summary(summary, directory / "summary.json");

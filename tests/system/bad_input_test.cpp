@@ -2,9 +2,12 @@
 // that is not 0.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <sstream>
 #include <string>
 
 #include <arpa/inet.h>
@@ -12,8 +15,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
+#include <protocol/parameters.hpp>
+
 #include "program.hpp"
 
+using namespace inkwell;
 using namespace inkwell::tests;
 
 namespace {
@@ -89,7 +97,8 @@ TEST_CASE("the virtual board refuses an ELF that is missing, cut off or damaged"
 
 TEST_CASE("the virtual board refuses a port that is in use") {
   const BusyPort busy;
-  check_refused(run_program("virtual-board", {"--elf", firmware(), "--usbip", busy.port()}), {busy.port().c_str(), "--usbip"});
+  check_refused(run_program("virtual-board", {"--elf", firmware(), "--usbip", busy.port()}),
+                {busy.port().c_str(), "--usbip"});
   check_refused(run_program("virtual-board", {"--elf", firmware(), "--control", busy.port()}),
                 {busy.port().c_str(), "--control"});
 }
@@ -137,13 +146,64 @@ TEST_CASE("the companion refuses what it does not know") {
   }
 }
 
+TEST_CASE("saving parameters with --json says what was written") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("parameters.toml");
+  const auto result = run_program("inkwell", {"--virtual", "parameters", "save", file, "--json"});
+  INFO("standard error: ", result.err);
+  REQUIRE(result.exit_code == 0);
+  const auto json = nlohmann::json::parse(result.out);
+  CHECK(json.at("file") == file);
+  CHECK(json.at("parameters") == protocol::parameter_count);
+  CHECK(std::filesystem::file_size(file) > 1000);
+}
+
 TEST_CASE("every command explains itself") {
-  for (const auto& words : std::vector<std::vector<std::string>>{
-           {"--help"}, {"info", "--help"}, {"watch", "--help"}, {"parameters", "--help"},
-           {"parameters", "set", "--help"}, {"experiment", "--help"}, {"experiment", "wall", "--help"}}) {
+  const std::vector<std::string> commands{
+      "info", "watch", "parameters", "parameters get", "parameters set", "parameters defaults", "parameters load",
+      "parameters save", "parameters diff", "parameters arm", "experiment", "experiment wall", "calibrate", "tune",
+      "tune current-loop", "check", "check connection", "check directions", "record", "replay", "plot"};
+  const auto help_of = [](const std::string& command) {
+    std::vector<std::string> words;
+    std::string word;
+    for (std::istringstream all(command); all >> word;) words.push_back(word);
+    words.push_back("--help");
     const auto result = run_program("inkwell", words);
+    INFO("inkwell ", command);
     CHECK(result.exit_code == 0);
-    CHECK(result.out.find("--help") != std::string::npos);
+    CHECK(result.err.empty());
+    return result.out;
+  };
+  const auto list_of = [](const std::string& help) {
+    std::set<std::string> names;
+    std::istringstream lines(help.substr(std::min(help.size(), help.find("Subcommands:"))));
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line) && !line.empty()) names.insert(line.substr(2, line.find(' ', 2) - 2));
+    return names;
+  };
+  const auto main_help = help_of("");
+  CHECK(main_help.find("--virtual") != std::string::npos);
+  CHECK(main_help.find("Exit code") != std::string::npos);
+  // None is missing here that the program has.
+  std::set<std::string> listed;
+  for (const auto& name : list_of(main_help)) {
+    listed.insert(name);
+    for (const auto& below : list_of(help_of(name))) listed.insert(name + " " + below);
+  }
+  CHECK(listed == std::set<std::string>(commands.begin(), commands.end()));
+  for (const auto& command : commands) {
+    CAPTURE(command);
+    const auto help = help_of(command);
+    CHECK(help.find("Usage: inkwell " + command) != std::string::npos);
+    CHECK(help.find("Examples:\n  inkwell " + command) != std::string::npos);
+    for (const char* noise : {"TEXT", "FLOAT", "Excludes", "Needs", "REQUIRED", "required]"})
+      CHECK(help.find(noise) == std::string::npos);
+    std::string line;
+    for (std::istringstream lines(help); std::getline(lines, line);) {
+      CAPTURE(line);
+      CHECK(line.size() <= 120);
+    }
   }
   CHECK(run_program("virtual-board", {"--help"}).out.find("--real-time") != std::string::npos);
 }

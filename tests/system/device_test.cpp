@@ -99,7 +99,8 @@ TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for a minute, non
   std::uint64_t gaps = 0;
   for (std::size_t i = first_pose + 1; i < poses.size(); ++i) gaps += poses[i].sequence - poses[i - 1].sequence - 1;
   const double board_s = (poses.back().time_periods - poses[first_pose].time_periods) * 50e-6;
-  MESSAGE("simulation: ", poses.size() - first_pose, " poses and ", samples, " samples in ", board_s, " s of board time");
+  MESSAGE("simulation: ", poses.size() - first_pose, " poses and ", samples, " samples in ", board_s,
+          " s of board time");
   CHECK(gaps == 0);
   CHECK(lost == 0);
   CHECK(board_s >= seconds - 0.1);

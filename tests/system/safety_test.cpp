@@ -77,7 +77,8 @@ void press_into_wall(Rig& rig) {
 std::string told_by_info(Rig& rig) {
   rig.device.reset();
   rig.control.resume();
-  const auto result = run_program("inkwell", {"info", "--usbip", "127.0.0.1:" + std::to_string(rig.board.usbip_port())});
+  const auto result =
+      run_program("inkwell", {"info", "--usbip", "127.0.0.1:" + std::to_string(rig.board.usbip_port())});
   rig.control.pause();
   CHECK(result.exit_code == 0);
   return result.out;

@@ -20,7 +20,8 @@ double mean_square(const device::Trace& trace, const std::string& column) {
   REQUIRE(found != trace.columns.end());
   REQUIRE(trace.row_count() > 0);
   double sum = 0;
-  for (auto i = static_cast<std::size_t>(found - trace.columns.begin()); i < trace.values.size(); i += trace.columns.size())
+  for (auto i = static_cast<std::size_t>(found - trace.columns.begin()); i < trace.values.size();
+       i += trace.columns.size())
     sum += trace.values[i] * trace.values[i];
   return sum / static_cast<double>(trace.row_count());
 }

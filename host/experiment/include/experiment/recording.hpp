@@ -53,6 +53,8 @@ struct ScopeRecording {
 /// matched by control period. Throws device::Error if the trace does not cover the scope's periods.
 Recording make_recording(const ScopeRecording& scope, const device::Trace* truth);
 
+/// Reads what write_csv has written. Throws device::Error that names the line if it is damaged.
+Recording read_csv(const std::filesystem::path& file);
 /// Throws device::Error if the file cannot be written whole.
 void write_csv(const Recording& recording, const std::filesystem::path& file);
 
