@@ -1,14 +1,8 @@
 #include "display.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,22 +20,6 @@ std::string last_glfw_error() {
   return description == nullptr ? "no reason given" : description;
 }
 
-std::set<id_t> threads_of_this_process() {
-  std::set<id_t> threads;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task", error))
-    threads.insert(static_cast<id_t>(std::stoul(entry.path().filename())));
-  return threads;
-}
-
-// OpenGL without a graphics card draws with a thread for each core. They give way to the threads that keep the device's
-// sign of life, which need little time, but at once.
-void let_drawing_threads_give_way(const std::set<id_t>& other_threads) {
-  constexpr int niceness = 5;
-  for (const id_t thread : threads_of_this_process())
-    if (!other_threads.contains(thread)) setpriority(PRIO_PROCESS, thread, niceness);
-}
-
 }  // namespace
 
 Display::Display(int width, int height, const std::string& title) {
@@ -55,7 +33,6 @@ Display::Display(int width, int height, const std::string& title) {
   glfwWindowHint(GLFW_SAMPLES, 0);
   glfwWindowHint(GLFW_DEPTH_BITS, 24);
   glfwWindowHint(GLFW_STENCIL_BITS, 8);
-  const std::set<id_t> other_threads = threads_of_this_process();
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = last_glfw_error();
@@ -66,7 +43,6 @@ Display::Display(int width, int height, const std::string& title) {
   }
   glfwSetWindowSizeLimits(window_, 960, 600, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(window_);
-  let_drawing_threads_give_way(other_threads);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
