@@ -104,7 +104,7 @@ void run(const WindowOptions& options) {
   const double started_s = glfwGetTime();
   FrameRhythm rhythm;
   // Of the frames at the full rate only: at rest there are few on purpose.
-  FramesReport frames_report;
+  FramesReport frames_report(1.0 / display.refresh_rate_Hz());
   double previous_s = started_s;
   std::uint64_t scene_on_screen = 0;
   std::uint64_t panes_on_screen = 0;

@@ -82,7 +82,7 @@ TEST_CASE("pictures: recording and replay" * doctest::skip()) {
   rig.click("recording/Start recording");
   push_into_two_walls(rig);
   rig.release_mouse();
-  rig.enter("recording/mark text", "in the corner");
+  rig.enter("recording/mark text", "corner");
   rig.click("recording/Mark");
   rig.move_to(aside);
   rig.picture(picture_file("recording"));
