@@ -1,5 +1,6 @@
 // Settings survive a round trip, and damage to their file never keeps the window shut. Layouts and axes.
 #include <cmath>
+#include <filesystem>
 
 #include <doctest/doctest.h>
 
@@ -24,7 +25,7 @@ TEST_CASE("settings come back as they were written") {
   mine.name = "My \"paper\"";
   mine.columns = 1;
   settings.own_layouts.save(mine);
-  settings.parameters_file = "/home/someone/soft wall.toml";
+  settings.parameters_file = (std::filesystem::temp_directory_path() / "soft wall.toml").string();
   CHECK(parse_settings(format_settings(settings)) == settings);
 }
 
