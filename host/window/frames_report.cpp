@@ -30,10 +30,11 @@ std::string FramesReport::text() const {
   const auto part_ms = [&sorted](double part) {
     return 1000.0 * sorted[static_cast<std::size_t>(std::lround(part * static_cast<double>(sorted.size() - 1)))];
   };
-  report += fmt::format("drawn pose older than the newest that had arrived by {:.0f} ms at the median, {:.0f} ms in 99 % "
-                        "of the frames, {:.0f} ms at most; by no more than {:.1f} ms, a frame of the display, in {:.2f} %\n",
-                        part_ms(0.5), part_ms(0.99), part_ms(1.0), 1000.0 * display_period_s_,
-                        100.0 * static_cast<double>(poses_within_a_frame_) / static_cast<double>(sorted.size()));
+  report += fmt::format(
+      "drawn pose older than the newest that had arrived by {:.0f} ms at the median, {:.0f} ms in 99 % of the frames, "
+      "{:.0f} ms at most; by no more than {:.1f} ms, a frame of the display, in {:.2f} %\n",
+      part_ms(0.5), part_ms(0.99), part_ms(1.0), 1000.0 * display_period_s_,
+      100.0 * static_cast<double>(poses_within_a_frame_) / static_cast<double>(sorted.size()));
   return report;
 }
 
