@@ -190,7 +190,8 @@ void Companion::draw(ImVec2 size, double now_s) {
       std::min(style_.points(std::max(settings_.tuning_width, tuning_minimum_points)), 0.5f * size.x);
   const float scope_room = size.y - top - style_.points(scene_minimum_points);
   const float scope_height = settings_.scope_is_shown
-                                 ? std::max(style_.points(scope_minimum_points), std::min(style_.points(settings_.scope_height), scope_room))
+                                 ? std::max(style_.points(scope_minimum_points),
+                                            std::min(style_.points(settings_.scope_height), scope_room))
                                  : 0.0f;
   const float left_width = std::floor(size.x - tuning_width - gap);
   const bool replays = replay_bar_.is_open();
@@ -207,7 +208,8 @@ void Companion::draw(ImVec2 size, double now_s) {
   ParameterEditor& editor = replays ? replay_bar_.editor() : editor_;
   scene_pane_.draw(scene_place_, scene_size_, {style_, pose, editor, hand_ && !replays ? &*hand_ : nullptr, now_s});
   if (replays) replay_bar_.draw({0, scene_end - replay_height}, {left_width, replay_height}, style_, scope_panel_);
-  if (!view.connected() && !replays) draw_connection_card({0.5f * left_width, top + 0.45f * scene_height}, style_, view);
+  if (!view.connected() && !replays)
+    draw_connection_card({0.5f * left_width, top + 0.45f * scene_height}, style_, view);
 
   const ImVec2 column{left_width + gap, top};
   const float column_width = size.x - left_width - gap;
@@ -216,7 +218,8 @@ void Companion::draw(ImVec2 size, double now_s) {
   switch (tab_) {
     case Tab::tuning:
       tuning_panel_.draw(pane_place, pane_size, style_, editor,
-                         replays ? "These parameters are the recording's. Close it to tune the device." : seen_refusal_, now_s);
+                         replays ? "These parameters are the recording's. Close it to tune the device." : seen_refusal_,
+                         now_s);
       break;
     case Tab::guides: guides_pane_.draw(pane_place, pane_size, style_); break;
     case Tab::recording:
@@ -228,7 +231,8 @@ void Companion::draw(ImVec2 size, double now_s) {
       std::max(tuning_minimum_points, std::min(settings_.tuning_width, 0.5f * size.x / style_.scale));
   if (settings_.scope_is_shown) {
     settings_.scope_height -= splitter("scope splitter", {0, scene_end}, {left_width, gap}, false);
-    settings_.scope_height = std::clamp(settings_.scope_height, scope_minimum_points, std::max(scope_minimum_points, scope_room / style_.scale));
+    settings_.scope_height = std::clamp(settings_.scope_height, scope_minimum_points,
+                                        std::max(scope_minimum_points, scope_room / style_.scale));
     scope_panel_.draw({0, scene_end + gap}, {left_width, size.y - scene_end - gap}, style_);
   }
 
@@ -261,8 +265,10 @@ void Companion::draw_scene(Renderer& renderer, float pixels_per_unit, int frameb
   const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const int height = pixels(scene_size_.y);
   scene_pane_.draw_scene(renderer,
-                         {pixels(scene_place_.x), framebuffer_height - pixels(scene_place_.y) - height, pixels(scene_size_.x), height},
-                         {*style_.palette, options_.flat_colours, smooth && !options_.flat_colours, is_as_before, std::nullopt});
+                         {pixels(scene_place_.x), framebuffer_height - pixels(scene_place_.y) - height,
+                          pixels(scene_size_.x), height},
+                         {*style_.palette, options_.flat_colours, smooth && !options_.flat_colours, is_as_before,
+                          std::nullopt});
 }
 
 }  // namespace inkwell::window

@@ -87,8 +87,8 @@ void FileChooser::draw_entries(const Style& style) {
     const std::string label = entry.is_folder ? entry.name + "/" : entry.name;
     const bool is_typed = !entry.is_folder && entry.name == typed_;
     ImGui::PushStyleColor(ImGuiCol_Header, packed(palette.accent.with_alpha(70)));
-    const bool pressed = ImGui::Selectable(label.c_str(), is_typed,
-                                           ImGuiSelectableFlags_DontClosePopups | ImGuiSelectableFlags_AllowDoubleClick);
+    constexpr int flags = ImGuiSelectableFlags_DontClosePopups | ImGuiSelectableFlags_AllowDoubleClick;
+    const bool pressed = ImGui::Selectable(label.c_str(), is_typed, flags);
     ImGui::PopStyleColor();
     if (pressed && entry.is_folder) wanted = folder_ / entry.name;
     if (pressed && !entry.is_folder) {

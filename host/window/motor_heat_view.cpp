@@ -17,7 +17,8 @@ MotorHeatView motor_heat_view(const protocol::InformationReport& report) {
     view.hottest = report.motor_heat[i];
     view.motor = i + 1;
   }
-  view.level = view.hottest >= hot_from ? HeatLevel::hot : view.hottest >= warm_from ? HeatLevel::warm : HeatLevel::cool;
+  if (view.hottest >= warm_from) view.level = HeatLevel::warm;
+  if (view.hottest >= hot_from) view.level = HeatLevel::hot;
   return view;
 }
 

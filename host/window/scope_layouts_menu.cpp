@@ -38,8 +38,8 @@ void ScopePanel::draw_layout_menu(const Style& style) {
     }
     ImGui::EndCombo();
   }
-  help_on_hover("Layout", "What the panes show. \"paper\" has the paper's figures 11 to 14. Save your own under a name.",
-                style);
+  help_on_hover(
+      "Layout", "What the panes show. \"paper\" has the paper's figures 11 to 14. Save your own under a name.", style);
   if (name_task_ != NameTask::none) draw_layout_name(style);
 }
 

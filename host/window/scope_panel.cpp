@@ -289,7 +289,8 @@ void ScopePanel::draw_pane(std::size_t index, ImVec2 place, ImVec2 size, const S
   draw_legend(index, {place.x + title_width, place.y + style.points(4)}, size.x - title_width - style.points(6),
               stretch, style);
 
-  const PlotArea area{{place.x + style.points(y_axis_points), place.y + style.points(header_points) + statistics_height(pane, style)},
+  const float header = style.points(header_points) + statistics_height(pane, style);
+  const PlotArea area{{place.x + style.points(y_axis_points), place.y + header},
                       {place.x + size.x - style.points(6), place.y + size.y - style.points(x_axis_points)},
                       {0, 1},
                       {0, 1}};

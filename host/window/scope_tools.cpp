@@ -47,9 +47,11 @@ void ScopePanel::draw_toolbar(const Style& style) {
   }
   help_on_hover("Time shown", "The wheel over a pane changes it too.", style);
   same_line_if_room(style.points(66));
-  if (toggle_button("Cursors", cursors_are_shown_, style, {style.points(66), 0})) cursors_are_shown_ = !cursors_are_shown_;
+  if (toggle_button("Cursors", cursors_are_shown_, style, {style.points(66), 0}))
+    cursors_are_shown_ = !cursors_are_shown_;
   same_line_if_room(style.points(72));
-  if (toggle_button("Statistics", statistics_are_shown_, style, {style.points(72), 0})) statistics_are_shown_ = !statistics_are_shown_;
+  if (toggle_button("Statistics", statistics_are_shown_, style, {style.points(72), 0}))
+    statistics_are_shown_ = !statistics_are_shown_;
   draw_trigger_tools(style);
   if (cursors_are_shown_) {
     const double apart_s = std::abs(cursors_[1] - cursors_[0]) * span_s_;

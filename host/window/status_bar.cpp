@@ -24,7 +24,16 @@ constexpr float buttons_points = 398.0f;   // what the buttons at the right end 
 constexpr float banner_button_points = 118.0f;
 
 /// Device, gauges, switches: from left to right.
-enum Item : std::size_t { device_item, state_item, load_item, supply_item, heat_item, poses_item, lost_item, switches_item };
+enum Item : std::size_t {
+  device_item,
+  state_item,
+  load_item,
+  supply_item,
+  heat_item,
+  poses_item,
+  lost_item,
+  switches_item
+};
 constexpr std::array<float, 8> item_widths_points{214, 92, 72, 54, 78, 62, 44, 122};
 
 std::vector<FlowPlace> places_of(float width, const Style& style) {

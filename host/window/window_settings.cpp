@@ -37,7 +37,8 @@ void read_number(toml::node_view<const toml::node> node, Number minimum, Number 
 toml::table to_toml(const Pane& pane) {
   toml::array signals;
   for (protocol::Signal signal : pane.signals) signals.push_back(protocol::info(signal).name);
-  return toml::table{{"kind", name_of(pane.kind, pane_kind_names)}, {"title", pane.title}, {"signals", std::move(signals)}};
+  return toml::table{
+      {"kind", name_of(pane.kind, pane_kind_names)}, {"title", pane.title}, {"signals", std::move(signals)}};
 }
 
 std::optional<Pane> pane_from(const toml::table& table) {

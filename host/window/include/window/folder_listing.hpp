@@ -1,4 +1,5 @@
-// What the file chooser shows of a folder, and what a typed name means. What the file system refuses becomes a sentence.
+// What the file chooser shows of a folder, and what a typed name means. What the file system refuses becomes a
+// sentence.
 #pragma once
 
 #include <cstdint>
