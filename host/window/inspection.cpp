@@ -1,5 +1,6 @@
 #include "inspection.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <mutex>
@@ -19,6 +20,7 @@ namespace inkwell::window {
 namespace {
 
 constexpr int stop_is_seen_within_ms = 100;
+constexpr std::string_view picture = "picture ";
 
 struct Notes {
   nlohmann::json items = nlohmann::json::object();
@@ -99,6 +101,10 @@ bool Inspection::is_asked() {
   return !self.due.empty();
 }
 
+bool Inspection::wants_picture() const {
+  return std::ranges::any_of(implementation_->due, [](const std::string& line) { return line.starts_with(picture); });
+}
+
 void Inspection::begin_frame(ImVec2 origin) {
   auto& self = *implementation_;
   self.noted = {};
@@ -110,7 +116,6 @@ bool Inspection::end_frame(const nlohmann::json& more, int width, int height) {
   auto& self = *implementation_;
   notes = nullptr;
   bool goes_on = true;
-  constexpr std::string_view picture = "picture ";
   for (const std::string& line : self.due) {
     nlohmann::json answer;
     if (line == "look") {

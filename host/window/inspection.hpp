@@ -31,6 +31,8 @@ class Inspection {
 
   /// Whether the next frame has something to answer, so that it has to be drawn.
   bool is_asked();
+  /// Whether a picture is among it, which is worth more than a quick frame.
+  bool wants_picture() const;
   /// Names are noted from here on. `origin`: the window's corner on the screen, from which places are counted.
   void begin_frame(ImVec2 origin);
   /// Answers what was asked before the frame began; its picture is in the bound framebuffer. `more` is added to

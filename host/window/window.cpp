@@ -142,7 +142,8 @@ void run(const WindowOptions& options) {
     ImGui::Render();
 
     // At rest there is time for a smooth picture.
-    const bool smooth = pacer.keeps_up() || !is_lively || is_last;
+    const bool is_photographed = is_last || (inspection && inspection->wants_picture());
+    const bool smooth = pacer.keeps_up() || !is_lively || is_photographed;
     const std::uint64_t scene = companion.scene_digest();
     PictureDigest panes;
     panes.add(*ImGui::GetDrawData());
