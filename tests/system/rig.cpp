@@ -1,5 +1,6 @@
 #include "rig.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -98,6 +99,14 @@ void Rig::make_active() {
   run_until([](const auto& pose) { return pose.state == protocol::State::ready; });
   command(protocol::Command::enable_force);
   run_until([](const auto& pose) { return pose.state == protocol::State::active; });
+}
+
+double largest_current_A(device::ControlClient& control) {
+  const auto truth = control.truth();
+  double largest = 0;
+  for (const char* name : {"true_current_1_A", "true_current_2_A", "true_current_3_A"})
+    largest = std::max(largest, std::abs(truth.at(name).get<double>()));
+  return largest;
 }
 
 }  // namespace inkwell::tests

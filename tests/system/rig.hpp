@@ -55,6 +55,9 @@ class Rig {
   std::vector<protocol::PoseReport> poses_;
 };
 
+/// The largest true current of the three motors.
+double largest_current_A(device::ControlClient& control);
+
 /// The middle of the default arm's box, within its reach.
 inline constexpr device::Vector3 free_point_m{0.0, 0.0, -0.03};
 

@@ -19,14 +19,6 @@ using protocol::State;
 
 namespace {
 
-double largest_current_A(device::ControlClient& control) {
-  const auto truth = control.truth();
-  double largest = 0;
-  for (const char* name : {"true_current_1_A", "true_current_2_A", "true_current_3_A"})
-    largest = std::max(largest, std::abs(truth.at(name).get<double>()));
-  return largest;
-}
-
 /// After a restart of the board: waits until its USB is back and opens the device again.
 void reconnect(Rig& rig) {
   rig.device.reset();
