@@ -85,6 +85,12 @@ double Display::refresh_rate_Hz() const {
   return mode == nullptr || mode->refreshRate < 30 ? 60.0 : mode->refreshRate;
 }
 
+bool Display::draws_in_software() const {
+  // Mesa's rasterisers (GL_RENDERER of llvmpipe and softpipe).
+  const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe");
+}
+
 ImVec2 Display::corner() const {
   int x = 0;
   int y = 0;

@@ -30,6 +30,7 @@ class Display {
   GLFWwindow* handle() const { return window_; }
   float content_scale() const;  ///< pixels of text for one point, 1 on an ordinary display
   double refresh_rate_Hz() const;
+  bool draws_in_software() const;  ///< OpenGL has no graphics card
   ImVec2 corner() const;  ///< top left of what is drawn, on the screen
 
   /// True if the user or the window system did something since the last call.
@@ -53,7 +54,8 @@ void write_screenshot(const std::filesystem::path& path, int width, int height);
 /// Sleeps so that frames come at a steady rate where the display does not hold them back itself.
 class FramePacer {
  public:
-  explicit FramePacer(double frames_per_second) : period_s_(1.0 / frames_per_second) {}
+  /// `keeps_up`: what to suppose until frames tell.
+  FramePacer(double frames_per_second, bool keeps_up) : period_s_(1.0 / frames_per_second), keeps_up_(keeps_up) {}
   void wait();
   /// No frame is wanted for a while: what passes until the next `wait` is no slowness.
   void rest() { half_second_began_s_ = 0.0; }
@@ -66,7 +68,7 @@ class FramePacer {
   double next_s_ = 0.0;
   double half_second_began_s_ = 0.0;
   int frames_in_it_ = 0;
-  bool keeps_up_ = true;
+  bool keeps_up_;
 };
 
 }  // namespace inkwell::window

@@ -99,7 +99,7 @@ void run(const WindowOptions& options) {
   std::optional<Inspection> inspection;
   if (options.inspect) inspection.emplace(&glfwPostEmptyEvent);
   // A little faster than the display, which then sets the pace; without a display that does, it is the pace.
-  FramePacer pacer(1.02 * display.refresh_rate_Hz());
+  FramePacer pacer(1.02 * display.refresh_rate_Hz(), !display.draws_in_software());
 
   const double started_s = glfwGetTime();
   FrameRhythm rhythm;

@@ -46,9 +46,9 @@ void push_for(device::ControlClient& control, double time_s) {
 
 void measure(const std::string& layout) {
   tests::WindowRig rig({"--layout", layout, "--frames-report"});
-  rig.switch_force_on();
   std::this_thread::sleep_for(2s);
   std::printf("layout %s\n  at rest: %.0f %% of a core\n", layout.c_str(), 100 * share_of_a_core(rig.window_process()));
+  rig.switch_force_on();
   push_for(rig.control, 1.5 * std::chrono::duration<double>(measured_for).count());
   const double moving = share_of_a_core(rig.window_process());
   std::printf("  moving:  %.0f %% of a core; %s", 100 * moving, rig.close_and_read_lines(2).c_str());
