@@ -45,13 +45,22 @@ bool PoseRecorder::take(protocol::PoseReport& report) {
   // One place stays unread, for the report that the interrupt may write while this one is copied; a copy
   // takes far less than the millisecond between two reports.
   constexpr std::uint32_t readable = capacity - 1;
-  if (const std::uint32_t waiting = written - taken_; waiting > readable) {
-    dropped_ += waiting - readable;
-    taken_ = written - readable;
+  const std::uint32_t waiting = written - taken_;
+  behind_ = waiting > 1 ? behind_ + 1 : 0;
+  if (behind_ > patience) {
+    skip_to(written - 1);
+    behind_ = 0;
+  } else if (waiting > readable) {
+    skip_to(written - readable);
   }
   report = reports_[taken_ % capacity];
   ++taken_;
   return true;
+}
+
+void PoseRecorder::skip_to(std::uint32_t sequence) {
+  dropped_ += sequence - taken_;
+  taken_ = sequence;
 }
 
 bool PoseRecorder::newest(protocol::PoseReport& report) const {

@@ -92,6 +92,39 @@ TEST_CASE("reports are taken in order, and what was too late is counted") {
   CHECK(report.sequence == 26);
 }
 
+TEST_CASE("a host that missed polls once is not late for ever") {
+  PoseRecorder recorder(8400);
+  std::uint32_t periods = 0;
+  PoseReport report;
+  run(recorder, periods, 5);  // the hiccup: four too many
+  std::uint32_t last = 0;
+  for (std::uint32_t i = 0; i < PoseRecorder::patience; ++i) {
+    REQUIRE(recorder.take(report));
+    CHECK(report.sequence == i);  // for a while everything, in order
+    run(recorder, periods, 1);
+  }
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    REQUIRE(recorder.take(report));
+    CHECK_FALSE(recorder.take(report));  // nothing newer waits
+    CHECK(report.sequence > last);
+    last = report.sequence;
+    run(recorder, periods, 1);
+  }
+  CHECK(recorder.dropped() == 4);
+}
+
+TEST_CASE("two reports that wait now and then are no lateness") {
+  PoseRecorder recorder(8400);
+  std::uint32_t periods = 0;
+  PoseReport report;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    run(recorder, periods, 2);
+    REQUIRE(recorder.take(report));
+    REQUIRE(recorder.take(report));
+  }
+  CHECK(recorder.dropped() == 0);
+}
+
 TEST_CASE("what waited before a host came is forgotten and not counted") {
   PoseRecorder recorder(8400);
   std::uint32_t periods = 0;

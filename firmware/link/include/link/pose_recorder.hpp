@@ -21,10 +21,16 @@ struct PeriodSummary {
 };
 
 /// Ring that the interrupt always writes; the main loop follows and counts what it was too late for.
+///
+/// A host that missed some polls gets what waited. But it polls once a millisecond and a report comes once a
+/// millisecond, so it would never catch up, and all later poses would be as late as the hiccup was long. What still
+/// waits after `patience` reports is therefore dropped: a pose is worth more new than complete, and the scope is
+/// there for whoever wants every period.
 class PoseRecorder {
  public:
   static constexpr std::uint32_t periods_per_report = protocol::servo_rate_Hz / protocol::pose_rate_Hz;
   static constexpr std::uint32_t capacity = 8;
+  static constexpr std::uint32_t patience = 32;
 
   /// `cycles_per_period`: processor cycles of one control period, for PoseReport::servo_load.
   explicit PoseRecorder(std::uint32_t cycles_per_period)
@@ -47,18 +53,23 @@ class PoseRecorder {
   bool newest(protocol::PoseReport& report) const;
 
   /// Forgets what waits, without counting it: nobody was there to read it.
-  void discard() { taken_ = written_.load(); }
+  void discard() {
+    taken_ = written_.load();
+    behind_ = 0;
+  }
 
   /// Reports that the main loop could not pass on in time.
   std::uint32_t dropped() const { return dropped_; }
 
  private:
   void write(const protocol::SignalValues& signals, const PeriodSummary& summary);
+  void skip_to(std::uint32_t sequence);
 
   std::array<protocol::PoseReport, capacity> reports_{};
   Shared<std::uint32_t> written_{0};  ///< written by the interrupt
   std::uint32_t taken_ = 0;           ///< the main loop's
   std::uint32_t dropped_ = 0;         ///< the main loop's
+  std::uint32_t behind_ = 0;          ///< the main loop's: reports taken since none but the newest waited
   std::uint32_t countdown_ = periods_per_report;
   std::uint32_t longest_cycles_ = 0;
   float load_per_cycle_;
