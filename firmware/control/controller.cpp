@@ -1,5 +1,7 @@
 #include <control/controller.hpp>
 
+#include <cmath>
+
 #include <control/trigonometry.hpp>
 
 namespace inkwell::control {
@@ -17,7 +19,7 @@ bool is_closed(std::uint8_t switches, protocol::Switch which) {
 
 bool beyond(const Triple& values, const Triple& bounds) {
   for (std::size_t i = 0; i < 3; ++i)
-    if (values[i] > bounds[i] || values[i] < -bounds[i]) return true;
+    if (std::fabs(values[i]) > bounds[i]) return true;
   return false;
 }
 
@@ -77,7 +79,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
     const GimbalCurve& curve = settings.gimbal[i];
     gimbal_rad_[i] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
   }
-  update_heat(heat_, current_A_, settings.heat);
+  update_heat(heat_, turn_, current_A_[turn_], settings.heat);
   // While walls push, a new reference would move the probe under the hand.
   if (!force_is_on())
     update_reference(reference_, encoder_counts_, is_closed(switches_.closed, protocol::Switch::inkwell));
@@ -86,12 +88,12 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
 void Controller::find_pose(const Settings& settings) {
   constexpr auto periods_per_s = static_cast<float>(protocol::servo_rate_Hz);
   for (std::size_t i = 0; i < 3; ++i) {
-    update(speeds_[i], encoder_counts_[i], periods_, i == joint_to_fit_);
+    update(speeds_[i], encoder_counts_[i], periods_, i == turn_);
     joint_speed_rad_per_s_[i] =
         speeds_[i].counts_per_period * settings.encoders.rad_per_count[i] * periods_per_s;
     counts_since_inkwell_[i] = encoder_counts_[i] - reference_.counts[i];
   }
-  joint_to_fit_ = joint_to_fit_ == 2 ? 0 : joint_to_fit_ + 1;
+  turn_ = turn_ == 2 ? 0 : turn_ + 1;
   joint_rad_ = joint_angles(counts_since_inkwell_, settings.encoders);
   pose_ = forward_kinematics(joint_rad_, settings.arm);
   velocity_m_per_s_ = probe_velocity(pose_.jacobian, joint_speed_rad_per_s_);

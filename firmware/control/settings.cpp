@@ -77,8 +77,9 @@ Motors motors(const ParameterSet& set) {
 
 HeatScale heat(const ParameterSet& set) {
   const Triple continuous_A = rows(set, Parameter::continuous_current_1_A);
-  constexpr auto readings = static_cast<float>(MotorHeat::periods_per_update);
-  HeatScale scale{{}, readings * protocol::servo_period_s / set[Parameter::winding_time_constant_s]};
+  constexpr auto readings = static_cast<float>(MotorHeat::readings_per_update);
+  constexpr float update_period_s = MotorHeat::periods_per_update * protocol::servo_period_s;
+  HeatScale scale{{}, update_period_s / set[Parameter::winding_time_constant_s]};
   for (std::size_t i = 0; i < 3; ++i)
     scale.per_square_sum[i] = 1.0f / (readings * continuous_A[i] * continuous_A[i]);
   return scale;

@@ -43,10 +43,10 @@ std::vector<FlowPlace> places_of(float width, const Style& style) {
   return flow(widths, row - style.points(buttons_points - margin_points), row, style.points(gap_points));
 }
 
-const char* title_of(Connection connection) {
-  switch (connection) {
+const char* title_of(const device::SessionStatus& status) {
+  switch (status.connection) {
     case Connection::searching: return "Looking for a device";
-    case Connection::connected: return "Connected";
+    case Connection::connected: return status.is_simulation ? "Connected to a simulation" : "Connected";
     case Connection::incompatible: return "Another protocol version";
     case Connection::no_permission: return "No permission";
   }
@@ -184,13 +184,13 @@ void StatusBar::draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk)
   ImGui::PushStyleColor(ImGuiCol_Button, packed(palette.panel));
   if (button("##device", area)) ImGui::OpenPopup("devices");
   ImGui::PopStyleColor();
-  if (!view.status.message.empty()) help_on_hover(title_of(connection), view.status.message, style);
+  if (!view.status.message.empty()) help_on_hover(title_of(view.status), view.status.message, style);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddCircleFilled({corner.x + style.points(14), corner.y + 0.5f * area.y}, style.points(4.5f),
                        packed(colour_of(connection, palette)));
   const float left = corner.x + style.points(29);
   list.AddText(style.fonts.strong, style.fonts.strong->FontSize, {left, corner.y + style.points(2)},
-               packed(palette.text), title_of(connection));
+               packed(palette.text), title_of(view.status));
   list.AddText(style.fonts.caption, style.fonts.caption->FontSize, {left, corner.y + style.points(20)},
                packed(palette.text_quiet), serial.empty() ? "choose a device" : serial.c_str());
   draw_device_list(style, desk);
@@ -341,7 +341,7 @@ void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& v
   ImGui::Begin("connection", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing);
-  text(style.fonts.strong, colour_of(view.status.connection, palette), title_of(view.status.connection));
+  text(style.fonts.strong, colour_of(view.status.connection, palette), title_of(view.status));
   const std::string& message = view.status.message.empty() ? view.list_error : view.status.message;
   wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
   ImGui::End();

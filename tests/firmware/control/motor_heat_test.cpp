@@ -21,7 +21,10 @@ control::HeatScale scale(float time_constant_s) {
 
 void run(MotorHeat& motors, const Triple& current_A, const control::HeatScale& scale, float time_s) {
   const auto periods = static_cast<int>(time_s * protocol::servo_rate_Hz);
-  for (int period = 0; period < periods; ++period) control::update_heat(motors, current_A, scale);
+  for (int period = 0; period < periods; ++period) {
+    const auto motor = static_cast<std::size_t>(period % 3);
+    control::update_heat(motors, motor, current_A[motor], scale);
+  }
 }
 
 TEST_CASE("the continuous current leads to a heat of one, 63 % of it in one time constant") {

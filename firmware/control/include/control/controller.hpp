@@ -86,7 +86,7 @@ class Controller {
   SwitchFilter switches_;
   InkwellReference reference_;
   std::array<SpeedEstimate, 3> speeds_{};
-  std::size_t joint_to_fit_ = 0;  ///< joints take turns, see update()
+  std::size_t turn_ = 0;  ///< of the joints and motors, where one a period is enough
   std::array<CurrentLoop, 3> loops_{};
   MotorHeat heat_;
   TestPulse test_;

@@ -1,6 +1,7 @@
 // How warm the windings are, from the currents that were measured in them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <control/vector.hpp>
@@ -11,11 +12,12 @@ namespace inkwell::control {
 /// to. A winding warms with the square of its current and cools with one time constant; the housing's own,
 /// fifty times longer, is left out, so a motor that has been hot for minutes is warmer than this says.
 struct MotorHeat {
-  /// Squares are gathered over so many periods: in a single one the heat grows by less than a float resolves.
-  static constexpr std::uint32_t periods_per_update = 128;
+  /// Squares are gathered over so many readings: in a single one the heat grows by less than a float resolves.
+  static constexpr std::uint32_t readings_per_update = 128;
+  static constexpr std::uint32_t periods_per_update = 3 * readings_per_update;
   Triple heat{};
   Triple square_sum_A2{};
-  std::uint32_t periods = 0;  ///< in the sums
+  std::uint32_t readings = 0;  ///< in each sum
 };
 
 struct HeatScale {
@@ -23,7 +25,7 @@ struct HeatScale {
   float weight;           ///< part of the way to it that the heat goes in one update
 };
 
-/// One control period.
-void update_heat(MotorHeat& motors, const Triple& current_A, const HeatScale& scale);
+/// One control period. The motors take turns: `motor` is 0, 1, 2, 0 and so on.
+void update_heat(MotorHeat& motors, std::size_t motor, float current_A, const HeatScale& scale);
 
 }  // namespace inkwell::control

@@ -76,6 +76,42 @@ TEST_SUITE("virtual chip: peripherals") {
     }
   }
 
+  TEST_CASE("the break input switches the outputs off at once and without the processor, until it is asked for again") {
+    Rig rig("break_input");
+    auto& pins = rig.chip.input_pins();
+    pins.drive('A', 6, PinLevel::high);
+    pins.drive('A', 0, PinLevel::low);
+    const auto edges_in = [&](double time_s) {
+      rig.bench.edges.clear();
+      rig.run_for(time_s);
+      return rig.bench.edges_of('A', 8);
+    };
+    CHECK(edges_in(0.001).size() > 50);
+    REQUIRE(rig.result(0) == finished);
+    CHECK(rig.result(2) == 1);
+
+    rig.bench.edges.clear();
+    // In the middle of a pulse, so that there is an output to switch off.
+    while (rig.bench.edges_of('A', 8).empty() || rig.bench.edges_of('A', 8).back().level != PinLevel::high)
+      rig.run_for(1e-6);
+    const Ticks when = rig.chip.now();
+    pins.drive('A', 6, PinLevel::low);
+    rig.run_for(0.001);
+    const Edge last = rig.bench.edges_of('A', 8).back();
+    CHECK(last.level == PinLevel::low);
+    CHECK(last.when >= when);
+    CHECK(last.when - when <= 2 * cycle);
+    CHECK(rig.result(1) == 1);
+    CHECK(rig.result(2) == 0);
+
+    // While the input stays active, MOE cannot be set.
+    pins.drive('A', 0, PinLevel::high);
+    CHECK(edges_in(0.001).empty());
+    pins.drive('A', 6, PinLevel::high);
+    CHECK(edges_in(0.001).size() > 10);
+    CHECK(rig.result(2) == 1);
+  }
+
   TEST_CASE("encoder mode counts every edge, both ways, through the wrap") {
     Rig rig("encoder", Mode::fast);
     int phase = 0;
