@@ -158,6 +158,17 @@ TEST_CASE("saving parameters with --json says what was written") {
   CHECK(std::filesystem::file_size(file) > 1000);
 }
 
+TEST_CASE("the window says what a computer without a display or without OpenGL 3.3 lacks") {
+  const std::string companion = build_directory() + "/inkwell";
+  check_refused(run_program("/usr/bin/env", {"-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", companion}),
+                {"No display", "graphical session"});
+
+  RunningProgram display({"Xvfb", "-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp"});
+  check_refused(run_program("/usr/bin/env", {"DISPLAY=:" + display.read_line(), "LIBGL_ALWAYS_SOFTWARE=1",
+                                             "MESA_GL_VERSION_OVERRIDE=2.1", companion}),
+                {"OpenGL 3.3 is needed", "Install"});
+}
+
 TEST_CASE("every command explains itself") {
   const std::vector<std::string> commands{
       "info", "watch", "parameters", "parameters get", "parameters set", "parameters defaults", "parameters load",
