@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <window/line_thinning.hpp>
+
 namespace inkwell::window {
 
 namespace {
@@ -16,8 +18,7 @@ constexpr float pixels_per_column = 2.0f;
 constexpr float y_ticks_every_points = 34.0f;
 constexpr float x_ticks_every_points = 84.0f;
 
-// Collects a line's points from left to right and draws them whenever there is a gap. Points that lie on the straight
-// line between their neighbours are left out: triangles are what a plot costs without a graphics card.
+// Collects a line's points and draws them whenever there is a gap.
 class Polyline {
  public:
   Polyline(ImDrawList& list, ImU32 colour, float thickness) : list_(list), colour_(colour), thickness_(thickness) {}
@@ -25,44 +26,17 @@ class Polyline {
   Polyline(const Polyline&) = delete;
   Polyline& operator=(const Polyline&) = delete;
 
-  void add(float x, float y) {
-    const ImVec2 point{x, y};
-    if (points_.empty()) {
-      points_.push_back(point);
-      return;
-    }
-    if (waits_) {
-      const float slope = (y - points_.back().y) / (x - points_.back().x);
-      // Otherwise the line would pass one of the points that were left out too far away; so it bends at the last one.
-      if (!(lowest_slope_ <= slope && slope <= highest_slope_)) {
-        points_.push_back(waiting_);
-        waits_ = false;
-      }
-    }
-    const ImVec2 from = points_.back();
-    const float lowest = (y - invisible_pixels - from.y) / (x - from.x);
-    const float highest = (y + invisible_pixels - from.y) / (x - from.x);
-    lowest_slope_ = waits_ ? std::max(lowest_slope_, lowest) : lowest;
-    highest_slope_ = waits_ ? std::min(highest_slope_, highest) : highest;
-    waiting_ = point;
-    waits_ = true;
-  }
+  void add(float x, float y) { line_.add({x, y}); }
   void finish() {
-    if (waits_) points_.push_back(waiting_);
-    waits_ = false;
-    if (points_.size() > 1) list_.AddPolyline(points_.data(), static_cast<int>(points_.size()), colour_, 0, thickness_);
-    points_.clear();
+    const std::vector<ImVec2> points = line_.take();
+    if (points.size() > 1) list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour_, 0, thickness_);
   }
 
  private:
-  static constexpr float invisible_pixels = 0.2f;
   ImDrawList& list_;
   ImU32 colour_;
   float thickness_;
-  std::vector<ImVec2> points_;
-  ImVec2 waiting_;  ///< the newest, not yet known whether the line bends there
-  bool waits_ = false;
-  float lowest_slope_ = 0, highest_slope_ = 0;  ///< from the last point, past all that were left out
+  LineThinning<ImVec2> line_;
 };
 
 void draw_samples(ImDrawList& list, const PlotArea& area, const SignalSeries& series, double first, double last,
