@@ -162,8 +162,8 @@ Description parse(std::string_view text, const std::string& source) {
   try {
     file = toml::parse(text, source);
   } catch (const toml::parse_error& error) {
-    throw DescriptionError(fmt::format("{}, line {}: this is not TOML: {}.", source, error.source().begin.line,
-                                       error.description()));
+    throw DescriptionError(
+        fmt::format("{}, line {}: this is not TOML: {}.", source, error.source().begin.line, error.description()));
   }
 
   constexpr std::string_view sections[] = {"arm", "parameters", "motor", "simulation"};

@@ -33,11 +33,13 @@ constexpr Unit units[] = {
 };
 
 // What people write instead of the units above. Empty stands for a key without its unit.
+// clang-format off
 constexpr std::string_view foreign_units[] = {
     "", "mm", "cm", "um", "in", "inch", "metre", "metres", "meter", "meters", "deg", "degree", "degrees", "radians",
     "mrad", "g", "gram", "grams", "mA", "amperes", "amps", "mNm", "Ncm", "mH", "uH", "mohm", "kohm", "ohms", "Ohm",
     "gcm2", "g_cm2", "kgm2", "kg_cm2", "mNm_per_A", "Nm_A", "g_per_s2", "mm_per_s2", "m_s2", "lines_per_turn",
     "pulses_per_turn", "counts", "Nm_per_deg", "Nms_per_deg", "m", "rad", "kg", "Nm", "H", "A", "ohm"};
+// clang-format on
 
 /// Rule for the unit of `known` if `key` is the same quantity in another unit, else empty.
 std::string_view unit_rule(std::string_view key, std::string_view known) {

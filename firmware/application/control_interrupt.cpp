@@ -55,11 +55,11 @@ extern "C" void control_interrupt() {
   write_bridges(controller.step(samples, settings, clock));
 
   host_link.poses.record(controller.signals(), {.state = controller.state(),
-                                           .fault = controller.fault(),
-                                           .switches = controller.switches(),
-                                           .command_token = host_link.commands.last_token(),
-                                           .periods = period,
-                                           .servo_cycles = controller.servo_cycles()});
+                                                .fault = controller.fault(),
+                                                .switches = controller.switches(),
+                                                .command_token = host_link.commands.last_token(),
+                                                .periods = period,
+                                                .servo_cycles = controller.servo_cycles()});
   host_link.scope.record(controller.signals(), period);
   controller.finish(clock);
 

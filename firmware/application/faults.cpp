@@ -43,9 +43,8 @@ extern "C" [[noreturn, gnu::used]] void record_fault(const std::uint32_t* frame)
 
   std::uint32_t exception = 0;
   asm volatile("mrs %0, ipsr" : "=r"(exception));
-  drivers::leave_crash_record({exception, readable ? frame[program_counter] : 0,
-                                        readable ? frame[link_register] : 0, SCB::CFSR::read(), SCB::HFSR::read(),
-                                        SCB::BFAR::read()});
+  drivers::leave_crash_record({exception, readable ? frame[program_counter] : 0, readable ? frame[link_register] : 0,
+                               SCB::CFSR::read(), SCB::HFSR::read(), SCB::BFAR::read()});
   drivers::reset_chip();
 }
 

@@ -52,9 +52,8 @@ void Controller::carry_out(const protocol::CommandReport& command) {
     case Command::test_current:
     case Command::test_voltage:
       if (supervisor_.state == State::ready)
-        test_ = start_test_pulse(command.test, command.command == Command::test_current
-                                                   ? TestPulse::Quantity::current
-                                                   : TestPulse::Quantity::voltage);
+        test_ = start_test_pulse(command.test, command.command == Command::test_current ? TestPulse::Quantity::current
+                                                                                        : TestPulse::Quantity::voltage);
       break;
     case Command::heartbeat:
     case Command::select_signals: break;
@@ -89,8 +88,7 @@ void Controller::find_pose(const Settings& settings) {
   constexpr auto periods_per_s = static_cast<float>(protocol::servo_rate_Hz);
   for (std::size_t i = 0; i < 3; ++i) {
     update(speeds_[i], encoder_counts_[i], periods_, i == turn_);
-    joint_speed_rad_per_s_[i] =
-        speeds_[i].counts_per_period * settings.encoders.rad_per_count[i] * periods_per_s;
+    joint_speed_rad_per_s_[i] = speeds_[i].counts_per_period * settings.encoders.rad_per_count[i] * periods_per_s;
     counts_since_inkwell_[i] = encoder_counts_[i] - reference_.counts[i];
   }
   turn_ = turn_ == 2 ? 0 : turn_ + 1;
@@ -145,8 +143,8 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       .offsets_plausible = plausible(offsets_),
       .referenced = reference_.valid,
       .not_finite = !is_finite(sum_of_all),
-      .supply_low = supply_.supply_V < board_.supply_minimum_V,
-      .supply_high = supply_.supply_V > board_.supply_maximum_V,
+      .supply_low = (supply_.supply_V < board_.supply_minimum_V),
+      .supply_high = (supply_.supply_V > board_.supply_maximum_V),
       .bridge_fault = samples.bridge_fault,
       .over_current = beyond(current_A_, settings.limits.over_current_A),
       .encoder_implausible = joints_implausible(joint_rad_, settings.arm.transmission, settings.limits),

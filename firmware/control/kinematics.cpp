@@ -39,8 +39,7 @@ Pose forward_kinematics(const Triple& joint_rad, const Arm& arm) {
   const float reach_m = reach_2_m + reach_3_m;
   const SineCosine& waist = direction.waist;
 
-  const Vector3 along_waist =
-      in_workspace(arm.frame, -reach_m * waist.sine, reach_m * waist.cosine, 0.0f);
+  const Vector3 along_waist = in_workspace(arm.frame, -reach_m * waist.sine, reach_m * waist.cosine, 0.0f);
   // A link that turns in its plane moves its end at right angles to itself.
   const Vector3 along_link_2 = from_plane(arm.frame, waist, -height_2_m, reach_2_m);
   const Vector3 along_link_3 = from_plane(arm.frame, waist, -height_3_m, reach_3_m);
@@ -52,9 +51,8 @@ Pose forward_kinematics(const Triple& joint_rad, const Arm& arm) {
 
 LinkEnds link_ends(const Triple& joint_rad, const Arm& arm) {
   const LinkDirections direction = link_directions(joint_rad, arm);
-  const Vector3 elbow_m =
-      arm.origin_m + from_plane(arm.frame, direction.waist, arm.link_2_m * direction.link_2.cosine,
-                                arm.link_2_m * direction.link_2.sine);
+  const Vector3 elbow_m = arm.origin_m + from_plane(arm.frame, direction.waist, arm.link_2_m * direction.link_2.cosine,
+                                                    arm.link_2_m * direction.link_2.sine);
   return {arm.origin_m, elbow_m,
           elbow_m + from_plane(arm.frame, direction.waist, arm.link_3_m * direction.link_3.cosine,
                                arm.link_3_m * direction.link_3.sine)};

@@ -70,8 +70,7 @@ Motors motors(const ParameterSet& set) {
   const Triple constant_Nm_per_A = rows(set, Parameter::torque_constant_1_Nm_per_A);
   const Triple reversed = rows(set, Parameter::motor_1_reversed);
   Motors motors{{}, rows(set, Parameter::current_limit_1_A)};
-  for (std::size_t i = 0; i < 3; ++i)
-    motors.ampere_per_Nm[i] = sign(reversed[i]) / (ratio[i] * constant_Nm_per_A[i]);
+  for (std::size_t i = 0; i < 3; ++i) motors.ampere_per_Nm[i] = sign(reversed[i]) / (ratio[i] * constant_Nm_per_A[i]);
   return motors;
 }
 
@@ -80,8 +79,7 @@ HeatScale heat(const ParameterSet& set) {
   constexpr auto readings = static_cast<float>(MotorHeat::readings_per_update);
   constexpr float update_period_s = MotorHeat::periods_per_update * protocol::servo_period_s;
   HeatScale scale{{}, update_period_s / set[Parameter::winding_time_constant_s]};
-  for (std::size_t i = 0; i < 3; ++i)
-    scale.per_square_sum[i] = 1.0f / (readings * continuous_A[i] * continuous_A[i]);
+  for (std::size_t i = 0; i < 3; ++i) scale.per_square_sum[i] = 1.0f / (readings * continuous_A[i] * continuous_A[i]);
   return scale;
 }
 

@@ -52,8 +52,7 @@ Supervisor advance(const Supervisor& supervisor, const Conditions& conditions, c
   }
   const Fault fault = find_fault(supervisor.state, conditions, requests.raised);
   if (fault != Fault::none) return {State::fault, fault};
-  if (supervisor.state == State::active)
-    return {requests.disable_force ? State::ready : State::active, Fault::none};
+  if (supervisor.state == State::active) return {requests.disable_force ? State::ready : State::active, Fault::none};
   if (supervisor.state == State::ready && requests.enable_force && !requests.disable_force)
     return {State::active, Fault::none};
   return {resting_state(conditions), Fault::none};

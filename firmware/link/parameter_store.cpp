@@ -16,8 +16,7 @@ constexpr protocol::ParameterSet defaults = protocol::default_parameters();
 
 }  // namespace
 
-ParameterStore::ParameterStore()
-    : values_(defaults), settings_{control::prepare(defaults), control::Settings{}} {}
+ParameterStore::ParameterStore() : values_(defaults), settings_{control::prepare(defaults), control::Settings{}} {}
 
 protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on) {
   ++transactions_;

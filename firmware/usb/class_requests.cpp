@@ -79,8 +79,8 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
   }
   // What is wrong with a transaction is told by the TransactionReport, not by a stall.
   // In this order: were the state read first, the interrupt could take the command in between.
-  const bool force_is_on = link_.commands.waiting(protocol::Command::enable_force) ||
-                           link_.status.state() == protocol::State::active;
+  const bool force_is_on =
+      link_.commands.waiting(protocol::Command::enable_force) || link_.status.state() == protocol::State::active;
   link_.parameters.accept(data, force_is_on);
   return true;
 }

@@ -62,19 +62,19 @@ constexpr auto report(ReportId id, std::uint8_t usage, std::uint8_t item, std::s
                item, data_variable_absolute);
 }
 
-constexpr auto report_descriptor = join(
-    bytes(0x06, 0x00, 0xFF,  // usage page: vendor
-          0x09, 0x01,        // usage
-          0xA1, 0x01,        // application collection
-          0x15, 0x00,        // logical minimum 0
-          0x26, 0xFF, 0x00,  // logical maximum 255
-          0x75, 0x08),       // report size, 8 bits
-    report(ReportId::pose, 2, input_item, sizeof(protocol::PoseReport)),
-    report(ReportId::command, 3, output_item, sizeof(protocol::CommandReport)),
-    report(ReportId::information, 4, feature_item, sizeof(protocol::InformationReport)),
-    report(ReportId::parameters, 5, feature_item, sizeof(protocol::ParametersReport)),
-    report(ReportId::transaction, 6, feature_item, sizeof(protocol::TransactionReport)),
-    bytes(0xC0));  // end of the collection
+constexpr auto report_descriptor =
+    join(bytes(0x06, 0x00, 0xFF,  // usage page: vendor
+               0x09, 0x01,        // usage
+               0xA1, 0x01,        // application collection
+               0x15, 0x00,        // logical minimum 0
+               0x26, 0xFF, 0x00,  // logical maximum 255
+               0x75, 0x08),       // report size, 8 bits
+         report(ReportId::pose, 2, input_item, sizeof(protocol::PoseReport)),
+         report(ReportId::command, 3, output_item, sizeof(protocol::CommandReport)),
+         report(ReportId::information, 4, feature_item, sizeof(protocol::InformationReport)),
+         report(ReportId::parameters, 5, feature_item, sizeof(protocol::ParametersReport)),
+         report(ReportId::transaction, 6, feature_item, sizeof(protocol::TransactionReport)),
+         bytes(0xC0));  // end of the collection
 
 // ---- device and configuration (USB 2.0, section 9.6) -----------------------------------------------
 
@@ -82,17 +82,17 @@ constexpr auto report_descriptor = join(
 constexpr std::size_t usb_version = 0x0201;
 constexpr std::size_t device_version = 0x0100;
 
-constexpr auto device = bytes(
-    18, type(DescriptorType::device), low(usb_version), high(usb_version),
-    0, 0, 0,  // class, subclass and protocol stand in the interfaces
-    packet_size_maximum, low(identity::vendor_id), high(identity::vendor_id), low(identity::product_id),
-    high(identity::product_id), low(device_version), high(device_version), string(StringIndex::manufacturer),
-    string(StringIndex::product), string(StringIndex::serial_number), 1);
+constexpr auto device =
+    bytes(18, type(DescriptorType::device), low(usb_version), high(usb_version), 0, 0,
+          0,  // class, subclass and protocol stand in the interfaces
+          packet_size_maximum, low(identity::vendor_id), high(identity::vendor_id), low(identity::product_id),
+          high(identity::product_id), low(device_version), high(device_version), string(StringIndex::manufacturer),
+          string(StringIndex::product), string(StringIndex::serial_number), 1);
 
-constexpr auto hid = bytes(9, type(DescriptorType::hid), 0x11, 0x01,  // HID 1.11
-                           0, 1,                                      // no country; one descriptor follows
-                           type(DescriptorType::hid_report), low(report_descriptor.size()),
-                           high(report_descriptor.size()));
+constexpr auto hid =
+    bytes(9, type(DescriptorType::hid), 0x11, 0x01,  // HID 1.11
+          0, 1,                                      // no country; one descriptor follows
+          type(DescriptorType::hid_report), low(report_descriptor.size()), high(report_descriptor.size()));
 
 constexpr auto interface(std::uint8_t number, std::uint8_t endpoints, std::uint8_t class_code, StringIndex name) {
   return bytes(9, type(DescriptorType::interface), number, 0, endpoints, class_code, 0, 0, string(name));
@@ -105,12 +105,11 @@ constexpr auto endpoint(std::uint8_t address, EndpointType endpoint_type, std::u
 
 constexpr std::uint8_t hid_class = 0x03, vendor_class = 0xFF;
 
-constexpr auto interfaces =
-    join(interface(identity::hid_interface, 2, hid_class, StringIndex::hid), hid,
-         endpoint(identity::hid_in_endpoint, EndpointType::interrupt, 1),
-         endpoint(identity::hid_out_endpoint, EndpointType::interrupt, 1),
-         interface(identity::scope_interface, 1, vendor_class, StringIndex::scope),
-         endpoint(identity::scope_in_endpoint, EndpointType::bulk, 0));
+constexpr auto interfaces = join(interface(identity::hid_interface, 2, hid_class, StringIndex::hid), hid,
+                                 endpoint(identity::hid_in_endpoint, EndpointType::interrupt, 1),
+                                 endpoint(identity::hid_out_endpoint, EndpointType::interrupt, 1),
+                                 interface(identity::scope_interface, 1, vendor_class, StringIndex::scope),
+                                 endpoint(identity::scope_in_endpoint, EndpointType::bulk, 0));
 
 constexpr std::size_t configuration_size = 9 + interfaces.size();
 constexpr std::uint8_t self_powered = 0xC0;
@@ -143,8 +142,8 @@ constexpr auto microsoft_set = [] {
   constexpr std::size_t size = 10 + subset_size;
   return join(bytes(10, 0, 0, 0), windows_8_1, bytes(low(size), high(size)),
               bytes(8, 0, 1, 0, 0, 0, low(subset_size), high(subset_size)),  // first configuration
-              bytes(8, 0, 2, 0, identity::scope_interface, 0, low(function_size), high(function_size)),
-              compatible_id, registry_property);
+              bytes(8, 0, 2, 0, identity::scope_interface, 0, low(function_size), high(function_size)), compatible_id,
+              registry_property);
 }();
 
 /// Platform capability with the identifier that Microsoft gave to its OS 2.0 descriptors.

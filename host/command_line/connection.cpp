@@ -33,12 +33,17 @@ void DeviceOptions::add_to(CLI::App& app) {
   auto* is_virtual_flag = app.add_flag("--virtual", is_virtual, "Start a virtual board (a simulation) and use its arm");
   const char* group = "Virtual board (with --virtual)";
   app.add_option("--elf", elf, "Firmware that it runs; the one built beside this program unless given")
-      ->type_name("FILE")->needs(is_virtual_flag)->group(group);
+      ->type_name("FILE")
+      ->needs(is_virtual_flag)
+      ->group(group);
   app.add_option("--arm", arm, "Arm description (TOML) that it simulates; the firmware gets its parameters")
-      ->type_name("FILE")->needs(is_virtual_flag)->group(group);
-  app.add_option("--mode", mode,
-                 "exact: interrupts come at any instruction; fast: between blocks of them, and quicker")
-      ->check(CLI::IsMember({"exact", "fast"}))->needs(is_virtual_flag)->group(group);
+      ->type_name("FILE")
+      ->needs(is_virtual_flag)
+      ->group(group);
+  app.add_option("--mode", mode, "exact: interrupts come at any instruction; fast: between blocks of them, and quicker")
+      ->check(CLI::IsMember({"exact", "fast"}))
+      ->needs(is_virtual_flag)
+      ->group(group);
   app.add_option("--seed", seed, "Seed of its noise")
       ->type_name("NUMBER")
       ->capture_default_str()
@@ -50,7 +55,8 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->type_name("ADDRESS")
       ->excludes(is_virtual_flag);
   app.add_option("--serial", serial_number, "Use the arm with this serial number; not with --virtual")
-      ->type_name("NUMBER")->excludes(is_virtual_flag);
+      ->type_name("NUMBER")
+      ->excludes(is_virtual_flag);
   app.add_flag("--json", json, "Write JSON for programs instead of text for people");
 }
 
@@ -85,11 +91,15 @@ std::vector<Endpoint> list_devices(const DeviceOptions& options, const device::V
 Endpoint find_one(const DeviceOptions& options) {
   const auto endpoints = list_devices(options, nullptr);
   if (endpoints.empty() && !options.serial_number.empty())
-    throw device::Error(fmt::format("No arm with the serial number {} is plugged in. `inkwell info` without --serial "
-                                    "shows the one that is.", options.serial_number));
+    throw device::Error(
+        fmt::format("No arm with the serial number {} is plugged in. `inkwell info` without --serial "
+                    "shows the one that is.",
+                    options.serial_number));
   if (endpoints.empty() && !options.usbip.empty())
-    throw device::Error(fmt::format("The USB/IP server at {} exports no arm. Check that its board runs Inkwell's "
-                                    "firmware and its cable is in.", options.usbip));
+    throw device::Error(
+        fmt::format("The USB/IP server at {} exports no arm. Check that its board runs Inkwell's "
+                    "firmware and its cable is in.",
+                    options.usbip));
   if (endpoints.empty())
     throw device::Error("No arm was found on USB. Plug one in, or try a virtual one with --virtual.");
   if (endpoints.size() > 1) {
@@ -123,8 +133,8 @@ Connection connect(const DeviceOptions& options, bool real_time_by_default) {
   }
   std::vector<device::ParameterChange> arm;
   if (!options.arm.empty()) arm = arm_parameters(options.arm);
-  connection.board = std::make_unique<device::VirtualBoard>(
-      options.virtual_board(device::SimulationMode::fast, real_time_by_default));
+  connection.board =
+      std::make_unique<device::VirtualBoard>(options.virtual_board(device::SimulationMode::fast, real_time_by_default));
   const auto give_up_at = std::chrono::steady_clock::now() + virtual_start_limit;
   std::optional<Endpoint> endpoint;
   while (!(endpoint = connection.board->find())) {

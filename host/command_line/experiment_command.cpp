@@ -64,8 +64,9 @@ void add_experiment_command(CLI::App& program, const DeviceOptions& options, Act
   command->require_subcommand(1);
   add_examples(*command, "inkwell experiment wall --virtual --out results");
   auto* wall = command->add_subcommand(
-      "wall", "The experiment of Eriksson and Wikander, section 4.3: the sphere is pushed into a wall.\n"
-              "With --virtual a simulated hand does it; otherwise you are told when to push.");
+      "wall",
+      "The experiment of Eriksson and Wikander, section 4.3: the sphere is pushed into a wall.\n"
+      "With --virtual a simulated hand does it; otherwise you are told when to push.");
   const auto wall_options = std::make_shared<WallCommandOptions>();
   wall->add_option("--out", wall_options->output, "Folder for recording.csv, summary.json and the figures")
       ->type_name("FOLDER")
@@ -73,9 +74,10 @@ void add_experiment_command(CLI::App& program, const DeviceOptions& options, Act
   wall->add_option("--wall", wall_options->wall,
                    "Wall to push into, by axis and side; the one in front of the arm unless given")
       ->check(CLI::IsMember({"x-", "x+", "y-", "y+", "z-", "z+"}));
-  add_examples(*wall, "inkwell experiment wall --virtual --out results\n"
-                      "inkwell experiment wall --virtual --arm boards/arms/paper.toml --out results-paper\n"
-                      "inkwell experiment wall --wall y- --out results");
+  add_examples(*wall,
+               "inkwell experiment wall --virtual --out results\n"
+               "inkwell experiment wall --virtual --arm boards/arms/paper.toml --out results-paper\n"
+               "inkwell experiment wall --wall y- --out results");
   wall->callback([&options, &action, wall_options] {
     action = [&options, wall_options] { return run_wall(options, *wall_options); };
   });

@@ -46,7 +46,7 @@ std::optional<std::string> typed_line() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (poll(&input, 1, 0) <= 0) return std::nullopt;
   std::string line;
-  for (char c = 0; ;) {
+  for (char c = 0;;) {
     if (read(STDIN_FILENO, &c, 1) != 1)
       throw UsageError("This step needs your consent, but nothing can be typed here. Give --yes to agree beforehand.");
     if (c == '\n') return line;
@@ -306,13 +306,16 @@ void add_calibrate_command(CLI::App& program, const DeviceOptions& options, Acti
     bool quadratic = false;
   };
   const auto settings = std::make_shared<Settings>();
-  auto* command = program.add_subcommand(
-      "calibrate", "Guides through the calibration: inkwell, joint stops, potentiometers of the gimbal\n"
-                   "You move the arm and press button 1; with --virtual a simulated hand does.");
+  auto* command =
+      program.add_subcommand("calibrate",
+                             "Guides through the calibration: inkwell, joint stops, potentiometers of the gimbal\n"
+                             "You move the arm and press button 1; with --virtual a simulated hand does.");
   command->add_option("WHAT", settings->what, "What to calibrate")
-      ->check(CLI::IsMember({"inkwell", "stops", "pots", "all"}))->capture_default_str();
+      ->check(CLI::IsMember({"inkwell", "stops", "pots", "all"}))
+      ->capture_default_str();
   command->add_option("--trust", settings->trust, "What is right when the stops lie elsewhere than described")
-      ->check(CLI::IsMember({"limits", "encoders"}))->capture_default_str();
+      ->check(CLI::IsMember({"limits", "encoders"}))
+      ->capture_default_str();
   const char* names[] = {"--yaw-range", "--pitch-range", "--roll-range"};
   for (std::size_t axis = 0; axis < 3; ++axis)
     command->add_option(names[axis], settings->range[axis], "MINIMUM:MAXIMUM, the angles of its stops in radians")
@@ -320,9 +323,10 @@ void add_calibrate_command(CLI::App& program, const DeviceOptions& options, Acti
   command->add_flag("--quadratic", settings->quadratic,
                     "Fit the potentiometers' square term, with a third point in the middle");
   settings->add_to(*command);
-  add_examples(*command, "inkwell calibrate\n"
-                         "inkwell calibrate pots --roll-range -2.58:2.58 --apply\n"
-                         "inkwell calibrate all --virtual --yes --json");
+  add_examples(*command,
+               "inkwell calibrate\n"
+               "inkwell calibrate pots --roll-range -2.58:2.58 --apply\n"
+               "inkwell calibrate all --virtual --yes --json");
   command->callback([&options, &action, settings] {
     action = [&options, settings] {
       guides::PotentiometerOptions pots;
@@ -355,15 +359,18 @@ void add_tune_command(CLI::App& program, const DeviceOptions& options, Action& a
       "Measures the motors' resistance and inductance and suggests gains of the current loops\n"
       "Pulses of voltage go through the motors, and steps of current try the gains. The arm may twitch.");
   loop->add_option("--motor", settings->motor, "This motor only, 1 to 3; all three unless given")
-      ->type_name("NUMBER")->check(CLI::Range(1, 3));
-  loop->add_option("--bandwidth", settings->loop.bandwidth_Hz, fmt::format("Bandwidth of the current loops, {} to {} Hz", guides::bandwidth_minimum_Hz,
+      ->type_name("NUMBER")
+      ->check(CLI::Range(1, 3));
+  loop->add_option("--bandwidth", settings->loop.bandwidth_Hz,
+                   fmt::format("Bandwidth of the current loops, {} to {} Hz", guides::bandwidth_minimum_Hz,
                                guides::bandwidth_maximum_Hz))
       ->type_name("HZ")
       ->check(CLI::Range(guides::bandwidth_minimum_Hz, guides::bandwidth_maximum_Hz))
       ->capture_default_str();
   settings->add_to(*loop);
-  add_examples(*loop, "inkwell tune current-loop\n"
-                      "inkwell tune current-loop --motor 2 --bandwidth 1500 --yes --apply");
+  add_examples(*loop,
+               "inkwell tune current-loop\n"
+               "inkwell tune current-loop --motor 2 --bandwidth 1500 --yes --apply");
   loop->callback([&options, &action, settings] {
     action = [&options, settings] {
       if (settings->motor != 0) settings->loop.motors = {settings->motor};

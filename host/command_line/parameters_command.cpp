@@ -20,8 +20,9 @@ using protocol::ParameterSet;
 
 ordered_json to_json(Parameter parameter, float value) {
   const auto& row = info(parameter);
-  return {{"id", row.id}, {"name", row.name}, {"value", value}, {"default", row.default_value}, {"unit", row.unit},
-          {"minimum", row.minimum}, {"maximum", row.maximum}, {"group", row.group}, {"help", row.help}};
+  return {{"id", row.id},     {"name", row.name},       {"value", value},         {"default", row.default_value},
+          {"unit", row.unit}, {"minimum", row.minimum}, {"maximum", row.maximum}, {"group", row.group},
+          {"help", row.help}};
 }
 
 int list(const DeviceOptions& options) {
@@ -155,14 +156,14 @@ void add_parameters_command(CLI::App& program, const DeviceOptions& options, Act
     if (command->get_subcommands().empty()) action = [&options] { return list(options); };
   });
 
-  add_examples(*command, "inkwell parameters\n"
-                         "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
-                         "inkwell parameters save soft.toml");
+  add_examples(*command,
+               "inkwell parameters\n"
+               "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
+               "inkwell parameters save soft.toml");
 
   const auto words = std::make_shared<std::vector<std::string>>();
   const auto file = std::make_shared<std::string>();
-  const auto add = [&](const char* name, const char* help, const char* examples,
-                       std::function<int()> run) {
+  const auto add = [&](const char* name, const char* help, const char* examples, std::function<int()> run) {
     auto* subcommand = command->add_subcommand(name, help);
     add_examples(*subcommand, examples);
     subcommand->callback([&action, run] { action = run; });
@@ -181,17 +182,21 @@ void add_parameters_command(CLI::App& program, const DeviceOptions& options, Act
       [&options] { return restore_defaults(options); });
   add("load", "Send the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
       [&options, file] { return send(options, load_and_complain(*file).changes); })
-      ->add_option("FILE", *file, "Written by `inkwell parameters save`")->required();
+      ->add_option("FILE", *file, "Written by `inkwell parameters save`")
+      ->required();
   add("save", "Write the device's parameters to a TOML file", "inkwell parameters save soft.toml",
       [&options, file] { return save(options, *file); })
-      ->add_option("FILE", *file, "It is replaced if it exists")->required();
+      ->add_option("FILE", *file, "It is replaced if it exists")
+      ->required();
   add("diff", "Show where a TOML file and the device differ", "inkwell parameters diff soft.toml",
       [&options, file] { return show_differences(options, *file); })
-      ->add_option("FILE", *file, "Written by `inkwell parameters save`")->required();
+      ->add_option("FILE", *file, "Written by `inkwell parameters save`")
+      ->required();
   add("arm", "Send the geometry, limits and box of an arm description in one transaction",
       "inkwell parameters arm boards/arms/paper.toml",
       [&options, file] { return send(options, arm_parameters(*file)); })
-      ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")->required();
+      ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")
+      ->required();
 }
 
 }  // namespace inkwell::command_line

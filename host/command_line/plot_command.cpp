@@ -34,8 +34,9 @@ void tell(const DeviceOptions& options, const std::vector<std::string>& pictures
 /// The recording of an experiment is drawn as the paper drew it.
 int plot_experiment(const DeviceOptions& device_options, const PlotOptions& options) {
   if (!options.signals.empty())
-    throw UsageError("The recording of an experiment is drawn as the paper's figures 11 to 14, which have their own "
-                     "signals. Leave --signals out, or record with `inkwell record`.");
+    throw UsageError(
+        "The recording of an experiment is drawn as the paper's figures 11 to 14, which have their own "
+        "signals. Leave --signals out, or record with `inkwell record`.");
   const std::filesystem::path file = options.file;
   const std::filesystem::path directory =
       options.picture.empty() ? file.parent_path() : std::filesystem::path(options.picture);
@@ -76,15 +77,18 @@ void add_plot_command(CLI::App& program, const DeviceOptions& options, Action& a
   command->add_option("--signals", plot_options->signals, "Names with commas between them; all unless given")
       ->type_name("NAMES");
   command->add_option("--from", plot_options->from_s, "Start, since the first sample")
-      ->type_name("SECONDS")->check(CLI::NonNegativeNumber);
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
   auto* to = command->add_option("--to", plot_options->to_s, "End, since the first sample")
-                 ->type_name("SECONDS")->check(CLI::PositiveNumber);
+                 ->type_name("SECONDS")
+                 ->check(CLI::PositiveNumber);
   command
       ->add_option("--out", plot_options->picture,
                    "The PNG, or the folder for an experiment's figures; beside FILE unless given")
       ->type_name("PLACE");
-  add_examples(*command, "inkwell plot push.h5 --signals force_N,position_z_m --from 1 --to 2.5 --out push.png\n"
-                         "inkwell plot results/recording.csv --out figures");
+  add_examples(*command,
+               "inkwell plot push.h5 --signals force_N,position_z_m --from 1 --to 2.5 --out push.png\n"
+               "inkwell plot results/recording.csv --out figures");
   command->callback([&options, &action, plot_options, to] {
     plot_options->has_end = to->count() > 0;
     action = [&options, plot_options] { return plot(options, *plot_options); };

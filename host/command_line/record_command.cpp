@@ -184,19 +184,22 @@ void add_record_command(CLI::App& program, const DeviceOptions& options, Action&
       ->add_option("FILE", record_options->file,
                    "Its ending chooses the format: .h5 (HDF5) or .csv. It must not exist yet")
       ->required();
-  auto* signals = command->add_option("--signals", record_options->signals,
-                                      "Names with commas between them; what replay and plots need unless given")
+  auto* signals = command
+                      ->add_option("--signals", record_options->signals,
+                                   "Names with commas between them; what replay and plots need unless given")
                       ->type_name("NAMES");
   command
       ->add_flag("--all", record_options->all,
                  "The whole signal path, from the encoders to the duties; not with --signals")
       ->excludes(signals);
   command->add_option("--seconds", record_options->seconds, "End after this time of the board")
-      ->type_name("SECONDS")->check(CLI::PositiveNumber);
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--mark-key", record_options->mark_key,
                     "The space bar sets a mark; from a pipe, each line does, with its text");
-  add_examples(*command, "inkwell record push.h5 --mark-key\n"
-                         "inkwell record push.csv --signals force_N,position_z_m --seconds 10");
+  add_examples(*command,
+               "inkwell record push.h5 --mark-key\n"
+               "inkwell record push.csv --signals force_N,position_z_m --seconds 10");
   command->callback([&options, &action, record_options] {
     action = [&options, record_options] { return record(options, *record_options); };
   });

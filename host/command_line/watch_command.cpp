@@ -90,9 +90,12 @@ void add_watch_command(CLI::App& program, const DeviceOptions& options, Action& 
       program.add_subcommand("watch", "The pose, live: position, force, buttons and state, ten lines a second");
   const auto watch_options = std::make_shared<WatchOptions>();
   command->add_option("--seconds", watch_options->seconds, "End after this time of the board; without it, at Ctrl+C")
-      ->type_name("SECONDS")->check(CLI::PositiveNumber);
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
   command->add_option("--rate", watch_options->rate_Hz, "Lines a second, 0.1 to 1000")
-      ->type_name("HZ")->check(CLI::Range(0.1, 1000.0))->capture_default_str();
+      ->type_name("HZ")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
   add_examples(*command, "inkwell watch\ninkwell watch --virtual --seconds 2 --rate 100 --json");
   command->callback([&options, &action, watch_options] {
     action = [&options, watch_options] { return watch(options, *watch_options); };

@@ -45,10 +45,13 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
       ->type_name("FILE")
       ->group(group);
   program.add_option("--layout", window.layout, "Layout of the scope to begin with, for example paper")
-      ->type_name("NAME")->group(group);
+      ->type_name("NAME")
+      ->group(group);
   program.add_option("--theme", settings->theme, "Colours")->check(CLI::IsMember({"dark", "light"}))->group(group);
   program.add_option("--scale", window.scale, "Size of fonts and spacing, 0.5 to 4; the display's own unless given")
-      ->type_name("FACTOR")->check(CLI::Range(0.5, 4.0))->group(group);
+      ->type_name("FACTOR")
+      ->check(CLI::Range(0.5, 4.0))
+      ->group(group);
   program.add_option("--width", window.width, "Width of the window")
       ->type_name("PIXELS")
       ->check(CLI::Range(320, 16384))
@@ -63,7 +66,10 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
       ->type_name("FILE")
       ->group(group);
   program.add_option("--after-seconds", window.after_seconds, "When the picture is taken")
-      ->type_name("SECONDS")->check(CLI::NonNegativeNumber)->capture_default_str()->group(group);
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group(group);
   program.add_flag("--frames-report", window.frames_report, "Print the frames a second when the window closes")
       ->group(group);
   program

@@ -70,9 +70,7 @@ void ControlClient::resume() { call({{"command", "resume"}}); }
 void ControlClient::reset() { call({{"command", "reset"}}); }
 void ControlClient::quit() { call({{"command", "quit"}}); }
 void ControlClient::usb(bool connected) { call({{"command", "usb"}, {"connected", connected}}); }
-void ControlClient::buttons(bool first, bool second) {
-  call({{"command", "buttons"}, {"pressed", {first, second}}});
-}
+void ControlClient::buttons(bool first, bool second) { call({{"command", "buttons"}, {"pressed", {first, second}}}); }
 void ControlClient::supply(double voltage_V) { call({{"command", "supply"}, {"voltage_V", voltage_V}}); }
 void ControlClient::bridge_fault(bool fault) { call({{"command", "bridge_fault"}, {"fault", fault}}); }
 void ControlClient::jump(std::uint32_t address) { call({{"command", "jump"}, {"address", address}}); }

@@ -50,8 +50,10 @@ struct Device::Implementation {
   void get(Report& report, const char* what) {
     const std::size_t length = link->get_feature(writable_bytes(report));
     if (length < sizeof report)
-      throw Incompatible(fmt::format("The device's {} report has {} bytes instead of {}. Flash the firmware that "
-                                     "belongs to this companion.", what, length, sizeof report));
+      throw Incompatible(
+          fmt::format("The device's {} report has {} bytes instead of {}. Flash the firmware that "
+                      "belongs to this companion.",
+                      what, length, sizeof report));
   }
 
   std::uint8_t next_token() {
@@ -102,15 +104,16 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
   const auto information = device->information();
   const auto& report = information.report;
   if (information.protocol_version != protocol::protocol_version)
-    throw Incompatible(fmt::format("The device speaks version {} of the protocol, this companion version {}. Flash the "
-                                   "firmware that belongs to this companion, or use the companion of firmware {}.",
-                                   information.protocol_version, protocol::protocol_version,
-                                   information.firmware_version));
+    throw Incompatible(
+        fmt::format("The device speaks version {} of the protocol, this companion version {}. Flash the "
+                    "firmware that belongs to this companion, or use the companion of firmware {}.",
+                    information.protocol_version, protocol::protocol_version, information.firmware_version));
   if (report.parameter_table_hash != protocol::parameter_table_hash ||
       report.signal_table_hash != protocol::signal_table_hash)
-    throw Incompatible(fmt::format("Firmware {} has other parameters or signals than this companion, though both speak "
-                                   "version {} of the protocol. Build both from the same source and flash again.",
-                                   information.firmware_version, protocol::protocol_version));
+    throw Incompatible(
+        fmt::format("Firmware {} has other parameters or signals than this companion, though both speak "
+                    "version {} of the protocol. Build both from the same source and flash again.",
+                    information.firmware_version, protocol::protocol_version));
   return device;
 }
 
@@ -191,20 +194,22 @@ protocol::ParameterSet Device::parameters() {
     throw Incompatible("The device's parameters do not fit this companion. Flash the firmware that belongs to it.");
   protocol::ParameterSet set = protocol::default_parameters();
   for (std::size_t i = 0; i < report.count; ++i)
-    if (const auto parameter = protocol::find_parameter(report.entries[i].id)) set[*parameter] = report.entries[i].value;
+    if (const auto parameter = protocol::find_parameter(report.entries[i].id))
+      set[*parameter] = report.entries[i].value;
   return set;
 }
 
 protocol::TransactionReport Device::set_parameters(std::span<const ParameterChange> changes) {
   if (changes.size() > protocol::parameter_entries_maximum)
-    throw Error(fmt::format("{} parameters are too many for one transaction. Give each parameter once.",
-                            changes.size()));
+    throw Error(
+        fmt::format("{} parameters are too many for one transaction. Give each parameter once.", changes.size()));
   protocol::ParametersReport report{};
   report.report_id = ReportId::parameters;
   report.operation = protocol::ParameterOperation::set;
   report.version = protocol::protocol_version;
   report.count = static_cast<std::uint16_t>(changes.size());
-  for (std::size_t i = 0; i < changes.size(); ++i) report.entries[i] = {info(changes[i].first).id, 0, changes[i].second};
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    report.entries[i] = {info(changes[i].first).id, 0, changes[i].second};
   return implementation_->transact(report);
 }
 

@@ -34,9 +34,7 @@ std::string format_value(Parameter parameter, float value) {
   return text;
 }
 
-std::string_view nearest_parameter_name(std::string_view name) {
-  return nearest_name(protocol::parameter_table, name);
-}
+std::string_view nearest_parameter_name(std::string_view name) { return nearest_name(protocol::parameter_table, name); }
 
 Parameter parameter_named(std::string_view name) {
   if (const auto parameter = protocol::find_parameter(name)) return *parameter;
@@ -47,8 +45,8 @@ Parameter parameter_named(std::string_view name) {
 void check_value(Parameter parameter, float value) {
   const auto& row = info(parameter);
   if (!std::isfinite(value) || value < row.minimum || value > row.maximum)
-    throw Error(fmt::format("{} = {} is outside its range. Give a number from {}.", row.name, value,
-                            range_text(parameter)));
+    throw Error(
+        fmt::format("{} = {} is outside its range. Give a number from {}.", row.name, value, range_text(parameter)));
   if (row.kind != ParameterKind::real && value != std::round(value))
     throw Error(fmt::format("{} = {} must be a whole number. Give a whole number from {}.", row.name, value,
                             range_text(parameter)));
@@ -74,12 +72,13 @@ ParameterFile parse_parameters(std::string_view toml_text, const std::string& fi
   try {
     document = toml::parse(toml_text, file_name);
   } catch (const toml::parse_error& error) {
-    throw Error(fmt::format("{}, line {}: {}. Correct that line.", file_name, error.source().begin.line,
-                            error.description()));
+    throw Error(
+        fmt::format("{}, line {}: {}. Correct that line.", file_name, error.source().begin.line, error.description()));
   }
   const toml::table* section = document["parameters"].as_table();
   if (section == nullptr)
-    throw Error(fmt::format("{} has no [parameters] section. Make one with `inkwell parameters save FILE`.", file_name));
+    throw Error(
+        fmt::format("{} has no [parameters] section. Make one with `inkwell parameters save FILE`.", file_name));
 
   ParameterFile file;
   for (const auto& [key, node] : *section) {
@@ -115,7 +114,8 @@ ParameterFile load_parameters(const std::filesystem::path& file) {
 std::string format_parameters(const protocol::ParameterSet& parameters) {
   std::string text = fmt::format(
       "# Parameters of an Inkwell haptic arm. `inkwell parameters load FILE` gives them to the device.\n\n"
-      "protocol_version = {}\n\n[parameters]\n", protocol::protocol_version);
+      "protocol_version = {}\n\n[parameters]\n",
+      protocol::protocol_version);
   std::string_view group;
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
     const auto parameter = static_cast<Parameter>(i);

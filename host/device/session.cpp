@@ -37,7 +37,8 @@ struct Requests {
 /// A later value of the same parameter takes the place of the earlier one: a transaction names each once.
 void merge(std::vector<ParameterChange>& into, const std::vector<ParameterChange>& changes) {
   for (const auto& change : changes) {
-    const auto same = std::find_if(into.begin(), into.end(), [&](const auto& old) { return old.first == change.first; });
+    const auto same =
+        std::find_if(into.begin(), into.end(), [&](const auto& old) { return old.first == change.first; });
     if (same != into.end())
       same->second = change.second;
     else
@@ -121,9 +122,11 @@ struct Session::Implementation {
       const auto now = Clock::now();
       if (now - window_start >= rate_window) {
         const std::lock_guard lock(mutex);
-        state.pose_rate_Hz = static_cast<double>(poses_in_window) / std::chrono::duration<double>(now - window_start).count();
+        state.pose_rate_Hz =
+            static_cast<double>(poses_in_window) / std::chrono::duration<double>(now - window_start).count();
         state.scope_frames_malformed = served->malformed_scope_frames();
-        if (now - last_pose > silence_limit) state.message = "The device is connected but silent: it is paused or stuck.";
+        if (now - last_pose > silence_limit)
+          state.message = "The device is connected but silent: it is paused or stuck.";
         window_start = now;
         poses_in_window = 0;
       }

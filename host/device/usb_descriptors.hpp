@@ -12,7 +12,7 @@ namespace inkwell::device {
 struct UsbLayout {
   std::uint8_t configuration = 0;
   std::uint8_t hid_interface = 0;
-  std::uint8_t hid_in_endpoint = 0;   ///< with the direction bit
+  std::uint8_t hid_in_endpoint = 0;  ///< with the direction bit
   std::uint8_t hid_out_endpoint = 0;
   std::uint8_t scope_interface = 0;
   std::uint8_t scope_in_endpoint = 0;  ///< with the direction bit

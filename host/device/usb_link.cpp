@@ -23,8 +23,8 @@ namespace {
 
 namespace identity = protocol::usb;
 
-constexpr int bulk_transfers = 64;         // 128 KiB are more than 100 ms of a full-speed bus
-constexpr std::size_t bulk_kept = 2048;    // 4 MiB; then the oldest go, and the sequence of the frames shows it
+constexpr int bulk_transfers = 64;       // 128 KiB are more than 100 ms of a full-speed bus
+constexpr std::size_t bulk_kept = 2048;  // 4 MiB; then the oldest go, and the sequence of the frames shows it
 constexpr char unplugged[] = "The device was unplugged. Connect it again.";
 
 std::string narrow(const wchar_t* text) {
@@ -76,7 +76,8 @@ class BulkReader {
       std::array<unsigned char, 128> serial{};
       const int length =
           libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, serial.data(), serial.size());
-      const std::string found(reinterpret_cast<const char*>(serial.data()), static_cast<std::size_t>(std::max(length, 0)));
+      const std::string found(reinterpret_cast<const char*>(serial.data()),
+                              static_cast<std::size_t>(std::max(length, 0)));
       if (found == serial_number)
         handle_ = handle;
       else
@@ -165,7 +166,9 @@ class UsbLink : public Link {
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
     return check(hid_read_timeout(hid_.get(), data(report), report.size(), static_cast<int>(timeout.count())));
   }
-  void write_report(std::span<const std::byte> report) override { check(hid_write(hid_.get(), data(report), report.size())); }
+  void write_report(std::span<const std::byte> report) override {
+    check(hid_write(hid_.get(), data(report), report.size()));
+  }
   std::size_t get_feature(std::span<std::byte> report) override {
     return check(hid_get_feature_report(hid_.get(), data(report), report.size()));
   }

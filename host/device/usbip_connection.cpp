@@ -35,7 +35,8 @@ std::string text_of(std::span<const char> field) { return {field.data(), strnlen
 
 void check_reply(const usbip::OperationHeader& reply, std::uint16_t operation) {
   if (reply.version != usbip::protocol_version || reply.operation != operation)
-    throw Error("What answers at this port does not speak USB/IP 1.1.1. Give the USB/IP port that virtual-board printed.");
+    throw Error(
+        "What answers at this port does not speak USB/IP 1.1.1. Give the USB/IP port that virtual-board printed.");
 }
 
 }  // namespace
@@ -49,7 +50,8 @@ std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto description = receive<usbip::DeviceDescription>(socket);
     for (int j = 0; j < description.interface_count; ++j) receive<std::array<std::uint8_t, 4>>(socket);
-    devices.push_back({text_of(description.path), text_of(description.bus_id), description.vendor_id, description.product_id});
+    devices.push_back(
+        {text_of(description.path), text_of(description.bus_id), description.vendor_id, description.product_id});
   }
   return devices;
 }
@@ -63,8 +65,10 @@ UsbipConnection::UsbipConnection(const std::string& host, std::uint16_t port, co
   const auto reply = receive<usbip::OperationHeader>(socket_);
   check_reply(reply, usbip::reply_import);
   if (reply.status != 0)
-    throw Error(fmt::format("The device {} at {}:{} cannot be taken: another program uses it, or its cable is out. "
-                            "Close the other program.", bus_id, host, port));
+    throw Error(
+        fmt::format("The device {} at {}:{} cannot be taken: another program uses it, or its cable is out. "
+                    "Close the other program.",
+                    bus_id, host, port));
   const auto description = receive<usbip::DeviceDescription>(socket_);
   device_ = description.bus_number << 16 | description.device_number;
 }
@@ -157,9 +161,7 @@ UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction,
   return completion;
 }
 
-std::vector<std::byte> UsbipConnection::control_in(const Setup& setup) {
-  return control(usbip::in, setup, {}).data;
-}
+std::vector<std::byte> UsbipConnection::control_in(const Setup& setup) { return control(usbip::in, setup, {}).data; }
 
 void UsbipConnection::control_out(const Setup& setup, std::span<const std::byte> data) {
   control(usbip::out, setup, data);

@@ -31,7 +31,7 @@ std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16
 class UsbipConnection {
  public:
   struct Completion {
-    std::int32_t status = 0;  ///< 0 or a negative errno
+    std::int32_t status = 0;      ///< 0 or a negative errno
     std::uint32_t length = 0;     ///< bytes that were transferred
     std::vector<std::byte> data;  ///< of an IN transfer
   };

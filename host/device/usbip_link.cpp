@@ -19,9 +19,9 @@ namespace identity = protocol::usb;
 
 constexpr char unplugged[] = "The device was unplugged. Connect it again.";
 constexpr int report_transfers = 32;
-constexpr int bulk_transfers = 64;              // 128 KiB are more than 100 ms of a full-speed bus
-constexpr std::size_t reports_kept = 1024;      // a second; then the oldest go, and the sequence shows it
-constexpr std::size_t bulk_kept = 2048;         // 4 MiB; then the device has to wait, and it counts what it drops
+constexpr int bulk_transfers = 64;          // 128 KiB are more than 100 ms of a full-speed bus
+constexpr std::size_t reports_kept = 1024;  // a second; then the oldest go, and the sequence shows it
+constexpr std::size_t bulk_kept = 2048;     // 4 MiB; then the device has to wait, and it counts what it drops
 constexpr std::size_t writes_under_way = 16;
 
 class UsbipLink : public Link {
@@ -94,8 +94,8 @@ class UsbipLink : public Link {
     };
     endpoint_.product = text(index_of_string(15));
     endpoint_.serial_number = text(index_of_string(16));
-    layout_ = parse_configuration(
-        connection_.control_in(setup::get_descriptor(DescriptorType::configuration, 0, 1024)));
+    layout_ =
+        parse_configuration(connection_.control_in(setup::get_descriptor(DescriptorType::configuration, 0, 1024)));
     connection_.control_out(setup::set_configuration(layout_.configuration), {});
   }
 

@@ -52,9 +52,13 @@ struct Pipe {
 
 std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const std::filesystem::path& program,
                                       const std::filesystem::path& elf) {
-  std::vector<std::string> arguments{program.string(), "--elf", elf.string(), "--mode",
+  std::vector<std::string> arguments{program.string(),
+                                     "--elf",
+                                     elf.string(),
+                                     "--mode",
                                      options.mode == SimulationMode::exact ? "exact" : "fast",
-                                     "--seed", std::to_string(options.seed)};
+                                     "--seed",
+                                     std::to_string(options.seed)};
   if (!options.arm.empty()) arguments.insert(arguments.end(), {"--arm", options.arm.string()});
   if (options.real_time) arguments.push_back("--real-time");
   if (options.paused) arguments.push_back("--paused");
@@ -155,8 +159,8 @@ VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_
   if (access(program.c_str(), X_OK) != 0)
     throw Error(fmt::format("The program {} is missing. Build it with tools/build.", program.string()));
   if (access(elf.c_str(), R_OK) != 0)
-    throw Error(fmt::format("The firmware {} is missing. Build it with tools/build, or name one with --elf.",
-                            elf.string()));
+    throw Error(
+        fmt::format("The firmware {} is missing. Build it with tools/build, or name one with --elf.", elf.string()));
   auto& self = *implementation_;
   self.start(arguments_of(options, program, elf));
   const std::string line = self.read_ready_line();

@@ -91,13 +91,15 @@ std::string script(const FigureOptions& options, const Recording& data) {
 
   text += head(options, 13, "Torques at the three joints");
   text += "set ylabel 'torque  /  Nm' textcolor rgb ink\n";
-  text += recording::plot_command({{"torque_1_Nm", "green", "T1z, waist"}, {"torque_2_Nm", "blue", "T2x, shoulder"},
-                        {"torque_3_Nm", "vermilion", "T3x, elbow"}});
+  text += recording::plot_command({{"torque_1_Nm", "green", "T1z, waist"},
+                                   {"torque_2_Nm", "blue", "T2x, shoulder"},
+                                   {"torque_3_Nm", "vermilion", "T3x, elbow"}});
 
   text += head(options, 14, "Duty of the three bridges");
   text += "set ylabel 'duty  /  % of the supply' textcolor rgb ink\n";
-  text += recording::plot_command({{"duty_1_percent", "green", "bridge 1"}, {"duty_2_percent", "blue", "bridge 2"},
-                        {"duty_3_percent", "vermilion", "bridge 3"}});
+  text += recording::plot_command({{"duty_1_percent", "green", "bridge 1"},
+                                   {"duty_2_percent", "blue", "bridge 2"},
+                                   {"duty_3_percent", "vermilion", "bridge 3"}});
   return text;
 }
 

@@ -22,8 +22,10 @@ constexpr std::array<std::string_view, 9> truth_columns = {
 std::size_t index_of(const std::vector<std::string>& columns, std::string_view name) {
   const auto found = std::find(columns.begin(), columns.end(), name);
   if (found == columns.end())
-    throw device::Error(fmt::format("The column {} is missing. Build the virtual board and the companion from the same "
-                                    "source.", name));
+    throw device::Error(
+        fmt::format("The column {} is missing. Build the virtual board and the companion from the same "
+                    "source.",
+                    name));
   return static_cast<std::size_t>(found - columns.begin());
 }
 
@@ -42,8 +44,8 @@ class TruthRows {
     const bool known = period >= first_period_ && index < trace_.row_count() &&
                        trace_.values[index * width + period_] == static_cast<double>(period);
     if (!known)
-      throw device::Error(fmt::format("The virtual board's trace lacks control period {}. Run the experiment again.",
-                                      period));
+      throw device::Error(
+          fmt::format("The virtual board's trace lacks control period {}. Run the experiment again.", period));
     for (std::size_t column : columns_) row.push_back(trace_.values[index * width + column]);
   }
 

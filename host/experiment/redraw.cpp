@@ -15,8 +15,10 @@ namespace {
 FigureOptions read_options(const std::filesystem::path& file, std::size_t samples) {
   std::ifstream stream(file);
   if (!stream)
-    throw device::Error(fmt::format("{} is missing. It tells the wall, the parameters and whether the recording is a "
-                                    "simulation; put it beside the recording.", file.string()));
+    throw device::Error(
+        fmt::format("{} is missing. It tells the wall, the parameters and whether the recording is a "
+                    "simulation; put it beside the recording.",
+                    file.string()));
   try {
     const auto summary = nlohmann::json::parse(stream);
     FigureOptions options;
@@ -31,8 +33,8 @@ FigureOptions read_options(const std::filesystem::path& file, std::size_t sample
     options.shown = interval_to_show({contact.at("from_s").get<double>(), contact.at("to_s").get<double>()}, samples);
     return options;
   } catch (const nlohmann::json::exception& error) {
-    throw device::Error(fmt::format("{} is damaged or of another version: {}. Run the experiment again.", file.string(),
-                                    error.what()));
+    throw device::Error(
+        fmt::format("{} is damaged or of another version: {}. Run the experiment again.", file.string(), error.what()));
   }
 }
 

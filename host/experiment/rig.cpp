@@ -109,9 +109,10 @@ ScopeRecording ScopeCapture::take(std::size_t samples) {
       const std::lock_guard lock(mutex_);
       if (failure_) throw device::Error(*failure_);
       if (recording_.lost_samples > 0)
-        throw device::Error(fmt::format("{} samples of the scope were lost, so the recording has gaps. Close other "
-                                        "programs that load this computer and run the experiment again.",
-                                        recording_.lost_samples));
+        throw device::Error(
+            fmt::format("{} samples of the scope were lost, so the recording has gaps. Close other "
+                        "programs that load this computer and run the experiment again.",
+                        recording_.lost_samples));
       if (recording_.size() >= samples) {
         ScopeRecording taken = recording_;
         taken.values.resize(samples * taken.signals.size());

@@ -205,8 +205,8 @@ WallResult evaluate(const Recording& recording, const ParameterSet& parameters, 
     result.penetration_maximum_m = std::max(result.penetration_maximum_m, depth_m);
     result.force_maximum_N = std::max(result.force_maximum_N, recording.at(i, force));
     result.torque_1_maximum_Nm = std::max(result.torque_1_maximum_Nm, std::abs(recording.at(i, torque_1)));
-    result.other_torques_maximum_Nm = std::max({result.other_torques_maximum_Nm, std::abs(recording.at(i, torque_2)),
-                                                std::abs(recording.at(i, torque_3))});
+    result.other_torques_maximum_Nm = std::max(
+        {result.other_torques_maximum_Nm, std::abs(recording.at(i, torque_2)), std::abs(recording.at(i, torque_3))});
   }
   result.force_law = force_law(recording, parameters);
   if (!hold) hold = find_steady_hold(recording, wall);

@@ -26,11 +26,16 @@ ordered_json current_step_json(const std::vector<CurrentStep>& steps) {
     worst.rise_time_s = std::max(worst.rise_time_s, step.rise_time_s);
     worst.overshoot = std::max(worst.overshoot, step.overshoot);
     if (std::abs(step.steady_error_A) > std::abs(worst.steady_error_A)) worst.steady_error_A = step.steady_error_A;
-    motors.push_back({{"amplitude_A", step.amplitude_A}, {"rise_time_s", step.rise_time_s},
-                      {"overshoot", step.overshoot}, {"steady_error_A", step.steady_error_A}});
+    motors.push_back({{"amplitude_A", step.amplitude_A},
+                      {"rise_time_s", step.rise_time_s},
+                      {"overshoot", step.overshoot},
+                      {"steady_error_A", step.steady_error_A}});
   }
-  return {{"amplitude_A", worst.amplitude_A}, {"rise_time_s", worst.rise_time_s}, {"overshoot", worst.overshoot},
-          {"steady_error_A", worst.steady_error_A}, {"motors", motors}};
+  return {{"amplitude_A", worst.amplitude_A},
+          {"rise_time_s", worst.rise_time_s},
+          {"overshoot", worst.overshoot},
+          {"steady_error_A", worst.steady_error_A},
+          {"motors", motors}};
 }
 
 }  // namespace

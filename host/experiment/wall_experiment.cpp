@@ -171,7 +171,8 @@ Push push_by_simulated_hand(Rig& rig, device::Device& device, device::ControlCli
   constexpr double step_s = 0.1;
   for (double passed_s = 0; passed_s < end_s; passed_s += step_s) {
     progress(fmt::format("The hand pushes into the wall {}: {:.1f} of {:.1f} s of board time.", wall_name(wall),
-                         passed_s, end_s), 0.3 + 0.5 * passed_s / end_s);
+                         passed_s, end_s),
+             0.3 + 0.5 * passed_s / end_s);
     rig.pass(step_s);
   }
   rig.pass(step_s);
@@ -182,8 +183,8 @@ Push push_by_simulated_hand(Rig& rig, device::Device& device, device::ControlCli
 
   progress("The simulation's own values are read.", 0.82);
   const auto truth = read_trace(control);
-  const double offset_s = static_cast<double>(static_cast<std::int32_t>(path_begins_at - scope.first_period)) /
-                          protocol::servo_rate_Hz;
+  const double offset_s =
+      static_cast<double>(static_cast<std::int32_t>(path_begins_at - scope.first_period)) / protocol::servo_rate_Hz;
   return {make_recording(scope, &truth), Interval{offset_s + pushed_s + settling_s, offset_s + held_s - 0.01},
           scope.lost_samples};
 }
@@ -310,9 +311,9 @@ nlohmann::ordered_json run_wall_experiment(const WallOptions& options, const Pro
   const auto steps_recording = record_current_steps(rig, *device);
   const auto steps = current_steps(steps_recording);
 
-  const Push push = control ? push_by_simulated_hand(rig, *device, *control, circumstances.parameters,
-                                                     circumstances.wall, progress)
-                            : push_by_user(rig, *device, circumstances.parameters, circumstances.wall, progress);
+  const Push push =
+      control ? push_by_simulated_hand(rig, *device, *control, circumstances.parameters, circumstances.wall, progress)
+              : push_by_user(rig, *device, circumstances.parameters, circumstances.wall, progress);
   circumstances.poses_received = rig.poses_received();
   circumstances.poses_lost = rig.poses_lost();
   circumstances.samples_lost = push.samples_lost;

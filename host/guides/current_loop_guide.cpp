@@ -118,8 +118,8 @@ class IdentifyMotor final : public Step {
     const auto supply_V = recorder_->values_of(Signal::supply_V);
     const auto speed_rad_s = recorder_->values_of(signal_of(Signal::joint_speed_1_rad_s, motor_));
     const double sign = held(set_, Parameter::motor_1_reversed, motor_) == 1.0 ? -1.0 : 1.0;
-    const double back_emf_Vs = sign * held(set_, Parameter::gear_ratio_1, motor_) *
-                               held(set_, Parameter::torque_constant_1_Nm_per_A, motor_);
+    const double back_emf_Vs =
+        sign * held(set_, Parameter::gear_ratio_1, motor_) * held(set_, Parameter::torque_constant_1_Nm_per_A, motor_);
     VoltagePulse pulse{recorder_->values_of(signal_of(Signal::duty_1, motor_)),
                        recorder_->values_of(signal_of(Signal::current_1_A, motor_)), speed_rad_s};
     for (std::size_t i = 0; i < pulse.voltage_V.size(); ++i) {
@@ -174,8 +174,9 @@ class TryGains final : public Step {
     const std::string pulses = fmt::format("Motor {} gets a step of {:.1f} A for 20 ms",
                                            fmt::join(tuning_->options.motors, ", then "), step_A);
     if (!suggested_) return pulses + " with the gains that the device holds now. Leave the stylus in the inkwell.";
-    return pulses + " with the suggested gains. They are on the device for this test only; afterwards it holds the old "
-                    "ones again until you apply the new ones. Leave the stylus in the inkwell.";
+    return pulses +
+           " with the suggested gains. They are on the device for this test only; afterwards it holds the old "
+           "ones again until you apply the new ones. Leave the stylus in the inkwell.";
   }
   bool asks_first() const override { return true; }
 
@@ -339,8 +340,7 @@ Guide current_loop_guide(const CurrentLoopOptions& options) {
   auto findings = std::make_shared<Findings>();
   std::vector<std::unique_ptr<Step>> steps;
   steps.push_back(std::make_unique<RestInInkwell>(findings, false));
-  for (const int motor : options.motors)
-    steps.push_back(std::make_unique<IdentifyMotor>(tuning, findings, motor));
+  for (const int motor : options.motors) steps.push_back(std::make_unique<IdentifyMotor>(tuning, findings, motor));
   steps.push_back(std::make_unique<TryGains>(tuning, findings, false));
   steps.push_back(std::make_unique<TryGains>(tuning, findings, true));
   return {"current-loop", "Current-loop tuning", std::move(steps), findings};

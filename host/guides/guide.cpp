@@ -115,8 +115,10 @@ void Guide::run(const Observation& now, DevicePort& port) {
   if (index_ + 1 < steps_.size())
     enter(index_ + 1);
   else
-    end(Phase::finished, findings_->proposals.empty() ? "Finished. There is nothing to change."
-                                                      : "Finished. The proposals wait to be applied.", port);
+    end(Phase::finished,
+        findings_->proposals.empty() ? "Finished. There is nothing to change."
+                                     : "Finished. The proposals wait to be applied.",
+        port);
 }
 
 void Guide::leave_step(DevicePort& port) {
@@ -175,12 +177,9 @@ nlohmann::ordered_json to_json(const Guide& guide) {
                          {"proposed", proposal.proposed},
                          {"unit", info(proposal.parameter).unit},
                          {"reason", proposal.reason}});
-  nlohmann::ordered_json json{{"guide", guide.name()},
-                              {"result", phase_name(guide.phase())},
-                              {"outcome", guide.outcome()},
-                              {"findings", guide.findings().sentences},
-                              {"proposals", proposals},
-                              {"applied", guide.applied() == Applied::yes}};
+  nlohmann::ordered_json json{{"guide", guide.name()},      {"result", phase_name(guide.phase())},
+                              {"outcome", guide.outcome()}, {"findings", guide.findings().sentences},
+                              {"proposals", proposals},     {"applied", guide.applied() == Applied::yes}};
   if (!guide.refusal().empty()) json["refusal"] = guide.refusal();
   json.update(guide.findings().details);
   return json;

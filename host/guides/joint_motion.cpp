@@ -13,7 +13,7 @@ namespace {
 using protocol::Parameter;
 using protocol::State;
 
-constexpr double turn_rad = 0.15;   // enough to be meant, and far from any stop
+constexpr double turn_rad = 0.15;  // enough to be meant, and far from any stop
 constexpr double resting_s = 0.2;
 
 double joint_rad(const protocol::PoseReport& pose, int joint) { return static_cast<double>(pose.joint_rad[joint - 1]); }

@@ -153,15 +153,17 @@ MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_per
       std::sqrt((measured - model.currents(unknowns, count)).squaredNorm() / static_cast<double>(count));
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const double final_A = mean_of_second_half(segments[s].pulse->current_A, segments[s]);
-    circuit.delay_s += delay_of(segments[s], unknowns[3 + static_cast<Eigen::Index>(s)], final_A, time_constant_s,
-                                sample_period_s) / static_cast<double>(segments.size());
+    circuit.delay_s +=
+        delay_of(segments[s], unknowns[3 + static_cast<Eigen::Index>(s)], final_A, time_constant_s, sample_period_s) /
+        static_cast<double>(segments.size());
   }
   const double largest_A = measured.cwiseAbs().maxCoeff();
   const bool plausible = std::isfinite(circuit.resistance_ohm) && time_constant_s > 0.2 * sample_period_s &&
                          time_constant_s < 100 * sample_period_s && circuit.residual_A < 0.1 * largest_A;
   if (!plausible)
-    throw device::Error("The current does not rise as in a coil with a resistance. Check the motor's wiring and plug, "
-                        "hold the arm still and start the guide again.");
+    throw device::Error(
+        "The current does not rise as in a coil with a resistance. Check the motor's wiring and plug, "
+        "hold the arm still and start the guide again.");
   return circuit;
 }
 

@@ -45,12 +45,14 @@ void PulseRecorder::receive(const device::ScopeSamples& samples) {
 bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) {
   if (state_ == State::done) return true;
   if (pose.state != protocol::State::ready)
-    throw device::Error("Test pulses need the state ready. Put the stylus into the inkwell once, leave the force off "
-                        "and start the guide again.");
+    throw device::Error(
+        "Test pulses need the state ready. Put the stylus into the inkwell once, leave the force off "
+        "and start the guide again.");
   if (recording_.lost_samples > 0) {
     if (--attempts_left_ == 0)
-      throw device::Error("Samples of the scope were lost again and again. Close other programs that load this "
-                          "computer and start the guide again.");
+      throw device::Error(
+          "Samples of the scope were lost again and again. Close other programs that load this "
+          "computer and start the guide again.");
     start_over(pose);
   }
   if (state_ == State::waits_for_scope) {
@@ -67,8 +69,9 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
   const auto needed = static_cast<std::size_t>(2.0f * pulse_.duration_s * protocol::servo_rate_Hz);
   if (recording_.size() < begin + needed || begin == recording_.size()) {
     if (since_.seconds(pose) > pulse_limit_s + 2.0 * static_cast<double>(pulse_.duration_s))
-      throw device::Error("The test pulse did not come. Check that no other program sends commands to the device, "
-                          "reset the board and start the guide again.");
+      throw device::Error(
+          "The test pulse did not come. Check that no other program sends commands to the device, "
+          "reset the board and start the guide again.");
     return false;
   }
   // From a little before the pulse to the end of the rest after it.

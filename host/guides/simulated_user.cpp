@@ -14,10 +14,10 @@ using protocol::Parameter;
 
 constexpr double firm_N_per_m = 600, loose_N_per_m = 120, damping_Ns_per_m = 6;
 constexpr double joint_speed_rad_s = 1.0;
-constexpr double chord_rad = 0.15;     // the hand goes straight between points, so they lie close together
-constexpr double turn_rad = 0.25;      // what "turn the joint" means
-constexpr double beyond_rad = 0.02;    // how far into a stop the hand aims
-constexpr double hold_s = 0.8;         // at a stop
+constexpr double chord_rad = 0.15;   // the hand goes straight between points, so they lie close together
+constexpr double turn_rad = 0.25;    // what "turn the joint" means
+constexpr double beyond_rad = 0.02;  // how far into a stop the hand aims
+constexpr double hold_s = 0.8;       // at a stop
 constexpr double press_s = 0.1;
 
 }  // namespace
@@ -75,8 +75,10 @@ double SimulatedUser::move(std::vector<Joints> through, double stiffness_N_per_m
     if (i + 2 < through.size()) path.push_back({time_s += hold_s, probe_m(through[i + 1])});
   }
   const auto here = control_.truth();
-  control_.hand({true, {here.at("true_position_x_m"), here.at("true_position_y_m"), here.at("true_position_z_m")},
-                 stiffness_N_per_m, damping_Ns_per_m});
+  control_.hand({true,
+                 {here.at("true_position_x_m"), here.at("true_position_y_m"), here.at("true_position_z_m")},
+                 stiffness_N_per_m,
+                 damping_Ns_per_m});
   control_.dock(false);
   control_.hand_path(path);
   return time_s;
@@ -94,8 +96,9 @@ void SimulatedUser::move_to_stops(int joint, double now_s) {
     return joints_at(joint == 1 ? angle_rad : 0, joint == 2 ? angle_rad : middle(2),
                      joint == 3 ? angle_rad : middle(3));
   };
-  const double lasts_s = move({with(middle(joint)), with(limit_rad(joint, false) - beyond_rad),
-                               with(limit_rad(joint, true) + beyond_rad)}, firm_N_per_m);
+  const double lasts_s =
+      move({with(middle(joint)), with(limit_rad(joint, false) - beyond_rad), with(limit_rad(joint, true) + beyond_rad)},
+           firm_N_per_m);
   press_button(1, now_s + lasts_s + hold_s);
 }
 
@@ -112,9 +115,9 @@ void SimulatedUser::begin(const UserTask& task, double now_s) {
     const double angle_rad = (of(Parameter::gimbal_1_square_rad) * ratio + of(Parameter::gimbal_1_slope_rad)) * ratio +
                              of(Parameter::gimbal_1_offset_rad);
     planned_.push_back({at_s, [this, place, angle_rad] {
-      gimbal_rad_[place] = angle_rad;
-      control_.gimbal(gimbal_rad_);
-    }});
+                          gimbal_rad_[place] = angle_rad;
+                          control_.gimbal(gimbal_rad_);
+                        }});
   };
   switch (task.kind) {
     case Kind::none: break;

@@ -52,16 +52,24 @@ class CsvReader {
       is_recording_ = true;
       if (number(value).value_or(0) > format_version)
         recording_.remarks.push_back(fmt::format("{} was written by a newer version of this program.", name_));
-    } else if (key == "created_utc") about.created_utc = value;
-    else if (key == "firmware_version") about.firmware_version = value;
-    else if (key == "protocol_version") about.protocol_version = static_cast<std::uint16_t>(number(value).value_or(0));
-    else if (key == "serial_number") about.serial_number = value;
-    else if (key == "arm") about.arm = value;
-    else if (key == "simulation") about.simulation = value == "1";
-    else if (key == "complete") recording_.complete = value == "1";
+    } else if (key == "created_utc")
+      about.created_utc = value;
+    else if (key == "firmware_version")
+      about.firmware_version = value;
+    else if (key == "protocol_version")
+      about.protocol_version = static_cast<std::uint16_t>(number(value).value_or(0));
+    else if (key == "serial_number")
+      about.serial_number = value;
+    else if (key == "arm")
+      about.arm = value;
+    else if (key == "simulation")
+      about.simulation = value == "1";
+    else if (key == "complete")
+      recording_.complete = value == "1";
     else if (key.starts_with("mark "))
       recording_.marks.push_back({static_cast<std::uint32_t>(number(key.substr(5)).value_or(0)), std::string(value)});
-    else if (key.starts_with("parameter ")) parameter(key.substr(10), value);
+    else if (key.starts_with("parameter "))
+      parameter(key.substr(10), value);
   }
   void parameter(std::string_view name, std::string_view text) {
     const auto known = protocol::find_parameter(name);

@@ -110,8 +110,10 @@ std::string marks(const Recording& recording, double from_s, double to_s, bool w
   for (const auto& mark : recording.marks) {
     const double at_s = recording.elapsed_s_at(mark.period);
     if (at_s < from_s || at_s > to_s) continue;
-    text += fmt::format("set arrow {0} from first {1:.6f}, graph 0 to first {1:.6f}, graph 1 nohead linecolor rgb grey "
-                        "linewidth 1.2 dashtype 2 front\n", number, at_s);
+    text += fmt::format(
+        "set arrow {0} from first {1:.6f}, graph 0 to first {1:.6f}, graph 1 nohead linecolor rgb grey "
+        "linewidth 1.2 dashtype 2 front\n",
+        number, at_s);
     if (with_text)
       text += fmt::format(
           "set label {} {} at first {:.6f}, graph {} offset 0.4,-0.6 left font 'Inter,15' textcolor rgb grey "
@@ -132,8 +134,7 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
       "set xrange [{:.6f}:{:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
       "set key at screen 0.785, graph 1 left top\n",
       from_s, to_s);
-  text += figure_titles(name + (recording.information.simulation ? " (simulation)" : ""),
-                        subtitle(recording), height);
+  text += figure_titles(name + (recording.information.simulation ? " (simulation)" : ""), subtitle(recording), height);
   text += marks(recording, from_s, to_s, true);
   text += "set format x ''\nunset xlabel\n";
   int top = height - titles_pixels;

@@ -81,7 +81,7 @@ std::optional<protocol::PoseReport> Replay::pose() const {
   protocol::PoseReport pose{};
   pose.time_periods = recording_.periods[present];
   pose.sequence = pose.time_periods / (protocol::servo_rate_Hz / protocol::pose_rate_Hz);
-  const auto vector = [&](float (&to)[3], Signal first) {
+  const auto vector = [&](float(&to)[3], Signal first) {
     for (int i = 0; i < 3; ++i) to[i] = value(static_cast<Signal>(static_cast<int>(first) + i));
   };
   vector(pose.joint_rad, Signal::joint_1_rad);

@@ -1,9 +1,9 @@
 #include <window/analysis.hpp>
 
+#include <fftw3.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <fftw3.h>
 #include <limits>
 #include <memory>
 #include <numbers>

@@ -189,10 +189,10 @@ void Companion::draw(ImVec2 size, double now_s) {
   const float tuning_width =
       std::min(style_.points(std::max(settings_.tuning_width, tuning_minimum_points)), 0.5f * size.x);
   const float scope_room = size.y - top - style_.points(scene_minimum_points);
-  const float scope_height = settings_.scope_is_shown
-                                 ? std::max(style_.points(scope_minimum_points),
-                                            std::min(style_.points(settings_.scope_height), scope_room))
-                                 : 0.0f;
+  const float scope_height =
+      settings_.scope_is_shown
+          ? std::max(style_.points(scope_minimum_points), std::min(style_.points(settings_.scope_height), scope_room))
+          : 0.0f;
   const float left_width = std::floor(size.x - tuning_width - gap);
   const bool replays = replay_bar_.is_open();
   const float replay_height = replays ? style_.points(replay_bar_points) : 0.0f;
@@ -264,11 +264,10 @@ void Companion::draw_scene(Renderer& renderer, float pixels_per_unit, int frameb
                            bool is_as_before) const {
   const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const int height = pixels(scene_size_.y);
-  scene_pane_.draw_scene(renderer,
-                         {pixels(scene_place_.x), framebuffer_height - pixels(scene_place_.y) - height,
-                          pixels(scene_size_.x), height},
-                         {*style_.palette, options_.flat_colours, smooth && !options_.flat_colours, is_as_before,
-                          std::nullopt});
+  scene_pane_.draw_scene(
+      renderer,
+      {pixels(scene_place_.x), framebuffer_height - pixels(scene_place_.y) - height, pixels(scene_size_.x), height},
+      {*style_.palette, options_.flat_colours, smooth && !options_.flat_colours, is_as_before, std::nullopt});
 }
 
 }  // namespace inkwell::window

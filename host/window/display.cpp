@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
 #include <png.h>
 
 namespace inkwell::window {

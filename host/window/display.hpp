@@ -31,7 +31,7 @@ class Display {
   float content_scale() const;  ///< pixels of text for one point, 1 on an ordinary display
   double refresh_rate_Hz() const;
   bool draws_in_software() const;  ///< OpenGL has no graphics card
-  ImVec2 corner() const;  ///< top left of what is drawn, on the screen
+  ImVec2 corner() const;           ///< top left of what is drawn, on the screen
 
   /// True if the user or the window system did something since the last call.
   bool take_input() { return std::exchange(had_input_, false); }

@@ -102,8 +102,8 @@ void FileChooser::draw_entries(const Style& style) {
   if (!listing_.problem.empty())
     wrapped_text(palette.caution, listing_.problem);
   else if (listing_.entries.empty())
-    text(palette.text_quiet, shows_all_files_ || question_.endings.empty() ? "Nothing is in here."
-                                                                            : "No such file is in here.");
+    text(palette.text_quiet,
+         shows_all_files_ || question_.endings.empty() ? "Nothing is in here." : "No such file is in here.");
   ImGui::EndChild();
   ImGui::PopStyleColor();
   if (wanted) enter(*wanted);
@@ -138,8 +138,7 @@ bool FileChooser::draw_buttons(const Style& style) {
     if (coloured_button("Replace", style.palette->danger, style.palette->on_danger, size))
       chosen_ = std::exchange(to_be_replaced_, std::nullopt);
     ImGui::SameLine();
-    if (button("Keep it", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
-      to_be_replaced_.reset();
+    if (button("Keep it", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) to_be_replaced_.reset();
     return false;
   }
   if (coloured_button(question_.button.c_str(), style.palette->accent, style.palette->panel, size)) accept();

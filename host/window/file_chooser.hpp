@@ -16,10 +16,10 @@ namespace inkwell::window {
 struct FileQuestion {
   std::string title;
   std::string help;
-  std::string button;                 ///< "Load", "Save"
-  std::vector<std::string> endings;   ///< of the files that are meant: ".toml"; a new file gets the first one
-  bool is_new_file = false;           ///< it will be written, so it need not exist
-  std::filesystem::path suggestion;   ///< where to begin: a file or a folder; empty: the working folder
+  std::string button;                ///< "Load", "Save"
+  std::vector<std::string> endings;  ///< of the files that are meant: ".toml"; a new file gets the first one
+  bool is_new_file = false;          ///< it will be written, so it need not exist
+  std::filesystem::path suggestion;  ///< where to begin: a file or a folder; empty: the working folder
 };
 
 class FileChooser {

@@ -7,8 +7,7 @@ namespace inkwell::window {
 std::vector<FlowPlace> flow(std::span<const float> widths, float first_row_width, float row_width, float gap) {
   std::vector<FlowPlace> places;
   if (widths.empty()) return places;
-  const float all =
-      std::accumulate(widths.begin(), widths.end(), 0.0f) + gap * static_cast<float>(widths.size() - 1);
+  const float all = std::accumulate(widths.begin(), widths.end(), 0.0f) + gap * static_cast<float>(widths.size() - 1);
   const bool one_row = all <= first_row_width;
   int row = widths.front() <= first_row_width ? 0 : 1;
   float x = 0.0f;

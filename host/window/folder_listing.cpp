@@ -27,8 +27,8 @@ std::string folder_problem(const fs::path& folder, const std::error_code& error)
 }
 
 std::time_t to_time(fs::file_time_type time) {
-  return std::chrono::system_clock::to_time_t(std::chrono::time_point_cast<std::chrono::system_clock::duration>(
-      std::chrono::file_clock::to_sys(time)));
+  return std::chrono::system_clock::to_time_t(
+      std::chrono::time_point_cast<std::chrono::system_clock::duration>(std::chrono::file_clock::to_sys(time)));
 }
 
 bool has_ending(const fs::path& path, std::span<const std::string> endings) {
@@ -74,8 +74,7 @@ fs::path with_ending(fs::path path, std::span<const std::string> endings) {
 
 std::string reading_problem(const fs::path& file) {
   std::error_code error;
-  if (!fs::exists(file, error))
-    return fmt::format("There is no file {}.", file.string());
+  if (!fs::exists(file, error)) return fmt::format("There is no file {}.", file.string());
   if (fs::is_directory(file, error)) return fmt::format("{} is a folder, not a file.", file.string());
   if (access(file.c_str(), R_OK) != 0) return fmt::format("You may not read {}.", file.string());
   return {};

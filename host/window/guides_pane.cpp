@@ -160,8 +160,8 @@ void GuidesPane::draw_checks(const Style& style) {
     ImGui::PopTextWrapPos();
     ImGui::SameLine(0, 0);
     ImGui::SetCursorPosX(0.58f * width);
-    right_text(check.expected.empty() || check.passed ? palette.text : palette.caution,
-               guides::measured_text(check), 0.42f * width);
+    right_text(check.expected.empty() || check.passed ? palette.text : palette.caution, guides::measured_text(check),
+               0.42f * width);
     if (check.expected.empty()) continue;
     // Told in words as well, not by colour alone.
     text(style.fonts.caption, check.passed ? palette.good : palette.text_quiet,

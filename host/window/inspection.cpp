@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 #include <imgui_internal.h>
-#include <nlohmann/json.hpp>
 #include <poll.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "display.hpp"
 
@@ -39,10 +39,10 @@ void note(std::string_view name, const ImRect& place) {
   const ImGuiWindow& pane = *ImGui::GetCurrentWindow()->RootWindow;
   const bool enabled = (GImGui->CurrentItemFlags & ImGuiItemFlags_Disabled) == 0;
   notes->items[fmt::format("{}/{}", pane.Name, name_in(name))] = {{"x", place.Min.x + notes->origin.x},
-                                                                     {"y", place.Min.y + notes->origin.y},
-                                                                     {"width", place.GetWidth()},
-                                                                     {"height", place.GetHeight()},
-                                                                     {"enabled", enabled}};
+                                                                  {"y", place.Min.y + notes->origin.y},
+                                                                  {"width", place.GetWidth()},
+                                                                  {"height", place.GetHeight()},
+                                                                  {"enabled", enabled}};
 }
 
 }  // namespace

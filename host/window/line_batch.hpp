@@ -30,7 +30,7 @@ class LineBatch {
     float width_pixels;
   };
   struct Corner {
-    glm::vec4 place;   // in clip space
+    glm::vec4 place;  // in clip space
     glm::vec4 colour;
     glm::vec2 across;  // distance from the middle and half the width, pixels
   };

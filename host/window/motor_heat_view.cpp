@@ -1,6 +1,5 @@
 #include <window/motor_heat_view.hpp>
 
-
 #include <fmt/format.h>
 
 namespace inkwell::window {
@@ -28,9 +27,10 @@ std::string heat_advice(const MotorHeatView& heat) {
     case HeatLevel::warm:
       return fmt::format("Motor {} is getting warm. Push less or pause before it reaches 100 %.", heat.motor);
     case HeatLevel::hot:
-      return fmt::format("Motor {} has carried more than its continuous current for too long. Switch the force off "
-                         "until it has cooled, or lower the force limit.",
-                         heat.motor);
+      return fmt::format(
+          "Motor {} has carried more than its continuous current for too long. Switch the force off "
+          "until it has cooled, or lower the force limit.",
+          heat.motor);
   }
   return {};
 }

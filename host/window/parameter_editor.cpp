@@ -141,9 +141,8 @@ std::vector<ParameterChange> ParameterEditor::take_changes() { return std::excha
 
 std::string label_of(const protocol::ParameterInfo& info) {
   // Longest first, so that "_N_per_m" is not taken for "_m".
-  static constexpr std::array<std::string_view, 12> unit_endings{"_Nm_per_A", "_Ns_per_m", "_V_per_As", "_V_per_A",
-                                                                 "_m_per_s",  "_N_per_m",  "_rad",      "_m",
-                                                                 "_N",        "_s",        "_V",        "_A"};
+  static constexpr std::array<std::string_view, 12> unit_endings{
+      "_Nm_per_A", "_Ns_per_m", "_V_per_As", "_V_per_A", "_m_per_s", "_N_per_m", "_rad", "_m", "_N", "_s", "_V", "_A"};
   std::string_view name = info.name;
   for (std::string_view ending : unit_endings) {
     if (name.ends_with(ending)) {
@@ -171,11 +170,14 @@ int decimals_of(const protocol::ParameterInfo& info) {
 std::span<const Preset> presets() {
   using enum Parameter;
   static const std::array<Preset, 3> all{{
-      {"Soft", "Like pressing into rubber: 250 N/m with little damping.",
+      {"Soft",
+       "Like pressing into rubber: 250 N/m with little damping.",
        {{wall_stiffness_N_per_m, 250.0f}, {wall_damping_Ns_per_m, 0.5f}}},
-      {"Stiff", "Like wood: 1500 N/m, damped so that it does not ring.",
+      {"Stiff",
+       "Like wood: 1500 N/m, damped so that it does not ring.",
        {{wall_stiffness_N_per_m, 1500.0f}, {wall_damping_Ns_per_m, 3.0f}}},
-      {"Viscous", "Like honey behind the wall: 120 N/m and 10 Ns/m.",
+      {"Viscous",
+       "Like honey behind the wall: 120 N/m and 10 Ns/m.",
        {{wall_stiffness_N_per_m, 120.0f}, {wall_damping_Ns_per_m, 10.0f}}},
   }};
   return all;

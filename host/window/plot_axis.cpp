@@ -1,9 +1,9 @@
 #include <window/plot_axis.hpp>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <fmt/format.h>
 
 namespace inkwell::window {
 

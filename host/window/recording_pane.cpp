@@ -56,7 +56,8 @@ void RecordingPane::start(const DeviceView& view, const std::vector<protocol::Si
   start_error_.clear();
   last_status_.reset();
   signals_ = choice_ == Choice::standard ? recording::standard_signals()
-             : choice_ == Choice::path   ? recording::signal_path() : std::vector<protocol::Signal>{};
+             : choice_ == Choice::path   ? recording::signal_path()
+                                         : std::vector<protocol::Signal>{};
   for (const auto signal : scope_signals)
     if (std::find(signals_.begin(), signals_.end(), signal) == signals_.end() &&
         signals_.size() < protocol::scope_signals_maximum)
@@ -69,8 +70,8 @@ void RecordingPane::start(const DeviceView& view, const std::vector<protocol::Si
       std::filesystem::remove(written_file_, error);
     }
     may_be_replaced_.reset();
-    const auto about = recording::describe(*view.status.information, *view.parameters, signals_, "",
-                                           view.status.is_simulation);
+    const auto about =
+        recording::describe(*view.status.information, *view.parameters, signals_, "", view.status.is_simulation);
     recorder_ = std::make_unique<recording::Recorder>(written_file_, about);
     parameters_ = *view.parameters;
   } catch (const device::Error& error) {
@@ -131,8 +132,10 @@ void RecordingPane::draw_choice(const Style& style, const DeviceView& view, bool
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button_width - ImGui::GetStyle().ItemSpacing.x);
   ImGui::InputTextWithHint("##file", "named after the time", &file_);
   note_item("file");
-  help_on_hover("File", fmt::format("Ends in .h5 or .csv, which chooses the format. This folder is {}.",
-                                    std::filesystem::current_path().string()), style);
+  help_on_hover("File",
+                fmt::format("Ends in .h5 or .csv, which chooses the format. This folder is {}.",
+                            std::filesystem::current_path().string()),
+                style);
   ImGui::SameLine();
   if (button("Choose", {button_width, 0})) {
     task_ = FileTask::record;

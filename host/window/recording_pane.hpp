@@ -45,7 +45,7 @@ class RecordingPane {
   void draw_numbers(const Style& style, const recording::RecorderStatus& status);
   void draw_replay(const Style& style);
 
-  std::string file_;         ///< empty: a name made from the time
+  std::string file_;  ///< empty: a name made from the time
   Choice choice_ = Choice::standard;
   std::string mark_text_;
   std::unique_ptr<recording::Recorder> recorder_;

@@ -24,10 +24,10 @@ struct Viewport {
 
 struct SceneLook {
   const Palette& palette;
-  bool flat_colours;                ///< no lighting, frames of the walls opaque
-  bool smooth;                      ///< with multisampling, in a buffer of its own: dear without a graphics card
-  bool is_as_before;                ///< the same scene as in the last call, which need not be drawn anew
-  std::optional<int> marked_wall;   ///< under the mouse: index into SceneModel::walls
+  bool flat_colours;               ///< no lighting, frames of the walls opaque
+  bool smooth;                     ///< with multisampling, in a buffer of its own: dear without a graphics card
+  bool is_as_before;               ///< the same scene as in the last call, which need not be drawn anew
+  std::optional<int> marked_wall;  ///< under the mouse: index into SceneModel::walls
 };
 
 class Renderer {

@@ -1,8 +1,8 @@
 #include "scene_pane.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 
 #include "inspection.hpp"
 

@@ -51,10 +51,10 @@ class ScenePane {
   std::optional<HandView> hand_view_;
   Camera camera_;
   bool view_is_to_be_reset_ = true;  // at the next frame, from the box as it is then
-  glm::vec2 origin_{0.0f};        // of the pane, in screen coordinates
+  glm::vec2 origin_{0.0f};           // of the pane, in screen coordinates
   glm::vec2 size_{1.0f};
   Drag drag_ = Drag::none;
-  glm::vec3 grabbed_{0.0f};       // where the hand is wanted, in view space
+  glm::vec3 grabbed_{0.0f};  // where the hand is wanted, in view space
   int dragged_wall_ = 0;
   float wall_grab_offset_m_ = 0.0f;
   std::optional<int> marked_wall_;

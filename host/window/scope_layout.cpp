@@ -14,23 +14,26 @@ std::span<const ScopeLayout> built_in_layouts() {
   using enum protocol::Signal;
   using enum PaneKind;
   static const std::array<ScopeLayout, 4> layouts{{
-      {"contact", 2,
-       {{time, "Position", {position_x_m, position_y_m, position_z_m}},
-        {time, "Force", {force_N}}}},
-      {"paper", 2,
+      {"contact", 2, {{time, "Position", {position_x_m, position_y_m, position_z_m}}, {time, "Force", {force_N}}}},
+      {"paper",
+       2,
        {{time, "Figure 11: penetration", {penetration_x_m, penetration_y_m, penetration_z_m}},
         {time, "Figure 12: force", {force_N}},
         {time, "Figure 13: torques", {torque_1_Nm, torque_2_Nm, torque_3_Nm}},
         {time, "Figure 14: duty", {duty_1, duty_2, duty_3}}}},
-      {"currents", 2,
+      {"currents",
+       2,
        {{time, "Motor 1", {current_reference_1_A, current_1_A}},
         {time, "Motor 2", {current_reference_2_A, current_2_A}},
         {time, "Motor 3", {current_reference_3_A, current_3_A}},
         {spectrum, "Spectrum of the currents", {current_1_A, current_2_A, current_3_A}}}},
-      {"interrupt", 2,
+      {"interrupt",
+       2,
        {{time, "Control interrupt", {servo_cycles}},
-        {time, "Its stages", {stage_sample_cycles, stage_pose_cycles, stage_contact_cycles, stage_torque_cycles,
-                              stage_current_cycles, stage_report_cycles}}}},
+        {time,
+         "Its stages",
+         {stage_sample_cycles, stage_pose_cycles, stage_contact_cycles, stage_torque_cycles, stage_current_cycles,
+          stage_report_cycles}}}},
   }};
   return layouts;
 }

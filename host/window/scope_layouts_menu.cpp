@@ -38,8 +38,8 @@ void ScopePanel::draw_layout_menu(const Style& style) {
     }
     ImGui::EndCombo();
   }
-  help_on_hover(
-      "Layout", "What the panes show. \"paper\" has the paper's figures 11 to 14. Save your own under a name.", style);
+  help_on_hover("Layout",
+                "What the panes show. \"paper\" has the paper's figures 11 to 14. Save your own under a name.", style);
   if (name_task_ != NameTask::none) draw_layout_name(style);
 }
 
@@ -59,11 +59,10 @@ void ScopePanel::draw_layout_name(const Style& style) {
   ImGui::SetNextItemWidth(-1);
   const bool entered = ImGui::InputTextWithHint("##name", "a name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
   if (!name_refusal_.empty()) wrapped_text(style.palette->caution, name_refusal_);
-  const bool confirmed = coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->panel,
-                                         {style.points(100), 0});
+  const bool confirmed =
+      coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->panel, {style.points(100), 0});
   ImGui::SameLine();
-  bool is_done = button("Cancel", {style.points(100), 0}) ||
-                 ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  bool is_done = button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
   if (!is_done && (confirmed || entered)) {
     name_refusal_ = renames ? own_layouts_.rename(layout_.name, name_) : OwnLayouts::refusal(name_);
     if (name_refusal_.empty()) {

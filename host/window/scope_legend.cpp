@@ -1,9 +1,9 @@
 // The line above a pane of the scope: which colour is which signal, and its values at the cursors.
 #include "scope_legend.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "scope_panel.hpp"
 

@@ -1,8 +1,8 @@
 #include "scope_panel.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include <protocol/reports.hpp>
 #include <window/frame_rhythm.hpp>

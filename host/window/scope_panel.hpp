@@ -79,14 +79,14 @@ class ScopePanel {
   ScopeLayout layout_;
   OwnLayouts own_layouts_;
   enum class NameTask : std::uint8_t { none, save, rename } name_task_ = NameTask::none;
-  std::string name_;                       // that is typed for a layout
+  std::string name_;  // that is typed for a layout
   std::string name_refusal_;
   std::vector<PaneMemory> memory_;
   double span_s_;
   bool paused_ = false;
   bool has_motion_ = false;
-  std::uint64_t judged_end_ = 0;           // end of the history in the frame before
-  double paused_last_ = 0.0;               // right end of the picture while paused
+  std::uint64_t judged_end_ = 0;  // end of the history in the frame before
+  double paused_last_ = 0.0;      // right end of the picture while paused
   bool cursors_are_shown_ = false;
   std::array<double, 2> cursors_{-0.66, -0.33};  // in parts of the span, from the right end
   int dragged_cursor_ = -1;

@@ -1,9 +1,9 @@
 // The scope's controls: toolbar, trigger, and the menu of a pane.
 #include "scope_panel.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 
 #include <protocol/reports.hpp>
 

@@ -1,8 +1,8 @@
 #include "status_bar.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 #include <utility>
 #include <vector>
 
@@ -17,10 +17,10 @@ using protocol::State;
 namespace {
 
 constexpr float margin_points = 12.0f;
-constexpr float item_points = 38.0f;       // height of the buttons and of a row of gauges
+constexpr float item_points = 38.0f;  // height of the buttons and of a row of gauges
 constexpr float row_points = 46.0f;
 constexpr float gap_points = 8.0f;
-constexpr float buttons_points = 398.0f;   // what the buttons at the right end take
+constexpr float buttons_points = 398.0f;  // what the buttons at the right end take
 constexpr float banner_button_points = 118.0f;
 
 /// Device, gauges, switches: from left to right.
@@ -117,8 +117,8 @@ std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette) {
       {"Poses", fmt::format("{:.0f} Hz", status.pose_rate_Hz), palette.text,
        "Pose reports received in the last second; the device sends 1000."},
       {"Lost", fmt::format("{}", lost), lost > 0 ? palette.caution : palette.text,
-       fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost,
-                   status.scope_samples_lost, status.scope_samples_received + status.scope_samples_lost)}};
+       fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost, status.scope_samples_lost,
+                   status.scope_samples_received + status.scope_samples_lost)}};
   if (!alive)
     for (Gauge& gauge : gauges) gauge = {gauge.caption, "—", palette.text_quiet, gauge.help};
   return gauges;

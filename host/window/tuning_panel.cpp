@@ -1,8 +1,8 @@
 #include "tuning_panel.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 
 #include <device/parameter_file.hpp>
 

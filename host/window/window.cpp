@@ -1,18 +1,18 @@
 #include <window/window.hpp>
 
+#include <fmt/format.h>
+#include <malloc.h>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <fmt/format.h>
 #include <fstream>
-#include <malloc.h>
 #include <sstream>
 #include <system_error>
 
-#include <epoxy/gl.h>
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
 #include <imgui.h>
 
 #include <window/frame_rhythm.hpp>

@@ -1,11 +1,11 @@
 #include <window/window_settings.hpp>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <optional>
 #include <sstream>
-#include <toml++/toml.h>
 
 namespace inkwell::window {
 
@@ -84,22 +84,21 @@ std::string format_settings(const WindowSettings& settings) {
   for (const ScopeLayout& layout : settings.own_layouts.all())
     own_layouts.push_back(
         toml::table{{"name", layout.name}, {"columns", layout.columns}, {"panes", to_toml(layout.panes)}});
-  const toml::table file{
-      {"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
-                             {"tuning_width", settings.tuning_width},
-                             {"scope_height", settings.scope_height},
-                             {"scope_is_shown", settings.scope_is_shown},
-                             {"parameters_file", settings.parameters_file.string()}}},
-      {"scope", toml::table{{"name", settings.layout.name},
-                            {"columns", settings.layout.columns},
-                            {"span_s", settings.scope_span_s},
-                            {"panes", to_toml(settings.layout.panes)},
-                            {"layouts", std::move(own_layouts)}}},
-      {"trigger", toml::table{{"mode", name_of(settings.trigger.mode, trigger_mode_names)},
-                              {"signal", protocol::info(settings.trigger.signal).name},
-                              {"edge", name_of(settings.trigger.edge, trigger_edge_names)},
-                              {"level", settings.trigger.level},
-                              {"pre_trigger", settings.trigger.pre_trigger}}}};
+  const toml::table file{{"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
+                                                {"tuning_width", settings.tuning_width},
+                                                {"scope_height", settings.scope_height},
+                                                {"scope_is_shown", settings.scope_is_shown},
+                                                {"parameters_file", settings.parameters_file.string()}}},
+                         {"scope", toml::table{{"name", settings.layout.name},
+                                               {"columns", settings.layout.columns},
+                                               {"span_s", settings.scope_span_s},
+                                               {"panes", to_toml(settings.layout.panes)},
+                                               {"layouts", std::move(own_layouts)}}},
+                         {"trigger", toml::table{{"mode", name_of(settings.trigger.mode, trigger_mode_names)},
+                                                 {"signal", protocol::info(settings.trigger.signal).name},
+                                                 {"edge", name_of(settings.trigger.edge, trigger_edge_names)},
+                                                 {"level", settings.trigger.level},
+                                                 {"pre_trigger", settings.trigger.pre_trigger}}}};
   std::ostringstream text;
   text << file << '\n';
   return text.str();

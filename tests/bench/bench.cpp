@@ -44,12 +44,14 @@ class BusyBoard {
     return device_->information().report.servo_cycles_longest;
   }
 
+  // clang-format off
   static constexpr std::array signals{
       Signal::servo_cycles,         Signal::stage_sample_cycles,  Signal::stage_pose_cycles,
       Signal::stage_contact_cycles, Signal::stage_torque_cycles,  Signal::stage_current_cycles,
       Signal::stage_report_cycles,  Signal::position_x_m,         Signal::position_y_m,
       Signal::position_z_m,         Signal::force_N,              Signal::torque_1_Nm,
       Signal::torque_2_Nm,          Signal::torque_3_Nm};
+  // clang-format on
 
  private:
   static device::VirtualBoardOptions options(device::SimulationMode mode) {
@@ -92,8 +94,14 @@ void virtual_board(benchmark::State& state, device::SimulationMode mode) {
   }
   state.counters["times_real_time"] = benchmark::Counter(board_s, benchmark::Counter::kIsRate);
 }
-BENCHMARK_CAPTURE(virtual_board, fast, device::SimulationMode::fast)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(5);
-BENCHMARK_CAPTURE(virtual_board, exact, device::SimulationMode::exact)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(5);
+BENCHMARK_CAPTURE(virtual_board, fast, device::SimulationMode::fast)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(5);
+BENCHMARK_CAPTURE(virtual_board, exact, device::SimulationMode::exact)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(5);
 
 void print_stages() {
   BusyBoard board(device::SimulationMode::exact);
@@ -101,7 +109,8 @@ void print_stages() {
   std::printf("Control interrupt on the virtual board (simulation), longest of 20000, one cycle an instruction:\n");
   for (std::size_t i = 1; i < BusyBoard::signals.size(); ++i) {
     const auto& row = protocol::info(BusyBoard::signals[i]);
-    if (row.unit == "cycles") std::printf("  %-22s %6.0f\n", row.name.data(), static_cast<double>(board.longest_cycles(i)));
+    if (row.unit == "cycles")
+      std::printf("  %-22s %6.0f\n", row.name.data(), static_cast<double>(board.longest_cycles(i)));
   }
   std::printf("  %-22s %6.0f\n", "all stages", static_cast<double>(board.longest_cycles(0)));
   std::printf("  since the start        %6u of %u\n\n", board.longest_interrupt_cycles(), board::servo_cycles);

@@ -40,7 +40,8 @@ void push_for(device::ControlClient& control, double time_s) {
   control.hand({.holds = true, .target_m = start_m, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
   control.dock(false);
   std::vector<device::HandWaypoint> path{{0.0, start_m}};
-  for (int i = 1; 0.3 * i < time_s; ++i) path.push_back({0.3 * i, {i % 2 ? 0.09 : 0.05, i % 4 < 2 ? 0.02 : -0.02, -0.03}});
+  for (int i = 1; 0.3 * i < time_s; ++i)
+    path.push_back({0.3 * i, {i % 2 ? 0.09 : 0.05, i % 4 < 2 ? 0.02 : -0.02, -0.03}});
   control.hand_path(path);
 }
 
@@ -58,7 +59,8 @@ void measure(const std::string& layout) {
 }  // namespace
 
 int main() {
-  std::printf("Window on software OpenGL at 1280x800, 10 s at rest and 10 s moving, beside the virtual board "
-              "(simulation, real time):\n");
+  std::printf(
+      "Window on software OpenGL at 1280x800, 10 s at rest and 10 s moving, beside the virtual board "
+      "(simulation, real time):\n");
   for (const char* layout : {"contact", "paper"}) measure(layout);
 }

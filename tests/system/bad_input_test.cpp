@@ -170,10 +170,12 @@ TEST_CASE("the window says what a computer without a display or without OpenGL 3
 }
 
 TEST_CASE("every command explains itself") {
+  // clang-format off
   const std::vector<std::string> commands{
       "info", "watch", "parameters", "parameters get", "parameters set", "parameters defaults", "parameters load",
       "parameters save", "parameters diff", "parameters arm", "experiment", "experiment wall", "calibrate", "tune",
       "tune current-loop", "check", "check connection", "check directions", "record", "replay", "plot"};
+  // clang-format on
   const auto help_of = [](const std::string& command) {
     std::vector<std::string> words;
     std::string word;

@@ -36,7 +36,8 @@ TEST_CASE("the device holds the table's defaults, takes a transaction whole, and
   expected[Parameter::host_timeout_s] = 2.0f;  // the rig's own
   CHECK(before == expected);
 
-  rig.set({{Parameter::wall_stiffness_N_per_m, 432.0f}, {Parameter::wall_damping_Ns_per_m, 1.5f},
+  rig.set({{Parameter::wall_stiffness_N_per_m, 432.0f},
+           {Parameter::wall_damping_Ns_per_m, 1.5f},
            {Parameter::box_minimum_z_m, -0.05f}});
   const auto after = rig.call([](device::Device& arm) { return arm.parameters(); });
   CHECK(after[Parameter::wall_stiffness_N_per_m] == 432.0f);

@@ -116,8 +116,8 @@ std::size_t steadiest_hold(const Recording& recording, const std::string& axis, 
 TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
   // One run for all that is looked at below.
   static const TemporaryDirectory directory;
-  static const auto result = run_program("inkwell", {"experiment", "wall", "--virtual", "--out", directory.path()},
-                                         std::chrono::seconds(300));
+  static const auto result =
+      run_program("inkwell", {"experiment", "wall", "--virtual", "--out", directory.path()}, std::chrono::seconds(300));
   INFO("output: ", result.out, result.err);
   REQUIRE(result.exit_code == 0);
   static const Recording recording(directory.file("recording.csv"));

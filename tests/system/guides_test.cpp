@@ -108,8 +108,10 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
   for (int i = 0; i < 1000 && !board.find(); ++i) std::this_thread::sleep_for(10ms);
   std::optional<ProgramResult> result;
   std::thread guide([&] {
-    result = run_program("inkwell", {"tune", "current-loop", "--yes", "--json", "--usbip",
-                                     "127.0.0.1:" + std::to_string(board.usbip_port())}, 120s);
+    result = run_program(
+        "inkwell",
+        {"tune", "current-loop", "--yes", "--json", "--usbip", "127.0.0.1:" + std::to_string(board.usbip_port())},
+        120s);
   });
   // Until a motor has current, which is in the first pulses.
   bool powered = false;

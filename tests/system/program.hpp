@@ -16,7 +16,8 @@ struct ProgramResult {
   std::string err;
 };
 
-/// Runs build/pc/`program`, or the program of an absolute path, with the arguments. Ends it after `limit`, which no healthy run reaches.
+/// Runs build/pc/`program`, or the program of an absolute path, with the arguments. Ends it after `limit`, which no
+/// healthy run reaches.
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments,
                           std::chrono::seconds limit = std::chrono::seconds(120));
 

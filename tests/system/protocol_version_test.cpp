@@ -46,16 +46,16 @@ TEST_CASE("the companion refuses firmware with another version of the protocol, 
 
   const TemporaryDirectory directory;
   const std::string address = "127.0.0.1:" + std::to_string(board.usbip_port());
-  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-           {"info"},
-           {"watch", "--seconds", "1"},
-           {"parameters"},
-           {"parameters", "set", "wall_stiffness_N_per_m=100"},
-           {"parameters", "save", directory.file("parameters.toml")},
-           {"record", directory.file("recording.h5"), "--seconds", "1"},
-           {"experiment", "wall", "--out", directory.file("experiment")},
-           {"check", "directions", "--yes"},
-           {"tune", "current-loop", "--yes", "--apply"}}) {
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"info"},
+                                             {"watch", "--seconds", "1"},
+                                             {"parameters"},
+                                             {"parameters", "set", "wall_stiffness_N_per_m=100"},
+                                             {"parameters", "save", directory.file("parameters.toml")},
+                                             {"record", directory.file("recording.h5"), "--seconds", "1"},
+                                             {"experiment", "wall", "--out", directory.file("experiment")},
+                                             {"check", "directions", "--yes"},
+                                             {"tune", "current-loop", "--yes", "--apply"}}) {
     auto words = command;
     words.insert(words.end(), {"--usbip", address});
     const auto result = run_program("inkwell", words);

@@ -28,10 +28,14 @@ std::vector<std::string> window_words(const device::VirtualBoard& board, const s
                                       const std::vector<std::string>& options) {
   device::save_parameters(parameters_file, WindowRig::parameters_at_start());
   std::vector<std::string> words{build_directory() + "/inkwell",
-                                 "--usbip", fmt::format("127.0.0.1:{}", board.usbip_port()),
-                                 "--control", std::to_string(board.control_port()),
-                                 "--parameters", parameters_file,
-                                 "--forget-settings", "--inspect"};
+                                 "--usbip",
+                                 fmt::format("127.0.0.1:{}", board.usbip_port()),
+                                 "--control",
+                                 std::to_string(board.control_port()),
+                                 "--parameters",
+                                 parameters_file,
+                                 "--forget-settings",
+                                 "--inspect"};
   words.insert(words.end(), options.begin(), options.end());
   return words;
 }
@@ -57,9 +61,8 @@ WindowRig::WindowRig(const std::vector<std::string>& options)
       display_name_("DISPLAY=:" + display_.read_line()),
       window_(window_words(board, directory_.file("parameters.toml"), options),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
-  look_until("the device is ready and has the parameters", [](const Sight& sight) {
-    return sight.state() == "ready" && sight.applied_at_periods() != 0;
-  });
+  look_until("the device is ready and has the parameters",
+             [](const Sight& sight) { return sight.state() == "ready" && sight.applied_at_periods() != 0; });
 }
 
 protocol::ParameterSet WindowRig::parameters_at_start() {

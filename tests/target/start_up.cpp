@@ -38,8 +38,9 @@ struct VectorTable {
   Handler handlers[15];
 };
 
-[[gnu::section(".vectors"), gnu::used]] const VectorTable vectors{&stack_top,
-                          {reset, processor_fault, processor_fault, processor_fault, processor_fault, processor_fault,
-                           processor_fault, processor_fault, processor_fault, processor_fault, processor_fault,
-                           processor_fault, processor_fault, processor_fault, processor_fault}};
+[[gnu::section(".vectors"), gnu::used]] const VectorTable vectors{
+    &stack_top,
+    {reset, processor_fault, processor_fault, processor_fault, processor_fault, processor_fault, processor_fault,
+     processor_fault, processor_fault, processor_fault, processor_fault, processor_fault, processor_fault,
+     processor_fault, processor_fault}};
 }

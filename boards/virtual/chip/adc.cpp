@@ -145,8 +145,10 @@ void Adc::step(Ticks now) {
     return;
   }
   watch(channel);
-  if (group_ == Group::injected) finish_injected(now);
-  else finish_regular(now);
+  if (group_ == Group::injected)
+    finish_injected(now);
+  else
+    finish_regular(now);
 }
 
 void Adc::watch(unsigned channel) {
@@ -242,9 +244,7 @@ std::uint32_t Adc::read(std::uint32_t offset) {
 
 void Adc::write(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
-    case sr:
-      sr_ &= value | ~0x3Fu;
-      break;
+    case sr: sr_ &= value | ~0x3Fu; break;
     case cr1:
       cr1_ = value & 0x07C0'FFFF;
       adcs_.connect_triggers();
@@ -264,9 +264,12 @@ void Adc::write(std::uint32_t offset, std::uint32_t value) {
     case ltr: ltr_ = value & 0xFFF; break;
     case jsqr: jsqr_ = value & 0x3F'FFFF; break;
     default:
-      if (offset >= jofr1 && offset <= jofr4) offset_[(offset - jofr1) / 4] = value & 0xFFF;
-      else if (offset >= sqr1 && offset <= sqr3) sqr_[(offset - sqr1) / 4] = value;
-      else machine_.log.note("ADC" + std::to_string(index_ + 1), offset, true, value);
+      if (offset >= jofr1 && offset <= jofr4)
+        offset_[(offset - jofr1) / 4] = value & 0xFFF;
+      else if (offset >= sqr1 && offset <= sqr3)
+        sqr_[(offset - sqr1) / 4] = value;
+      else
+        machine_.log.note("ADC" + std::to_string(index_ + 1), offset, true, value);
   }
   update_interrupt();
 }

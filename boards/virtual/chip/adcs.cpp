@@ -71,7 +71,7 @@ void Adcs::start_regular(unsigned index, Ticks now) {
 
 void Adcs::trigger(unsigned timer, unsigned channel) {
   const Ticks now = machine_.timeline.now();
-  const auto matches = [&](int selected, const TriggerSource (&sources)[16]) {
+  const auto matches = [&](int selected, const TriggerSource(&sources)[16]) {
     return selected >= 0 && sources[selected].timer == timer && sources[selected].channel == channel;
   };
   for (unsigned i = 0; i < 3; ++i) {
@@ -90,7 +90,7 @@ void Adcs::connect_triggers() {
       adcs_[0].injected_matters() || adcs_[1].injected_matters() || adcs_[2].injected_matters();
   const bool any_regular_matters =
       adcs_[0].regular_matters() || adcs_[1].regular_matters() || adcs_[2].regular_matters();
-  const auto connect = [&](int selected, const TriggerSource (&sources)[16], bool matters) {
+  const auto connect = [&](int selected, const TriggerSource(&sources)[16], bool matters) {
     if (selected < 0 || sources[selected].timer == 0) return;
     const auto bit = static_cast<std::uint8_t>(1u << sources[selected].channel);
     connected_[sources[selected].timer] |= bit;

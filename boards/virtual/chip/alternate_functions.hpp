@@ -7,8 +7,13 @@ namespace inkwell::virtual_board {
 
 /// Lines of a timer that reach pins.
 enum TimerLine : std::uint8_t {
-  channel_1, channel_2, channel_3, channel_4,
-  complementary_1, complementary_2, complementary_3,
+  channel_1,
+  channel_2,
+  channel_3,
+  channel_4,
+  complementary_1,
+  complementary_2,
+  complementary_3,
   external_trigger,
   break_input,
   timer_lines,
@@ -22,6 +27,7 @@ struct TimerPin {
   TimerLine line;
 };
 
+// clang-format off
 inline constexpr TimerPin timer_pins[] = {
     {'A', 8, 1, 1, channel_1},   {'E', 9, 1, 1, channel_1},   {'A', 9, 1, 1, channel_2},   {'E', 11, 1, 1, channel_2},
     {'A', 10, 1, 1, channel_3},  {'E', 13, 1, 1, channel_3},  {'A', 11, 1, 1, channel_4},  {'E', 14, 1, 1, channel_4},
@@ -55,6 +61,7 @@ inline constexpr TimerPin timer_pins[] = {
     {'B', 14, 9, 12, channel_1}, {'H', 6, 9, 12, channel_1},  {'B', 15, 9, 12, channel_2}, {'H', 9, 9, 12, channel_2},
     {'A', 6, 9, 13, channel_1},  {'F', 8, 9, 13, channel_1},  {'A', 7, 9, 14, channel_1},  {'F', 9, 9, 14, channel_1},
 };
+// clang-format on
 
 /// Pins of the ADCs' external channels (data sheet, pin table): ADC1 and ADC2 share theirs, ADC3 has others at 4..9
 /// and 14, 15. Port 0: no pin.
@@ -65,8 +72,8 @@ struct AnalogPin {
 inline constexpr AnalogPin analog_pins_12[16] = {{'A', 0}, {'A', 1}, {'A', 2}, {'A', 3}, {'A', 4}, {'A', 5},
                                                  {'A', 6}, {'A', 7}, {'B', 0}, {'B', 1}, {'C', 0}, {'C', 1},
                                                  {'C', 2}, {'C', 3}, {'C', 4}, {'C', 5}};
-inline constexpr AnalogPin analog_pins_3[16] = {{'A', 0}, {'A', 1}, {'A', 2}, {'A', 3}, {'F', 6}, {'F', 7},
+inline constexpr AnalogPin analog_pins_3[16] = {{'A', 0}, {'A', 1}, {'A', 2},  {'A', 3}, {'F', 6}, {'F', 7},
                                                 {'F', 8}, {'F', 9}, {'F', 10}, {'F', 3}, {'C', 0}, {'C', 1},
-                                                {'C', 2}, {'C', 3}, {'F', 4}, {'F', 5}};
+                                                {'C', 2}, {'C', 3}, {'F', 4},  {'F', 5}};
 
 }  // namespace inkwell::virtual_board

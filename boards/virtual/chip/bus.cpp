@@ -51,7 +51,8 @@ void Bus::add(std::uint32_t base, std::uint32_t bytes, const std::string& name, 
   for (std::uint32_t address = base; address < base + bytes; address += 1024) {
     Slot* slot = slot_at(address);
     if (slot == nullptr || base % 1024 != 0)
-      throw ChipError("The peripheral " + name + " is not on the bus: its base must be a multiple of 1024 in the "
+      throw ChipError("The peripheral " + name +
+                      " is not on the bus: its base must be a multiple of 1024 in the "
                       "regions 0x40000000 or 0x50000000.");
     *slot = {&peripheral, base, enable_register, enable_mask, name};
   }

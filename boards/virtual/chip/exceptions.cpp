@@ -15,8 +15,8 @@ constexpr std::uint32_t exc_return_handler = 0xFFFFFFF1, exc_return_basic = 1u <
                         exc_return_process_stack = 1u << 2;
 
 // Lists for batched access; each access to the engine costs more than the register.
-int frame_registers[] = {UC_ARM_REG_R0, UC_ARM_REG_R1, UC_ARM_REG_R2,   UC_ARM_REG_R3,
-                         UC_ARM_REG_R12, UC_ARM_REG_LR, UC_ARM_REG_XPSR, UC_ARM_REG_SP, UC_ARM_REG_CONTROL};
+int frame_registers[] = {UC_ARM_REG_R0, UC_ARM_REG_R1,   UC_ARM_REG_R2, UC_ARM_REG_R3,     UC_ARM_REG_R12,
+                         UC_ARM_REG_LR, UC_ARM_REG_XPSR, UC_ARM_REG_SP, UC_ARM_REG_CONTROL};
 int float_registers[] = {UC_ARM_REG_D0, UC_ARM_REG_D1, UC_ARM_REG_D2, UC_ARM_REG_D3,
                          UC_ARM_REG_D4, UC_ARM_REG_D5, UC_ARM_REG_D6, UC_ARM_REG_D7};
 
@@ -39,9 +39,7 @@ void Processor::end_counting() {
   running_.pop_back();
 }
 
-void Processor::clear_counters() {
-  counters_ = {};
-}
+void Processor::clear_counters() { counters_ = {}; }
 
 bool Processor::start_handler(unsigned exception, std::uint32_t exception_return, std::uint32_t vector_table) {
   const std::uint32_t vector = machine_.memory.word(vector_table + 4 * exception);
@@ -69,7 +67,13 @@ bool Processor::enter_exception(unsigned exception, bool align_stack, bool float
   if (place == nullptr) return false;
 
   std::uint32_t words[extended_frame_bytes / 4] = {
-      values[0], values[1], values[2], values[3], values[4], values[5], program_counter_ & ~1u,
+      values[0],
+      values[1],
+      values[2],
+      values[3],
+      values[4],
+      values[5],
+      program_counter_ & ~1u,
       (values[6] & ~(xpsr_align | xpsr_exception)) | xpsr_thumb | (aligned ? xpsr_align : 0u) | current_exception_};
   if (extended) {
     // Stacked at once also when FPCCR asks for lazy stacking: firmware can not tell but by reading its own stack.

@@ -93,8 +93,10 @@ std::uint32_t Exti::Syscfg::read_word(std::uint32_t offset) {
 
 void Exti::Syscfg::write_word(std::uint32_t offset, std::uint32_t value) {
   if (offset == 0x00 && (value & 3) != 0) exti_.machine_.log.note("SYSCFG memory remap,", offset, true, value);
-  if (offset < 0x24) words_[offset / 4] = value & 0xFFFF;
-  else exti_.machine_.log.note("SYSCFG", offset, true, value);
+  if (offset < 0x24)
+    words_[offset / 4] = value & 0xFFFF;
+  else
+    exti_.machine_.log.note("SYSCFG", offset, true, value);
 }
 
 }  // namespace inkwell::virtual_board

@@ -78,9 +78,12 @@ std::optional<std::uint32_t> FlashController::program(std::uint32_t address, std
   std::uint32_t content = 0;
   std::memcpy(&content, place, size);
   const unsigned parallelism = 1u << (control_ >> 8 & 3);
-  if ((control_ & lock) != 0 || (control_ & programming) == 0) status_ |= sequence_error;
-  else if (address % size != 0) status_ |= alignment_error;
-  else if (parallelism != size && !(parallelism == 8 && size == 4)) status_ |= size_error;
+  if ((control_ & lock) != 0 || (control_ & programming) == 0)
+    status_ |= sequence_error;
+  else if (address % size != 0)
+    status_ |= alignment_error;
+  else if (parallelism != size && !(parallelism == 8 && size == 4))
+    status_ |= size_error;
   else {
     content &= value;  // programming only clears bits
     begin(16 * (ticks_per_s / 1'000'000));
@@ -135,7 +138,8 @@ void FlashController::write_word(std::uint32_t offset, std::uint32_t value) {
       constexpr std::uint32_t keys[] = {0x4567'0123, 0xCDEF'89AB};
       // A wrong key locks until the next reset.
       if (unlock_failed_ || (control_ & lock) == 0) return;
-      if (value != keys[unlock_step_]) unlock_failed_ = true;
+      if (value != keys[unlock_step_])
+        unlock_failed_ = true;
       else if (++unlock_step_ == 2) {
         control_ &= ~lock;
         unlock_step_ = 0;

@@ -52,14 +52,23 @@ class Nvic final : public InterruptController {
   bool pending(unsigned exception) const { return test(pending_, exception); }
   bool active(unsigned exception) const { return test(active_, exception); }
   void set_active(unsigned exception, bool is_active) { assign(active_, exception, is_active); }
-  void enable(unsigned exception, bool is_enabled) { assign(enabled_, exception, is_enabled); changed_ = true; }
+  void enable(unsigned exception, bool is_enabled) {
+    assign(enabled_, exception, is_enabled);
+    changed_ = true;
+  }
   bool enabled(unsigned exception) const { return test(enabled_, exception); }
   bool any_active() const { return (active_[0] | active_[1]) != 0; }
   unsigned active_count() const;
 
   std::uint8_t priority(unsigned exception) const { return priority_[exception]; }
-  void set_priority(unsigned exception, std::uint8_t value) { priority_[exception] = value & 0xF0; changed_ = true; }
-  void set_priority_group(unsigned group) { group_ = group; changed_ = true; }
+  void set_priority(unsigned exception, std::uint8_t value) {
+    priority_[exception] = value & 0xF0;
+    changed_ = true;
+  }
+  void set_priority_group(unsigned group) {
+    group_ = group;
+    changed_ = true;
+  }
   unsigned priority_group() const { return group_; }
 
   /// Group priority of an exception; -1 is HardFault, -2 NMI.

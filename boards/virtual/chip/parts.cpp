@@ -29,12 +29,11 @@ constexpr UsartPlace usart_places[6] = {
     {{0x4000'4C00, Rcc::apb1enr, 19}, 52}, {{0x4000'5000, Rcc::apb1enr, 20}, 53}, {{0x4001'1400, Rcc::apb2enr, 5}, 71},
 };
 /// Enable bits of blocks that come from outside of this library.
-constexpr Place outside_places[] = {{0x5000'0000, Rcc::ahb2enr, 7}, {0x5005'0000, Rcc::ahb2enr, 0},
-                                    {0x4000'3800, Rcc::apb1enr, 14}, {0x4000'3C00, Rcc::apb1enr, 15},
-                                    {0x4001'3000, Rcc::apb2enr, 12}, {0x4000'5400, Rcc::apb1enr, 21},
-                                    {0x4000'5800, Rcc::apb1enr, 22}, {0x4000'5C00, Rcc::apb1enr, 23},
-                                    {0x4000'6400, Rcc::apb1enr, 25}, {0x4000'6800, Rcc::apb1enr, 26},
-                                    {0x4000'7400, Rcc::apb1enr, 29}};
+constexpr Place outside_places[] = {
+    {0x5000'0000, Rcc::ahb2enr, 7},  {0x5005'0000, Rcc::ahb2enr, 0},  {0x4000'3800, Rcc::apb1enr, 14},
+    {0x4000'3C00, Rcc::apb1enr, 15}, {0x4001'3000, Rcc::apb2enr, 12}, {0x4000'5400, Rcc::apb1enr, 21},
+    {0x4000'5800, Rcc::apb1enr, 22}, {0x4000'5C00, Rcc::apb1enr, 23}, {0x4000'6400, Rcc::apb1enr, 25},
+    {0x4000'6800, Rcc::apb1enr, 26}, {0x4000'7400, Rcc::apb1enr, 29}};
 
 }  // namespace
 

@@ -72,8 +72,10 @@ void GpioPort::write_lock(std::uint32_t value) {
   // Sequence: key with pins, pins without key, key with pins (RM0090, GPIOx_LCKR); then a read.
   const bool key = (value & lock_key) != 0;
   const bool expected = lock_step_ == 1 ? !key : key;
-  if (lock_step_ > 0 && (value & 0xFFFF) != (lckr_ & 0xFFFF)) lock_step_ = 0;
-  else lock_step_ = expected ? lock_step_ + 1 : 0;
+  if (lock_step_ > 0 && (value & 0xFFFF) != (lckr_ & 0xFFFF))
+    lock_step_ = 0;
+  else
+    lock_step_ = expected ? lock_step_ + 1 : 0;
   lckr_ = value & 0xFFFF;
   if (lock_step_ == 3) lckr_ |= lock_key;
 }
@@ -89,8 +91,7 @@ void GpioPort::write_word(std::uint32_t offset, std::uint32_t value) {
     case pupdr: write_configuration(pupdr_, value, 2); break;
     case afrl: write_configuration(afr_[0], value, 4); break;
     case afrh: write_configuration(afr_[1], value, 4); break;
-    default:
-      return machine_.log.note("GPIO" + std::string(1, static_cast<char>('A' + index_)), offset, true, value);
+    default: return machine_.log.note("GPIO" + std::string(1, static_cast<char>('A' + index_)), offset, true, value);
   }
   pins_.reconnect(index_, 0xFFFF);
 }

@@ -232,9 +232,12 @@ bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   const std::uint16_t last = self.machine_.memory.half_word(after - 2);
   const bool wide = self.machine_.memory.half_word(after - 4) == wide_hint;
   if (self.last_code_address_ != after) {
-    if (last == wait_for_event || (wide && last == wide_wait_for_event)) self.outcome_ = Outcome::wait_for_event;
-    else if (last == yield || (wide && last == wide_yield)) self.stopped_ = true;
-    else self.outcome_ = Outcome::undefined_instruction;
+    if (last == wait_for_event || (wide && last == wide_wait_for_event))
+      self.outcome_ = Outcome::wait_for_event;
+    else if (last == yield || (wide && last == wide_yield))
+      self.stopped_ = true;
+    else
+      self.outcome_ = Outcome::undefined_instruction;
     if (self.stopped_ || self.outcome_ == Outcome::wait_for_event) {
       uc_emu_stop(engine);
       return true;

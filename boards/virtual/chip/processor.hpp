@@ -26,11 +26,11 @@ enum class Outcome : std::uint8_t {
   breakpoint,
   exception_return,
   undefined_instruction,
-  invalid_state,        ///< a branch out of Thumb state
+  invalid_state,  ///< a branch out of Thumb state
   no_coprocessor,
-  data_fault,           ///< nothing answers at fault_address()
-  instruction_fault,    ///< nothing to execute at fault_address()
-  execute_never,        ///< fault_address() is in a region without instructions
+  data_fault,         ///< nothing answers at fault_address()
+  instruction_fault,  ///< nothing to execute at fault_address()
+  execute_never,      ///< fault_address() is in a region without instructions
 };
 
 class Processor final : public ClockUser {

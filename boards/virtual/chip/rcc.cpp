@@ -77,8 +77,10 @@ void Rcc::start_oscillators() {
   const Ticks now = machine_.timeline.now();
   Ticks next = never;
   for (unsigned i = 0; i < oscillators; ++i) {
-    if (!is_on(i)) ready_at_[i] = never;
-    else if (ready_at_[i] == never) ready_at_[i] = now + oscillator_bits[i].start_up;
+    if (!is_on(i))
+      ready_at_[i] = never;
+    else if (ready_at_[i] == never)
+      ready_at_[i] = now + oscillator_bits[i].start_up;
     if (is_on(i) && ready_at_[i] > now) next = std::min(next, ready_at_[i]);
   }
   machine_.timeline.set(slot_, next, next);
@@ -112,8 +114,14 @@ void Rcc::update_tree() {
   if (f.hclk_Hz > 168'000'000 || f.pclk1_Hz > 42'000'000 || f.pclk2_Hz > 84'000'000)
     machine_.log.say_once("RCC_CFGR asks for clocks beyond the data sheet (168, 42 and 84 MHz)");
 
-  ClockTree tree{Clock::of(f.hclk_Hz),   Clock::of(f.pclk1_Hz), Clock::of(f.pclk2_Hz), Clock::of(f.timer1_Hz),
-                 Clock::of(f.timer2_Hz), Clock::of(f.usb_Hz),   Clock::of(low_speed_internal_Hz), f};
+  ClockTree tree{Clock::of(f.hclk_Hz),
+                 Clock::of(f.pclk1_Hz),
+                 Clock::of(f.pclk2_Hz),
+                 Clock::of(f.timer1_Hz),
+                 Clock::of(f.timer2_Hz),
+                 Clock::of(f.usb_Hz),
+                 Clock::of(low_speed_internal_Hz),
+                 f};
   if (tree == machine_.clocks) {
     machine_.clocks.frequencies = f;
     return;

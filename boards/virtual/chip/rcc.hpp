@@ -12,11 +12,13 @@ namespace inkwell::virtual_board {
 
 class Rcc final : public RegisterBlock, public TimedPart {
  public:
+  // clang-format off
   enum Register : std::uint32_t {
     cr = 0x00, pllcfgr = 0x04, cfgr = 0x08, cir = 0x0C, ahb1rstr = 0x10, ahb2rstr = 0x14, ahb3rstr = 0x18,
     apb1rstr = 0x20, apb2rstr = 0x24, ahb1enr = 0x30, ahb2enr = 0x34, ahb3enr = 0x38, apb1enr = 0x40,
     apb2enr = 0x44, bdcr = 0x70, csr = 0x74,
   };
+  // clang-format on
   explicit Rcc(Machine& machine);
 
   void reset() override;

@@ -3,8 +3,18 @@
 namespace inkwell::virtual_board {
 namespace {
 enum : std::uint32_t {
-  sys_open = 0x01, sys_close = 0x02, sys_writec = 0x03, sys_write0 = 0x04, sys_write = 0x05, sys_istty = 0x09,
-  sys_seek = 0x0A, sys_flen = 0x0C, sys_errno = 0x13, sys_get_cmdline = 0x15, sys_heapinfo = 0x16, sys_exit = 0x18,
+  sys_open = 0x01,
+  sys_close = 0x02,
+  sys_writec = 0x03,
+  sys_write0 = 0x04,
+  sys_write = 0x05,
+  sys_istty = 0x09,
+  sys_seek = 0x0A,
+  sys_flen = 0x0C,
+  sys_errno = 0x13,
+  sys_get_cmdline = 0x15,
+  sys_heapinfo = 0x16,
+  sys_exit = 0x18,
   sys_exit_extended = 0x20,
 };
 constexpr std::uint32_t stopped_application_exit = 0x20026;

@@ -91,8 +91,10 @@ void SystemControl::write_handler_control_state(std::uint32_t value) {
   for (const auto& b : active_bits) machine_.nvic.set_active(b.exception, (value >> b.bit & 1) != 0);
   for (const auto& b : enable_bits) machine_.nvic.enable(b.exception, (value >> b.bit & 1) != 0);
   for (const auto& b : pending_bits)
-    if ((value >> b.bit & 1) != 0) machine_.nvic.pend(b.exception);
-    else machine_.nvic.unpend(b.exception);
+    if ((value >> b.bit & 1) != 0)
+      machine_.nvic.pend(b.exception);
+    else
+      machine_.nvic.unpend(b.exception);
 }
 
 std::uint32_t SystemControl::read_word(std::uint32_t address) {
@@ -157,8 +159,7 @@ void SystemControl::write(std::uint32_t address, std::uint32_t value, unsigned s
   }
   const std::uint32_t word = address & ~3u;
   const bool cleared_by_ones = word == 0xE000'ED28;  // a narrow write must not clear its neighbours
-  if (size != 4 && word >= trace_cell_base)
-    value = merge(cleared_by_ones ? 0 : read_word(word), value, address, size);
+  if (size != 4 && word >= trace_cell_base) value = merge(cleared_by_ones ? 0 : read_word(word), value, address, size);
   write_word(word, value);
 }
 

@@ -68,8 +68,10 @@ void Timer::begin_ramp(Ticks now) {
   accounted_ = 0;
   const std::uint64_t wrap = std::uint64_t{limit_} + 1;
   if (centre_aligned()) {
-    if (!down_) ramp_length_ = count_ < active_reload_ ? active_reload_ - count_ : wrap - count_ + active_reload_;
-    else ramp_length_ = count_ != 0 ? count_ : 1;
+    if (!down_)
+      ramp_length_ = count_ < active_reload_ ? active_reload_ - count_ : wrap - count_ + active_reload_;
+    else
+      ramp_length_ = count_ != 0 ? count_ : 1;
   } else if (!down_) {
     // A counter beyond its reload value runs on to its end first.
     ramp_length_ = (count_ <= active_reload_ ? active_reload_ : limit_) + std::uint64_t{1} - count_;
@@ -193,8 +195,10 @@ void Timer::count_one(bool down) {
 
 void Timer::step(Ticks now) {
   account(next_tick_);
-  if (next_tick_ >= ramp_length_) end_ramp(now);
-  else plan();
+  if (next_tick_ >= ramp_length_)
+    end_ramp(now);
+  else
+    plan();
 }
 
 bool Timer::update_needed() const {

@@ -150,8 +150,10 @@ void Timer::input_changed(unsigned line, bool high) {
 }
 
 void Timer::connect_input(unsigned line, bool high) {
-  if (line == break_input) break_input_ = high;
-  else if (line < model_.channels) channels_[line].input = high;
+  if (line == break_input)
+    break_input_ = high;
+  else if (line < model_.channels)
+    channels_[line].input = high;
 }
 
 void Timer::internal_trigger(unsigned master, bool level, bool is_pulse) {

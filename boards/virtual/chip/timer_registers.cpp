@@ -124,8 +124,10 @@ void Timer::write_control(std::uint32_t value) {
   cr1_ = value & 0x3FF;
   if (!model_.counts_down) cr1_ &= ~0x70u;
   // DIR is read-only in centre-aligned and encoder modes.
-  if (!centre_aligned() && !encoder_mode()) down_ = (cr1_ & direction) != 0;
-  else if (!was_centred && centre_aligned() && !was_enabled) down_ = (value & direction) != 0;
+  if (!centre_aligned() && !encoder_mode())
+    down_ = (cr1_ & direction) != 0;
+  else if (!was_centred && centre_aligned() && !was_enabled)
+    down_ = (value & direction) != 0;
   begin_ramp(was_running && runs() ? ramp_start_ : machine_.timeline.now());
   if (((cr1_ & enable) != 0) != was_enabled && (cr2_ >> 4 & 7) == master_enable)
     trigger_out((cr1_ & enable) != 0, false);
@@ -138,8 +140,10 @@ void Timer::write_events(std::uint32_t value) {
   }
   for (unsigned i = 0; i < model_.channels; ++i)
     if ((value >> (1 + i) & 1) != 0) {
-      if (selection(i) != 0) capture(i);
-      else raise(capture_compare_1 << i);
+      if (selection(i) != 0)
+        capture(i);
+      else
+        raise(capture_compare_1 << i);
     }
   if ((value & trigger_flag) != 0) raise(trigger_flag);
   if (model_.advanced && (value & break_flag) != 0) {
@@ -152,9 +156,7 @@ void Timer::write_events(std::uint32_t value) {
 void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case cr1: return write_control(value);
-    case cr2:
-      cr2_ = value & 0x7FFF;
-      break;
+    case cr2: cr2_ = value & 0x7FFF; break;
     case smcr: {
       settle();
       smcr_ = value & 0xFFF7;

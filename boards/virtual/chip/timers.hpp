@@ -21,8 +21,8 @@ struct TimerModel {
   std::uint8_t bits;
   std::uint8_t channels;
   bool on_apb2;
-  bool advanced;       ///< repetition counter, complementary outputs, break
-  bool counts_down;    ///< up and down, centre-aligned, encoder
+  bool advanced;     ///< repetition counter, complementary outputs, break
+  bool counts_down;  ///< up and down, centre-aligned, encoder
   bool is_master, is_slave;
   std::uint8_t update_position, capture_position, trigger_position, break_position;
   std::array<std::uint8_t, 4> internal_triggers;  ///< timers behind ITR0..3

@@ -68,8 +68,10 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
     --counter_;
     if (counter_ == 0x40) early_ = true;
     update_interrupt();
-    if (counter_ < 0x40) machine_.request_reset(ResetCause::window_watchdog);
-    else plan();
+    if (counter_ < 0x40)
+      machine_.request_reset(ResetCause::window_watchdog);
+    else
+      plan();
   }
   void before_clock_change() override {}
   void after_clock_change() override {

@@ -17,8 +17,8 @@ ArmDynamics::ArmDynamics(const arms::Description& arm) {
   origin_m_ = {p[Parameter::origin_x_m], p[Parameter::origin_y_m], p[Parameter::origin_z_m]};
 
   const double beyond_elbow_kg = s.link_3_mass_kg + s.probe_mass_kg;
-  const double moment_2 = s.link_2_mass_kg * s.link_2_centre_m + beyond_elbow_kg * link_2_m_;        // S2
-  const double moment_3 = s.link_3_mass_kg * s.link_3_centre_m + s.probe_mass_kg * link_3_m_;        // S3
+  const double moment_2 = s.link_2_mass_kg * s.link_2_centre_m + beyond_elbow_kg * link_2_m_;  // S2
+  const double moment_3 = s.link_3_mass_kg * s.link_3_centre_m + s.probe_mass_kg * link_3_m_;  // S3
   turret_kg_m2_ = s.base_inertia_kg_m2;
   link_2_kg_m2_ = s.link_2_inertia_kg_m2 + s.link_2_mass_kg * s.link_2_centre_m * s.link_2_centre_m +
                   beyond_elbow_kg * link_2_m_ * link_2_m_;
@@ -72,8 +72,8 @@ ArmDynamics::Terms ArmDynamics::terms(const Vector3& q, const Vector3& speed) co
   const auto turn = [&](double along, double up) {  // from the arm's plane into the workspace
     return omni_frame_ ? Vector3(-along * l.sin_1, up, along * l.cos_1) : Vector3(along * l.cos_1, along * l.sin_1, up);
   };
-  const Vector3 by_1 = omni_frame_ ? Vector3(-reach * l.cos_1, 0.0, -reach * l.sin_1)
-                                   : Vector3(-reach * l.sin_1, reach * l.cos_1, 0.0);
+  const Vector3 by_1 =
+      omni_frame_ ? Vector3(-reach * l.cos_1, 0.0, -reach * l.sin_1) : Vector3(-reach * l.sin_1, reach * l.cos_1, 0.0);
   const Vector3 by_a = turn(-link_2_m_ * l.sin_a, link_2_m_ * l.cos_a);
   const Vector3 by_b = turn(-link_3_m_ * l.sin_b, link_3_m_ * l.cos_b);
 

@@ -134,8 +134,10 @@ json quit(const json&, Simulation& simulation) {
 }
 
 json usb(const json& request, Simulation& simulation) {
-  if (truth_value(request, "connected")) simulation.board().usb().connect();
-  else simulation.board().usb().disconnect();
+  if (truth_value(request, "connected"))
+    simulation.board().usb().connect();
+  else
+    simulation.board().usb().disconnect();
   return {};
 }
 

@@ -127,7 +127,8 @@ void ControlServer::serve(Client& client) {
     }
     pending.erase(0, begin);
     if (pending.size() > line_maximum) {
-      send_all(client.socket, R"({"ok":false,"error":"the line is too long; a command ends with a newline"})" "\n");
+      send_all(client.socket, R"({"ok":false,"error":"the line is too long; a command ends with a newline"})"
+                              "\n");
       break;
     }
   }

@@ -12,12 +12,12 @@ namespace inkwell::virtual_board {
 struct Options {
   std::filesystem::path elf;
   std::filesystem::path arm;
-  std::uint16_t usbip_port = 0;    ///< 0 is any free port
+  std::uint16_t usbip_port = 0;  ///< 0 is any free port
   std::uint16_t control_port = 0;
   Mode mode = Mode::fast;
   bool real_time = false;
   std::uint64_t seed = 1;
-  std::optional<double> seconds;   ///< of board time, after which the program ends
+  std::optional<double> seconds;  ///< of board time, after which the program ends
   bool paused = false;
 };
 

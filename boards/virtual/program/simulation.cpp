@@ -53,8 +53,7 @@ void Simulation::advance() {
   if (options_.seconds) target = std::min(target, ticks(*options_.seconds));
   switch (board_.run_until(target)) {
     case Stop::time_reached:
-    case Stop::requested:
-      break;
+    case Stop::requested: break;
     case Stop::locked_up:
       pause();
       end_run("the processor locked up: " + board_.chip().lockup_reason());

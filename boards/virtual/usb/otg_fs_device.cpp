@@ -112,8 +112,7 @@ std::uint32_t OtgFsDevice::read_register(std::uint32_t offset) {
     case offset::dcfg: return device_configuration_;
     case offset::dctl:
       return device_control_ | (global_in_nak_ ? dctl::ginsts : 0) | (global_out_nak_effective_ ? dctl::gonsts : 0);
-    case offset::dsts:
-      return (suspended_ ? dsts::suspsts : 0) | dsts::full_speed | (std::uint32_t{frame_number_} << 8);
+    case offset::dsts: return (suspended_ ? dsts::suspsts : 0) | dsts::full_speed | (std::uint32_t{frame_number_} << 8);
     case offset::diepmsk: return in_mask_;
     case offset::doepmsk: return out_mask_;
     case offset::daint: return endpoint_interrupts();
@@ -152,9 +151,18 @@ void OtgFsDevice::write_register(std::uint32_t offset, std::uint32_t value) {
     case offset::grstctl: write_reset_control(value); break;
     case offset::gintsts: latched_interrupts_ &= ~(value & gint::cleared_by_one); break;
     case offset::gintmsk: interrupt_mask_ = value; break;
-    case offset::grxfsiz: receive_size_ = value & 0xFFFF; layout_changed_ = true; break;
-    case offset::dieptxf0: transmit_size_[0] = value; layout_changed_ = true; break;
-    case offset::gccfg: core_configuration_ = value & gccfg::writable; update_pull_up(); break;
+    case offset::grxfsiz:
+      receive_size_ = value & 0xFFFF;
+      layout_changed_ = true;
+      break;
+    case offset::dieptxf0:
+      transmit_size_[0] = value;
+      layout_changed_ = true;
+      break;
+    case offset::gccfg:
+      core_configuration_ = value & gccfg::writable;
+      update_pull_up();
+      break;
     case offset::cid: core_id_ = value; break;
     case offset::dcfg: write_device_configuration(value); break;
     case offset::dctl: write_device_control(value); break;
@@ -216,8 +224,8 @@ unsigned OtgFsDevice::programmed_address() const { return dcfg::dad(device_confi
 void OtgFsDevice::update_pull_up() {
   const bool session =
       (core_configuration_ & gccfg::novbussens) != 0 || (bus_power_ && (core_configuration_ & gccfg::vbusbsen) != 0);
-  const bool pulled_up = (core_configuration_ & gccfg::pwrdwn) != 0 && session &&
-                         (device_control_ & dctl::sdis) == 0 && (usb_configuration_ & gusbcfg::fhmod) == 0;
+  const bool pulled_up = (core_configuration_ & gccfg::pwrdwn) != 0 && session && (device_control_ & dctl::sdis) == 0 &&
+                         (usb_configuration_ & gusbcfg::fhmod) == 0;
   if (pulled_up && !pulled_up_) ++attachments_;
   pulled_up_ = pulled_up;
 }

@@ -22,8 +22,8 @@ inline constexpr std::uint32_t control = 0x00, interrupts = 0x08, transfer_size 
 
 namespace reset_value {
 inline constexpr std::uint32_t gusbcfg = 0x0000'0A00, grxfsiz = 0x0000'0200, dieptxf0 = 0x0200'0200,
-                               dieptxf_first = 0x0200'0400, cid = 0x0000'1200, dcfg = 0x0220'0000,
-                               dvbusdis = 0x17D7, dvbuspulse = 0x05B8;
+                               dieptxf_first = 0x0200'0400, cid = 0x0000'1200, dcfg = 0x0220'0000, dvbusdis = 0x17D7,
+                               dvbuspulse = 0x05B8;
 inline constexpr std::uint32_t gsnpsid = 0x4F54'281A, ghwcfg2 = 0x229D'CD20, ghwcfg3 = 0x0200'01E8,
                                ghwcfg4 = 0x0FF0'8030;
 }  // namespace reset_value
@@ -41,16 +41,15 @@ namespace gusbcfg {
 inline constexpr std::uint32_t fhmod = 1u << 29;
 }
 namespace grstctl {
-inline constexpr std::uint32_t csrst = 1u << 0, rxfflsh = 1u << 4,
-                               txfflsh = 1u << 5, ahbidl = 1u << 31;
+inline constexpr std::uint32_t csrst = 1u << 0, rxfflsh = 1u << 4, txfflsh = 1u << 5, ahbidl = 1u << 31;
 constexpr unsigned txfnum(std::uint32_t value) { return (value >> 6) & 0x1F; }
 inline constexpr unsigned all_fifos = 0x10;
 }  // namespace grstctl
 namespace gint {
-inline constexpr std::uint32_t otgint = 1u << 2, sof = 1u << 3, rxflvl = 1u << 4, nptxfe = 1u << 5,
-                               ginakeff = 1u << 6, gonakeff = 1u << 7, esusp = 1u << 10, usbsusp = 1u << 11,
-                               usbrst = 1u << 12, enumdne = 1u << 13, eopf = 1u << 15, iepint = 1u << 18,
-                               oepint = 1u << 19, srqint = 1u << 30, wkupint = 1u << 31;
+inline constexpr std::uint32_t otgint = 1u << 2, sof = 1u << 3, rxflvl = 1u << 4, nptxfe = 1u << 5, ginakeff = 1u << 6,
+                               gonakeff = 1u << 7, esusp = 1u << 10, usbsusp = 1u << 11, usbrst = 1u << 12,
+                               enumdne = 1u << 13, eopf = 1u << 15, iepint = 1u << 18, oepint = 1u << 19,
+                               srqint = 1u << 30, wkupint = 1u << 31;
 inline constexpr std::uint32_t cleared_by_one = 0xF030'FC0A;
 }  // namespace gint
 namespace gccfg {
@@ -88,7 +87,7 @@ namespace tsiz {
 constexpr std::uint32_t packets(std::uint32_t value, bool control_in) {
   return (value >> 19) & (control_in ? 3 : 0x3FF);
 }
-}
+}  // namespace tsiz
 
 /// PKTSTS of a word from GRXSTSP.
 namespace pktsts {

@@ -59,8 +59,8 @@ void RootPort::submit(Urb&& urb) {
     if (imported()) held_.push_back(std::move(urb));
     return;
   }
-  const bool sets_address = urb.endpoint == 0 && setup_byte(urb, 0) == request::to_device &&
-                            setup_byte(urb, 1) == request::set_address;
+  const bool sets_address =
+      urb.endpoint == 0 && setup_byte(urb, 0) == request::to_device && setup_byte(urb, 1) == request::set_address;
   if (sets_address)
     client_.completed(std::move(urb), transfer_status::success);  // the address is this port's business
   else
@@ -68,8 +68,7 @@ void RootPort::submit(Urb&& urb) {
 }
 
 bool RootPort::unlink(std::uint32_t sequence) {
-  const auto held =
-      std::find_if(held_.begin(), held_.end(), [&](const Urb& urb) { return urb.sequence == sequence; });
+  const auto held = std::find_if(held_.begin(), held_.end(), [&](const Urb& urb) { return urb.sequence == sequence; });
   if (held == held_.end()) return controller_.unlink(sequence);
   held_.erase(held);
   return true;

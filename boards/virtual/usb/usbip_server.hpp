@@ -26,7 +26,7 @@ class UsbIpServer {
     enum class Kind : std::uint8_t { import, release, submit, unlink };
     Kind kind;
     std::uint32_t session;
-    Urb urb;                            ///< of a submit; its `sequence` is also that of an unlink
+    Urb urb;  ///< of a submit; its `sequence` is also that of an unlink
     std::uint32_t unlink_sequence = 0;
   };
   struct Result {

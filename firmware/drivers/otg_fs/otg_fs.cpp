@@ -127,9 +127,7 @@ bool OtgFs::take_received_word(Event& event) {
   const std::size_t size = Core::GRXSTSP::BCNT::from(status);
   event.endpoint = static_cast<std::uint8_t>(endpoint);
   switch (Core::GRXSTSP::PKTSTS::from(status)) {
-    case setup_data:
-      read_packet(setup_, size);
-      return false;
+    case setup_data: read_packet(setup_, size); return false;
     case setup_done:
       // Only now is it known that no other SETUP follows, and only now may NAK be cleared again.
       Device::DOEPINT::write(0, ~0u);

@@ -105,9 +105,7 @@ constexpr const CodeInfo& look_up(const Table& table, std::uint16_t code) {
 }
 }  // namespace detail
 
-constexpr const CodeInfo& info(Fault fault) {
-  return detail::look_up(fault_table, static_cast<std::uint16_t>(fault));
-}
+constexpr const CodeInfo& info(Fault fault) { return detail::look_up(fault_table, static_cast<std::uint16_t>(fault)); }
 constexpr const CodeInfo& info(Refusal refusal) {
   return detail::look_up(refusal_table, static_cast<std::uint16_t>(refusal));
 }

@@ -99,17 +99,17 @@ struct InformationReport {
   ReportId report_id = ReportId::information;
   std::uint8_t reserved = 0;
   std::uint16_t version = protocol_version;
-  std::uint8_t firmware_version[4];     ///< major, minor, patch, 0
-  std::uint32_t parameter_table_hash;   ///< protocol::parameter_table_hash of the firmware
-  std::uint32_t signal_table_hash;      ///< protocol::signal_table_hash of the firmware
+  std::uint8_t firmware_version[4];    ///< major, minor, patch, 0
+  std::uint32_t parameter_table_hash;  ///< protocol::parameter_table_hash of the firmware
+  std::uint32_t signal_table_hash;     ///< protocol::signal_table_hash of the firmware
   std::uint32_t servo_rate_Hz;
   std::uint32_t processor_clock_Hz;
   std::uint32_t servo_cycles_longest;   ///< longest control interrupt since the start
   std::uint32_t scope_samples_dropped;  ///< because the host did not read
   std::uint32_t pose_reports_dropped;   ///< because the host did not poll
   std::uint32_t servo_overruns;
-  std::uint32_t reset_cause;            ///< RCC_CSR bits 31..24 as found at start-up
-  float motor_heat[3];                  ///< now; 1 is what the continuous current leads to
+  std::uint32_t reset_cause;  ///< RCC_CSR bits 31..24 as found at start-up
+  float motor_heat[3];        ///< now; 1 is what the continuous current leads to
 };
 
 enum class ParameterOperation : std::uint8_t {
@@ -141,10 +141,10 @@ struct ParametersReport {
 struct TransactionReport {
   ReportId report_id = ReportId::transaction;
   Refusal refusal;
-  std::uint16_t parameter_id;       ///< the one that was refused, else 0
-  float value;                      ///< the value that was refused, else 0
-  std::uint32_t transactions;       ///< received since the start, refused ones included
-  std::uint32_t applied_at_periods; ///< control period at which the last accepted one took effect
+  std::uint16_t parameter_id;        ///< the one that was refused, else 0
+  float value;                       ///< the value that was refused, else 0
+  std::uint32_t transactions;        ///< received since the start, refused ones included
+  std::uint32_t applied_at_periods;  ///< control period at which the last accepted one took effect
 };
 
 #pragma pack(pop)

@@ -36,7 +36,7 @@ struct ScopeFrameHeader {
   std::uint16_t sample_count;
   ScopeEncoding encoding;
   std::uint8_t signal_count;
-  std::uint8_t selection_token;   ///< token of the select_signals command that this frame answers
+  std::uint8_t selection_token;  ///< token of the select_signals command that this frame answers
   std::uint8_t reserved = 0;
 };
 #pragma pack(pop)

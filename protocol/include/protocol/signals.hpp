@@ -14,13 +14,13 @@ namespace inkwell::protocol {
 
 /// How one value of a signal is written into a scope frame.
 enum class SignalWire : std::uint8_t {
-  float32,      ///< 4 bytes, IEEE 754 little-endian
+  float32,        ///< 4 bytes, IEEE 754 little-endian
   current_int16,  ///< 2 bytes, in steps of `current_step_A`
   duty_int16,     ///< 2 bytes, in steps of `duty_step`
 };
 
-inline constexpr float current_step_A = 0.0002f;        ///< +-6.5 A, finer than the ADC's 2 mA
-inline constexpr float duty_step = 1.0f / 32767.0f;     ///< +-1, finer than the timer's 1/1400
+inline constexpr float current_step_A = 0.0002f;     ///< +-6.5 A, finer than the ADC's 2 mA
+inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the timer's 1/1400
 
 // clang-format off
 #define INKWELL_SIGNALS(X)                                                                                     \

@@ -12,8 +12,7 @@ using namespace inkwell;
 using protocol::Parameter;
 
 /// Arms of the repository.
-const std::filesystem::path arms_directory =
-    std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards" / "arms";
+const std::filesystem::path arms_directory = std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards" / "arms";
 
 std::string omni() {
   std::ifstream stream(arms_directory / "omni.toml");
@@ -81,7 +80,10 @@ TEST_CASE("a missing file is named") {
 
 TEST_CASE("a text that is not TOML is refused with its line") {
   CHECK_SAYS(complaint("[arm]\nname = = 3\n"), "some.toml, line 2: this is not TOML");
-  CHECK_SAYS(complaint(std::string("\x7f" "ELF\x01\x01", 6)), "line 1: this is not TOML");
+  CHECK_SAYS(complaint(std::string("\x7f"
+                                   "ELF\x01\x01",
+                                   6)),
+             "line 1: this is not TOML");
 }
 
 TEST_CASE("a missing section or key is named with its section") {

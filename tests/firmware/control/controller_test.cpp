@@ -25,8 +25,7 @@ Settings settings_near_wall() {
   using enum protocol::Parameter;
   protocol::ParameterSet set = tests::paper_parameters();
   const Settings plain = control::prepare(set);
-  const control::Vector3 inkwell_m =
-      control::forward_kinematics(plain.encoders.inkwell_rad, plain.arm).position_m;
+  const control::Vector3 inkwell_m = control::forward_kinematics(plain.encoders.inkwell_rad, plain.arm).position_m;
   set[sphere_radius_m] = 0.0f;
   set[box_minimum_x_m] = 0.05f;
   set[box_maximum_x_m] = inkwell_m.x + 0.002f;

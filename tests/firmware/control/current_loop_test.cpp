@@ -38,9 +38,8 @@ struct Rig {
   /// One control period; returns the current that the controller saw.
   double step(double reference_A, double back_emf_V = 0, double bound_V = 16) {
     const double seen_A = motor.current_A;
-    const control::CurrentLoopStep result =
-        control::regulate(loop, static_cast<float>(reference_A), static_cast<float>(seen_A), gains,
-                          static_cast<float>(bound_V));
+    const control::CurrentLoopStep result = control::regulate(
+        loop, static_cast<float>(reference_A), static_cast<float>(seen_A), gains, static_cast<float>(bound_V));
     loop = result.loop;
     motor.run(next_V - back_emf_V, protocol::servo_period_s);
     next_V = static_cast<double>(result.voltage_V);

@@ -176,8 +176,7 @@ TEST_CASE("the paper's Eq. 10 to 15 equal virtual work at theta1 = pi/2, and onl
     CHECK(ours()[0] == doctest::Approx(papers()[0]).epsilon(1e-4).scale(0.1));
     largest_difference_elsewhere_Nm = std::max(largest_difference_elsewhere_Nm, std::abs(ours()[1] - papers()[1]));
     q[0] = 1.5707963f;
-    for (std::size_t joint = 0; joint < 3; ++joint)
-      CHECK(std::abs(ours()[joint] - papers()[joint]) < 1e-6f);
+    for (std::size_t joint = 0; joint < 3; ++joint) CHECK(std::abs(ours()[joint] - papers()[joint]) < 1e-6f);
   }
   CHECK(largest_difference_elsewhere_Nm > 0.1f);
 }

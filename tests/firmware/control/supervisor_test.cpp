@@ -9,10 +9,10 @@
 namespace {
 
 using namespace inkwell;
+using control::advance;
 using control::Conditions;
 using control::Requests;
 using control::Supervisor;
-using control::advance;
 using protocol::Fault;
 using protocol::State;
 
@@ -43,7 +43,7 @@ TEST_CASE("to disable wins over to enable") {
 
 struct FaultCase {
   Fault fault;
-  bool Conditions::* condition;
+  bool Conditions::*condition;
   std::vector<State> looked_for_in;
   bool clears_at_once;
 };

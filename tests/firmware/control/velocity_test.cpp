@@ -19,10 +19,10 @@ constexpr double pi = 3.14159265358979;
 std::int32_t counts_at(double position) { return static_cast<std::int32_t>(std::floor(position)); }
 
 struct Quality {
-  double rms;             ///< of the estimate's error, counts a second
-  double raw_rms;         ///< of the error of the raw difference of two samples
-  double lag_s;           ///< time shift that a sine's phase stands for
-  double amplitude_ratio; ///< estimate's sine against the true one
+  double rms;              ///< of the estimate's error, counts a second
+  double raw_rms;          ///< of the error of the raw difference of two samples
+  double lag_s;            ///< time shift that a sine's phase stands for
+  double amplitude_ratio;  ///< estimate's sine against the true one
 };
 
 /// Estimates the speed of `amplitude_counts` sin(2 pi f t) over whole periods, after one to settle.

@@ -59,9 +59,8 @@ class SimulatedArm {
     for (std::size_t i = 0; i < 3; ++i) {
       const float Nm_per_A = 1.0f / settings_.motors.ampere_per_Nm[i];
       const float voltage_V = drive.enabled ? drive.duty[i] * supply_V - speed_rad_per_s_[i] * Nm_per_A : 0.0f;
-      current_A_[i] = drive.enabled
-                          ? current_A_[i] + step_s / inductance_H * (voltage_V - resistance_ohm * current_A_[i])
-                          : 0.0f;
+      current_A_[i] =
+          drive.enabled ? current_A_[i] + step_s / inductance_H * (voltage_V - resistance_ohm * current_A_[i]) : 0.0f;
       const float friction_Nm =
           coulomb_Nm * std::tanh(speed_rad_per_s_[i] / 0.005f) + viscous_Nms_per_rad * speed_rad_per_s_[i];
       const float torque_Nm = current_A_[i] * Nm_per_A + hand_Nm[i] - friction_Nm;
@@ -117,15 +116,15 @@ Push push_against_wall(protocol::ParameterSet parameters) {
     push.largest_force_N = std::max(push.largest_force_N, force_N);
     push.deepest_m = std::max(push.deepest_m, depth_m);
     if (force_N > 0.0f && force_N < settings.wall.force_limit_N) {
-      const float law_N = settings.wall.stiffness_N_per_m * depth_m +
-                          settings.wall.damping_Ns_per_m * signals[Signal::velocity_x_m_s];
+      const float law_N =
+          settings.wall.stiffness_N_per_m * depth_m + settings.wall.damping_Ns_per_m * signals[Signal::velocity_x_m_s];
       push.law_error_N = std::max(push.law_error_N, std::abs(force_N - law_N));
     }
     if (period < move_periods + settle_periods) continue;
     push.lowest_steady_m = std::min(push.lowest_steady_m, signals[Signal::position_x_m]);
     push.highest_steady_m = std::max(push.highest_steady_m, signals[Signal::position_x_m]);
-    push.current_error_A = std::max(
-        push.current_error_A, std::abs(signals[Signal::current_1_A] - signals[Signal::current_reference_1_A]));
+    push.current_error_A =
+        std::max(push.current_error_A, std::abs(signals[Signal::current_1_A] - signals[Signal::current_reference_1_A]));
   }
   push.state = controller.state();
   return push;

@@ -135,7 +135,7 @@ TEST_CASE("14 floats go out in full and come back as they were") {
 TEST_CASE("narrow signals between wide ones come back within half a step") {
   SignalSelection selection{};
   selection.count = 7;
-  const Signal signals[] = {Signal::current_1_A, Signal::position_x_m, Signal::duty_2,       Signal::current_3_A,
+  const Signal signals[] = {Signal::current_1_A, Signal::position_x_m, Signal::duty_2,     Signal::current_3_A,
                             Signal::force_N,     Signal::duty_1,       Signal::joint_1_rad};
   for (int i = 0; i < 7; ++i) selection.signals[i] = static_cast<std::uint8_t>(signals[i]);
   check_round_trip(selection, ScopeEncoding::full, 1000);

@@ -116,8 +116,10 @@ TEST_CASE("the HID report descriptor has every report of the protocol in its siz
   Bench bench;
   const Bytes descriptor = bench.get_descriptor(0x2200, 4096, 1).data;
   const std::map<std::pair<unsigned, unsigned>, std::size_t> expected = {
-      {{0x80, 0x01}, sizeof(protocol::PoseReport)},        {{0x90, 0x02}, sizeof(protocol::CommandReport)},
-      {{0xB0, 0x10}, sizeof(protocol::InformationReport)}, {{0xB0, 0x11}, sizeof(protocol::ParametersReport)},
+      {{0x80, 0x01}, sizeof(protocol::PoseReport)},
+      {{0x90, 0x02}, sizeof(protocol::CommandReport)},
+      {{0xB0, 0x10}, sizeof(protocol::InformationReport)},
+      {{0xB0, 0x11}, sizeof(protocol::ParametersReport)},
       {{0xB0, 0x12}, sizeof(protocol::TransactionReport)}};
   CHECK(report_sizes(descriptor) == expected);
 }

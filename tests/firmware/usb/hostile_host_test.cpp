@@ -7,8 +7,8 @@
 namespace inkwell {
 
 using test::Bench;
-using test::bytes_of;
 using test::Bytes;
+using test::bytes_of;
 using test::command;
 using test::ControlResult;
 using test::done_result;
@@ -42,8 +42,8 @@ TEST_CASE("wLength around every size: exactly what was asked for, or what there 
     const Bytes all = bench.control(request(read.type, read.number, read.value, read.index, 65535)).data;
     REQUIRE(!all.empty());
     const auto exact = static_cast<unsigned>(all.size());
-    for (const unsigned length : {1u, 2u, 7u, 8u, 9u, 63u, 64u, 65u, 127u, 128u, 129u, 192u, 256u, 512u, 576u, 640u,
-                                  4096u, exact - 1, exact, exact + 1, 65535u}) {
+    for (const unsigned length : {1u,   2u,   7u,   8u,   9u,   63u,   64u,       65u,   127u,      128u,  129u,
+                                  192u, 256u, 512u, 576u, 640u, 4096u, exact - 1, exact, exact + 1, 65535u}) {
       if (length == 0) continue;
       CAPTURE(length);
       // Bench::read checks that the data stage ends with a short packet exactly if less came than was asked for.
@@ -185,7 +185,7 @@ TEST_CASE("writes of 64, 65, 128 and the whole buffer arrive whole") {
     const auto result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
     CHECK(result.transactions == ++count);
     CHECK(result.refusal == (size == sizeof(protocol::ParametersReport) ? protocol::Refusal::unknown_parameter
-                                                                         : protocol::Refusal::wrong_length));
+                                                                        : protocol::Refusal::wrong_length));
   }
 }
 

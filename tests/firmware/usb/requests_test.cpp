@@ -6,8 +6,8 @@
 namespace inkwell {
 
 using test::Bench;
-using test::bytes_of;
 using test::Bytes;
+using test::bytes_of;
 using test::command;
 using test::ControlResult;
 using test::done_result;
@@ -116,8 +116,8 @@ TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
 
   CHECK(bench.control(request(0x02, 3, 0, 0x83, 0)) == stall_result);
   CHECK(bench.control(request(0x02, 3, 1, 0x81, 0)) == stall_result);
-  CHECK(bench.control(request(0x00, 3, 1, 0, 0)) == stall_result);      // remote wake-up
-  CHECK(bench.control(request(0x00, 3, 2, 0x0100, 0)) == stall_result); // test modes are for high speed
+  CHECK(bench.control(request(0x00, 3, 1, 0, 0)) == stall_result);       // remote wake-up
+  CHECK(bench.control(request(0x00, 3, 2, 0x0100, 0)) == stall_result);  // test modes are for high speed
 }
 
 TEST_CASE("the one setting of each interface is taken, others are refused") {

@@ -7,8 +7,8 @@ namespace inkwell {
 
 using protocol::PoseReport;
 using test::Bench;
-using test::bytes_of;
 using test::Bytes;
+using test::bytes_of;
 using test::command;
 using test::done_result;
 using test::Handshake;

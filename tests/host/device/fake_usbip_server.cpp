@@ -36,11 +36,11 @@ Bytes bytes(std::initializer_list<int> values) {
 
 /// HID with two interrupt endpoints, then a vendor interface with one bulk endpoint.
 Bytes default_configuration() {
-  return bytes({9, 2, 57, 0, 2, 1, 0, 0x80, 50,                          //
-                9, 4, 0, 0, 2, 3, 0, 0, 0,                               //
-                9, 0x21, 0x11, 1, 0, 1, 0x22, 64, 0,                     //
-                7, 5, 0x81, 3, 64, 0, 1, 7, 5, 0x01, 3, 64, 0, 1,        //
-                9, 4, 1, 0, 1, 0xFF, 0, 0, 0, 7, 5, 0x82, 2, 64, 0, 0});
+  return bytes({9, 2,    57,   0, 2,  1,    0,    0x80, 50,                       //
+                9, 4,    0,    0, 2,  3,    0,    0,    0,                        //
+                9, 0x21, 0x11, 1, 0,  1,    0x22, 64,   0,                        //
+                7, 5,    0x81, 3, 64, 0,    1,    7,    5,  0x01, 3, 64,   0, 1,  //
+                9, 4,    1,    0, 1,  0xFF, 0,    0,    0,  7,    5, 0x82, 2, 64, 0, 0});
 }
 
 Bytes string_descriptor(const std::string& text) {
@@ -235,13 +235,16 @@ std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)
     protocol::ParametersReport report{};
     std::memcpy(&report, data.data(), std::min(data.size(), sizeof report));
     transaction_.refusal = judge(report);
-    transaction_.parameter_id = transaction_.refusal == protocol::Refusal::accepted ? std::uint16_t{0} : report.entries[0].id;
+    transaction_.parameter_id =
+        transaction_.refusal == protocol::Refusal::accepted ? std::uint16_t{0} : report.entries[0].id;
     transaction_.value = report.entries[0].value;
     ++transaction_.transactions;
-    if (transaction_.refusal != protocol::Refusal::accepted) return stalls_refusals ? std::nullopt : std::optional(Bytes{});
+    if (transaction_.refusal != protocol::Refusal::accepted)
+      return stalls_refusals ? std::nullopt : std::optional(Bytes{});
     if (report.operation == protocol::ParameterOperation::restore_defaults) parameters = protocol::default_parameters();
     for (std::size_t i = 0; i < report.count; ++i)
-      if (const auto parameter = protocol::find_parameter(report.entries[i].id)) parameters[*parameter] = report.entries[i].value;
+      if (const auto parameter = protocol::find_parameter(report.entries[i].id))
+        parameters[*parameter] = report.entries[i].value;
     return Bytes{};
   }
   return std::nullopt;

@@ -41,8 +41,9 @@ class FakeUsbipServer {
   protocol::InformationReport information{};
   protocol::ParameterSet parameters = protocol::default_parameters();
   /// What becomes of a transaction; called with its entries.
-  std::function<protocol::Refusal(const protocol::ParametersReport&)> judge =
-      [](const protocol::ParametersReport&) { return protocol::Refusal::accepted; };
+  std::function<protocol::Refusal(const protocol::ParametersReport&)> judge = [](const protocol::ParametersReport&) {
+    return protocol::Refusal::accepted;
+  };
   bool stalls_refusals = false;
 
   /// Answers the oldest waiting transfer of this IN endpoint (1 pose, 2 scope), now or when it comes.

@@ -47,7 +47,8 @@ TEST_CASE("parameters come back from a file exactly as they were") {
 }
 
 TEST_CASE("differences between a file and a device are named") {
-  const auto file = device::parse_parameters("[parameters]\nforce_limit_N = 1.5\nsphere_radius_m = 0.005\n", "soft.toml");
+  const auto file =
+      device::parse_parameters("[parameters]\nforce_limit_N = 1.5\nsphere_radius_m = 0.005\n", "soft.toml");
   const auto differences = compare(file, protocol::default_parameters());
   REQUIRE(differences.size() == 1);
   CHECK(differences[0].parameter == Parameter::force_limit_N);
@@ -56,16 +57,15 @@ TEST_CASE("differences between a file and a device are named") {
 }
 
 TEST_CASE("names that this version does not know are returned, not refused") {
-  const auto file = device::parse_parameters("[parameters]\nforce_limit_N = 2\nmagic_N = 1\n[motor]\nx = 1\n", "new.toml");
+  const auto file =
+      device::parse_parameters("[parameters]\nforce_limit_N = 2\nmagic_N = 1\n[motor]\nx = 1\n", "new.toml");
   CHECK(file.changes.size() == 1);
   REQUIRE(file.unknown.size() == 1);
   CHECK(file.unknown[0] == "magic_N");
 }
 
 TEST_CASE("a bad file is refused with its line and the remedy") {
-  const auto refusal = [](const char* text) {
-    return message_of([&] { device::parse_parameters(text, "bad.toml"); });
-  };
+  const auto refusal = [](const char* text) { return message_of([&] { device::parse_parameters(text, "bad.toml"); }); };
   const auto not_toml = refusal("[parameters]\nforce_limit_N = = 2\n");
   CHECK(contains(not_toml, "bad.toml, line 2"));
   const auto too_large = refusal("[parameters]\n\nforce_limit_N = 80.0\n");

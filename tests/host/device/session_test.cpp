@@ -125,7 +125,8 @@ TEST_CASE("a session says why it is not connected") {
     CHECK(session.status().message.find("99") != std::string::npos);
   }
   SUBCASE("no permission") {
-    device::Session session([]() -> std::optional<device::Endpoint> { throw device::NoPermission("Write the udev line."); });
+    device::Session session(
+        []() -> std::optional<device::Endpoint> { throw device::NoPermission("Write the udev line."); });
     CHECK(eventually([&] { return session.status().connection == Connection::no_permission; }));
   }
 }

@@ -104,7 +104,8 @@ TEST_CASE("parameters are read, set as one transaction, and restored") {
   server.parameters[Parameter::force_limit_N] = 1.25f;
   const auto arm = device::Device::open(server.endpoint());
   CHECK(arm->parameters() == server.parameters);
-  const std::vector<device::ParameterChange> changes{{Parameter::box_minimum_x_m, -0.01f}, {Parameter::box_maximum_x_m, 0.02f}};
+  const std::vector<device::ParameterChange> changes{{Parameter::box_minimum_x_m, -0.01f},
+                                                     {Parameter::box_maximum_x_m, 0.02f}};
   CHECK(arm->set_parameters(changes).transactions == 1);
   CHECK(server.transactions() == 1);
   CHECK(arm->parameters()[Parameter::box_maximum_x_m] == 0.02f);

@@ -33,9 +33,18 @@ ScopeRecording scope_of(std::size_t samples, std::uint32_t first_period) {
 
 device::Trace trace_of(std::uint64_t first_period, std::size_t rows) {
   device::Trace trace;
-  trace.columns = {"period", "board_time_s", "true_position_x_m", "true_position_y_m", "true_position_z_m",
-                   "true_velocity_x_m_s", "true_current_1_A", "true_current_2_A", "true_current_3_A",
-                   "hand_force_x_N", "hand_force_y_N", "hand_force_z_N"};
+  trace.columns = {"period",
+                   "board_time_s",
+                   "true_position_x_m",
+                   "true_position_y_m",
+                   "true_position_z_m",
+                   "true_velocity_x_m_s",
+                   "true_current_1_A",
+                   "true_current_2_A",
+                   "true_current_3_A",
+                   "hand_force_x_N",
+                   "hand_force_y_N",
+                   "hand_force_z_N"};
   for (std::size_t i = 0; i < rows; ++i)
     for (std::size_t j = 0; j < trace.columns.size(); ++j)
       trace.values.push_back(j == 0 ? static_cast<double>(first_period + i)

@@ -27,21 +27,24 @@ ScopeRecording synthetic(std::size_t samples, const std::function<void(std::size
 
 /// A push into the upper z wall with 0.4 N at rest, `error_N` off the law.
 Recording push(double error_N = 0) {
-  return make_recording(synthetic(20'000, [&](std::size_t i, protocol::SignalValues& values) {
-    using protocol::Signal;
-    if (i < 5000 || i >= 17'000) return;
-    const bool steady = i >= 6000;
-    values[Signal::penetration_z_m] = -0.0005f;
-    values[Signal::velocity_z_m_s] = steady ? 0.0f : 0.1f;
-    // d' = v towards the wall: F = 800 * 0.0005 + 2 * 0.1
-    const double force_N = -(0.4 + (steady ? 0.0 : 0.2)) - error_N;
-    values[Signal::force_z_N] = static_cast<float>(force_N);
-    values[Signal::force_N] = static_cast<float>(std::abs(force_N));
-    values[Signal::encoder_2_counts] = steady ? 100.0f + static_cast<float>(i % 2) : 50.0f;
-    values[Signal::position_z_m] = steady ? 0.0355f : 0.0350f;
-    values[Signal::torque_1_Nm] = -0.001f;
-    values[Signal::torque_3_Nm] = -0.08f;
-  }), nullptr);
+  return make_recording(synthetic(20'000,
+                                  [&](std::size_t i, protocol::SignalValues& values) {
+                                    using protocol::Signal;
+                                    if (i < 5000 || i >= 17'000) return;
+                                    const bool steady = i >= 6000;
+                                    values[Signal::penetration_z_m] = -0.0005f;
+                                    values[Signal::velocity_z_m_s] = steady ? 0.0f : 0.1f;
+                                    // d' = v towards the wall: F = 800 * 0.0005 + 2 * 0.1
+                                    const double force_N = -(0.4 + (steady ? 0.0 : 0.2)) - error_N;
+                                    values[Signal::force_z_N] = static_cast<float>(force_N);
+                                    values[Signal::force_N] = static_cast<float>(std::abs(force_N));
+                                    values[Signal::encoder_2_counts] =
+                                        steady ? 100.0f + static_cast<float>(i % 2) : 50.0f;
+                                    values[Signal::position_z_m] = steady ? 0.0355f : 0.0350f;
+                                    values[Signal::torque_1_Nm] = -0.001f;
+                                    values[Signal::torque_3_Nm] = -0.08f;
+                                  }),
+                        nullptr);
 }
 
 protocol::ParameterSet omni() {
@@ -52,7 +55,8 @@ protocol::ParameterSet omni() {
 }
 
 /// A first-order answer with the given time constant and overshoot added to its plateau's first sample.
-std::vector<double> answer(double amplitude_A, double time_constant_s, std::size_t begin, std::size_t end, std::size_t size) {
+std::vector<double> answer(double amplitude_A, double time_constant_s, std::size_t begin, std::size_t end,
+                           std::size_t size) {
   std::vector<double> current_A(size, 0.0);
   for (std::size_t i = begin; i < end; ++i)
     current_A[i] = amplitude_A * (1 - std::exp(-static_cast<double>(i - begin) * sample_period_s / time_constant_s));
@@ -69,7 +73,8 @@ std::vector<double> pulse(double amplitude_A, std::size_t begin, std::size_t end
 
 TEST_CASE("the rise time of a first-order answer is its time constant") {
   for (double amplitude_A : {0.5, -0.5}) {
-    const auto step = current_step(pulse(amplitude_A, 100, 900, 1000), answer(amplitude_A, 0.2e-3, 100, 900, 1000), sample_period_s);
+    const auto step =
+        current_step(pulse(amplitude_A, 100, 900, 1000), answer(amplitude_A, 0.2e-3, 100, 900, 1000), sample_period_s);
     CHECK(step.amplitude_A == amplitude_A);
     CHECK(step.rise_time_s == doctest::Approx(0.2e-3).epsilon(0.02));
     CHECK(step.overshoot == 0);
@@ -112,10 +117,13 @@ TEST_CASE("the law's force is limited as the firmware limits it, and never pulls
   auto parameters = omni();
   parameters[Parameter::force_limit_N] = 0.3f;
   CHECK(force_law(push(), parameters).error_maximum_N == doctest::Approx(0.3).epsilon(1e-3));
-  const auto leaving = make_recording(synthetic(10, [](std::size_t, protocol::SignalValues& values) {
-    values[protocol::Signal::penetration_z_m] = -0.0005f;
-    values[protocol::Signal::velocity_z_m_s] = -1.0f;  // out of the wall faster than the spring pushes
-  }), nullptr);
+  const auto leaving = make_recording(synthetic(10,
+                                                [](std::size_t, protocol::SignalValues& values) {
+                                                  values[protocol::Signal::penetration_z_m] = -0.0005f;
+                                                  values[protocol::Signal::velocity_z_m_s] =
+                                                      -1.0f;  // out of the wall faster than the spring pushes
+                                                }),
+                                      nullptr);
   CHECK(force_law(leaving, omni()).error_maximum_N == 0);
 }
 

@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <protocol/reports.hpp>
 #include <window/plot_axis.hpp>
 #include <window/window_settings.hpp>
-#include <protocol/reports.hpp>
 
 using namespace inkwell;
 using namespace inkwell::window;

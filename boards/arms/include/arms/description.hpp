@@ -21,13 +21,13 @@ struct Motor {
 struct Simulation {
   double base_inertia_kg_m2;  ///< all that turns with joint 1 only, about its axis
   double link_2_mass_kg;
-  double link_2_centre_m;  ///< centre of mass, from the shoulder
+  double link_2_centre_m;       ///< centre of mass, from the shoulder
   double link_2_inertia_kg_m2;  ///< about the centre of mass
   double link_3_mass_kg;
   double link_3_centre_m;  ///< centre of mass, from the elbow
   double link_3_inertia_kg_m2;
   double probe_mass_kg;
-  double rotor_inertia_kg_m2;  ///< of each motor, before the gear
+  double rotor_inertia_kg_m2;                 ///< of each motor, before the gear
   std::array<double, 3> coulomb_friction_Nm;  ///< at the joint
   std::array<double, 3> viscous_friction_Nms_per_rad;
   double stop_stiffness_Nm_per_rad;

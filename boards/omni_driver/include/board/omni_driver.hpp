@@ -167,6 +167,7 @@ static_assert(servo_cycles == 8400);
 
 namespace detail {
 constexpr bool pins_are_distinct() {
+  // clang-format off
   const Pin pins[] = {
       encoders[0].a.pin, encoders[0].b.pin, encoders[1].a.pin, encoders[1].b.pin, encoders[2].a.pin,
       encoders[2].b.pin, bridges[0].leg_a.pin, bridges[0].leg_b.pin, bridges[1].leg_a.pin, bridges[1].leg_b.pin,
@@ -174,6 +175,7 @@ constexpr bool pins_are_distinct() {
       motor_current[0].pin, motor_current[1].pin, motor_current[2].pin, gimbal[0].pin, gimbal[1].pin,
       gimbal[2].pin, supply.pin, button_1, button_2, inkwell_switch, status_led, usb_minus.pin, usb_plus.pin,
       console_transmit.pin, console_receive.pin, debug_data, debug_clock};
+  // clang-format on
   for (const auto& a : pins)
     for (const auto& b : pins)
       if (&a != &b && a == b) return false;

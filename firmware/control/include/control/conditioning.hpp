@@ -68,8 +68,8 @@ struct InkwellReference {
   /// An encoder may dither by this while the arm counts as still.
   static constexpr std::int32_t still_counts = 1;
 
-  std::array<std::int32_t, 3> counts{};      ///< in the inkwell, since power-up
-  std::array<std::int32_t, 3> rest_counts{}; ///< where the arm has been still
+  std::array<std::int32_t, 3> counts{};       ///< in the inkwell, since power-up
+  std::array<std::int32_t, 3> rest_counts{};  ///< where the arm has been still
   std::uint32_t rested_periods = 0;
   bool valid = false;
 };

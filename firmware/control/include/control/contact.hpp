@@ -23,7 +23,7 @@ struct Contact {
 };
 
 struct Force {
-  Vector3 force_N;    ///< on the hand, workspace axes
+  Vector3 force_N;  ///< on the hand, workspace axes
   float magnitude_N;
 };
 

@@ -60,10 +60,10 @@ class Controller {
   const protocol::SignalValues& signals() const { return signals_; }
   protocol::State state() const { return supervisor_.state; }
   protocol::Fault fault() const { return supervisor_.fault; }
-  std::uint8_t switches() const { return switches_.closed; }  ///< bits of protocol::Switch, debounced
-  std::uint32_t periods() const { return periods_; }          ///< control periods completed since the start
+  std::uint8_t switches() const { return switches_.closed; }    ///< bits of protocol::Switch, debounced
+  std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
-  const Triple& motor_heat() const { return heat_.heat; }  ///< 1 is what the continuous current leads to
+  const Triple& motor_heat() const { return heat_.heat; }       ///< 1 is what the continuous current leads to
   bool force_is_on() const { return supervisor_.state == protocol::State::active; }
 
  private:

@@ -24,7 +24,7 @@ struct GimbalCurve {
 struct Limits {
   Triple joint_minimum_rad;  ///< third entry: the elbow, relative to link 2 on every arm
   Triple joint_maximum_rad;
-  Triple over_current_A;     ///< a measured current beyond it is a fault
+  Triple over_current_A;  ///< a measured current beyond it is a fault
   float speed_limit_squared_m2_per_s2;
   std::uint32_t host_timeout_periods;
 };
@@ -33,9 +33,9 @@ struct Settings {
   Arm arm;
   EncoderScale encoders;
   std::array<GimbalCurve, 3> gimbal;
-  Box box;                      ///< already smaller by the sphere's radius
+  Box box;  ///< already smaller by the sphere's radius
   Wall wall;
-  float ramp_per_period;        ///< rise of the force's gain in one control period
+  float ramp_per_period;  ///< rise of the force's gain in one control period
   Motors motors;
   HeatScale heat;
   CurrentLoopGains current_loop;

@@ -26,8 +26,6 @@ constexpr Vector3 cross(const Vector3& a, const Vector3& b) {
 }
 
 /// `value` moved into [low, high]. Written so that it compiles to compares and selects.
-constexpr float clamp(float value, float low, float high) {
-  return value < low ? low : (value > high ? high : value);
-}
+constexpr float clamp(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }
 
 }  // namespace inkwell::control

@@ -9,9 +9,8 @@ namespace inkwell::drivers {
 
 /// TIMx_BDTR while the bridges are off. Idle outputs are driven low (OSSI, OSSR), the break input is active low,
 /// and lock level 1 keeps a stray store from taking the break input away.
-inline constexpr std::uint32_t outputs_off =
-    registers::TIM1::BDTR::LOCK(1).bits | registers::TIM1::BDTR::OSSI(1).bits | registers::TIM1::BDTR::OSSR(1).bits |
-    registers::TIM1::BDTR::BKE(1).bits;
+inline constexpr std::uint32_t outputs_off = registers::TIM1::BDTR::LOCK(1).bits | registers::TIM1::BDTR::OSSI(1).bits |
+                                             registers::TIM1::BDTR::OSSR(1).bits | registers::TIM1::BDTR::BKE(1).bits;
 
 struct Store {
   std::uint32_t address;

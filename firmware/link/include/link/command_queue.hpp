@@ -49,8 +49,8 @@ class CommandQueue {
 
  private:
   std::array<protocol::CommandReport, capacity> commands_;
-  Shared<std::uint32_t> pushed_{0};  ///< written by the main loop
-  Shared<std::uint32_t> taken_{0};   ///< written by the interrupt
+  Shared<std::uint32_t> pushed_{0};     ///< written by the main loop
+  Shared<std::uint32_t> taken_{0};      ///< written by the interrupt
   Shared<std::uint32_t> forgotten_{0};  ///< what was pushed before is forgotten, if `host_gone_`
   Shared<bool> host_gone_{false};
   Shared<bool> sign_of_life_{false};

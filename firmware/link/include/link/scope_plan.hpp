@@ -18,7 +18,7 @@ struct ScopePlan {
   std::uint32_t count = 0;                ///< 0: the scope is off
   std::uint32_t sample_size_maximum = 0;  ///< bytes, the mask of a `changes` sample included
   protocol::ScopeEncoding encoding = protocol::ScopeEncoding::full;
-  std::uint8_t token = 0;                 ///< of the command that asked for it
+  std::uint8_t token = 0;  ///< of the command that asked for it
 };
 
 /// `selection` holds known signals only (decode_command sees to that).

@@ -67,17 +67,17 @@ class ScopeRecorder {
   Shared<std::uint32_t> samples_dropped_{0};             ///< written by the interrupt
 
   // The interrupt's own.
-  std::array<std::uint8_t, frame_count> free_{};     ///< stack of free frames
+  std::array<std::uint8_t, frame_count> free_{};  ///< stack of free frames
   std::uint32_t free_count_ = 0;
   std::array<std::uint8_t, frame_count> backlog_{};  ///< ring of finished frames
   std::uint32_t backlog_first_ = 0;
   std::uint32_t backlog_count_ = 0;
-  std::uint32_t reclaimed_ = 0;                      ///< frames taken back from the hand-over
+  std::uint32_t reclaimed_ = 0;  ///< frames taken back from the hand-over
   std::uint32_t active_plan_ = 0;
-  std::uint32_t writing_ = 0;                        ///< frame that is written
-  std::byte* cursor_ = nullptr;                      ///< next byte of it
+  std::uint32_t writing_ = 0;    ///< frame that is written
+  std::byte* cursor_ = nullptr;  ///< next byte of it
   const std::byte* frame_end_ = nullptr;
-  std::uint32_t sample_count_ = 0;                   ///< in it
+  std::uint32_t sample_count_ = 0;  ///< in it
   std::uint32_t first_period_ = 0;
   std::uint32_t sequence_ = 0;
   std::array<std::uint32_t, protocol::scope_signals_maximum> previous_{};  ///< bits last written

@@ -53,8 +53,7 @@ struct Register {
   static void write(Value value) { at() = value; }
   /// Writes the given fields and zero to all others.
   template <class... Fields>
-    requires(sizeof...(Fields) > 0 && (requires { typename Fields::Owner; } && ...))
-  static void write(Fields... fields) {
+  requires(sizeof...(Fields) > 0 && (requires { typename Fields::Owner; } && ...)) static void write(Fields... fields) {
     static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
     at() = static_cast<Value>((fields.bits | ...));
   }
@@ -78,8 +77,8 @@ struct RegisterArray {
   static Value read(unsigned index) { return at(index); }
   static void write(unsigned index, Value value) { at(index) = value; }
   template <class... Fields>
-    requires(sizeof...(Fields) > 0 && (requires { typename Fields::Owner; } && ...))
-  static void write(unsigned index, Fields... fields) {
+  requires(sizeof...(Fields) > 0 && (requires { typename Fields::Owner; } && ...)) static void write(unsigned index,
+                                                                                                     Fields... fields) {
     static_assert(((Fields::Owner::address == address) && ...), "a field of another register");
     at(index) = static_cast<Value>((fields.bits | ...));
   }
@@ -90,9 +89,7 @@ struct RegisterArray {
   }
 
  private:
-  static volatile Value& at(unsigned index) {
-    return *reinterpret_cast<volatile Value*>(address + stride * index);
-  }
+  static volatile Value& at(unsigned index) { return *reinterpret_cast<volatile Value*>(address + stride * index); }
 };
 
 }  // namespace inkwell::registers

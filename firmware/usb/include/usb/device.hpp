@@ -19,10 +19,10 @@ namespace inkwell::usb {
 
 /// What the device tells about itself beside the tables of the protocol.
 struct Identity {
-  std::array<char, 24> serial_number;              ///< hexadecimal digits of the chip's unique id
-  std::array<std::uint8_t, 3> firmware_version;    ///< major, minor, patch
+  std::array<char, 24> serial_number;            ///< hexadecimal digits of the chip's unique id
+  std::array<std::uint8_t, 3> firmware_version;  ///< major, minor, patch
   std::uint32_t processor_clock_Hz;
-  std::uint32_t reset_cause;                       ///< RCC_CSR bits 31..24 as found at start-up
+  std::uint32_t reset_cause;  ///< RCC_CSR bits 31..24 as found at start-up
 };
 
 class Device final : private ControlRequests {
@@ -67,7 +67,7 @@ class Device final : private ControlRequests {
   struct Endpoint {
     std::uint8_t address;
     EndpointType type;
-    bool busy = false;    ///< a transfer is running
+    bool busy = false;  ///< a transfer is running
     bool halted = false;
   };
   /// Null for endpoint 0, an unknown one, and while the device is not configured.
@@ -83,8 +83,8 @@ class Device final : private ControlRequests {
   std::uint8_t idle_rate_ = 0;
   bool suspended_ = false;
   std::array<Endpoint, 3> endpoints_;
-  bool scope_frame_open_ = false;     ///< the hand-over's oldest frame is being sent
-  bool scope_wants_end_ = false;      ///< the frame's length is a multiple of 64: an empty packet ends it
+  bool scope_frame_open_ = false;  ///< the hand-over's oldest frame is being sent
+  bool scope_wants_end_ = false;   ///< the frame's length is a multiple of 64: an empty packet ends it
   alignas(4) protocol::PoseReport pose_{};
 };
 

@@ -68,12 +68,12 @@ class ControlClient {
   void usb(bool connected);
   void buttons(bool first, bool second);
   void supply(double voltage_V);
-  void bridge_fault(bool fault);      ///< a bridge pulls the fault wire low, and lets go of it
-  void jump(std::uint32_t address);   ///< throws the processor's program counter somewhere, as a flipped bit would
+  void bridge_fault(bool fault);     ///< a bridge pulls the fault wire low, and lets go of it
+  void jump(std::uint32_t address);  ///< throws the processor's program counter somewhere, as a flipped bit would
   void hand(const Hand& hand);
   void hand_path(const std::vector<HandWaypoint>& path);  ///< minimum jerk between the waypoints
-  void gimbal(const Vector3& angles_rad);  ///< turns the stylus: yaw, pitch, roll
-  void dock(bool docked);  ///< presses the stylus into the inkwell, or takes it out
+  void gimbal(const Vector3& angles_rad);                 ///< turns the stylus: yaw, pitch, roll
+  void dock(bool docked);                                 ///< presses the stylus into the inkwell, or takes it out
 
   void trace_start();
   void trace_stop();

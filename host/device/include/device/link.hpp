@@ -42,10 +42,10 @@ struct Endpoint {
   Kind kind;
   std::string serial_number;
   std::string product;
-  std::string path;        ///< hidapi's path for `usb`, bus id for `usbip`
-  std::string host;        ///< for `usbip`
-  std::uint16_t port = 0;  ///< for `usbip`
-  bool is_virtual = false; ///< a virtual board, so what comes from it is a simulation
+  std::string path;         ///< hidapi's path for `usb`, bus id for `usbip`
+  std::string host;         ///< for `usbip`
+  std::uint16_t port = 0;   ///< for `usbip`
+  bool is_virtual = false;  ///< a virtual board, so what comes from it is a simulation
 };
 
 /// The arms on this computer's USB.

@@ -13,9 +13,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// The name in a table of rows with a `name` that takes the fewest edits. The table must not be empty.
 template <class Table>
 std::string_view nearest_name(const Table& table, std::string_view name) {
-  return std::min_element(std::begin(table), std::end(table), [&](const auto& a, const auto& b) {
-           return edit_distance(name, a.name) < edit_distance(name, b.name);
-         })->name;
+  return std::min_element(
+             std::begin(table), std::end(table),
+             [&](const auto& a, const auto& b) { return edit_distance(name, a.name) < edit_distance(name, b.name); })
+      ->name;
 }
 
 }  // namespace inkwell::device

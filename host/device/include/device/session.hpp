@@ -18,9 +18,9 @@ enum class Connection : std::uint8_t { searching, connected, incompatible, no_pe
 
 struct SessionStatus {
   Connection connection = Connection::searching;
-  std::string message;  ///< a sentence for the user, with the remedy where there is one
+  std::string message;                     ///< a sentence for the user, with the remedy where there is one
   std::optional<Information> information;  ///< read anew every second
-  bool is_simulation = false;  ///< connected to a virtual board
+  bool is_simulation = false;              ///< connected to a virtual board
   /// The control period at which the newest transaction of this session took effect; none before the first.
   std::optional<std::uint32_t> applied_at_periods;
   double pose_rate_Hz = 0;

@@ -14,8 +14,8 @@ namespace inkwell::experiment {
 
 /// One wall of the box.
 struct Wall {
-  int axis = 2;   ///< 0 x, 1 y, 2 z
-  int side = 1;   ///< 1 the upper wall, -1 the lower one
+  int axis = 2;  ///< 0 x, 1 y, 2 z
+  int side = 1;  ///< 1 the upper wall, -1 the lower one
   bool operator==(const Wall&) const = default;
 };
 
@@ -47,10 +47,10 @@ CurrentStep current_step(const std::vector<double>& reference_A, const std::vect
 
 /// Comparison of the force that the firmware logged with F = k d + c d' of the values that it logged beside it.
 struct ForceLaw {
-  std::size_t samples = 0;           ///< in contact
+  std::size_t samples = 0;  ///< in contact
   double error_maximum_N = 0;
-  double error_maximum_relative = 0; ///< of the samples with more than 0.5 N
-  std::size_t samples_outside = 0;   ///< error over 1 % and over 5 mN
+  double error_maximum_relative = 0;  ///< of the samples with more than 0.5 N
+  std::size_t samples_outside = 0;    ///< error over 1 % and over 5 mN
 };
 ForceLaw force_law(const Recording& recording, const protocol::ParameterSet& parameters);
 

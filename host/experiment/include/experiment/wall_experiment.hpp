@@ -34,8 +34,8 @@ struct Circumstances {
   std::string arm;
   std::string firmware_version;
   std::string serial_number;
-  std::string mode;               ///< of the simulation
-  std::uint64_t seed = 0;         ///< of the simulation
+  std::string mode;        ///< of the simulation
+  std::uint64_t seed = 0;  ///< of the simulation
   protocol::ParameterSet parameters{};
   Wall wall;
   std::uint64_t poses_received = 0;

@@ -15,8 +15,8 @@ struct JointStops {
 /// How the joint's angles must change so that its stops are found where they are expected:
 /// right angle = inkwell_rad + scale (angle - old inkwell angle).
 struct StopsFit {
-  double scale;        ///< 1 if the found travel is as wide as the expected one
-  double inkwell_rad;  ///< the inkwell's angle that goes with the scale
+  double scale;                          ///< 1 if the found travel is as wide as the expected one
+  double inkwell_rad;                    ///< the inkwell's angle that goes with the scale
   double low_error_rad, high_error_rad;  ///< found less expected, as the angles are now
 };
 

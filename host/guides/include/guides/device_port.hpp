@@ -20,7 +20,7 @@ struct Observation {
   std::optional<protocol::PoseReport> pose;  ///< the newest
   std::optional<protocol::ParameterSet> parameters;
   std::uint64_t parameters_revision = 0;  ///< rises when they were read anew, after each transaction at least
-  std::optional<std::string> refusal;  ///< why the newest transaction was refused, if it was
+  std::optional<std::string> refusal;     ///< why the newest transaction was refused, if it was
 };
 
 class DevicePort {

@@ -23,11 +23,11 @@ struct VoltagePulse {
 };
 
 struct MotorCircuit {
-  double resistance_ohm = 0;      ///< of the whole circuit: winding, shunt and both switches of the bridge
+  double resistance_ohm = 0;  ///< of the whole circuit: winding, shunt and both switches of the bridge
   double inductance_H = 0;
   double dead_time_voltage_V = 0;
-  double delay_s = 0;             ///< from the sample that computed a voltage to its effect
-  double residual_A = 0;          ///< root mean square of measured less fitted current
+  double delay_s = 0;     ///< from the sample that computed a voltage to its effect
+  double residual_A = 0;  ///< root mean square of measured less fitted current
 };
 
 /// Current ripple below which the loss by dead time is proportional to the current: half its peak to peak.

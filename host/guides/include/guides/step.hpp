@@ -29,7 +29,7 @@ std::string measured_text(const Check& check);
 /// A change that a guide proposes. Nothing reaches the device before Guide::apply.
 struct Proposal {
   protocol::Parameter parameter;
-  float held;      ///< by the device when the guide measured
+  float held;  ///< by the device when the guide measured
   float proposed;
   std::string reason;
 };

@@ -34,9 +34,9 @@ Band band_of(std::size_t count, ValueAt value_at) {
 std::vector<std::string> band_columns(const std::string& name);
 
 struct Curve {
-  std::string name;    ///< of the band in the data
-  std::string style;   ///< colour, a variable of figure_head, and what else belongs to the line
-  std::string title;   ///< in the legend; none where the axis says it
+  std::string name;   ///< of the band in the data
+  std::string style;  ///< colour, a variable of figure_head, and what else belongs to the line
+  std::string title;  ///< in the legend; none where the axis says it
 };
 
 /// Start of a script: data file, picture size in pixels, fonts, colours and axes.

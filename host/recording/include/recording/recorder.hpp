@@ -12,13 +12,13 @@ namespace inkwell::recording {
 
 struct RecorderStatus {
   bool running = false;
-  double duration_s = 0;        ///< board time from the first sample to the last
+  double duration_s = 0;  ///< board time from the first sample to the last
   std::uint64_t samples = 0;
-  std::uint64_t lost = 0;       ///< on the way from the device, or because the disk was too slow
-  std::uint64_t bytes = 0;      ///< size of the file
-  std::uint64_t free_bytes = 0; ///< left on its disk
+  std::uint64_t lost = 0;        ///< on the way from the device, or because the disk was too slow
+  std::uint64_t bytes = 0;       ///< size of the file
+  std::uint64_t free_bytes = 0;  ///< left on its disk
   std::size_t marks = 0;
-  std::string error;            ///< a sentence, empty while all is well
+  std::string error;  ///< a sentence, empty while all is well
 };
 
 class Recorder {

@@ -18,13 +18,13 @@ struct Mark {
 };
 
 struct Recording {
-  std::string name;                         ///< of its file, without folder and ending
+  std::string name;  ///< of its file, without folder and ending
   Information information;
   bool complete = true;                     ///< false: the program or the disk gave up before the end was written
   std::vector<std::uint32_t> periods;       ///< control period of each sample
   std::vector<std::vector<float>> columns;  ///< one for each of information.signals, as long as `periods`
   std::vector<Mark> marks;
-  std::vector<std::string> remarks;         ///< sentences about what this version did not understand
+  std::vector<std::string> remarks;  ///< sentences about what this version did not understand
 
   std::size_t size() const { return periods.size(); }
   /// Board time since the first sample.

@@ -37,7 +37,7 @@ std::filesystem::path with_ending(std::filesystem::path path, std::span<const st
 std::string reading_problem(const std::filesystem::path& file);
 std::string writing_problem(const std::filesystem::path& file);
 
-std::string size_text(std::uintmax_t bytes);   ///< "1.2 MB"
-std::string date_text(std::time_t time);       ///< "2026-03-01 14:05"
+std::string size_text(std::uintmax_t bytes);  ///< "1.2 MB"
+std::string date_text(std::time_t time);      ///< "2026-03-01 14:05"
 
 }  // namespace inkwell::window

@@ -20,45 +20,45 @@ struct Colour {
 };
 
 namespace scene_colours {
-inline constexpr Colour probe{230, 159, 0};           ///< the sphere: orange
-inline constexpr Colour proxy{86, 180, 233};          ///< where it would be without the wall: sky blue
-inline constexpr Colour wall_touched{213, 94, 0};     ///< frame and glow of a wall that pushes back: vermilion
-inline constexpr Colour wall_idle{110, 132, 160};     ///< frame and grid of a wall that does not
-inline constexpr Colour force{213, 94, 0};            ///< the arrow belongs to the wall that pushes
-inline constexpr Colour hand{0, 158, 115};            ///< the simulated hand and its spring: bluish green
-inline constexpr Colour axis_x{204, 121, 167};        ///< reddish purple
+inline constexpr Colour probe{230, 159, 0};        ///< the sphere: orange
+inline constexpr Colour proxy{86, 180, 233};       ///< where it would be without the wall: sky blue
+inline constexpr Colour wall_touched{213, 94, 0};  ///< frame and glow of a wall that pushes back: vermilion
+inline constexpr Colour wall_idle{110, 132, 160};  ///< frame and grid of a wall that does not
+inline constexpr Colour force{213, 94, 0};         ///< the arrow belongs to the wall that pushes
+inline constexpr Colour hand{0, 158, 115};         ///< the simulated hand and its spring: bluish green
+inline constexpr Colour axis_x{204, 121, 167};     ///< reddish purple
 inline constexpr Colour axis_y{0, 158, 115};
 inline constexpr Colour axis_z{86, 180, 233};
 }  // namespace scene_colours
 
 /// Lines of the scope, in this order.
-inline constexpr std::array<Colour, 6> line_colours_dark{{
-    {86, 180, 233}, {230, 159, 0}, {0, 178, 130}, {219, 140, 182}, {240, 228, 66}, {226, 110, 40}}};
-inline constexpr std::array<Colour, 6> line_colours_light{{
-    {0, 114, 178}, {213, 94, 0}, {0, 140, 102}, {184, 88, 140}, {150, 118, 0}, {60, 60, 70}}};
+inline constexpr std::array<Colour, 6> line_colours_dark{
+    {{86, 180, 233}, {230, 159, 0}, {0, 178, 130}, {219, 140, 182}, {240, 228, 66}, {226, 110, 40}}};
+inline constexpr std::array<Colour, 6> line_colours_light{
+    {{0, 114, 178}, {213, 94, 0}, {0, 140, 102}, {184, 88, 140}, {150, 118, 0}, {60, 60, 70}}};
 
 /// The surfaces, lines and texts of one theme.
 struct Palette {
-  Colour ground;         ///< behind everything
+  Colour ground;  ///< behind everything
   Colour panel;
-  Colour raised;         ///< fields, buttons
+  Colour raised;  ///< fields, buttons
   Colour raised_hover;
   Colour raised_active;
-  Colour line;           ///< between panes, around fields
+  Colour line;  ///< between panes, around fields
   Colour text;
-  Colour text_quiet;     ///< units, captions
-  Colour accent;         ///< what is on, what is selected
+  Colour text_quiet;  ///< units, captions
+  Colour accent;      ///< what is on, what is selected
   Colour good;
   Colour caution;
-  Colour danger;         ///< stop, faults
-  Colour on_danger;      ///< text on danger
+  Colour danger;     ///< stop, faults
+  Colour on_danger;  ///< text on danger
   Colour plot_grid;
-  Colour sky_top;        ///< background of the scene
+  Colour sky_top;  ///< background of the scene
   Colour sky_bottom;
   Colour floor_line;
   Colour shadow;
-  Colour metal;          ///< links of the arm
-  Colour metal_dark;     ///< its base and joints
+  Colour metal;       ///< links of the arm
+  Colour metal_dark;  ///< its base and joints
   std::array<Colour, 6> lines;
 };
 

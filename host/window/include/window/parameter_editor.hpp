@@ -67,7 +67,7 @@ class ParameterEditor {
   std::optional<protocol::ParameterSet> held_;
   std::array<std::optional<Wanted>, protocol::parameter_count> wanted_{};
   std::vector<device::ParameterChange> outgoing_;
-  std::vector<Step> steps_;    // done: [0, position_), undone: [position_, end)
+  std::vector<Step> steps_;  // done: [0, position_), undone: [position_, end)
   std::size_t position_ = 0;
   std::optional<Step> open_step_;
 };

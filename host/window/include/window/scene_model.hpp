@@ -15,19 +15,19 @@ namespace inkwell::window {
 
 /// One of the six walls of the box.
 struct WallView {
-  int axis;                ///< 0 x, 1 y, 2 z
-  bool upper;              ///< at the box's maximum along that axis
-  glm::vec3 inward;        ///< unit normal into the free space
-  float penetration_m;     ///< how deep the sphere is in it, 0 in free space
-  bool pushes_back;        ///< in contact while the device's force is on
+  int axis;             ///< 0 x, 1 y, 2 z
+  bool upper;           ///< at the box's maximum along that axis
+  glm::vec3 inward;     ///< unit normal into the free space
+  float penetration_m;  ///< how deep the sphere is in it, 0 in free space
+  bool pushes_back;     ///< in contact while the device's force is on
 };
 
 /// Everything in workspace axes and metres.
 struct SceneModel {
   glm::vec3 shoulder_m;
   glm::vec3 elbow_m;
-  glm::vec3 probe_m;              ///< centre of the sphere
-  glm::vec3 proxy_m;              ///< centre of the sphere as the walls would have it
+  glm::vec3 probe_m;  ///< centre of the sphere
+  glm::vec3 proxy_m;  ///< centre of the sphere as the walls would have it
   bool in_contact;
   float sphere_radius_m;
   glm::vec3 box_minimum_m;
@@ -38,8 +38,8 @@ struct SceneModel {
   glm::vec3 stylus_side;          ///< where the buttons are
   glm::vec3 arm_side;             ///< normal of the plane in which both links lie
   bool parallelogram;
-  glm::vec3 inkwell_m;            ///< where the probe is while the stylus is in the inkwell
-  float floor_height_m;           ///< along the frame's vertical axis
+  glm::vec3 inkwell_m;   ///< where the probe is while the stylus is in the inkwell
+  float floor_height_m;  ///< along the frame's vertical axis
   control::Frame frame;
 };
 

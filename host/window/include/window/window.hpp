@@ -30,22 +30,22 @@ struct WindowOptions {
   /// device's parameters describe.
   std::optional<protocol::ParameterSet> simulated_arm;
 
-  int width = 1280;              ///< in screen coordinates
+  int width = 1280;  ///< in screen coordinates
   int height = 800;
   std::optional<Theme> theme;    ///< without it, the one of the last time
   float scale = 0.0f;            ///< of fonts and spacing; 0 asks the display
   bool persist_settings = true;  ///< read and write the settings in the user's configuration directory
   /// Draws the scene without lighting, so that every solid pixel has exactly its colour of palette.hpp.
   bool flat_colours = false;
-  std::string layout;            ///< layout of the scope to start with, e.g. "paper"; empty: that of the last time
+  std::string layout;  ///< layout of the scope to start with, e.g. "paper"; empty: that of the last time
 
-  std::filesystem::path recording;   ///< replayed from the start, in place of the device
+  std::filesystem::path recording;  ///< replayed from the start, in place of the device
 
-  std::filesystem::path screenshot;  ///< with it: write the framebuffer to this PNG and close
-  double after_seconds = 3.0;        ///< when the screenshot is taken, from the first frame on
+  std::filesystem::path screenshot;       ///< with it: write the framebuffer to this PNG and close
+  double after_seconds = 3.0;             ///< when the screenshot is taken, from the first frame on
   std::filesystem::path parameters_file;  ///< sent to the device as soon as one is connected
-  bool inspect = false;              ///< answer questions on standard input, for tests; see inspection.hpp
-  bool frames_report = false;        ///< print the measured frames per second when closing
+  bool inspect = false;                   ///< answer questions on standard input, for tests; see inspection.hpp
+  bool frames_report = false;             ///< print the measured frames per second when closing
 };
 
 /// Opens the window and runs it until it is closed. Returns the process' exit code: 0, or 1 after a sentence

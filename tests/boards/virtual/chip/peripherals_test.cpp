@@ -71,8 +71,8 @@ TEST_SUITE("virtual chip: peripherals") {
     // Six half periods of 1000 cycles.
     CHECK(rig.result(1) - before == 168'000'000 / 10 / 6000);
     for (unsigned n = 0; n < 4; ++n) {
-      CHECK(rig.result(4 + 2 * n) == 0);   // counting up again
-      CHECK(rig.result(5 + 2 * n) < 40);   // a few instructions after the bottom
+      CHECK(rig.result(4 + 2 * n) == 0);  // counting up again
+      CHECK(rig.result(5 + 2 * n) < 40);  // a few instructions after the bottom
     }
   }
 

@@ -12,12 +12,12 @@ TEST_SUITE("virtual chip: processor") {
       Rig rig("exceptions", mode);
       rig.run_for(0.01);
       REQUIRE(rig.result(0) == finished);
-      CHECK(rig.result(1) == 0x1324);     // 7 preempts 6 in its middle, 8 waits and follows
-      CHECK(rig.result(2) == 0x394893);   // BASEPRI: 3, then 4 on release; PRIMASK: 3 on release
-      CHECK(rig.result(3) == 42);         // SVC found its argument on the process stack
+      CHECK(rig.result(1) == 0x1324);               // 7 preempts 6 in its middle, 8 waits and follows
+      CHECK(rig.result(2) == 0x394893);             // BASEPRI: 3, then 4 on release; PRIMASK: 3 on release
+      CHECK(rig.result(3) == 42);                   // SVC found its argument on the process stack
       CHECK((rig.result(4) | 0x10) == 0xFFFFFFFD);  // PendSV returns to thread mode on the process stack
-      CHECK(rig.result(5) == 0x40100000); // S15 is still 2.25
-      CHECK(rig.result(6) == 0);          // FPSCR's rounding mode too
+      CHECK(rig.result(5) == 0x40100000);           // S15 is still 2.25
+      CHECK(rig.result(6) == 0);                    // FPSCR's rounding mode too
       CHECK(rig.result(7) == 5);
       CHECK(rig.result(8) == 10);
       const auto& counters = rig.chip.counters();

@@ -61,8 +61,7 @@ TEST_CASE("the Jacobian is the position's derivative, so virtual work agrees") {
   for_poses_of_both_arms([](const ArmDynamics& dynamics, const Pose& pose) {
     const auto terms = dynamics.terms(pose.joints_rad, pose.speeds_rad_s);
     const Vector3 change = pose.speeds_rad_s * h;
-    const Vector3 moved =
-        dynamics.position_m(pose.joints_rad + change) - dynamics.position_m(pose.joints_rad - change);
+    const Vector3 moved = dynamics.position_m(pose.joints_rad + change) - dynamics.position_m(pose.joints_rad - change);
     CHECK((terms.jacobian_m * pose.speeds_rad_s - moved / (2 * h)).norm() < 1e-8);
     // tau . dq = F . dx
     const Vector3 force(1.3, -0.7, 2.1);
@@ -77,7 +76,8 @@ TEST_CASE("gravity is the gradient of the potential energy") {
     for (int i = 0; i < 3; ++i) {
       const Vector3 change = h * Vector3::Unit(i);
       const double slope = (dynamics.potential_energy_J(pose.joints_rad + change) -
-                            dynamics.potential_energy_J(pose.joints_rad - change)) / (2 * h);
+                            dynamics.potential_energy_J(pose.joints_rad - change)) /
+                           (2 * h);
       CHECK(std::abs(terms.gravity_Nm[i] - slope) < 1e-8);
     }
   });
@@ -121,7 +121,8 @@ TEST_CASE("Coriolis torques are those of Lagrange's equation for the mass matrix
     for (int k = 0; k < 3; ++k) {
       const Vector3 change = h * Vector3::Unit(k);
       slope[k] = (dynamics.terms(pose.joints_rad + change, Vector3::Zero()).mass_matrix -
-                  dynamics.terms(pose.joints_rad - change, Vector3::Zero()).mass_matrix) / (2 * h);
+                  dynamics.terms(pose.joints_rad - change, Vector3::Zero()).mass_matrix) /
+                 (2 * h);
     }
     const Vector3& v = pose.speeds_rad_s;
     Vector3 expected = Vector3::Zero();

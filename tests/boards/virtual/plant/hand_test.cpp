@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include <board/omni_driver.hpp>
 #include <doctest/doctest.h>
+#include <board/omni_driver.hpp>
 
 #include "bench.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <board/omni_driver.hpp>
 #include <doctest/doctest.h>
+#include <board/omni_driver.hpp>
 
 namespace {
 
@@ -140,7 +140,7 @@ TEST_CASE("a floating bridge kills the current through its diodes and leaves it 
     motor.set_back_emf_V(sign * 15.0);            // too little to open the diodes
     motor.advance(ticks(10e-3));
     CHECK(motor.current_A() == 0.0);
-    motor.set_back_emf_V(sign * 25.0);            // a motor spun beyond the supply feeds it
+    motor.set_back_emf_V(sign * 25.0);  // a motor spun beyond the supply feeds it
     motor.advance(ticks(20e-3));
     CHECK(motor.current_A() == doctest::Approx(-sign * (25.0 - 19.6) / resistance_ohm));
   }

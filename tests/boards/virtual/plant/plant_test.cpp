@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include <board/omni_driver.hpp>
 #include <doctest/doctest.h>
+#include <board/omni_driver.hpp>
 
 #include "bench.hpp"
 
@@ -70,8 +70,7 @@ TEST_CASE("encoders count through fast motion without a lost edge") {
   bench.idle(0.2);
   const auto encoder_after = bench.plant.truth(bench.now).encoder_counts;
   CHECK(std::abs(encoder_after[0] - encoder_before[0]) > 500);
-  for (unsigned i = 0; i < 3; ++i)
-    CHECK(bench.pins.counts[i] - before[i] == encoder_after[i] - encoder_before[i]);
+  for (unsigned i = 0; i < 3; ++i) CHECK(bench.pins.counts[i] - before[i] == encoder_after[i] - encoder_before[i]);
   CHECK(bench.pins.jumps == 0);
 }
 

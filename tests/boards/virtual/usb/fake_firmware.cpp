@@ -20,26 +20,28 @@ constexpr std::uint32_t doepint(unsigned n) { return 0xB08 + 0x20 * n; }
 constexpr std::uint32_t doeptsiz(unsigned n) { return 0xB10 + 0x20 * n; }
 constexpr std::uint32_t fifo(unsigned n) { return 0x1000 * (n + 1); }
 
-constexpr std::uint32_t epena = 1u << 31, sd0pid = 1u << 28, snak = 1u << 27, cnak = 1u << 26,
-                        stall = 1u << 21, usbaep = 1u << 15;
+constexpr std::uint32_t epena = 1u << 31, sd0pid = 1u << 28, snak = 1u << 27, cnak = 1u << 26, stall = 1u << 21,
+                        usbaep = 1u << 15;
 constexpr std::uint32_t type_bulk = 2u << 18, type_interrupt = 3u << 18;
 
-constexpr std::array<std::uint8_t, 18> device_descriptor{18, 1, 0x00, 0x02, 0, 0, 0, 64, 0x09, 0x12,
-                                                         0x01, 0x00, 0x34, 0x01, 0, 0, 0, 1};
+constexpr std::array<std::uint8_t, 18> device_descriptor{18,   1,    0x00, 0x02, 0,    0, 0, 64, 0x09,
+                                                         0x12, 0x01, 0x00, 0x34, 0x01, 0, 0, 0,  1};
 constexpr std::array<std::uint8_t, 55> configuration_descriptor{
-    9, 2, 55, 0, 2, 5, 0, 0x80, 50,                // configuration 5
-    9, 4, 0, 0, 2, 3, 0, 0, 0,                     // interface 0, HID
-    7, 5, 0x81, 3, 64, 0, 1,                       //
-    7, 5, 0x01, 3, 64, 0, 1,                       //
-    9, 4, 1, 0, 2, 0xFF, 1, 2, 0,                  // interface 1, vendor
-    7, 5, 0x82, 2, 64, 0, 0,                       //
-    7, 5, 0x03, 2, 64, 0, 0};
+    9, 2, 55,   0, 2,  5,    0, 0x80, 50,  // configuration 5
+    9, 4, 0,    0, 2,  3,    0, 0,    0,   // interface 0, HID
+    7, 5, 0x81, 3, 64, 0,    1,            //
+    7, 5, 0x01, 3, 64, 0,    1,            //
+    9, 4, 1,    0, 2,  0xFF, 1, 2,    0,   // interface 1, vendor
+    7, 5, 0x82, 2, 64, 0,    0,            //
+    7, 5, 0x03, 2, 64, 0,    0};
 }  // namespace
 
 void FakeFirmware::start() {
-  while ((read(grstctl) & 1u << 31) == 0) {}
+  while ((read(grstctl) & 1u << 31) == 0) {
+  }
   set(grstctl, 1);
-  while ((read(grstctl) & 1) != 0) {}
+  while ((read(grstctl) & 1) != 0) {
+  }
   write(gusbcfg, 1u << 30 | 6u << 10 | 1u << 6);
   write(gccfg, 1u << 21 | 1u << 16);
   set(dcfg, 3);

@@ -230,14 +230,14 @@ TEST_CASE("nonsense closes the connection, not the server") {
   }
   constexpr std::uint32_t device = 0x0001'0002;
   const std::array<std::array<std::uint32_t, 10>, 8> headers{{
-      {9, 1, device, 1, 0, 0, 18, 0, 0, 0},                    // unknown command
-      {1, 1, 0x0001'0003, 1, 0, 0, 18, 0, 0, 0},               // another device
-      {1, 1, device, 2, 0, 0, 18, 0, 0, 0},                    // neither IN nor OUT
-      {1, 1, device, 1, 16, 0, 18, 0, 0, 0},                   // no such endpoint number
-      {1, 1, device, 1, 2, 0, 0xFFFF'FFF0, 0, 0, 0},           // endless
-      {1, 1, device, 0, 2, 0, 0x7FFF'FFFF, 0, 0, 0},           // endless
-      {1, 1, device, 1, 2, 0, 64, 0, 4, 0},                    // isochronous
-      {1, 1, device, 0, 0, 0, 18, 0, 0, 0},                    // OUT, but the request says IN
+      {9, 1, device, 1, 0, 0, 18, 0, 0, 0},           // unknown command
+      {1, 1, 0x0001'0003, 1, 0, 0, 18, 0, 0, 0},      // another device
+      {1, 1, device, 2, 0, 0, 18, 0, 0, 0},           // neither IN nor OUT
+      {1, 1, device, 1, 16, 0, 18, 0, 0, 0},          // no such endpoint number
+      {1, 1, device, 1, 2, 0, 0xFFFF'FFF0, 0, 0, 0},  // endless
+      {1, 1, device, 0, 2, 0, 0x7FFF'FFFF, 0, 0, 0},  // endless
+      {1, 1, device, 1, 2, 0, 64, 0, 4, 0},           // isochronous
+      {1, 1, device, 0, 0, 0, 18, 0, 0, 0},           // OUT, but the request says IN
   }};
   for (const auto& header : headers) {
     REQUIRE(board.wait_until_enumerated());

@@ -30,9 +30,9 @@ enum class Mode : std::uint8_t {
 
 struct ChipOptions {
   Mode mode = Mode::fast;
-  std::uint32_t crystal_Hz = 8'000'000;            ///< HSE
+  std::uint32_t crystal_Hz = 8'000'000;                                           ///< HSE
   std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
-  std::uint32_t random_seed = 1;                   ///< of the RNG peripheral
+  std::uint32_t random_seed = 1;                                                  ///< of the RNG peripheral
   /// Takes each line of the log (without a newline); by default it goes to stderr.
   std::function<void(const std::string&)> log;
 };

@@ -45,7 +45,7 @@ class ArmDynamics {
 
  private:
   struct Links {
-    double cos_1, sin_1;      ///< waist
+    double cos_1, sin_1;  ///< waist
     double cos_a, sin_a, cos_b, sin_b;
   };
   Links links(const Vector3& joints_rad) const;
@@ -55,11 +55,11 @@ class ArmDynamics {
   bool omni_frame_;
   double link_2_m_, link_3_m_, elbow_offset_rad_;
   Vector3 origin_m_;
-  double turret_kg_m2_;                    ///< I
-  double link_2_kg_m2_, link_3_kg_m2_;     ///< J2, J3
-  double coupling_kg_m2_;                  ///< H
-  double weight_2_Nm_, weight_3_Nm_;       ///< g S2, g S3
-  Vector3 rotors_kg_m2_;                   ///< seen at the joints
+  double turret_kg_m2_;                 ///< I
+  double link_2_kg_m2_, link_3_kg_m2_;  ///< J2, J3
+  double coupling_kg_m2_;               ///< H
+  double weight_2_Nm_, weight_3_Nm_;    ///< g S2, g S3
+  Vector3 rotors_kg_m2_;                ///< seen at the joints
 };
 
 }  // namespace inkwell::virtual_board

@@ -55,8 +55,8 @@ class Hand {
   double stiffness_N_per_m_ = 300.0;
   double damping_Ns_per_m_ = 3.0;
   Vector3 target_m_ = Vector3::Zero();
-  std::vector<Node> path_;            ///< the first node is the start
-  mutable std::size_t segment_ = 0;   ///< where the last look-up ended; time does not run backward
+  std::vector<Node> path_;           ///< the first node is the start
+  mutable std::size_t segment_ = 0;  ///< where the last look-up ended; time does not run backward
 };
 
 /// The inkwell: a socket that guides the stylus in, holds it until it is pulled out, and closes a switch.

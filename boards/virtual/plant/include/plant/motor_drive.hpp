@@ -51,10 +51,10 @@ class MotorDrive {
   };
   /// A voltage behind no resistance that drives the current until it changes its sign or a leg switches.
   struct Branch {
-    double voltage_V;      ///< from terminal + to terminal -, without the legs' resistance
-    double supply_share;   ///< supply current over motor current: -1, 0 or 1
+    double voltage_V;     ///< from terminal + to terminal -, without the legs' resistance
+    double supply_share;  ///< supply current over motor current: -1, 0 or 1
     bool conducts;
-    bool holds_at_zero;    ///< diodes block once the current has fallen to nothing
+    bool holds_at_zero;  ///< diodes block once the current has fallen to nothing
   };
   Branch branch() const;
   void integrate(Ticks duration);

@@ -86,21 +86,21 @@ class Plant final : public Circuit {
   Supply supply_;
 
   // Mechanical
-  std::array<double, 3> torque_per_A_;      ///< at the joint, sign of the wiring included
+  std::array<double, 3> torque_per_A_;  ///< at the joint, sign of the wiring included
   ArmMotion arm_;
-  Vector3 probe_m_;                         ///< where the last step brought it
+  Vector3 probe_m_;  ///< where the last step brought it
   Hand hand_;
-  Hand carrier_;                            ///< holds while it carries the stylus to the inkwell
+  Hand carrier_;  ///< holds while it carries the stylus to the inkwell
   Inkwell inkwell_;
   Vector3 torque_Nm_ = Vector3::Zero();
 
   // Inputs of the chip
   InputPins* pins_ = nullptr;
-  bool inputs_stale_ = true;                ///< something that the inputs show has moved since
+  bool inputs_stale_ = true;  ///< something that the inputs show has moved since
   std::array<QuadratureEncoder, 3> encoders_;
   std::array<QuadratureEncoder::Levels, 3> encoder_levels_{};
   std::array<bool, 2> buttons_{};
-  std::array<PinLevel, 5> shown_{};         ///< buttons, inkwell switch, two pins of the fault wire
+  std::array<PinLevel, 5> shown_{};  ///< buttons, inkwell switch, two pins of the fault wire
 
   // Gimbal: joint angles and the inverse of the potentiometers' characteristic
   std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope, offset of each

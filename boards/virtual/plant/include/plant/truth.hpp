@@ -15,12 +15,12 @@ namespace inkwell::virtual_board {
 
 struct Truth {
   Ticks at = 0;
-  Vector3 position_m, velocity_m_s;     ///< probe, workspace
+  Vector3 position_m, velocity_m_s;  ///< probe, workspace
   Vector3 joints_rad, joint_speeds_rad_s;
-  Vector3 current_A;                    ///< motor currents, ripple included
-  Vector3 torque_Nm;                    ///< of the motors at the joints
-  Vector3 hand_force_N;                 ///< of the hand on the probe
-  Vector3 hand_target_m;                ///< where the hand pulls to; the probe if it does not hold
+  Vector3 current_A;      ///< motor currents, ripple included
+  Vector3 torque_Nm;      ///< of the motors at the joints
+  Vector3 hand_force_N;   ///< of the hand on the probe
+  Vector3 hand_target_m;  ///< where the hand pulls to; the probe if it does not hold
   double supply_V = 0.0;
   std::array<std::int64_t, 3> encoder_counts{};
   bool hand_holds = false, docked = false, inkwell_switch = false, bridge_fault = false;
@@ -31,14 +31,12 @@ struct Truth {
 
 /// Names and values of what a trace records, in one order.
 inline constexpr std::array<std::string_view, 25> traced_quantities = {
-    "true_position_x_m",     "true_position_y_m",     "true_position_z_m",
-    "true_velocity_x_m_s",   "true_velocity_y_m_s",   "true_velocity_z_m_s",
-    "true_joint_1_rad",      "true_joint_2_rad",      "true_joint_3_rad",
-    "true_joint_speed_1_rad_s", "true_joint_speed_2_rad_s", "true_joint_speed_3_rad_s",
-    "true_current_1_A",      "true_current_2_A",      "true_current_3_A",
-    "true_torque_1_Nm",      "true_torque_2_Nm",      "true_torque_3_Nm",
-    "hand_force_x_N",        "hand_force_y_N",        "hand_force_z_N",
-    "hand_target_x_m",       "hand_target_y_m",       "hand_target_z_m",
+    "true_position_x_m",   "true_position_y_m",        "true_position_z_m",        "true_velocity_x_m_s",
+    "true_velocity_y_m_s", "true_velocity_z_m_s",      "true_joint_1_rad",         "true_joint_2_rad",
+    "true_joint_3_rad",    "true_joint_speed_1_rad_s", "true_joint_speed_2_rad_s", "true_joint_speed_3_rad_s",
+    "true_current_1_A",    "true_current_2_A",         "true_current_3_A",         "true_torque_1_Nm",
+    "true_torque_2_Nm",    "true_torque_3_Nm",         "hand_force_x_N",           "hand_force_y_N",
+    "hand_force_z_N",      "hand_target_x_m",          "hand_target_y_m",          "hand_target_z_m",
     "true_supply_V"};
 std::array<double, traced_quantities.size()> traced_values(const Truth& truth);
 

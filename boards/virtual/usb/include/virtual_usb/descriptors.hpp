@@ -37,9 +37,7 @@ struct DeviceDescription {
   std::vector<ConfigurationDescription> configurations;
 
   std::uint8_t byte(std::size_t index) const { return std::to_integer<std::uint8_t>(device[index]); }
-  std::uint16_t word(std::size_t index) const {
-    return static_cast<std::uint16_t>(byte(index) | byte(index + 1) << 8);
-  }
+  std::uint16_t word(std::size_t index) const { return static_cast<std::uint16_t>(byte(index) | byte(index + 1) << 8); }
   std::uint16_t vendor() const { return word(8); }
   std::uint16_t product() const { return word(10); }
   std::uint16_t release() const { return word(12); }

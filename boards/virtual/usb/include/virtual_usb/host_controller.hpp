@@ -70,7 +70,7 @@ class HostController {
   struct Transaction {
     unsigned pipe;
     Token token;
-    InReply reply;       ///< of an IN
+    InReply reply;           ///< of an IN
     bool abandoned = false;  ///< its transfer was unlinked meanwhile
   };
   static constexpr unsigned pipe_count = 32;  ///< 0..15 OUT and control, 16..31 IN

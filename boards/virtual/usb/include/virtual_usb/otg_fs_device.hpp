@@ -19,7 +19,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   static constexpr std::uint32_t base = 0x5000'0000;
   static constexpr std::uint32_t size = 0x4'0000;
   static constexpr unsigned interrupt_position = 67;
-  static constexpr unsigned endpoint_count = 4;          ///< IN and OUT each, endpoint 0 included
+  static constexpr unsigned endpoint_count = 4;  ///< IN and OUT each, endpoint 0 included
   static constexpr std::size_t packet_memory_words = 320;
 
   OtgFsDevice(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log);
@@ -47,25 +47,25 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
  private:
   /// The side of an endpoint that sends to the host.
   struct InEndpoint {
-    std::uint32_t control = 0;        ///< DIEPCTL without the bits that only act
-    std::uint32_t interrupts = 0;     ///< DIEPINT but TXFE, which is a level
-    std::uint32_t packets = 0;        ///< PKTCNT: packets still to be acknowledged
-    std::uint32_t bytes_to_load = 0;  ///< XFRSIZ: falls as packets are written to the FIFO
-    std::uint32_t bytes_to_send = 0;  ///< falls as packets are acknowledged
+    std::uint32_t control = 0;               ///< DIEPCTL without the bits that only act
+    std::uint32_t interrupts = 0;            ///< DIEPINT but TXFE, which is a level
+    std::uint32_t packets = 0;               ///< PKTCNT: packets still to be acknowledged
+    std::uint32_t bytes_to_load = 0;         ///< XFRSIZ: falls as packets are written to the FIFO
+    std::uint32_t bytes_to_send = 0;         ///< falls as packets are acknowledged
     std::uint32_t packet_words_to_load = 0;  ///< rest of the packet that firmware is writing; 0 between packets
     std::uint32_t packet_bytes_loading = 0;
     std::optional<std::uint32_t> bytes_on_wire;
     bool data1 = false;
-    bool damaged = false;             ///< FIFO content has a bad CRC until it is flushed
+    bool damaged = false;  ///< FIFO content has a bad CRC until it is flushed
   };
   /// The side of an endpoint that receives from the host.
   struct OutEndpoint {
     std::uint32_t control = 0;
     std::uint32_t interrupts = 0;
-    std::uint32_t packets = 0;        ///< PKTCNT
-    std::uint32_t bytes = 0;          ///< XFRSIZ
+    std::uint32_t packets = 0;  ///< PKTCNT
+    std::uint32_t bytes = 0;    ///< XFRSIZ
     bool data1 = false;
-    bool disable_pending = false;     ///< EPDIS waits for the global OUT NAK
+    bool disable_pending = false;  ///< EPDIS waits for the global OUT NAK
   };
 
   std::uint32_t read_register(std::uint32_t offset);
@@ -118,43 +118,43 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   UnmodelledLog& log_;
 
   // Registers, by the names of RM0090 in words.
-  std::uint32_t otg_interrupts_ = 0;       // GOTGINT
-  std::uint32_t bus_configuration_ = 0;    // GAHBCFG
-  std::uint32_t usb_configuration_ = 0;    // GUSBCFG
-  std::uint32_t latched_interrupts_ = 0;   // GINTSTS, the bits that are cleared by writing 1
-  std::uint32_t interrupt_mask_ = 0;       // GINTMSK
-  std::uint32_t receive_size_ = 0;         // GRXFSIZ
+  std::uint32_t otg_interrupts_ = 0;                           // GOTGINT
+  std::uint32_t bus_configuration_ = 0;                        // GAHBCFG
+  std::uint32_t usb_configuration_ = 0;                        // GUSBCFG
+  std::uint32_t latched_interrupts_ = 0;                       // GINTSTS, the bits that are cleared by writing 1
+  std::uint32_t interrupt_mask_ = 0;                           // GINTMSK
+  std::uint32_t receive_size_ = 0;                             // GRXFSIZ
   std::array<std::uint32_t, endpoint_count> transmit_size_{};  // DIEPTXF0..3
-  std::uint32_t core_configuration_ = 0;   // GCCFG
-  std::uint32_t core_id_ = 0;              // CID
-  std::uint32_t device_configuration_ = 0; // DCFG
-  std::uint32_t device_control_ = 0;       // DCTL
-  std::uint32_t in_mask_ = 0;              // DIEPMSK
-  std::uint32_t out_mask_ = 0;             // DOEPMSK
-  std::uint32_t endpoint_mask_ = 0;        // DAINTMSK
-  std::uint32_t in_empty_mask_ = 0;        // DIEPEMPMSK
-  std::uint32_t bus_discharge_ = 0;        // DVBUSDIS
-  std::uint32_t bus_pulse_ = 0;            // DVBUSPULSE
-  std::uint32_t power_control_ = 0;        // PCGCCTL
+  std::uint32_t core_configuration_ = 0;                       // GCCFG
+  std::uint32_t core_id_ = 0;                                  // CID
+  std::uint32_t device_configuration_ = 0;                     // DCFG
+  std::uint32_t device_control_ = 0;                           // DCTL
+  std::uint32_t in_mask_ = 0;                                  // DIEPMSK
+  std::uint32_t out_mask_ = 0;                                 // DOEPMSK
+  std::uint32_t endpoint_mask_ = 0;                            // DAINTMSK
+  std::uint32_t in_empty_mask_ = 0;                            // DIEPEMPMSK
+  std::uint32_t bus_discharge_ = 0;                            // DVBUSDIS
+  std::uint32_t bus_pulse_ = 0;                                // DVBUSPULSE
+  std::uint32_t power_control_ = 0;                            // PCGCCTL
 
   std::array<InEndpoint, endpoint_count> in_{};
   std::array<OutEndpoint, endpoint_count> out_{};
   WordFifo receive_;
   std::array<WordFifo, endpoint_count> transmit_{};
 
-  std::uint32_t receive_data_words_ = 0;    ///< data words at the head of the receive FIFO, after their status word
+  std::uint32_t receive_data_words_ = 0;      ///< data words at the head of the receive FIFO, after their status word
   std::optional<unsigned> writing_endpoint_;  ///< the last access was a FIFO write of this endpoint
   bool layout_changed_ = true;
   bool global_in_nak_ = false;
   bool global_out_nak_asked_ = false;
   bool global_out_nak_effective_ = false;
 
-  unsigned address_ = 0;                    ///< in use on the bus; follows DCFG.DAD after a status stage
-  bool control_transfer_open_ = false;      ///< from a SETUP packet to its status stage
-  bool setup_stage_open_ = false;           ///< from a SETUP packet to the next token: setup done is not written yet
-  bool setup_done_unpopped_ = false;        ///< from a SETUP packet until firmware pops its setup-done word
-  bool setup_done_lost_ = false;            ///< CNAK came in between: the word will not be seen
-  unsigned setup_packets_allowed_ = 0;      ///< DOEPTSIZ0.STUPCNT
+  unsigned address_ = 0;                ///< in use on the bus; follows DCFG.DAD after a status stage
+  bool control_transfer_open_ = false;  ///< from a SETUP packet to its status stage
+  bool setup_stage_open_ = false;       ///< from a SETUP packet to the next token: setup done is not written yet
+  bool setup_done_unpopped_ = false;    ///< from a SETUP packet until firmware pops its setup-done word
+  bool setup_done_lost_ = false;        ///< CNAK came in between: the word will not be seen
+  unsigned setup_packets_allowed_ = 0;  ///< DOEPTSIZ0.STUPCNT
   bool bus_power_ = false;
   bool pulled_up_ = false;
   bool suspended_ = false;

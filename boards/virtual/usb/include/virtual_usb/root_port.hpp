@@ -90,7 +90,7 @@ class RootPort final : private HostController::Client {
   DeviceDescription description_{};
   const ConfigurationDescription* configuration_ = nullptr;
   std::uint16_t control_packet_maximum_ = 8;
-  std::vector<Urb> held_;     ///< of the importer, until the device has its address
+  std::vector<Urb> held_;  ///< of the importer, until the device has its address
   HostController controller_;
 };
 

@@ -20,17 +20,17 @@ inline constexpr std::uint32_t short_is_error = 0x0001, zero_packet = 0x0040;
 
 struct Urb {
   std::uint32_t sequence = 0;
-  bool internal = false;          ///< of the host controller itself, while it enumerates
-  std::uint8_t endpoint = 0;      ///< number, without the direction
+  bool internal = false;      ///< of the host controller itself, while it enumerates
+  std::uint8_t endpoint = 0;  ///< number, without the direction
   bool in = false;
   std::uint32_t flags = 0;
-  std::uint32_t length = 0;       ///< bytes to send, or room for bytes to receive
+  std::uint32_t length = 0;  ///< bytes to send, or room for bytes to receive
   std::array<std::byte, 8> setup{};
-  std::vector<std::byte> data;    ///< OUT: `length` bytes; IN: what has been received so far
+  std::vector<std::byte> data;  ///< OUT: `length` bytes; IN: what has been received so far
 
   // Progress.
   enum class Stage : std::uint8_t { setup, data, status };
-  Stage stage = Stage::setup;     ///< of control transfers
+  Stage stage = Stage::setup;  ///< of control transfers
   std::uint32_t sent = 0;
 
   std::uint32_t actual_length() const { return in ? static_cast<std::uint32_t>(data.size()) : sent; }

@@ -28,9 +28,7 @@ void equal() { mark(4); }
       "tst lr, #4\n ite eq\n mrseq r0, msp\n mrsne r0, psp\n ldr r1, [r0]\n add r1, r1\n str r1, [r0]\n bx lr");
 }
 volatile std::uint32_t pendsv_return;
-[[gnu::naked]] void pendsv() {
-  asm volatile("ldr r0, =%c0\n str lr, [r0]\n bx lr\n .ltorg" ::"i"(&pendsv_return));
-}
+[[gnu::naked]] void pendsv() { asm volatile("ldr r0, =%c0\n str lr, [r0]\n bx lr\n .ltorg" ::"i"(&pendsv_return)); }
 
 alignas(8) std::uint32_t process_stack[64];
 
@@ -92,11 +90,12 @@ void run() {
   order = 0;
   float a = 1.5f, b = 2.25f;
   std::uint32_t status = 0;
-  asm volatile("vmov.f32 s0, %2\n vmov.f32 s15, %3\n vmov r3, s0\n"
-               "str %5, [%4]\n dsb\n isb\n vmov.f32 %0, s15\n vmrs %1, fpscr"
-               : "=t"(b), "=r"(status)
-               : "t"(a), "t"(b), "r"(0xE000E200), "r"(1u << 9)
-               : "r3", "s0", "s15", "memory");
+  asm volatile(
+      "vmov.f32 s0, %2\n vmov.f32 s15, %3\n vmov r3, s0\n"
+      "str %5, [%4]\n dsb\n isb\n vmov.f32 %0, s15\n vmrs %1, fpscr"
+      : "=t"(b), "=r"(status)
+      : "t"(a), "t"(b), "r"(0xE000E200), "r"(1u << 9)
+      : "r3", "s0", "s15", "memory");
   asm volatile("vstr.f32 %0, [%1]" ::"t"(b), "r"(const_cast<std::uint32_t*>(&results[5])) : "memory");
   results[6] = status & 0x00C00000;
   results[7] = order;

@@ -20,9 +20,10 @@ extern "C" void note_fault(std::uint32_t* frame) {
 [[gnu::naked]] void fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl note_fault\n pop {r4, pc}"); }
 
 // Notes where the instruction is and where to go on, then runs it.
-#define FAULTING(instruction, input)                                                                    \
+#define FAULTING(instruction, input)                                                                      \
   asm volatile("adr r3, 1f\n str r3, [%0]\n adr r3, 2f\n str r3, [%1]\n b 1f\n .align 2\n1: " instruction \
-               "\n nop\n .align 2\n2:" ::"r"(&expected), "r"(&resume_at), "r"(input)                     \
+               "\n nop\n .align 2\n2:" ::"r"(&expected),                                                  \
+               "r"(&resume_at), "r"(input)                                                                \
                : "r3", "memory")
 
 }  // namespace

@@ -34,8 +34,8 @@ void run() {
   gpio::alternate(gpio::c, 6, 3);
   set_up(tim1, 400);
   set_up(tim8, 600);
-  word(tim1 + cr2) = 1 << 4;   // TRGO: enable
-  word(tim8 + smcr) = 6;       // trigger mode, ITR0 is TIM1
+  word(tim1 + cr2) = 1 << 4;  // TRGO: enable
+  word(tim8 + smcr) = 6;      // trigger mode, ITR0 is TIM1
   set_handler(interrupt(25), update);
   enable_interrupt(25, 1);
   word(tim1 + dier) = 1;
