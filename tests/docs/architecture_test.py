@@ -1,0 +1,81 @@
+"""docs/architecture.md names every folder and all that it uses; and the test that says so notices when it does not.
+
+    architecture_test.py TARGET_GRAPH...
+"""
+
+import pathlib
+import sys
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(REPOSITORY / "tools"))
+
+import architecture  # noqa: E402: it lies in tools/
+
+GRAPHS: list[pathlib.Path] = []
+
+
+class Architecture(unittest.TestCase):
+    def test_table_agrees_with_targets_and_sources(self):
+        table = architecture.read_table((REPOSITORY / "docs/architecture.md").read_text())
+        tree = architecture.read_tree(REPOSITORY, GRAPHS)
+        self.assertEqual([], architecture.differences(table, tree))
+
+
+class Differences(unittest.TestCase):
+    """On a small tree: host/window uses firmware/control and imgui."""
+
+    TABLE = ("| `firmware/control/` | the signal path | - | - |\n"
+             "| `host/window/` | the window | control | imgui |\n")
+
+    def setUp(self):
+        self.tree = architecture.Tree(folders={"firmware/control", "host/window"},
+                                      links={"firmware/control": set(), "host/window": {"firmware/control"}},
+                                      libraries={"host/window": {"imgui"}}, includes={})
+
+    def differences(self, table=TABLE):
+        return architecture.differences(architecture.read_table(table), self.tree)
+
+    def test_agreement(self):
+        self.assertEqual([], self.differences())
+
+    def test_folder_without_row(self):
+        self.tree.folders.add("host/new")
+        self.assertEqual(["host/new/ has no row in docs/architecture.md"], self.differences())
+
+    def test_row_without_folder(self):
+        self.assertRegex(self.differences(self.TABLE + "| `host/gone/` | - | - | - |\n")[0], "a row for host/gone/")
+
+    def test_dependency_that_is_not_named(self):
+        self.tree.links["firmware/control"].add("host/window")
+        self.assertEqual(["firmware/control/ uses host/window/, which its row does not name"], self.differences())
+
+    def test_dependency_that_is_gone(self):
+        self.tree.links["host/window"].clear()
+        self.assertEqual(["host/window/ does not use firmware/control/, which its row names"], self.differences())
+
+    def test_library_that_is_not_named(self):
+        self.tree.libraries["host/window"].add("hdf5")
+        self.assertEqual(["host/window/ links to hdf5, which its row does not name"], self.differences())
+
+    def test_include_without_link(self):
+        self.tree.includes["firmware/control"] = {"host/window": "contact.cpp: #include <window/window.hpp>"}
+        self.assertEqual(["contact.cpp: #include <window/window.hpp>: firmware/control/ has no target that links to "
+                          "one of host/window/"], self.differences())
+
+    def test_folder_without_target_uses_what_it_includes(self):
+        self.tree.folders.add("host/window/scope")
+        self.tree.includes["host/window/scope"] = {"host/window": "scope.cpp: #include <window/window.hpp>"}
+        self.assertEqual([], self.differences(self.TABLE + "| `host/window/scope/` | - | window | - |\n"))
+        self.assertEqual(["host/window/scope/ uses host/window/, which its row does not name"],
+                         self.differences(self.TABLE + "| `host/window/scope/` | - | - | - |\n"))
+
+    def test_ambiguous_name(self):
+        table = "| `host/usb/` | - | - | - |\n| `firmware/usb/` | - | - | - |\n| `host/window/` | - | usb | - |\n"
+        with self.assertRaisesRegex(architecture.Unreadable, "usb, which is the name of host/usb, firmware/usb"):
+            architecture.read_table(table)
+
+
+if __name__ == "__main__":
+    GRAPHS = [pathlib.Path(argument) for argument in sys.argv[1:]]
+    unittest.main(argv=sys.argv[:1])

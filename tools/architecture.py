@@ -1,0 +1,150 @@
+"""The tree's folders and what they use: as docs/architecture.md says it, as CMake links it, as the sources include it.
+
+CMake writes target-graph.txt into every build directory (tools/cmake/target_graph.cmake). The PC's build knows no
+drivers and the board's no window, so both are read.
+"""
+
+import dataclasses
+import pathlib
+import re
+
+ROOTS = ("protocol", "boards", "firmware", "host")  # what the table has to name, each folder of it
+SOURCES = {".cpp", ".hpp"}
+
+
+class Unreadable(Exception):
+    """The table or a graph is not of the form that is read here; the message says where and what to do."""
+
+
+@dataclasses.dataclass
+class Row:
+    """A row of the table."""
+
+    folder: str
+    purpose: str
+    uses: set[str]
+    libraries: set[str]
+
+
+@dataclasses.dataclass
+class Target:
+    name: str
+    folder: str
+    links: list[str]
+    include_directories: list[pathlib.Path]
+
+
+def read_table(document: str) -> dict[str, Row]:
+    """The rows of the table of folders, by folder. What a row uses is named by the end of its path."""
+    rows = re.findall(r"^\| `([^`]+)/` \| ([^|]*) \| ([^|]*) \| ([^|]*) \|$", document, re.MULTILINE)
+    folders = [folder for folder, *_ in rows]
+    if not folders:
+        raise Unreadable("docs/architecture.md has no table with the columns folder, what lives there, may use, libraries")
+
+    def named(cell: str) -> set[str]:
+        return {name.strip() for name in cell.split(",")} - {"", "-"}
+
+    def folder_called(name: str, by: str) -> str:
+        found = [folder for folder in folders if f"/{folder}".endswith(f"/{name}")]
+        if len(found) != 1:
+            raise Unreadable(f"docs/architecture.md: {by} may use {name}, which is the name of "
+                             f"{', '.join(found) or 'no folder in the table'}; write as much of its path as names one")
+        return found[0]
+
+    return {folder: Row(folder, purpose.strip(), {folder_called(name, folder) for name in named(uses)},
+                        named(libraries))
+            for folder, purpose, uses, libraries in rows}
+
+
+def read_graph(path: pathlib.Path) -> list[Target]:
+    try:
+        lines = path.read_text().splitlines()
+    except OSError as error:
+        raise Unreadable(f"{error}; make it with cmake --preset {path.parent.name}") from error
+    parts = [line.split("|") for line in lines]
+    return [Target(name, folder, links.split(";") if links else [], [pathlib.Path(each) for each in includes.split(";")
+                                                                     if each])
+            for name, folder, links, includes in parts]
+
+
+def library_name(link: str) -> str:
+    """PkgConfig::hdf5 -> hdf5, nlohmann_json::nlohmann_json -> nlohmann_json."""
+    return link.rpartition("::")[2].lower()
+
+
+# The operating system's own, and the flags that every target has.
+NO_LIBRARY = {"threads", "dl", "inkwell_warnings", "inkwell_embedded"}
+
+
+@dataclasses.dataclass
+class Tree:
+    """What is there: folders with sources, what their targets link to and what their files include."""
+
+    folders: set[str]
+    links: dict[str, set[str]]  # folder of a target -> folders that its targets link to
+    libraries: dict[str, set[str]]  # folder of a target -> libraries from outside
+    includes: dict[str, dict[str, str]]  # folder -> folder that it includes from -> one line that does
+
+    def uses(self, folder: str) -> set[str]:
+        """A folder without a target of its own uses what it includes."""
+        return self.links[folder] if folder in self.links else set(self.includes.get(folder, {}))
+
+
+def read_tree(repository: pathlib.Path, graphs: list[pathlib.Path]) -> Tree:
+    targets = [target for graph in graphs for target in read_graph(graph)]
+    folder_of_target = {target.name: target.folder for target in targets}
+    inside = [target for target in targets if target.folder.split("/")[0] in ROOTS]
+
+    links: dict[str, set[str]] = {target.folder: set() for target in inside}
+    libraries: dict[str, set[str]] = {target.folder: set() for target in inside}
+    for target in inside:
+        for link in target.links:
+            if link in folder_of_target:
+                links[target.folder].add(folder_of_target[link])
+            else:
+                libraries[target.folder].add(library_name(link))
+        links[target.folder] -= {target.folder, "."}
+        libraries[target.folder] -= NO_LIBRARY
+
+    sources = [path for root in ROOTS for path in sorted((repository / root).rglob("*")) if path.suffix in SOURCES]
+    folders = set(links) | {str(path.parent.relative_to(repository)) for path in sources if path.suffix == ".cpp"}
+
+    def folder_of(path: pathlib.Path) -> str | None:
+        return next((str(parent) for parent in path.relative_to(repository).parents if str(parent) in folders), None)
+
+    headers = {str(header.relative_to(directory)): folder_of(header)
+               for target in inside for directory in target.include_directories
+               for header in directory.rglob("*.hpp") if header.resolve().is_relative_to(repository / target.folder)}
+
+    includes: dict[str, dict[str, str]] = {}
+    for path in sources:
+        folder = folder_of(path)
+        for line, quote, name in re.findall(r'^(#include ([<"])([^>"]+)[>"])', path.read_text(), re.MULTILINE):
+            beside = (path.parent / name).resolve()
+            if quote == '"' and beside.is_file():
+                owner = folder_of(beside)
+            else:
+                owner = headers.get(name)
+            if folder and owner and owner != folder:
+                includes.setdefault(folder, {})[owner] = f"{path.relative_to(repository)}: {line}"
+    return Tree(folders, links, libraries, includes)
+
+
+def differences(table: dict[str, Row], tree: Tree) -> list[str]:
+    """One line for each thing in which the table and the tree do not agree."""
+    problems = [f"{folder}/ has no row in docs/architecture.md" for folder in sorted(tree.folders - table.keys())]
+    problems += [f"docs/architecture.md has a row for {folder}/, which holds neither a target nor a .cpp file"
+                 for folder in sorted(table.keys() - tree.folders) if folder.split("/")[0] in ROOTS]
+    for folder in sorted(table.keys() & tree.folders):
+        row = table[folder]
+        uses, libraries = tree.uses(folder), tree.libraries.get(folder, set())
+        problems += [f"{folder}/ uses {other}/, which its row does not name" for other in sorted(uses - row.uses)]
+        problems += [f"{folder}/ does not use {other}/, which its row names" for other in sorted(row.uses - uses)]
+        problems += [f"{folder}/ links to {name}, which its row does not name"
+                     for name in sorted(libraries - row.libraries)]
+        problems += [f"{folder}/ does not link to {name}, which its row names"
+                     for name in sorted(row.libraries - libraries)]
+        problems += [f"{line}: {folder}/ has no target that links to one of {other}/"
+                     for other, line in sorted(tree.includes.get(folder, {}).items())
+                     if folder in tree.links and other not in tree.links[folder] and other in tree.links]
+    return problems
