@@ -56,6 +56,13 @@ def read_table(document: str) -> dict[str, Row]:
             for folder, purpose, uses, libraries in rows}
 
 
+def read_paths(document: str) -> list[list[str]]:
+    """The folders of each path of the data: in the first code block, one path a paragraph, one folder a line."""
+    block = document.split("## The path of the data")[1].split("\n## ")[0]
+    return [re.findall(r"  ((?:firmware|host)/\w+)(?:, [^\n]*)?$", paragraph, re.MULTILINE)
+            for paragraph in block.strip("\n").split("\n\n") if paragraph.startswith("    ")]
+
+
 def read_graph(path: pathlib.Path) -> list[Target]:
     try:
         lines = path.read_text().splitlines()

@@ -21,6 +21,12 @@ class Architecture(unittest.TestCase):
         tree = architecture.read_tree(REPOSITORY, GRAPHS)
         self.assertEqual([], architecture.differences(table, tree))
 
+    def test_paths_of_the_data_go_through_folders_of_the_table(self):
+        document = (REPOSITORY / "docs/architecture.md").read_text()
+        paths = architecture.read_paths(document)
+        self.assertEqual([6, 5], [len(path) for path in paths])
+        self.assertLessEqual({folder for path in paths for folder in path}, architecture.read_table(document).keys())
+
 
 class Differences(unittest.TestCase):
     """On a small tree: host/window uses firmware/control and imgui."""
