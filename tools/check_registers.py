@@ -69,7 +69,6 @@ def known_differences() -> list[Known]:
         Known("RCC", "CSR", "IWDGRSTF", "WDGRSTF", "RM0090 calls the independent watchdog's flag IWDGRSTF"),
         Known("DBG", "DBGMCU_APB1_FZ", "DBG_IWDG_STOP", "DBG_IWDEG_STOP", "a misspelling in the SVD"),
         Known("IWDG", "PR", "PR_", "PR", IN_CPP),
-        Known("USART2", "DR", "DR_", "DR", IN_CPP),
         Known("PWR", "CR", "VOS", None, "not in the SVD; RM0090, PWR_CR of the STM32F405: bit 14"),
         Known("SCB", "AIRCR", "VECTKEY", "VECTKEYSTAT", "the SVD has the name for reading"),
         Known("OTG_FS_GLOBAL", "GCCFG", "NOVBUSSENS", None, "not in the SVD; RM0090, OTG_FS_GCCFG: bit 21"),

@@ -20,15 +20,12 @@ drivers::StatusLed status_led;
 drivers::Console console;
 drivers::IndependentWatchdog watchdog;
 drivers::OtgFs usb_port;
-static_assert(drivers::OtgFs::interrupt_position == static_cast<unsigned>(drivers::Interrupt::usb));
 
 /// The board cannot work, and its bridges are off: blinks ten times a second until it is switched off.
 [[noreturn]] void give_up(std::uint32_t processor_Hz) {
   for (bool on = true;; on = !on) {
     status_led.set(on);
-    const std::uint32_t from = drivers::CycleCounter::now();
-    while (drivers::CycleCounter::now() - from < processor_Hz / 20) {
-    }
+    drivers::wait(processor_Hz / 20);
   }
 }
 
@@ -102,7 +99,8 @@ int main() {
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up(board::processor_Hz);
   analog_inputs.arm();
-  drivers::enable_first(drivers::Interrupt::analog_converters);
+  drivers::set_priority(drivers::Interrupt::analog_converters, drivers::Priority::first);
+  drivers::enable(drivers::Interrupt::analog_converters);
 
   const usb::Identity identity{.serial_number = drivers::unique_identifier(),
                                .firmware_version = {INKWELL_VERSION_NUMBERS},

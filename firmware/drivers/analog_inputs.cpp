@@ -79,12 +79,6 @@ void set_up_memory_access(const volatile std::uint16_t* destination) {
   DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
 }
 
-void wait(std::uint32_t cycles) {
-  const std::uint32_t from = CycleCounter::now();
-  while (CycleCounter::now() - from < cycles) {
-  }
-}
-
 /// 3 us after switching on, the converters are accurate (data sheet, ADC characteristics, t_STAB).
 constexpr std::uint32_t stabilisation_cycles = board::processor_Hz / 100'000;
 

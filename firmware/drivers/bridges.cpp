@@ -132,10 +132,7 @@ void Bridges::begin_period() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
 
 bool Bridges::wait_for_update() {
   begin_period();
-  const std::uint32_t from = CycleCounter::now();
-  while (!period_is_over())
-    if (CycleCounter::now() - from > 2 * board::servo_cycles) return false;
-  return TIM8::CR1::CEN::is_set();
+  return wait_for(2 * board::servo_cycles, [this] { return period_is_over(); }) && TIM8::CR1::CEN::is_set();
 }
 
 }  // namespace inkwell::drivers

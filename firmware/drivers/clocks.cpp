@@ -1,6 +1,7 @@
 #include <drivers/clocks.hpp>
 
 #include <board/omni_driver.hpp>
+#include <drivers/cycle_counter.hpp>
 #include <registers/clock.hpp>
 
 namespace inkwell::drivers {
@@ -10,8 +11,8 @@ using registers::FLASH;
 using registers::PWR;
 using registers::RCC;
 
-/// A turn of a waiting loop takes four cycles or more, so this is a tenth of a second or more.
-constexpr std::uint32_t wait_turns = internal_oscillator_Hz / 10 / 4;
+/// A tenth of a second at the clock that runs while the crystal and the PLL start.
+constexpr std::uint32_t start_cycles = internal_oscillator_Hz / 10;
 
 /// Code of a bus divider of 1, 2, 4, 8 or 16 (RCC_CFGR, PPREx).
 constexpr std::uint32_t bus_divider_code(std::uint32_t divider) {
@@ -24,23 +25,16 @@ constexpr std::uint32_t bus_divider_code(std::uint32_t divider) {
 }
 static_assert(bus_divider_code(1) == 0 && bus_divider_code(2) == 0b100 && bus_divider_code(16) == 0b111);
 
-template <class Condition>
-bool wait_for(Condition condition) {
-  for (std::uint32_t turn = 0; turn < wait_turns; ++turn)
-    if (condition()) return true;
-  return false;
-}
-
 /// Runs from the internal oscillator with the PLL off, as after a reset. The boot loader in the chip starts programs
 /// without one, and a running PLL cannot be changed.
 bool return_to_internal_oscillator() {
   constexpr std::uint32_t internal = 0b00;
   RCC::CR::modify(RCC::CR::HSION(1));
-  if (!wait_for([] { return RCC::CR::HSIRDY::is_set(); })) return false;
+  if (!wait_for(start_cycles, [] { return RCC::CR::HSIRDY::is_set(); })) return false;
   RCC::CFGR::modify(RCC::CFGR::SW(internal));
-  if (!wait_for([] { return RCC::CFGR::SWS::read() == internal; })) return false;
+  if (!wait_for(start_cycles, [] { return RCC::CFGR::SWS::read() == internal; })) return false;
   RCC::CR::modify(RCC::CR::PLLON(0));
-  return wait_for([] { return !RCC::CR::PLLRDY::is_set(); });
+  return wait_for(start_cycles, [] { return !RCC::CR::PLLRDY::is_set(); });
 }
 
 }  // namespace
@@ -54,23 +48,23 @@ bool start_clocks() {
   PWR::CR::modify(PWR::CR::VOS(1));
 
   RCC::CR::modify(RCC::CR::HSEON(1));
-  if (!wait_for([] { return RCC::CR::HSERDY::is_set(); })) return false;
+  if (!wait_for(start_cycles, [] { return RCC::CR::HSERDY::is_set(); })) return false;
 
   RCC::PLLCFGR::modify(RCC::PLLCFGR::PLLM(board::pll_m), RCC::PLLCFGR::PLLN(board::pll_n),
                        RCC::PLLCFGR::PLLP(board::pll_p / 2 - 1), RCC::PLLCFGR::PLLQ(board::pll_q),
                        RCC::PLLCFGR::PLLSRC(1));
   RCC::CR::modify(RCC::CR::PLLON(1));
-  if (!wait_for([] { return RCC::CR::PLLRDY::is_set(); })) return false;
+  if (!wait_for(start_cycles, [] { return RCC::CR::PLLRDY::is_set(); })) return false;
 
   // Wait states before speed, and bus dividers before it too, so that no part is ever over its limit.
   FLASH::ACR::write(FLASH::ACR::LATENCY(board::flash_wait_states), FLASH::ACR::PRFTEN(1), FLASH::ACR::ICEN(1),
                     FLASH::ACR::DCEN(1));
-  if (!wait_for([] { return FLASH::ACR::LATENCY::read() == board::flash_wait_states; })) return false;
+  if (!wait_for(start_cycles, [] { return FLASH::ACR::LATENCY::read() == board::flash_wait_states; })) return false;
   RCC::CFGR::modify(RCC::CFGR::PPRE1(bus_divider_code(board::apb1_divider)),
                     RCC::CFGR::PPRE2(bus_divider_code(board::apb2_divider)));
   constexpr std::uint32_t from_pll = 0b10;
   RCC::CFGR::modify(RCC::CFGR::SW(from_pll));
-  if (!wait_for([] { return RCC::CFGR::SWS::read() == from_pll; })) return false;
+  if (!wait_for(start_cycles, [] { return RCC::CFGR::SWS::read() == from_pll; })) return false;
 
   // A dead crystal would leave the last duty on the motors: the security system turns it into a fault.
   RCC::CR::modify(RCC::CR::CSSON(1));

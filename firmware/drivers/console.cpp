@@ -1,5 +1,6 @@
 #include <drivers/console.hpp>
 
+#include <drivers/cycle_counter.hpp>
 #include <drivers/pins.hpp>
 #include <registers/serial_port.hpp>
 
@@ -9,12 +10,11 @@ namespace {
 using registers::USART2;
 
 constexpr std::uint32_t baud_Hz = 115'200;
-/// More turns than a character takes, so that a port that does not run cannot stop the board.
-constexpr int wait_turns = 20'000;
+/// Twice what a character of ten bits takes, so that a port that does not run cannot stop the board.
+constexpr std::uint32_t character_cycles = 2 * 10 * (board::processor_Hz / baud_Hz);
 
 void write_character(char character) {
-  for (int turn = 0; turn < wait_turns && !USART2::SR::TXE::is_set(); ++turn) {
-  }
+  if (!wait_for(character_cycles, [] { return USART2::SR::TXE::is_set(); })) return;
   USART2::DR::write(static_cast<std::uint8_t>(character));
 }
 

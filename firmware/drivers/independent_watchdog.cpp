@@ -1,5 +1,7 @@
 #include <drivers/independent_watchdog.hpp>
 
+#include <board/omni_driver.hpp>
+#include <drivers/cycle_counter.hpp>
 #include <registers/processor.hpp>
 #include <registers/watchdog.hpp>
 
@@ -25,8 +27,7 @@ void IndependentWatchdog::start() {
   IWDG::PR::write(IWDG::PR::PR_(divider_code));
   IWDG::RLR::write(IWDG::RLR::RL(reload));
   // Five of its cycles; if they never end, the default timeout of half a second holds, which is safe as well.
-  for (int turn = 0; turn < 100'000 && IWDG::SR::read() != 0; ++turn) {
-  }
+  static_cast<void>(wait_for(board::processor_Hz / 200, [] { return IWDG::SR::read() == 0; }));
   feed();
 }
 

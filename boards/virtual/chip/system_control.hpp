@@ -47,7 +47,6 @@ class SystemControl {
   void record_fault(std::uint32_t configurable_bits, std::uint32_t hard_fault_bits);
   void record_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
   std::uint32_t configurable_faults() const { return configurable_faults_; }
-  std::uint32_t bus_fault_address() const { return bus_fault_address_; }
 
  private:
   std::uint32_t read_word(std::uint32_t address);

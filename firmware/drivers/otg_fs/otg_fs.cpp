@@ -4,18 +4,17 @@
 #include <algorithm>
 #include <cstring>
 
+#include <drivers/cycle_counter.hpp>
+#include <drivers/system.hpp>
 #include <registers/otg_fs.hpp>
-#include <registers/processor.hpp>
 
+#include "core.hpp"
 #include "fifo_memory.hpp"
-#include "waiting.hpp"
 
 namespace inkwell::drivers {
 
 namespace {
 
-using Core = registers::OTG_FS_GLOBAL;
-using Device = registers::OTG_FS_DEVICE;
 using Fifo = registers::OTG_FS_FIFO;
 using usb::Event;
 using usb::packet_size_maximum;
@@ -79,7 +78,7 @@ bool OtgFs::next_event(Event& event) {
   // What was sent comes before what was received: the host goes on only after it has the packet.
   if (next_sent(event) || next_received(event) || next_suspend_or_resume(event, interrupts)) return true;
   answer_control();
-  registers::NVIC::ISER::write(interrupt_position / 32, 1u << interrupt_position % 32);
+  enable(Interrupt::usb);
   return false;
 }
 
@@ -262,9 +261,9 @@ void OtgFs::stop_in(unsigned endpoint) {
   }
   if (Control::EPENA::from(Control::read(endpoint))) {
     Control::modify(endpoint, Control::SNAK(1));
-    static_cast<void>(wait_for([=] { return Flags::INEPNE::from(Flags::read(endpoint)) != 0; }));
+    static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::INEPNE::from(Flags::read(endpoint)) != 0; }));
     Control::modify(endpoint, Control::SNAK(1), Control::EPDIS(1));
-    static_cast<void>(wait_for([=] { return Flags::EPDISD::from(Flags::read(endpoint)) != 0; }));
+    static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::EPDISD::from(Flags::read(endpoint)) != 0; }));
   }
   fifo_memory::flush_transmit(endpoint);
   Flags::write(endpoint, Flags::XFRC(1), Flags::EPDISD(1), Flags::INEPNE(1));

@@ -3,20 +3,17 @@
 #include <drivers/cycle_counter.hpp>
 #include <drivers/otg_fs.hpp>
 #include <drivers/pins.hpp>
+#include <drivers/system.hpp>
 #include <registers/clock.hpp>
 #include <registers/otg_fs.hpp>
-#include <registers/processor.hpp>
 
+#include "core.hpp"
 #include "fifo_memory.hpp"
-#include "waiting.hpp"
 
 namespace inkwell::drivers {
 
 namespace {
 
-using Core = registers::OTG_FS_GLOBAL;
-using Device = registers::OTG_FS_DEVICE;
-using registers::NVIC;
 using registers::RCC;
 
 /// Turnaround time in clocks of the PHY, for an AHB clock of 32 MHz or more (RM0090, "TRDT values").
@@ -24,22 +21,14 @@ constexpr std::uint32_t turnaround_clocks = 6;
 static_assert(board::processor_Hz >= 32'000'000);
 
 constexpr std::uint32_t mode_change_cycles = board::processor_Hz / 1000 * 25;
-constexpr std::uint32_t full_speed_internal_phy = 3;
-constexpr std::uint8_t lowest_priority = 0xF0;
-
-void wait_cycles(std::uint32_t cycles) {
-  const std::uint32_t begin = CycleCounter::now();
-  while (CycleCounter::now() - begin < cycles) {
-  }
-}
 
 bool reset_core() {
-  if (!wait_for([] { return Core::GRSTCTL::AHBIDL::is_set(); })) return false;
+  if (!wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); })) return false;
   Core::GRSTCTL::modify(Core::GRSTCTL::CSRST(1));
-  if (!wait_for([] { return !Core::GRSTCTL::CSRST::is_set(); })) return false;
+  if (!wait_for(core_answer_cycles, [] { return !Core::GRSTCTL::CSRST::is_set(); })) return false;
   // The PHY's clock domain needs three of its clocks, 11 processor cycles, before the next access.
-  wait_cycles(32);
-  return wait_for([] { return Core::GRSTCTL::AHBIDL::is_set(); });
+  wait(32);
+  return wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); });
 }
 
 }  // namespace
@@ -57,11 +46,11 @@ bool OtgFs::start() {
   // PA9 drives a bridge, so the core may not sense VBUS there.
   Core::GCCFG::write(Core::GCCFG::PWRDWN(1), Core::GCCFG::NOVBUSSENS(1));
   Core::GUSBCFG::modify(Core::GUSBCFG::FDMOD(1), Core::GUSBCFG::TRDT(turnaround_clocks));
-  wait_cycles(mode_change_cycles);
+  wait(mode_change_cycles);
 
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   registers::OTG_FS_PWRCLK::PCGCCTL::write(0);  // the PHY's clock is never stopped
-  Device::DCFG::write(Device::DCFG::DSPD(full_speed_internal_phy));
+  set_address(0);
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);
   fifo_memory::flush_receive();
@@ -72,14 +61,14 @@ bool OtgFs::start() {
   Core::GINTSTS::write(~0u);  // what is still flagged belongs to the time before
   Core::GINTMSK::write(Core::GINTMSK::IEPINT(1));
   Core::GAHBCFG::modify(Core::GAHBCFG::GINT(1));
-  NVIC::IPR::write(interrupt_position, lowest_priority);
-  NVIC::ISER::write(interrupt_position / 32, 1u << interrupt_position % 32);
+  set_priority(Interrupt::usb, Priority::last);
+  enable(Interrupt::usb);
 
   Device::DCTL::modify(Device::DCTL::SDIS(0));
   return true;
 }
 
-void OtgFs::wake() { NVIC::ICER::write(interrupt_position / 32, 1u << interrupt_position % 32); }
+void OtgFs::wake() { disable(Interrupt::usb); }
 
 namespace fifo_memory {
 
@@ -92,12 +81,12 @@ void lay_out() {
 
 void flush_transmit(std::uint32_t number) {
   Core::GRSTCTL::write(Core::GRSTCTL::TXFFLSH(1), Core::GRSTCTL::TXFNUM(number));
-  static_cast<void>(wait_for([] { return !Core::GRSTCTL::TXFFLSH::is_set(); }));
+  static_cast<void>(wait_for(core_answer_cycles, [] { return !Core::GRSTCTL::TXFFLSH::is_set(); }));
 }
 
 void flush_receive() {
   Core::GRSTCTL::write(Core::GRSTCTL::RXFFLSH(1));
-  static_cast<void>(wait_for([] { return !Core::GRSTCTL::RXFFLSH::is_set(); }));
+  static_cast<void>(wait_for(core_answer_cycles, [] { return !Core::GRSTCTL::RXFFLSH::is_set(); }));
 }
 
 }  // namespace fifo_memory

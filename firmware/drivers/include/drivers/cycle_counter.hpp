@@ -1,4 +1,5 @@
-// The processor's cycle counter (ARMv7-M, DWT): measures the stages of the control interrupt.
+// The processor's cycle counter (ARMv7-M, DWT): measures the stages of the control interrupt, and every wait of the
+// drivers, each of which has an end.
 #pragma once
 
 #include <cstdint>
@@ -33,5 +34,18 @@ class CycleCounter {
  private:
   std::uint32_t last_ = 0;
 };
+
+/// Waits until a condition holds, at most `limit_cycles`; says whether it came to hold.
+template <class Condition>
+[[nodiscard]] bool wait_for(std::uint32_t limit_cycles, Condition condition) {
+  const std::uint32_t from = CycleCounter::now();
+  while (!condition())
+    if (CycleCounter::now() - from > limit_cycles) return condition();  // an interrupt may have taken the time
+  return true;
+}
+
+inline void wait(std::uint32_t cycles) {
+  static_cast<void>(wait_for(cycles, [] { return false; }));
+}
 
 }  // namespace inkwell::drivers

@@ -26,7 +26,6 @@ struct ResetAndClockControl {
   struct CFGR : Register<base + 0x08> {
     using SW = Field<CFGR, 0, 2>;
     using SWS = Field<CFGR, 2, 2>;
-    using HPRE = Field<CFGR, 4, 4>;
     using PPRE1 = Field<CFGR, 10, 3>;
     using PPRE2 = Field<CFGR, 13, 3>;
   };
@@ -55,8 +54,6 @@ struct ResetAndClockControl {
   };
   struct CSR : Register<base + 0x74> {
     using RMVF = Field<CSR, 24, 1>;
-    using PORRSTF = Field<CSR, 27, 1>;
-    using SFTRSTF = Field<CSR, 28, 1>;
     using IWDGRSTF = Field<CSR, 29, 1>;
   };
 };

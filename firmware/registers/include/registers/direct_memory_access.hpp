@@ -1,4 +1,4 @@
-// DMA controller, stream 0 (RM0090, chapter DMA): the only stream in use, see drivers/slow_analog.hpp.
+// DMA controller, stream 0 (RM0090, chapter DMA): the only stream in use.
 #pragma once
 
 #include <registers/register.hpp>

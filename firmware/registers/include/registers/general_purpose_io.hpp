@@ -8,7 +8,6 @@ namespace inkwell::registers {
 template <std::uint32_t base>
 struct GeneralPurposeIo {
   struct MODER : Register<base + 0x00> {};
-  struct OTYPER : Register<base + 0x04> {};
   struct OSPEEDR : Register<base + 0x08> {};
   struct PUPDR : Register<base + 0x0C> {};
   struct IDR : Register<base + 0x10> {};

@@ -8,12 +8,9 @@ namespace inkwell::registers {
 template <std::uint32_t base>
 struct SerialPort {
   struct SR : Register<base + 0x00> {
-    using TC = Field<SR, 6, 1>;
     using TXE = Field<SR, 7, 1>;
   };
-  struct DR : Register<base + 0x04> {
-    using DR_ = Field<DR, 0, 9>;
-  };
+  struct DR : Register<base + 0x04> {};
   struct BRR : Register<base + 0x08> {};
   struct CR1 : Register<base + 0x0C> {
     using TE = Field<CR1, 3, 1>;

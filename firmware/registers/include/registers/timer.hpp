@@ -14,7 +14,6 @@ struct AdvancedTimer {
     using DIR = Field<CR1, 4, 1>;
     using CMS = Field<CR1, 5, 2>;
     using ARPE = Field<CR1, 7, 1>;
-    using CKD = Field<CR1, 8, 2>;
   };
   struct CR2 : Register<base + 0x04> {
     using MMS = Field<CR2, 4, 3>;
@@ -57,7 +56,6 @@ struct AdvancedTimer {
     using OSSI = Field<BDTR, 10, 1>;
     using OSSR = Field<BDTR, 11, 1>;
     using BKE = Field<BDTR, 12, 1>;
-    using BKP = Field<BDTR, 13, 1>;
     using MOE = Field<BDTR, 15, 1>;
   };
 };

@@ -7,19 +7,14 @@ namespace inkwell::registers {
 
 template <std::uint32_t base>
 struct IndependentWatchdog {
-  struct KR : Register<base + 0x00> {
-    using KEY = Field<KR, 0, 16>;
-  };
+  struct KR : Register<base + 0x00> {};
   struct PR : Register<base + 0x04> {
     using PR_ = Field<PR, 0, 3>;
   };
   struct RLR : Register<base + 0x08> {
     using RL = Field<RLR, 0, 12>;
   };
-  struct SR : Register<base + 0x0C> {
-    using PVU = Field<SR, 0, 1>;
-    using RVU = Field<SR, 1, 1>;
-  };
+  struct SR : Register<base + 0x0C> {};
 };
 using IWDG = IndependentWatchdog<0x40003000>;
 

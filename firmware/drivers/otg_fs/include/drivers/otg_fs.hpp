@@ -21,8 +21,6 @@ namespace inkwell::drivers {
 
 class OtgFs final : public usb::Port {
  public:
-  static constexpr unsigned interrupt_position = 67;  ///< RM0090, "Vector table for STM32F405xx"
-
   /// Sets pins, clock and core up and connects the pull-up of D+. Takes 25 ms. The 48 MHz clock runs already
   /// (clocks.hpp). False if the core does not answer.
   [[nodiscard]] bool start();

@@ -1,0 +1,17 @@
+// What both files of the OTG_FS driver know of the core.
+#pragma once
+
+#include <cstdint>
+
+#include <board/omni_driver.hpp>
+#include <registers/otg_fs.hpp>
+
+namespace inkwell::drivers {
+
+using Core = registers::OTG_FS_GLOBAL;
+using Device = registers::OTG_FS_DEVICE;
+
+/// The core answers within a packet's time of 50 us or never.
+inline constexpr std::uint32_t core_answer_cycles = board::processor_Hz / 1'000'000 * 60;
+
+}  // namespace inkwell::drivers
