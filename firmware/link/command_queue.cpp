@@ -45,8 +45,8 @@ std::optional<protocol::CommandReport> decode_command(std::span<const std::byte>
 
 bool CommandQueue::push(const protocol::CommandReport& command) {
   sign_of_life_.store(true);
+  if (!has_room()) return false;
   const std::uint32_t pushed = pushed_.load();
-  if (pushed - taken_.load() == capacity) return false;
   commands_[pushed % capacity] = command;
   pushed_.store(pushed + 1);
   return true;

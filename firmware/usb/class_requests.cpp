@@ -74,8 +74,7 @@ Answer Device::get_report(const SetupPacket& setup) {
 bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> data) {
   if (data[0] != static_cast<std::byte>(setup.value_low())) return false;  // the report's id, once more
   if (setup.value == report_value(output_report_type, ReportId::command)) {
-    output_report(data);
-    return true;
+    return pass_on(link::decode_command(data));  // a stall tells the host to try again
   }
   // What is wrong with a transaction is told by the TransactionReport, not by a stall.
   // In this order: were the state read first, the interrupt could take the command in between.

@@ -29,6 +29,7 @@ Device::Device(Port& port, link::Link& link, const Identity& identity)
 void Device::poll() {
   Event event;
   for (int i = 0; i < events_per_poll && port_.next_event(event); ++i) handle(event);
+  if (held_command_) pass_on_held_command();
   if (configured() && !suspended_) {
     send_pose();
     send_scope();
@@ -52,8 +53,8 @@ void Device::handle(const Event& event) {
       if (event.endpoint == 0) {
         control_.received(data);
       } else if (event.endpoint == identity::hid_out_endpoint && configured()) {
-        output_report(data);
-        port_.receive(identity::hid_out_endpoint);
+        held_command_ = link::decode_command(data);
+        pass_on_held_command();
       }
       break;
     case Event::Kind::sent:
@@ -69,7 +70,7 @@ void Device::handle(const Event& event) {
 void Device::bus_reset() {
   for (Endpoint& endpoint : endpoints_) endpoint.busy = endpoint.halted = false;
   scope_frame_open_ = scope_wants_end_ = false;
-  configuration_ = 0;
+  configuration_ = 0;  // before host_gone(): no endpoint but 0 takes anything any more
   idle_rate_ = 0;
   suspended_ = false;
   control_.reset();
@@ -78,6 +79,10 @@ void Device::bus_reset() {
 
 void Device::host_gone() {
   link_.commands.host_gone();
+  if (held_command_) {
+    held_command_.reset();
+    if (configured()) port_.receive(identity::hid_out_endpoint);
+  }
   link_.scope.select({}, 0);
 }
 
@@ -88,7 +93,7 @@ void Device::start_endpoints() {
     port_.open(endpoint.address, endpoint.type);
   }
   scope_frame_open_ = scope_wants_end_ = false;
-  port_.receive(identity::hid_out_endpoint);
+  if (!held_command_) port_.receive(identity::hid_out_endpoint);
 }
 
 void Device::stop_endpoints() {
@@ -111,7 +116,7 @@ void Device::restart(Endpoint& endpoint) {
   const bool was_busy = endpoint.busy;
   endpoint.busy = endpoint.halted = false;
   if (&endpoint == &endpoints_[hid_out]) {
-    port_.receive(endpoint.address);
+    if (!held_command_) port_.receive(endpoint.address);
   } else if (&endpoint == &endpoints_[scope_in]) {
     scope_frame_open_ = scope_wants_end_ = false;  // the frame starts again from its first byte
   } else if (was_busy) {
@@ -148,12 +153,18 @@ void Device::send_scope() {
   port_.send(endpoint.address, frame);
 }
 
-void Device::output_report(std::span<const std::byte> report) {
-  const std::optional<protocol::CommandReport> command = link::decode_command(report);
-  if (!command) return;
+bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
+  if (!command) return true;
+  if (!link_.commands.has_room()) return false;
   // Selected before the command is queued, so that its acknowledgement never comes too early.
   if (command->command == protocol::Command::select_signals) link_.scope.select(command->selection, command->token);
-  link_.commands.push(*command);
+  return link_.commands.push(*command);
+}
+
+void Device::pass_on_held_command() {
+  if (!pass_on(held_command_)) return;
+  held_command_.reset();
+  port_.receive(identity::hid_out_endpoint);
 }
 
 }  // namespace inkwell::usb

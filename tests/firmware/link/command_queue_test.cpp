@@ -118,18 +118,21 @@ TEST_CASE("a full queue refuses, keeps what it has and still notes the sign of l
   CommandQueue queue;
   for (std::uint32_t i = 0; i < CommandQueue::capacity; ++i)
     CHECK(queue.push(make(Command::heartbeat, static_cast<std::uint8_t>(i))));
+  CHECK_FALSE(queue.has_room());
   queue.take_sign_of_life();
   CHECK_FALSE(queue.push(make(Command::enable_force, 99)));
   CHECK(queue.take_sign_of_life());
   CHECK_FALSE(queue.waiting(Command::enable_force));
-  for (std::uint32_t i = 0; i < CommandQueue::capacity; ++i) CHECK(queue.take()->token == i);
+  CHECK(queue.take() != nullptr);
+  CHECK(queue.has_room());
+  for (std::uint32_t i = 1; i < CommandQueue::capacity; ++i) CHECK(queue.take()->token == i);
   CHECK(queue.take() == nullptr);
 }
 
 TEST_CASE("a waiting command is seen until it is taken") {
   CommandQueue queue;
-  queue.push(make(Command::heartbeat));
-  queue.push(make(Command::enable_force));
+  CHECK(queue.push(make(Command::heartbeat)));
+  CHECK(queue.push(make(Command::enable_force)));
   CHECK(queue.waiting(Command::enable_force));
   queue.take();
   CHECK(queue.waiting(Command::enable_force));
@@ -139,12 +142,12 @@ TEST_CASE("a waiting command is seen until it is taken") {
 
 TEST_CASE("when the host is gone, the next thing that happens is that the force goes off") {
   CommandQueue queue;
-  queue.push(make(Command::heartbeat, 5));
+  CHECK(queue.push(make(Command::heartbeat, 5)));
   queue.take();
-  queue.push(make(Command::enable_force, 6));
+  CHECK(queue.push(make(Command::enable_force, 6)));
   queue.host_gone();
   CHECK_FALSE(queue.take_sign_of_life());
-  queue.push(make(Command::clear_fault, 7));  // the next host, before the interrupt came
+  CHECK(queue.push(make(Command::clear_fault, 7)));  // the next host, before the interrupt came
   const CommandReport* command = queue.take();
   REQUIRE(command != nullptr);
   CHECK(command->command == Command::disable_force);

@@ -23,8 +23,11 @@ class CommandQueue {
 
   // ---- main loop ----
 
+  /// Whether push() will take a command now.
+  bool has_room() const { return pushed_.load() - taken_.load() != capacity; }
+
   /// Queues a decoded command and notes a sign of life; false if the queue is full.
-  bool push(const protocol::CommandReport& command);
+  [[nodiscard]] bool push(const protocol::CommandReport& command);
 
   /// Whether such a command waits for the interrupt.
   bool waiting(protocol::Command command) const;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <link/link.hpp>
@@ -58,7 +59,11 @@ class Device final : private ControlRequests {
   void host_gone();
   void start_endpoints();
   void stop_endpoints();
-  void output_report(std::span<const std::byte> report);
+  /// Ignores what is no command; false if the queue has no room for one.
+  bool pass_on(const std::optional<protocol::CommandReport>& command);
+  /// Passes on what came by the interrupt endpoint and only then lets the next report come: while the queue is full
+  /// the host is told to wait (NAK), and nothing is lost.
+  void pass_on_held_command();
   void send_pose();
   void send_scope();
   protocol::InformationReport information() const;
@@ -83,8 +88,9 @@ class Device final : private ControlRequests {
   std::uint8_t idle_rate_ = 0;
   bool suspended_ = false;
   std::array<Endpoint, 3> endpoints_;
-  bool scope_frame_open_ = false;  ///< the hand-over's oldest frame is being sent
-  bool scope_wants_end_ = false;   ///< the frame's length is a multiple of 64: an empty packet ends it
+  std::optional<protocol::CommandReport> held_command_;  ///< found the queue full
+  bool scope_frame_open_ = false;                        ///< the hand-over's oldest frame is being sent
+  bool scope_wants_end_ = false;  ///< the frame's length is a multiple of 64: an empty packet ends it
   alignas(4) protocol::PoseReport pose_{};
 };
 

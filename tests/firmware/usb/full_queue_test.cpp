@@ -1,0 +1,115 @@
+// A host that sends commands faster than the control interrupt takes them.
+#include <doctest/doctest.h>
+
+#include "host.hpp"
+
+namespace inkwell {
+
+using protocol::Command;
+using test::bytes_of;
+using test::command;
+using test::done_result;
+using test::Handshake;
+using test::request;
+using test::stall_result;
+
+namespace {
+
+/// A device whose queue is full and that holds one command more, enable_force. Tokens count up from 1.
+struct FullQueue : test::Bench {
+  std::uint8_t token = 0;
+
+  explicit FullQueue(const protocol::CommandReport& held = command(Command::enable_force, 9)) {
+    configure();
+    run(1);  // the reset's disable_force is taken
+    for (std::uint32_t i = 0; i < link::CommandQueue::capacity; ++i)
+      REQUIRE(offer(Command::heartbeat) == Handshake::ack);
+    REQUIRE(port.out(1, bytes_of(held)) == Handshake::ack);
+    device.poll();
+    token = 9;
+    REQUIRE(offer(Command::clear_fault) == Handshake::nak);
+  }
+
+  Handshake offer(Command kind) {
+    const Handshake handshake = port.out(1, bytes_of(command(kind, static_cast<std::uint8_t>(token + 1))));
+    if (handshake == Handshake::ack) ++token;
+    device.poll();
+    return handshake;
+  }
+
+  /// The interrupt takes commands again: all come, in order, and the endpoint hears the next one.
+  void check_nothing_was_lost() {
+    CHECK(offer(Command::clear_fault) == Handshake::nak);
+    run(1);
+    CHECK(last_command->token == 1);
+    device.poll();
+    CHECK(offer(Command::clear_fault) == Handshake::ack);
+    for (std::uint8_t taken = 2; taken <= token; ++taken) {
+      run(1);
+      device.poll();
+      CHECK(last_command->token == taken);
+    }
+    CHECK(last_command->command == Command::clear_fault);
+  }
+
+  /// The host went: what it asked for is forgotten, and the next one is heard.
+  void check_all_is_forgotten() {
+    device.poll();
+    run(3);
+    CHECK(last_command->command == Command::disable_force);
+    CHECK(offer(Command::clear_fault) == Handshake::ack);
+    run(1);
+    CHECK(last_command->command == Command::clear_fault);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("while no command can be queued the host is told to wait, and none is lost") {
+  FullQueue bench;
+  bench.check_nothing_was_lost();
+}
+
+TEST_CASE("SET_REPORT is stalled while no command can be queued") {
+  FullQueue bench;
+  const protocol::CommandReport by_control = command(Command::clear_fault, 99);
+  CHECK(bench.set_report(2, by_control) == stall_result);
+  bench.check_nothing_was_lost();
+  CHECK(bench.set_report(2, by_control) == done_result);
+}
+
+TEST_CASE("a held command survives that its endpoint starts again") {
+  FullQueue configured;
+  CHECK(configured.configure() == done_result);
+  configured.check_nothing_was_lost();
+  FullQueue let_go;
+  CHECK(let_go.control(request(0x02, 1, 0, 0x01, 0)) == done_result);
+  let_go.check_nothing_was_lost();
+}
+
+TEST_CASE("a held command is forgotten when the host goes") {
+  FullQueue asleep;
+  asleep.port.suspend();
+  asleep.device.poll();
+  asleep.port.resume();
+  asleep.check_all_is_forgotten();
+  FullQueue reset;
+  reset.port.reset();
+  reset.device.poll();
+  CHECK(reset.configure() == done_result);
+  reset.check_all_is_forgotten();
+}
+
+TEST_CASE("a selection that finds the queue full waits for its turn with the others") {
+  protocol::CommandReport selection = command(Command::select_signals, 9);
+  selection.selection.count = 14;
+  FullQueue bench(selection);
+  bench.run(1000);
+  CHECK(bench.link.scope.oldest_frame().empty());
+  bench.device.poll();
+  bench.run(1000);
+  CHECK(bench.last_command->token == 9);
+  CHECK_FALSE(bench.link.scope.oldest_frame().empty());
+}
+
+}  // namespace inkwell
