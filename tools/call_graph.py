@@ -23,6 +23,7 @@ class Function:
     calls_any_pointer: bool = False  # through a pointer of unknown origin
     moves_stack: bool = False  # by an amount that is not a constant
     divides: list[str] = dataclasses.field(default_factory=list)  # addresses of divisions and square roots
+    instructions: list[tuple[int, str]] = dataclasses.field(default_factory=list)  # address and text, in order
 
 
 @dataclasses.dataclass
@@ -110,6 +111,7 @@ def read_functions(elf: str) -> dict[str, Function]:
         if function is None or instruction is None or instruction[2].startswith(".word"):
             continue
         text = instruction[2]
+        function.instructions.append((int(instruction[1], 16), text))
         function.stack_bytes += stack_of(text)
         if STACK_BY_REGISTER.match(text):
             function.moves_stack = True

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks what the firmware's image must be and must not hold: size, heap, double precision, divisions.
+"""Checks what the firmware's image must be and must not hold: size, heap, double precision; and the interrupts' rules.
 
     tools/check_image.py build/board/inkwell.elf --facts boards/omni_driver/include/board/omni_driver.hpp
 
@@ -13,6 +13,7 @@ import subprocess
 import sys
 
 from call_graph import Image, Unreadable, read_image, run
+from interrupt_rules import broken_interrupt_rules
 
 # What an embedded image of ours never needs, and what brings it in. Patterns of whole symbol names.
 FORBIDDEN = {
@@ -50,15 +51,6 @@ def forbidden_symbols(image: Image) -> list[str]:
     ]
 
 
-def divisions_in_interrupt(image: Image) -> list[str]:
-    """They take 14 cycles each and their results could have been prepared outside."""
-    return [
-        f"division in the control interrupt, in {name} at {place}"
-        for name in sorted(image.reachable("control_interrupt"))
-        for place in image.functions[name].divides
-    ]
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description="Checks the firmware's image.")
     parser.add_argument("elf", help="the linked image")
@@ -72,12 +64,13 @@ def main() -> int:
         print(f"cannot read {arguments.elf} as the firmware's image: {error}", file=sys.stderr)
         return 2
 
-    in_flash = sum(sections.get(name, (0, 0))[0] for name in (".vectors", ".text", ".data", ".data.ccm"))
+    in_flash = sum(sections.get(name, (0, 0))[0] for name in (".vectors", ".interrupt_text", ".text", ".data", ".data.ccm"))
     core_coupled = sum(size for size, address in sections.values() if address >> 16 == 0x1000)
     ram = sum(size for size, address in sections.values() if address >> 24 == 0x20)
     print(f"image: {in_flash} of {limit} bytes; core-coupled memory {core_coupled}, main memory {ram}")
 
-    problems = forbidden_symbols(image) + divisions_in_interrupt(image)
+    size, address = sections.get(".interrupt_text", (0, 0))
+    problems = forbidden_symbols(image) + broken_interrupt_rules(image, range(address, address + size))
     if in_flash > limit:
         problems.append(f"the image takes {in_flash} bytes, more than the board's {limit}")
     for problem in problems:

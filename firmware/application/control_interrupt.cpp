@@ -1,6 +1,7 @@
 // The control interrupt: 20 000 times a second, from the sensors to the bridges.
 #include <control/encoders.hpp>
 #include <drivers/cycle_counter.hpp>
+#include <placement/interrupt.hpp>
 
 #include "handlers.hpp"
 #include "memory.hpp"
@@ -12,14 +13,14 @@ namespace {
 INKWELL_CORE_COUPLED drivers::CycleCounter clock;
 INKWELL_CORE_COUPLED std::array<std::int32_t, 3> encoder_counts;
 
-std::uint8_t switch_bits(const drivers::SwitchContacts& contacts) {
+INKWELL_INTERRUPT std::uint8_t switch_bits(const drivers::SwitchContacts& contacts) {
   const auto bit = [](bool closed, protocol::Switch which) { return closed ? static_cast<unsigned>(which) : 0u; };
   return static_cast<std::uint8_t>(bit(contacts.button_1, protocol::Switch::button_1) |
                                    bit(contacts.button_2, protocol::Switch::button_2) |
                                    bit(contacts.inkwell, protocol::Switch::inkwell));
 }
 
-control::Samples read_samples() {
+INKWELL_INTERRUPT control::Samples read_samples() {
   const auto timer_counts = encoders.read();
   for (std::size_t i = 0; i < timer_counts.size(); ++i)
     encoder_counts[i] = control::unwrap(encoder_counts[i], timer_counts[i]);
@@ -33,7 +34,7 @@ control::Samples read_samples() {
   return samples;
 }
 
-void write_bridges(const control::Drive& drive) {
+INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
   if (!drive.enabled) return bridges.disable();
   bridges.write(drive.duty);
   bridges.enable();
@@ -41,7 +42,7 @@ void write_bridges(const control::Drive& drive) {
 
 }  // namespace
 
-extern "C" void control_interrupt() {
+extern "C" INKWELL_INTERRUPT void control_interrupt() {
   clock.begin();
   bridges.begin_period();
   bridges.write_neutral();  // an interrupt that does not finish in time leaves the motors without voltage

@@ -8,6 +8,7 @@
 #include <drivers/otg_fs.hpp>
 #include <drivers/status_led.hpp>
 #include <drivers/system.hpp>
+#include <placement/interrupt.hpp>
 #include <usb/device.hpp>
 
 #include "handlers.hpp"
@@ -71,7 +72,7 @@ void feed_watchdog() {
 
 }  // namespace
 
-extern "C" void usb_interrupt() { drivers::OtgFs::wake(); }
+extern "C" INKWELL_INTERRUPT void usb_interrupt() { drivers::OtgFs::wake(); }
 
 }  // namespace inkwell::application
 

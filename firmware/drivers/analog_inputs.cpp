@@ -2,6 +2,7 @@
 
 #include <drivers/cycle_counter.hpp>
 #include <drivers/pins.hpp>
+#include <placement/interrupt.hpp>
 #include <registers/analog_converter.hpp>
 #include <registers/direct_memory_access.hpp>
 
@@ -122,22 +123,22 @@ void AnalogInputs::arm() {
   ADC1::CR2::write(adc1_armed);
 }
 
-std::array<float, 3> AnalogInputs::take_currents_A() {
+INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::take_currents_A() {
   return {take_current_A<ADC1>(), take_current_A<ADC2>(), take_current_A<ADC3>()};
 }
 
-void AnalogInputs::start_slow_conversions() {
+INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
   // After an overrun the sequence before may still be running. Starting it again in the middle would shift all later
   // results by a place; the count of transfers is full again exactly when a sequence is over.
   if (DMA2::S0NDTR::read() == slow_channels) ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }
 
-std::array<float, 3> AnalogInputs::gimbal_ratio() const {
+INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::gimbal_ratio() const {
   constexpr float per_count = 1.0f / (board::adc_counts - 1);
   return {static_cast<float>(slow_[0]) * per_count, static_cast<float>(slow_[1]) * per_count,
           static_cast<float>(slow_[2]) * per_count};
 }
 
-float AnalogInputs::supply_V() const { return static_cast<float>(slow_[3]) * board::supply_step_V; }
+INKWELL_INTERRUPT float AnalogInputs::supply_V() const { return static_cast<float>(slow_[3]) * board::supply_step_V; }
 
 }  // namespace inkwell::drivers

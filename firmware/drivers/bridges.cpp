@@ -5,6 +5,7 @@
 #include <drivers/cycle_counter.hpp>
 #include <drivers/leg_compares.hpp>
 #include <drivers/pins.hpp>
+#include <placement/interrupt.hpp>
 #include <registers/clock.hpp>
 #include <registers/processor.hpp>
 
@@ -90,14 +91,14 @@ void Bridges::start() {
   start_together();
 }
 
-void Bridges::write_neutral() {
+INKWELL_INTERRUPT void Bridges::write_neutral() {
   for (const auto& bridge : board::bridges) {
     TIM1::CCR::write(bridge.channel - 1u, neutral_legs.leg_a);
     TIM8::CCR::write(bridge.channel - 1u, neutral_legs.leg_b);
   }
 }
 
-void Bridges::write(const std::array<float, 3>& duty) {
+INKWELL_INTERRUPT void Bridges::write(const std::array<float, 3>& duty) {
   for (std::size_t i = 0; i < duty.size(); ++i) {
     const LegCompares legs = leg_compares(duty[i]);
     TIM1::CCR::write(board::bridges[i].channel - 1u, legs.leg_a);
@@ -105,7 +106,7 @@ void Bridges::write(const std::array<float, 3>& duty) {
   }
 }
 
-void Bridges::enable() {
+INKWELL_INTERRUPT void Bridges::enable() {
   if (enabled_) return;
   enabled_ = true;
   // A flag is cleared by writing 0 to it; writing 1 to the others leaves them alone.
@@ -116,19 +117,19 @@ void Bridges::enable() {
   Enable::set_high();
 }
 
-void Bridges::disable() {
+INKWELL_INTERRUPT void Bridges::disable() {
   enabled_ = false;
   Enable::set_low();
   TIM1::BDTR::write(outputs_off);
   TIM8::BDTR::write(outputs_off);
 }
 
-bool Bridges::fault() const {
+INKWELL_INTERRUPT bool Bridges::fault() const {
   const bool low_now = !DigitalInput<board::bridge_fault_tim1.pin>::is_high();
   return low_now || (enabled_ && (TIM1::SR::BIF::is_set() || TIM8::SR::BIF::is_set()));
 }
 
-void Bridges::begin_period() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
+INKWELL_INTERRUPT void Bridges::begin_period() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
 
 bool Bridges::wait_for_update() {
   begin_period();

@@ -1,6 +1,7 @@
 #include <drivers/encoders.hpp>
 
 #include <drivers/pins.hpp>
+#include <placement/interrupt.hpp>
 #include <registers/timer.hpp>
 
 namespace inkwell::drivers {
@@ -47,7 +48,7 @@ void Encoders::start() {
   set_up<TIM4>();
 }
 
-std::array<std::uint16_t, 3> Encoders::read() const {
+INKWELL_INTERRUPT std::array<std::uint16_t, 3> Encoders::read() const {
   return {static_cast<std::uint16_t>(TIM5::CNT::read()), static_cast<std::uint16_t>(TIM3::CNT::read()),
           static_cast<std::uint16_t>(TIM4::CNT::read())};
 }

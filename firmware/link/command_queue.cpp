@@ -1,5 +1,7 @@
 #include <link/command_queue.hpp>
 
+#include <placement/interrupt.hpp>
+
 #include <cmath>
 #include <cstring>
 
@@ -66,7 +68,7 @@ void CommandQueue::host_gone() {
   host_gone_.store(true);
 }
 
-const protocol::CommandReport* CommandQueue::take() {
+INKWELL_INTERRUPT const protocol::CommandReport* CommandQueue::take() {
   const std::uint32_t taken = taken_.load();
   if (host_gone_.load()) {
     host_gone_.store(false);

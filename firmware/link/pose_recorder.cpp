@@ -1,5 +1,7 @@
 #include <link/pose_recorder.hpp>
 
+#include <placement/interrupt.hpp>
+
 namespace inkwell::link {
 
 namespace {
@@ -13,7 +15,7 @@ std::uint8_t saturate_to_byte(float value) {
 
 }  // namespace
 
-void PoseRecorder::write(const protocol::SignalValues& signals, const PeriodSummary& summary) {
+INKWELL_INTERRUPT void PoseRecorder::write(const protocol::SignalValues& signals, const PeriodSummary& summary) {
   const std::uint32_t written = written_.load();
   protocol::PoseReport& report = reports_[written % capacity];
   report.report_id = protocol::ReportId::pose;

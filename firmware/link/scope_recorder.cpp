@@ -1,5 +1,7 @@
 #include <link/scope_recorder.hpp>
 
+#include <placement/interrupt.hpp>
+
 #include <cmath>
 #include <cstring>
 
@@ -56,7 +58,7 @@ std::span<const std::byte> ScopeRecorder::oldest_frame() const {
 
 void ScopeRecorder::release() { released_.store(released_.load() + 1); }
 
-void ScopeRecorder::record(const protocol::SignalValues& signals, std::uint32_t periods) {
+INKWELL_INTERRUPT void ScopeRecorder::record(const protocol::SignalValues& signals, std::uint32_t periods) {
   if (plan_offered_.load()) change_plan();
   const ScopePlan& plan = plans_[active_plan_];
   if (plan.count != 0) {
@@ -74,7 +76,7 @@ void ScopeRecorder::record(const protocol::SignalValues& signals, std::uint32_t 
 // Both go through the plan run by run, so that the loop over floats, where most of the time of recording
 // goes, has nothing to decide but what it writes.
 
-void ScopeRecorder::write_full(const ScopePlan& plan, const protocol::SignalValues& signals) {
+INKWELL_INTERRUPT void ScopeRecorder::write_full(const ScopePlan& plan, const protocol::SignalValues& signals) {
   std::byte* cursor = cursor_;
   const std::uint8_t* const items = plan.items.data();
   const std::uint8_t* const end = items + plan.count;
@@ -88,7 +90,7 @@ void ScopeRecorder::write_full(const ScopePlan& plan, const protocol::SignalValu
   cursor_ = cursor;
 }
 
-void ScopeRecorder::write_changes(const ScopePlan& plan, const protocol::SignalValues& signals) {
+INKWELL_INTERRUPT void ScopeRecorder::write_changes(const ScopePlan& plan, const protocol::SignalValues& signals) {
   std::byte* const mask_place = cursor_;
   std::byte* cursor = mask_place + sizeof(std::uint32_t);
   if (sample_count_ == 0) previous_.fill(bits_of_no_value);
@@ -119,7 +121,7 @@ void ScopeRecorder::write_changes(const ScopePlan& plan, const protocol::SignalV
   cursor_ = cursor;
 }
 
-void ScopeRecorder::change_plan() {
+INKWELL_INTERRUPT void ScopeRecorder::change_plan() {
   if (sample_count_ != 0) finish_frame();
   active_plan_ ^= 1u;
   plan_offered_.store(false);
@@ -129,21 +131,21 @@ void ScopeRecorder::change_plan() {
   sequence_ = 0;
 }
 
-void ScopeRecorder::open_frame(std::uint32_t frame) {
+INKWELL_INTERRUPT void ScopeRecorder::open_frame(std::uint32_t frame) {
   writing_ = frame;
   cursor_ = frames_[frame].data() + sizeof(protocol::ScopeFrameHeader);
   frame_end_ = frames_[frame].data() + sizeof(Frame);
   sample_count_ = 0;
 }
 
-std::uint8_t ScopeRecorder::pop_backlog() {
+INKWELL_INTERRUPT std::uint8_t ScopeRecorder::pop_backlog() {
   const std::uint8_t frame = backlog_[backlog_first_ % frame_count];
   ++backlog_first_;
   --backlog_count_;
   return frame;
 }
 
-void ScopeRecorder::finish_frame() {
+INKWELL_INTERRUPT void ScopeRecorder::finish_frame() {
   const ScopePlan& plan = plans_[active_plan_];
   std::byte* const start = frames_[writing_].data();
   protocol::ScopeFrameHeader header;
@@ -162,7 +164,7 @@ void ScopeRecorder::finish_frame() {
   open_frame(free_count_ != 0 ? free_[--free_count_] : drop_oldest());
 }
 
-std::uint8_t ScopeRecorder::drop_oldest() {
+INKWELL_INTERRUPT std::uint8_t ScopeRecorder::drop_oldest() {
   // The backlog can not be empty here: only one frame is written and at most two are handed over.
   const std::uint8_t frame = pop_backlog();
   protocol::ScopeFrameHeader header;
@@ -171,7 +173,7 @@ std::uint8_t ScopeRecorder::drop_oldest() {
   return frame;
 }
 
-void ScopeRecorder::hand_over() {
+INKWELL_INTERRUPT void ScopeRecorder::hand_over() {
   // One frame each way a period is far more than the bus can carry.
   if (reclaimed_ != released_.load()) {
     free_[free_count_++] = handed_[reclaimed_ % hand_over_places];

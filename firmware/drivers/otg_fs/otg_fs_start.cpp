@@ -4,6 +4,7 @@
 #include <drivers/otg_fs.hpp>
 #include <drivers/pins.hpp>
 #include <drivers/system.hpp>
+#include <placement/interrupt.hpp>
 #include <registers/clock.hpp>
 #include <registers/otg_fs.hpp>
 
@@ -68,7 +69,7 @@ bool OtgFs::start() {
   return true;
 }
 
-void OtgFs::wake() { disable(Interrupt::usb); }
+INKWELL_INTERRUPT void OtgFs::wake() { disable(Interrupt::usb); }
 
 namespace fifo_memory {
 

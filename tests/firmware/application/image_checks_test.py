@@ -8,16 +8,18 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 FACTS = REPOSITORY / "boards/omni_driver/include/board/omni_driver.hpp"
+PLACEMENT = REPOSITORY / "firmware/placement/include"
 LINKER_SCRIPT = REPOSITORY / "boards/omni_driver/omni_driver.ld"
 CORE = ["-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"]
 
 # The least that the tools take for a firmware. `work` stands for what is under test.
 FRAME = """
+#include <placement/interrupt.hpp>
 extern "C" {
 volatile float value = 1.0f;
 volatile int sink;
-[[gnu::noinline]] void work();
-void control_interrupt() { work(); }
+INKWELL_INTERRUPT [[gnu::noinline]] void work();
+INKWELL_INTERRUPT void control_interrupt() { work(); }
 void reset_handler() { for (;;) work(); }
 [[gnu::section(".vectors"), gnu::used]] void (*const vectors[])() = {reset_handler, control_interrupt};
 }
@@ -31,8 +33,8 @@ class ImageChecks(unittest.TestCase):
             file, elf = pathlib.Path(folder) / "image.cpp", pathlib.Path(folder) / "image.elf"
             file.write_text(FRAME + source)
             subprocess.run(
-                ["arm-none-eabi-g++", "-std=c++20", "-O2", *CORE, "-fno-exceptions", "-fno-rtti", "-nostartfiles",
-                 "-T", LINKER_SCRIPT, file, "-o", elf, "-lc", "-lnosys"],
+                ["arm-none-eabi-g++", "-std=c++20", "-O2", *CORE, "-fno-exceptions", "-fno-rtti", "-I", PLACEMENT,
+                 "-nostartfiles", "-T", LINKER_SCRIPT, file, "-o", elf, "-lm", "-lc", "-lnosys"],
                 check=True, capture_output=True)
             commands = (["check_image.py", elf, "--facts", FACTS], ["stack_bound.py", elf])
             check_image, stack_bound = (
@@ -61,9 +63,65 @@ class ImageChecks(unittest.TestCase):
 
     def test_division_in_the_interrupt_is_found(self):
         check_image, _ = self.check("void work() { value = 1.0f / value; }")
-        self.assert_refused(check_image, "division in the control interrupt, in work at")
+        self.assert_refused(check_image, "division in an interrupt, in work at")
         check_image, _ = self.check("void work() { sink = 7 / sink; }")
-        self.assert_refused(check_image, "division in the control interrupt, in work at")
+        self.assert_refused(check_image, "division in an interrupt, in work at")
+        check_image, _ = self.check("void work() { sink = 7000000000LL / sink; }")
+        self.assert_refused(check_image, "work runs in an interrupt and calls __aeabi_ldivmod, a 64-bit division,")
+
+    def test_the_mathematical_library_is_found(self):
+        check_image, _ = self.check("void work() { value = __builtin_sinf(value); }")
+        self.assert_refused(check_image, "the image holds sinf: the mathematical library")
+        self.assert_refused(check_image, "work runs in an interrupt and calls sinf which lies outside")
+
+    def test_an_unmarked_function_in_an_interrupt_is_found(self):
+        check_image, _ = self.check("[[gnu::noipa]] void other() { sink = 1; }\nvoid work() { other(); sink = 2; }")
+        self.assert_refused(check_image, "which lies outside .interrupt_text: mark it INKWELL_INTERRUPT or do without it")
+        check_image, _ = self.check("[[gnu::noipa]] void other() { sink = 1; }\nvoid work() { sink = 2; other(); }")
+        self.assert_refused(check_image, "which lies outside .interrupt_text")  # a jump at the end is a call as well
+
+    def test_an_unmarked_handler_is_found(self):
+        check_image, _ = self.check("void usb_interrupt() { sink = 1; }\nvoid work() { sink = 2; }\n"
+                                    "[[gnu::section(\".vectors\"), gnu::used]] void (*const more)() = usb_interrupt;")
+        self.assert_refused(check_image, "handles an interrupt but lies outside .interrupt_text")
+
+    def test_a_mark_that_lies_is_found(self):
+        check_image, _ = self.check("INKWELL_INTERRUPT [[gnu::used]] void other() { sink = 1; }\nvoid work() { sink = 2; }")
+        self.assert_refused(check_image, "lies in .interrupt_text but no interrupt calls it: take its mark away")
+
+    def test_a_call_through_a_pointer_in_an_interrupt_is_found(self):
+        check_image, _ = self.check("void (*volatile pointer)();\nvoid work() { pointer(); sink = 1; }")
+        self.assert_refused(check_image, "work runs in an interrupt and calls through a pointer at")
+        check_image, _ = self.check("struct Base { virtual void act() = 0; };\nBase* volatile base;\n"
+                                    "void work() { base->act(); }")
+        self.assert_refused(check_image, "work runs in an interrupt and calls through a pointer at")
+
+    def test_a_wait_in_an_interrupt_is_found(self):
+        wait = "work runs in an interrupt and waits at"
+        for loop in ("while (sink == 0) {}",
+                     "while ((sink & 4) == 0) {}",
+                     "const int from = sink; while (sink - from < 100) {}",
+                     "for (int i = 0; i < 9; ++i) { value = value + 1.0f; while (sink < i) {} }",
+                     "while (sink == 0) for (int i = 0; i < 9; ++i) value = 2.0f;",
+                     "for (;;) {}",
+                     'asm volatile("wfi");'):
+            with self.subTest(loop):
+                check_image, _ = self.check("void work() { %s }" % loop)
+                self.assert_refused(check_image, wait)
+
+    def test_loops_that_count_are_no_waits(self):
+        check_image, _ = self.check("""
+        unsigned words[64], * volatile place = words;
+        [[gnu::noipa]] INKWELL_INTERRUPT unsigned other(unsigned n) { return n; }
+        void work() {
+          for (unsigned* word = place; word != words + 64; ++word) *word = static_cast<unsigned>(sink);
+          for (unsigned left = words[3]; left != 0; --left) words[left % 64] = other(left);
+          for (unsigned bits = words[1]; bits != 0; bits >>= 1) sink = 1;
+          for (unsigned i = 0; i < words[1]; ++i)
+            for (unsigned k = i; k < 64; k += words[2]) words[k] += words[i];
+          while (words[5] != 0) { words[5] -= 1; sink = sink; }
+        }""")
+        self.assertEqual(check_image.returncode, 0, check_image.stderr)
 
     def test_an_image_that_is_too_large_is_found(self):
         check_image, _ = self.check("[[gnu::used]] extern const char text[70000] = {1};\nvoid work() {}")

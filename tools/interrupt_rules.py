@@ -1,0 +1,161 @@
+"""What holds for code that runs in an interrupt, checked in the linked image.
+
+Everything that a handler can reach lies in the section .interrupt_text, and nothing else does, so that the image itself
+tells what runs in interrupts. Nothing of it waits, divides, or calls through a pointer.
+"""
+
+import re
+
+from call_graph import INDIRECT, Function, Image
+
+# What the compiler calls behind one's back, by whole symbol names.
+LIBRARY = {
+    r"__aeabi_u?ldivmod|__u?(div|mod|divmod)di[34]": "a 64-bit division",
+    r"__aeabi_u?idiv(mod)?|__aeabi_(ul|l)2f|__aeabi_f2u?lz": "arithmetic in software",
+}
+
+# ---- what counts -----------------------------------------------------------------------------------------------
+
+CALL = re.compile(r"blx?\t")
+# A register that goes on by a step: r3 in "adds r3, #1", "sub.w r3, r3, r5", "lsls r3, r3, #1" or behind an access.
+STEP = re.compile(r"(?:add|sub|lsl|lsr|asr)[sw]?(?:\.[nw])?\t(\w+), (?:\1, )?(?:#\d+|r\d+)$")
+STEP_OF_ACCESS = re.compile(r"\w+(?:\.\w+)?\t.*\[(\w+)(?:\], #-?\d+|, #-?\d+\]!)$|v?(?:ld|st)m\w+(?:\.w)?\t(\w+)!")
+READS_ONLY = re.compile(r"(?:v?st|cm[pn]|tst|teq|v?push|vcmp|it|nop|b|cb|dmb|dsb|isb|pld|vmsr|msr)")
+FIRST_TWO = re.compile(r"(?:ldrd|[us]mull|[us]mlal|vmov)\S*\t(\w+), (\w+)")
+FIRST = re.compile(r"\S+\t(\w+)")
+LIST = re.compile(r"(?:ldm|pop).*\{(.*)\}")
+PLACE = re.compile(r"(ldr|str)\S*\t.*(\[[^\]]*\])$")
+CALL_SPOILS = {"r0", "r1", "r2", "r3", "ip", "lr"}
+
+
+def steps_of(text: str) -> set[str]:
+    step, access = STEP.fullmatch(text), STEP_OF_ACCESS.match(text)
+    return ({step[1]} if step else set()) | ({access[1] or access[2]} if access else set())
+
+
+def written_otherwise(text: str) -> set[str]:
+    """Registers that an instruction gives a value other than their last one and a step."""
+    if CALL.match(text):
+        return CALL_SPOILS
+    if loaded := LIST.match(text):
+        return set(loaded[1].replace(" ", "").split(","))
+    if READS_ONLY.match(text):
+        return set()
+    first, two = FIRST.match(text), FIRST_TWO.match(text)
+    return (set(two.groups()) if two else {first[1]} if first else set()) - steps_of(text)
+
+
+def counts(loop: list[str], own: list[str]) -> bool:
+    """Whether something goes on by itself in a loop: a register in `own`, which is the loop without those inside it, or
+    a word in memory, which is loaded and stored."""
+    steps = set().union(*map(steps_of, own)) - set().union(*map(written_otherwise, loop))
+    places = {kind: {place[2] for place in map(PLACE.match, loop) if place and place[1] == kind} for kind in ("ldr", "str")}
+    return bool(steps or places["ldr"] & places["str"])
+
+
+# ---- loops -----------------------------------------------------------------------------------------------------
+
+JUMP = re.compile(r"(?:b([a-z]{2})?(?:\.[nw])?\t|(cbn?z)\t\w+, )([0-9a-f]+) <")
+TABLE = re.compile(r"tb[bh]\t")
+LEAVES = re.compile(r"bx\t|(?:pop|ldm\w*(?:\.w)?\t\w+!,).*pc\}|(?:ldr|mov)(?:\.w)?\tpc,|udf")
+
+Paths = dict[int, set[int]]  # from an instruction's address to those of the instructions that may follow it
+
+
+def paths_of(function: Function) -> Paths:
+    addresses = [address for address, _ in function.instructions]
+    paths: Paths = {}
+    for i, (address, text) in enumerate(function.instructions):
+        following, later = set(addresses[i + 1:i + 2]), set(addresses[i + 1:])
+        if jump := JUMP.match(text):
+            conditional = jump[1] or jump[2]
+            paths[address] = {int(jump[3], 16)} & set(addresses) | (following if conditional else set())
+        else:
+            paths[address] = later if TABLE.match(text) else set() if LEAVES.match(text) else following
+    return paths
+
+
+def reached_from(start: int, paths: Paths) -> set[int]:
+    found, waiting = set(), list(paths[start])
+    while waiting:
+        address = waiting.pop()
+        if address not in found:
+            found.add(address)
+            waiting.extend(paths[address])
+    return found
+
+
+def outer_loops(paths: Paths) -> list[set[int]]:
+    """Sets of instructions from each of which all others of the set are reached, and itself."""
+    reached = {address: reached_from(address, paths) for address in paths}
+    loops: list[set[int]] = []
+    for address in paths:
+        if address in reached[address] and not any(address in loop for loop in loops):
+            loops.append({other for other in reached[address] if address in reached[other]})
+    return loops
+
+
+def endless_loops(function: Function, paths: Paths) -> list[set[int]]:
+    """Loops, inner ones too, in which nothing counts: such a loop ends only when somebody else changes what it looks
+    at."""
+    found = []
+    texts = dict(function.instructions)
+    for loop in outer_loops(paths):
+        entered = {to for address in paths.keys() - loop for to in paths[address]} & loop
+        begin = min(entered or loop)
+        inside = {address: (paths[address] & loop) - {begin} for address in loop}
+        inner = set().union(*outer_loops(inside))
+        if not counts([texts[address] for address in loop], [texts[address] for address in loop - inner]):
+            found.append(loop)
+        found += endless_loops(function, inside)
+    return found
+
+
+def waits(function: Function) -> list[str]:
+    """Places where the function waits: sleeps, or begins a loop in which nothing counts."""
+    asleep = [address for address, text in function.instructions if text.startswith(("wfi", "wfe"))]
+    return [f"{address:x}" for address in asleep + [min(loop) for loop in endless_loops(function, paths_of(function))]]
+
+
+# ---- the rules -------------------------------------------------------------------------------------------------
+
+
+def meaning_of(name: str) -> str:
+    return next((f", {meaning}," for pattern, meaning in LIBRARY.items() if re.fullmatch(pattern, name)), "")
+
+
+def leaves(image: Image, name: str, section: range) -> list[str]:
+    """Calls from a function of the section to one outside, and calls that could go anywhere."""
+    function = image.functions[name]
+    problems = [
+        f"{name} runs in an interrupt and calls {target}{meaning_of(target)} which lies outside .interrupt_text: "
+        "mark it INKWELL_INTERRUPT or do without it"
+        for target in sorted(function.calls)
+        if image.functions[target].address not in section
+    ]
+    problems += [
+        f"{name} runs in an interrupt and calls through a pointer at {address:x}"
+        for address, text in function.instructions
+        if INDIRECT.match(text)
+    ]
+    return problems
+
+
+def broken_interrupt_rules(image: Image, section: range) -> list[str]:
+    reached = set().union(*map(image.reachable, image.interrupts))
+    problems = [
+        f"{name} handles an interrupt but lies outside .interrupt_text: mark it INKWELL_INTERRUPT"
+        for name in image.interrupts
+        if image.functions[name].address not in section
+    ]
+    problems += [
+        f"{name} lies in .interrupt_text but no interrupt calls it: take its mark away"
+        for name, function in sorted(image.functions.items())
+        if function.address in section and name not in reached
+    ]
+    for name in sorted(reached):
+        function = image.functions[name]
+        problems += leaves(image, name, section)
+        problems += [f"division in an interrupt, in {name} at {place}" for place in function.divides]
+        problems += [f"{name} runs in an interrupt and waits at {place}" for place in waits(function)]
+    return problems
