@@ -7,8 +7,8 @@
 
 #include <board/omni_driver.hpp>
 
+#include "board_rig.hpp"
 #include "program.hpp"
-#include "rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -16,7 +16,7 @@ using protocol::Parameter;
 using namespace std::chrono_literals;
 
 TEST_CASE("the device enumerates within a second of board time and says who it is") {
-  Rig rig;  // refuses to start if the device is not there by then
+  BoardRig rig;  // refuses to start if the device is not there by then
   const auto information = rig.call([](device::Device& arm) { return arm.information(); });
   CHECK(information.protocol_version == protocol::protocol_version);
   CHECK(information.report.parameter_table_hash == protocol::parameter_table_hash);
@@ -30,7 +30,7 @@ TEST_CASE("the device enumerates within a second of board time and says who it i
 }
 
 TEST_CASE("the device holds the table's defaults, takes a transaction whole, and gives the defaults back") {
-  Rig rig;
+  BoardRig rig;
   const auto before = rig.call([](device::Device& arm) { return arm.parameters(); });
   auto expected = protocol::default_parameters();
   expected[Parameter::host_timeout_s] = 2.0f;  // the rig's own
@@ -49,7 +49,7 @@ TEST_CASE("the device holds the table's defaults, takes a transaction whole, and
 }
 
 TEST_CASE("a refused transaction says which value and why, and changes nothing") {
-  Rig rig;
+  BoardRig rig;
   const auto before = rig.call([](device::Device& arm) { return arm.parameters(); });
   const auto refused_with = [&](std::vector<device::ParameterChange> changes) {
     return rig.call([&](device::Device& arm) {
@@ -75,7 +75,7 @@ TEST_CASE("a refused transaction says which value and why, and changes nothing")
 }
 
 TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for a minute, none lost") {
-  Rig rig;
+  BoardRig rig;
   std::vector<protocol::Signal> signals;
   for (std::uint8_t id = 3; signals.size() < 14; ++id)
     if (protocol::signal_table[id].wire == protocol::SignalWire::float32)
@@ -113,7 +113,7 @@ TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for a minute, non
 }
 
 TEST_CASE("a host that does not read the scope loses the oldest samples, counted, and nothing else") {
-  Rig rig;
+  BoardRig rig;
   rig.call([&](device::Device& arm) {
     arm.select_signals(std::vector{protocol::Signal::position_x_m, protocol::Signal::force_N});
   });
@@ -128,7 +128,7 @@ TEST_CASE("a host that does not read the scope loses the oldest samples, counted
 }
 
 TEST_CASE("pulling the USB cable ends the connection, plugging it in brings the device back") {
-  Rig rig;
+  BoardRig rig;
   rig.make_active();
   rig.control.usb(false);
   rig.control.resume();

@@ -13,8 +13,8 @@
 
 #include <device/link.hpp>
 
+#include "board_rig.hpp"
 #include "program.hpp"
-#include "rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -91,7 +91,7 @@ TEST_CASE("the companion refuses firmware with another version of the protocol, 
 }
 
 TEST_CASE("the firmware refuses a companion with another version of the protocol, and keeps its values") {
-  Rig rig;
+  BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == protocol::State::ready; });
   const auto before = rig.call([](device::Device& arm) { return arm.parameters(); });
   const auto endpoint = rig.board.find();

@@ -9,8 +9,8 @@
 #include <iterator>
 #include <string_view>
 
+#include "board_rig.hpp"
 #include "program.hpp"
-#include "rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -20,7 +20,7 @@ using protocol::State;
 namespace {
 
 /// After a restart of the board: waits until its USB is back and opens the device again.
-void reconnect(Rig& rig) {
+void reconnect(BoardRig& rig) {
   rig.device.reset();
   rig.control.run(0.02);  // long enough for the bus to see that the device is gone
   rig.control.resume();
@@ -54,7 +54,7 @@ bool any_leg_high_within(device::ControlClient& control, double time_s) {
 bool bridges_enabled(device::ControlClient& control) { return control.truth().at("bridges_enabled").get<bool>(); }
 
 /// The sphere pressed into a wall by the hand: all three bridges switch, and at least one motor has current.
-void press_into_wall(Rig& rig) {
+void press_into_wall(BoardRig& rig) {
   rig.make_active();
   rig.take_to(free_point_m);
   rig.set({{Parameter::box_minimum_z_m, -0.015f}});
@@ -66,7 +66,7 @@ void press_into_wall(Rig& rig) {
 }
 
 /// What `inkwell info` tells a user about the device of this rig.
-std::string told_by_info(Rig& rig) {
+std::string told_by_info(BoardRig& rig) {
   rig.device.reset();
   rig.control.resume();
   const auto result =
@@ -104,7 +104,7 @@ std::uint32_t endless_loop_address() {
 }  // namespace
 
 TEST_CASE("an arm that has not been in the inkwell gets no force") {
-  Rig rig;
+  BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   rig.take_to(free_point_m);
   rig.control.reset();
@@ -123,7 +123,7 @@ TEST_CASE("an arm that has not been in the inkwell gets no force") {
 }
 
 TEST_CASE("the force goes off when the host falls silent") {
-  Rig rig;
+  BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
   rig.set({{Parameter::box_minimum_z_m, -0.015f}});  // inside the wall
@@ -138,7 +138,7 @@ TEST_CASE("the force goes off when the host falls silent") {
 }
 
 TEST_CASE("a supply that fails switches the bridges off and says so") {
-  Rig rig;
+  BoardRig rig;
   rig.make_active();
   rig.control.supply(9.0);  // the board's capacitors hold the bridges up for a while
   rig.run_until([](const auto& pose) { return pose.state == State::fault; });
@@ -151,7 +151,7 @@ TEST_CASE("a supply that fails switches the bridges off and says so") {
 }
 
 TEST_CASE("refused parameters do not move a motor") {
-  Rig rig;
+  BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
   for (float value : {std::nanf(""), 1e30f, -1e30f}) {
@@ -166,7 +166,7 @@ TEST_CASE("refused parameters do not move a motor") {
 }
 
 TEST_CASE("a bridge that reports a fault stops all of them within one control period") {
-  Rig rig;
+  BoardRig rig;
   press_into_wall(rig);
   rig.control.bridge_fault(true);
   rig.control.run(control_period_s);
@@ -194,7 +194,7 @@ TEST_CASE("a bridge that reports a fault stops all of them within one control pe
 }
 
 TEST_CASE("a processor fault with the bridges on switches them off first, and is told after the restart") {
-  Rig rig(device::SimulationMode::exact);
+  BoardRig rig(device::SimulationMode::exact);
   press_into_wall(rig);
   constexpr std::uint32_t nothing_there = 0x60000000;
   rig.control.jump(nothing_there);
@@ -219,7 +219,7 @@ TEST_CASE("a processor fault with the bridges on switches them off first, and is
 }
 
 TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog, and says so") {
-  Rig rig;
+  BoardRig rig;
   press_into_wall(rig);
   rig.control.jump(endless_loop_address());
   rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms

@@ -6,7 +6,7 @@
 
 #include <board/omni_driver.hpp>
 
-#include "rig.hpp"
+#include "board_rig.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -29,7 +29,7 @@ double mean_square(const device::Trace& trace, const std::string& column) {
 }  // namespace
 
 TEST_CASE("the longest control interrupt stays under half of its period, in contact and with a full scope") {
-  Rig rig;
+  BoardRig rig;
   rig.make_active();
   std::vector<Signal> signals;
   for (std::uint8_t id = 0; id < 31; ++id) signals.push_back(static_cast<Signal>(id));
@@ -48,7 +48,7 @@ TEST_CASE("the longest control interrupt stays under half of its period, in cont
 }
 
 TEST_CASE("a motor that holds against a wall warms as its true current says") {
-  Rig rig;
+  BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
   rig.set({{Parameter::box_maximum_z_m, -0.04f}, {Parameter::winding_time_constant_s, 0.25f}});

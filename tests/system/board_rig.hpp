@@ -14,10 +14,10 @@
 
 namespace inkwell::tests {
 
-class Rig {
+class BoardRig {
  public:
   /// Starts the board, docked in its inkwell, and opens the device.
-  explicit Rig(device::SimulationMode mode = device::SimulationMode::fast, std::uint64_t seed = 1);
+  explicit BoardRig(device::SimulationMode mode = device::SimulationMode::fast, std::uint64_t seed = 1);
 
   /// Lets board time pass in slices of 10 ms, collects every pose report, keeps the host's sign of life.
   void run(double time_s);

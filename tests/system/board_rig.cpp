@@ -1,4 +1,4 @@
-#include "rig.hpp"
+#include "board_rig.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -25,7 +25,8 @@ constexpr double sign_of_life_s = 0.5;
 
 }  // namespace
 
-Rig::Rig(device::SimulationMode mode, std::uint64_t seed) : board(options(mode, seed)), control(board.control()) {
+BoardRig::BoardRig(device::SimulationMode mode, std::uint64_t seed)
+    : board(options(mode, seed)), control(board.control()) {
   std::optional<device::Endpoint> endpoint;
   while (!endpoint) {
     REQUIRE_MESSAGE(board_time_s() < 1.0, "the device did not enumerate within a second of board time");
@@ -40,7 +41,7 @@ Rig::Rig(device::SimulationMode mode, std::uint64_t seed) : board(options(mode, 
   run(0.05);
 }
 
-std::size_t Rig::collect(std::chrono::milliseconds timeout) {
+std::size_t BoardRig::collect(std::chrono::milliseconds timeout) {
   std::size_t count = 0;
   while (auto pose = device->read_pose(count == 0 ? timeout : 0ms)) {
     poses_.push_back(*pose);
@@ -49,7 +50,7 @@ std::size_t Rig::collect(std::chrono::milliseconds timeout) {
   return count;
 }
 
-void Rig::run(double time_s) {
+void BoardRig::run(double time_s) {
   const auto slices = static_cast<int>(std::lround(time_s / slice_s));
   std::size_t received = 0;
   for (int slice = 1; slice <= slices; ++slice) {
@@ -66,16 +67,16 @@ void Rig::run(double time_s) {
   }
 }
 
-void Rig::set(std::initializer_list<device::ParameterChange> changes) {
+void BoardRig::set(std::initializer_list<device::ParameterChange> changes) {
   call([&](device::Device& arm) { arm.set_parameters(std::vector<device::ParameterChange>(changes)); });
 }
 
-void Rig::command(protocol::Command command) {
+void BoardRig::command(protocol::Command command) {
   call([&](device::Device& arm) { arm.send(command); });
   since_sign_of_life_s_ = 0;
 }
 
-void Rig::run_until(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
+void BoardRig::run_until(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
   for (double passed_s = 0; passed_s < limit_s; passed_s += slice_s) {
     if (!poses_.empty() && condition(pose())) return;
     run(slice_s);
@@ -85,7 +86,7 @@ void Rig::run_until(const std::function<bool(const protocol::PoseReport&)>& cond
                   std::string(protocol::info(pose().fault).name));
 }
 
-void Rig::take_to(device::Vector3 target_m, double duration_s) {
+void BoardRig::take_to(device::Vector3 target_m, double duration_s) {
   const auto truth = control.truth();
   const device::Vector3 here_m{truth.at("true_position_x_m"), truth.at("true_position_y_m"),
                                truth.at("true_position_z_m")};
@@ -95,7 +96,7 @@ void Rig::take_to(device::Vector3 target_m, double duration_s) {
   run(duration_s + 0.3);
 }
 
-void Rig::make_active() {
+void BoardRig::make_active() {
   run_until([](const auto& pose) { return pose.state == protocol::State::ready; });
   command(protocol::Command::enable_force);
   run_until([](const auto& pose) { return pose.state == protocol::State::active; });
