@@ -65,6 +65,7 @@ BoardStatus ControlClient::status() {
 
 json ControlClient::truth() { return call({{"command", "truth"}}); }
 void ControlClient::pause() { call({{"command", "pause"}}); }
+void ControlClient::stand_by() { call({{"command", "stand_by"}}); }
 void ControlClient::run(double for_s) { call({{"command", "run"}, {"for_s", for_s}}); }
 void ControlClient::resume() { call({{"command", "resume"}}); }
 void ControlClient::reset() { call({{"command", "reset"}}); }

@@ -1,6 +1,7 @@
 #include "board.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,14 +24,15 @@ std::string_view name_of(ResetCause cause) {
 
 }  // namespace
 
-Board::Board(const Options& options)
+Board::Board(const Options& options, std::function<void()> on_usb_request)
     : plant_(arms::read(options.arm), {.seed = options.seed}),
       chip_(plant_, {.mode = options.mode,
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); }}) {
   chip_.load_elf(options.elf);
   try {
-    usb_.emplace(chip_.scheduler(), chip_.interrupts(), chip_.unmodelled_log(), options.usbip_port);
+    usb_.emplace(chip_.scheduler(), chip_.interrupts(), chip_.unmodelled_log(), options.usbip_port,
+                 std::move(on_usb_request));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{} (--usbip gives it)", error.what()));
   }

@@ -1,6 +1,7 @@
 // The board as a whole: chip, plant and USB wired together. It lives on the simulation's thread.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -16,7 +17,8 @@ class Board {
  public:
   /// Reads the arm, programs the flash and switches the power on.
   /// @throws std::runtime_error with a sentence if the arm, the ELF or the USB/IP port is refused.
-  explicit Board(const Options& options);
+  /// `on_usb_request`: see VirtualUsb.
+  Board(const Options& options, std::function<void()> on_usb_request);
 
   /// Runs until board time `when`, or until the firmware ends or locks up.
   Stop run_until(Ticks when);

@@ -80,6 +80,7 @@ json status(const json&, Simulation& simulation) {
       {"board_time_s", seconds(chip.now())},
       {"mode", chip.mode() == Mode::exact ? "exact" : "fast"},
       {"paused", simulation.paused()},
+      {"stands_by", simulation.stands_by()},
       {"real_time", simulation.options().real_time},
       {"time_dropped_s", simulation.time_dropped_s()},
       {"seed", simulation.options().seed},
@@ -114,6 +115,11 @@ json run(const json& request, Simulation& simulation) {
   if (simulation.board().locked_up()) throw Refused("the processor is locked up; reset it first");
   simulation.run_for(number(request, "for_s", 0.0, 1e6));
   return {};
+}
+
+json stand_by(const json&, Simulation& simulation) {
+  simulation.stand_by();
+  return {{"board_time_s", seconds(simulation.board().chip().now())}};
 }
 
 json resume(const json&, Simulation& simulation) {
@@ -252,31 +258,34 @@ json trace(const json& request, Simulation& simulation) {
   return {};
 }
 
+/// All that is said about a command: it is known, checked and explained by this alone.
 struct Command {
   std::string_view name;
-  json (*carry_out)(const json& request, Simulation& simulation);
   std::vector<std::string_view> keys;  ///< that it knows besides "command"
+  std::string_view help;
+  json (*carry_out)(const json& request, Simulation& simulation);
 };
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = {
-      {"status", status, {}},
-      {"pause", pause, {}},
-      {"run", run, {"for_s"}},
-      {"resume", resume, {}},
-      {"reset", reset, {}},
-      {"quit", quit, {}},
-      {"usb", usb, {"connected"}},
-      {"buttons", buttons, {"pressed"}},
-      {"supply", supply, {"voltage_V"}},
-      {"bridge_fault", bridge_fault, {"fault"}},
-      {"jump", jump, {"address"}},
-      {"hand", hand, {"holds", "target_m", "stiffness_N_per_m", "damping_Ns_per_m"}},
-      {"hand_path", hand_path, {"points"}},
-      {"gimbal", gimbal, {"angles_rad"}},
-      {"dock", dock, {"docked"}},
-      {"truth", truth, {}},
-      {"trace", trace, {"action", "maximum"}},
+      {"status", {}, "time, mode, resets, USB, registers that are not modelled", status},
+      {"truth", {}, "every true quantity, the levels on the bridges' inputs included", truth},
+      {"pause", {}, "board time stands still", pause},
+      {"stand_by", {}, "it stands still, but passes while a USB control transfer is under way", stand_by},
+      {"run", {"for_s"}, "it passes for a while; answered when that is over", run},
+      {"resume", {}, "it passes freely", resume},
+      {"reset", {}, "the reset pin", reset},
+      {"quit", {}, "the end of this program", quit},
+      {"usb", {"connected"}, "plug or pull the cable", usb},
+      {"buttons", {"pressed"}, "of the stylus: [true,false]", buttons},
+      {"supply", {"voltage_V"}, "of the bridges", supply},
+      {"bridge_fault", {"fault"}, "a bridge pulls the fault wire", bridge_fault},
+      {"jump", {"address"}, "throw the program counter there, as a flipped bit would", jump},
+      {"hand", {"holds", "target_m", "stiffness_N_per_m", "damping_Ns_per_m"}, "it pulls the probe, or lets go", hand},
+      {"hand_path", {"points"}, "minimum jerk between [{\"after_s\":0.5,\"target_m\":[x,y,z]},...]", hand_path},
+      {"gimbal", {"angles_rad"}, "turn the stylus: yaw, pitch, roll", gimbal},
+      {"dock", {"docked"}, "lay the stylus into the inkwell, or take it out", dock},
+      {"trace", {"action", "maximum"}, "start, stop or read the true quantities at every control period", trace},
   };
   return table;
 }
@@ -300,6 +309,17 @@ json carry_out_checked(const std::string& line, Simulation& simulation) {
 }
 
 }  // namespace
+
+std::string explain_commands() {
+  std::string text;
+  for (const Command& command : commands()) {
+    const std::string usage = fmt::format("{} {}", command.name, fmt::join(command.keys, " "));
+    constexpr std::size_t column = 26;  // of the explanations
+    text += usage.size() < column ? fmt::format("  {:<{}}{}\n", usage, column, command.help)
+                                  : fmt::format("  {}\n  {:{}}{}\n", usage, "", column, command.help);
+  }
+  return text;
+}
 
 json carry_out(const std::string& line, Simulation& simulation) {
   try {

@@ -13,4 +13,7 @@ class Simulation;
 /// After `run` the simulation answers by itself, once the time has passed.
 nlohmann::json carry_out(const std::string& line, Simulation& simulation);
 
+/// One line for each command, with its keys, for --help.
+std::string explain_commands();
+
 }  // namespace inkwell::virtual_board

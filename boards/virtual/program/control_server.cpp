@@ -155,10 +155,20 @@ std::optional<nlohmann::json> ControlServer::ask(std::string line) {
 
 std::optional<ControlRequest> ControlServer::take(std::chrono::steady_clock::time_point give_up) {
   std::unique_lock lock(mutex_);
-  if (!arrived_.wait_until(lock, give_up, [this] { return !requests_.empty(); })) return std::nullopt;
+  arrived_.wait_until(lock, give_up, [this] { return !requests_.empty() || woken_; });
+  woken_ = false;
+  if (requests_.empty()) return std::nullopt;
   ControlRequest request = std::move(requests_.front());
   requests_.pop_front();
   return request;
+}
+
+void ControlServer::wake() {
+  {
+    const std::lock_guard lock(mutex_);
+    woken_ = true;
+  }
+  arrived_.notify_one();
 }
 
 }  // namespace inkwell::virtual_board

@@ -33,8 +33,10 @@ class ControlServer {
   ControlServer& operator=(const ControlServer&) = delete;
 
   std::uint16_t port() const { return port_; }
-  /// The oldest request, waiting for one at most until `give_up`.
+  /// The oldest request, waiting for one at most until `give_up` or until `wake` was called.
   std::optional<ControlRequest> take(std::chrono::steady_clock::time_point give_up);
+  /// Ends a `take` that waits, or the next one. From any thread.
+  void wake();
 
  private:
   struct Client {
@@ -53,6 +55,7 @@ class ControlServer {
   std::deque<ControlRequest> requests_;
   std::list<Client> clients_;
   bool closing_ = false;
+  bool woken_ = false;
   std::thread acceptor_;
 };
 

@@ -34,8 +34,8 @@ int main(int argc, char** argv) {
   sigaction(SIGTERM, &action, nullptr);
 
   try {
-    Board board(options);
     ControlServer server(options.control_port);
+    Board board(options, [&server] { server.wake(); });
     fmt::print("ready usbip={} control={}\n", board.usb().port(), server.port());
     std::fflush(stdout);
     return Simulation(options, board, server).run(end_requested);

@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "commands.hpp"
+
 namespace inkwell::virtual_board {
 namespace {
 
@@ -58,23 +60,13 @@ CommandLine read_command_line(int argc, char** argv) {
       "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options; firmware that ends by\n"
       "semihosting passes its own exit code on.\n"
       "\n"
+      "Board time waits for the program that uses the device on USB: for up to 3 s of the clock on the wall, when it\n"
+      "owes the next request at an endpoint where it asked before. So a busy computer loses no data.\n"
+      "\n"
       "Control socket: one JSON object a line each way, such as {\"command\":\"run\",\"for_s\":0.5}. The commands "
       "with\n"
-      "their keys; lengths in metres, angles in radians, times in seconds of board time:\n"
-      "  status                       time, mode, resets, USB, registers that are not modelled\n"
-      "  truth                        every true quantity, the levels on the bridges' inputs included\n"
-      "  pause, resume, run for_s     let board time stand still, go on, or pass for a while\n"
-      "  reset, quit                  the reset pin; the end of this program\n"
-      "  usb connected                plug or pull the cable\n"
-      "  buttons pressed              of the stylus: [true,false]\n"
-      "  supply voltage_V             of the bridges\n"
-      "  bridge_fault fault           a bridge pulls the fault wire\n"
-      "  jump address                 throw the program counter there, as a flipped bit would\n"
-      "  hand holds target_m stiffness_N_per_m damping_Ns_per_m\n"
-      "  hand_path points             minimum jerk between [{\"after_s\":0.5,\"target_m\":[x,y,z]},...]\n"
-      "  gimbal angles_rad            turn the stylus: yaw, pitch, roll\n"
-      "  dock docked                  lay the stylus into the inkwell, or take it out\n"
-      "  trace action maximum         action start, stop or read: the true quantities at every control period");
+      "their keys; lengths in metres, angles in radians, times in seconds of board time:\n" +
+      explain_commands());
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

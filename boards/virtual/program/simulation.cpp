@@ -14,41 +14,52 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Ticks slice = ticks_per_s / 1000;
-constexpr auto attention = 50ms;  // how soon a paused board notices a signal
+constexpr Ticks slice = ticks_per_s / 1000;  // a USB frame
+constexpr auto attention = 50ms;             // how soon a paused board notices a signal
 constexpr double debt_maximum_s = 0.1;
 
 }  // namespace
 
 Simulation::Simulation(const Options& options, Board& board, ControlServer& server)
-    : options_(options), board_(board), server_(server), paused_(options.paused) {
+    : options_(options),
+      board_(board),
+      server_(server),
+      passing_(options.paused ? Passing::not_at_all : Passing::freely) {
   start_pacing();
 }
 
 int Simulation::run(const std::atomic<bool>& end_requested) {
   const Ticks end = options_.seconds ? ticks(*options_.seconds) : std::numeric_limits<Ticks>::max();
   while (!quit_ && !end_requested && !firmware_exit_code_ && board_.chip().now() < end) {
-    if (auto request = server_.take(paused_ ? Clock::now() + attention : Clock::time_point::min()))
+    if (auto request = server_.take(time_passes() ? Clock::time_point::min() : Clock::now() + attention)) {
       serve(std::move(*request));
-    else if (!paused_)
-      advance();
+      continue;
+    }
+    board_.usb().serve();
+    if (time_passes()) advance();
   }
   end_run("the virtual board ends");
   return firmware_exit_code_.value_or(0);
 }
 
+bool Simulation::time_passes() const {
+  return run_ || passing_ == Passing::freely || (passing_ == Passing::when_asked && board_.usb().is_asked());
+}
+
 void Simulation::serve(ControlRequest request) {
+  board_.usb().settle();
   nlohmann::json reply = carry_out(request.line, *this);
   if (run_asked_s_) {
     run_ = Run{board_.chip().now() + ticks(*std::exchange(run_asked_s_, std::nullopt)), std::move(request.reply)};
-    resume();
+    if (passing_ == Passing::freely) passing_ = Passing::not_at_all;
+    start_pacing();
     return;
   }
   request.reply.set_value(std::move(reply));
 }
 
 void Simulation::advance() {
-  Ticks target = board_.chip().now() + slice;
+  Ticks target = (board_.chip().now() / slice + 1) * slice;
   if (run_) target = std::min(target, run_->end);
   if (options_.seconds) target = std::min(target, ticks(*options_.seconds));
   switch (board_.run_until(target)) {
@@ -65,12 +76,12 @@ void Simulation::advance() {
       return;
   }
   if (run_ && board_.chip().now() >= run_->end) {
-    paused_ = true;
+    board_.usb().settle();
     run_->reply.set_value({{"ok", true}, {"board_time_s", seconds(board_.chip().now())}});
     run_.reset();
     return;
   }
-  if (options_.real_time) pace();
+  if (options_.real_time && (run_ || passing_ == Passing::freely)) pace();
 }
 
 void Simulation::start_pacing() {
@@ -94,12 +105,17 @@ void Simulation::pace() {
 }
 
 void Simulation::pause() {
-  paused_ = true;
+  passing_ = Passing::not_at_all;
   end_run(fmt::format("the run was paused at {:.6f} s of board time", seconds(board_.chip().now())));
 }
 
+void Simulation::stand_by() {
+  pause();
+  passing_ = Passing::when_asked;
+}
+
 void Simulation::resume() {
-  paused_ = false;
+  passing_ = Passing::freely;
   start_pacing();
 }
 

@@ -1,9 +1,13 @@
-// Lets board time pass: free, paced to the wall clock, or as far as a client asks, and serves the control
-// socket between slices of a millisecond.
+// Lets board time pass: free, paced to the clock on the wall, or as far as a client asks.
+//
+// It passes in slices that end with a USB frame. Between two slices, and only there, what programs of this computer ask
+// for takes effect: transfers on USB and commands of the control socket. How long a slice takes makes no difference
+// then: a program that waits for each answer before it asks again finds the same board each time.
 #pragma once
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -24,22 +28,29 @@ class Simulation {
   // ---- for the commands ----
   Board& board() { return board_; }
   const Options& options() const { return options_; }
-  bool paused() const { return paused_; }
+  bool paused() const { return passing_ != Passing::freely; }
+  bool stands_by() const { return passing_ == Passing::when_asked; }
   /// Board time that pacing gave up because the computer was too slow for it.
   double time_dropped_s() const { return time_dropped_s_; }
+  /// Board time stands still.
   void pause();
+  /// Board time stands still, but passes, as fast as it can, while a USB control transfer is under way.
+  void stand_by();
   void resume();
   void quit() { quit_ = true; }
   bool is_running_for() const { return run_.has_value(); }
-  /// Runs for this long, then pauses and answers the request that is being carried out.
+  /// Runs for this long, then answers the request that is being carried out; board time stands still again, or stands
+  /// by if it did before.
   void run_for(double duration_s);
 
  private:
   using Clock = std::chrono::steady_clock;
+  enum class Passing : std::uint8_t { freely, when_asked, not_at_all };
   struct Run {
     Ticks end;
     std::promise<nlohmann::json> reply;
   };
+  bool time_passes() const;
   void serve(ControlRequest request);
   void advance();
   void pace();
@@ -49,7 +60,7 @@ class Simulation {
   const Options& options_;
   Board& board_;
   ControlServer& server_;
-  bool paused_;
+  Passing passing_;
   bool quit_ = false;
   std::optional<Run> run_;
   std::optional<double> run_asked_s_;

@@ -96,18 +96,19 @@ void HostController::submit(Urb&& urb) {
   busy_pipes_ |= 1u << index;
 }
 
-bool HostController::unlink(std::uint32_t sequence) {
+std::optional<Urb> HostController::unlink(std::uint32_t sequence) {
   for (unsigned i = 0; i < pipe_count; ++i) {
     std::deque<Urb>& urbs = pipes_[i].urbs;
     const auto found = std::find_if(urbs.begin(), urbs.end(),
                                     [&](const Urb& urb) { return urb.sequence == sequence && !urb.internal; });
     if (found == urbs.end()) continue;
     if (transaction_ && transaction_->pipe == i && found == urbs.begin()) transaction_->abandoned = true;
+    std::optional<Urb> taken_back = std::move(*found);
     urbs.erase(found);
     if (urbs.empty()) busy_pipes_ &= ~(1u << i);
-    return true;
+    return taken_back;
   }
-  return false;
+  return std::nullopt;
 }
 
 void HostController::cancel_all() {

@@ -67,11 +67,12 @@ void RootPort::submit(Urb&& urb) {
     controller_.submit(std::move(urb));
 }
 
-bool RootPort::unlink(std::uint32_t sequence) {
+std::optional<Urb> RootPort::unlink(std::uint32_t sequence) {
   const auto held = std::find_if(held_.begin(), held_.end(), [&](const Urb& urb) { return urb.sequence == sequence; });
   if (held == held_.end()) return controller_.unlink(sequence);
+  std::optional<Urb> taken_back = std::move(*held);
   held_.erase(held);
-  return true;
+  return taken_back;
 }
 
 void RootPort::between_transactions() {

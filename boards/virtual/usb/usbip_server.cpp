@@ -48,8 +48,9 @@ UsbIpServer::Descriptor::~Descriptor() {
   if (number_ >= 0) ::close(number_);
 }
 
-UsbIpServer::UsbIpServer(std::uint16_t port)
-    : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)),
+UsbIpServer::UsbIpServer(std::uint16_t port, std::function<void()> on_order)
+    : on_order_(std::move(on_order)),
+      listener_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)),
       wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   if (listener_.number() < 0 || wake_.number() < 0) throw cannot_listen(port);
   const int yes = 1;
@@ -86,6 +87,18 @@ void UsbIpServer::take(std::vector<Order>& orders) {
   orders_waiting_.store(false, std::memory_order_release);
 }
 
+void UsbIpServer::exchange_all() {
+  std::unique_lock lock(mutex_);
+  const std::uint64_t mine = ++exchanges_asked_;
+  wake();
+  exchanged_.wait(lock, [&] { return exchanges_done_ >= mine; });
+}
+
+bool UsbIpServer::wait_for_order(std::chrono::steady_clock::time_point give_up_at) {
+  std::unique_lock lock(mutex_);
+  return order_given_.wait_until(lock, give_up_at, [this] { return !orders_.empty(); });
+}
+
 void UsbIpServer::answer(Result&& result) {
   bool first = false;
   {
@@ -119,13 +132,18 @@ void UsbIpServer::wake() {
 }
 
 void UsbIpServer::give(Order&& order) {
-  const std::lock_guard lock(mutex_);
-  orders_.push_back(std::move(order));
-  orders_waiting_.store(true, std::memory_order_release);
+  {
+    const std::lock_guard lock(mutex_);
+    orders_.push_back(std::move(order));
+    orders_waiting_.store(true, std::memory_order_release);
+  }
+  order_given_.notify_one();
+  on_order_();
 }
 
 void UsbIpServer::run() {
   std::vector<pollfd> descriptors;
+  std::uint64_t exchange = 0;  // that is under way
   while (true) {
     descriptors.clear();
     descriptors.push_back({wake_.number(), POLLIN, 0});
@@ -134,12 +152,21 @@ void UsbIpServer::run() {
       const bool unsent = connection.sent < connection.to_send.size();
       descriptors.push_back({connection.socket.number(), static_cast<short>(POLLIN | (unsent ? POLLOUT : 0)), 0});
     }
-    if (::poll(descriptors.data(), descriptors.size(), -1) < 0) continue;
+    const bool is_exchanging = exchange != 0;
+    const int ready = ::poll(descriptors.data(), descriptors.size(), is_exchanging ? 0 : -1);
+    if (ready < 0) continue;
+    if (ready == 0) {  // nothing is left to receive
+      const std::lock_guard lock(mutex_);
+      exchanges_done_ = std::exchange(exchange, 0);
+      exchanged_.notify_one();
+      continue;
+    }
     if (descriptors[0].revents != 0) {
       std::uint64_t count = 0;
       [[maybe_unused]] const auto read = ::read(wake_.number(), &count, sizeof count);
       const std::lock_guard lock(mutex_);
       if (stop_) return;
+      exchange = exchanges_asked_;
     }
     deliver_results();
     std::size_t index = 2;
@@ -219,7 +246,7 @@ bool UsbIpServer::handle_operation(Connection& connection, std::span<const std::
   if (bytes.size() < usbip::operation_bytes) return false;
   const usbip::OperationHeader header = usbip::read_operation(bytes.first<usbip::operation_bytes>());
   if (header.version != usbip::version) throw std::runtime_error("it speaks another version of USB/IP than 1.1.1");
-  const std::unique_lock lock(mutex_);
+  std::unique_lock lock(mutex_);
   const DeviceDescription* device = offered_ && !withdrawn_ ? &*offered_ : nullptr;
   if (header.code == static_cast<std::uint16_t>(usbip::Operation::list_devices)) {
     connection.consumed += usbip::operation_bytes;
@@ -243,9 +270,8 @@ bool UsbIpServer::handle_operation(Connection& connection, std::span<const std::
   }
   usbip::append_imported(connection.to_send, *device);
   connection.importer = true;
-  ++session_;
-  orders_.push_back({Order::Kind::import, session_, {}});
-  orders_waiting_.store(true, std::memory_order_release);
+  lock.unlock();
+  give({Order::Kind::import, ++session_, {}});
   return true;
 }
 

@@ -5,7 +5,10 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <mutex>
 #include <optional>
@@ -39,7 +42,8 @@ class UsbIpServer {
   };
 
   /// Listens on 127.0.0.1:`port` (0: any free one). Throws std::runtime_error with a sentence if it can not.
-  explicit UsbIpServer(std::uint16_t port);
+  /// `on_order` is called from the server's thread when there is something to take.
+  UsbIpServer(std::uint16_t port, std::function<void()> on_order);
   ~UsbIpServer();
   UsbIpServer(const UsbIpServer&) = delete;
   UsbIpServer& operator=(const UsbIpServer&) = delete;
@@ -49,6 +53,11 @@ class UsbIpServer {
   // For the simulation's thread.
   /// Appends the orders that came in to `orders`; costs next to nothing if there are none.
   void take(std::vector<Order>& orders);
+  /// Returns once everything that clients had sent before this call is among the orders, and everything that was
+  /// answered before it is on its way to them.
+  void exchange_all();
+  /// Waits until there are orders to take; false if there are none at `give_up_at`.
+  bool wait_for_order(std::chrono::steady_clock::time_point give_up_at);
   void answer(Result&& result);
   /// Offers a device for import.
   void offer(const DeviceDescription& device);
@@ -91,16 +100,19 @@ class UsbIpServer {
   void give(Order&& order);
   void wake();
 
+  std::function<void()> on_order_;
   Descriptor listener_;
   Descriptor wake_;  // eventfd
   std::uint16_t port_ = 0;
 
-  std::mutex mutex_;  // guards the next five
+  std::mutex mutex_;  // guards the next seven
   std::vector<Order> orders_;
   std::vector<Result> results_;
   std::optional<DeviceDescription> offered_;
   bool withdrawn_ = false;
   bool stop_ = false;
+  std::uint64_t exchanges_asked_ = 0, exchanges_done_ = 0;
+  std::condition_variable order_given_, exchanged_;
   std::atomic<bool> orders_waiting_ = false;
 
   // Only for the server's thread.

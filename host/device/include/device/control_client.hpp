@@ -59,8 +59,11 @@ class ControlClient {
   BoardStatus status();
   nlohmann::json truth();
 
-  void pause();
-  void run(double for_s);  ///< lets `for_s` of board time pass, then pauses; returns when it has passed
+  void pause();     ///< board time stands still
+  void stand_by();  ///< it stands still, but passes while a USB control transfer is under way
+  /// Lets `for_s` of board time pass; it then stands still again, or stands by if it did before. When this returns, the
+  /// device's link has everything that the device sent.
+  void run(double for_s);
   void resume();
   void reset();
   void quit();

@@ -12,7 +12,7 @@
 
 namespace inkwell::virtual_usb_test {
 
-LiveBoard::LiveBoard() : usb(scheduler, interrupts, log, 0), firmware(usb.core()) {
+LiveBoard::LiveBoard() : usb(scheduler, interrupts, log, 0, [] {}), firmware(usb.core()) {
   firmware.start();
   thread_ = std::thread([this] { run(); });
 }
@@ -46,6 +46,7 @@ void LiveBoard::run() {
       std::this_thread::sleep_for(std::chrono::microseconds(200));
       continue;
     }
+    usb.serve();
     const Ticks end = scheduler.now() + virtual_board::ticks(0.001);
     while (scheduler.run_one(end))
       for (int i = 0; interrupts.asserted() && i < 20; ++i) firmware.handle_interrupt();

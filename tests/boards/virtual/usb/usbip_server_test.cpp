@@ -274,7 +274,7 @@ TEST_CASE("a busy port is reported in a sentence") {
   FakeLog log;
   std::string message;
   try {
-    virtual_board::VirtualUsb second(scheduler, interrupts, log, board.usb.port());
+    virtual_board::VirtualUsb second(scheduler, interrupts, log, board.usb.port(), [] {});
   } catch (const std::runtime_error& error) {
     message = error.what();
   }

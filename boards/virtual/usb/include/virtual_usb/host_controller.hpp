@@ -25,7 +25,7 @@ class HostController {
   class Client {
    public:
     virtual ~Client() = default;
-    /// Between transactions: the moment to submit and to unlink.
+    /// Between transactions, after each completion: the moment to submit and to unlink.
     virtual void between_transactions() = 0;
     /// Every millisecond, before the start of frame.
     virtual void frame() = 0;
@@ -48,8 +48,8 @@ class HostController {
   void reset_toggle(std::uint8_t endpoint_address);
 
   void submit(Urb&& urb);
-  /// Takes a transfer back. False if it is not there (any more).
-  bool unlink(std::uint32_t sequence);
+  /// Takes a transfer back. None if it is not there (any more).
+  std::optional<Urb> unlink(std::uint32_t sequence);
   /// Forgets all transfers without completing them.
   void cancel_all();
 

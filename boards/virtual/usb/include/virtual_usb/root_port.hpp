@@ -40,7 +40,8 @@ class RootPort final : private HostController::Client {
   /// The user is gone: its transfers are forgotten and the bus falls silent.
   void release();
   void submit(Urb&& urb);
-  bool unlink(std::uint32_t sequence);
+  /// Takes a transfer back. None if it is not there (any more).
+  std::optional<Urb> unlink(std::uint32_t sequence);
 
  private:
   enum class State : std::uint8_t {

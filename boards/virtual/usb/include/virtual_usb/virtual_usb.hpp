@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include <chip/machine.hpp>
@@ -13,8 +14,10 @@ namespace inkwell::virtual_board {
 class VirtualUsb {
  public:
   /// Listens on 127.0.0.1:`port` (0: any free port); throws std::runtime_error with a sentence if it is
-  /// taken. The cable is plugged in. All references must outlive this object.
-  VirtualUsb(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log, std::uint16_t port);
+  /// taken. The cable is plugged in. All references must outlive this object. `on_request` is called from another
+  /// thread when there is something to `serve`.
+  VirtualUsb(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log, std::uint16_t port,
+             std::function<void()> on_request);
   ~VirtualUsb();
 
   /// The peripheral to map at OtgFsDevice::base.
@@ -22,6 +25,14 @@ class VirtualUsb {
 
   /// The port on which the USB/IP server listens.
   std::uint16_t port() const;
+
+  /// Takes up what the host asked for. It then takes effect in board time, which stands still meanwhile.
+  void serve();
+  /// Takes up everything that the host sent before this call, and waits until the host has everything that happened
+  /// and asks again, as host_pace.hpp has it.
+  void settle();
+  /// A control transfer is under way: the host waits for its answer.
+  bool is_asked() const;
 
   /// Plugs the cable in or out. To be called on the simulation's thread, as everything here but `port`.
   void connect();

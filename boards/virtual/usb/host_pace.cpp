@@ -1,0 +1,44 @@
+#include <virtual_usb/host_pace.hpp>
+
+#include <algorithm>
+
+namespace inkwell::virtual_board {
+
+void HostPace::submitted(const Urb& urb) {
+  if (urb.endpoint == 0) ++control_transfers_;
+  if (urb.endpoint == 0 || !urb.in) return;
+  Endpoint& endpoint = in_endpoints_[urb.endpoint];
+  ++endpoint.requests;
+  endpoint.asked = std::min(endpoint.asked + 1, 2u);
+  endpoint.most = std::max(endpoint.most, endpoint.requests);
+}
+
+void HostPace::completed(const Urb& urb, std::int32_t status) { end(urb, status != transfer_status::success); }
+
+void HostPace::unlinked(const Urb& urb) { end(urb, true); }
+
+void HostPace::end(const Urb& urb, bool is_dropped) {
+  if (urb.endpoint == 0 && control_transfers_ > 0) --control_transfers_;
+  if (urb.endpoint == 0 || !urb.in) return;
+  Endpoint& endpoint = in_endpoints_[urb.endpoint];
+  if (endpoint.requests > 0) --endpoint.requests;
+  if (is_dropped) endpoint.asked = endpoint.most = 0;
+}
+
+void HostPace::start_anew() { *this = {}; }
+
+bool HostPace::is_starved() const {
+  return std::ranges::any_of(in_endpoints_, [](const Endpoint& one) { return one.is_kept() && one.requests == 0; });
+}
+
+bool HostPace::is_owed() const {
+  return std::ranges::any_of(in_endpoints_,
+                             [](const Endpoint& one) { return one.is_kept() && one.requests < one.most; });
+}
+
+void HostPace::lose_patience() {
+  for (Endpoint& one : in_endpoints_)
+    if (one.requests < one.most) one.asked = one.most = 0;
+}
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,112 @@
+// When board time waits for the host, and when it no longer does.
+#include <doctest/doctest.h>
+
+#include <virtual_usb/host_pace.hpp>
+
+namespace inkwell::virtual_usb_test {
+namespace {
+
+using virtual_board::HostPace;
+using virtual_board::Urb;
+namespace transfer_status = virtual_board::transfer_status;
+
+Urb in(std::uint8_t endpoint) {
+  Urb urb;
+  urb.endpoint = endpoint;
+  urb.in = true;
+  return urb;
+}
+
+void submit(HostPace& pace, std::uint8_t endpoint, int times) {
+  for (int i = 0; i < times; ++i) pace.submitted(in(endpoint));
+}
+
+void answer(HostPace& pace, std::uint8_t endpoint, int times) {
+  for (int i = 0; i < times; ++i) pace.completed(in(endpoint), transfer_status::success);
+}
+
+TEST_CASE("a host that keeps requests is waited for when it has none left") {
+  HostPace pace;
+  submit(pace, 1, 3);
+  CHECK_FALSE(pace.is_owed());
+  answer(pace, 1, 2);
+  CHECK(pace.is_owed());
+  CHECK_FALSE(pace.is_starved());
+  answer(pace, 1, 1);
+  CHECK(pace.is_starved());
+  submit(pace, 1, 1);
+  CHECK_FALSE(pace.is_starved());
+  CHECK(pace.is_owed());
+  submit(pace, 1, 2);
+  CHECK_FALSE(pace.is_owed());
+}
+
+TEST_CASE("a host that asked once is not expected to ask again, one that asks one by one is") {
+  HostPace pace;
+  submit(pace, 1, 1);
+  answer(pace, 1, 1);
+  CHECK_FALSE(pace.is_starved());
+  CHECK_FALSE(pace.is_owed());
+  submit(pace, 1, 1);
+  answer(pace, 1, 1);
+  CHECK(pace.is_starved());
+}
+
+TEST_CASE("an endpoint that the host never asked is not waited for, nor are OUT and control transfers") {
+  HostPace pace;
+  submit(pace, 2, 2);
+  CHECK_FALSE(pace.is_starved());
+  Urb out;
+  out.endpoint = 1;
+  for (int i = 0; i < 2; ++i) {
+    pace.submitted(out);
+    pace.submitted(in(0));
+    CHECK(pace.is_asked());
+    pace.completed(out, transfer_status::success);
+    pace.completed(in(0), transfer_status::success);
+    CHECK_FALSE(pace.is_asked());
+  }
+  CHECK_FALSE(pace.is_starved());
+  CHECK_FALSE(pace.is_owed());
+}
+
+TEST_CASE("a host that takes a request back, gets an error, is too late or is another one is not waited for") {
+  HostPace pace;
+  submit(pace, 1, 2);
+  submit(pace, 2, 2);
+  answer(pace, 1, 1);
+  SUBCASE("takes back") { pace.unlinked(in(1)); }
+  SUBCASE("error") { pace.completed(in(1), transfer_status::stalled); }
+  SUBCASE("too late") {
+    answer(pace, 1, 1);
+    pace.lose_patience();
+  }
+  SUBCASE("another host") {
+    pace.start_anew();
+    submit(pace, 2, 2);
+  }
+  CHECK_FALSE(pace.is_starved());
+  CHECK_FALSE(pace.is_owed());
+  answer(pace, 2, 1);  // this one is waited for as before
+  CHECK(pace.is_owed());
+  submit(pace, 2, 1);
+  submit(pace, 1, 1);
+  answer(pace, 1, 1);
+  CHECK_FALSE(pace.is_starved());
+  submit(pace, 1, 1);  // the second time, anew
+  answer(pace, 1, 1);
+  CHECK(pace.is_starved());
+}
+
+TEST_CASE("a transfer without an answer is one that the host waits for, until it takes it back") {
+  HostPace pace;
+  pace.submitted(in(0));
+  pace.submitted(in(0));
+  pace.unlinked(in(0));
+  CHECK(pace.is_asked());
+  pace.completed(in(0), transfer_status::stalled);
+  CHECK_FALSE(pace.is_asked());
+}
+
+}  // namespace
+}  // namespace inkwell::virtual_usb_test
