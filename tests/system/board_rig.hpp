@@ -1,11 +1,12 @@
-// A virtual board with the firmware that would be flashed, and a host on its USB. Board time stands still
-// except inside `run` and `call`, so that a slow test machine changes nothing.
+// A virtual board with the firmware that would be flashed, and a host on its USB. Board time passes only inside `run`
+// and while the device answers a request, so that a slow test machine changes nothing: the same calls give the same
+// run.
 #pragma once
 
+#include <chrono>
 #include <functional>
+#include <initializer_list>
 #include <memory>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include <device/control_client.hpp>
@@ -21,18 +22,13 @@ class BoardRig {
 
   /// Lets board time pass in slices of 10 ms, collects every pose report, keeps the host's sign of life.
   void run(double time_s);
-  /// Lets board time run freely while the host talks to the device.
-  template <class Action>
-  auto call(Action action) {
-    struct Running {
-      device::ControlClient& control;
-      explicit Running(device::ControlClient& client) : control(client) { control.resume(); }
-      ~Running() { control.pause(); }
-    } running(control);
-    return action(*device);
-  }
+  /// The same without the sign of life.
+  void run_silent(double time_s);
   void set(std::initializer_list<device::ParameterChange> changes);
+  /// Sends a command; the device gets it when board time passes next.
   void command(protocol::Command command);
+  /// Waits until the board shows a device, for a second of board time at most, and opens it.
+  void connect();
   /// Runs until the newest pose fulfils the condition; fails the test after `limit_s` of board time.
   void run_until(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s = 3.0);
 
@@ -50,7 +46,7 @@ class BoardRig {
   std::unique_ptr<device::Device> device;
 
  private:
-  std::size_t collect(std::chrono::milliseconds timeout);
+  void pass_slice();
   double since_sign_of_life_s_ = 0;
   std::vector<protocol::PoseReport> poses_;
 };

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 TEST_CASE("the device enumerates within a second of board time and says who it is") {
   BoardRig rig;  // refuses to start if the device is not there by then
-  const auto information = rig.call([](device::Device& arm) { return arm.information(); });
+  const auto information = rig.device->information();
   CHECK(information.protocol_version == protocol::protocol_version);
   CHECK(information.report.parameter_table_hash == protocol::parameter_table_hash);
   CHECK(information.report.signal_table_hash == protocol::signal_table_hash);
@@ -31,7 +31,7 @@ TEST_CASE("the device enumerates within a second of board time and says who it i
 
 TEST_CASE("the device holds the table's defaults, takes a transaction whole, and gives the defaults back") {
   BoardRig rig;
-  const auto before = rig.call([](device::Device& arm) { return arm.parameters(); });
+  const auto before = rig.device->parameters();
   auto expected = protocol::default_parameters();
   expected[Parameter::host_timeout_s] = 2.0f;  // the rig's own
   CHECK(before == expected);
@@ -39,28 +39,26 @@ TEST_CASE("the device holds the table's defaults, takes a transaction whole, and
   rig.set({{Parameter::wall_stiffness_N_per_m, 432.0f},
            {Parameter::wall_damping_Ns_per_m, 1.5f},
            {Parameter::box_minimum_z_m, -0.05f}});
-  const auto after = rig.call([](device::Device& arm) { return arm.parameters(); });
+  const auto after = rig.device->parameters();
   CHECK(after[Parameter::wall_stiffness_N_per_m] == 432.0f);
   CHECK(after[Parameter::wall_damping_Ns_per_m] == 1.5f);
   CHECK(after[Parameter::box_minimum_z_m] == -0.05f);
 
-  rig.call([](device::Device& arm) { arm.restore_default_parameters(); });
-  CHECK(rig.call([](device::Device& arm) { return arm.parameters(); }) == protocol::default_parameters());
+  rig.device->restore_default_parameters();
+  CHECK(rig.device->parameters() == protocol::default_parameters());
 }
 
 TEST_CASE("a refused transaction says which value and why, and changes nothing") {
   BoardRig rig;
-  const auto before = rig.call([](device::Device& arm) { return arm.parameters(); });
+  const auto before = rig.device->parameters();
   const auto refused_with = [&](std::vector<device::ParameterChange> changes) {
-    return rig.call([&](device::Device& arm) {
-      try {
-        arm.set_parameters(changes);
-      } catch (const device::Refused& refused) {
-        CHECK(std::string(refused.what()).size() > 20);
-        return refused.report.refusal;
-      }
-      return protocol::Refusal::accepted;
-    });
+    try {
+      rig.device->set_parameters(changes);
+    } catch (const device::Refused& refused) {
+      CHECK(std::string(refused.what()).size() > 20);
+      return refused.report.refusal;
+    }
+    return protocol::Refusal::accepted;
   };
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   const device::ParameterChange good{Parameter::wall_stiffness_N_per_m, 100.0f};
@@ -70,7 +68,7 @@ TEST_CASE("a refused transaction says which value and why, and changes nothing")
   CHECK(refused_with({good, {Parameter::transmission, 0.5f}}) == protocol::Refusal::not_whole);
   CHECK(refused_with({good, {Parameter::box_minimum_x_m, 0.2f}}) == protocol::Refusal::inconsistent);
   CHECK(refused_with({good, good}) == protocol::Refusal::given_twice);
-  CHECK(rig.call([](device::Device& arm) { return arm.parameters(); }) == before);
+  CHECK(rig.device->parameters() == before);
   CHECK(refused_with({good}) == protocol::Refusal::accepted);
 }
 
@@ -80,7 +78,7 @@ TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for a minute, non
   for (std::uint8_t id = 3; signals.size() < 14; ++id)
     if (protocol::signal_table[id].wire == protocol::SignalWire::float32)
       signals.push_back(static_cast<protocol::Signal>(id));
-  rig.call([&](device::Device& arm) { arm.select_signals(signals); });
+  rig.device->select_signals(signals);
 
   std::uint64_t samples = 0, lost = 0;
   std::optional<std::uint32_t> first_period;
@@ -107,18 +105,16 @@ TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for a minute, non
   CHECK(board_s >= seconds - 0.1);
   CHECK((poses.size() - first_pose - 1) / board_s == doctest::Approx(1000).epsilon(0.001));
   CHECK(samples >= static_cast<std::uint64_t>((seconds - 0.2) * protocol::servo_rate_Hz));
-  const auto information = rig.call([](device::Device& arm) { return arm.information(); });
+  const auto information = rig.device->information();
   CHECK(information.report.scope_samples_dropped == 0);
   CHECK(information.report.servo_overruns == 0);
 }
 
 TEST_CASE("a host that does not read the scope loses the oldest samples, counted, and nothing else") {
   BoardRig rig;
-  rig.call([&](device::Device& arm) {
-    arm.select_signals(std::vector{protocol::Signal::position_x_m, protocol::Signal::force_N});
-  });
+  rig.device->select_signals(std::vector{protocol::Signal::position_x_m, protocol::Signal::force_N});
   rig.run(30.0);  // far longer than all buffers on the way hold
-  const auto longest = rig.call([](device::Device& arm) { return arm.information(); }).report;
+  const auto longest = rig.device->information().report;
   CHECK(longest.scope_samples_dropped > 20'000);
   CHECK(longest.servo_overruns == 0);
   std::uint64_t gaps = 0;
@@ -131,29 +127,20 @@ TEST_CASE("pulling the USB cable ends the connection, plugging it in brings the 
   BoardRig rig;
   rig.make_active();
   rig.control.usb(false);
-  rig.control.resume();
   CHECK_THROWS_AS(
       [&] {
         for (int i = 0; i < 1000; ++i) rig.device->read_pose(10ms);
       }(),
       device::Disconnected);
   rig.device.reset();
-  rig.control.pause();
   rig.control.run(0.2);
   CHECK_FALSE(rig.board.find().has_value());
 
   rig.control.usb(true);
-  std::optional<device::Endpoint> endpoint;
-  for (int i = 0; i < 100 && !endpoint; ++i) {
-    rig.control.run(0.01);
-    endpoint = rig.board.find();
-  }
-  REQUIRE(endpoint.has_value());
-  rig.control.resume();
-  auto again = device::Device::open(*endpoint);
-  const auto pose = again->read_pose(5000ms);
-  REQUIRE(pose.has_value());
+  rig.connect();
+  rig.run(0.01);
+  const auto pose = rig.pose();
   // The cable took the force with it; the arm still knows where it is.
-  CHECK(pose->state != protocol::State::active);
-  CHECK(pose->state != protocol::State::unreferenced);
+  CHECK(pose.state != protocol::State::active);
+  CHECK(pose.state != protocol::State::unreferenced);
 }

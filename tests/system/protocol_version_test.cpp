@@ -93,7 +93,7 @@ TEST_CASE("the companion refuses firmware with another version of the protocol, 
 TEST_CASE("the firmware refuses a companion with another version of the protocol, and keeps its values") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == protocol::State::ready; });
-  const auto before = rig.call([](device::Device& arm) { return arm.parameters(); });
+  const auto before = rig.device->parameters();
   const auto endpoint = rig.board.find();
   rig.device.reset();
   rig.control.resume();

@@ -1,4 +1,4 @@
-// The control interrupt's cost, and that the virtual board repeats itself.
+// The control interrupt's cost, and the heat of the motors.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -33,13 +33,13 @@ TEST_CASE("the longest control interrupt stays under half of its period, in cont
   rig.make_active();
   std::vector<Signal> signals;
   for (std::uint8_t id = 0; id < 31; ++id) signals.push_back(static_cast<Signal>(id));
-  rig.call([&](device::Device& arm) { arm.select_signals(signals); });
+  rig.device->select_signals(signals);
   rig.take_to(free_point_m);
   // Inside two walls, and moving through them.
   rig.set({{Parameter::box_minimum_z_m, -0.02f}, {Parameter::box_maximum_x_m, 0.0f}});
   rig.take_to({0.02, 0.0, -0.045}, 0.3);
   rig.take_to(free_point_m, 0.3);
-  const auto report = rig.call([](device::Device& arm) { return arm.information(); }).report;
+  const auto report = rig.device->information().report;
   MESSAGE("simulation: longest control interrupt ", report.servo_cycles_longest, " of ", board::servo_cycles,
           " cycles, one an instruction");
   CHECK(report.servo_cycles_longest > 500);  // it did run and was measured
@@ -56,8 +56,8 @@ TEST_CASE("a motor that holds against a wall warms as its true current says") {
   rig.control.trace_start();
   rig.run(0.1);
   const device::Trace trace = rig.control.trace_read(100'000);
-  const auto report = rig.call([](device::Device& arm) { return arm.information(); }).report;
-  const auto parameters = rig.call([](device::Device& arm) { return arm.parameters(); });
+  const auto report = rig.device->information().report;
+  const auto parameters = rig.device->parameters();
   const double bears_A = parameters[Parameter::continuous_current_1_A];
   double hottest = 0;
   for (std::size_t motor = 0; motor < 3; ++motor) {
@@ -68,24 +68,4 @@ TEST_CASE("a motor that holds against a wall warms as its true current says") {
   }
   MESSAGE("simulation: heat of the hottest motor ", hottest, " of what its continuous current leads to");
   CHECK(hottest > 0.1);
-}
-
-TEST_CASE("exact mode gives the same run for the same seed, to the instruction") {
-  const auto run = [](std::uint64_t seed) {
-    device::VirtualBoardOptions options;
-    options.mode = device::SimulationMode::exact;
-    options.seed = seed;
-    options.real_time = false;
-    options.paused = true;
-    const device::VirtualBoard board(options);
-    auto control = board.control();
-    control.trace_start();
-    control.dock(false);  // the arm falls from its inkwell under gravity
-    control.run(0.25);
-    return std::pair(control.trace_read(100'000).values, control.status().all.at("instructions").get<std::uint64_t>());
-  };
-  const auto first = run(7);
-  REQUIRE(first.first.size() > 4000);
-  REQUIRE(first.second > 1'000'000);
-  CHECK(first == run(7));
 }

@@ -1,0 +1,76 @@
+// The same seed and the same calls give the same run, in both modes, however slow the computer is.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <bit>
+#include <chrono>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "board_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using namespace std::chrono_literals;
+using protocol::Signal;
+
+namespace {
+
+/// All that a run leaves behind.
+struct Story {
+  std::vector<std::array<std::byte, sizeof(protocol::PoseReport)>> poses;
+  std::vector<float> samples;
+  std::vector<double> truth;
+  std::uint64_t instructions = 0;
+};
+
+/// A stylus is taken out of the inkwell and pressed into a wall. `dawdling`: what the host does between its calls.
+template <class Dawdling>
+Story play(device::SimulationMode mode, std::uint64_t seed, Dawdling dawdling) {
+  BoardRig rig(mode, seed);
+  dawdling();
+  rig.make_active();
+  dawdling();
+  rig.command(protocol::Command::heartbeat);
+  dawdling();
+  rig.device->select_signals(std::vector{Signal::encoder_1_counts, Signal::velocity_z_m_s, Signal::current_2_A,
+                                         Signal::duty_3, Signal::servo_cycles});
+  dawdling();
+  rig.control.trace_start();
+  rig.take_to(free_point_m, 0.2);
+  dawdling();
+  rig.set({{protocol::Parameter::box_minimum_z_m, -0.02f}});
+  dawdling();
+  rig.run(0.05);
+  rig.command(protocol::Command::disable_force);
+  dawdling();
+  rig.run(0.05);
+
+  Story story;
+  while (const auto frame = rig.device->read_scope(0ms))
+    story.samples.insert(story.samples.end(), frame->values.begin(), frame->values.end());
+  for (const auto& pose : rig.poses())
+    story.poses.push_back(std::bit_cast<std::array<std::byte, sizeof(protocol::PoseReport)>>(pose));
+  story.truth = rig.control.trace_read(100'000).values;
+  story.instructions = rig.control.status().all.at("instructions");
+  return story;
+}
+
+void check_repeats(device::SimulationMode mode) {
+  const auto prompt = play(mode, 3, [] {});
+  REQUIRE(prompt.samples.size() > 5 * 10'000);
+  const auto slow = play(mode, 3, [call = 0]() mutable { std::this_thread::sleep_for(7ms * (++call % 4)); });
+  CHECK(prompt.instructions == slow.instructions);
+  CHECK((prompt.poses == slow.poses));
+  CHECK((prompt.samples == slow.samples));
+  CHECK((prompt.truth == slow.truth));
+}
+
+}  // namespace
+
+TEST_CASE("fast mode repeats itself") { check_repeats(device::SimulationMode::fast); }
+TEST_CASE("exact mode repeats itself") { check_repeats(device::SimulationMode::exact); }
+TEST_CASE("another seed is another run") {
+  CHECK(play(device::SimulationMode::fast, 3, [] {}).samples != play(device::SimulationMode::fast, 4, [] {}).samples);
+}
