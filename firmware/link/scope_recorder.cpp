@@ -85,7 +85,7 @@ INKWELL_INTERRUPT void ScopeRecorder::write_full(const ScopePlan& plan, const pr
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item)
       append(cursor, bits_of(signals.values[*item]));
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item)
-      append(cursor, to_steps(signals.values[*item], plan.steps_per_unit[item - items]));
+      append(cursor, to_steps(signals.values[*item], plan.steps_per_unit[static_cast<std::size_t>(item - items)]));
   }
   cursor_ = cursor;
 }
@@ -109,7 +109,8 @@ INKWELL_INTERRUPT void ScopeRecorder::write_changes(const ScopePlan& plan, const
       mask |= bit;
     }
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item, ++previous, bit <<= 1) {
-      const std::int16_t steps = to_steps(signals.values[*item], plan.steps_per_unit[item - items]);
+      const std::int16_t steps =
+          to_steps(signals.values[*item], plan.steps_per_unit[static_cast<std::size_t>(item - items)]);
       const auto bits = static_cast<std::uint32_t>(steps);
       if (bits == *previous) continue;
       *previous = bits;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <ranges>
 
 #include <fmt/format.h>
 
@@ -19,10 +18,15 @@ std::uint64_t Recording::lost() const {
 std::size_t Recording::sample_at(double elapsed) const {
   // A hundredth of a period, so that a time that was computed finds the sample that it was computed from.
   const double rounding_s = 0.01 / protocol::servo_rate_Hz;
-  const auto samples = std::views::iota(std::size_t{0}, size());
-  return static_cast<std::size_t>(
-      std::ranges::partition_point(samples, [&](std::size_t i) { return elapsed_s(i) < elapsed - rounding_s; }) -
-      samples.begin());
+  std::size_t first = 0, end = size();  // what is looked for is not before the one nor after the other
+  while (first < end) {
+    const std::size_t middle = first + (end - first) / 2;
+    if (elapsed_s(middle) < elapsed - rounding_s)
+      first = middle + 1;
+    else
+      end = middle;
+  }
+  return first;
 }
 
 const std::vector<float>& Recording::column(protocol::Signal signal) const {

@@ -130,12 +130,14 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
     pictures.push_back(picture);
   }
   // A wall that pushes back comes last, for its frame has edges in common with its neighbours.
-  std::ranges::stable_partition(pictures, [](const WallPicture& each) { return !each.wall->pushes_back; });
+  std::stable_partition(pictures.begin(), pictures.end(),
+                        [](const WallPicture& each) { return !each.wall->pushes_back; });
 
   pane_.use();
   pane_.set("to_clip", to_clip_);
   glBindVertexArray(no_vertices_);
   for (const WallPicture& picture : pictures) {
+    // Clang 14 cannot capture these names as such.
     const auto [wall, u, v, corner_m, colour, frame_alpha, grid_alpha, pane_alpha] = picture;
     glm::vec3 edge_u{0.0f};
     glm::vec3 edge_v{0.0f};
@@ -150,12 +152,12 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
       pane_.set("glow", wall->pushes_back ? 0.6f : 0.0f);
       glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }
-    const auto add = [&](glm::vec3 from, glm::vec3 to, float alpha, float width) {
+    const auto add = [&, colour = colour](glm::vec3 from, glm::vec3 to, float alpha, float width) {
       const glm::vec4 ink{glm::vec3{colour}, alpha};
       lines_.add(to_view * from, to_view * to, ink, ink, width);
     };
     if (grid_alpha > 0.0f) {
-      const auto grid = [&](int across, glm::vec3 along) {
+      const auto grid = [&, corner_m = corner_m, grid_alpha = grid_alpha](int across, glm::vec3 along) {
         const float first = std::ceil(corner_m[across] / wall_grid_m + 0.1f) * wall_grid_m;
         for (float at = first; at < corner_m[across] + extent[across] - 0.1f * wall_grid_m; at += wall_grid_m) {
           glm::vec3 from = corner_m;

@@ -34,7 +34,6 @@ enum : std::uint32_t {
 };
 
 constexpr bool is_wide(std::uint16_t first_half) { return first_half >= 0xE800; }
-constexpr std::uint16_t send_event = 0xBF40;
 
 }  // namespace
 
