@@ -1,9 +1,15 @@
 // The device as a host sees it: enumeration, identity, parameters, streams, unplugging.
 #include <doctest/doctest.h>
 
+#include <signal.h>
+
 #include <cmath>
+#include <filesystem>
 #include <limits>
-#include <set>
+#include <system_error>
+#include <thread>
+
+#include <nlohmann/json.hpp>
 
 #include <board/omni_driver.hpp>
 
@@ -121,6 +127,24 @@ TEST_CASE("a host that does not read the scope loses the oldest samples, counted
   for (std::size_t i = 1; i < rig.poses().size(); ++i)
     gaps += rig.poses()[i].sequence - rig.poses()[i - 1].sequence - 1;
   CHECK(gaps == 0);
+}
+
+TEST_CASE("a program that the computer stops for a while loses nothing") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("whole.csv");
+  RunningProgram program(
+      {build_directory() + "/inkwell", "--virtual", "--real-time", "record", file, "--seconds", "2", "--json"});
+  std::error_code error;
+  while (std::filesystem::file_size(file, error) < 100'000 || error) {
+    REQUIRE(kill(program.process(), 0) == 0);
+    std::this_thread::sleep_for(1ms);
+  }
+  kill(program.process(), SIGSTOP);
+  std::this_thread::sleep_for(1500ms);  // far more than all buffers on the way hold, less than the board's patience
+  kill(program.process(), SIGCONT);
+  const auto status = nlohmann::json::parse(program.read_line());
+  CHECK(status["samples"] == 2 * protocol::servo_rate_Hz);
+  CHECK(status["lost"] == 0);
 }
 
 TEST_CASE("pulling the USB cable ends the connection, plugging it in brings the device back") {

@@ -113,12 +113,12 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
         {"tune", "current-loop", "--yes", "--json", "--usbip", "127.0.0.1:" + std::to_string(board.usbip_port())},
         120s);
   });
-  // Until a motor has current, which is in the first pulses.
+  // Until a motor has current, which is in the first pulses. Each of them takes several of these steps.
+  constexpr double step_s = 0.002, limit_s = 60;
   bool powered = false;
-  for (int i = 0; i < 4000 && !powered; ++i) {
-    const auto truth = control.truth();
-    powered = std::abs(truth.at("true_current_1_A").get<double>()) > 0.1;
-    std::this_thread::sleep_for(1ms);
+  for (double passed_s = 0; passed_s < limit_s && !powered; passed_s += step_s) {
+    control.run(step_s);
+    powered = std::abs(control.truth().at("true_current_1_A").get<double>()) > 0.1;
   }
   control.usb(false);
   guide.join();
@@ -129,7 +129,7 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
   const auto json = nlohmann::json::parse(result->out);
   CHECK(json.at("result") == "failed");
   CHECK(json.at("applied") == false);
-  std::this_thread::sleep_for(1s);
+  control.run(0.2);
   CHECK(std::abs(control.truth().at("true_current_1_A").get<double>()) < 0.02);
 }
 
