@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "machine_parts.hpp"
+#include "machine.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,7 +1,7 @@
 // Exact conversion between the cycles of a clock and ticks of board time.
 #pragma once
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <cstdint>
 #include <limits>
 #include <numeric>

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "bus.hpp"
-#include "machine_parts.hpp"
+#include "machine.hpp"
 #include "processor.hpp"
 #include "rcc.hpp"
 #include "system_control.hpp"

@@ -1,7 +1,7 @@
 // Log of the chip: once per place that firmware touched something that is not modelled.
 #pragma once
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <cstdio>
 #include <functional>
 #include <set>

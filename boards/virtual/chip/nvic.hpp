@@ -3,7 +3,7 @@
 
 #include <array>
 #include <chip/chip.hpp>
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <cstdint>
 #include <utility>
 

@@ -10,7 +10,7 @@
 #include "execution.hpp"
 #include "exti.hpp"
 #include "flash.hpp"
-#include "machine_parts.hpp"
+#include "machine.hpp"
 #include "pins.hpp"
 #include "processor.hpp"
 #include "rcc.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "machine_parts.hpp"
+#include "machine.hpp"
 #include "plain_stores.hpp"
 
 namespace inkwell::virtual_board {

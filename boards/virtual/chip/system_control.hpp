@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "machine_parts.hpp"
+#include "machine.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <array>
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <cstddef>
 #include <functional>
 #include <queue>

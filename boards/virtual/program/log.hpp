@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 
 namespace inkwell::virtual_board {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 
 namespace inkwell::virtual_usb_test {
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <array>
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <plant/arm_dynamics.hpp>
 
 namespace inkwell::virtual_board {

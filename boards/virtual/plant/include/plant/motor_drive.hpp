@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <plant/imperfections.hpp>
 
 namespace inkwell::virtual_board {

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <random>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <plant/arm_motion.hpp>
 #include <plant/hand.hpp>
 #include <plant/imperfections.hpp>

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <plant/arm_dynamics.hpp>
 
 namespace inkwell::virtual_board {

@@ -11,7 +11,7 @@
 #include <functional>
 #include <optional>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <virtual_usb/bus.hpp>
 
 #include <virtual_usb/descriptors.hpp>

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <virtual_usb/bus.hpp>
 #include <virtual_usb/word_fifo.hpp>
 

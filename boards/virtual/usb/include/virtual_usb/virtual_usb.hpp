@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include <chip/machine.hpp>
+#include <chip/interfaces.hpp>
 #include <virtual_usb/otg_fs_device.hpp>
 
 namespace inkwell::virtual_board {
