@@ -29,7 +29,7 @@ struct Motor {
   }
 };
 
-struct Rig {
+struct RegulatedMotor {
   Motor motor;
   CurrentLoop loop;
   CurrentLoopGains gains = control::prepare(tests::omni_parameters()).current_loop;
@@ -50,11 +50,11 @@ struct Rig {
 TEST_CASE("a step of current: 63 % within 0.3 ms, overshoot under 10 %, no steady error") {
   for (const double step_A : {0.05, 1.0, -2.0}) {
     CAPTURE(step_A);
-    Rig rig;
+    RegulatedMotor regulated;
     int periods_to_63 = -1;
     double peak = 0, seen = 0;
     for (int period = 0; period < 400; ++period) {
-      seen = rig.step(step_A) / step_A;
+      seen = regulated.step(step_A) / step_A;
       peak = std::max(peak, seen);
       if (periods_to_63 < 0 && seen >= 0.632) periods_to_63 = period;
     }
@@ -67,41 +67,41 @@ TEST_CASE("a step of current: 63 % within 0.3 ms, overshoot under 10 %, no stead
 }
 
 TEST_CASE("back EMF of a fast and of an accelerating hand is compensated") {
-  Rig rig;
-  for (int period = 0; period < 100; ++period) rig.step(1.0);
+  RegulatedMotor regulated;
+  for (int period = 0; period < 100; ++period) regulated.step(1.0);
   // 10 rad/s at the joint is 133 rad/s and 3.1 V at the motor.
-  for (int period = 0; period < 100; ++period) rig.step(1.0, 3.1);
-  CHECK(rig.motor.current_A == doctest::Approx(1.0).epsilon(1e-3));
+  for (int period = 0; period < 100; ++period) regulated.step(1.0, 3.1);
+  CHECK(regulated.motor.current_A == doctest::Approx(1.0).epsilon(1e-3));
   // 40 rad/s^2 at the joint: the integral follows a ramp with a steady error of slope / integral gain.
   double seen = 0;
-  for (int period = 0; period < 2'000; ++period) seen = rig.step(1.0, 3.1 - 12.4 * period / 20'000.0);
+  for (int period = 0; period < 2'000; ++period) seen = regulated.step(1.0, 3.1 - 12.4 * period / 20'000.0);
   CHECK(std::abs(seen - 1.0) < 0.002);
 }
 
 TEST_CASE("the voltage is bounded, and the integral does not wind up meanwhile") {
-  Rig rig;
+  RegulatedMotor regulated;
   for (int period = 0; period < 2'000; ++period) {
-    rig.step(10.0, 0, 4.0);
-    CHECK(std::abs(rig.next_V) <= 4.0);
+    regulated.step(10.0, 0, 4.0);
+    CHECK(std::abs(regulated.next_V) <= 4.0);
   }
-  CHECK(rig.motor.current_A == doctest::Approx(4.0 / resistance_ohm).epsilon(1e-3));
+  CHECK(regulated.motor.current_A == doctest::Approx(4.0 / resistance_ohm).epsilon(1e-3));
   int periods = 0;
-  while (std::abs(rig.step(0.5, 0, 4.0) - 0.5) > 0.05 && periods < 1'000) ++periods;
+  while (std::abs(regulated.step(0.5, 0, 4.0) - 0.5) > 0.05 && periods < 1'000) ++periods;
   CHECK(periods <= 14);  // 0.7 ms; a wound-up integral would take as long to unwind as it wound up
   double lowest = 1;
-  for (int period = 0; period < 100; ++period) lowest = std::min(lowest, rig.step(0.5, 0, 4.0));
+  for (int period = 0; period < 100; ++period) lowest = std::min(lowest, regulated.step(0.5, 0, 4.0));
   CHECK(lowest > 0.4);
 }
 
 TEST_CASE("a motor with 30 % less inductance or half more resistance stays stable") {
   for (const double scale : {0.7, 1.5}) {
-    Rig rig;
-    rig.gains.proportional_V_per_A *= static_cast<float>(scale);
-    rig.gains.half_integral_V_per_A *= static_cast<float>(scale);
+    RegulatedMotor regulated;
+    regulated.gains.proportional_V_per_A *= static_cast<float>(scale);
+    regulated.gains.half_integral_V_per_A *= static_cast<float>(scale);
     double peak = 0;
-    for (int period = 0; period < 200; ++period) peak = std::max(peak, rig.step(1.0));
+    for (int period = 0; period < 200; ++period) peak = std::max(peak, regulated.step(1.0));
     CHECK(peak < 1.35);
-    CHECK(rig.motor.current_A == doctest::Approx(1.0).epsilon(1e-4));
+    CHECK(regulated.motor.current_A == doctest::Approx(1.0).epsilon(1e-4));
   }
 }
 

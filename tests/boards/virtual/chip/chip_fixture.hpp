@@ -1,4 +1,4 @@
-// A chip on a bench: a circuit that writes down every edge, and the test firmwares.
+// What the chip is tested with: a circuit that writes down every edge, and the test firmwares.
 #pragma once
 
 #include <chip/chip.hpp>
@@ -16,7 +16,7 @@ struct Edge {
   Ticks when;
 };
 
-class Bench final : public Circuit {
+class RecordingCircuit final : public Circuit {
  public:
   void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override {
     check_time(now);
@@ -57,9 +57,9 @@ inline std::string firmware_path(const std::string& name) {
   return std::string(INKWELL_BUILD_DIRECTORY) + "/chip-firmware/" + name + ".elf";
 }
 
-/// A chip with its bench, running a test firmware from reset.
-struct Rig {
-  explicit Rig(const std::string& firmware, Mode mode = Mode::exact) : chip(bench, options(mode)) {
+/// A chip in its circuit, running a test firmware from reset.
+struct ChipUnderTest {
+  explicit ChipUnderTest(const std::string& firmware, Mode mode = Mode::exact) : chip(circuit, options(mode)) {
     chip.load_elf(firmware_path(firmware));
     chip.reset();
   }
@@ -72,7 +72,7 @@ struct Rig {
   std::uint32_t result(unsigned index) const { return chip.memory_word(0x2001F000 + 4 * index); }
   void run_for(double time_s) { chip.run_until(chip.now() + ticks(time_s)); }
 
-  Bench bench;
+  RecordingCircuit circuit;
   std::vector<std::string> log;
   Chip chip;
 };

@@ -21,8 +21,8 @@ std::string read_file(const std::string& path) {
 std::string complaint(const std::string& content) {
   const auto path = std::filesystem::temp_directory_path() / "inkwell-corrupt.elf";
   std::ofstream(path, std::ios::binary) << content;
-  Bench bench;
-  Chip chip(bench);
+  RecordingCircuit circuit;
+  Chip chip(circuit);
   std::string said;
   try {
     chip.load_elf(path);
@@ -39,8 +39,8 @@ bool contains(const std::string& text, const char* part) { return text.find(part
 
 TEST_SUITE("virtual chip: ELF") {
   TEST_CASE("a file that can not be loaded is refused with a sentence") {
-    Bench bench;
-    Chip chip(bench);
+    RecordingCircuit circuit;
+    Chip chip(circuit);
     CHECK_THROWS_AS(chip.load_elf("/nowhere/at/all.elf"), ChipError);
     CHECK_THROWS_AS(chip.load_elf("/tmp"), ChipError);
     CHECK(contains(complaint(""), "not an ELF"));
@@ -66,11 +66,11 @@ TEST_SUITE("virtual chip: ELF") {
   }
 
   TEST_CASE("a refused file leaves the flash as it was") {
-    Rig rig("watchdog");
-    const std::uint32_t before = rig.chip.memory_word(0x0800'0004);
-    CHECK_THROWS_AS(rig.chip.load_elf("/proc/self/exe"), ChipError);
-    CHECK(rig.chip.memory_word(0x0800'0004) == before);
-    rig.run_for(0.2);
-    CHECK(rig.result(0) == finished);
+    ChipUnderTest test("watchdog");
+    const std::uint32_t before = test.chip.memory_word(0x0800'0004);
+    CHECK_THROWS_AS(test.chip.load_elf("/proc/self/exe"), ChipError);
+    CHECK(test.chip.memory_word(0x0800'0004) == before);
+    test.run_for(0.2);
+    CHECK(test.result(0) == finished);
   }
 }

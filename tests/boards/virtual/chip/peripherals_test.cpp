@@ -13,12 +13,12 @@ constexpr Ticks cycle = 50;  // at 168 MHz
 constexpr Ticks pwm_period = 2000 * cycle;
 
 /// The two encoder inputs step through the quadrature, forward for positive counts.
-void turn(Rig& rig, int& phase, int counts) {
+void turn(ChipUnderTest& test, int& phase, int counts) {
   constexpr bool a[] = {false, true, true, false}, b[] = {false, false, true, true};
   for (; counts != 0; counts += counts > 0 ? -1 : 1) {
     phase = (phase + (counts > 0 ? 1 : 3)) % 4;
-    rig.chip.input_pins().drive('B', 4, a[phase] ? PinLevel::high : PinLevel::low);
-    rig.chip.input_pins().drive('B', 5, b[phase] ? PinLevel::high : PinLevel::low);
+    test.chip.input_pins().drive('B', 4, a[phase] ? PinLevel::high : PinLevel::low);
+    test.chip.input_pins().drive('B', 5, b[phase] ? PinLevel::high : PinLevel::low);
   }
 }
 
@@ -26,11 +26,11 @@ void turn(Rig& rig, int& phase, int counts) {
 
 TEST_SUITE("virtual chip: peripherals") {
   TEST_CASE("TIM1 and TIM8: edges to the cycle, started together, preloaded duty") {
-    Rig rig("pwm");
-    rig.run_for(0.002);
-    REQUIRE(rig.result(0) == finished);
-    CHECK(rig.chip.clocks().hclk_Hz == 168'000'000);
-    const auto first = rig.bench.edges_of('A', 8), second = rig.bench.edges_of('C', 6);
+    ChipUnderTest test("pwm");
+    test.run_for(0.002);
+    REQUIRE(test.result(0) == finished);
+    CHECK(test.chip.clocks().hclk_Hz == 168'000'000);
+    const auto first = test.circuit.edges_of('A', 8), second = test.circuit.edges_of('C', 6);
     REQUIRE(first.size() > 60);
     REQUIRE(second.size() > 60);
 
@@ -59,152 +59,152 @@ TEST_SUITE("virtual chip: peripherals") {
     const Ticks middle_1 = (first[i].when + first[i + 1].when) / 2,
                 middle_2 = (second[k].when + second[k + 1].when) / 2;
     CHECK((middle_1 > middle_2 ? middle_1 - middle_2 : middle_2 - middle_1) % pwm_period == 0);
-    CHECK_FALSE(rig.bench.time_ran_backward);
-    CHECK(rig.bench.longest_pause <= ticks(51e-6));
+    CHECK_FALSE(test.circuit.time_ran_backward);
+    CHECK(test.circuit.longest_pause <= ticks(51e-6));
   }
 
   TEST_CASE("repetition counter: an update every sixth half period, at the bottom") {
-    Rig rig("pwm");
-    rig.run_for(0.002);
-    const std::uint32_t before = rig.result(1);
-    rig.run_for(0.1);
+    ChipUnderTest test("pwm");
+    test.run_for(0.002);
+    const std::uint32_t before = test.result(1);
+    test.run_for(0.1);
     // Six half periods of 1000 cycles.
-    CHECK(rig.result(1) - before == 168'000'000 / 10 / 6000);
+    CHECK(test.result(1) - before == 168'000'000 / 10 / 6000);
     for (unsigned n = 0; n < 4; ++n) {
-      CHECK(rig.result(4 + 2 * n) == 0);  // counting up again
-      CHECK(rig.result(5 + 2 * n) < 40);  // a few instructions after the bottom
+      CHECK(test.result(4 + 2 * n) == 0);  // counting up again
+      CHECK(test.result(5 + 2 * n) < 40);  // a few instructions after the bottom
     }
   }
 
   TEST_CASE("the break input switches the outputs off at once and without the processor, until it is asked for again") {
-    Rig rig("break_input");
-    auto& pins = rig.chip.input_pins();
+    ChipUnderTest test("break_input");
+    auto& pins = test.chip.input_pins();
     pins.drive('A', 6, PinLevel::high);
     pins.drive('A', 0, PinLevel::low);
     const auto edges_in = [&](double time_s) {
-      rig.bench.edges.clear();
-      rig.run_for(time_s);
-      return rig.bench.edges_of('A', 8);
+      test.circuit.edges.clear();
+      test.run_for(time_s);
+      return test.circuit.edges_of('A', 8);
     };
     CHECK(edges_in(0.001).size() > 50);
-    REQUIRE(rig.result(0) == finished);
-    CHECK(rig.result(2) == 1);
+    REQUIRE(test.result(0) == finished);
+    CHECK(test.result(2) == 1);
 
-    rig.bench.edges.clear();
+    test.circuit.edges.clear();
     // In the middle of a pulse, so that there is an output to switch off.
-    while (rig.bench.edges_of('A', 8).empty() || rig.bench.edges_of('A', 8).back().level != PinLevel::high)
-      rig.run_for(1e-6);
-    const Ticks when = rig.chip.now();
+    while (test.circuit.edges_of('A', 8).empty() || test.circuit.edges_of('A', 8).back().level != PinLevel::high)
+      test.run_for(1e-6);
+    const Ticks when = test.chip.now();
     pins.drive('A', 6, PinLevel::low);
-    rig.run_for(0.001);
-    const Edge last = rig.bench.edges_of('A', 8).back();
+    test.run_for(0.001);
+    const Edge last = test.circuit.edges_of('A', 8).back();
     CHECK(last.level == PinLevel::low);
     CHECK(last.when >= when);
     CHECK(last.when - when <= 2 * cycle);
-    CHECK(rig.result(1) == 1);
-    CHECK(rig.result(2) == 0);
+    CHECK(test.result(1) == 1);
+    CHECK(test.result(2) == 0);
 
     // While the input stays active, MOE cannot be set.
     pins.drive('A', 0, PinLevel::high);
     CHECK(edges_in(0.001).empty());
     pins.drive('A', 6, PinLevel::high);
     CHECK(edges_in(0.001).size() > 10);
-    CHECK(rig.result(2) == 1);
+    CHECK(test.result(2) == 1);
   }
 
   TEST_CASE("encoder mode counts every edge, both ways, through the wrap") {
-    Rig rig("encoder", Mode::fast);
+    ChipUnderTest test("encoder", Mode::fast);
     int phase = 0;
-    rig.chip.input_pins().drive('B', 4, PinLevel::low);
-    rig.chip.input_pins().drive('B', 5, PinLevel::low);
-    rig.run_for(0.001);
-    REQUIRE(rig.result(0) == finished);
-    const auto start = static_cast<std::uint16_t>(rig.result(1));
+    test.chip.input_pins().drive('B', 4, PinLevel::low);
+    test.chip.input_pins().drive('B', 5, PinLevel::low);
+    test.run_for(0.001);
+    REQUIRE(test.result(0) == finished);
+    const auto start = static_cast<std::uint16_t>(test.result(1));
     int total = 0;
     for (const int counts : {1, 7, -3, 1000, -2500, 70'000, -5}) {
-      turn(rig, phase, counts);
+      turn(test, phase, counts);
       total += counts;
-      rig.run_for(20e-6);
-      CHECK(static_cast<std::uint16_t>(rig.result(1)) == static_cast<std::uint16_t>(start + total));
-      CHECK(rig.result(2) == (counts < 0 ? 1 : 0));
+      test.run_for(20e-6);
+      CHECK(static_cast<std::uint16_t>(test.result(1)) == static_cast<std::uint16_t>(start + total));
+      CHECK(test.result(2) == (counts < 0 ? 1 : 0));
     }
   }
 
   TEST_CASE("injected conversions start with the trigger, all three converters at the same instant") {
-    Rig rig("converters");
-    rig.bench.voltages = {{{'C', 0}, 0.825}, {{'C', 1}, 1.65}, {{'C', 2}, 2.475}, {{'C', 3}, 0.5}, {{'C', 4}, 3.0}};
+    ChipUnderTest test("converters");
+    test.circuit.voltages = {{{'C', 0}, 0.825}, {{'C', 1}, 1.65}, {{'C', 2}, 2.475}, {{'C', 3}, 0.5}, {{'C', 4}, 3.0}};
     std::vector<Ticks> sequences;
-    rig.chip.on_injected_sequence = [&](std::uint64_t index, Ticks when) {
+    test.chip.on_injected_sequence = [&](std::uint64_t index, Ticks when) {
       CHECK(index == sequences.size());
       sequences.push_back(when);
     };
-    rig.run_for(0.003);
-    REQUIRE(rig.result(0) == finished);
-    CHECK(rig.result(2) == 1024);
-    CHECK(rig.result(3) == 2048);
-    CHECK(rig.result(4) == 3072);
+    test.run_for(0.003);
+    REQUIRE(test.result(0) == finished);
+    CHECK(test.result(2) == 1024);
+    CHECK(test.result(3) == 2048);
+    CHECK(test.result(4) == 3072);
     // 15 cycles of 21 MHz are 60 counts of TIM2; then the interrupt's first instructions.
-    CHECK(rig.result(5) >= 60);
-    CHECK(rig.result(5) < 75);
+    CHECK(test.result(5) >= 60);
+    CHECK(test.result(5) < 75);
     REQUIRE(sequences.size() > 50);
     for (std::size_t i = 1; i < sequences.size(); ++i) CHECK(sequences[i] - sequences[i - 1] == ticks(20e-6));
     // Sampled 3 cycles of the converter after the trigger.
     unsigned at_once = 0;
-    for (const auto& sample : rig.bench.samples)
+    for (const auto& sample : test.circuit.samples)
       if (sample.pin <= 2 && sample.port == 'C' && sample.when == sequences[5] + 3 * 8 * cycle) ++at_once;
     CHECK(at_once == 3);
   }
 
   TEST_CASE("regular conversions fill a ring by DMA beside them") {
-    Rig rig("converters");
-    rig.bench.voltages = {{{'C', 3}, 0.5}, {{'C', 4}, 3.0}};
-    rig.run_for(0.003);
-    REQUIRE(rig.result(6) > 10);
+    ChipUnderTest test("converters");
+    test.circuit.voltages = {{{'C', 3}, 0.5}, {{'C', 4}, 3.0}};
+    test.run_for(0.003);
+    REQUIRE(test.result(6) > 10);
     const auto channel_13 = static_cast<std::uint32_t>(std::floor(0.5 / 3.3 * 4096));
     const auto channel_14 = static_cast<std::uint32_t>(std::floor(3.0 / 3.3 * 4096));
-    for (unsigned i = 0; i < 4; ++i) CHECK(rig.result(8 + i) == (channel_13 | channel_14 << 16));
-    const std::uint32_t before = rig.result(6);
-    rig.run_for(0.01);
+    for (unsigned i = 0; i < 4; ++i) CHECK(test.result(8 + i) == (channel_13 | channel_14 << 16));
+    const std::uint32_t before = test.result(6);
+    test.run_for(0.01);
     // 96 cycles of 21 MHz a conversion, 8 to a round; each injected group costs one 84-cycle start over and itself.
     const double undisturbed = 0.01 * 21e6 / (96 * 8);
-    CHECK(rig.result(6) - before < undisturbed);
-    CHECK(rig.result(6) - before > 0.7 * undisturbed);
+    CHECK(test.result(6) - before < undisturbed);
+    CHECK(test.result(6) - before > 0.7 * undisturbed);
   }
 
   TEST_CASE("pins, bit-band, identity, flash and USART") {
-    Rig rig("input_output", Mode::fast);
+    ChipUnderTest test("input_output", Mode::fast);
     std::string sent;
     std::vector<Ticks> times;
-    rig.chip.on_usart = [&](unsigned number, std::uint8_t byte) {
+    test.chip.on_usart = [&](unsigned number, std::uint8_t byte) {
       CHECK(number == 2);
       sent += static_cast<char>(byte);
-      times.push_back(rig.chip.now());
+      times.push_back(test.chip.now());
     };
-    rig.run_for(0.3);
-    REQUIRE(rig.result(0) == finished);
+    test.run_for(0.3);
+    REQUIRE(test.result(0) == finished);
     CHECK(sent == "chip\n");
     constexpr Ticks frame = 10 * 365 * 4 * cycle;  // ten bits of 365 cycles of PCLK1
     CHECK(times[2] - times[1] == frame);
     // The crystal and the PLL take 0.6 ms to start; the text follows at once, and time does not stand still after it.
     CHECK(times[0] < ticks(0.65e-3) + frame);
-    CHECK(rig.bench.edges_of('C', 10).back().level == PinLevel::high);
-    CHECK(rig.result(2) == 1u << 5);
-    CHECK(rig.result(3) == 0x00310042);
-    CHECK(rig.result(4) == 1024);
-    CHECK(rig.result(5) == 0x12345678);
-    CHECK(rig.result(6) == 0xFFFFFFFF);
-    CHECK((rig.result(7) & 1u << 7) != 0);
+    CHECK(test.circuit.edges_of('C', 10).back().level == PinLevel::high);
+    CHECK(test.result(2) == 1u << 5);
+    CHECK(test.result(3) == 0x00310042);
+    CHECK(test.result(4) == 1024);
+    CHECK(test.result(5) == 0x12345678);
+    CHECK(test.result(6) == 0xFFFFFFFF);
+    CHECK((test.result(7) & 1u << 7) != 0);
 
-    CHECK(rig.result(1) == 0);
+    CHECK(test.result(1) == 0);
     for (int i = 0; i < 3; ++i) {
-      rig.chip.input_pins().drive('B', 13, PinLevel::low);
-      rig.run_for(1e-5);
-      rig.chip.input_pins().drive('B', 13, PinLevel::floating);  // the pull-up
-      rig.run_for(1e-5);
-      CHECK(rig.result(1) == static_cast<std::uint32_t>(i + 1));
+      test.chip.input_pins().drive('B', 13, PinLevel::low);
+      test.run_for(1e-5);
+      test.chip.input_pins().drive('B', 13, PinLevel::floating);  // the pull-up
+      test.run_for(1e-5);
+      CHECK(test.result(1) == static_cast<std::uint32_t>(i + 1));
     }
-    for (const char c : {'o', 'k'}) rig.chip.usart_receive(2, static_cast<std::uint8_t>(c));
-    rig.run_for(0.001);
-    CHECK(rig.result(8) == ('o' << 8 | 'k'));
+    for (const char c : {'o', 'k'}) test.chip.usart_receive(2, static_cast<std::uint8_t>(c));
+    test.run_for(0.001);
+    CHECK(test.result(8) == ('o' << 8 | 'k'));
   }
 }

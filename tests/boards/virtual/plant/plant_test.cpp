@@ -8,23 +8,23 @@
 #include <doctest/doctest.h>
 #include <board/omni_driver.hpp>
 
-#include "bench.hpp"
+#include "driven_plant.hpp"
 
 using namespace inkwell;
 using namespace inkwell::test;
 
 TEST_CASE("the arm starts docked, at rest and with its switch closed") {
   for (const auto& arm : {test::omni(), test::paper()}) {
-    Bench bench(arm);
-    bench.idle(0.5);
-    const Truth t = bench.plant.truth(bench.now);
+    DrivenPlant driven(arm);
+    driven.idle(0.5);
+    const Truth t = driven.plant.truth(driven.now);
     CHECK(t.docked);
     CHECK(t.inkwell_switch);
-    CHECK(bench.pins.at(board::inkwell_switch) == PinLevel::low);
-    CHECK((t.position_m - bench.plant.inkwell().position_m()).norm() < 30e-6);
+    CHECK(driven.inputs.at(board::inkwell_switch) == PinLevel::low);
+    CHECK((t.position_m - driven.plant.inkwell().position_m()).norm() < 30e-6);
     CHECK(t.velocity_m_s.norm() < 1e-9);
     CHECK(t.supply_V == doctest::Approx(18.0).epsilon(0.01));
-    CHECK(bench.pins.at(board::bridge_fault_tim1.pin) == PinLevel::high);
+    CHECK(driven.inputs.at(board::bridge_fault_tim1.pin) == PinLevel::high);
   }
 }
 
@@ -38,23 +38,23 @@ TEST_CASE("a current turns its joint forward and the encoder up, by gear and tor
         arm.parameters[static_cast<Parameter>(static_cast<unsigned>(Parameter::motor_1_reversed) + j)] = reversed;
         arm.parameters[static_cast<Parameter>(static_cast<unsigned>(Parameter::encoder_1_reversed) + j)] = reversed;
       }
-      Bench bench(arm);
-      bench.plant.place(free_joints(arm), Vector3::Zero());
-      bench.idle(0.001);
-      const auto counts = bench.pins.counts;
-      const Vector3 before = bench.plant.truth(bench.now).joints_rad;
-      bench.enable(true);
+      DrivenPlant driven(arm);
+      driven.plant.place(free_joints(arm), Vector3::Zero());
+      driven.idle(0.001);
+      const auto counts = driven.inputs.counts;
+      const Vector3 before = driven.plant.truth(driven.now).joints_rad;
+      driven.enable(true);
       std::array<double, 3> duty{};
       duty[i] = 0.3;
-      bench.run(0.02, duty);
-      const Truth t = bench.plant.truth(bench.now);
+      driven.run(0.02, duty);
+      const Truth t = driven.plant.truth(driven.now);
       CAPTURE(i);
       const double turned_rad = t.joints_rad[i] - before[i];
       CHECK((reversed ? -1 : 1) * turned_rad > 0.02);
       const double counts_per_rad = (i == 0 ? 13.3 : 11.2) * 1440.0 / (2.0 * 3.14159265358979);
       CHECK(std::abs((reversed ? -1 : 1) * turned_rad * counts_per_rad -
-                     static_cast<double>(bench.pins.counts[i] - counts[i])) <= 1.0);
-      CHECK(bench.pins.jumps == 0);
+                     static_cast<double>(driven.inputs.counts[i] - counts[i])) <= 1.0);
+      CHECK(driven.inputs.jumps == 0);
       CHECK(t.torque_Nm[i] == doctest::Approx((reversed ? -1 : 1) * (i == 0 ? 13.3 : 11.2) * 0.0234 * t.current_A[i]));
     }
 }
@@ -62,30 +62,30 @@ TEST_CASE("a current turns its joint forward and the encoder up, by gear and tor
 TEST_CASE("encoders count through fast motion without a lost edge") {
   auto arm = test::frictionless(test::omni());
   arm.simulation.gravity_m_per_s2 = 0.0;
-  Bench bench(arm);
-  bench.plant.place({-0.9, 0.8, 0.4}, {40.0, 0.0, 0.0});
-  bench.plant.advance(0);
-  const auto before = bench.pins.counts;
-  const auto encoder_before = bench.plant.truth(0).encoder_counts;
-  bench.idle(0.2);
-  const auto encoder_after = bench.plant.truth(bench.now).encoder_counts;
+  DrivenPlant driven(arm);
+  driven.plant.place({-0.9, 0.8, 0.4}, {40.0, 0.0, 0.0});
+  driven.plant.advance(0);
+  const auto before = driven.inputs.counts;
+  const auto encoder_before = driven.plant.truth(0).encoder_counts;
+  driven.idle(0.2);
+  const auto encoder_after = driven.plant.truth(driven.now).encoder_counts;
   CHECK(std::abs(encoder_after[0] - encoder_before[0]) > 500);
-  for (unsigned i = 0; i < 3; ++i) CHECK(bench.pins.counts[i] - before[i] == encoder_after[i] - encoder_before[i]);
-  CHECK(bench.pins.jumps == 0);
+  for (unsigned i = 0; i < 3; ++i) CHECK(driven.inputs.counts[i] - before[i] == encoder_after[i] - encoder_before[i]);
+  CHECK(driven.inputs.jumps == 0);
 }
 
 TEST_CASE("shunt amplifiers read the current within their imperfections") {
-  Bench bench(test::omni());
-  bench.enable(true);
-  bench.run(0.005, {0.2, -0.3, 0.0});
-  const Truth t = bench.plant.truth(bench.now);
+  DrivenPlant driven(test::omni());
+  driven.enable(true);
+  driven.run(0.005, {0.2, -0.3, 0.0});
+  const Truth t = driven.plant.truth(driven.now);
   CHECK(std::abs(t.current_A[0]) > 0.5);
   CHECK(std::abs(t.current_A[1]) > 0.5);
   const Imperfections imperfections;
   for (unsigned i = 0; i < 3; ++i) {
     double sum_A = 0.0, squares_A = 0.0;
     for (int n = 0; n < 1000; ++n) {
-      const double read_A = bench.measured_A(i);
+      const double read_A = driven.measured_A(i);
       sum_A += read_A;
       squares_A += read_A * read_A;
     }
@@ -103,84 +103,84 @@ TEST_CASE("shunt amplifiers read the current within their imperfections") {
 
 TEST_CASE("the amplifier clips at its rails") {
   auto arm = test::omni();
-  Bench bench(arm);
-  bench.enable(true);
-  bench.run(0.003, {0.95, -0.95, 0.0});
-  CHECK(bench.plant.truth(bench.now).current_A[0] > 5.0);
-  CHECK(bench.read_V(board::motor_current[0]) == 3.3f);
-  CHECK(bench.read_V(board::motor_current[1]) == 0.0);
+  DrivenPlant driven(arm);
+  driven.enable(true);
+  driven.run(0.003, {0.95, -0.95, 0.0});
+  CHECK(driven.plant.truth(driven.now).current_A[0] > 5.0);
+  CHECK(driven.read_V(board::motor_current[0]) == 3.3f);
+  CHECK(driven.read_V(board::motor_current[1]) == 0.0);
 }
 
 TEST_CASE("the enable pin and the bridges' fault take the current away at once, floating pins brake") {
   for (const int how : {0, 1, 2}) {
     CAPTURE(how);
-    Bench bench(test::omni());
-    bench.enable(true);
-    bench.run(0.003, {0.3, 0.3, -0.3});
-    CHECK(std::abs(bench.plant.truth(bench.now).current_A[2]) > 1.0);
-    if (how == 0) bench.enable(false);
-    if (how == 1) bench.legs(PinLevel::floating);
-    if (how == 2) bench.plant.set_bridge_fault(true);
-    bench.idle(0.0005);
-    const Truth t = bench.plant.truth(bench.now);
+    DrivenPlant driven(test::omni());
+    driven.enable(true);
+    driven.run(0.003, {0.3, 0.3, -0.3});
+    CHECK(std::abs(driven.plant.truth(driven.now).current_A[2]) > 1.0);
+    if (how == 0) driven.enable(false);
+    if (how == 1) driven.legs(PinLevel::floating);
+    if (how == 2) driven.plant.set_bridge_fault(true);
+    driven.idle(0.0005);
+    const Truth t = driven.plant.truth(driven.now);
     if (how == 1) {  // low through their pull-downs: each motor is shorted and its back-EMF drives what is left
       const double back_emf_V = 11.2 * 0.0234 * t.joint_speeds_rad_s[2];
       CHECK(std::abs(t.current_A[2] + back_emf_V / 2.26) < 0.03);
     } else {
       CHECK(t.current_A.norm() == 0.0);
     }
-    CHECK((bench.pins.at(board::bridge_fault_tim1.pin) == PinLevel::low) == (how == 2));
-    CHECK((bench.pins.at(board::bridge_fault_tim8.pin) == PinLevel::low) == (how == 2));
+    CHECK((driven.inputs.at(board::bridge_fault_tim1.pin) == PinLevel::low) == (how == 2));
+    CHECK((driven.inputs.at(board::bridge_fault_tim8.pin) == PinLevel::low) == (how == 2));
     if (how == 2) {
-      bench.plant.set_bridge_fault(false);
-      bench.run(0.001, {0.3, 0.3, -0.3});
-      CHECK(std::abs(bench.plant.truth(bench.now).current_A[2]) > 1.0);
+      driven.plant.set_bridge_fault(false);
+      driven.run(0.001, {0.3, 0.3, -0.3});
+      CHECK(std::abs(driven.plant.truth(driven.now).current_A[2]) > 1.0);
     }
   }
 }
 
 TEST_CASE("bridges without their enable pin never switch") {
-  Bench bench(test::omni());
-  bench.run(0.002, {0.5, 0.5, 0.5});
-  CHECK(bench.plant.truth(bench.now).current_A.norm() == 0.0);
+  DrivenPlant driven(test::omni());
+  driven.run(0.002, {0.5, 0.5, 0.5});
+  CHECK(driven.plant.truth(driven.now).current_A.norm() == 0.0);
 }
 
 TEST_CASE("the supply sags under load, rises while the arm is braked, and is measured") {
   auto arm = test::frictionless(test::omni());
   arm.simulation.gravity_m_per_s2 = 0.0;
-  Bench bench(arm);
-  bench.enable(true);
-  bench.plant.place({0.0, 0.8, 0.4}, Vector3::Zero());
-  bench.run(0.01, {0.9, 0.0, 0.0});
-  const Truth loaded = bench.plant.truth(bench.now);
+  DrivenPlant driven(arm);
+  driven.enable(true);
+  driven.plant.place({0.0, 0.8, 0.4}, Vector3::Zero());
+  driven.run(0.01, {0.9, 0.0, 0.0});
+  const Truth loaded = driven.plant.truth(driven.now);
   CHECK(loaded.supply_V < 17.5);
-  CHECK(std::abs(bench.read_V(board::supply) * 11.0 - loaded.supply_V) < 0.05);
+  CHECK(std::abs(driven.read_V(board::supply) * 11.0 - loaded.supply_V) < 0.05);
 
-  bench.plant.place({-0.9, 0.8, 0.4}, {30.0, 0.0, 0.0});  // back-EMF 9.3 V against half the supply
+  driven.plant.place({-0.9, 0.8, 0.4}, {30.0, 0.0, 0.0});  // back-EMF 9.3 V against half the supply
   double highest_V = 0.0;
   for (int i = 0; i < 40; ++i) {
-    bench.run(0.0005, {0.2, 0.0, 0.0});
-    highest_V = std::max(highest_V, bench.plant.truth(bench.now).supply_V);
+    driven.run(0.0005, {0.2, 0.0, 0.0});
+    highest_V = std::max(highest_V, driven.plant.truth(driven.now).supply_V);
   }
   CHECK(highest_V > 18.1);
 
-  bench.enable(false);
-  bench.plant.set_supply_V(0.0);
-  bench.idle(0.6);
-  CHECK(bench.plant.truth(bench.now).supply_V < 12.0);
+  driven.enable(false);
+  driven.plant.set_supply_V(0.0);
+  driven.idle(0.6);
+  CHECK(driven.plant.truth(driven.now).supply_V < 12.0);
 }
 
 TEST_CASE("potentiometers invert the gimbal's characteristic, with wiper noise") {
   using protocol::Parameter;
   auto arm = test::omni();
   arm.parameters[Parameter::gimbal_2_square_rad] = 0.4f;
-  Bench bench(arm);
+  DrivenPlant driven(arm);
   const Vector3 angles(0.7, 0.9, -1.1);
-  bench.plant.turn_gimbal(angles);
+  driven.plant.turn_gimbal(angles);
   for (unsigned i = 0; i < 3; ++i) {
     double ratio = 0.0, lowest = 1.0, highest = 0.0;
     for (int n = 0; n < 400; ++n) {
-      const double read = bench.read_V(board::gimbal[i]) / 3.3;
+      const double read = driven.read_V(board::gimbal[i]) / 3.3;
       ratio += read / 400.0;
       lowest = std::min(lowest, read);
       highest = std::max(highest, read);
@@ -196,25 +196,25 @@ TEST_CASE("potentiometers invert the gimbal's characteristic, with wiper noise")
 }
 
 TEST_CASE("switches close to ground") {
-  Bench bench(test::omni());
-  CHECK(bench.pins.at(board::button_1) == PinLevel::floating);
-  bench.plant.press_buttons(true, false);
-  bench.idle(0.0001);
-  CHECK(bench.pins.at(board::button_1) == PinLevel::low);
-  CHECK(bench.pins.at(board::button_2) == PinLevel::floating);
-  bench.plant.press_buttons(false, true);
-  bench.idle(0.0001);
-  CHECK(bench.pins.at(board::button_1) == PinLevel::floating);
-  CHECK(bench.pins.at(board::button_2) == PinLevel::low);
+  DrivenPlant driven(test::omni());
+  CHECK(driven.inputs.at(board::button_1) == PinLevel::floating);
+  driven.plant.press_buttons(true, false);
+  driven.idle(0.0001);
+  CHECK(driven.inputs.at(board::button_1) == PinLevel::low);
+  CHECK(driven.inputs.at(board::button_2) == PinLevel::floating);
+  driven.plant.press_buttons(false, true);
+  driven.idle(0.0001);
+  CHECK(driven.inputs.at(board::button_1) == PinLevel::floating);
+  CHECK(driven.inputs.at(board::button_2) == PinLevel::low);
 }
 
 TEST_CASE("the same seed gives the same run, another seed other noise") {
   const auto run = [](std::uint64_t seed) {
-    Bench bench(test::omni(), {.seed = seed});
-    bench.enable(true);
-    bench.plant.dock(false);
-    bench.run(0.05, {0.1, 0.2, -0.1});
-    return std::pair{bench.measured_A(1), bench.plant.truth(bench.now).joints_rad};
+    DrivenPlant driven(test::omni(), {.seed = seed});
+    driven.enable(true);
+    driven.plant.dock(false);
+    driven.run(0.05, {0.1, 0.2, -0.1});
+    return std::pair{driven.measured_A(1), driven.plant.truth(driven.now).joints_rad};
   };
   CHECK(run(3) == run(3));
   CHECK(run(3).first != run(4).first);

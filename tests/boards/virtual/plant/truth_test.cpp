@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "bench.hpp"
+#include "driven_plant.hpp"
 
 using namespace inkwell::test;
 

@@ -1,4 +1,4 @@
-// A plant on the bench: the edges that the timers would give it, and a decoder for its encoders.
+// A plant that is driven: the edges that the timers would give it, and a decoder for its encoders.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ inline constexpr Ticks servo_period = ticks_per_s / board::servo_rate_Hz;
 inline constexpr Ticks pwm_period = ticks_per_s / board::pwm_Hz;
 
 /// Levels of the chip's inputs, with a quadrature decoder as the timers have one.
-class Pins final : public InputPins {
+class DecodedInputs final : public InputPins {
  public:
   void drive(char port, unsigned pin, PinLevel level) override {
     ++calls;
@@ -45,10 +45,10 @@ class Pins final : public InputPins {
 };
 
 /// A plant with the edges that timers would give it: centre-aligned, unipolar, as the board's facts say.
-struct Bench {
-  explicit Bench(const arms::Description& arm, const PlantOptions& options = {}) : plant(arm, options) {
-    plant.connect(pins);
-    counts_at_start = pins.counts;
+struct DrivenPlant {
+  explicit DrivenPlant(const arms::Description& arm, const PlantOptions& options = {}) : plant(arm, options) {
+    plant.connect(inputs);
+    counts_at_start = inputs.counts;
   }
 
   void enable(bool on) {
@@ -97,7 +97,7 @@ struct Bench {
            static_cast<double>(board::shunt_ohm * board::shunt_amplifier_gain);
   }
 
-  Pins pins;
+  DecodedInputs inputs;
   Plant plant;
   std::array<std::int64_t, 3> counts_at_start{};
   Ticks now = 0;
