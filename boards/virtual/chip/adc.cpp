@@ -10,33 +10,8 @@
 namespace inkwell::virtual_board {
 namespace {
 
-enum : std::uint32_t {
-  sr = 0x00,
-  cr1 = 0x04,
-  cr2 = 0x08,
-  smpr1 = 0x0C,
-  smpr2 = 0x10,
-  jofr1 = 0x14,
-  jofr4 = 0x20,
-  htr = 0x24,
-  ltr = 0x28,
-  sqr1 = 0x2C,
-  sqr3 = 0x34,
-  jsqr = 0x38,
-  jdr1 = 0x3C,
-  jdr4 = 0x48,
-  dr = 0x4C
-};
-constexpr std::uint32_t watchdog = 1u << 0, end_of_conversion = 1u << 1, end_of_injected = 1u << 2,
-                        injected_started = 1u << 3, regular_started = 1u << 4, overrun = 1u << 5;
-// CR1
-constexpr std::uint32_t conversion_interrupt = 1u << 5, watchdog_interrupt = 1u << 6, injected_interrupt = 1u << 7,
-                        scan = 1u << 8, watchdog_single = 1u << 9, automatic_injected = 1u << 10,
-                        discontinuous = 1u << 11, discontinuous_injected = 1u << 12, watchdog_injected = 1u << 22,
-                        watchdog_regular = 1u << 23, overrun_interrupt = 1u << 26;
-// CR2
-constexpr std::uint32_t continuous = 1u << 1, dma_on = 1u << 8, end_each = 1u << 10, left_aligned = 1u << 11,
-                        start_injected_bit = 1u << 22, start_regular_bit = 1u << 30;
+constexpr std::uint32_t watchdog = adc.sr.awd.mask(), end_of_conversion = adc.sr.eoc.mask(),
+                        end_of_injected = adc.sr.jeoc.mask(), overrun = adc.sr.ovr.mask();
 constexpr double reference_V = 3.3;
 constexpr unsigned position = 18;
 
@@ -47,7 +22,7 @@ Adc::Adc(Machine& machine, Adcs& adcs, unsigned index)
 
 void Adc::reset() {
   sr_ = cr1_ = cr2_ = ltr_ = jsqr_ = data_ = 0;
-  htr_ = 0xFFF;
+  htr_ = adc.htr.reset_value;
   smpr_ = {};
   sqr_ = {};
   offset_ = injected_data_ = {};
@@ -66,19 +41,18 @@ Ticks Adc::duration(unsigned cycles) const {
   return machine_.clocks.pclk2.duration(std::uint64_t{cycles} * adcs_.prescaler());
 }
 
-unsigned Adc::regular_length() const { return (cr1_ & scan) != 0 ? (sqr_[0] >> 20 & 0xF) + 1 : 1; }
-unsigned Adc::injected_length() const { return (cr1_ & scan) != 0 ? (jsqr_ >> 20 & 3) + 1 : 1; }
+unsigned Adc::regular_length() const { return adc.cr1.scan.in(cr1_) ? adc.sqr1.l.of(sqr_[0]) + 1 : 1; }
+unsigned Adc::injected_length() const { return adc.cr1.scan.in(cr1_) ? adc.jsqr.jl.of(jsqr_) + 1 : 1; }
 
 unsigned Adc::channel_of(Group group, unsigned rank) const {
   // A short injected sequence uses the last fields: JSQ4 alone for one conversion (RM0090, ADC_JSQR).
-  if (group == Group::injected) return jsqr_ >> 5 * (3 - (jsqr_ >> 20 & 3) + rank) & 0x1F;
-  return sqr_[2 - rank / 6] >> 5 * (rank % 6) & 0x1F;
+  if (group == Group::injected) return adc.jsqr.jsq.of(jsqr_, 3 - adc.jsqr.jl.of(jsqr_) + rank);
+  return adc.sqr3.sq.of(sqr_[2 - rank / 6], rank % 6);
 }
 
 unsigned Adc::sampling_cycles(unsigned channel) const {
   constexpr unsigned cycles[] = {3, 15, 28, 56, 84, 112, 144, 480};
-  const std::uint32_t field = channel < 10 ? smpr_[1] >> 3 * channel : smpr_[0] >> 3 * (channel - 10);
-  return cycles[field & 7];
+  return cycles[channel < 10 ? adc.smpr2.smp.of(smpr_[1], channel) : adc.smpr1.smp.of(smpr_[0], channel - 10)];
 }
 
 void Adc::start_injected(Ticks now) {
@@ -86,14 +60,14 @@ void Adc::start_injected(Ticks now) {
   // An injected group interrupts a regular one, whose conversion is made again afterwards.
   resume_regular_ = group_ == Group::regular;
   group_ = Group::injected;
-  sr_ |= injected_started;
+  sr_ |= adc.sr.jstrt.mask();
   rank_ = injected_rank_;
   begin_conversion(now);
 }
 
 void Adc::start_regular(Ticks now) {
   if (!is_on() || (sr_ & overrun) != 0 || group_ == Group::regular) return;
-  sr_ |= regular_started;
+  sr_ |= adc.sr.strt.mask();
   if (group_ == Group::injected) {
     resume_regular_ = true;
     return;
@@ -110,13 +84,13 @@ void Adc::begin_conversion(Ticks now) {
   // Without an interrupt or DMA nobody needs to be stopped for the result.
   Ticks wake = never;
   if (group_ == Group::injected) {
-    if ((cr1_ & injected_interrupt) != 0 && rank_ + 1 >= injected_length()) wake = done;
+    if (adc.cr1.jeocie.in(cr1_) && rank_ + 1 >= injected_length()) wake = done;
   } else {
-    if ((cr2_ & dma_on) != 0) wake = done + machine_.transfer_lag();
-    const bool ends = (cr2_ & end_each) != 0 || regular_rank_ + 1 >= regular_length();
-    if ((cr1_ & conversion_interrupt) != 0 && ends) wake = done;
+    if (adc.cr2.dma.in(cr2_)) wake = done + machine_.transfer_lag();
+    const bool ends = adc.cr2.eocs.in(cr2_) || regular_rank_ + 1 >= regular_length();
+    if (adc.cr1.eocie.in(cr1_) && ends) wake = done;
   }
-  if ((cr1_ & watchdog_interrupt) != 0) wake = done;
+  if (adc.cr1.awdie.in(cr1_)) wake = done;
   machine_.timeline.set(slot_, sampled, wake);
 }
 
@@ -152,8 +126,8 @@ void Adc::step(Ticks now) {
 }
 
 void Adc::watch(unsigned channel) {
-  const std::uint32_t on = group_ == Group::injected ? watchdog_injected : watchdog_regular;
-  if ((cr1_ & on) == 0 || ((cr1_ & watchdog_single) != 0 && (cr1_ & 0x1F) != channel)) return;
+  const Field& on = group_ == Group::injected ? adc.cr1.jawden : adc.cr1.awden;
+  if (!on.in(cr1_) || (adc.cr1.awdsgl.in(cr1_) && adc.cr1.awdch.of(cr1_) != channel)) return;
   if (sample_ <= htr_ && sample_ >= ltr_) return;
   sr_ |= watchdog;
   update_interrupt();
@@ -161,10 +135,10 @@ void Adc::watch(unsigned channel) {
 
 void Adc::finish_injected(Ticks now) {
   const std::int32_t value = static_cast<std::int32_t>(sample_) - static_cast<std::int32_t>(offset_[rank_]);
-  injected_data_[rank_] = static_cast<std::uint32_t>((cr2_ & left_aligned) != 0 ? value * 8 : value) & 0xFFFF;
+  injected_data_[rank_] = static_cast<std::uint32_t>(adc.cr2.align.in(cr2_) ? value * 8 : value) & 0xFFFF;
   ++rank_;
   const bool over = rank_ >= injected_length();
-  if (!over && (cr1_ & discontinuous_injected) == 0) return begin_conversion(now);
+  if (!over && !adc.cr1.jdiscen.in(cr1_)) return begin_conversion(now);
   injected_rank_ = over ? 0 : rank_;
   idle();
   if (over) sr_ |= end_of_injected;
@@ -175,99 +149,101 @@ void Adc::finish_injected(Ticks now) {
     begin_conversion(now);
   } else if (automatic_injected_) {
     automatic_injected_ = false;
-    if ((cr2_ & continuous) != 0) start_regular(now);
+    if (adc.cr2.cont.in(cr2_)) start_regular(now);
   }
 }
 
 void Adc::finish_regular(Ticks now) {
-  const bool checks_overrun = (cr2_ & (dma_on | end_each)) != 0;
+  const bool checks_overrun = adc.cr2.dma.in(cr2_) || adc.cr2.eocs.in(cr2_);
   if (checks_overrun && (sr_ & end_of_conversion) != 0) {
     // The old result was not read: no more requests until firmware clears OVR.
     sr_ |= overrun;
     idle();
     return update_interrupt();
   }
-  data_ = (cr2_ & left_aligned) != 0 ? sample_ << 4 : sample_;
+  data_ = adc.cr2.align.in(cr2_) ? sample_ << 4 : sample_;
   ++regular_rank_;
   const bool over = regular_rank_ >= regular_length();
   if (over || checks_overrun) sr_ |= end_of_conversion;
-  const unsigned part = (cr1_ >> 13 & 7) + 1;
-  const bool pause = (cr1_ & discontinuous) != 0 && regular_rank_ % part == 0;
+  const unsigned part = adc.cr1.discnum.of(cr1_) + 1;
+  const bool pause = adc.cr1.discen.in(cr1_) && regular_rank_ % part == 0;
   if (over) regular_rank_ = 0;
   idle();
-  if ((cr2_ & dma_on) != 0 && machine_.dma->adc_request(index_)) sr_ &= ~end_of_conversion;
+  if (adc.cr2.dma.in(cr2_) && machine_.dma->adc_request(index_)) sr_ &= ~end_of_conversion;
   update_interrupt();
-  if (over && (cr1_ & automatic_injected) != 0) {
+  if (over && adc.cr1.jauto.in(cr1_)) {
     automatic_injected_ = true;
     start_injected(now);
-  } else if ((!over && !pause) || (over && (cr2_ & continuous) != 0)) {
+  } else if ((!over && !pause) || (over && adc.cr2.cont.in(cr2_))) {
     group_ = Group::regular;
     begin_conversion(now);
   }
 }
 
 void Adc::update_interrupt() {
-  const bool asserted = ((cr1_ & conversion_interrupt) != 0 && (sr_ & end_of_conversion) != 0) ||
-                        ((cr1_ & watchdog_interrupt) != 0 && (sr_ & watchdog) != 0) ||
-                        ((cr1_ & injected_interrupt) != 0 && (sr_ & end_of_injected) != 0) ||
-                        ((cr1_ & overrun_interrupt) != 0 && (sr_ & overrun) != 0);
+  const bool asserted =
+      (adc.cr1.eocie.in(cr1_) && adc.sr.eoc.in(sr_)) || (adc.cr1.awdie.in(cr1_) && adc.sr.awd.in(sr_)) ||
+      (adc.cr1.jeocie.in(cr1_) && adc.sr.jeoc.in(sr_)) || (adc.cr1.ovrie.in(cr1_) && adc.sr.ovr.in(sr_));
   machine_.nvic.set_source(position, index_, asserted);
 }
 
 std::uint32_t Adc::stored(std::uint32_t offset) const {
   switch (offset) {
-    case sr: return sr_;
-    case cr1: return cr1_;
-    case cr2: return cr2_;
-    case htr: return htr_;
-    case ltr: return ltr_;
-    case jsqr: return jsqr_;
-    case smpr1:
-    case smpr2: return smpr_[(offset - smpr1) / 4];
-    case dr: return data_;
+    case adc.sr: return sr_;
+    case adc.cr1: return cr1_;
+    case adc.cr2: return cr2_;
+    case adc.htr: return htr_;
+    case adc.ltr: return ltr_;
+    case adc.jsqr: return jsqr_;
+    case adc.smpr1: return smpr_[0];
+    case adc.smpr2: return smpr_[1];
+    case adc.sqr1: return sqr_[0];
+    case adc.sqr2: return sqr_[1];
+    case adc.sqr3: return sqr_[2];
+    case adc.dr: return data_;
     default: break;
   }
-  if (offset >= jofr1 && offset <= jofr4) return offset_[(offset - jofr1) / 4];
-  if (offset >= sqr1 && offset <= sqr3) return sqr_[(offset - sqr1) / 4];
-  if (offset >= jdr1 && offset <= jdr4) return injected_data_[(offset - jdr1) / 4];
+  if (adc.jofr.covers(offset)) return offset_[adc.jofr.index(offset)];
+  if (adc.jdr.covers(offset)) return injected_data_[adc.jdr.index(offset)];
   return 0;
 }
 
 std::uint32_t Adc::read(std::uint32_t offset) {
-  if (offset == dr) {
+  if (offset == adc.dr) {
     sr_ &= ~end_of_conversion;
     update_interrupt();
   }
-  if (offset > dr) machine_.log.note("ADC" + std::to_string(index_ + 1), offset, false, 0);
+  if (offset > adc.dr) machine_.log.note("ADC" + std::to_string(index_ + 1), offset, false, 0);
   return stored(offset);
 }
 
 void Adc::write(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
-    case sr: sr_ &= value | ~0x3Fu; break;
-    case cr1:
-      cr1_ = value & 0x07C0'FFFF;
+    case adc.sr: sr_ &= value | ~bits_of(adc.sr, Access::rc_w0); break;
+    case adc.cr1:
+      cr1_ = value & writable(adc.cr1);
       adcs_.connect_triggers();
       break;
-    case cr2: {
-      cr2_ = value & ~(start_injected_bit | start_regular_bit);
+    case adc.cr2: {
+      cr2_ = value & writable(adc.cr2);
       if (!is_on()) idle();
       adcs_.connect_triggers();
       const Ticks now = machine_.timeline.now();
-      if ((value & start_injected_bit) != 0) adcs_.start_injected(index_, now);
-      if ((value & start_regular_bit) != 0) adcs_.start_regular(index_, now);
+      if (adc.cr2.jswstart.in(value)) adcs_.start_injected(index_, now);
+      if (adc.cr2.swstart.in(value)) adcs_.start_regular(index_, now);
       break;
     }
-    case smpr1:
-    case smpr2: smpr_[(offset - smpr1) / 4] = value; break;
-    case htr: htr_ = value & 0xFFF; break;
-    case ltr: ltr_ = value & 0xFFF; break;
-    case jsqr: jsqr_ = value & 0x3F'FFFF; break;
+    case adc.smpr1: smpr_[0] = value & writable(adc.smpr1); break;
+    case adc.smpr2: smpr_[1] = value & writable(adc.smpr2); break;
+    case adc.sqr1: sqr_[0] = value & writable(adc.sqr1); break;
+    case adc.sqr2: sqr_[1] = value & writable(adc.sqr2); break;
+    case adc.sqr3: sqr_[2] = value & writable(adc.sqr3); break;
+    case adc.htr: htr_ = adc.htr.ht.of(value); break;
+    case adc.ltr: ltr_ = adc.ltr.lt.of(value); break;
+    case adc.jsqr: jsqr_ = value & writable(adc.jsqr); break;
     default:
-      if (offset >= jofr1 && offset <= jofr4)
-        offset_[(offset - jofr1) / 4] = value & 0xFFF;
-      else if (offset >= sqr1 && offset <= sqr3)
-        sqr_[(offset - sqr1) / 4] = value;
+      if (adc.jofr.covers(offset))
+        offset_[adc.jofr.index(offset)] = adc.jofr.joffset.of(value);
       else
         machine_.log.note("ADC" + std::to_string(index_ + 1), offset, true, value);
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 
+#include "adc_map.hpp"
 #include "bus.hpp"
 
 namespace inkwell::virtual_board {
@@ -21,15 +22,15 @@ class Adc final : public TimedPart {
   void write(std::uint32_t offset, std::uint32_t value);
   std::uint32_t stored(std::uint32_t offset) const;
 
-  bool is_on() const { return (cr2_ & 1) != 0; }
+  bool is_on() const { return adc.cr2.adon.in(cr2_); }
   /// External trigger selections, or -1 while triggers are off.
-  int injected_trigger() const { return (cr2_ >> 20 & 3) != 0 ? static_cast<int>(cr2_ >> 16 & 0xF) : -1; }
-  int regular_trigger() const { return (cr2_ >> 28 & 3) != 0 ? static_cast<int>(cr2_ >> 24 & 0xF) : -1; }
+  int injected_trigger() const { return adc.cr2.jexten.in(cr2_) ? static_cast<int>(adc.cr2.jextsel.of(cr2_)) : -1; }
+  int regular_trigger() const { return adc.cr2.exten.in(cr2_) ? static_cast<int>(adc.cr2.extsel.of(cr2_)) : -1; }
   void start_injected(Ticks now);
   void start_regular(Ticks now);
   /// A trigger of this ADC is followed by something that the processor must see.
-  bool injected_matters() const { return (cr1_ & 1u << 7) != 0; }
-  bool regular_matters() const { return (cr1_ & 1u << 5) != 0 || (cr2_ & 1u << 8) != 0; }
+  bool injected_matters() const { return adc.cr1.jeocie.in(cr1_); }
+  bool regular_matters() const { return adc.cr1.eocie.in(cr1_) || adc.cr2.dma.in(cr2_); }
   std::uint32_t status() const { return sr_; }
   std::uint32_t data() const { return data_; }
 
@@ -40,7 +41,7 @@ class Adc final : public TimedPart {
   unsigned injected_length() const;
   unsigned channel_of(Group group, unsigned rank) const;
   unsigned sampling_cycles(unsigned channel) const;
-  unsigned resolution_bits() const { return 12 - 2 * (cr1_ >> 24 & 3); }
+  unsigned resolution_bits() const { return 12 - 2 * adc.cr1.res.of(cr1_); }
   Ticks duration(unsigned cycles) const;
   void begin_conversion(Ticks now);
   void finish_regular(Ticks now);
@@ -79,9 +80,9 @@ class Adcs final : public RegisterBlock {
   bool listens_to_timer(unsigned timer, unsigned channel) const { return (awaited_[timer] >> channel & 1) != 0; }
   /// After a change of triggers or interrupts.
   void connect_triggers();
-  unsigned prescaler() const { return 2 * ((ccr_ >> 16 & 3) + 1); }
-  bool temperature_on() const { return (ccr_ & 1u << 23) != 0; }
-  bool battery_on() const { return (ccr_ & 1u << 22) != 0; }
+  unsigned prescaler() const { return 2 * (adc_common.ccr.adcpre.of(ccr_) + 1); }
+  bool temperature_on() const { return adc_common.ccr.tsvrefe.in(ccr_); }
+  bool battery_on() const { return adc_common.ccr.vbate.in(ccr_); }
   void note_injected_sequence(Ticks now);
   void start_injected(unsigned index, Ticks now);
   void start_regular(unsigned index, Ticks now);
@@ -92,6 +93,7 @@ class Adcs final : public RegisterBlock {
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
+  std::vector<RegisterMap> register_maps(const std::string& name, std::uint32_t base) const override;
 
  private:
   void trigger(unsigned timer, unsigned channel);

@@ -14,7 +14,7 @@ constexpr TriggerSource injected_sources[16] = {{1, 4}, {1, 0}, {2, 1}, {2, 0}, 
                                                 {4, 3}, {4, 0}, {5, 4}, {5, 0}, {8, 2}, {8, 3}, {8, 4}, {0, 15}};
 constexpr TriggerSource regular_sources[16] = {{1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {2, 4}, {2, 0}, {3, 1},
                                                {3, 0}, {4, 4}, {5, 1}, {5, 2}, {5, 3}, {8, 1}, {8, 0}, {0, 11}};
-constexpr std::uint32_t common_status = 0x300, common_control = 0x304, common_data = 0x308;
+constexpr std::uint32_t converter_bytes = 0x100, common = 3 * converter_bytes;
 
 }  // namespace
 
@@ -27,21 +27,24 @@ void Adcs::reset() {
   ccr_ = 0;
   injected_sequences_ = 0;
   last_injected_ = never;
-  for (auto& adc : adcs_) adc.reset();
+  for (auto& converter : adcs_) converter.reset();
   connect_triggers();
 }
 
 bool Adcs::injected_simultaneous() const {
-  const unsigned mode = ccr_ & 0x1F;
+  const unsigned mode = adc_common.ccr.multi.of(ccr_);
   return mode == 0x01 || mode == 0x05 || mode == 0x11 || mode == 0x15;
 }
 
 bool Adcs::regular_simultaneous() const {
-  const unsigned mode = ccr_ & 0x1F;
+  const unsigned mode = adc_common.ccr.multi.of(ccr_);
   return mode == 0x01 || mode == 0x02 || mode == 0x06 || mode == 0x11 || mode == 0x12 || mode == 0x16;
 }
 
-unsigned Adcs::group_size() const { return (ccr_ & 0x10) != 0 ? 3 : 2; }
+unsigned Adcs::group_size() const {
+  constexpr std::uint32_t triple = 0x10;
+  return (adc_common.ccr.multi.of(ccr_) & triple) != 0 ? 3 : 2;
+}
 
 bool Adcs::is_slave(unsigned index, bool injected) const {
   return index != 0 && index < group_size() && (injected ? injected_simultaneous() : regular_simultaneous());
@@ -96,34 +99,47 @@ void Adcs::connect_triggers() {
     connected_[sources[selected].timer] |= bit;
     if (matters) awaited_[sources[selected].timer] |= bit;
   };
-  for (const auto& adc : adcs_) {
-    connect(adc.injected_trigger(), injected_sources, any_injected_matters);
-    connect(adc.regular_trigger(), regular_sources, any_regular_matters);
+  for (const auto& converter : adcs_) {
+    connect(converter.injected_trigger(), injected_sources, any_injected_matters);
+    connect(converter.regular_trigger(), regular_sources, any_regular_matters);
   }
   if (connected_ != connected_before || awaited_ != awaited_before) machine_.timers->plan_again();
 }
 
+std::vector<RegisterMap> Adcs::register_maps(const std::string& name, std::uint32_t base) const {
+  std::vector<RegisterMap> maps;
+  for (std::uint32_t i = 0; i < 3; ++i)
+    maps.push_back({name + std::to_string(i + 1), base + i * converter_bytes, shown<adc>()});
+  maps.push_back({name + "_COMMON", base + common, shown<adc_common>()});
+  return maps;
+}
+
 std::uint32_t Adcs::stored(std::uint32_t offset) const {
-  if (offset < common_status) return adcs_[offset / 0x100].stored(offset & 0xFF);
-  return offset == common_control ? ccr_ : 0;
+  if (offset < common) return adcs_[offset / converter_bytes].stored(offset % converter_bytes);
+  return offset == common + adc_common.ccr ? ccr_ : 0;
 }
 
 std::uint32_t Adcs::read_word(std::uint32_t offset) {
-  if (offset < common_status) return adcs_[offset / 0x100].read(offset & 0xFF);
+  if (offset < common) return adcs_[offset / converter_bytes].read(offset % converter_bytes);
   switch (offset) {
-    case common_status: return adcs_[0].status() | adcs_[1].status() << 8 | adcs_[2].status() << 16;
-    case common_control: return ccr_;
-    case common_data: return adcs_[0].data() | adcs_[1].data() << 16;
+    case common + adc_common.csr: {
+      std::uint32_t value = 0;
+      for (unsigned i = 0; i < 3; ++i) value |= adcs_[i].status() << adc_common.csr.awd.position(i);
+      return value;
+    }
+    case common + adc_common.ccr: return ccr_;
+    case common + adc_common.cdr:
+      return adc_common.cdr.data.with(adcs_[0].data(), 0) | adc_common.cdr.data.with(adcs_[1].data(), 1);
     default: machine_.log.note("ADC common", offset, false, 0); return 0;
   }
 }
 
 void Adcs::write_word(std::uint32_t offset, std::uint32_t value) {
-  if (offset < common_status) return adcs_[offset / 0x100].write(offset & 0xFF, value);
-  if (offset != common_control) return machine_.log.note("ADC common", offset, true, value);
-  ccr_ = value & 0x00C3'EF1F;
-  const unsigned mode = ccr_ & 0x1F;
-  if ((mode != 0 && !injected_simultaneous() && !regular_simultaneous()) || (ccr_ & 0xC000) != 0)
+  if (offset < common) return adcs_[offset / converter_bytes].write(offset % converter_bytes, value);
+  if (offset != common + adc_common.ccr) return machine_.log.note("ADC common", offset, true, value);
+  ccr_ = value & writable(adc_common.ccr);
+  const unsigned mode = adc_common.ccr.multi.of(ccr_);
+  if ((mode != 0 && !injected_simultaneous() && !regular_simultaneous()) || adc_common.ccr.dma.in(ccr_))
     machine_.log.note("ADC interleaved, alternate or common DMA mode,", offset, true, value);
 }
 

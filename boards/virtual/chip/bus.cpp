@@ -64,6 +64,19 @@ void Bus::reset_peripherals() {
   for (auto* peripheral : peripherals_) peripheral->reset();
 }
 
+std::vector<RegisterMap> Bus::register_maps() const {
+  std::vector<RegisterMap> maps;
+  for (const auto* slots : {&apb_and_ahb1_, &ahb2_})
+    for (std::size_t i = 0; i < slots->size(); ++i) {
+      const Slot& slot = (*slots)[i];
+      const bool first = i == 0 || (*slots)[i - 1].peripheral != slot.peripheral;
+      if (slot.peripheral == nullptr || !first) continue;
+      for (auto& map : slot.peripheral->register_maps(slot.name, slot.base)) maps.push_back(std::move(map));
+    }
+  for (auto& map : SystemControl::register_maps()) maps.push_back(std::move(map));
+  return maps;
+}
+
 Bus::Slot* Bus::slot_at(std::uint32_t address) {
   if (address - apb_base < apb_bytes) return &apb_and_ahb1_[(address - apb_base) / 1024];
   if (address - ahb2_base < ahb2_bytes) return &ahb2_[(address - ahb2_base) / 1024];

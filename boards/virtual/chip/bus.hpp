@@ -24,12 +24,17 @@ class RegisterBlock : public Peripheral {
     const std::uint32_t word = offset & ~3u;
     write_word(word, size == 4 ? value : merge(stored(word), value, offset, size));
   }
+  std::vector<RegisterMap> register_maps(const std::string& name, std::uint32_t base) const override {
+    return {{name, base, registers()}};
+  }
 
  protected:
   virtual std::uint32_t read_word(std::uint32_t offset) = 0;
   virtual void write_word(std::uint32_t offset, std::uint32_t value) = 0;
   /// What a narrow write leaves in place; without the side effects of reading.
   virtual std::uint32_t stored(std::uint32_t) const { return 0; }
+  /// The registers that this block declares: shown<...>() of its map.
+  virtual std::span<const MapEntry> registers() const { return {}; }
 };
 
 class Bus {
@@ -40,6 +45,8 @@ class Bus {
   void add(std::uint32_t base, std::uint32_t bytes, const std::string& name, Peripheral& peripheral,
            const std::uint32_t* enable_register = nullptr, std::uint32_t enable_mask = 0);
   void reset_peripherals();
+  /// Of all peripherals.
+  std::vector<RegisterMap> register_maps() const;
 
   struct Window {
     std::uint32_t base, bytes;

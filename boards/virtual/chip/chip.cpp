@@ -72,6 +72,7 @@ void Chip::clear_counters() { parts_->execution.clear_counters(); }
 int Chip::exit_code() const { return parts_->execution.exit_code(); }
 const std::string& Chip::lockup_reason() const { return parts_->execution.lockup_reason(); }
 const std::vector<std::string>& Chip::unmodelled_accesses() const { return parts_->machine.log.lines(); }
+std::vector<RegisterMap> Chip::register_maps() const { return parts_->bus.register_maps(); }
 std::uint32_t Chip::memory_word(std::uint32_t address) const { return parts_->machine.memory.word(address); }
 
 std::uint64_t Chip::state_hash() const {

@@ -5,12 +5,15 @@
 namespace inkwell::virtual_board {
 namespace {
 
-constexpr std::uint32_t enabled = 1u << 0, transfer_error_interrupt = 1u << 2, half_interrupt = 1u << 3,
-                        complete_interrupt = 1u << 4, circular = 1u << 8, peripheral_increment = 1u << 9,
-                        memory_increment = 1u << 10, double_buffer = 1u << 18, current_target = 1u << 19;
-constexpr std::uint32_t transfer_error = 1u << 3, half = 1u << 4, complete = 1u << 5;
-constexpr std::uint32_t first_stream = 0x10, stream_bytes = 0x18;
-constexpr unsigned flag_shift[4] = {0, 6, 16, 22};
+/// A stream's flags are kept at the bits that those of stream 0 have in LISR.
+constexpr std::uint32_t transfer_error = dma.lisr.teif.mask(), half = dma.lisr.htif.mask(),
+                        complete = dma.lisr.tcif.mask();
+constexpr std::uint32_t all_flags = dma.lisr.feif.mask() | dma.lisr.dmeif.mask() | transfer_error | half | complete;
+/// Where the flags of each of four streams begin.
+constexpr unsigned flag_shift[4] = {dma.lisr.feif.position(0), dma.lisr.feif.position(1),
+                                    dma.lisr.feif_upper.position(0), dma.lisr.feif_upper.position(1)};
+constexpr std::uint32_t first_stream = dma.cr, stream_bytes = dma.cr.stride;
+constexpr std::uint32_t fifo_is_empty = 4;  // FCR.FS: what is requested is moved at once
 
 struct Request {
   std::uint8_t peripheral, source, controller, stream, channel;
@@ -40,9 +43,10 @@ constexpr unsigned position_of(unsigned number, unsigned stream) {
 }
 
 template <std::size_t n>
-bool ask(Dma& dma, const Request (&requests)[n], unsigned peripheral, unsigned source) {
+bool ask(Dma& controllers, const Request (&requests)[n], unsigned peripheral, unsigned source) {
   for (const auto& r : requests)
-    if (r.peripheral == peripheral && r.source == source && dma.controller(r.controller).request(r.stream, r.channel))
+    if (r.peripheral == peripheral && r.source == source &&
+        controllers.controller(r.controller).request(r.stream, r.channel))
       return true;
   return false;
 }
@@ -60,9 +64,9 @@ void DmaController::reset() {
 void DmaController::update_interrupt(unsigned index) {
   const auto& s = streams_[index];
   machine_.nvic.set_source(position_of(number_, index), 0,
-                           ((s.control & complete_interrupt) != 0 && (s.flags & complete) != 0) ||
-                               ((s.control & half_interrupt) != 0 && (s.flags & half) != 0) ||
-                               ((s.control & transfer_error_interrupt) != 0 && (s.flags & transfer_error) != 0));
+                           (dma.cr.tcie.in(s.control) && (s.flags & complete) != 0) ||
+                               (dma.cr.htie.in(s.control) && (s.flags & half) != 0) ||
+                               (dma.cr.teie.in(s.control) && (s.flags & transfer_error) != 0));
 }
 
 bool DmaController::load(std::uint32_t address, unsigned size, std::uint32_t& value) {
@@ -91,16 +95,16 @@ bool DmaController::store(std::uint32_t address, unsigned size, std::uint32_t va
 
 void DmaController::move_item(unsigned index) {
   auto& s = streams_[index];
-  const unsigned size = 1u << (s.control >> 11 & 3);
-  const unsigned direction = s.control >> 6 & 3;
-  const unsigned target = (s.control & current_target) != 0 ? 1 : 0;
-  const std::uint32_t peripheral = s.peripheral + ((s.control & peripheral_increment) != 0 ? s.moved * size : 0);
-  const std::uint32_t memory = s.memory[target] + ((s.control & memory_increment) != 0 ? s.moved * size : 0);
+  const unsigned size = 1u << dma.cr.psize.of(s.control);
+  const unsigned target = dma.cr.ct.of(s.control);
+  const std::uint32_t peripheral = s.peripheral + (dma.cr.pinc.in(s.control) ? s.moved * size : 0);
+  const std::uint32_t memory = s.memory[target] + (dma.cr.minc.in(s.control) ? s.moved * size : 0);
   std::uint32_t value = 0;
-  const bool moved = direction == 1 ? load(memory, size, value) && store(peripheral, size, value)
-                                    : load(peripheral, size, value) && store(memory, size, value);
+  const bool moved = dma.cr.dir.of(s.control) == memory_to_peripheral
+                         ? load(memory, size, value) && store(peripheral, size, value)
+                         : load(peripheral, size, value) && store(memory, size, value);
   if (!moved) {
-    s.control &= ~enabled;
+    s.control &= ~dma.cr.en.mask();
     s.flags |= transfer_error;
     return update_interrupt(index);
   }
@@ -109,12 +113,12 @@ void DmaController::move_item(unsigned index) {
   if (s.count == s.reload / 2) s.flags |= half;
   if (s.count == 0) {
     s.flags |= complete;
-    if ((s.control & double_buffer) != 0) s.control ^= current_target;
-    if ((s.control & (circular | double_buffer)) != 0) {
+    if (dma.cr.dbm.in(s.control)) s.control ^= dma.cr.ct.mask();
+    if (dma.cr.circ.in(s.control) || dma.cr.dbm.in(s.control)) {
       s.count = s.reload;
       s.moved = 0;
     } else {
-      s.control &= ~enabled;
+      s.control &= ~dma.cr.en.mask();
     }
   }
   update_interrupt(index);
@@ -122,7 +126,7 @@ void DmaController::move_item(unsigned index) {
 
 bool DmaController::request(unsigned index, unsigned channel) {
   const auto& s = streams_[index];
-  if ((s.control & enabled) == 0 || (s.control >> 25 & 7) != channel || s.count == 0) return false;
+  if (!dma.cr.en.in(s.control) || dma.cr.chsel.of(s.control) != channel || s.count == 0) return false;
   move_item(index);
   return true;
 }
@@ -131,9 +135,9 @@ void DmaController::enable(unsigned index) {
   auto& s = streams_[index];
   s.reload = s.count;
   s.moved = 0;
-  if ((s.control >> 6 & 3) == 2) {
+  if (dma.cr.dir.of(s.control) == memory_to_memory) {
     if (number_ == 1) return machine_.log.say_once("DMA1 can not move memory to memory: nothing is moved");
-    while ((s.control & enabled) != 0 && s.count != 0) move_item(index);
+    while (dma.cr.en.in(s.control) && s.count != 0) move_item(index);
   } else if (on_enabled) {
     on_enabled();
   }
@@ -142,18 +146,18 @@ void DmaController::enable(unsigned index) {
 std::uint32_t DmaController::stored(std::uint32_t offset) const {
   if (offset < first_stream || offset >= first_stream + 8 * stream_bytes) return 0;
   const auto& s = streams_[(offset - first_stream) / stream_bytes];
-  switch ((offset - first_stream) % stream_bytes) {
-    case 0x00: return s.control;
-    case 0x04: return s.count;
-    case 0x08: return s.peripheral;
-    case 0x0C: return s.memory[0];
-    case 0x10: return s.memory[1];
+  switch (first_stream + (offset - first_stream) % stream_bytes) {
+    case dma.cr: return s.control;
+    case dma.ndtr: return s.count;
+    case dma.par: return s.peripheral;
+    case dma.m0ar: return s.memory[0];
+    case dma.m1ar: return s.memory[1];
     default: return s.fifo;
   }
 }
 
 std::uint32_t DmaController::read_word(std::uint32_t offset) {
-  if (offset < 0x08) {
+  if (offset == dma.lisr || offset == dma.hisr) {
     std::uint32_t value = 0;
     for (unsigned i = 0; i < 4; ++i) value |= streams_[offset + i].flags << flag_shift[i];
     return value;
@@ -163,10 +167,10 @@ std::uint32_t DmaController::read_word(std::uint32_t offset) {
 }
 
 void DmaController::write_word(std::uint32_t offset, std::uint32_t value) {
-  if (offset == 0x08 || offset == 0x0C) {
+  if (offset == dma.lifcr || offset == dma.hifcr) {
     for (unsigned i = 0; i < 4; ++i) {
-      const unsigned index = offset - 0x08 + i;
-      streams_[index].flags &= ~(value >> flag_shift[i] & 0x3D);
+      const unsigned index = offset - dma.lifcr + i;
+      streams_[index].flags &= ~(value >> flag_shift[i] & all_flags);
       update_interrupt(index);
     }
     return;
@@ -175,21 +179,21 @@ void DmaController::write_word(std::uint32_t offset, std::uint32_t value) {
     return machine_.log.note("DMA" + std::to_string(number_), offset, true, value);
   const unsigned index = (offset - first_stream) / stream_bytes;
   auto& s = streams_[index];
-  switch ((offset - first_stream) % stream_bytes) {
-    case 0x00: {
-      const bool was_enabled = (s.control & enabled) != 0;
-      s.control = value & 0x0FEF'FFFF;
-      if (was_enabled && (value & enabled) == 0) s.flags |= complete;
-      if (!was_enabled && (value & enabled) != 0) enable(index);
+  switch (first_stream + (offset - first_stream) % stream_bytes) {
+    case dma.cr: {
+      const bool was_enabled = dma.cr.en.in(s.control), is_enabled = dma.cr.en.in(value);
+      s.control = value & writable(dma.cr);
+      if (was_enabled && !is_enabled) s.flags |= complete;
+      if (!was_enabled && is_enabled) enable(index);
       return update_interrupt(index);
     }
-    case 0x04:
-      if ((s.control & enabled) == 0) s.count = value & 0xFFFF;
+    case dma.ndtr:
+      if (!dma.cr.en.in(s.control)) s.count = dma.ndtr.ndt.of(value);
       return;
-    case 0x08: s.peripheral = value; return;
-    case 0x0C: s.memory[0] = value; return;
-    case 0x10: s.memory[1] = value; return;
-    default: s.fifo = (value & 0x87) | 0x20; return;
+    case dma.par: s.peripheral = value; return;
+    case dma.m0ar: s.memory[0] = value; return;
+    case dma.m1ar: s.memory[1] = value; return;
+    default: s.fifo = (value & writable(dma.fcr)) | dma.fcr.fs.with(fifo_is_empty); return;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bus.hpp"
+#include "dma_map.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -23,10 +24,11 @@ class DmaController final : public RegisterBlock {
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
+  std::span<const MapEntry> registers() const override { return shown<dma>(); }
 
  private:
   struct Stream {
-    std::uint32_t control = 0, count = 0, peripheral = 0, memory[2] = {0, 0}, fifo = 0x21;
+    std::uint32_t control = 0, count = 0, peripheral = 0, memory[2] = {0, 0}, fifo = dma.fcr.reset_value;
     std::uint32_t reload = 0, moved = 0;
     std::uint32_t flags = 0;
   };

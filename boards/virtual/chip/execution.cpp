@@ -8,12 +8,6 @@
 namespace inkwell::virtual_board {
 namespace {
 
-// CFSR (ARMv7-M, B3.2.15).
-constexpr std::uint32_t instruction_access = 1u << 0, instruction_bus = 1u << 8, precise_data_bus = 1u << 9,
-                        bus_stacking = 1u << 12, bus_address_valid = 1u << 15, undefined = 1u << 16,
-                        invalid_state = 1u << 17, invalid_return = 1u << 18, no_coprocessor = 1u << 19;
-// HFSR.
-constexpr std::uint32_t vector_table_fault = 1u << 1, forced = 1u << 30, debug_event = 1u << 31;
 constexpr std::uint16_t semihosting_breakpoint = 0xBEAB;
 
 std::string at(const char* what, std::uint32_t address, std::uint32_t program_counter) {
@@ -146,10 +140,10 @@ void Execution::enter(unsigned exception) {
   if (entered) return;
   const std::uint32_t stack = processor_.read(UC_ARM_REG_SP);
   if (exception == exception_hard_fault || machine_.memory.ram_at(stack, 4) == nullptr) {
-    system_control_.record_fault(bus_stacking, forced);
+    system_control_.record_fault(scb.cfsr.stkerr.mask(), scb.hfsr.forced.mask());
     return lock_up(at("no stack to enter an exception on at", stack, processor_.program_counter()));
   }
-  system_control_.record_fault(0, vector_table_fault);
+  system_control_.record_fault(0, scb.hfsr.vecttbl.mask());
   enter(exception_hard_fault);
 }
 
@@ -166,7 +160,7 @@ void Execution::raise_fault(unsigned exception, std::uint32_t configurable_bits,
   if (exception != exception_hard_fault && nvic.enabled(exception) && nvic.group_priority(exception) < priority)
     return enter(exception);
   if (priority <= -1) return lock_up(what);
-  if (exception != exception_hard_fault) system_control_.record_fault(0, forced);
+  if (exception != exception_hard_fault) system_control_.record_fault(0, scb.hfsr.forced.mask());
   machine_.log.say_once("HardFault: " + what);
   enter(exception_hard_fault);
 }
@@ -175,7 +169,7 @@ void Execution::handle_breakpoint() {
   const std::uint32_t address = processor_.program_counter();
   if (machine_.memory.half_word(address) != semihosting_breakpoint) {
     // Without a debugger a breakpoint is a fault (ARMv7-M, C1.4.1).
-    system_control_.record_fault(0, debug_event);
+    system_control_.record_fault(0, scb.hfsr.debugevt.mask());
     return raise_fault(exception_hard_fault, 0, at("breakpoint without a debugger at", address, address));
   }
   const std::uint32_t operation = processor_.read(UC_ARM_REG_R0);
@@ -192,7 +186,7 @@ void Execution::handle_breakpoint() {
 
 void Execution::handle_return() {
   if (!processor_.return_from_exception(system_control_.vector_table()))
-    return raise_fault(exception_usage_fault, invalid_return,
+    return raise_fault(exception_usage_fault, scb.cfsr.invpc.mask(),
                        at("invalid EXC_RETURN", processor_.fault_address(), processor_.program_counter()));
   processor_.watch_masks(false);
   if (processor_.returned_to_thread() && system_control_.sleeps_on_exit()) state_ = State::sleeps;
@@ -215,26 +209,27 @@ void Execution::handle(Outcome outcome) {
     case Outcome::breakpoint: handle_breakpoint(); break;
     case Outcome::exception_return: handle_return(); break;
     case Outcome::undefined_instruction:
-      raise_fault(exception_usage_fault, undefined, at("undefined instruction at", program_counter, program_counter));
+      raise_fault(exception_usage_fault, scb.cfsr.undefinstr.mask(),
+                  at("undefined instruction at", program_counter, program_counter));
       break;
     case Outcome::invalid_state:
-      raise_fault(exception_usage_fault, invalid_state,
+      raise_fault(exception_usage_fault, scb.cfsr.invstate.mask(),
                   at("branch out of Thumb state to", program_counter, program_counter));
       break;
     case Outcome::no_coprocessor:
-      raise_fault(exception_usage_fault, no_coprocessor,
+      raise_fault(exception_usage_fault, scb.cfsr.nocp.mask(),
                   at("coprocessor instruction at", program_counter, program_counter));
       break;
     case Outcome::data_fault:
       system_control_.record_bus_fault_address(address);
-      raise_fault(exception_bus_fault, precise_data_bus | bus_address_valid,
+      raise_fault(exception_bus_fault, scb.cfsr.preciserr.mask() | scb.cfsr.bfarvalid.mask(),
                   at("nothing answers on the bus at", address, program_counter));
       break;
     case Outcome::instruction_fault:
-      raise_fault(exception_bus_fault, instruction_bus, at("no instructions at", address, program_counter));
+      raise_fault(exception_bus_fault, scb.cfsr.ibuserr.mask(), at("no instructions at", address, program_counter));
       break;
     case Outcome::execute_never:
-      raise_fault(exception_memory_fault, instruction_access,
+      raise_fault(exception_memory_fault, scb.cfsr.iaccviol.mask(),
                   at("no instructions may be at", address, program_counter));
       break;
   }

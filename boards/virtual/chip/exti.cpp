@@ -5,13 +5,13 @@
 
 namespace inkwell::virtual_board {
 namespace {
-constexpr std::uint32_t imr = 0x00, emr = 0x04, rtsr = 0x08, ftsr = 0x0C, swier = 0x10, pr = 0x14;
-constexpr std::uint32_t lines = 0x007F'FFFF;
+constexpr auto& map = exti_registers;
+constexpr unsigned lines = map.imr.mr.count;
 
 /// Position in the vector table of each line (RM0090, table "Vector table").
 constexpr unsigned position_of(unsigned line) {
-  constexpr unsigned positions[23] = {6,  7,  8,  9,  10, 23, 23, 23, 23, 23, 40, 40,
-                                      40, 40, 40, 40, 1,  41, 42, 62, 76, 2,  3};
+  constexpr unsigned positions[lines] = {6,  7,  8,  9,  10, 23, 23, 23, 23, 23, 40, 40,
+                                         40, 40, 40, 40, 1,  41, 42, 62, 76, 2,  3};
   return positions[line];
 }
 }  // namespace
@@ -22,7 +22,7 @@ void Exti::reset() {
 }
 
 void Exti::update_interrupts() {
-  for (unsigned line = 0; line < 23; ++line)
+  for (unsigned line = 0; line < lines; ++line)
     machine_.nvic.set_source(position_of(line), line, (pending_ & interrupt_mask_ & 1u << line) != 0);
 }
 
@@ -43,40 +43,40 @@ void Exti::pin_changed(unsigned port, unsigned pin, bool high) {
 
 std::uint32_t Exti::stored(std::uint32_t offset) const {
   switch (offset) {
-    case imr: return interrupt_mask_;
-    case emr: return event_mask_;
-    case rtsr: return rising_;
-    case ftsr: return falling_;
-    case swier: return software_;
+    case map.imr: return interrupt_mask_;
+    case map.emr: return event_mask_;
+    case map.rtsr: return rising_;
+    case map.ftsr: return falling_;
+    case map.swier: return software_;
     default: return 0;  // PR: ones clear
   }
 }
 
 std::uint32_t Exti::read_word(std::uint32_t offset) {
-  if (offset == pr) {
+  if (offset == map.pr) {
     machine_.advance_circuit(Machine::input_age_limit);
     return pending_;
   }
-  if (offset < pr) return stored(offset);
+  if (offset < map.pr) return stored(offset);
   machine_.log.note("EXTI", offset, false, 0);
   return 0;
 }
 
 void Exti::write_word(std::uint32_t offset, std::uint32_t value) {
-  value &= lines;
+  value &= map.imr.mr.masks();
   switch (offset) {
-    case imr: interrupt_mask_ = value; break;
-    case emr: event_mask_ = value; break;
-    case rtsr: rising_ = value; break;
-    case ftsr: falling_ = value; break;
-    case swier: {
+    case map.imr: interrupt_mask_ = value; break;
+    case map.emr: event_mask_ = value; break;
+    case map.rtsr: rising_ = value; break;
+    case map.ftsr: falling_ = value; break;
+    case map.swier: {
       const std::uint32_t risen = value & ~software_;
       software_ = value;
-      for (unsigned line = 0; line < 23; ++line)
+      for (unsigned line = 0; line < lines; ++line)
         if ((risen >> line & 1) != 0) edge(line);
       break;
     }
-    case pr:
+    case map.pr:
       pending_ &= ~value;
       software_ &= ~value;
       break;
@@ -86,17 +86,16 @@ void Exti::write_word(std::uint32_t offset, std::uint32_t value) {
 }
 
 std::uint32_t Exti::Syscfg::read_word(std::uint32_t offset) {
-  if (offset < 0x24) return words_[offset / 4];
+  if (offset < bytes) return words_[offset / 4];
   exti_.machine_.log.note("SYSCFG", offset, false, 0);
   return 0;
 }
 
 void Exti::Syscfg::write_word(std::uint32_t offset, std::uint32_t value) {
-  if (offset == 0x00 && (value & 3) != 0) exti_.machine_.log.note("SYSCFG memory remap,", offset, true, value);
-  if (offset < 0x24)
-    words_[offset / 4] = value & 0xFFFF;
-  else
-    exti_.machine_.log.note("SYSCFG", offset, true, value);
+  if (offset == syscfg_registers.memrmp && syscfg_registers.memrmp.mem_mode.in(value))
+    exti_.machine_.log.note("SYSCFG memory remap,", offset, true, value);
+  if (offset >= bytes) return exti_.machine_.log.note("SYSCFG", offset, true, value);
+  words_[offset / 4] = value & (offset == syscfg_registers.pmc ? writable(syscfg_registers.pmc) : 0xFFFF);
 }
 
 }  // namespace inkwell::virtual_board

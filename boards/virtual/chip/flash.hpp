@@ -8,6 +8,35 @@
 
 namespace inkwell::virtual_board {
 
+struct FlashRegisters {
+  struct : Register {
+    Field latency{"LATENCY", 0, 3}, prften{"PRFTEN", 8}, icen{"ICEN", 9}, dcen{"DCEN", 10},
+        icrst{"ICRST", 11, 1, Access::w}, dcrst{"DCRST", 12, 1, Access::w};
+  } acr{{"ACR", 0x00}};
+  struct : Register {
+    Field key{"KEY", 0, 32, Access::w};
+  } keyr{{"KEYR", 0x04}};
+  struct : Register {
+    Field optkey{"OPTKEY", 0, 32, Access::w};
+  } optkeyr{{"OPTKEYR", 0x08}};
+  struct : Register {
+    Field eop{"EOP", 0, 1, Access::rc_w1}, operr{"OPERR", 1, 1, Access::rc_w1}, wrperr{"WRPERR", 4, 1, Access::rc_w1},
+        pgaerr{"PGAERR", 5, 1, Access::rc_w1}, pgperr{"PGPERR", 6, 1, Access::rc_w1},
+        pgserr{"PGSERR", 7, 1, Access::rc_w1}, bsy{"BSY", 16, 1, Access::r};
+  } sr{{"SR", 0x0C}};
+  struct : Register {
+    Field pg{"PG", 0}, ser{"SER", 1}, mer{"MER", 2}, snb{"SNB", 3, 4}, psize{"PSIZE", 8, 2},
+        strt{"STRT", 16, 1, Access::rs}, eopie{"EOPIE", 24}, errie{"ERRIE", 25}, lock{"LOCK", 31, 1, Access::rs};
+  } cr{{"CR", 0x10, 0x8000'0000}};
+  /// Its factory value cannot be changed here.
+  struct : Register {
+    Field optlock{"OPTLOCK", 0, 1, Access::r}, optstrt{"OPTSTRT", 1, 1, Access::r}, bor_lev{"BOR_LEV", 2, 2, Access::r},
+        wdg_sw{"WDG_SW", 5, 1, Access::r}, nrst_stop{"nRST_STOP", 6, 1, Access::r},
+        nrst_stdby{"nRST_STDBY", 7, 1, Access::r}, rdp{"RDP", 8, 8, Access::r}, nwrp{"nWRP", 16, 12, Access::r};
+  } optcr{{"OPTCR", 0x14, 0x0FFF'AAED}};
+};
+inline constexpr FlashRegisters flash_registers;
+
 class FlashController final : public RegisterBlock, public TimedPart, public ClockUser {
  public:
   explicit FlashController(Machine& machine);
@@ -22,6 +51,7 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
+  std::span<const MapEntry> registers() const override { return shown<flash_registers>(); }
 
  private:
   void erase();

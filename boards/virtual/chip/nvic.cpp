@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "system_map.hpp"
+
 namespace inkwell::virtual_board {
 
 void Nvic::reset() {
@@ -102,38 +104,41 @@ std::uint32_t Nvic::word_of(const Bits& bits, unsigned index) const {
 }
 
 std::uint32_t Nvic::read(std::uint32_t offset) const {
-  const unsigned index = offset >> 2 & 7;
-  if (offset >= 0x400) {
+  const auto& map = nvic_registers;
+  if (offset >= map.ipr) {
     std::uint32_t word = 0;
     for (unsigned i = 0; i < 4; ++i) {
-      const unsigned position = (offset & 0x3FC) + i;
+      const unsigned position = (offset - map.ipr) / 4 * 4 + i;
       if (position < positions) word |= std::uint32_t{priority_[exception_interrupt_0 + position]} << 8 * i;
     }
     return word;
   }
-  if (offset >= 0x300) return word_of(active_, index);
-  if (offset >= 0x200) return word_of(pending_, index);
+  const unsigned index = offset / 4 % 8;
+  if (offset >= map.iabr) return word_of(active_, index);
+  if (offset >= map.ispr) return word_of(pending_, index);
   return word_of(enabled_, index);
 }
 
 void Nvic::write(std::uint32_t offset, std::uint32_t value, unsigned size) {
-  if (offset >= 0x400) {
+  const auto& map = nvic_registers;
+  if (offset >= map.ipr) {
     for (unsigned i = 0; i < size; ++i) {
-      const unsigned position = (offset & 0x3FF) + i;
+      const unsigned position = offset - map.ipr + i;
       if (position < positions)
         set_priority(exception_interrupt_0 + position, static_cast<std::uint8_t>(value >> 8 * i));
     }
     return;
   }
-  const unsigned first = exception_interrupt_0 + 32 * (offset >> 2 & 7);
+  constexpr std::uint32_t bank_bytes = nvic_registers.icer - nvic_registers.iser;
+  const unsigned first = exception_interrupt_0 + 32 * (offset % bank_bytes / 4);
   for (std::uint32_t bits = value; bits != 0; bits &= bits - 1) {
     const unsigned exception = first + static_cast<unsigned>(std::countr_zero(bits));
     if (exception >= exception_numbers) return;
-    switch (offset & 0x380) {
-      case 0x100: enable(exception, true); break;
-      case 0x180: enable(exception, false); break;
-      case 0x200: pend(exception); break;
-      case 0x280:
+    switch (offset / bank_bytes * bank_bytes) {
+      case nvic_registers.iser: enable(exception, true); break;
+      case nvic_registers.icer: enable(exception, false); break;
+      case nvic_registers.ispr: pend(exception); break;
+      case nvic_registers.icpr:
         unpend(exception);
         // A line that is still asserted pends it again at once.
         if (level_[exception - exception_interrupt_0] != 0 && !active(exception)) pend(exception);

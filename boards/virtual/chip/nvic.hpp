@@ -44,7 +44,7 @@ class Nvic final : public InterruptController {
   void set_source(unsigned position, unsigned source, bool asserted);
   void set_level(unsigned position, bool asserted) override { set_source(position, outside_source, asserted); }
 
-  std::uint32_t read(std::uint32_t offset) const;  ///< offset from 0xE000E000
+  std::uint32_t read(std::uint32_t offset) const;  ///< offset from its first register, ISER0
   void write(std::uint32_t offset, std::uint32_t value, unsigned size);
 
   void pend(unsigned exception);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "adc.hpp"
 #include "bus.hpp"
@@ -14,13 +16,16 @@
 #include "pins.hpp"
 #include "processor.hpp"
 #include "rcc.hpp"
-#include "small_peripherals.hpp"
 #include "system_control.hpp"
 #include "timers.hpp"
 #include "usart.hpp"
-#include "watchdogs.hpp"
 
 namespace inkwell::virtual_board {
+
+/// Register and bit of RCC that switch a peripheral's clock on.
+struct ClockGate {
+  std::uint32_t enable_register, mask;
+};
 
 struct ChipParts {
   ChipParts(Circuit& circuit, const ChipOptions& options);
@@ -38,17 +43,24 @@ struct ChipParts {
   Timers timers{machine};
   Pins pins{machine};
   std::deque<Usart> usarts;  ///< by number - 1
-  IndependentWatchdog independent_watchdog{machine};
-  WindowWatchdog window_watchdog{machine};
-  PowerControl power{machine};
-  CrcUnit crc;
-  RandomNumbers random_numbers{machine.options.random_seed};
   Processor processor{machine, bus};
   Execution execution{machine, processor, bus, system_control, rcc};
 
  private:
-  void put(std::uint32_t base, const std::string& name, Peripheral& peripheral, std::uint32_t enable_register,
-           unsigned enable_bit);
+  void put(std::uint32_t base, const std::string& name, Peripheral& peripheral);
+  /// As long as its clock is off, the peripheral does not answer; the reset bit at the same place resets it.
+  void put(std::uint32_t base, const std::string& name, Peripheral& peripheral, ClockGate clock);
+  /// A peripheral that no other part knows of.
+  template <class Part, class... Arguments>
+  Part& make(Arguments&&... arguments) {
+    auto part = std::make_unique<Part>(std::forward<Arguments>(arguments)...);
+    Part& made = *part;
+    on_their_own_.push_back(std::move(part));
+    return made;
+  }
+  void put_peripherals();
+
+  std::vector<std::unique_ptr<Peripheral>> on_their_own_;
 };
 
 }  // namespace inkwell::virtual_board

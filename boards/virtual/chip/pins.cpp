@@ -7,12 +7,6 @@
 #include "timers.hpp"
 
 namespace inkwell::virtual_board {
-namespace {
-constexpr std::uint32_t moder = 0x00, otyper = 0x04, ospeedr = 0x08, pupdr = 0x0C, idr = 0x10, odr = 0x14, bsrr = 0x18,
-                        lckr = 0x1C, afrl = 0x20, afrh = 0x24;
-constexpr std::uint32_t lock_key = 1u << 16;
-}  // namespace
-
 void GpioPort::reset() {
   // The debug pins of ports A and B start in their alternate function (RM0090, reset values).
   moder_ = index_ == 0 ? 0xA800'0000 : index_ == 1 ? 0x0000'0280 : 0;
@@ -26,38 +20,34 @@ void GpioPort::reset() {
 
 std::uint32_t GpioPort::stored(std::uint32_t offset) const {
   switch (offset) {
-    case moder: return moder_;
-    case otyper: return otyper_;
-    case ospeedr: return ospeedr_;
-    case pupdr: return pupdr_;
-    case odr: return odr_;
-    case afrl: return afr_[0];
-    case afrh: return afr_[1];
+    case gpio.moder: return moder_;
+    case gpio.otyper: return otyper_;
+    case gpio.ospeedr: return ospeedr_;
+    case gpio.pupdr: return pupdr_;
+    case gpio.odr: return odr_;
+    case gpio.afrl: return afr_[0];
+    case gpio.afrh: return afr_[1];
     default: return 0;  // BSRR: what is not written changes nothing
   }
 }
 
 std::uint32_t GpioPort::read_word(std::uint32_t offset) {
   switch (offset) {
-    case idr: machine_.advance_circuit(Machine::input_age_limit); return idr_;
-    case bsrr: return 0;
-    case lckr: return lckr_;
+    case gpio.idr: machine_.advance_circuit(Machine::input_age_limit); return idr_;
+    case gpio.bsrr: return 0;
+    case gpio.lckr: return lckr_;
     default: break;
   }
-  if (offset <= afrh) return stored(offset);
+  if (offset <= gpio.afrh) return stored(offset);
   machine_.log.note("GPIO" + std::string(1, static_cast<char>('A' + index_)), offset, false, 0);
   return 0;
 }
 
-void GpioPort::write_configuration(std::uint32_t& target, std::uint32_t value, unsigned bits_per_pin) {
-  std::uint32_t mask = 0xFFFF'FFFF;
-  if ((lckr_ & lock_key) != 0)
-    for (unsigned pin = 0; pin < 16; ++pin)
-      if ((lckr_ >> pin & 1) != 0) {
-        const unsigned shift = bits_per_pin * pin % 32;
-        const bool in_this_word = bits_per_pin < 4 || &target == &afr_[pin >> 3];
-        if (in_this_word) mask &= ~(((1u << bits_per_pin) - 1) << shift);
-      }
+void GpioPort::write_configuration(std::uint32_t& target, std::uint32_t value, const Field& field) {
+  std::uint32_t mask = field.masks();
+  if (gpio.lckr.lckk.in(lckr_))
+    for (unsigned i = 0; i < field.count; ++i)
+      if (gpio.lckr.lck.in(lckr_, field.first + i)) mask &= ~field.mask(i);
   target = (target & ~mask) | (value & mask);
 }
 
@@ -68,29 +58,29 @@ void GpioPort::write_output(std::uint32_t value) {
 }
 
 void GpioPort::write_lock(std::uint32_t value) {
-  if ((lckr_ & lock_key) != 0) return;  // until the next reset
+  if (gpio.lckr.lckk.in(lckr_)) return;  // until the next reset
   // Sequence: key with pins, pins without key, key with pins (RM0090, GPIOx_LCKR); then a read.
-  const bool key = (value & lock_key) != 0;
+  const bool key = gpio.lckr.lckk.in(value);
   const bool expected = lock_step_ == 1 ? !key : key;
-  if (lock_step_ > 0 && (value & 0xFFFF) != (lckr_ & 0xFFFF))
+  if (lock_step_ > 0 && (value & gpio.lckr.lck.masks()) != (lckr_ & gpio.lckr.lck.masks()))
     lock_step_ = 0;
   else
     lock_step_ = expected ? lock_step_ + 1 : 0;
-  lckr_ = value & 0xFFFF;
-  if (lock_step_ == 3) lckr_ |= lock_key;
+  lckr_ = value & gpio.lckr.lck.masks();
+  if (lock_step_ == 3) lckr_ |= gpio.lckr.lckk.mask();
 }
 
 void GpioPort::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
-    case bsrr: return write_output((odr_ & ~(value >> 16)) | (value & 0xFFFF));
-    case odr: return write_output(value & 0xFFFF);
-    case lckr: return write_lock(value);
-    case moder: write_configuration(moder_, value, 2); break;
-    case otyper: write_configuration(otyper_, value & 0xFFFF, 1); break;
-    case ospeedr: return write_configuration(ospeedr_, value, 2);
-    case pupdr: write_configuration(pupdr_, value, 2); break;
-    case afrl: write_configuration(afr_[0], value, 4); break;
-    case afrh: write_configuration(afr_[1], value, 4); break;
+    case gpio.bsrr: return write_output((odr_ & ~(value >> gpio.bsrr.br.position())) | (value & gpio.bsrr.bs.masks()));
+    case gpio.odr: return write_output(value & writable(gpio.odr));
+    case gpio.lckr: return write_lock(value);
+    case gpio.moder: write_configuration(moder_, value, gpio.moder.moder); break;
+    case gpio.otyper: write_configuration(otyper_, value, gpio.otyper.ot); break;
+    case gpio.ospeedr: return write_configuration(ospeedr_, value, gpio.ospeedr.ospeedr);
+    case gpio.pupdr: write_configuration(pupdr_, value, gpio.pupdr.pupdr); break;
+    case gpio.afrl: write_configuration(afr_[0], value, gpio.afrl.afr); break;
+    case gpio.afrh: write_configuration(afr_[1], value, gpio.afrh.afr); break;
     default: return machine_.log.note("GPIO" + std::string(1, static_cast<char>('A' + index_)), offset, true, value);
   }
   pins_.reconnect(index_, 0xFFFF);
@@ -130,18 +120,18 @@ void Pins::reconnect(unsigned port, std::uint32_t pins) {
 }
 
 PinLevel Pins::output_of(unsigned port, unsigned pin) const {
-  const GpioPort& gpio = ports_[port];
+  const GpioPort& pins = ports_[port];
   PinLevel level = PinLevel::floating;
-  if (gpio.mode(pin) == GpioPort::Mode::output) {
-    level = gpio.output_bit(pin) ? PinLevel::high : PinLevel::low;
-  } else if (gpio.mode(pin) == GpioPort::Mode::alternate) {
+  if (pins.mode(pin) == GpioPort::Mode::output) {
+    level = pins.output_bit(pin) ? PinLevel::high : PinLevel::low;
+  } else if (pins.mode(pin) == GpioPort::Mode::alternate) {
     const State& s = states_[port * 16 + pin];
     for (unsigned i = 0; i < s.routes && level == PinLevel::floating; ++i) {
       const TimerPin& route = timer_pins[s.route[i]];
       level = outputs_[route.timer * timer_lines + route.line].level;
     }
   }
-  return level == PinLevel::high && gpio.open_drain(pin) ? PinLevel::floating : level;
+  return level == PinLevel::high && pins.open_drain(pin) ? PinLevel::floating : level;
 }
 
 void Pins::update(unsigned port, unsigned pin) {
@@ -151,15 +141,15 @@ void Pins::update(unsigned port, unsigned pin) {
     s.output = output;
     machine_.circuit.output_changed(static_cast<char>('A' + port), pin, output, machine_.timeline.now());
   }
-  GpioPort& gpio = ports_[port];
+  GpioPort& pins = ports_[port];
   bool input = false;
-  if (gpio.mode(pin) != GpioPort::Mode::analog) {
+  if (pins.mode(pin) != GpioPort::Mode::analog) {
     const PinLevel level = output != PinLevel::floating ? output : s.driven;
-    input = level == PinLevel::floating ? gpio.pull(pin) == 1 : level == PinLevel::high;
+    input = level == PinLevel::floating ? pins.pull(pin) == 1 : level == PinLevel::high;
   }
   if (input == s.input) return;
   s.input = input;
-  gpio.set_input(pin, input);
+  pins.set_input(pin, input);
   machine_.exti->pin_changed(port, pin, input);
   if (output == PinLevel::floating)
     for (unsigned i = 0; i < s.routes; ++i) {

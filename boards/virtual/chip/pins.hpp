@@ -7,6 +7,7 @@
 
 #include "alternate_functions.hpp"
 #include "bus.hpp"
+#include "gpio_map.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -18,21 +19,22 @@ class GpioPort final : public RegisterBlock {
   void reset() override;
 
   enum class Mode : std::uint8_t { input, output, alternate, analog };
-  Mode mode(unsigned pin) const { return static_cast<Mode>(moder_ >> 2 * pin & 3); }
-  bool open_drain(unsigned pin) const { return (otyper_ >> pin & 1) != 0; }
-  unsigned pull(unsigned pin) const { return pupdr_ >> 2 * pin & 3; }
-  bool output_bit(unsigned pin) const { return (odr_ >> pin & 1) != 0; }
-  unsigned alternate_function(unsigned pin) const { return afr_[pin >> 3] >> 4 * (pin & 7) & 0xF; }
-  void set_input(unsigned pin, bool high) { idr_ = high ? idr_ | 1u << pin : idr_ & ~(1u << pin); }
-  bool input(unsigned pin) const { return (idr_ >> pin & 1) != 0; }
+  Mode mode(unsigned pin) const { return static_cast<Mode>(gpio.moder.moder.of(moder_, pin)); }
+  bool open_drain(unsigned pin) const { return gpio.otyper.ot.in(otyper_, pin); }
+  unsigned pull(unsigned pin) const { return gpio.pupdr.pupdr.of(pupdr_, pin); }
+  bool output_bit(unsigned pin) const { return gpio.odr.odr.in(odr_, pin); }
+  unsigned alternate_function(unsigned pin) const { return gpio.afrl.afr.of(afr_[pin / 8], pin % 8); }
+  void set_input(unsigned pin, bool high) { idr_ = (idr_ & ~gpio.idr.idr.mask(pin)) | gpio.idr.idr.with(high, pin); }
+  bool input(unsigned pin) const { return gpio.idr.idr.in(idr_, pin); }
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
+  std::span<const MapEntry> registers() const override { return shown<gpio>(); }
 
  private:
-  void write_configuration(std::uint32_t& target, std::uint32_t value, unsigned bits_per_pin);
+  void write_configuration(std::uint32_t& target, std::uint32_t value, const Field& field);
   void write_output(std::uint32_t value);
   void write_lock(std::uint32_t value);
   Pins& pins_;

@@ -7,18 +7,12 @@
 #include <vector>
 
 #include "bus.hpp"
+#include "rcc_map.hpp"
 
 namespace inkwell::virtual_board {
 
 class Rcc final : public RegisterBlock, public TimedPart {
  public:
-  // clang-format off
-  enum Register : std::uint32_t {
-    cr = 0x00, pllcfgr = 0x04, cfgr = 0x08, cir = 0x0C, ahb1rstr = 0x10, ahb2rstr = 0x14, ahb3rstr = 0x18,
-    apb1rstr = 0x20, apb2rstr = 0x24, ahb1enr = 0x30, ahb2enr = 0x34, ahb3enr = 0x38, apb1enr = 0x40,
-    apb2enr = 0x44, bdcr = 0x70, csr = 0x74,
-  };
-  // clang-format on
   explicit Rcc(Machine& machine);
 
   void reset() override;
@@ -30,15 +24,17 @@ class Rcc final : public RegisterBlock, public TimedPart {
     resets_.push_back({offset, mask, &peripheral});
   }
   /// The watchdog starts the low-speed oscillator by itself.
-  void start_low_speed_internal() { words_[csr / 4] |= 1; }
+  void start_low_speed_internal() { words_[rcc_registers.csr / 4] |= rcc_registers.csr.lsion.mask(); }
   void step(Ticks now) override;
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
-  std::uint32_t stored(std::uint32_t offset) const override { return offset < 0x90 ? words_[offset / 4] : 0; }
+  std::uint32_t stored(std::uint32_t offset) const override { return offset < bytes ? words_[offset / 4] : 0; }
+  std::span<const MapEntry> registers() const override { return shown<rcc_registers>(); }
 
  private:
+  static constexpr std::uint32_t bytes = 0x90;
   enum Oscillator : unsigned { hsi, hse, pll, plli2s, lsi, lse, oscillators };
   struct ResetLine {
     std::uint32_t offset, mask;
@@ -46,14 +42,15 @@ class Rcc final : public RegisterBlock, public TimedPart {
   };
   bool is_on(unsigned oscillator) const;
   bool is_ready(unsigned oscillator) const;
-  std::uint32_t pll_output_Hz(unsigned shift_of_divider) const;
+  enum class PllOutput : std::uint8_t { system, usb };
+  std::uint32_t pll_output_Hz(PllOutput output) const;
   void start_oscillators();
   void switch_system_clock();
   void update_tree();
 
   Machine& machine_;
   Timeline::Slot slot_;
-  std::array<std::uint32_t, 0x90 / 4> words_{};
+  std::array<std::uint32_t, bytes / 4> words_{};
   std::array<Ticks, oscillators> ready_at_{};
   unsigned system_clock_ = 0;  ///< CFGR.SWS
   std::uint32_t reset_flags_ = 0;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "machine.hpp"
+#include "system_map.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -36,12 +37,13 @@ class SystemControl {
   void reset();
   std::uint32_t read(std::uint32_t address, unsigned size);
   void write(std::uint32_t address, std::uint32_t value, unsigned size);
+  static std::vector<RegisterMap> register_maps();
 
   std::uint32_t vector_table() const { return vector_table_; }
-  bool aligns_stack() const { return (configuration_ & 1u << 9) != 0; }
-  bool preserves_float_context() const { return (float_control_ & 1u << 31) != 0; }
-  bool sleeps_on_exit() const { return (sleep_control_ & 1u << 1) != 0; }
-  bool sends_event_on_pending() const { return (sleep_control_ & 1u << 4) != 0; }
+  bool aligns_stack() const { return scb.ccr.stkalign.in(configuration_); }
+  bool preserves_float_context() const { return fpu.fpccr.aspen.in(float_control_); }
+  bool sleeps_on_exit() const { return scb.scr.sleeponexit.in(sleep_control_); }
+  bool sends_event_on_pending() const { return scb.scr.sevonpend.in(sleep_control_); }
 
   /// Records a fault's cause. Bits of CFSR, HFSR; addresses where the bits say that they are valid.
   void record_fault(std::uint32_t configurable_bits, std::uint32_t hard_fault_bits);
@@ -60,12 +62,12 @@ class SystemControl {
 
   Machine& machine_;
   SysTick systick_;
-  std::uint32_t vector_table_ = 0, sleep_control_ = 0, configuration_ = 0x200, reset_control_ = 0;
+  std::uint32_t vector_table_ = 0, sleep_control_ = 0, configuration_ = scb.ccr.reset_value, reset_control_ = 0;
   std::uint32_t configurable_faults_ = 0, hard_faults_ = 0, debug_faults_ = 0;
   std::uint32_t memory_fault_address_ = 0, bus_fault_address_ = 0, auxiliary_faults_ = 0;
   std::uint32_t coprocessor_access_ = 0, auxiliary_control_ = 0;
-  std::uint32_t float_control_ = 0xC000'0000, float_address_ = 0, float_default_ = 0;
-  std::uint32_t debug_monitor_ = 0, trace_control_ = 0x4000'0000;
+  std::uint32_t float_control_ = fpu.fpccr.reset_value, float_address_ = 0, float_default_ = 0;
+  std::uint32_t debug_monitor_ = 0, trace_control_ = dwt.ctrl.reset_value;
   std::uint32_t cycle_base_ = 0, cycle_held_ = 0;
   std::array<std::uint32_t, 2> debug_freeze_{};  ///< DBGMCU: nothing here stops for a debugger
 };

@@ -1,11 +1,6 @@
 #include "system_control.hpp"
 
 namespace inkwell::virtual_board {
-namespace {
-constexpr std::uint32_t enable = 1, interrupt = 2, processor_clock = 4, count_flag = 1u << 16;
-constexpr std::uint32_t count_mask = 0xFFFFFF;
-}  // namespace
-
 SysTick::SysTick(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) {
   machine.clock_users.push_back(this);
 }
@@ -18,29 +13,29 @@ void SysTick::reset() {
 
 Ticks SysTick::duration(std::uint64_t counts) const {
   // The external reference is HCLK / 8 (RM0090, "Clocks").
-  return machine_.clocks.hclk.duration(counts * ((control_ & processor_clock) != 0 ? 1 : 8));
+  return machine_.clocks.hclk.duration(counts * (stk.ctrl.clksource.in(control_) ? 1 : 8));
 }
 
 std::uint32_t SysTick::current() const {
   if (zero_at_ == never) return held_;
   const Ticks left = zero_at_ - machine_.timeline.now();
   const std::uint64_t counts =
-      machine_.clocks.hclk.cycles_in(left + duration(1) - 1) / ((control_ & processor_clock) != 0 ? 1 : 8);
+      machine_.clocks.hclk.cycles_in(left + duration(1) - 1) / (stk.ctrl.clksource.in(control_) ? 1 : 8);
   return counts > reload_ ? 0 : static_cast<std::uint32_t>(counts);
 }
 
 void SysTick::start(std::uint32_t counts_until_zero) {
-  zero_at_ = (control_ & enable) != 0 && (reload_ != 0 || counts_until_zero != 0)
+  zero_at_ = stk.ctrl.enable.in(control_) && (reload_ != 0 || counts_until_zero != 0)
                  ? machine_.timeline.now() + duration(counts_until_zero)
                  : never;
   announce();
 }
 
-void SysTick::announce() { machine_.timeline.set(slot_, zero_at_, (control_ & interrupt) != 0 ? zero_at_ : never); }
+void SysTick::announce() { machine_.timeline.set(slot_, zero_at_, stk.ctrl.tickint.in(control_) ? zero_at_ : never); }
 
 void SysTick::step(Ticks now) {
-  control_ |= count_flag;
-  if ((control_ & interrupt) != 0) machine_.nvic.pend(exception_systick);
+  control_ |= stk.ctrl.countflag.mask();
+  if (stk.ctrl.tickint.in(control_)) machine_.nvic.pend(exception_systick);
   held_ = 0;
   zero_at_ = reload_ != 0 ? now + duration(std::uint64_t{reload_} + 1) : never;
   announce();
@@ -48,30 +43,30 @@ void SysTick::step(Ticks now) {
 
 std::uint32_t SysTick::read(std::uint32_t offset) {
   switch (offset) {
-    case 0x0: {
+    case stk.ctrl: {
       const std::uint32_t value = control_;
-      control_ &= ~count_flag;
+      control_ &= ~stk.ctrl.countflag.mask();
       return value;
     }
-    case 0x4: return reload_;
-    case 0x8: return current();
-    default: return 0xC000'0000;  // CALIB: no reference, no value
+    case stk.load: return reload_;
+    case stk.val: return current();
+    default: return stk.calib.reset_value;  // CALIB: no reference, no value
   }
 }
 
 void SysTick::write(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
-    case 0x0: {
+    case stk.ctrl: {
       held_ = current();
-      control_ = (control_ & count_flag) | (value & 7);
+      control_ = (control_ & stk.ctrl.countflag.mask()) | (value & writable(stk.ctrl));
       // From 0 the counter first takes the reload value, which costs one count.
       start(held_ != 0 ? held_ : reload_ + 1);
       break;
     }
-    case 0x4: reload_ = value & count_mask; break;
-    case 0x8:
+    case stk.load: reload_ = stk.load.reload.of(value); break;
+    case stk.val:
       held_ = 0;
-      control_ &= ~count_flag;
+      control_ &= ~stk.ctrl.countflag.mask();
       start(reload_ + 1);
       break;
     default: break;
@@ -80,7 +75,7 @@ void SysTick::write(std::uint32_t offset, std::uint32_t value) {
 
 void SysTick::before_clock_change() { held_ = current(); }
 void SysTick::after_clock_change() {
-  if ((control_ & enable) != 0) start(held_ != 0 ? held_ : reload_ + 1);
+  if (stk.ctrl.enable.in(control_)) start(held_ != 0 ? held_ : reload_ + 1);
 }
 
 }  // namespace inkwell::virtual_board

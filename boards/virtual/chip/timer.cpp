@@ -4,18 +4,16 @@
 #include "adc.hpp"
 #include "dma.hpp"
 #include "pins.hpp"
-#include "timer_bits.hpp"
+#include "timer_map.hpp"
 #include "timers.hpp"
 
 namespace inkwell::virtual_board {
 
-using namespace timer_bits;
-
-Timer::Timer(Machine& machine, const TimerModel& model)
+Timer::Timer(Machine& machine, const TimerTraits& traits)
     : machine_(machine),
-      model_(model),
+      traits_(traits),
       slot_(machine.timeline.add(*this)),
-      limit_(model.bits == 32 ? 0xFFFF'FFFF : 0xFFFF) {
+      limit_(traits.bits == 32 ? 0xFFFF'FFFF : 0xFFFF) {
   machine.clock_users.push_back(this);
 }
 
@@ -26,16 +24,16 @@ void Timer::reset() {
   active_prescaler_ = repetitions_ = count_ = 0;
   down_ = gate_open_ = false;
   for (auto& channel : channels_) channel = Channel{.input = channel.input};
-  if (machine_.timers != nullptr) machine_.timers->set_slave(model_.number, 0, false);
+  if (machine_.timers != nullptr) machine_.timers->set_slave(traits_.number, 0, false);
   configure_outputs();
   begin_ramp(machine_.timeline.now());
   update_interrupts();
 }
 
-const Clock& Timer::clock() const { return model_.on_apb2 ? machine_.clocks.timer2 : machine_.clocks.timer1; }
+const Clock& Timer::clock() const { return traits_.on_apb2 ? machine_.clocks.timer2 : machine_.clocks.timer1; }
 
 bool Timer::runs() const {
-  if ((cr1_ & enable) == 0 || encoder_mode() || slave_mode() == external_clock) return false;
+  if (!enabled() || encoder_mode() || slave_mode() == external_clock) return false;
   return slave_mode() != gated || gate_open_;
 }
 
@@ -83,7 +81,7 @@ void Timer::begin_ramp(Ticks now) {
 }
 
 void Timer::find_matches() {
-  for (unsigned i = 0; i < model_.channels; ++i) {
+  for (unsigned i = 0; i < traits_.channels; ++i) {
     auto& channel = channels_[i];
     channel.match = no_match;
     if (selection(i) != 0) continue;
@@ -99,7 +97,7 @@ void Timer::find_matches() {
 void Timer::account(std::uint64_t tick) {
   const std::uint64_t from = accounted_;
   accounted_ = tick;
-  for (unsigned i = 0; i < model_.channels; ++i)
+  for (unsigned i = 0; i < traits_.channels; ++i)
     if (channels_[i].match > from && channels_[i].match <= tick) matched(i);
 }
 
@@ -113,17 +111,17 @@ void Timer::matched(unsigned i) {
     case pwm_2: set_reference(i, compare_level(i, channel.active_compare)); break;
     default: break;
   }
-  const unsigned centre_mode = cr1_ >> 5 & 3;
+  const unsigned centre_mode = tim.cr1.cms.of(cr1_);
   if (centre_mode == 1 && !down_) return;
   if (centre_mode == 2 && down_) return;
-  raise(capture_compare_1 << i);
-  if ((dier_ >> (9 + i) & 1) != 0) machine_.dma->timer_request(model_.number, i + 1);
-  if (i == 0 && (cr2_ >> 4 & 7) == master_compare_pulse) trigger_out(true, true);
-  machine_.adcs->timer_trigger(model_.number, i + 1);
+  raise(tim.sr.ccif.mask(i));
+  if (tim.dier.ccde.in(dier_, i)) machine_.dma->timer_request(traits_.number, i + 1);
+  if (i == 0 && master_mode() == master_compare_pulse) trigger_out(true, true);
+  machine_.adcs->timer_trigger(traits_.number, i + 1);
 }
 
 bool Timer::repetitions_over() {
-  if (!model_.advanced) return true;
+  if (!traits_.repetition) return true;
   if (repetitions_ != 0) {
     --repetitions_;
     return false;
@@ -142,7 +140,7 @@ void Timer::end_ramp(Ticks now) {
   if (!past_reload && repetitions_over()) update_event(false);
   if (!centre_aligned() && down_) count_ = active_reload_;
   begin_ramp(now);
-  for (unsigned i = 0; i < model_.channels; ++i) {
+  for (unsigned i = 0; i < traits_.channels; ++i) {
     if (selection(i) != 0) continue;
     if (!centre_aligned() && channels_[i].active_compare == count_) matched(i);
     const unsigned mode = output_mode(i);
@@ -151,22 +149,22 @@ void Timer::end_ramp(Ticks now) {
 }
 
 void Timer::update_event(bool by_software) {
-  if ((cr1_ & update_disable) != 0) return;
+  if (tim.cr1.udis.in(cr1_)) return;
   active_prescaler_ = psc_;
   active_reload_ = arr_;
   repetitions_ = rcr_;
   for (auto& channel : channels_) channel.active_compare = channel.compare;
-  if (!by_software || (cr1_ & update_request_source) == 0) {
-    raise(update_flag);
-    if ((dier_ & update_dma) != 0) machine_.dma->timer_request(model_.number, 0);
+  if (!by_software || !tim.cr1.urs.in(cr1_)) {
+    raise(tim.sr.uif.mask());
+    if (tim.dier.ude.in(dier_)) machine_.dma->timer_request(traits_.number, 0);
   }
-  if ((bdtr_ & automatic_output) != 0 && (bdtr_ & main_output) == 0) {
-    bdtr_ |= main_output;
+  if (tim.bdtr.aoe.in(bdtr_) && !tim.bdtr.moe.in(bdtr_)) {
+    bdtr_ |= tim.bdtr.moe.mask();
     check_break();
     configure_outputs();
   }
-  if (!by_software && (cr1_ & one_pulse) != 0) cr1_ &= ~enable;
-  if ((cr2_ >> 4 & 7) == master_update) trigger_out(true, true);
+  if (!by_software && tim.cr1.opm.in(cr1_)) cr1_ &= ~tim.cr1.cen.mask();
+  if (master_mode() == master_update) trigger_out(true, true);
 }
 
 void Timer::reinitialise(bool by_software) {
@@ -189,7 +187,7 @@ void Timer::count_one(bool down) {
     count_ = wrapped ? 0 : (count_ + 1) & limit_;
   }
   if (wrapped && repetitions_over()) update_event(false);
-  for (unsigned i = 0; i < model_.channels; ++i)
+  for (unsigned i = 0; i < traits_.channels; ++i)
     if (selection(i) == 0 && channels_[i].active_compare == count_) matched(i);
 }
 
@@ -202,14 +200,14 @@ void Timer::step(Ticks now) {
 }
 
 bool Timer::update_needed() const {
-  return (dier_ & (update_interrupt | update_dma)) != 0 || (cr1_ & one_pulse) != 0 ||
-         ((cr2_ >> 4 & 7) == master_update && (machine_.adcs->listens_to_timer(model_.number, trigger_output) ||
-                                               machine_.timers->has_slave(model_.number)));
+  return tim.dier.uie.in(dier_) || tim.dier.ude.in(dier_) || tim.cr1.opm.in(cr1_) ||
+         (master_mode() == master_update && (machine_.adcs->listens_to_timer(traits_.number, trigger_output) ||
+                                             machine_.timers->has_slave(traits_.number)));
 }
 
 Ticks Timer::update_time() const {
   const std::uint64_t later_ramps = centre_aligned() ? active_reload_ : std::uint64_t{active_reload_} + 1;
-  return time_of(ramp_length_ + (model_.advanced ? repetitions_ * later_ramps : 0));
+  return time_of(ramp_length_ + (traits_.repetition ? repetitions_ * later_ramps : 0));
 }
 
 void Timer::plan() {
@@ -217,11 +215,11 @@ void Timer::plan() {
   next_tick_ = ramp_length_;
   std::uint64_t next_needed = no_match;
   bool any_needed = false;
-  for (unsigned i = 0; i < model_.channels; ++i) {
+  for (unsigned i = 0; i < traits_.channels; ++i) {
     const auto& channel = channels_[i];
-    const bool to_processor = ((dier_ >> (1 + i) | dier_ >> (9 + i)) & 1) != 0 ||
-                              machine_.adcs->listens_to_timer(model_.number, i + 1) ||
-                              ((cr2_ >> 4 & 7) >= master_compare_pulse && machine_.timers->has_slave(model_.number));
+    const bool to_processor = tim.dier.ccie.in(dier_, i) || tim.dier.ccde.in(dier_, i) ||
+                              machine_.adcs->listens_to_timer(traits_.number, i + 1) ||
+                              (master_mode() >= master_compare_pulse && machine_.timers->has_slave(traits_.number));
     any_needed |= to_processor;
     if (channel.match == no_match || channel.match <= accounted_) continue;
     if (channel.needed || to_processor) next_tick_ = std::min(next_tick_, channel.match);
@@ -240,8 +238,8 @@ void Timer::plan_again() {
 }
 
 void Timer::trigger_out(bool level, bool is_pulse) {
-  machine_.timers->trigger_from(model_.number, level, is_pulse);
-  if (level) machine_.adcs->timer_trigger(model_.number, trigger_output);
+  machine_.timers->trigger_from(traits_.number, level, is_pulse);
+  if (level) machine_.adcs->timer_trigger(traits_.number, trigger_output);
 }
 
 }  // namespace inkwell::virtual_board

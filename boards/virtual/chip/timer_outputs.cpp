@@ -2,12 +2,10 @@
 #include "adc.hpp"
 #include "dma.hpp"
 #include "pins.hpp"
-#include "timer_bits.hpp"
+#include "timer_map.hpp"
 #include "timers.hpp"
 
 namespace inkwell::virtual_board {
-
-using namespace timer_bits;
 
 bool Timer::compare_level(unsigned i, std::uint32_t count) const {
   const std::uint32_t compare = channels_[i].active_compare;
@@ -21,56 +19,58 @@ void Timer::set_reference(unsigned i, bool level) {
   if (channel.reference == level) return;
   channel.reference = level;
   drive_outputs(i);
-  if ((cr2_ >> 4 & 7) == 4 + i) trigger_out(level, false);
+  if (master_mode() == compare_reference_1 + i) trigger_out(level, false);
 }
 
 void Timer::drive_outputs(unsigned i) {
   const auto& channel = channels_[i];
-  machine_.pins->timer_output(model_.number, i, channel.reference ? channel.when_active : channel.when_inactive);
-  if (model_.advanced && i < 3)
-    machine_.pins->timer_output(model_.number, complementary_1 + i,
+  machine_.pins->timer_output(traits_.number, i, channel.reference ? channel.when_active : channel.when_inactive);
+  if (i < traits_.complementary)
+    machine_.pins->timer_output(traits_.number, complementary_1 + i,
                                 channel.reference ? channel.complement_when_active : channel.complement_when_inactive);
 }
 
 void Timer::configure_channel(unsigned i) {
   auto& channel = channels_[i];
   const auto level = [](bool high) { return high ? PinLevel::high : PinLevel::low; };
-  const std::uint32_t bits = ccer_ >> 4 * i;
-  const bool output = (bits & 1) != 0, inverted = (bits & 2) != 0;
-  const bool complement = model_.advanced && i < 3 && (bits & 4) != 0, complement_inverted = (bits & 8) != 0;
+  const bool output = tim.ccer.cce.in(ccer_, i), inverted = tim.ccer.ccp.in(ccer_, i);
+  const bool has_complement = i < traits_.complementary;
+  const bool complement = has_complement && tim.ccer.ccne.in(ccer_, i);
+  const bool complement_inverted = tim.ccer.ccnp.in(ccer_, i);
   channel.when_active = channel.when_inactive = PinLevel::floating;
   channel.complement_when_active = channel.complement_when_inactive = PinLevel::floating;
   channel.needed = false;
   if (selection(i) != 0) return;  // an input
 
   // RM0090, table "Output control bits for complementary OCx and OCxN channels with break feature".
-  if (!model_.advanced || (bdtr_ & main_output) != 0) {
+  if (outputs_on()) {
     if (output) {
       channel.when_active = level(!inverted);
       channel.when_inactive = level(inverted);
-    } else if (complement && (bdtr_ & off_state_run) != 0) {
+    } else if (complement && tim.bdtr.ossr.in(bdtr_)) {
       channel.when_active = channel.when_inactive = level(inverted);
     }
     if (complement) {
       // Beside OCx its complement; alone it follows the reference itself.
       channel.complement_when_active = level(output == complement_inverted);
       channel.complement_when_inactive = level(output != complement_inverted);
-      if (output && (bdtr_ & 0xFF) != 0) machine_.log.say_once("TIMx_BDTR.DTG: dead time is not modelled, taken as 0");
-    } else if (model_.advanced && i < 3 && output && (bdtr_ & off_state_run) != 0) {
+      if (output && tim.bdtr.dtg.in(bdtr_))
+        machine_.log.say_once("TIMx_BDTR.DTG: dead time is not modelled, taken as 0");
+    } else if (has_complement && output && tim.bdtr.ossr.in(bdtr_)) {
       channel.complement_when_active = channel.complement_when_inactive = level(complement_inverted);
     }
     channel.needed = output || complement;
-  } else if ((bdtr_ & off_state_idle) != 0 && (output || complement)) {
-    channel.when_active = channel.when_inactive = level((cr2_ >> (8 + 2 * i) & 1) != 0);
-    if (i < 3)
-      channel.complement_when_active = channel.complement_when_inactive = level((cr2_ >> (9 + 2 * i) & 1) != 0);
+  } else if (tim.bdtr.ossi.in(bdtr_) && (output || complement)) {
+    channel.when_active = channel.when_inactive = level(tim.cr2.ois.in(cr2_, i));
+    if (has_complement)
+      channel.complement_when_active = channel.complement_when_inactive = level(tim.cr2.oisn.in(cr2_, i));
   }
-  if ((cr2_ >> 4 & 7) >= master_compare_pulse) channel.needed = true;
+  if (master_mode() >= master_compare_pulse) channel.needed = true;
 }
 
 void Timer::configure_outputs() {
   const std::uint32_t count = count_now();
-  for (unsigned i = 0; i < model_.channels; ++i) {
+  for (unsigned i = 0; i < traits_.channels; ++i) {
     configure_channel(i);
     switch (output_mode(i)) {
       case force_inactive: channels_[i].reference = false; break;
@@ -84,29 +84,29 @@ void Timer::configure_outputs() {
 }
 
 void Timer::check_break() {
-  if (!model_.advanced || (bdtr_ & break_enable) == 0) return;
-  const bool active = break_input_ == ((bdtr_ & break_polarity) != 0);
+  if (!traits_.breaks || !tim.bdtr.bke.in(bdtr_)) return;
+  const bool active = break_input_ == tim.bdtr.bkp.in(bdtr_);
   if (!active) return;
-  bdtr_ &= ~main_output;
-  raise(break_flag);
+  bdtr_ &= ~tim.bdtr.moe.mask();
+  raise(tim.sr.bif.mask());
 }
 
 void Timer::capture(unsigned i) {
   auto& channel = channels_[i];
-  if ((sr_ & capture_compare_1 << i) != 0) sr_ |= overcapture_1 << i;
+  if (tim.sr.ccif.in(sr_, i)) sr_ |= tim.sr.ccof.mask(i);
   channel.compare = channel.active_compare = count_now();
-  raise(capture_compare_1 << i);
-  if ((dier_ >> (9 + i) & 1) != 0) machine_.dma->timer_request(model_.number, i + 1);
-  if (i == 0 && (cr2_ >> 4 & 7) == master_compare_pulse) trigger_out(true, true);
+  raise(tim.sr.ccif.mask(i));
+  if (tim.dier.ccde.in(dier_, i)) machine_.dma->timer_request(traits_.number, i + 1);
+  if (i == 0 && master_mode() == master_compare_pulse) trigger_out(true, true);
 }
 
 void Timer::count_encoder_edge(unsigned changed) {
   // RM0090, table "Counting direction versus encoder signals"; CCxP inverts an input.
   const unsigned mode = slave_mode();
-  if ((cr1_ & enable) == 0) return;
+  if (!enabled()) return;
   if ((mode == 1 && changed == 0) || (mode == 2 && changed == 1)) return;
-  const bool first = channels_[0].input != ((ccer_ & 1u << 1) != 0);
-  const bool second = channels_[1].input != ((ccer_ & 1u << 5) != 0);
+  const bool first = channels_[0].input != tim.ccer.ccp.in(ccer_, 0);
+  const bool second = channels_[1].input != tim.ccer.ccp.in(ccer_, 1);
   const bool down = changed == 0 ? first == second : first != second;
   count_one(down);
 }
@@ -115,17 +115,17 @@ void Timer::channel_edge(unsigned i) {
   const bool high = channels_[i].input;
   // Captures: channel i from its own input, its neighbour through the cross connection.
   for (const unsigned target : {i, i ^ 1}) {
-    if (target >= model_.channels || selection(target) != (target == i ? 1u : 2u)) continue;
-    const std::uint32_t bits = ccer_ >> 4 * target;
-    if ((bits & 1) == 0) continue;
-    const bool both = (bits & 0xA) == 0xA, falling = (bits & 2) != 0;
+    if (target >= traits_.channels || selection(target) != (target == i ? 1u : 2u)) continue;
+    if (!tim.ccer.cce.in(ccer_, target)) continue;
+    const bool falling = tim.ccer.ccp.in(ccer_, target), both = falling && tim.ccer.ccnp.in(ccer_, target);
     if (both || high != falling) capture(target);
   }
-  const unsigned source = smcr_ >> 4 & 7;
+  const unsigned source = trigger_source();
   if (encoder_mode() || slave_mode() == 0) return;
-  const bool inverted = (ccer_ >> (4 * i + 1) & 1) != 0;
-  if (source == 4 && i == 0) trigger_in(true, true);
-  if ((source == 5 && i == 0) || (source == 6 && i == 1)) trigger_in(high != inverted, false);
+  const bool inverted = tim.ccer.ccp.in(ccer_, i);
+  if (source == input_1_edge && i == 0) trigger_in(true, true);
+  if ((source == filtered_input_1 && i == 0) || (source == filtered_input_2 && i == 1))
+    trigger_in(high != inverted, false);
 }
 
 void Timer::input_changed(unsigned line, bool high) {
@@ -136,14 +136,15 @@ void Timer::input_changed(unsigned line, bool high) {
     return;
   }
   if (line == external_trigger) {
-    const bool inverted = (smcr_ & 1u << 15) != 0;
-    if ((smcr_ >> 4 & 7) == 7) trigger_in(high != inverted, false);
+    const bool inverted = tim.smcr.etp.in(smcr_);
+    if (trigger_source() == external_input) trigger_in(high != inverted, false);
     return;
   }
-  if (line >= model_.channels) return;
+  if (line >= traits_.channels) return;
   channels_[line].input = high;
   if (encoder_mode() && line < 2) {
-    if ((ccmr_[0] & 0xF0F0) != 0) machine_.log.say_once("TIMx_CCMR1.ICxF: input filters are not modelled");
+    if ((ccmr_[0] & tim.ccmr1.icf.masks()) != 0)
+      machine_.log.say_once("TIMx_CCMR1.ICxF: input filters are not modelled");
     count_encoder_edge(line);
   }
   channel_edge(line);
@@ -152,13 +153,13 @@ void Timer::input_changed(unsigned line, bool high) {
 void Timer::connect_input(unsigned line, bool high) {
   if (line == break_input)
     break_input_ = high;
-  else if (line < model_.channels)
+  else if (line < traits_.channels)
     channels_[line].input = high;
 }
 
 void Timer::internal_trigger(unsigned master, bool level, bool is_pulse) {
-  const unsigned source = smcr_ >> 4 & 7;
-  if (!model_.is_slave || source > 3 || model_.internal_triggers[source] != master) return;
+  const unsigned source = trigger_source();
+  if (!traits_.slave || source > 3 || traits_.internal_triggers[source] != master) return;
   trigger_in(level, is_pulse);
 }
 
@@ -175,17 +176,17 @@ void Timer::trigger_in(bool level, bool is_pulse) {
       begin_ramp(runs() ? now : ramp_start_);
       break;
     case trigger_mode:
-      if (level && (cr1_ & enable) == 0) {
-        cr1_ |= enable;
+      if (level && !enabled()) {
+        cr1_ |= tim.cr1.cen.mask();
         begin_ramp(now);
       }
       break;
     case external_clock:
-      if (level && (cr1_ & enable) != 0) count_one(down_);
+      if (level && enabled()) count_one(down_);
       break;
     default: return;
   }
-  if (level) raise(trigger_flag);
+  if (level) raise(tim.sr.tif.mask());
 }
 
 }  // namespace inkwell::virtual_board

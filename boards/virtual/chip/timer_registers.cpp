@@ -2,53 +2,84 @@
 #include "adc.hpp"
 #include "dma.hpp"
 #include "pins.hpp"
-#include "timer_bits.hpp"
+#include "timer_map.hpp"
 #include "timers.hpp"
 
 namespace inkwell::virtual_board {
 
-using namespace timer_bits;
-
 namespace {
 
-enum : std::uint32_t {
-  cr1 = 0x00,
-  cr2 = 0x04,
-  smcr = 0x08,
-  dier = 0x0C,
-  sr = 0x10,
-  egr = 0x14,
-  ccmr1 = 0x18,
-  ccmr2 = 0x1C,
-  ccer = 0x20,
-  cnt = 0x24,
-  psc = 0x28,
-  arr = 0x2C,
-  rcr = 0x30,
-  ccr1 = 0x34,
-  ccr4 = 0x40,
-  bdtr = 0x44,
-  dcr = 0x48,
-  dmar = 0x4C,
-  option = 0x50,
-};
-
-// Positions: RM0090, table "Vector table". Internal triggers: tables "TIMx internal trigger connection".
-constexpr TimerModel models[14] = {
-    {1, 16, 4, true, true, true, true, true, 25, 27, 26, 24, {5, 2, 3, 4}},
-    {2, 32, 4, false, false, true, true, true, 28, 28, 28, 0, {1, 8, 3, 4}},
-    {3, 16, 4, false, false, true, true, true, 29, 29, 29, 0, {1, 2, 5, 4}},
-    {4, 16, 4, false, false, true, true, true, 30, 30, 30, 0, {1, 2, 3, 8}},
-    {5, 32, 4, false, false, true, true, true, 50, 50, 50, 0, {2, 3, 4, 8}},
-    {6, 16, 0, false, false, false, true, false, 54, 54, 54, 0, {}},
-    {7, 16, 0, false, false, false, true, false, 55, 55, 55, 0, {}},
-    {8, 16, 4, true, true, true, true, true, 44, 46, 45, 43, {1, 2, 4, 5}},
-    {9, 16, 2, true, false, false, false, true, 24, 24, 24, 0, {2, 3, 10, 11}},
-    {10, 16, 1, true, false, false, false, false, 25, 25, 25, 0, {}},
-    {11, 16, 1, true, false, false, false, false, 26, 26, 26, 0, {}},
-    {12, 16, 2, false, false, false, false, true, 43, 43, 43, 0, {4, 5, 13, 14}},
-    {13, 16, 1, false, false, false, false, false, 44, 44, 44, 0, {}},
-    {14, 16, 1, false, false, false, false, false, 45, 45, 45, 0, {}},
+// Internal triggers: RM0090, tables "TIMx internal trigger connection".
+constexpr TimerTraits timer_traits[14] = {
+    {.number = 1,
+     .on_apb2 = true,
+     .channels = 4,
+     .complementary = 3,
+     .repetition = true,
+     .breaks = true,
+     .up_and_down = true,
+     .master = true,
+     .slave = true,
+     .interrupts = {.update = 25, .capture = 27, .trigger = 26, .break_input = 24},
+     .internal_triggers = {5, 2, 3, 4}},
+    {.number = 2,
+     .bits = 32,
+     .channels = 4,
+     .up_and_down = true,
+     .master = true,
+     .slave = true,
+     .interrupts = TimerInterrupts::shared(28),
+     .internal_triggers = {1, 8, 3, 4}},
+    {.number = 3,
+     .channels = 4,
+     .up_and_down = true,
+     .master = true,
+     .slave = true,
+     .interrupts = TimerInterrupts::shared(29),
+     .internal_triggers = {1, 2, 5, 4}},
+    {.number = 4,
+     .channels = 4,
+     .up_and_down = true,
+     .master = true,
+     .slave = true,
+     .interrupts = TimerInterrupts::shared(30),
+     .internal_triggers = {1, 2, 3, 8}},
+    {.number = 5,
+     .bits = 32,
+     .channels = 4,
+     .up_and_down = true,
+     .master = true,
+     .slave = true,
+     .interrupts = TimerInterrupts::shared(50),
+     .internal_triggers = {2, 3, 4, 8}},
+    {.number = 6, .master = true, .interrupts = TimerInterrupts::shared(54)},
+    {.number = 7, .master = true, .interrupts = TimerInterrupts::shared(55)},
+    {.number = 8,
+     .on_apb2 = true,
+     .channels = 4,
+     .complementary = 3,
+     .repetition = true,
+     .breaks = true,
+     .up_and_down = true,
+     .master = true,
+     .slave = true,
+     .interrupts = {.update = 44, .capture = 46, .trigger = 45, .break_input = 43},
+     .internal_triggers = {1, 2, 4, 5}},
+    {.number = 9,
+     .on_apb2 = true,
+     .channels = 2,
+     .slave = true,
+     .interrupts = TimerInterrupts::shared(24),
+     .internal_triggers = {2, 3, 10, 11}},
+    {.number = 10, .on_apb2 = true, .channels = 1, .interrupts = TimerInterrupts::shared(25)},
+    {.number = 11, .on_apb2 = true, .channels = 1, .interrupts = TimerInterrupts::shared(26)},
+    {.number = 12,
+     .channels = 2,
+     .slave = true,
+     .interrupts = TimerInterrupts::shared(43),
+     .internal_triggers = {4, 5, 13, 14}},
+    {.number = 13, .channels = 1, .interrupts = TimerInterrupts::shared(44)},
+    {.number = 14, .channels = 1, .interrupts = TimerInterrupts::shared(45)},
 };
 
 }  // namespace
@@ -61,150 +92,156 @@ void Timer::raise(std::uint32_t flags) {
 void Timer::update_interrupts() {
   const std::uint32_t asserted = sr_ & dier_;
   auto& nvic = machine_.nvic;
-  if (!model_.advanced) {
-    nvic.set_source(model_.update_position, model_.number, (asserted & 0x5F) != 0);
+  const auto& to = traits_.interrupts;
+  // DIER's enables stand at the bits of SR's flags.
+  constexpr std::uint32_t update = tim.sr.uif.mask(), captures = tim.sr.ccif.masks(), breaks = tim.sr.bif.mask(),
+                          triggers = tim.sr.tif.mask() | tim.sr.comif.mask();
+  if (to.update == to.capture) {
+    nvic.set_source(to.update, traits_.number, (asserted & (update | captures | triggers)) != 0);
     return;
   }
-  nvic.set_source(model_.update_position, model_.number, (asserted & update_flag) != 0);
-  nvic.set_source(model_.capture_position, model_.number, (asserted & 0x1E) != 0);
-  nvic.set_source(model_.trigger_position, model_.number, (asserted & 0x60) != 0);
-  nvic.set_source(model_.break_position, model_.number, (asserted & break_flag) != 0);
+  nvic.set_source(to.update, traits_.number, (asserted & update) != 0);
+  nvic.set_source(to.capture, traits_.number, (asserted & captures) != 0);
+  nvic.set_source(to.trigger, traits_.number, (asserted & triggers) != 0);
+  nvic.set_source(to.break_input, traits_.number, (asserted & breaks) != 0);
 }
 
 std::uint32_t Timer::stored(std::uint32_t offset) const {
   switch (offset) {
-    case cr1: return (cr1_ & ~direction) | (down_ ? direction : 0u);
-    case cr2: return cr2_;
-    case smcr: return smcr_;
-    case dier: return dier_;
-    case ccmr1: return ccmr_[0];
-    case ccmr2: return ccmr_[1];
-    case ccer: return ccer_;
-    case psc: return psc_;
-    case arr: return arr_;
-    case rcr: return rcr_;
-    case bdtr: return bdtr_;
-    case dcr: return dcr_;
-    case option: return or_;
-    case sr: return 0xFFFF'FFFF;  // zeros clear: what is not written stays
+    case tim.cr1: return (cr1_ & ~tim.cr1.dir.mask()) | tim.cr1.dir.with(down_);
+    case tim.cr2: return cr2_;
+    case tim.smcr: return smcr_;
+    case tim.dier: return dier_;
+    case tim.ccmr1: return ccmr_[0];
+    case tim.ccmr2: return ccmr_[1];
+    case tim.ccer: return ccer_;
+    case tim.psc: return psc_;
+    case tim.arr: return arr_;
+    case tim.rcr: return rcr_;
+    case tim.bdtr: return bdtr_;
+    case tim.dcr: return dcr_;
+    case tim.option: return or_;
+    case tim.sr: return 0xFFFF'FFFF;  // zeros clear: what is not written stays
     default: break;
   }
-  return offset >= ccr1 && offset <= ccr4 ? channels_[(offset - ccr1) / 4].compare : 0;
+  return tim.ccr.covers(offset) ? channels_[tim.ccr.index(offset)].compare : 0;
 }
 
 std::uint32_t Timer::read_word(std::uint32_t offset) {
   switch (offset) {
-    case sr:
+    case tim.sr:
       if (runs()) account(tick_at(machine_.timeline.now()));
       return sr_;
-    case cnt:
+    case tim.cnt:
       if (encoder_mode() || slave_mode() == external_clock) machine_.advance_circuit(Machine::input_age_limit);
       return count_now();
-    case egr: return 0;
-    case dmar: machine_.log.note("TIM" + std::to_string(model_.number) + " DMA burst,", offset, false, 0); return 0;
+    case tim.egr: return 0;
+    case tim.dmar:
+      machine_.log.note("TIM" + std::to_string(traits_.number) + " DMA burst,", offset, false, 0);
+      return 0;
     default: break;
   }
-  if (offset >= ccr1 && offset <= ccr4) {
-    const unsigned i = (offset - ccr1) / 4;
+  if (tim.ccr.covers(offset)) {
+    const unsigned i = tim.ccr.index(offset);
     // Reading a captured value acknowledges it.
     if (selection(i) != 0) {
-      sr_ &= ~(capture_compare_1 << i);
+      sr_ &= ~tim.sr.ccif.mask(i);
       update_interrupts();
     }
     return channels_[i].compare;
   }
-  if (offset <= option) return stored(offset);
-  machine_.log.note("TIM" + std::to_string(model_.number), offset, false, 0);
+  if (offset <= tim.option) return stored(offset);
+  machine_.log.note("TIM" + std::to_string(traits_.number), offset, false, 0);
   return 0;
 }
 
 void Timer::write_control(std::uint32_t value) {
   settle();
-  const bool was_running = runs(), was_enabled = (cr1_ & enable) != 0, was_centred = centre_aligned();
-  cr1_ = value & 0x3FF;
-  if (!model_.counts_down) cr1_ &= ~0x70u;
+  const bool was_running = runs(), was_enabled = enabled(), was_centred = centre_aligned();
+  cr1_ = value & writable(tim.cr1);
+  if (!traits_.up_and_down) cr1_ &= ~(tim.cr1.dir.mask() | tim.cr1.cms.mask());
   // DIR is read-only in centre-aligned and encoder modes.
   if (!centre_aligned() && !encoder_mode())
-    down_ = (cr1_ & direction) != 0;
+    down_ = tim.cr1.dir.in(cr1_);
   else if (!was_centred && centre_aligned() && !was_enabled)
-    down_ = (value & direction) != 0;
+    down_ = tim.cr1.dir.in(value);
   begin_ramp(was_running && runs() ? ramp_start_ : machine_.timeline.now());
-  if (((cr1_ & enable) != 0) != was_enabled && (cr2_ >> 4 & 7) == master_enable)
-    trigger_out((cr1_ & enable) != 0, false);
+  if (enabled() != was_enabled && master_mode() == master_enable) trigger_out(enabled(), false);
 }
 
 void Timer::write_events(std::uint32_t value) {
-  if ((value & 1) != 0) {
+  if (tim.egr.ug.in(value)) {
     reinitialise(true);
-    if ((cr2_ >> 4 & 7) == master_reset) trigger_out(true, true);
+    if (master_mode() == master_reset) trigger_out(true, true);
   }
-  for (unsigned i = 0; i < model_.channels; ++i)
-    if ((value >> (1 + i) & 1) != 0) {
+  for (unsigned i = 0; i < traits_.channels; ++i)
+    if (tim.egr.ccg.in(value, i)) {
       if (selection(i) != 0)
         capture(i);
       else
-        raise(capture_compare_1 << i);
+        raise(tim.sr.ccif.mask(i));
     }
-  if ((value & trigger_flag) != 0) raise(trigger_flag);
-  if (model_.advanced && (value & break_flag) != 0) {
-    bdtr_ &= ~main_output;
-    raise(break_flag);
+  if (tim.egr.tg.in(value)) raise(tim.sr.tif.mask());
+  if (traits_.breaks && tim.egr.bg.in(value)) {
+    bdtr_ &= ~tim.bdtr.moe.mask();
+    raise(tim.sr.bif.mask());
     configure_outputs();
   }
 }
 
 void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
-    case cr1: return write_control(value);
-    case cr2: cr2_ = value & 0x7FFF; break;
-    case smcr: {
+    case tim.cr1: return write_control(value);
+    case tim.cr2: cr2_ = value & writable(tim.cr2); break;
+    case tim.smcr: {
       settle();
-      smcr_ = value & 0xFFF7;
-      const unsigned source = smcr_ >> 4 & 7;
-      const bool listens = model_.is_slave && slave_mode() >= reset_mode && source < 4;
-      machine_.timers->set_slave(model_.number, source < 4 ? model_.internal_triggers[source] : 0, listens);
-      if ((smcr_ & 1u << 14) != 0) machine_.log.say_once("TIMx_SMCR.ECE: external clock mode 2 is not modelled");
+      smcr_ = value & writable(tim.smcr);
+      const unsigned source = trigger_source();
+      const bool listens = traits_.slave && slave_mode() >= reset_mode && source < input_1_edge;
+      machine_.timers->set_slave(traits_.number, source < input_1_edge ? traits_.internal_triggers[source] : 0,
+                                 listens);
+      if (tim.smcr.ece.in(smcr_)) machine_.log.say_once("TIMx_SMCR.ECE: external clock mode 2 is not modelled");
       break;
     }
-    case dier:
-      dier_ = value & 0x7FFF;
+    case tim.dier:
+      dier_ = value & writable(tim.dier);
       update_interrupts();
       break;
-    case sr:
+    case tim.sr:
       if (runs()) account(tick_at(machine_.timeline.now()));
       sr_ &= value;
       update_interrupts();
       return;
-    case egr: return write_events(value);
-    case ccmr1: ccmr_[0] = value & 0xFFFF; break;
-    case ccmr2: ccmr_[1] = value & 0xFFFF; break;
-    case ccer: ccer_ = value & 0x3FFF; break;
-    case cnt:
+    case tim.egr: return write_events(value);
+    case tim.ccmr1: ccmr_[0] = value & writable(tim.ccmr1); break;
+    case tim.ccmr2: ccmr_[1] = value & writable(tim.ccmr2); break;
+    case tim.ccer: ccer_ = value & writable(tim.ccer); break;
+    case tim.cnt:
       settle();
       count_ = value & limit_;
       begin_ramp(machine_.timeline.now());
       configure_outputs();
       return;
-    case psc: psc_ = value & 0xFFFF; return;
-    case arr:
+    case tim.psc: psc_ = tim.psc.psc.of(value); return;
+    case tim.arr:
       arr_ = value & limit_;
-      if ((cr1_ & reload_preload) != 0) return;
+      if (tim.cr1.arpe.in(cr1_)) return;
       settle();
       active_reload_ = arr_;
       begin_ramp(ramp_start_);
       return;
-    case rcr: rcr_ = model_.advanced ? value & 0xFF : 0; return;
-    case bdtr:
-      if (!model_.advanced) return;
-      bdtr_ = value & 0xFFFF;
+    case tim.rcr: rcr_ = traits_.repetition ? tim.rcr.rep.of(value) : 0; return;
+    case tim.bdtr:
+      if (!traits_.breaks) return;
+      bdtr_ = value & writable(tim.bdtr);
       check_break();
       break;
-    case dcr: dcr_ = value; return;
-    case option: or_ = value; return;
+    case tim.dcr: dcr_ = value; return;
+    case tim.option: or_ = value; return;
     default:
-      if (offset >= ccr1 && offset <= ccr4) {
-        const unsigned i = (offset - ccr1) / 4;
-        if (i >= model_.channels || selection(i) != 0) return;
+      if (tim.ccr.covers(offset)) {
+        const unsigned i = tim.ccr.index(offset);
+        if (i >= traits_.channels || selection(i) != 0) return;
         channels_[i].compare = value & limit_;
         if (preloads(i)) return;
         settle();
@@ -213,11 +250,11 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
         configure_outputs();
         return;
       }
-      return machine_.log.note("TIM" + std::to_string(model_.number), offset, true, value);
+      return machine_.log.note("TIM" + std::to_string(traits_.number), offset, true, value);
   }
   // A new configuration of channels, triggers or interrupts; a channel without preload takes its value at once.
   settle();
-  for (unsigned i = 0; i < model_.channels; ++i)
+  for (unsigned i = 0; i < traits_.channels; ++i)
     if (!preloads(i)) channels_[i].active_compare = channels_[i].compare;
   begin_ramp(runs() ? ramp_start_ : machine_.timeline.now());
   configure_outputs();
@@ -225,7 +262,7 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
 }
 
 Timers::Timers(Machine& machine) {
-  for (const auto& model : models) timers_.emplace_back(machine, model);
+  for (const auto& traits : timer_traits) timers_.emplace_back(machine, traits);
   machine.timers = this;
 }
 
@@ -239,7 +276,7 @@ void Timers::set_slave(unsigned slave, unsigned master, bool listens) {
   for (auto& slaves : slaves_) slaves &= ~(1u << slave);
   if (listens) slaves_[master] |= 1u << slave;
   for (auto& t : timers_)
-    if (t.model().number != slave) t.plan_again();
+    if (t.traits().number != slave) t.plan_again();
 }
 
 void Timers::plan_again() {

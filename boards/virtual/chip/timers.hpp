@@ -12,20 +12,30 @@
 
 #include "alternate_functions.hpp"
 #include "bus.hpp"
+#include "timer_map.hpp"
 
 namespace inkwell::virtual_board {
 
-/// What a timer can do, and where its interrupts go.
-struct TimerModel {
-  std::uint8_t number;
-  std::uint8_t bits;
-  std::uint8_t channels;
-  bool on_apb2;
-  bool advanced;     ///< repetition counter, complementary outputs, break
-  bool counts_down;  ///< up and down, centre-aligned, encoder
-  bool is_master, is_slave;
-  std::uint8_t update_position, capture_position, trigger_position, break_position;
-  std::array<std::uint8_t, 4> internal_triggers;  ///< timers behind ITR0..3
+/// Positions in the vector table (RM0090, table "Vector table").
+struct TimerInterrupts {
+  std::uint8_t update, capture, trigger, break_input;
+  static constexpr TimerInterrupts shared(std::uint8_t position) { return {position, position, position, position}; }
+};
+
+/// What a timer can do, and what it is connected to.
+struct TimerTraits {
+  std::uint8_t number = 0;
+  bool on_apb2 = false;
+  std::uint8_t bits = 16;
+  std::uint8_t channels = 0;
+  std::uint8_t complementary = 0;  ///< channels that have a complementary output too
+  bool repetition = false;         ///< counts updates
+  bool breaks = false;             ///< break input, main output enable
+  bool up_and_down = false;        ///< counts down, centre-aligned, and encoders
+  bool master = false;             ///< has a trigger output
+  bool slave = false;              ///< has a trigger input
+  TimerInterrupts interrupts{};
+  std::array<std::uint8_t, 4> internal_triggers{};  ///< timers behind ITR0 to ITR3
 };
 
 /// Sources of a trigger for the ADCs: channel 1..4 of a timer, or its trigger output.
@@ -33,7 +43,7 @@ inline constexpr unsigned trigger_output = 0;
 
 class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
  public:
-  Timer(Machine& machine, const TimerModel& model);
+  Timer(Machine& machine, const TimerTraits& traits);
   void reset() override;
   void step(Ticks now) override;
   void before_clock_change() override;
@@ -47,12 +57,13 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   void internal_trigger(unsigned master, bool level, bool is_pulse);
   /// Somebody's interest in this timer's events changed.
   void plan_again();
-  const TimerModel& model() const { return model_; }
+  const TimerTraits& traits() const { return traits_; }
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
+  std::span<const MapEntry> registers() const override { return shown<tim>(); }
 
  private:
   static constexpr std::uint64_t no_match = std::numeric_limits<std::uint64_t>::max();
@@ -73,9 +84,13 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   std::uint64_t tick_at(Ticks time) const { return clock().periods_in(time - ramp_start_, divider()); }
   std::uint32_t count_at(std::uint64_t tick) const;
   std::uint32_t count_now() const;
-  bool centre_aligned() const { return (cr1_ >> 5 & 3) != 0; }
-  unsigned slave_mode() const { return smcr_ & 7; }
-  bool encoder_mode() const { return slave_mode() >= 1 && slave_mode() <= 3; }
+  bool centre_aligned() const { return tim.cr1.cms.in(cr1_); }
+  bool enabled() const { return tim.cr1.cen.in(cr1_); }
+  unsigned slave_mode() const { return tim.smcr.sms.of(smcr_); }
+  unsigned trigger_source() const { return tim.smcr.ts.of(smcr_); }
+  unsigned master_mode() const { return tim.cr2.mms.of(cr2_); }
+  bool encoder_mode() const { return slave_mode() >= encoder_1 && slave_mode() <= encoder_3; }
+  bool outputs_on() const { return !traits_.breaks || tim.bdtr.moe.in(bdtr_); }
   bool runs() const;
   void settle();
   void begin_ramp(Ticks now);
@@ -93,9 +108,9 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   void trigger_out(bool level, bool is_pulse);
 
   // timer_outputs.cpp: compare references, outputs, break, inputs
-  unsigned output_mode(unsigned channel) const { return ccmr_[channel / 2] >> (8 * (channel % 2) + 4) & 7; }
-  unsigned selection(unsigned channel) const { return ccmr_[channel / 2] >> 8 * (channel % 2) & 3; }
-  bool preloads(unsigned channel) const { return (ccmr_[channel / 2] >> (8 * (channel % 2) + 3) & 1) != 0; }
+  unsigned output_mode(unsigned channel) const { return tim.ccmr1.ocm.of(ccmr_[channel / 2], channel % 2); }
+  unsigned selection(unsigned channel) const { return tim.ccmr1.ccs.of(ccmr_[channel / 2], channel % 2); }
+  bool preloads(unsigned channel) const { return tim.ccmr1.ocpe.in(ccmr_[channel / 2], channel % 2); }
   bool compare_level(unsigned channel, std::uint32_t count) const;
   void set_reference(unsigned channel, bool level);
   void drive_outputs(unsigned channel);
@@ -114,7 +129,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   void raise(std::uint32_t flags);
 
   Machine& machine_;
-  const TimerModel model_;
+  const TimerTraits traits_;
   Timeline::Slot slot_;
   std::uint32_t limit_;  ///< 2^bits - 1
   std::uint32_t cr1_ = 0, cr2_ = 0, smcr_ = 0, dier_ = 0, sr_ = 0, ccer_ = 0, psc_ = 0, arr_ = 0, rcr_ = 0, bdtr_ = 0,

@@ -8,12 +8,41 @@
 
 namespace inkwell::virtual_board {
 
+struct IndependentWatchdogRegisters {
+  struct : Register {
+    Field key{"KEY", 0, 16, Access::w};
+  } kr{{"KR", 0x00}};
+  struct : Register {
+    Field pr{"PR", 0, 3};
+  } pr{{"PR", 0x04}};
+  struct : Register {
+    Field rl{"RL", 0, 12};
+  } rlr{{"RLR", 0x08, 0xFFF}};
+  struct : Register {
+    Field pvu{"PVU", 0, 1, Access::r}, rvu{"RVU", 1, 1, Access::r};
+  } sr{{"SR", 0x0C}};
+};
+inline constexpr IndependentWatchdogRegisters iwdg;
+
+struct WindowWatchdogRegisters {
+  struct : Register {
+    Field t{"T", 0, 7}, wdga{"WDGA", 7, 1, Access::rs};
+  } cr{{"CR", 0x00, 0x7F}};
+  struct : Register {
+    Field w{"W", 0, 7}, wdgtb{"WDGTB", 7, 2}, ewi{"EWI", 9};
+  } cfr{{"CFR", 0x04, 0x7F}};
+  struct : Register {
+    Field ewif{"EWIF", 0, 1, Access::rc_w0};
+  } sr{{"SR", 0x08}};
+};
+inline constexpr WindowWatchdogRegisters wwdg;
+
 class IndependentWatchdog final : public RegisterBlock, public TimedPart {
  public:
   explicit IndependentWatchdog(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) {}
   void reset() override {
     prescaler_ = 0;
-    reload_ = 0xFFF;
+    reload_ = iwdg.rlr.reset_value;
     unlocked_ = runs_ = false;
     machine_.timeline.set(slot_, never, never);
   }
@@ -21,17 +50,17 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart {
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override {
-    return offset == prescaler_register ? prescaler_ : offset == reload_register ? reload_ : 0;  // SR: never busy
+    return offset == iwdg.pr ? prescaler_ : offset == iwdg.rlr ? reload_ : 0;  // SR: never busy
   }
   void write_word(std::uint32_t offset, std::uint32_t value) override {
-    if (offset == key_register) return write_key(value & 0xFFFF);
+    if (offset == iwdg.kr) return write_key(iwdg.kr.key.of(value));
     if (!unlocked_) return;
-    if (offset == prescaler_register) prescaler_ = value & 7;
-    if (offset == reload_register) reload_ = value & 0xFFF;
+    if (offset == iwdg.pr) prescaler_ = iwdg.pr.pr.of(value);
+    if (offset == iwdg.rlr) reload_ = iwdg.rlr.rl.of(value);
   }
+  std::span<const MapEntry> registers() const override { return shown<iwdg>(); }
 
  private:
-  static constexpr std::uint32_t key_register = 0x0, prescaler_register = 0x4, reload_register = 0x8;
   void write_key(std::uint32_t key) {
     unlocked_ = key == 0x5555;
     if (key == 0xCCCC) {
@@ -47,7 +76,7 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart {
   }
   Machine& machine_;
   Timeline::Slot slot_;
-  std::uint32_t prescaler_ = 0, reload_ = 0xFFF;
+  std::uint32_t prescaler_ = 0, reload_ = iwdg.rlr.reset_value;
   bool unlocked_ = false, runs_ = false;
 };
 
@@ -57,8 +86,8 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
     machine.clock_users.push_back(this);
   }
   void reset() override {
-    counter_ = 0x7F;
-    configuration_ = 0x7F;
+    counter_ = wwdg.cr.reset_value;
+    configuration_ = wwdg.cfr.reset_value;
     active_ = early_ = false;
     plan();
     update_interrupt();
@@ -66,9 +95,9 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
   void step(Ticks now) override {
     start_ = now;
     --counter_;
-    if (counter_ == 0x40) early_ = true;
+    if (counter_ == last_count) early_ = true;
     update_interrupt();
-    if (counter_ < 0x40)
+    if (counter_ < last_count)
       machine_.request_reset(ResetCause::window_watchdog);
     else
       plan();
@@ -81,37 +110,41 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override {
-    return offset == 0 ? counter_ | (active_ ? activation : 0u) : offset == 4 ? configuration_ : early_ ? 1u : 0u;
+    if (offset == wwdg.cr) return counter_ | wwdg.cr.wdga.with(active_);
+    if (offset == wwdg.cfr) return configuration_;
+    return wwdg.sr.ewif.with(early_);
   }
   void write_word(std::uint32_t offset, std::uint32_t value) override {
-    if (offset == 0) {
-      const bool outside = active_ && counter_ > (configuration_ & 0x7F);
-      active_ |= (value & activation) != 0;
-      counter_ = value & 0x7F;
+    if (offset == wwdg.cr) {
+      const bool outside = active_ && counter_ > wwdg.cfr.w.of(configuration_);
+      active_ |= wwdg.cr.wdga.in(value);
+      counter_ = wwdg.cr.t.of(value);
       start_ = machine_.timeline.now();
       // Too early, or at once below the limit.
-      if (outside || (active_ && counter_ < 0x40)) machine_.request_reset(ResetCause::window_watchdog);
+      if (outside || (active_ && counter_ < last_count)) machine_.request_reset(ResetCause::window_watchdog);
       plan();
-    } else if (offset == 4) {
-      configuration_ = value & 0x3FF;
+    } else if (offset == wwdg.cfr) {
+      configuration_ = value & writable(wwdg.cfr);
       plan();
     } else {
-      early_ = early_ && (value & 1) != 0;
+      early_ = early_ && wwdg.sr.ewif.in(value);
     }
     update_interrupt();
   }
+  std::span<const MapEntry> registers() const override { return shown<wwdg>(); }
 
  private:
-  static constexpr std::uint32_t activation = 1u << 7, early_interrupt = 1u << 9;
+  static constexpr std::uint32_t last_count = 0x40;  ///< one less resets the chip
   void plan() {
     if (!active_) return machine_.timeline.set(slot_, never, never);
-    const Ticks next = start_ + machine_.clocks.pclk1.duration(std::uint64_t{4096} << (configuration_ >> 7 & 3));
-    machine_.timeline.set(slot_, next, counter_ <= 0x41 ? next : never);
+    const Ticks next =
+        start_ + machine_.clocks.pclk1.duration(std::uint64_t{4096} << wwdg.cfr.wdgtb.of(configuration_));
+    machine_.timeline.set(slot_, next, counter_ <= last_count + 1 ? next : never);
   }
-  void update_interrupt() { machine_.nvic.set_source(0, 0, early_ && (configuration_ & early_interrupt) != 0); }
+  void update_interrupt() { machine_.nvic.set_source(0, 0, early_ && wwdg.cfr.ewi.in(configuration_)); }
   Machine& machine_;
   Timeline::Slot slot_;
-  std::uint32_t counter_ = 0x7F, configuration_ = 0x7F;
+  std::uint32_t counter_ = wwdg.cr.reset_value, configuration_ = wwdg.cfr.reset_value;
   Ticks start_ = 0;
   bool active_ = false, early_ = false;
 };

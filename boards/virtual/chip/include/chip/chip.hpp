@@ -132,6 +132,8 @@ class Chip {
   int exit_code() const;
   /// Fault and addresses in a sentence, once run_until() returned Stop::locked_up.
   const std::string& lockup_reason() const;
+  /// Registers of all peripherals, as their models declare them.
+  std::vector<RegisterMap> register_maps() const;
   /// Lines of unmodelled accesses so far.
   const std::vector<std::string>& unmodelled_accesses() const;
 

@@ -4,9 +4,11 @@
 // which are emptied by events.
 #pragma once
 
+#include <chip/register_map.hpp>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace inkwell::virtual_board {
 
@@ -41,6 +43,8 @@ class Peripheral {
   virtual std::uint32_t read(std::uint32_t offset, unsigned size) = 0;
   virtual void write(std::uint32_t offset, std::uint32_t value, unsigned size) = 0;
   virtual void reset() = 0;
+  /// Its registers under the names of the reference manual, if it is called `name` and lies at `base`.
+  virtual std::vector<RegisterMap> register_maps(const std::string&, std::uint32_t) const { return {}; }
 };
 
 /// Says once per place that firmware touched a register that is not modelled.

@@ -1,0 +1,49 @@
+// Power control (RM0090, PWR): the regulator is always ready.
+#pragma once
+
+#include "bus.hpp"
+
+namespace inkwell::virtual_board {
+
+struct PowerRegisters {
+  struct : Register {
+    Field lpds{"LPDS", 0}, pdds{"PDDS", 1}, cwuf{"CWUF", 2, 1, Access::w}, csbf{"CSBF", 3, 1, Access::w},
+        pvde{"PVDE", 4}, pls{"PLS", 5, 3}, dbp{"DBP", 8}, fpds{"FPDS", 9}, vos{"VOS", 14};
+  } cr{{"CR", 0x00, 0x4000}};
+  struct : Register {
+    Field ewup{"EWUP", 8}, bre{"BRE", 9}, vosrdy{"VOSRDY", 14, 1, Access::r};
+  } csr{{"CSR", 0x04}};
+};
+inline constexpr PowerRegisters pwr;
+
+class PowerControl final : public RegisterBlock {
+ public:
+  explicit PowerControl(Machine& machine) : machine_(machine) {}
+  void reset() override {
+    control_ = pwr.cr.reset_value;
+    status_ = 0;
+  }
+
+ protected:
+  std::uint32_t read_word(std::uint32_t offset) override {
+    if (offset == pwr.csr) return status_ | pwr.csr.vosrdy.mask();
+    return stored(offset);
+  }
+  void write_word(std::uint32_t offset, std::uint32_t value) override {
+    if (offset == pwr.cr) {
+      control_ = value & writable(pwr.cr);
+      if (pwr.cr.pdds.in(value)) machine_.log.say_once("PWR_CR.PDDS: standby is not modelled, the chip only sleeps");
+    }
+    if (offset == pwr.csr) status_ = value & writable(pwr.csr);
+  }
+  std::uint32_t stored(std::uint32_t offset) const override {
+    return offset == pwr.cr ? control_ : offset == pwr.csr ? status_ : 0;
+  }
+  std::span<const MapEntry> registers() const override { return shown<pwr>(); }
+
+ private:
+  Machine& machine_;
+  std::uint32_t control_ = pwr.cr.reset_value, status_ = 0;
+};
+
+}  // namespace inkwell::virtual_board
