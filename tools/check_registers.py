@@ -1,18 +1,22 @@
 #!/usr/bin/env python3
-"""Checks the typed register map in firmware/registers against an SVD file.
+"""Checks both descriptions of the chip's registers against an SVD file: the firmware's map and the emulator's.
 
-    tools/check_registers.py STM32F405.svd [--headers DIRECTORY]
+    tools/check_registers.py STM32F405.svd --firmware OBJECT --chip JSON
 
-Every register's address, every field's position and width is looked up in the SVD. Both sides are read strictly: a
-line of a header that is not of the map's form is an error, so nothing escapes the check. SVD files have errors and
-gaps of their own; what is known of them stands below, each with its reason, and is printed as such. A known difference
-that does not occur any more is an error too.
+OBJECT is a file that was compiled with the firmware's register map and debug information, in which the compiler has
+written down every register and field as it understood them (tests/firmware/registers/CMakeLists.txt makes it). JSON is
+what the program print-chip-registers prints of the emulator's declarations. Either may be left out.
+
+Every register's address, every field's position and width is looked up in the SVD. SVD files have errors and gaps of
+their own; what is known of them stands below, each with its reason, and is printed as such. A known difference that
+does not occur any more is an error too.
 
 Exit code 0: all agree, or differ as known. 1: differences, one line each. 2: the input cannot be read.
 """
 
 import argparse
 import dataclasses
+import json
 import pathlib
 import re
 import sys
@@ -23,9 +27,9 @@ import xml.etree.ElementTree
 
 @dataclasses.dataclass
 class Known:
-    """A difference that is the SVD's, or that has a reason. Patterns match whole names of our map, fields may be None
-    for a whole register and registers for a whole peripheral. `svd_name` is what the SVD has instead; None: nothing
-    that could be compared."""
+    """A difference that is the SVD's, or that has a reason. Patterns match whole names of our maps, fields may be None
+    for a whole register and registers for a whole peripheral. `svd_name` is what the SVD has instead, `|` between
+    several views of one register; None: nothing that could be compared."""
 
     peripheral: str
     register: str | None
@@ -37,6 +41,14 @@ class Known:
     def applies(self, *names: str) -> bool:
         patterns = [pattern for pattern in (self.peripheral, self.register, self.field) if pattern is not None]
         return len(patterns) == len(names) and all(map(re.fullmatch, patterns, names))
+
+    def concerns(self, peripheral) -> bool:
+        """The peripheral has what this is about."""
+        return bool(re.fullmatch(self.peripheral, peripheral.name)) and (
+            self.register is None or any(re.fullmatch(self.register, r.name) and (
+                self.field is None or any(re.fullmatch(self.field, f.name) for f in r.fields))
+                for r in peripheral.registers)
+        )
 
     def rename(self, name: str) -> str:
         """The SVD's name; `{}` in it stands for ours."""
@@ -57,8 +69,26 @@ def known_differences() -> list[Known]:
         Known("CORE_DEBUG", None, None, None, "not in the SVD; ARMv7-M Architecture Reference Manual: DEMCR at 0xE000EDFC"),
         Known("DWT", None, None, None, "not in the SVD; ARMv7-M Architecture Reference Manual: DWT_CTRL at 0xE0001000"),
         Known("OTG_FS_FIFO", None, None, None, 'not in the SVD; RM0090, "Data FIFO (DFIFO) access register map": 0x50001000'),
-        Known("TIM[18]", "CCMR[12]", None, "{}_Output", VIEWS),
-        Known("TIM[345]", "CCMR1", None, "{}_Input", VIEWS),
+        Known(r"TIM\d+", "CCMR[12]", None, "{0}_Output|{0}_Input", VIEWS),
+        Known(r"TIM\d+", "CCMR1", "IC1PSC", "ICPCS", "a misspelling in the SVD"),
+        Known(r"TIM\d+", "CCMR1", "IC2PSC", "IC2PCS", "a misspelling in the SVD"),
+        Known("TIM(9|12)", "CCMR1", "IC[12]F", None, "the SVD has three bits; RM0090, TIM9 and TIM12: four"),
+        Known("ADC[123]", "SMPR[12]", r"SMP\d+", None, "the SVD has the register as one field"),
+        Known("ADC_COMMON", "CCR", "MULTI", "MULT", "RM0090 calls it MULTI"),
+        Known("SYSCFG", "MEMRMP", None, "MEMRM", "RM0090 calls it SYSCFG_MEMRMP"),
+        Known("CRC", "CR", "RESET", "CR", "the SVD gives it the register's name"),
+        Known("RCC", "PLLI2SCFGR", "PLLI2S[NR]", "{}x", "the SVD has an x behind it"),
+        Known("RCC", "CSR", "PINRSTF", "PADRSTF", "RM0090 calls the pin's flag PINRSTF"),
+        Known("SCS", None, None, None, "not in the SVD, but for ACTLR; ARMv7-M Architecture Reference Manual, B3.2.2"),
+        Known("SCB", "SHCSR", None, "SHCRS", "a misspelling in the SVD"),
+        Known("SCB", "VTOR", "TBLOFF", None, "the SVD has bits 9 to 29; ARMv7-M has 7 to 31, with 1 to 3 kept at 0"),
+        Known("SCB", "SCR", "SEVONPEND", "SEVEONPEND", "a misspelling in the SVD"),
+        Known("SCB", "CCR", "UNALIGN_TRP", "UNALIGN__TRP", "a misspelling in the SVD"),
+        Known("SCB", "CFSR", "IACCVIOL", None, "the SVD has it at bit 1; ARMv7-M, B3.2.15: bit 0"),
+        Known("SCB", "HFSR", "DEBUGEVT", "DEBUG_VT", "ARMv7-M calls it DEBUGEVT"),
+        Known("SCB", "DFSR", None, None, "not in the SVD; ARMv7-M: 0xE000ED30"),
+        Known("FPU", "FPDSCR", None, None, "the SVD has a register of the core there; ARMv7-M: FPDSCR at 0xE000EF3C"),
+        Known("FPU", "MVFR[01]", None, None, "not in the SVD; ARMv7-M: 0xE000EF40 and 0xE000EF44"),
         Known("SCB", "CFSR", None, "CFSR_UFSR_BFSR_MMFSR", "the SVD spells out the three status registers in it"),
         Known("NVIC", "IPR20", None, None, "the SVD ends with interrupt 79; RM0090's vector table with 81"),
         Known("OTG_FS_GLOBAL", "G(?!RXSTSP).*|DIEPTXF[12]", None, "FS_{}", FS_PREFIX),
@@ -81,7 +111,7 @@ def known_differences() -> list[Known]:
     ]
 
 
-# ---- reading our map -------------------------------------------------------------------------------------------
+# ---- reading our maps ------------------------------------------------------------------------------------------
 
 
 class Unreadable(Exception):
@@ -98,10 +128,7 @@ class Field:
 @dataclasses.dataclass
 class Register:
     name: str
-    offset: int
-    stride: int = 0  # 0: not an array
-    count: int = 1
-    size_bits: int = 32
+    address: int
     fields: list[Field] = dataclasses.field(default_factory=list)
 
 
@@ -110,77 +137,125 @@ class Peripheral:
     name: str
     base: int
     registers: list[Register]
-    where: str
 
-
-NUMBER = r"(0x[0-9A-Fa-f]+|\d+)"
-IGNORED_LINE = re.compile(r"#pragma once|#include <[\w/.]+>|namespace inkwell::registers \{|\}")
-TEMPLATE_LINE = re.compile(r"template <std::uint32_t base>")
-STRUCT_LINE = re.compile(r"struct (\w+) \{")
-REGISTER_LINE = re.compile(rf"struct (\w+) : Register<base \+ {NUMBER}(?:, std::uint(8|16|32)_t)?> \{{(\}};)?")
-ARRAY_LINE = re.compile(
-    rf"struct (\w+) : RegisterArray<base \+ {NUMBER}, {NUMBER}, {NUMBER}(?:, std::uint(8|16|32)_t)?> \{{(\}};)?"
-)
-FIELD_LINE = re.compile(rf"using (\w+) = Field<(\w+), {NUMBER}, {NUMBER}>;")
-INSTANCE_LINE = re.compile(rf"using (\w+) = (\w+)<{NUMBER}>;")
+    def form(self) -> list:
+        """What it has in common with other peripherals of its kind."""
+        return [(register.name, register.address - self.base, register.fields) for register in self.registers]
 
 
 def number(text: str) -> int:
     return int(text, 0)
 
 
-def read_header(path: pathlib.Path) -> list[Peripheral]:
-    """The peripherals of one header; raises Unreadable on a line that is not of the map's form."""
-    forms: dict[str, list[Register]] = {}
-    peripherals = []
-    form: str | None = None
-    register: Register | None = None
-    for line_number, line in enumerate(path.read_text().splitlines(), start=1):
-        where = f"{path.name}:{line_number}"
-        text = re.sub(r"\s*//.*", "", line).strip()
-        if not text or TEMPLATE_LINE.fullmatch(text):
-            continue
-        if match := REGISTER_LINE.fullmatch(text):
-            new = Register(match[1], number(match[2]), size_bits=int(match[3] or 32))
-        elif match := ARRAY_LINE.fullmatch(text):
-            new = Register(match[1], number(match[2]), number(match[3]), number(match[4]), int(match[5] or 32))
-        else:
-            new = None
-        if new is not None:
-            if form is None or register is not None:
-                raise Unreadable(f"{where}: register {new.name} does not stand in a peripheral's struct")
-            forms[form].append(new)
-            register = None if text.endswith("};") else new
-        elif match := STRUCT_LINE.fullmatch(text):
-            if form is not None:
-                raise Unreadable(f"{where}: struct {match[1]} begins inside of {form}")
-            form = match[1]
-            forms[form] = []
-        elif match := FIELD_LINE.fullmatch(text):
-            if register is None or match[2] != register.name:
-                raise Unreadable(f"{where}: field {match[1]} names {match[2]}, but stands elsewhere")
-            register.fields.append(Field(match[1], number(match[3]), number(match[4])))
-        elif text == "};":
-            if register is not None:
-                register = None
-            elif form is not None:
-                form = None
-            else:
-                raise Unreadable(f"{where}: nothing is open that could end here")
-        elif match := INSTANCE_LINE.fullmatch(text):
-            if match[2] not in forms:
-                raise Unreadable(f"{where}: {match[1]} is made of the unknown struct {match[2]}")
-            peripherals.append(Peripheral(match[1], number(match[3]), forms[match[2]], where))
-        elif not IGNORED_LINE.fullmatch(text):
-            raise Unreadable(f"{where}: not of the register map's form (see register.hpp): {text}")
-    return peripherals
+class DebugInformation:
+    """The firmware's map as the compiler has understood it."""
+
+    def __init__(self, path: pathlib.Path):
+        try:
+            from elftools.elf.elffile import ELFFile
+        except ImportError as error:
+            raise Unreadable("pyelftools is missing: install Debian's package python3-pyelftools") from error
+        try:
+            self.file = open(path, "rb")  # noqa: SIM115 - read from as long as this object lives
+        except OSError as error:
+            raise Unreadable(f"cannot read {path}: {error}") from error
+        self.units = list(ELFFile(self.file).get_dwarf_info().iter_CUs())
+        self.path = path
+
+    @staticmethod
+    def name(entry) -> str:
+        attribute = entry.attributes.get("DW_AT_name")
+        return attribute.value.decode() if attribute else ""
+
+    @staticmethod
+    def children(entry, tag: str) -> list:
+        return [child for child in entry.iter_children() if child.tag == f"DW_TAG_{tag}"]
+
+    def type_of(self, entry):
+        """The type itself, behind all its other names."""
+        target = entry.get_DIE_from_attribute("DW_AT_type")
+        return self.type_of(target) if target.tag == "DW_TAG_typedef" else target
+
+    def template_values(self, entry) -> list[int]:
+        values = self.children(entry, "template_value_param")
+        return [value.attributes["DW_AT_const_value"].value for value in values]
+
+    def namespaces(self):
+        for unit in self.units:
+            for outer in self.children(unit.get_top_DIE(), "namespace"):
+                if self.name(outer) == "inkwell":
+                    yield from (n for n in self.children(outer, "namespace") if self.name(n) == "registers")
+
+    def peripherals(self) -> list[Peripheral]:
+        """The aliases in inkwell::registers::Peripherals; GCC writes none down that is outside of a class."""
+        structures = [s for namespace in self.namespaces() for s in self.children(namespace, "structure_type")]
+        listing = [structure for structure in structures if self.name(structure) == "Peripherals"]
+        aliases = [alias for structure in listing for alias in self.children(structure, "typedef")]
+        if not aliases:
+            raise Unreadable(f"{self.path} has no debug information of the firmware's register map")
+        return [self.peripheral(alias) for alias in aliases]
+
+    def peripheral(self, alias) -> Peripheral:
+        structure = self.type_of(alias)
+        if "DW_AT_declaration" in structure.attributes:
+            raise Unreadable(f"{self.name(alias)} is not instantiated in {self.path}")
+        (base,) = self.template_values(structure)
+        base &= 0xFFFFFFFF
+        registers = []
+        for entry in self.children(structure, "structure_type"):
+            registers += self.registers(entry, base)
+        return Peripheral(self.name(alias), base, registers)
+
+    def registers(self, entry, base: int) -> list[Register]:
+        name = self.name(entry)
+        bases = [self.type_of(inheritance) for inheritance in self.children(entry, "inheritance")]
+        fields = [self.field(alias, name) for alias in self.children(entry, "typedef")]
+        if len(bases) == 1 and self.name(bases[0]).startswith("RegisterArray<"):
+            address, stride, count = (value & 0xFFFFFFFF for value in self.template_values(bases[0]))
+            # CCR[0] is CCR1 in the timers; elsewhere, as ISER[0] is ISER0, the count begins with 0. An array of bytes
+            # is four to a register of the SVD, which has only the whole one.
+            first = 1 if name == "CCR" else 0
+            step = max(1, 4 // stride)
+            return [
+                Register(f"{name}{first + index // step}", address + stride * index, fields)
+                for index in range(0, count, step)
+            ]
+        if len(bases) == 1 and self.name(bases[0]).startswith("Register<"):
+            (address,) = self.template_values(bases[0])
+            return [Register(name, address & 0xFFFFFFFF, fields)]
+        raise Unreadable(f"{name} in the peripheral at 0x{base:08X} is neither a Register nor a RegisterArray")
+
+    def field(self, alias, register: str) -> Field:
+        # No field is an object here, so the compiler says no more of its type than the full name.
+        form = re.fullmatch(r"Field<.*::(\w+), (\d+)U?, (\d+)U?>", self.name(self.type_of(alias)))
+        if not form:
+            raise Unreadable(f"{register}.{self.name(alias)} is not a Field")
+        if form[1] != register:
+            raise Unreadable(f"{register}.{self.name(alias)} says that it is of {form[1]}")
+        return Field(self.name(alias), int(form[2]), int(form[3]))
 
 
-def read_map(directory: pathlib.Path) -> list[Peripheral]:
-    headers = sorted(path for path in directory.glob("*.hpp") if path.name != "register.hpp")
-    if not headers:
-        raise Unreadable(f"{directory} has no headers; give the folder of the register map with --headers")
-    return [peripheral for header in headers for peripheral in read_header(header)]
+def read_chip(path: pathlib.Path) -> list[Peripheral]:
+    """What print-chip-registers has printed."""
+    try:
+        peripherals = json.loads(path.read_text())
+        return [
+            Peripheral(
+                peripheral["name"],
+                peripheral["base"],
+                [
+                    Register(
+                        register["name"],
+                        peripheral["base"] + register["offset"],
+                        [Field(field["name"], field["position"], field["width"]) for field in register["fields"]],
+                    )
+                    for register in peripheral["registers"]
+                ],
+            )
+            for peripheral in peripherals
+        ]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise Unreadable(f"cannot read {path}, what print-chip-registers prints: {error!r}") from error
 
 
 # ---- reading the SVD -------------------------------------------------------------------------------------------
@@ -254,57 +329,73 @@ class Comparison:
                 return None if known.svd_name is None else known.rename(names[-1])
         return names[-1]
 
-    def compare(self, peripheral: Peripheral) -> None:
+    def compare(self, whose: str, peripherals: list[Peripheral]) -> None:
+        for peripheral in peripherals:
+            kin = [other for other in peripherals if other is not peripheral and other.form() == peripheral.form()]
+            self.compare_peripheral(whose, peripheral, kin)
+
+    def svd_views(self, peripheral: Peripheral, register: str) -> list[SvdRegister] | None:
+        """The SVD's views of a register; None: not comparable."""
+        name, wanted = self.svd_name(peripheral.name), self.svd_name(peripheral.name, register)
+        if name is None or wanted is None:
+            return None
+        registers = self.svd[name][1] if name in self.svd else []
+        return [candidate for candidate in registers if candidate.name in wanted.split("|")]
+
+    def compare_peripheral(self, whose: str, peripheral: Peripheral, kin: list[Peripheral]) -> None:
         name = self.svd_name(peripheral.name)
         if name is None:
             return
         if name not in self.svd:
-            self.differences.append(f"{peripheral.where}: the SVD has no peripheral {name}")
+            self.differences.append(f"{whose} {peripheral.name}: the SVD has no peripheral {name}")
             return
-        base, registers = self.svd[name]
-        if base != peripheral.base:
+        if self.svd[name][0] != peripheral.base:
             self.differences.append(
-                f"{peripheral.where}: {peripheral.name} is at 0x{peripheral.base:08X}, in the SVD at 0x{base:08X}"
+                f"{whose} {peripheral.name} is at 0x{peripheral.base:08X}, in the SVD at 0x{self.svd[name][0]:08X}"
             )
             return
         for register in peripheral.registers:
-            for index in range(register.count):
-                # An array of bytes is four to a register of the SVD, which has only the whole one.
-                if register.size_bits == 32 or index * register.stride % 4 == 0:
-                    self.compare_register(peripheral, register, registers, index)
+            self.compare_register(whose, peripheral, register, kin)
 
-    def compare_register(self, peripheral, register, svd_registers, index) -> None:
-        name = register.name
-        if register.stride:
-            # CCR[0] is CCR1 in the timers; elsewhere, as ISER[0] is ISER0, the count begins with 0.
-            name += str(index * register.stride // 4 if register.size_bits != 32 else index + (name == "CCR"))
-        label = f"{peripheral.name}.{name}"
-        address = peripheral.base + register.offset + register.stride * index
-        wanted = self.svd_name(peripheral.name, name)
-        if wanted is None:
+    def compare_register(self, whose: str, peripheral: Peripheral, register: Register, kin: list[Peripheral]) -> None:
+        label = f"{whose} {peripheral.name}.{register.name}"
+        views = self.svd_views(peripheral, register.name)
+        if views is None:
             return
-        found = next((candidate for candidate in svd_registers if candidate.name == wanted), None)
-        if found is None:
-            self.differences.append(f"{label}: the SVD has no register {wanted} in {peripheral.name}")
+        if not views:
+            # One form for all peripherals of a kind: this one may lack what another one has.
+            if not any(self.svd_views(other, register.name) for other in kin):
+                self.differences.append(f"{label}: the SVD has no such register in {peripheral.name}")
             return
         self.registers += 1
-        if found.address != address:
-            self.differences.append(f"{label} is at 0x{address:08X}, in the SVD at 0x{found.address:08X}")
-            return
+        for view in views:
+            if view.address != register.address:
+                self.differences.append(
+                    f"{label} is at 0x{register.address:08X}, in the SVD at 0x{view.address:08X}"
+                )
+                return
         for field in register.fields:
-            self.compare_field(peripheral.name, name, field, found)
+            self.compare_field(label, peripheral, register.name, field, kin)
 
-    def compare_field(self, peripheral: str, register: str, field: Field, found: SvdRegister) -> None:
-        name = self.svd_name(peripheral, register, field.name)
-        if name is None:
+    def svd_place(self, peripheral: Peripheral, register: str, field: str) -> tuple[int, int] | None:
+        name = self.svd_name(peripheral.name, register, field)
+        for view in self.svd_views(peripheral, register) or []:
+            if name is not None and (place := view.fields.get(name) or gathered(view.fields, name)):
+                return place
+        return None
+
+    def compare_field(self, label: str, peripheral: Peripheral, register: str, field: Field, kin) -> None:
+        if self.svd_name(peripheral.name, register, field.name) is None:
             return
         self.fields += 1
-        place = found.fields.get(name) or gathered(found.fields, name)
+        place = self.svd_place(peripheral, register, field.name)
         if place is None:
-            self.differences.append(f"{peripheral}.{register}: the SVD has no field {name} there")
+            place = next(filter(None, (self.svd_place(other, register, field.name) for other in kin)), None)
+        if place is None:
+            self.differences.append(f"{label}: the SVD has no field {field.name} there")
         elif place != (field.position, field.width):
             self.differences.append(
-                f"{peripheral}.{register}.{field.name} is at bit {field.position}, {field.width} wide; "
+                f"{label}.{field.name} is at bit {field.position}, {field.width} wide; "
                 f"in the SVD at bit {place[0]}, {place[1]} wide"
             )
 
@@ -320,38 +411,43 @@ def gathered(fields: dict[str, tuple[int, int]], name: str) -> tuple[int, int] |
 
 
 def unused(comparison: Comparison, peripherals: list[Peripheral]) -> list[str]:
-    """Known differences of peripherals in our map that did not occur: the SVD or the map has changed."""
+    """Known differences of peripherals in our maps that did not occur: the SVD or a map has changed."""
     return [
         f"the known difference of {known.peripheral} {known.register or ''} {known.field or ''} does not occur; "
         f"remove it from {pathlib.Path(__file__).name}"
         for known in comparison.known
-        if known.uses == 0 and any(re.fullmatch(known.peripheral, peripheral.name) for peripheral in peripherals)
+        if known.uses == 0 and any(known.concerns(peripheral) for peripheral in peripherals)
     ]
 
 
 def main() -> int:
-    default = pathlib.Path(__file__).resolve().parent.parent / "firmware/registers/include/registers"
-    parser = argparse.ArgumentParser(description="Checks the register map against an SVD file.")
+    parser = argparse.ArgumentParser(description="Checks both register maps against an SVD file.")
     parser.add_argument("svd", type=pathlib.Path, help="SVD file of the STM32F405")
-    parser.add_argument("--headers", type=pathlib.Path, default=default, help="folder of the register map")
+    parser.add_argument("--firmware", type=pathlib.Path, help="object file with the firmware's register map")
+    parser.add_argument("--chip", type=pathlib.Path, help="what print-chip-registers prints")
     arguments = parser.parse_args()
     try:
-        peripherals = read_map(arguments.headers)
         comparison = Comparison(read_svd(arguments.svd))
+        maps = {}
+        if arguments.firmware:
+            maps["firmware"] = DebugInformation(arguments.firmware).peripherals()
+        if arguments.chip:
+            maps["chip"] = read_chip(arguments.chip)
     except Unreadable as error:
         print(error, file=sys.stderr)
         return 2
-    for peripheral in peripherals:
-        comparison.compare(peripheral)
+    for whose, peripherals in maps.items():
+        comparison.compare(whose, peripherals)
+    together = [peripheral for peripherals in maps.values() for peripheral in peripherals]
     used = [known for known in comparison.known if known.uses]
     for known in used:
         place = ".".join(pattern for pattern in (known.peripheral, known.register, known.field) if pattern)
         print(f"known: {place}: {known.reason}")
-    problems = comparison.differences + unused(comparison, peripherals)
+    problems = comparison.differences + unused(comparison, together)
     for problem in problems:
         print(f"DIFFERS: {problem}")
     print(
-        f"{len(peripherals)} peripherals, {comparison.registers} registers and {comparison.fields} fields compared: "
+        f"{len(together)} peripherals, {comparison.registers} registers and {comparison.fields} fields compared: "
         f"{len(problems)} differences, {len(used)} known ones"
     )
     return 1 if problems else 0

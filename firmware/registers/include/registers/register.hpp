@@ -1,7 +1,7 @@
 // Registers and fields as types: an address is a template argument, so an access costs what a store costs.
 //
-// Headers in this folder keep one form, because tools/check_registers.py reads them and refuses any line
-// that it does not understand:
+// Headers in this folder keep one form. tools/check_registers.py compares what the compiler makes of it with the
+// manufacturer's description of the chip; a peripheral's alias stands in one line with its address, to be found:
 //
 //   template <std::uint32_t base>
 //   struct Timer {

@@ -1,0 +1,61 @@
+// print-chip-registers: all registers and fields of the emulated chip as JSON.
+#include <chip/chip.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+using namespace inkwell::virtual_board;
+
+class NoCircuit final : public Circuit {
+ public:
+  void output_changed(char, unsigned, PinLevel, Ticks) override {}
+  double analog_V(char, unsigned, Ticks) override { return 0.0; }
+  void advance(Ticks) override {}
+};
+
+/// The name with `number` for its `#`, a letter from 'A' on.
+std::string numbered(const MapEntry& entry, unsigned number) {
+  std::string name = entry.name.data();
+  const auto place = name.find('#');
+  if (place == std::string::npos) return name;
+  const std::string text = entry.first >= 'A' ? std::string(1, static_cast<char>(number)) : std::to_string(number);
+  return name.replace(place, 1, text);
+}
+
+nlohmann::json fields_of(std::span<const MapEntry> fields, unsigned register_number) {
+  nlohmann::json result = nlohmann::json::array();
+  for (const MapEntry& field : fields)
+    for (unsigned i = 0; i < field.count; ++i)
+      result.push_back({{"name", numbered(field, field.count > 1 ? field.first + i : register_number)},
+                        {"position", field.place + field.stride * i},
+                        {"width", field.width}});
+  return result;
+}
+
+nlohmann::json registers_of(std::span<const MapEntry> entries) {
+  nlohmann::json result = nlohmann::json::array();
+  for (std::size_t at = 0; at < entries.size();) {
+    const MapEntry& entry = entries[at];
+    std::size_t end = at + 1;
+    while (end < entries.size() && entries[end].is_register == 0) ++end;
+    for (unsigned i = 0; i < entry.count; ++i)
+      result.push_back({{"name", numbered(entry, entry.first + i)},
+                        {"offset", entry.place + entry.stride * i},
+                        {"fields", fields_of(entries.subspan(at + 1, end - at - 1), entry.first + i)}});
+    at = end;
+  }
+  return result;
+}
+
+}  // namespace
+
+int main() {
+  NoCircuit circuit;
+  const Chip chip(circuit);
+  nlohmann::json peripherals = nlohmann::json::array();
+  for (const RegisterMap& map : chip.register_maps())
+    peripherals.push_back({{"name", map.name}, {"base", map.base}, {"registers", registers_of(map.entries)}});
+  std::puts(peripherals.dump(1).c_str());
+}
