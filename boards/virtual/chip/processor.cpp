@@ -171,9 +171,12 @@ bool Processor::masks_open() {
 
 void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) return self.stop();
-  self.last_code_address_ = static_cast<std::uint32_t>(address);
-  self.cycles_ += self.instructions_of(static_cast<std::uint32_t>(address), size);
+  const auto start = static_cast<std::uint32_t>(address);
+  const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
+  if (due && !self.begins_in_if_then_block(start)) return self.stop();
+  self.last_code_address_ = start;
+  self.last_code_bytes_ = size;
+  self.cycles_ += self.instructions_of(start, size);
 }
 
 void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes, void* pointer) {
@@ -186,17 +189,26 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   ++self.cycles_;
 }
 
+bool Processor::if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const {
+  // IT (ARMv7-M, A7.7.38): the lowest bit that is set in the mask ends the block.
+  const std::uint16_t instruction = machine_.memory.half_word(if_then);
+  const unsigned mask = instruction & 0xFu;
+  if ((instruction & 0xFF00u) != 0xBF00u || mask == 0 || address <= if_then) return false;
+  std::uint32_t end = if_then + 2;
+  for (int left = 4 - std::countr_zero(mask); left > 0; --left) end += is_wide(machine_.memory.half_word(end)) ? 4 : 2;
+  return address < end;
+}
+
 bool Processor::in_if_then_block(std::uint32_t address) const {
-  return std::any_of(recent_addresses_.begin(), recent_addresses_.end(), [&](std::uint32_t recent) {
-    const std::uint16_t instruction = machine_.memory.half_word(recent);
-    // IT (ARMv7-M, A7.7.38): the lowest bit that is set in the mask ends the block.
-    const unsigned mask = instruction & 0xFu;
-    if ((instruction & 0xFF00u) != 0xBF00u || mask == 0 || address <= recent) return false;
-    std::uint32_t end = recent + 2;
-    for (int left = 4 - std::countr_zero(mask); left > 0; --left)
-      end += is_wide(machine_.memory.half_word(end)) ? 4 : 2;
-    return address < end;
-  });
+  return std::any_of(recent_addresses_.begin(), recent_addresses_.end(),
+                     [&](std::uint32_t recent) { return if_then_block_covers(recent, address); });
+}
+
+bool Processor::begins_in_if_then_block(std::uint32_t address) const {
+  const std::uint32_t end = last_code_address_ + last_code_bytes_;
+  for (std::uint32_t at = last_code_address_; at < end; at += is_wide(machine_.memory.half_word(at)) ? 4 : 2)
+    if (if_then_block_covers(at, address)) return true;
+  return false;
 }
 
 void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* pointer) {

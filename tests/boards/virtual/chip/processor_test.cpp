@@ -81,6 +81,21 @@ TEST_SUITE("virtual chip: processor") {
     }
   }
 
+  TEST_CASE("an if-then block that a page divides is not interrupted where it is divided") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("conditional_across_pages", mode);
+      test.run_for(0.1);
+      REQUIRE(test.result(0) == finished);
+      CHECK(test.result(1) == 10'000u * (3 + 256));
+      CHECK(test.result(2) > 1000);
+      // A few come before and behind what counts them.
+      const auto entries = test.chip.counters().exceptions[15].count;
+      CHECK(entries - test.result(2) <= 4);
+      CHECK(test.log.empty());
+    }
+  }
+
   TEST_CASE("code in RAM that is written anew runs anew") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
