@@ -171,6 +171,21 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(6) - before > 0.7 * undisturbed);
   }
 
+  TEST_CASE("the CRC unit computes Ethernet's polynomial over words, while its clock is on") {
+    ChipUnderTest test("checksum", Mode::fast);
+    test.run_for(0.001);
+    REQUIRE(test.result(0) == finished);
+    CHECK(test.result(1) == 0);
+    CHECK(test.result(2) == 0xFFFF'FFFF);
+    CHECK(test.result(3) == 0xDF8A'8A2B);
+    CHECK(test.result(4) == 0xD92B'271B);
+    CHECK(test.result(5) == 0xFFFF'FFFF);
+    CHECK(test.result(6) == 0xA5);
+    CHECK(test.result(7) == 0);
+    REQUIRE(test.log.size() == 1);
+    CHECK(test.log[0].find("CRC is used while its clock is off") != std::string::npos);
+  }
+
   TEST_CASE("pins, bit-band, identity, flash and USART") {
     ChipUnderTest test("input_output", Mode::fast);
     std::string sent;
