@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <set>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -68,6 +69,22 @@ void check_repeats(device::SimulationMode mode) {
 }
 
 }  // namespace
+
+TEST_CASE("a run begins with all that the host sent and ends with all that the device sent") {
+  BoardRig rig;
+  rig.control.run(0.0001);  // each run then ends just after a frame's report, which has no time to spare
+  int late_reports = 0;
+  std::set<int> delays;  // of commands, in runs
+  for (int round = 0; round < 1000; ++round) {
+    const int token = rig.device->send(protocol::Command::heartbeat);
+    rig.control.run(0.001);
+    const auto pose = rig.device->read_pose(0ms);
+    late_reports += !pose;
+    if (pose && round > 10) delays.insert((token - pose->command_token + 255) % 255);
+  }
+  CHECK(late_reports == 0);
+  CHECK(delays.size() == 1);
+}
 
 TEST_CASE("fast mode repeats itself") { check_repeats(device::SimulationMode::fast); }
 TEST_CASE("exact mode repeats itself") { check_repeats(device::SimulationMode::exact); }
