@@ -1,12 +1,8 @@
 // The driver board's firmware: what it is made of, in the order in which it comes to life.
 #include <board/omni_driver.hpp>
 #include <drivers/clocks.hpp>
-#include <drivers/console.hpp>
 #include <drivers/crash_record.hpp>
 #include <drivers/cycle_counter.hpp>
-#include <drivers/independent_watchdog.hpp>
-#include <drivers/otg_fs.hpp>
-#include <drivers/status_led.hpp>
 #include <drivers/system.hpp>
 #include <placement/interrupt.hpp>
 #include <usb/device.hpp>
@@ -16,11 +12,6 @@
 
 namespace inkwell::application {
 namespace {
-
-drivers::StatusLed status_led;
-drivers::Console console;
-drivers::IndependentWatchdog watchdog;
-drivers::OtgFs usb_port;
 
 /// The board cannot work, and its bridges are off: blinks ten times a second until it is switched off.
 [[noreturn]] void give_up(std::uint32_t processor_Hz) {
@@ -100,8 +91,6 @@ int main() {
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up(board::processor_Hz);
   analog_inputs.arm();
-  drivers::set_priority(drivers::Interrupt::analog_converters, drivers::Priority::first);
-  drivers::enable(drivers::Interrupt::analog_converters);
 
   const usb::Identity identity{.serial_number = drivers::unique_identifier(),
                                .firmware_version = {INKWELL_VERSION_NUMBERS},

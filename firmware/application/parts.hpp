@@ -1,5 +1,5 @@
-// The parts that the main loop and the control interrupt share. What they hand to each other is in
-// `host_link`.
+// What the firmware is made of: the drivers, the controller, and what the main loop and the control interrupt hand to
+// each other.
 #pragma once
 
 #include <array>
@@ -8,18 +8,37 @@
 #include <control/controller.hpp>
 #include <drivers/analog_inputs.hpp>
 #include <drivers/bridges.hpp>
+#include <drivers/claims.hpp>
+#include <drivers/console.hpp>
 #include <drivers/encoders.hpp>
+#include <drivers/independent_watchdog.hpp>
+#include <drivers/otg_fs.hpp>
+#include <drivers/status_led.hpp>
 #include <drivers/switches.hpp>
 #include <link/link.hpp>
 
 namespace inkwell::application {
 
+/// Every driver; it does not compile if two of them claim the same (drivers/claims.hpp).
+using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::AnalogInputs, drivers::Switches,
+                                 drivers::StatusLed, drivers::Console, drivers::IndependentWatchdog, drivers::OtgFs>;
+
+/// A driver of the list.
+template <class Driver>
+requires(Parts::has<Driver>) using Part = Driver;
+
 /// Set up by main(), then the control interrupt's own.
-extern drivers::Bridges bridges;
-extern drivers::Encoders encoders;
-extern drivers::AnalogInputs analog_inputs;
-extern drivers::Switches switches;
+extern Part<drivers::Bridges> bridges;
+extern Part<drivers::Encoders> encoders;
+extern Part<drivers::AnalogInputs> analog_inputs;
+extern Part<drivers::Switches> switches;
 extern control::Controller controller;
+
+/// The main loop's own.
+extern Part<drivers::StatusLed> status_led;
+extern Part<drivers::Console> console;
+extern Part<drivers::IndependentWatchdog> watchdog;
+extern Part<drivers::OtgFs> usb_port;
 
 extern link::Link host_link;
 

@@ -1,6 +1,6 @@
 #include "vectors.hpp"
 
-#include <drivers/system.hpp>
+#include <drivers/claims.hpp>
 
 #include "handlers.hpp"
 #include "memory.hpp"

@@ -1,6 +1,8 @@
 #include <drivers/analog_inputs.hpp>
 
 #include <drivers/cycle_counter.hpp>
+#include <drivers/interrupts.hpp>
+#include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
 #include <placement/interrupt.hpp>
 #include <registers/analog_converter.hpp>
@@ -86,18 +88,16 @@ constexpr std::uint32_t stabilisation_cycles = board::processor_Hz / 100'000;
 }  // namespace
 
 void AnalogInputs::start() {
-  connect_analog<board::motor_current[0].pin>();
-  connect_analog<board::motor_current[1].pin>();
-  connect_analog<board::motor_current[2].pin>();
-  connect_analog<board::gimbal[0].pin>();
-  connect_analog<board::gimbal[1].pin>();
-  connect_analog<board::gimbal[2].pin>();
-  connect_analog<board::supply.pin>();
+  connect_analog<AnalogInputs, board::motor_current[0]>();
+  connect_analog<AnalogInputs, board::motor_current[1]>();
+  connect_analog<AnalogInputs, board::motor_current[2]>();
+  connect_analog<AnalogInputs, board::gimbal[0]>();
+  connect_analog<AnalogInputs, board::gimbal[1]>();
+  connect_analog<AnalogInputs, board::gimbal[2]>();
+  connect_analog<AnalogInputs, board::supply>();
 
-  using registers::RCC;
-  RCC::AHB1ENR::modify(RCC::AHB1ENR::DMA2EN(1));
-  RCC::APB2ENR::modify(RCC::APB2ENR::ADC1EN(1), RCC::APB2ENR::ADC2EN(1), RCC::APB2ENR::ADC3EN(1));
-  static_cast<void>(RCC::APB2ENR::read());
+  start_clock_of_stream<AnalogInputs, DMA2, 0>();
+  start_clocks_of<AnalogInputs, ADC1, ADC2, ADC3>();
 
   static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
                 board::adc_divider == 8);
@@ -121,6 +121,9 @@ void AnalogInputs::arm() {
   ADC3::CR2::write(ADC3::CR2::ADON(1), ADC3::CR2::JEXTSEL(trigger_tim1_trgo), ADC3::CR2::JEXTEN(rising_edge));
   ADC2::CR2::write(ADC2::CR2::ADON(1), ADC2::CR2::JEXTSEL(trigger_tim1_trgo), ADC2::CR2::JEXTEN(rising_edge));
   ADC1::CR2::write(adc1_armed);
+  using Line = InterruptLine<AnalogInputs, Interrupt::analog_converters>;
+  Line::set_priority(Priority::first);
+  Line::enable();
 }
 
 INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::take_currents_A() {

@@ -4,9 +4,9 @@
 #include <drivers/bridges_off.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/leg_compares.hpp>
+#include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
 #include <placement/interrupt.hpp>
-#include <registers/clock.hpp>
 #include <registers/processor.hpp>
 
 namespace inkwell::drivers {
@@ -14,7 +14,7 @@ namespace {
 
 using registers::TIM1;
 using registers::TIM8;
-using Enable = DigitalOutput<board::bridge_enable>;
+using Enable = DigitalOutput<Bridges, board::bridge_enable>;
 
 /// Master mode of TIM1: what its trigger output shows (RM0090, TIMx_CR2, MMS).
 constexpr std::uint32_t trigger_on_enable = 0b001;
@@ -62,24 +62,22 @@ void start_together() {
 void connect_pins() {
   // At 60 kHz nothing asks for fast edges, and slow ones disturb the shunt amplifiers less. The pull-downs hold the
   // legs low if the timer should ever let go of them.
-  connect<board::bridges[0].leg_a>(Pull::down, Speed::medium);
-  connect<board::bridges[1].leg_a>(Pull::down, Speed::medium);
-  connect<board::bridges[2].leg_a>(Pull::down, Speed::medium);
-  connect<board::bridges[0].leg_b>(Pull::down, Speed::medium);
-  connect<board::bridges[1].leg_b>(Pull::down, Speed::medium);
-  connect<board::bridges[2].leg_b>(Pull::down, Speed::medium);
+  connect<Bridges, board::bridges[0].leg_a>(Pull::down, Speed::medium);
+  connect<Bridges, board::bridges[1].leg_a>(Pull::down, Speed::medium);
+  connect<Bridges, board::bridges[2].leg_a>(Pull::down, Speed::medium);
+  connect<Bridges, board::bridges[0].leg_b>(Pull::down, Speed::medium);
+  connect<Bridges, board::bridges[1].leg_b>(Pull::down, Speed::medium);
+  connect<Bridges, board::bridges[2].leg_b>(Pull::down, Speed::medium);
   // Open drain: the board has the strong pull-up, this one only keeps a bench without bridges from floating.
-  connect<board::bridge_fault_tim1>(Pull::up, Speed::low);
-  connect<board::bridge_fault_tim8>(Pull::up, Speed::low);
+  connect<Bridges, board::bridge_fault_tim1>(Pull::up, Speed::low);
+  connect<Bridges, board::bridge_fault_tim8>(Pull::up, Speed::low);
 }
 
 }  // namespace
 
 void Bridges::start() {
   Enable::start();
-  using ClockEnable = registers::RCC::APB2ENR;
-  ClockEnable::modify(ClockEnable::TIM1EN(1), ClockEnable::TIM8EN(1));
-  static_cast<void>(ClockEnable::read());
+  start_clocks_of<Bridges, TIM1, TIM8>();
   // A debugger that halts the processor stops the timers: a halt must not leave the last duty on the motors for good.
   // That the outputs go idle as well is to be seen on the bench (boards/omni_driver/README.md, "First power-up").
   using Freeze = registers::DBG::DBGMCU_APB2_FZ;
@@ -125,7 +123,7 @@ INKWELL_INTERRUPT void Bridges::disable() {
 }
 
 INKWELL_INTERRUPT bool Bridges::fault() const {
-  const bool low_now = !DigitalInput<board::bridge_fault_tim1.pin>::is_high();
+  const bool low_now = !DigitalInput<Bridges, board::bridge_fault_tim1.pin>::is_high();
   return low_now || (enabled_ && (TIM1::SR::BIF::is_set() || TIM8::SR::BIF::is_set()));
 }
 

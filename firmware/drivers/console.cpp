@@ -1,6 +1,7 @@
 #include <drivers/console.hpp>
 
 #include <drivers/cycle_counter.hpp>
+#include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
 #include <registers/serial_port.hpp>
 
@@ -21,9 +22,8 @@ void write_character(char character) {
 }  // namespace
 
 void Console::start() {
-  registers::RCC::APB1ENR::modify(registers::RCC::APB1ENR::USART2EN(1));
-  static_cast<void>(registers::RCC::APB1ENR::read());
-  connect<board::console_transmit>(Pull::up, Speed::low);
+  start_clocks_of<Console, USART2>();
+  connect<Console, board::console_transmit>(Pull::up, Speed::low);
   USART2::BRR::write((board::apb1_Hz + baud_Hz / 2) / baud_Hz);
   USART2::CR1::write(USART2::CR1::UE(1), USART2::CR1::TE(1));
 }

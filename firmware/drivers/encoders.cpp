@@ -1,5 +1,6 @@
 #include <drivers/encoders.hpp>
 
+#include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
 #include <placement/interrupt.hpp>
 #include <registers/timer.hpp>
@@ -30,16 +31,14 @@ void set_up() {
 
 template <board::EncoderWiring wiring>
 void connect_encoder() {
-  connect<wiring.a>(Pull::up, Speed::low);
-  connect<wiring.b>(Pull::up, Speed::low);
+  connect<Encoders, wiring.a>(Pull::up, Speed::low);
+  connect<Encoders, wiring.b>(Pull::up, Speed::low);
 }
 
 }  // namespace
 
 void Encoders::start() {
-  using ClockEnable = registers::RCC::APB1ENR;
-  ClockEnable::modify(ClockEnable::TIM3EN(1), ClockEnable::TIM4EN(1), ClockEnable::TIM5EN(1));
-  static_cast<void>(ClockEnable::read());
+  start_clocks_of<Encoders, TIM3, TIM4, TIM5>();
   connect_encoder<board::encoders[0]>();
   connect_encoder<board::encoders[1]>();
   connect_encoder<board::encoders[2]>();

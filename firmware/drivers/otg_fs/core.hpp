@@ -4,12 +4,15 @@
 #include <cstdint>
 
 #include <board/omni_driver.hpp>
+#include <drivers/interrupts.hpp>
+#include <drivers/otg_fs.hpp>
 #include <registers/otg_fs.hpp>
 
 namespace inkwell::drivers {
 
 using Core = registers::OTG_FS_GLOBAL;
 using Device = registers::OTG_FS_DEVICE;
+using Line = InterruptLine<OtgFs, Interrupt::usb>;
 
 /// The core answers within a packet's time of 50 us or never.
 inline constexpr std::uint32_t core_answer_cycles = board::processor_Hz / 1'000'000 * 60;

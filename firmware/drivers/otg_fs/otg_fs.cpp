@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include <drivers/cycle_counter.hpp>
-#include <drivers/system.hpp>
 #include <registers/otg_fs.hpp>
 
 #include "core.hpp"
@@ -78,7 +77,7 @@ bool OtgFs::next_event(Event& event) {
   // What was sent comes before what was received: the host goes on only after it has the packet.
   if (next_sent(event) || next_received(event) || next_suspend_or_resume(event, interrupts)) return true;
   answer_control();
-  enable(Interrupt::usb);
+  Line::enable();
   return false;
 }
 

@@ -2,10 +2,9 @@
 #include <board/omni_driver.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/otg_fs.hpp>
+#include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
-#include <drivers/system.hpp>
 #include <placement/interrupt.hpp>
-#include <registers/clock.hpp>
 #include <registers/otg_fs.hpp>
 
 #include "core.hpp"
@@ -14,8 +13,6 @@
 namespace inkwell::drivers {
 
 namespace {
-
-using registers::RCC;
 
 /// Turnaround time in clocks of the PHY, for an AHB clock of 32 MHz or more (RM0090, "TRDT values").
 constexpr std::uint32_t turnaround_clocks = 6;
@@ -35,11 +32,9 @@ bool reset_core() {
 }  // namespace
 
 bool OtgFs::start() {
-  connect<board::usb_minus>(Pull::none, Speed::high);
-  connect<board::usb_plus>(Pull::none, Speed::high);
-  RCC::AHB2ENR::modify(RCC::AHB2ENR::OTGFSEN(1));
-  // Erratum "Delay after an RCC peripheral clock enabling": read back before the first access.
-  static_cast<void>(RCC::AHB2ENR::read());
+  connect<OtgFs, board::usb_minus>(Pull::none, Speed::high);
+  connect<OtgFs, board::usb_plus>(Pull::none, Speed::high);
+  start_clocks_of<OtgFs, Core>();
 
   Core::GAHBCFG::modify(Core::GAHBCFG::GINT(0));
   Core::GUSBCFG::modify(Core::GUSBCFG::PHYSEL(1));
@@ -62,14 +57,14 @@ bool OtgFs::start() {
   Core::GINTSTS::write(~0u);  // what is still flagged belongs to the time before
   Core::GINTMSK::write(Core::GINTMSK::IEPINT(1));
   Core::GAHBCFG::modify(Core::GAHBCFG::GINT(1));
-  set_priority(Interrupt::usb, Priority::last);
-  enable(Interrupt::usb);
+  Line::set_priority(Priority::last);
+  Line::enable();
 
   Device::DCTL::modify(Device::DCTL::SDIS(0));
   return true;
 }
 
-INKWELL_INTERRUPT void OtgFs::wake() { disable(Interrupt::usb); }
+INKWELL_INTERRUPT void OtgFs::wake() { Line::disable(); }
 
 namespace fifo_memory {
 

@@ -10,10 +10,28 @@
 #include <array>
 #include <cstdint>
 
+#include <drivers/claims.hpp>
+#include <registers/analog_converter.hpp>
+#include <registers/direct_memory_access.hpp>
+
 namespace inkwell::drivers {
 
 class AnalogInputs {
  public:
+  static constexpr std::array claims{peripheral<registers::ADC1>(),
+                                     peripheral<registers::ADC2>(),
+                                     peripheral<registers::ADC3>(),
+                                     peripheral<registers::ADC_COMMON>(),
+                                     stream<registers::DMA2, 0>(),
+                                     interrupt(Interrupt::analog_converters),
+                                     pin(board::motor_current[0]),
+                                     pin(board::motor_current[1]),
+                                     pin(board::motor_current[2]),
+                                     pin(board::gimbal[0]),
+                                     pin(board::gimbal[1]),
+                                     pin(board::gimbal[2]),
+                                     pin(board::supply)};
+
   /// Switches the converters on, sets their sequences up and measures gimbal and supply once. The converters do not
   /// listen to TIM1 yet.
   void start();

@@ -4,11 +4,16 @@
 #include <cstdint>
 #include <string_view>
 
+#include <drivers/claims.hpp>
+#include <registers/serial_port.hpp>
+
 namespace inkwell::drivers {
 
 /// Waits for each character to leave, about 0.1 ms: for start-up only.
 class Console {
  public:
+  static constexpr std::array claims{peripheral<registers::USART2>(), pin(board::console_transmit)};
+
   void start();
   void write(std::string_view text);
   void write_hexadecimal(std::uint32_t word);

@@ -1,10 +1,11 @@
 // Pins of the chip by the board's facts (RM0090, chapter GPIO). A pin is a template argument, so that setting
-// one up is a few stores.
+// one up is a few stores. Only the driver that claims a pin can set it up.
 #pragma once
 
 #include <type_traits>
 
 #include <board/omni_driver.hpp>
+#include <drivers/claims.hpp>
 #include <registers/clock.hpp>
 #include <registers/general_purpose_io.hpp>
 
@@ -39,12 +40,13 @@ using Registers = typename Port<pin.port>::Registers;
 template <class Register, board::Pin pin, unsigned width>
 using PinField = registers::Field<Register, pin.number % (32 / width) * width, width>;
 
-template <board::Pin pin>
+template <class Driver, board::Pin number>
 void configure(Mode mode, Pull pull, Speed speed) {
-  using Io = Registers<pin>;
-  Io::PUPDR::modify(PinField<typename Io::PUPDR, pin, 2>(static_cast<std::uint32_t>(pull)));
-  Io::OSPEEDR::modify(PinField<typename Io::OSPEEDR, pin, 2>(static_cast<std::uint32_t>(speed)));
-  Io::MODER::modify(PinField<typename Io::MODER, pin, 2>(static_cast<std::uint32_t>(mode)));
+  require_claim<Driver, pin(number)>();
+  using Io = Registers<number>;
+  Io::PUPDR::modify(PinField<typename Io::PUPDR, number, 2>(static_cast<std::uint32_t>(pull)));
+  Io::OSPEEDR::modify(PinField<typename Io::OSPEEDR, number, 2>(static_cast<std::uint32_t>(speed)));
+  Io::MODER::modify(PinField<typename Io::MODER, number, 2>(static_cast<std::uint32_t>(mode)));
 }
 
 }  // namespace detail
@@ -58,32 +60,32 @@ inline void start_pins() {
 }
 
 /// Connects a pin to its peripheral.
-template <board::PeripheralPin wiring>
+template <class Driver, board::PeripheralPin wiring>
 void connect(Pull pull, Speed speed) {
   using Io = detail::Registers<wiring.pin>;
   using Function = std::conditional_t<(wiring.pin.number < 8), typename Io::AFRL, typename Io::AFRH>;
   Function::modify(detail::PinField<Function, wiring.pin, 4>(wiring.alternate_function));
-  detail::configure<wiring.pin>(detail::Mode::alternate, pull, speed);
+  detail::configure<Driver, wiring.pin>(detail::Mode::alternate, pull, speed);
 }
 
 /// Frees a pin from its digital circuits, for an ADC.
-template <board::Pin pin>
+template <class Driver, board::AnalogInput input>
 void connect_analog() {
-  detail::configure<pin>(detail::Mode::analog, Pull::none, Speed::low);
+  detail::configure<Driver, input.pin>(detail::Mode::analog, Pull::none, Speed::low);
 }
 
-template <board::Pin pin>
+template <class Driver, board::Pin pin>
 struct DigitalInput {
-  static void start(Pull pull) { detail::configure<pin>(detail::Mode::input, pull, Speed::low); }
+  static void start(Pull pull) { detail::configure<Driver, pin>(detail::Mode::input, pull, Speed::low); }
   static bool is_high() { return (detail::Registers<pin>::IDR::read() >> pin.number & 1u) != 0; }
 };
 
-template <board::Pin pin>
+template <class Driver, board::Pin pin>
 struct DigitalOutput {
   /// Drives the pin low from the first moment.
   static void start() {
     set_low();
-    detail::configure<pin>(detail::Mode::output, Pull::none, Speed::low);
+    detail::configure<Driver, pin>(detail::Mode::output, Pull::none, Speed::low);
   }
   static void set_high() { detail::Registers<pin>::BSRR::write(1u << pin.number); }
   static void set_low() { detail::Registers<pin>::BSRR::write(1u << (pin.number + 16)); }

@@ -15,6 +15,8 @@ enum class LedPattern : std::uint8_t {
 
 class StatusLed {
  public:
+  static constexpr std::array claims{pin(board::status_led)};
+
   void start() { Output::start(); }
   void set(bool on) { Output::set(on); }
 
@@ -24,7 +26,7 @@ class StatusLed {
   }
 
  private:
-  using Output = DigitalOutput<board::status_led>;
+  using Output = DigitalOutput<StatusLed, board::status_led>;
 
   static constexpr std::uint32_t period(LedPattern pattern) {
     return pattern == LedPattern::fast_blink ? board::servo_rate_Hz / 5 : board::servo_rate_Hz;

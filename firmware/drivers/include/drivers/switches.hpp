@@ -14,15 +14,17 @@ struct SwitchContacts {
 
 class Switches {
  public:
+  static constexpr std::array claims{pin(board::button_1), pin(board::button_2), pin(board::inkwell_switch)};
+
   void start() {
-    DigitalInput<board::button_1>::start(Pull::up);
-    DigitalInput<board::button_2>::start(Pull::up);
-    DigitalInput<board::inkwell_switch>::start(Pull::up);
+    DigitalInput<Switches, board::button_1>::start(Pull::up);
+    DigitalInput<Switches, board::button_2>::start(Pull::up);
+    DigitalInput<Switches, board::inkwell_switch>::start(Pull::up);
   }
 
   SwitchContacts read() const {
-    return {!DigitalInput<board::button_1>::is_high(), !DigitalInput<board::button_2>::is_high(),
-            !DigitalInput<board::inkwell_switch>::is_high()};
+    return {!DigitalInput<Switches, board::button_1>::is_high(), !DigitalInput<Switches, board::button_2>::is_high(),
+            !DigitalInput<Switches, board::inkwell_switch>::is_high()};
   }
 };
 

@@ -1,4 +1,4 @@
-// Small things that belong to the chip as a whole: reset and its cause, interrupts, identity.
+// Small things that belong to the chip as a whole: reset and its cause, sleep, identity.
 #pragma once
 
 #include <array>
@@ -8,26 +8,6 @@
 #include <registers/processor.hpp>
 
 namespace inkwell::drivers {
-
-/// Position in the vector table (RM0090, "Vector table for STM32F405xx").
-enum class Interrupt : std::uint8_t { analog_converters = 18, usb = 67 };
-
-/// `first` interrupts whatever runs: it is the control interrupt's alone.
-enum class Priority : std::uint8_t { first = 0x00, last = 0xF0 };
-
-inline void set_priority(Interrupt interrupt, Priority priority) {
-  registers::NVIC::IPR::write(static_cast<unsigned>(interrupt), static_cast<std::uint8_t>(priority));
-}
-
-inline void enable(Interrupt interrupt) {
-  const auto position = static_cast<unsigned>(interrupt);
-  registers::NVIC::ISER::write(position / 32, 1u << position % 32);
-}
-
-inline void disable(Interrupt interrupt) {
-  const auto position = static_cast<unsigned>(interrupt);
-  registers::NVIC::ICER::write(position / 32, 1u << position % 32);
-}
 
 /// Flags of RCC_CSR: why the chip started.
 struct ResetCause {

@@ -15,12 +15,17 @@
 #include <cstdint>
 #include <span>
 
+#include <drivers/claims.hpp>
+#include <registers/otg_fs.hpp>
 #include <usb/port.hpp>
 
 namespace inkwell::drivers {
 
 class OtgFs final : public usb::Port {
  public:
+  static constexpr std::array claims{peripheral<registers::OTG_FS_GLOBAL>(), pin(board::usb_minus),
+                                     pin(board::usb_plus), interrupt(Interrupt::usb)};
+
   /// Sets pins, clock and core up and connects the pull-up of D+. Takes 25 ms. The 48 MHz clock runs already
   /// (clocks.hpp). False if the core does not answer.
   [[nodiscard]] bool start();

@@ -1,0 +1,32 @@
+// Lines of the interrupt controller, each of one driver (PM0214, chapter NVIC).
+#pragma once
+
+#include <drivers/claims.hpp>
+#include <registers/processor.hpp>
+
+namespace inkwell::drivers {
+
+/// `first` interrupts whatever runs: it is the control interrupt's alone.
+enum class Priority : std::uint8_t { first = 0x00, last = 0xF0 };
+
+/// A line as its driver has it.
+template <class Driver, Interrupt line>
+struct InterruptLine {
+  static void set_priority(Priority priority) {
+    require_claim<Driver, interrupt(line)>();
+    registers::NVIC::IPR::write(position, static_cast<std::uint8_t>(priority));
+  }
+  static void enable() {
+    require_claim<Driver, interrupt(line)>();
+    registers::NVIC::ISER::write(position / 32, 1u << position % 32);
+  }
+  static void disable() {
+    require_claim<Driver, interrupt(line)>();
+    registers::NVIC::ICER::write(position / 32, 1u << position % 32);
+  }
+
+ private:
+  static constexpr unsigned position = static_cast<unsigned>(line);
+};
+
+}  // namespace inkwell::drivers

@@ -1,0 +1,113 @@
+"""Two drivers of one timer, pin, DMA stream or interrupt line do not compile, nor does a driver that takes what it does
+not claim, or one that is not in the list of parts.
+
+    claims_test.py INCLUDE_DIRECTORY...
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
+COMPILER = ["arm-none-eabi-g++", "-std=c++20", "-fsyntax-only", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16",
+            "-mfloat-abi=hard", "-fno-exceptions", "-fno-rtti", "-I", REPOSITORY / "firmware/application", "-x", "c++", "-"]
+
+# The firmware's own parts, and a driver that comes to them.
+FRAME = """
+#include <parts.hpp>
+#include <drivers/interrupts.hpp>
+#include <drivers/peripheral_clocks.hpp>
+using namespace inkwell;
+using namespace inkwell::drivers;
+using inkwell::drivers::pin;
+
+struct Newcomer {
+  static constexpr std::array claims{%s};
+  void start() { %s }
+};
+
+template <class Parts> struct WithNewcomer;
+template <class... Parts> struct WithNewcomer<PartsList<Parts...>> : PartsList<Parts..., Newcomer> {};
+WithNewcomer<application::Parts> all;
+Newcomer newcomer;
+"""
+FREE_PIN = "pin(board::Pin{'C', 13})"
+TAKEN = "two drivers claim the same peripheral, pin, DMA stream or interrupt line"
+UNCLAIMED = "a driver uses what it does not claim"
+
+
+class Claims(unittest.TestCase):
+    includes: list[str] = []
+
+    def compile(self, claims: str, start: str = "", more: str = "") -> str:
+        """What the compiler complains about; nothing if the source is sound."""
+        directories = [part for directory in self.includes for part in ("-I", directory)]
+        result = subprocess.run([*COMPILER, *directories], input=FRAME % (claims, start) + more, capture_output=True,
+                                text=True, check=False)
+        self.assertEqual(result.returncode != 0, "error" in result.stderr, result.stderr)
+        return result.stderr
+
+    def assert_refused(self, complaint: str, *sentences: str) -> None:
+        for sentence in sentences:
+            self.assertIn(sentence, complaint)
+
+    def test_a_driver_of_what_is_free_compiles(self):
+        start = "DigitalOutput<Newcomer, board::Pin{'C', 13}>::start(); start_clock_of_stream<Newcomer, registers::DMA2, 1>();"
+        self.assertEqual("", self.compile(f"{FREE_PIN}, stream<registers::DMA2, 1>()", start))
+
+    def test_a_second_user_is_refused(self):
+        for claim, owner in (("peripheral<registers::TIM1>()", "Bridges"),
+                             ("peripheral<registers::TIM3>()", "Encoders"),
+                             ("peripheral<registers::ADC2>()", "AnalogInputs"),
+                             ("peripheral<registers::USART2>()", "Console"),
+                             ("pin(board::bridge_enable)", "Bridges"),
+                             ("pin(board::gimbal[1])", "AnalogInputs"),
+                             ("pin(board::Pin{'C', 10})", "StatusLed"),
+                             ("stream<registers::DMA2, 0>()", "AnalogInputs"),
+                             ("interrupt(Interrupt::usb)", "OtgFs")):
+            with self.subTest(claim):
+                self.assert_refused(self.compile(f"{FREE_PIN}, {claim}"), TAKEN,
+                                    f"Apart<inkwell::drivers::{owner}, Newcomer>")
+
+    def test_what_is_not_claimed_cannot_be_used(self):
+        for start in ("start_clocks_of<Newcomer, registers::TIM3>();",
+                      "start_clock_of_stream<Newcomer, registers::DMA2, 1>();",
+                      "InterruptLine<Newcomer, Interrupt::usb>::enable();",
+                      "InterruptLine<Newcomer, Interrupt::usb>::disable();",
+                      "InterruptLine<Newcomer, Interrupt::usb>::set_priority(Priority::last);",
+                      "connect<Newcomer, board::usb_plus>(Pull::none, Speed::low);",
+                      "connect_analog<Newcomer, board::supply>();",
+                      "DigitalInput<Newcomer, board::button_1>::start(Pull::up);",
+                      "DigitalOutput<Newcomer, board::status_led>::start();"):
+            with self.subTest(start):
+                self.assert_refused(self.compile(FREE_PIN, start), UNCLAIMED)
+
+    def test_a_driver_that_is_not_in_the_list_is_no_part(self):
+        self.assert_refused(self.compile(FREE_PIN, more="application::Part<Newcomer> part;"),
+                            "template constraint failure", "with Driver = Newcomer")
+        self.assertEqual("", self.compile(FREE_PIN, more="extern application::Part<StatusLed> part;"))
+
+    def test_a_driver_names_no_peripheral_that_it_does_not_claim(self):
+        """Registers can be named without a clock, so what the sources name is compared with what they claim."""
+        drivers: dict[str, str] = {}
+        for file in sorted((REPOSITORY / "firmware/drivers").rglob("*.?pp")):
+            folder = file.parent.name
+            drivers.setdefault(folder if folder == "otg_fs" else file.stem, "")
+            drivers[folder if folder == "otg_fs" else file.stem] += file.read_text()
+        drivers["bridges"] += drivers.pop("bridges_off")  # the same driver, for the fault handler
+        drivers["otg_fs"] += drivers.pop("fifo_memory", "")
+        drivers.pop("peripheral_clocks")
+        named = {name: set(re.findall(r"registers::((?:TIM|ADC|DMA|USART)\w+|IWDG|OTG_FS_GLOBAL)\b", text))
+                 for name, text in drivers.items()}
+        claimed = {name: set(re.findall(r"(?:peripheral|stream)<registers::(\w+)", text)) for name, text in drivers.items()}
+        for name in drivers:
+            if name != "claims":
+                self.assertEqual(named[name], claimed[name], name)
+        self.assertEqual({"TIM1", "TIM8"}, claimed["bridges"])  # so that something was compared
+
+
+if __name__ == "__main__":
+    Claims.includes = sys.argv[1:]
+    unittest.main(argv=sys.argv[:1])
