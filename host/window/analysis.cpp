@@ -71,4 +71,11 @@ Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t
   return result;
 }
 
+bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel) {
+  // The extremes of a few thousand samples of noise hardly ever exceed those of some ten thousand by this part.
+  constexpr float noise_part = 0.25f;
+  const float margin = std::max(static_cast<float>(value_of_a_pixel), noise_part * (before.maximum - before.minimum));
+  return newest.minimum < before.minimum - margin || newest.maximum > before.maximum + margin;
+}
+
 }  // namespace inkwell::window

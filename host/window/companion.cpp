@@ -8,8 +8,6 @@
 
 #include "inspection.hpp"
 
-#include <window/frame_rhythm.hpp>
-
 namespace inkwell::window {
 
 namespace {
@@ -27,7 +25,7 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       style_{&palette(settings.theme), load_fonts(scale), scale},
       desk_(options.list_devices, options.serial_number),
       tuning_panel_(settings.parameters_file),
-      scope_panel_(settings),
+      scope_panel_(settings.scope),
       guides_pane_(desk_, options.virtual_board_control_port, options.simulated_arm),
       file_is_to_be_sent_(!options.parameters_file.empty()) {
   if (options.virtual_board_control_port != 0) hand_.emplace(options.virtual_board_control_port);
@@ -47,7 +45,7 @@ void Companion::use_theme(Theme theme) {
 WindowSettings Companion::settings() const {
   WindowSettings now = settings_;
   now.parameters_file = tuning_panel_.parameters_file();
-  scope_panel_.store(now);
+  now.scope = scope_panel_.settings();
   return now;
 }
 

@@ -2,77 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include <fmt/format.h>
-
-#include <window/line_thinning.hpp>
 
 namespace inkwell::window {
 
 namespace {
 
-// Rounded to whole pixels, which ImGui draws with a third of the triangles.
-constexpr float line_points = 1.5f;
-constexpr float pixels_per_column = 2.0f;
 constexpr float y_ticks_every_points = 34.0f;
 constexpr float x_ticks_every_points = 84.0f;
-
-// Collects a line's points and draws them whenever there is a gap.
-class Polyline {
- public:
-  Polyline(ImDrawList& list, ImU32 colour, float thickness) : list_(list), colour_(colour), thickness_(thickness) {}
-  ~Polyline() { finish(); }
-  Polyline(const Polyline&) = delete;
-  Polyline& operator=(const Polyline&) = delete;
-
-  void add(float x, float y) { line_.add({x, y}); }
-  void finish() {
-    const std::vector<ImVec2> points = line_.take();
-    if (points.size() > 1) list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour_, 0, thickness_);
-  }
-
- private:
-  ImDrawList& list_;
-  ImU32 colour_;
-  float thickness_;
-  LineThinning<ImVec2> line_;
-};
-
-void draw_samples(ImDrawList& list, const PlotArea& area, const SignalSeries& series, double first, double last,
-                  Colour colour, float thickness) {
-  Polyline line(list, packed(colour), thickness);
-  const auto begin = static_cast<std::uint64_t>(std::max(std::floor(first) - 1.0, static_cast<double>(series.begin())));
-  const auto end = std::min(static_cast<std::uint64_t>(std::max(std::ceil(last) + 1.0, 0.0)), series.end());
-  for (std::uint64_t i = begin; i < end; ++i) {
-    const float value = series[i];
-    if (std::isnan(value)) {
-      line.finish();
-      continue;
-    }
-    const double part = (static_cast<double>(i) - first) / (last - first);
-    line.add(area.minimum.x + static_cast<float>(part) * area.width(), area.to_y(static_cast<double>(value)));
-  }
-}
-
-void draw_columns(ImDrawList& list, const PlotArea& area, const std::vector<Extremes>& columns, Colour colour,
-                  float thickness) {
-  const ImU32 ink = packed(colour);
-  Polyline line(list, ink, thickness);
-  const float column_width = area.width() / static_cast<float>(columns.size());
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (std::isnan(columns[i].minimum)) {
-      line.finish();
-      continue;
-    }
-    const float x = area.minimum.x + (static_cast<float>(i) + 0.5f) * column_width;
-    const float low = area.to_y(static_cast<double>(columns[i].minimum));
-    const float high = area.to_y(static_cast<double>(columns[i].maximum));
-    line.add(x, 0.5f * (low + high));
-    if (low - high > thickness)
-      list.AddRectFilled({x - 0.5f * column_width, high}, {x + 0.5f * column_width, low}, ink);
-  }
-}
 
 // 3 -> "1k"
 std::string power_label(double exponent) {
@@ -118,24 +56,11 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const
                  packed(palette.text_quiet), y_unit.c_str());
 }
 
-void draw_signal(ImDrawList& list, const PlotArea& area, const SignalSeries& series, double first, double last,
-                 Colour colour, const Style& style) {
-  const auto columns = static_cast<std::size_t>(std::max(area.width() / pixels_per_column, 1.0f));
-  const float thickness = std::round(style.points(line_points));
-  list.PushClipRect(area.minimum, area.maximum, true);
-  if (last - first < 2.0 * static_cast<double>(columns)) {
-    draw_samples(list, area, series, first, last, colour, thickness);
-  } else {
-    draw_columns(list, area, decimate(series, first, last, columns), colour, thickness);
-  }
-  list.PopClipRect();
-}
-
 void draw_points(ImDrawList& list, const PlotArea& area, std::span<const std::pair<double, double>> points,
                  Colour colour, const Style& style) {
   list.PushClipRect(area.minimum, area.maximum, true);
   {
-    Polyline line(list, packed(colour), std::round(style.points(line_points)));
+    Polyline line(list, packed(colour), line_thickness(style));
     for (const auto& [x, y] : points) {
       if (std::isnan(x) || std::isnan(y)) {
         line.finish();

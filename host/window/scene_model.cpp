@@ -119,4 +119,20 @@ float dragged_wall_m(const protocol::ParameterSet& parameters, int axis, bool up
                : std::clamp(wanted_whole_mm, info.minimum, std::max(opposite_m - room_m, info.minimum));
 }
 
+bool looks_different(const std::optional<protocol::PoseReport>& first,
+                     const std::optional<protocol::PoseReport>& second) {
+  if (!first || !second) return first.has_value() != second.has_value();
+  const protocol::PoseReport& a = *first;
+  const protocol::PoseReport& b = *second;
+  constexpr float visible_m = 2e-4f;
+  constexpr float visible_N = 0.02f;
+  constexpr float visible_rad = 0.02f;
+  if (a.state != b.state || a.fault != b.fault || a.switches != b.switches) return true;
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(a.position_m[i] - b.position_m[i]) > visible_m || std::abs(a.force_N[i] - b.force_N[i]) > visible_N ||
+        std::abs(a.gimbal_rad[i] - b.gimbal_rad[i]) > visible_rad)
+      return true;
+  return false;
+}
+
 }  // namespace inkwell::window

@@ -5,17 +5,14 @@
 #include <cmath>
 
 #include <protocol/reports.hpp>
-#include <window/frame_rhythm.hpp>
-
 #include "scope_legend.hpp"
+#include "signal_line.hpp"
 
 namespace inkwell::window {
 
 namespace {
 
 constexpr double rate_Hz = protocol::servo_rate_Hz;
-constexpr double span_minimum_s = 0.001;
-constexpr double span_maximum_s = 100.0;
 constexpr double numbers_every_s = 0.2;
 constexpr double range_remembered_s = 1.0;  // for telling motion from noise
 constexpr float header_points = 24.0f;
@@ -27,8 +24,8 @@ constexpr float pane_minimum_height_points = 92.0f;
 
 }  // namespace
 
-ScopePanel::ScopePanel(const WindowSettings& settings)
-    : trigger_settings_(settings.trigger), own_layouts_(settings.own_layouts), span_s_(settings.scope_span_s) {
+ScopePanel::ScopePanel(const ScopeSettings& settings)
+    : trigger_settings_(settings.trigger), own_layouts_(settings.own_layouts), span_s_(settings.span_s) {
   choose_layout(settings.layout);
 }
 
@@ -37,12 +34,7 @@ void ScopePanel::choose_layout(const ScopeLayout& layout) {
   memory_.assign(layout_.panes.size(), {});
 }
 
-void ScopePanel::store(WindowSettings& settings) const {
-  settings.trigger = trigger_settings_;
-  settings.scope_span_s = span_s_;
-  settings.layout = layout_;
-  settings.own_layouts = own_layouts_;
-}
+ScopeSettings ScopePanel::settings() const { return {span_s_, trigger_settings_, layout_, own_layouts_}; }
 
 std::vector<protocol::Signal> ScopePanel::signals() const {
   std::vector<protocol::Signal> result = signals_of(layout_);
@@ -96,8 +88,8 @@ void ScopePanel::handle_mouse(const PlotArea& area, const Stretch& stretch) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f) {
     const double before_s = span_s_;
-    span_s_ =
-        std::clamp(span_s_ * std::exp(-0.15 * static_cast<double>(io.MouseWheel)), span_minimum_s, span_maximum_s);
+    span_s_ = std::clamp(span_s_ * std::exp(-0.15 * static_cast<double>(io.MouseWheel)), ScopeSettings::span_minimum_s,
+                         ScopeSettings::span_maximum_s);
     // While paused, what is under the mouse stays under it.
     const double right_part = static_cast<double>((area.maximum.x - io.MousePos.x) / area.width());
     if (paused_) paused_last_ += right_part * (span_s_ - before_s) * rate_Hz;

@@ -9,10 +9,9 @@
 
 #include <window/analysis.hpp>
 #include <window/plot_axis.hpp>
-#include <window/scope_layout.hpp>
+#include <window/scope_settings.hpp>
 #include <window/signal_history.hpp>
 #include <window/trigger.hpp>
-#include <window/window_settings.hpp>
 
 #include "plot.hpp"
 #include "style.hpp"
@@ -21,14 +20,14 @@ namespace inkwell::window {
 
 class ScopePanel {
  public:
-  explicit ScopePanel(const WindowSettings& settings);
+  explicit ScopePanel(const ScopeSettings& settings);
 
   void draw(ImVec2 place, ImVec2 size, const Style& style);
   /// Samples from the device; while paused they are let go, so that what is looked at stays.
   void receive(const device::ScopeSamples& samples);
   /// What has to be streamed for the panes and the trigger.
   std::vector<protocol::Signal> signals() const;
-  void store(WindowSettings& settings) const;
+  ScopeSettings settings() const;
   bool is_paused() const { return paused_; }
   double span_s() const { return span_s_; }
   /// True if a signal left its range since the last call, rather than only scrolled.

@@ -58,7 +58,7 @@ WindowSettings remembered_settings(const WindowOptions& options) {
     settings = parse_settings(text.str());
   }
   if (options.theme) settings.theme = *options.theme;
-  if (!options.layout.empty()) settings.layout = layout_named(options.layout, settings.own_layouts);
+  if (!options.layout.empty()) settings.scope.layout = layout_named(options.layout, settings.scope.own_layouts);
   return settings;
 }
 

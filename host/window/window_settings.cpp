@@ -81,7 +81,7 @@ std::filesystem::path window_settings_path() {
 
 std::string format_settings(const WindowSettings& settings) {
   toml::array own_layouts;
-  for (const ScopeLayout& layout : settings.own_layouts.all())
+  for (const ScopeLayout& layout : settings.scope.own_layouts.all())
     own_layouts.push_back(
         toml::table{{"name", layout.name}, {"columns", layout.columns}, {"panes", to_toml(layout.panes)}});
   const toml::table file{{"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
@@ -89,16 +89,16 @@ std::string format_settings(const WindowSettings& settings) {
                                                 {"scope_height", settings.scope_height},
                                                 {"scope_is_shown", settings.scope_is_shown},
                                                 {"parameters_file", settings.parameters_file.string()}}},
-                         {"scope", toml::table{{"name", settings.layout.name},
-                                               {"columns", settings.layout.columns},
-                                               {"span_s", settings.scope_span_s},
-                                               {"panes", to_toml(settings.layout.panes)},
+                         {"scope", toml::table{{"name", settings.scope.layout.name},
+                                               {"columns", settings.scope.layout.columns},
+                                               {"span_s", settings.scope.span_s},
+                                               {"panes", to_toml(settings.scope.layout.panes)},
                                                {"layouts", std::move(own_layouts)}}},
-                         {"trigger", toml::table{{"mode", name_of(settings.trigger.mode, trigger_mode_names)},
-                                                 {"signal", protocol::info(settings.trigger.signal).name},
-                                                 {"edge", name_of(settings.trigger.edge, trigger_edge_names)},
-                                                 {"level", settings.trigger.level},
-                                                 {"pre_trigger", settings.trigger.pre_trigger}}}};
+                         {"trigger", toml::table{{"mode", name_of(settings.scope.trigger.mode, trigger_mode_names)},
+                                                 {"signal", protocol::info(settings.scope.trigger.signal).name},
+                                                 {"edge", name_of(settings.scope.trigger.edge, trigger_edge_names)},
+                                                 {"level", settings.scope.trigger.level},
+                                                 {"pre_trigger", settings.scope.trigger.pre_trigger}}}};
   std::ostringstream text;
   text << file << '\n';
   return text.str();
@@ -121,24 +121,24 @@ WindowSettings parse_settings(const std::string& text) {
   settings.parameters_file = window["parameters_file"].value_or(std::string{});
 
   const auto scope = root["scope"];
-  read_number(scope["span_s"], 0.001, 100.0, settings.scope_span_s);
+  read_number(scope["span_s"], ScopeSettings::span_minimum_s, ScopeSettings::span_maximum_s, settings.scope.span_s);
   if (const toml::table* table = scope.as_table())
-    if (auto layout = layout_from(*table)) settings.layout = std::move(*layout);
+    if (auto layout = layout_from(*table)) settings.scope.layout = std::move(*layout);
   if (const toml::array* layouts = scope["layouts"].as_array()) {
     std::vector<ScopeLayout> own;
     for (const auto& each : *layouts)
       if (const toml::table* table = each.as_table())
         if (auto layout = layout_from(*table)) own.push_back(std::move(*layout));
-    settings.own_layouts = OwnLayouts(std::move(own));
+    settings.scope.own_layouts = OwnLayouts(std::move(own));
   }
 
   const auto trigger = root["trigger"];
-  read_name(trigger["mode"], trigger_mode_names, settings.trigger.mode);
-  read_name(trigger["edge"], trigger_edge_names, settings.trigger.edge);
+  read_name(trigger["mode"], trigger_mode_names, settings.scope.trigger.mode);
+  read_name(trigger["edge"], trigger_edge_names, settings.scope.trigger.edge);
   if (const auto signal = protocol::find_signal(trigger["signal"].value_or(std::string_view{})))
-    settings.trigger.signal = *signal;
-  read_number(trigger["level"], -1e6f, 1e6f, settings.trigger.level);
-  read_number(trigger["pre_trigger"], 0.0f, 1.0f, settings.trigger.pre_trigger);
+    settings.scope.trigger.signal = *signal;
+  read_number(trigger["level"], -1e6f, 1e6f, settings.scope.trigger.level);
+  read_number(trigger["pre_trigger"], 0.0f, 1.0f, settings.scope.trigger.pre_trigger);
   return settings;
 }
 

@@ -1,6 +1,7 @@
 // Statistics and spectrum against signals whose numbers are known.
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include <doctest/doctest.h>
 
@@ -51,4 +52,24 @@ TEST_CASE("there is no spectrum of too few samples or across a gap") {
   CHECK(spectrum(series, 0, 10).amplitudes.empty());
   CHECK(spectrum(series, 0, 64).amplitudes.empty());
   CHECK(spectrum(series, 0, 40).amplitudes.size() == 17);
+}
+
+TEST_CASE("noise is no motion, a step and a constant that moves by pixels are") {
+  std::mt19937 random{7};
+  std::normal_distribution<float> noise{0.0f, 0.01f};
+  SignalSeries series(1u << 16);
+  for (int i = 0; i < 40'000; ++i) series.append(noise(random));
+  int motions = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    const auto seen = series.end();
+    for (int i = 0; i < 3'333; ++i) series.append(noise(random));
+    if (leaves_range(series.extremes(seen, series.end()), series.extremes(seen - 40'000, seen), 0.001)) ++motions;
+  }
+  CHECK(motions <= 1);  // a third of a million samples may hold one that stands out
+  CHECK(leaves_range({-0.01f, 0.08f}, {-0.04f, 0.04f}, 0.001));
+  CHECK(leaves_range({0.5f, 0.5f}, {0.4f, 0.4f}, 0.05));
+  CHECK_FALSE(leaves_range({0.42f, 0.42f}, {0.4f, 0.4f}, 0.05));
+  const float lost = std::nanf("");
+  CHECK_FALSE(leaves_range({lost, lost}, {0.0f, 1.0f}, 0.1));
+  CHECK_FALSE(leaves_range({0.0f, 1.0f}, {lost, lost}, 0.1));
 }

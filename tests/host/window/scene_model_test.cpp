@@ -116,3 +116,18 @@ TEST_CASE("the camera never turns over and never leaves its distances") {
   camera.zoom(-1000.0f);
   CHECK(camera.distance_m < 3.1f);
 }
+
+TEST_CASE("a pose looks different when a person could see it") {
+  protocol::PoseReport a{};
+  protocol::PoseReport b = a;
+  b.sequence = 77;
+  b.servo_load = 9;
+  b.position_m[1] = 1e-4f;
+  CHECK_FALSE(window::looks_different(a, b));
+  SUBCASE("position") { b.position_m[1] = 1e-3f; }
+  SUBCASE("force") { b.force_N[2] = 0.1f; }
+  SUBCASE("stylus") { b.gimbal_rad[0] = 0.1f; }
+  SUBCASE("state") { b.state = protocol::State::fault; }
+  CHECK(window::looks_different(a, b));
+  CHECK(window::looks_different(a, std::nullopt));
+}

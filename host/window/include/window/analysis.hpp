@@ -31,4 +31,8 @@ struct Spectrum {
 /// Empty if there are fewer than 16 samples or one of them was lost.
 Spectrum spectrum(const SignalSeries& series, std::uint64_t first, std::uint64_t last);
 
+/// True if the newest samples of a signal leave the range that it had before. Noise widens its range now and then by
+/// a little, which is not motion.
+bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel);
+
 }  // namespace inkwell::window

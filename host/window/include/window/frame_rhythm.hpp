@@ -3,11 +3,6 @@
 // not at all while the picture would stay the same.
 #pragma once
 
-#include <optional>
-
-#include <protocol/reports.hpp>
-#include <window/signal_history.hpp>
-
 namespace inkwell::window {
 
 /// What is known of a frame before it is drawn.
@@ -33,12 +28,5 @@ class FrameRhythm {
   double lively_until_s_ = 0.0;
   double laid_out_s_ = -1.0;
 };
-
-/// True if a person could see the difference in the scene.
-bool looks_different(const std::optional<protocol::PoseReport>& a, const std::optional<protocol::PoseReport>& b);
-
-/// True if the newest samples of a signal leave the range that it had before. Noise widens its range now and then by
-/// a little, which is not motion.
-bool leaves_range(Extremes newest, Extremes before, double value_of_a_pixel);
 
 }  // namespace inkwell::window

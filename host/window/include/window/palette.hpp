@@ -8,9 +8,9 @@
 #include <array>
 #include <cstdint>
 
-#include <window/window.hpp>
-
 namespace inkwell::window {
+
+enum class Theme : std::uint8_t { dark, light };
 
 struct Colour {
   std::uint8_t red, green, blue, alpha = 255;

@@ -49,6 +49,9 @@ SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const pr
 /// True if the pose's joint angles mean something: the arm has been in the inkwell.
 bool is_referenced(const protocol::PoseReport& pose);
 
+/// True if a person could see the difference in the scene.
+bool looks_different(const std::optional<protocol::PoseReport>& a, const std::optional<protocol::PoseReport>& b);
+
 /// Rotation from workspace axes to view space (x right, y up, z to the user), which differs by the frame.
 glm::mat3 workspace_to_view(control::Frame frame);
 

@@ -10,10 +10,9 @@
 
 #include <device/link.hpp>
 #include <protocol/parameters.hpp>
+#include <window/palette.hpp>
 
 namespace inkwell::window {
-
-enum class Theme : std::uint8_t { dark, light };
 
 struct WindowOptions {
   /// Lists the arms that could be opened now. Called from other threads than the window's, about once a

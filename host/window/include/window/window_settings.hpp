@@ -4,9 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include <window/scope_layout.hpp>
-#include <window/trigger.hpp>
-#include <window/window.hpp>
+#include <window/palette.hpp>
+#include <window/scope_settings.hpp>
 
 namespace inkwell::window {
 
@@ -15,10 +14,7 @@ struct WindowSettings {
   float tuning_width = 330.0f;  ///< in points, before scaling
   float scope_height = 270.0f;
   bool scope_is_shown = true;
-  double scope_span_s = 2.0;
-  TriggerSettings trigger;
-  ScopeLayout layout = built_in_layout("contact");  ///< as it stands, saved under its name or not
-  OwnLayouts own_layouts;
+  ScopeSettings scope;
   std::filesystem::path parameters_file;  ///< the one loaded or saved last
   bool operator==(const WindowSettings&) const = default;
 };
