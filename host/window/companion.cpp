@@ -6,7 +6,7 @@
 #include <GLFW/glfw3.h>
 #include <nlohmann/json.hpp>
 
-#include "inspection.hpp"
+#include <frame/inspection.hpp>
 
 namespace inkwell::window {
 
@@ -24,8 +24,8 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       settings_(settings),
       style_{&palette(settings.theme), load_fonts(scale), scale},
       desk_(options.list_devices, options.serial_number),
-      tuning_panel_(settings.parameters_file),
-      scope_panel_(settings.scope),
+      tuning_pane_(settings.parameters_file),
+      scope_pane_(settings.scope),
       guides_pane_(desk_, options.virtual_board_control_port, options.simulated_arm),
       file_is_to_be_sent_(!options.parameters_file.empty()) {
   if (options.virtual_board_control_port != 0) hand_.emplace(options.virtual_board_control_port);
@@ -44,8 +44,8 @@ void Companion::use_theme(Theme theme) {
 
 WindowSettings Companion::settings() const {
   WindowSettings now = settings_;
-  now.parameters_file = tuning_panel_.parameters_file();
-  now.scope = scope_panel_.settings();
+  now.parameters_file = tuning_pane_.parameters_file();
+  now.scope = scope_pane_.settings();
   return now;
 }
 
@@ -95,7 +95,7 @@ void Companion::follow_device(double now_s) {
   seen_refusal_ = refusal;
   if (file_is_to_be_sent_ && editor_.known()) {
     file_is_to_be_sent_ = false;
-    tuning_panel_.load(options_.parameters_file, editor_, now_s);
+    tuning_pane_.load(options_.parameters_file, editor_, now_s);
   }
   editor_.forget_unconfirmed(now_s);
   const auto frames = desk_.take_scope();
@@ -104,9 +104,9 @@ void Companion::follow_device(double now_s) {
   recording_pane_.follow(view, frames);
   desk_.select_signals(guide_has_scope                  ? guides_pane_.signals()
                        : recording_pane_.is_recording() ? recording_pane_.signals()
-                                                        : scope_panel_.signals());
+                                                        : scope_pane_.signals());
   if (!guide_has_scope && !replay_bar_.is_open())
-    for (const device::ScopeSamples& samples : frames) scope_panel_.receive(samples);
+    for (const device::ScopeSamples& samples : frames) scope_pane_.receive(samples);
 }
 
 void Companion::follow_replay(double now_s) {
@@ -115,7 +115,7 @@ void Companion::follow_replay(double now_s) {
   } catch (const device::Error& error) {
     recording_pane_.refuse_replay(error.what());
   }
-  replay_bar_.follow(now_s, scope_panel_);
+  replay_bar_.follow(now_s, scope_pane_);
 }
 
 void Companion::keyboard_shortcuts(double now_s) {
@@ -205,7 +205,7 @@ void Companion::draw(ImVec2 size, double now_s) {
   const std::optional<protocol::PoseReport> pose = replays ? replay_bar_.pose() : view.pose;
   ParameterEditor& editor = replays ? replay_bar_.editor() : editor_;
   scene_pane_.draw(scene_place_, scene_size_, {style_, pose, editor, hand_ && !replays ? &*hand_ : nullptr, now_s});
-  if (replays) replay_bar_.draw({0, scene_end - replay_height}, {left_width, replay_height}, style_, scope_panel_);
+  if (replays) replay_bar_.draw({0, scene_end - replay_height}, {left_width, replay_height}, style_, scope_pane_);
   if (!view.connected() && !replays)
     draw_connection_card({0.5f * left_width, top + 0.45f * scene_height}, style_, view);
 
@@ -215,13 +215,13 @@ void Companion::draw(ImVec2 size, double now_s) {
   const ImVec2 pane_place{column.x, column.y + tabs}, pane_size{column_width, size.y - top - tabs};
   switch (tab_) {
     case Tab::tuning:
-      tuning_panel_.draw(pane_place, pane_size, style_, editor,
-                         replays ? "These parameters are the recording's. Close it to tune the device." : seen_refusal_,
-                         now_s);
+      tuning_pane_.draw(pane_place, pane_size, style_, editor,
+                        replays ? "These parameters are the recording's. Close it to tune the device." : seen_refusal_,
+                        now_s);
       break;
     case Tab::guides: guides_pane_.draw(pane_place, pane_size, style_); break;
     case Tab::recording:
-      recording_pane_.draw(pane_place, pane_size, style_, view, guides_pane_.signals().empty(), scope_panel_.signals());
+      recording_pane_.draw(pane_place, pane_size, style_, view, guides_pane_.signals().empty(), scope_pane_.signals());
       break;
   }
   settings_.tuning_width -= splitter("tuning splitter", {left_width, top}, {gap, size.y - top}, true);
@@ -231,12 +231,12 @@ void Companion::draw(ImVec2 size, double now_s) {
     settings_.scope_height -= splitter("scope splitter", {0, scene_end}, {left_width, gap}, false);
     settings_.scope_height = std::clamp(settings_.scope_height, scope_minimum_points,
                                         std::max(scope_minimum_points, scope_room / style_.scale));
-    scope_panel_.draw({0, scene_end + gap}, {left_width, size.y - scene_end - gap}, style_);
+    scope_pane_.draw({0, scene_end + gap}, {left_width, size.y - scene_end - gap}, style_);
   }
 
   const bool scene_moves = looks_different(drawn_pose_, pose);
   is_moving_ = scene_moves || guides_pane_.is_running() || replay_bar_.is_playing() ||
-               (settings_.scope_is_shown && scope_panel_.take_motion());
+               (settings_.scope_is_shown && scope_pane_.take_motion());
   if (scene_moves) drawn_pose_ = pose;
 
   carry_out(outcome);
@@ -258,12 +258,10 @@ std::uint64_t Companion::scene_digest() const {
   return digest.value();
 }
 
-void Companion::draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool smooth,
-                           bool is_as_before) const {
+void Companion::draw_scene(float pixels_per_unit, int framebuffer_height, bool smooth, bool is_as_before) const {
   const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const int height = pixels(scene_size_.y);
   scene_pane_.draw_scene(
-      renderer,
       {pixels(scene_place_.x), framebuffer_height - pixels(scene_place_.y) - height, pixels(scene_size_.x), height},
       {*style_.palette, options_.flat_colours, smooth && !options_.flat_colours, is_as_before, std::nullopt});
 }

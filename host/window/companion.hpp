@@ -6,20 +6,19 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <window/parameter_editor.hpp>
+#include <bars/replay_bar.hpp>
+#include <bars/status_bar.hpp>
+#include <device_desk/device_desk.hpp>
+#include <device_desk/parameter_editor.hpp>
+#include <frame/style.hpp>
+#include <panes/guides_pane.hpp>
+#include <panes/recording_pane.hpp>
+#include <panes/tuning_pane.hpp>
+#include <scene/mouse_hand.hpp>
+#include <scene/scene_pane.hpp>
+#include <scope/scope_pane.hpp>
 #include <window/window.hpp>
 #include <window/window_settings.hpp>
-
-#include "device_desk.hpp"
-#include "guides_pane.hpp"
-#include "mouse_hand.hpp"
-#include "recording_pane.hpp"
-#include "replay_bar.hpp"
-#include "scene_pane.hpp"
-#include "scope_panel.hpp"
-#include "status_bar.hpp"
-#include "style.hpp"
-#include "tuning_panel.hpp"
 
 namespace inkwell::window {
 
@@ -31,8 +30,7 @@ class Companion {
   void draw(ImVec2 size, double now_s);
   /// The picture under the panes; the framebuffer is bound. `pixels_per_unit`: framebuffer over screen coordinates.
   /// `is_as_before`: the scene is the one that was drawn last, by its digest.
-  void draw_scene(Renderer& renderer, float pixels_per_unit, int framebuffer_height, bool smooth,
-                  bool is_as_before) const;
+  void draw_scene(float pixels_per_unit, int framebuffer_height, bool smooth, bool is_as_before) const;
   /// Of all that the scene is made of, as it was laid out last.
   std::uint64_t scene_digest() const;
 
@@ -74,8 +72,8 @@ class Companion {
   ParameterEditor editor_;
   StatusBar status_bar_;
   ScenePane scene_pane_;
-  TuningPanel tuning_panel_;
-  ScopePanel scope_panel_;
+  TuningPane tuning_pane_;
+  ScopePane scope_pane_;
   GuidesPane guides_pane_;
   RecordingPane recording_pane_;
   ReplayBar replay_bar_;

@@ -1,7 +1,5 @@
 #include <window/window.hpp>
 
-#include <fmt/format.h>
-#include <malloc.h>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -13,17 +11,18 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 #include <imgui.h>
+#include <malloc.h>
 
-#include <window/frame_rhythm.hpp>
-#include <window/key_taps.hpp>
+#include <frame/display.hpp>
+#include <frame/frame_rhythm.hpp>
+#include <frame/frames_report.hpp>
+#include <frame/inspection.hpp>
+#include <frame/key_taps.hpp>
+#include <frame/picture_digest.hpp>
 
 #include "companion.hpp"
-#include "display.hpp"
-#include "frames_report.hpp"
-#include "inspection.hpp"
-#include "picture_digest.hpp"
-#include "renderer.hpp"
 
 namespace inkwell::window {
 
@@ -96,7 +95,6 @@ void run(const WindowOptions& options) {
     if (down) taps.note(key);
     companion.key(key, down);
   });
-  Renderer renderer;
   std::optional<Inspection> inspection;
   if (options.inspect) inspection.emplace(&glfwPostEmptyEvent);
   // A little faster than the display, which then sets the pace; without a display that does, it is the pace.
@@ -157,7 +155,7 @@ void run(const WindowOptions& options) {
     glClearColor(ground.x, ground.y, ground.z, 1.0f);
     glDisable(GL_SCISSOR_TEST);  // ImGui's back end leaves it on; a whole buffer is cleared fastest
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-    companion.draw_scene(renderer, static_cast<float>(width) / size.x, height, smooth, scene == scene_on_screen);
+    companion.draw_scene(static_cast<float>(width) / size.x, height, smooth, scene == scene_on_screen);
     glViewport(0, 0, width, height);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     if (is_last) write_screenshot(options.screenshot, width, height);

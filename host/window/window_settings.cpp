@@ -1,11 +1,12 @@
 #include <window/window_settings.hpp>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <optional>
 #include <sstream>
+
+#include <toml++/toml.h>
 
 namespace inkwell::window {
 

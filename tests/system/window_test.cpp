@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include <window/palette.hpp>
+#include <frame/palette.hpp>
 
 #include "window_rig.hpp"
 

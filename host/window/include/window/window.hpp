@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <device/link.hpp>
+#include <frame/palette.hpp>
 #include <protocol/parameters.hpp>
-#include <window/palette.hpp>
 
 namespace inkwell::window {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include <window/palette.hpp>
-#include <window/scope_settings.hpp>
+#include <frame/palette.hpp>
+#include <scope/scope_settings.hpp>
 
 namespace inkwell::window {
 

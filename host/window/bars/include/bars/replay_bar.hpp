@@ -1,0 +1,43 @@
+// A recording that is replayed in place of the device, and its bar under the scene: play, pause, where in it, how fast,
+// and back to the device.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <device_desk/parameter_editor.hpp>
+#include <frame/style.hpp>
+#include <recording/replay.hpp>
+#include <scope/scope_pane.hpp>
+
+namespace inkwell::window {
+
+inline constexpr float replay_bar_points = 46.0f;
+
+class ReplayBar {
+ public:
+  /// Opens a recording and plays it. Throws device::Error with a sentence if it cannot be read.
+  void open(const std::filesystem::path& file);
+  bool is_open() const { return replay_.has_value(); }
+  bool is_playing() const { return replay_ && replay_->is_playing(); }
+
+  /// Once a frame: gives the scope the samples that came by.
+  void follow(double now_s, ScopePane& scope);
+  std::optional<protocol::PoseReport> pose() const { return replay_->pose(); }
+  /// Holds the recording's parameters. What is edited in it goes nowhere.
+  ParameterEditor& editor() { return editor_; }
+  const ParameterEditor& editor() const { return editor_; }
+
+  /// Draws the bar and does what is pressed in it, which may be to close the recording.
+  void draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& scope);
+
+ private:
+  void draw_controls(const Style& style);
+  void draw_track(ImVec2 corner, ImVec2 size, const Style& style);
+
+  std::optional<recording::Replay> replay_;
+  ParameterEditor editor_;
+  std::optional<double> followed_until_s_;
+};
+
+}  // namespace inkwell::window

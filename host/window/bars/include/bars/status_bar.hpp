@@ -1,0 +1,47 @@
+// The bar on top: which device, how it is, force on and off, stop; and under it the fault, if there is one.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <device_desk/device_desk.hpp>
+#include <frame/style.hpp>
+
+namespace inkwell::window {
+
+struct StatusBarOutcome {
+  bool switch_force_on = false;
+  bool stop = false;
+  bool clear_fault = false;
+  bool toggle_theme = false;
+  bool toggle_scope = false;
+};
+
+class StatusBar {
+ public:
+  /// The gauges wrap where the window is narrow or its text large.
+  float height(float width, const Style& style) const;
+  StatusBarOutcome draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk, bool scope_is_shown);
+
+ private:
+  void draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk);
+  void draw_device_list(const Style& style, DeviceDesk& desk);
+  /// The stylus' two buttons and the inkwell, as the board feels them.
+  void draw_switches(ImVec2 corner, const Style& style, std::uint8_t switches) const;
+};
+
+/// What has to be said over the whole width: a fault with its cause and remedy, or a motor that is hot.
+struct Banner {
+  std::string what;
+  std::string remedy;
+  bool is_fault;
+};
+std::optional<Banner> banner_of(const DeviceView& view);
+float banner_height(float width, const Style& style, const Banner& banner);
+/// True when "Clear fault" was pressed.
+bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);
+
+/// A card in the middle of the scene that says why no device is connected and what to do.
+void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view);
+
+}  // namespace inkwell::window

@@ -1,0 +1,117 @@
+#include <bars/replay_bar.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace inkwell::window {
+namespace {
+
+constexpr std::array<double, 7> speeds{0.01, 0.05, 0.2, 0.5, 1.0, 2.0, 4.0};
+
+std::string speed_label(double speed) { return fmt::format("{:g} x", speed); }
+
+}  // namespace
+
+void ReplayBar::open(const std::filesystem::path& file) {
+  replay_.emplace(recording::read(file));
+  replay_->play();
+  editor_ = {};
+  editor_.device_holds(replay_->recording().information.parameters);
+}
+
+void ReplayBar::follow(double now_s, ScopePane& scope) {
+  const double passed_s = now_s - followed_until_s_.value_or(now_s);
+  followed_until_s_ = now_s;
+  if (!replay_) return;
+  editor_.take_changes();
+  editor_.forget_unconfirmed(now_s);
+  const auto passed = replay_->advance(passed_s, scope.span_s());
+  if (passed.starts_anew) scope.start_anew();
+  for (const auto& block : passed.blocks) scope.receive(block);
+}
+
+void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& scope) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(9)});
+  begin_pane("replay", place, size, ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  draw_controls(style);
+  ImGui::SameLine(0, style.points(14));
+
+  const float close_width = style.points(64), time_width = style.points(126), gap = style.points(12);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float right = place.x + size.x - style.points(12) - close_width - gap - time_width - gap;
+  if (right - corner.x > style.points(40)) draw_track(corner, {right - corner.x, ImGui::GetFrameHeight()}, style);
+  ImGui::SetCursorScreenPos({right + gap, corner.y});
+  ImGui::AlignTextToFramePadding();
+  right_text(style.palette->text_quiet, fmt::format("{:.2f} of {:.2f} s", replay_->position_s(), replay_->duration_s()),
+             time_width);
+  ImGui::SetCursorScreenPos({right + gap + time_width + gap, corner.y});
+  const bool is_to_be_closed = button("Close", {close_width, 0});
+  help_on_hover("Close", "Back to the device.", style);
+  end_pane();
+  if (!is_to_be_closed) return;
+  replay_.reset();
+  scope.start_anew();
+}
+
+void ReplayBar::draw_controls(const Style& style) {
+  const bool playing = replay_->is_playing();
+  if (toggle_button(playing ? "Pause##replay" : "Play##replay", playing, style, {style.points(62), 0})) {
+    if (playing)
+      replay_->pause();
+    else
+      replay_->play();
+  }
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(style.points(76));
+  if (ImGui::BeginCombo("##speed", speed_label(replay_->speed()).c_str())) {
+    for (const double speed : speeds)
+      if (ImGui::Selectable(speed_label(speed).c_str(), speed == replay_->speed())) replay_->set_speed(speed);
+    ImGui::EndCombo();
+  }
+  help_on_hover("Speed", "1 x is as fast as it was.", style);
+  ImGui::SameLine();
+  ImGui::AlignTextToFramePadding();
+  const auto& recording = replay_->recording();
+  std::string name = recording.name;
+  if (recording.information.simulation) name += " (simulation)";
+  if (!recording.complete) name += ", end missing";
+  text(style.fonts.strong, style.palette->text, name);
+  if (!recording.remarks.empty())
+    help_on_hover("Not understood", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
+}
+
+/// The whole recording as a line with its marks; a click or drag goes there.
+void ReplayBar::draw_track(ImVec2 corner, ImVec2 size, const Style& style) {
+  const Palette& palette = *style.palette;
+  const auto& recording = replay_->recording();
+  const float mouse = ImGui::GetIO().MousePos.x;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImGui::SetCursorScreenPos(corner);
+  ImGui::InvisibleButton("track", size);
+  const double duration_s = std::max(replay_->duration_s(), 1.0 / protocol::servo_rate_Hz);
+  if (ImGui::IsItemActive()) replay_->seek(duration_s * static_cast<double>((mouse - corner.x) / size.x));
+
+  const auto x_of = [&](double at_s) { return corner.x + static_cast<float>(at_s / duration_s) * size.x; };
+  const float middle = corner.y + 0.5f * size.y, half = style.points(3), x = x_of(replay_->position_s());
+  list.AddRectFilled({corner.x, middle - half}, {corner.x + size.x, middle + half}, packed(palette.raised), half);
+  list.AddRectFilled({corner.x, middle - half}, {x, middle + half}, packed(palette.accent), half);
+  const recording::Mark* nearest = nullptr;
+  float nearest_pixels = style.points(6);
+  for (const auto& mark : recording.marks) {
+    const float at = x_of(recording.elapsed_s_at(mark.period));
+    list.AddRectFilled({at - style.points(1), middle - style.points(8)},
+                       {at + style.points(1), middle + style.points(8)}, packed(palette.caution));
+    if (!ImGui::IsItemHovered() || std::abs(mouse - at) >= nearest_pixels) continue;
+    nearest = &mark;
+    nearest_pixels = std::abs(mouse - at);
+  }
+  list.AddCircleFilled({x, middle}, style.points(7), packed(palette.text));
+  if (nearest != nullptr)
+    help_on_hover(fmt::format("{:.3f} s", recording.elapsed_s_at(nearest->period)), nearest->text, style);
+}
+
+}  // namespace inkwell::window

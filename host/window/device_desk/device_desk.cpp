@@ -1,0 +1,97 @@
+#include <device_desk/device_desk.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace inkwell::window {
+
+namespace {
+constexpr std::size_t scope_frames_maximum = 20'000;  // some ten seconds in which the window drew nothing
+}
+
+DeviceDesk::DeviceDesk(std::function<std::vector<device::Endpoint>()> list_devices, std::string serial_number)
+    : list_devices_(std::move(list_devices)), wanted_(std::move(serial_number)) {
+  open_session();
+  looker_ = std::jthread([this](const std::stop_token& stop) {
+    using namespace std::chrono_literals;
+    for (int tick = 0; !stop.stop_requested(); ++tick) {
+      if (looking_ && tick % 10 == 0) look();
+      std::this_thread::sleep_for(100ms);
+    }
+  });
+}
+
+DeviceDesk::~DeviceDesk() {
+  looker_.request_stop();
+  session_.reset();
+}
+
+std::vector<device::Endpoint> DeviceDesk::look() {
+  std::vector<device::Endpoint> found;
+  std::string error;
+  try {
+    found = list_devices_();
+  } catch (const device::Error& failure) {
+    error = failure.what();
+  }
+  const std::scoped_lock lock(mutex_);
+  listed_ = found;
+  list_error_ = error;
+  return found;
+}
+
+void DeviceDesk::open_session() {
+  session_ = std::make_unique<device::Session>([this, wanted = wanted_]() -> std::optional<device::Endpoint> {
+    const std::vector<device::Endpoint> found = look();
+    const auto match = std::ranges::find_if(
+        found, [&wanted](const device::Endpoint& each) { return wanted.empty() || each.serial_number == wanted; });
+    return match == found.end() ? std::nullopt : std::optional(*match);
+  });
+  session_->on_scope([this](const device::ScopeSamples& samples) {
+    const std::scoped_lock lock(mutex_);
+    if (scope_.size() < scope_frames_maximum) scope_.push_back(samples);
+  });
+  if (!signals_.empty()) session_->select_signals(signals_);
+}
+
+const DeviceView& DeviceDesk::refresh() {
+  view_.status = session_->status();
+  view_.pose = view_.connected() ? session_->newest_pose() : std::nullopt;
+  view_.refusal = session_->refusal();
+  const std::uint64_t revision = session_->parameters_revision();
+  if (revision != view_.parameters_revision || !view_.connected()) {
+    view_.parameters_revision = revision;
+    view_.parameters = view_.connected() ? session_->parameters() : std::nullopt;
+  } else if (!view_.parameters) {
+    view_.parameters = session_->parameters();
+  }
+  const std::scoped_lock lock(mutex_);
+  view_.listed = listed_;
+  view_.list_error = list_error_;
+  return view_;
+}
+
+void DeviceDesk::follow_choice() {
+  wanted_ = *std::exchange(choice_, std::nullopt);
+  session_.reset();  // the old one lets go of the device before the new one asks for it
+  view_ = DeviceView{};
+  {
+    const std::scoped_lock lock(mutex_);
+    scope_.clear();
+  }
+  open_session();
+}
+
+void DeviceDesk::select_signals(std::vector<protocol::Signal> signals) {
+  if (signals == signals_) return;
+  signals_ = std::move(signals);
+  session_->select_signals(signals_);
+}
+
+std::vector<device::ScopeSamples> DeviceDesk::take_scope() {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(scope_, {});
+}
+
+}  // namespace inkwell::window

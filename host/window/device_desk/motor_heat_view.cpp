@@ -1,0 +1,38 @@
+#include <device_desk/motor_heat_view.hpp>
+
+#include <fmt/format.h>
+
+namespace inkwell::window {
+
+namespace {
+constexpr float warm_from = 0.8f;
+constexpr float hot_from = 1.0f;
+}  // namespace
+
+MotorHeatView motor_heat_view(const protocol::InformationReport& report) {
+  MotorHeatView view;
+  for (int i = 0; i < 3; ++i) {
+    if (report.motor_heat[i] <= view.hottest) continue;
+    view.hottest = report.motor_heat[i];
+    view.motor = i + 1;
+  }
+  if (view.hottest >= warm_from) view.level = HeatLevel::warm;
+  if (view.hottest >= hot_from) view.level = HeatLevel::hot;
+  return view;
+}
+
+std::string heat_advice(const MotorHeatView& heat) {
+  switch (heat.level) {
+    case HeatLevel::cool: return {};
+    case HeatLevel::warm:
+      return fmt::format("Motor {} is getting warm. Push less or pause before it reaches 100 %.", heat.motor);
+    case HeatLevel::hot:
+      return fmt::format(
+          "Motor {} has carried more than its continuous current for too long. Switch the force off "
+          "until it has cooled, or lower the force limit.",
+          heat.motor);
+  }
+  return {};
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,130 @@
+#include <frame/display.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
+#include <png.h>
+
+namespace inkwell::window {
+
+namespace {
+
+std::string last_glfw_error() {
+  const char* description = nullptr;
+  glfwGetError(&description);
+  return description == nullptr ? "no reason given" : description;
+}
+
+}  // namespace
+
+Display::Display(int width, int height, const std::string& title) {
+  if (glfwInit() != GLFW_TRUE)
+    throw DisplayError("No display could be opened (" + last_glfw_error() +
+                       "). Run it in a graphical session, or use the commands that need none: inkwell --help.");
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_SAMPLES, 0);
+  glfwWindowHint(GLFW_DEPTH_BITS, 24);
+  glfwWindowHint(GLFW_STENCIL_BITS, 8);
+  window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  if (window_ == nullptr) {
+    const std::string reason = last_glfw_error();
+    glfwTerminate();
+    throw DisplayError("OpenGL 3.3 is needed and this display does not offer it (" + reason +
+                       "). Install a driver for the graphics card, or Mesa's software OpenGL (libgl1-mesa-dri) and "
+                       "set LIBGL_ALWAYS_SOFTWARE=1.");
+  }
+  glfwSetWindowSizeLimits(window_, 960, 600, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    auto* display = static_cast<Display*>(glfwGetWindowUserPointer(window));
+    display->had_input_ = true;
+    if (display->on_key_ && action != GLFW_REPEAT) display->on_key_(key, action == GLFW_PRESS);
+  });
+  // ImGui's back end calls these before its own.
+  static constexpr auto note_input = [](GLFWwindow* window) {
+    static_cast<Display*>(glfwGetWindowUserPointer(window))->had_input_ = true;
+  };
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double, double) { note_input(window); });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int, int, int) { note_input(window); });
+  glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double) { note_input(window); });
+  glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned) { note_input(window); });
+  glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int) { note_input(window); });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int) { note_input(window); });
+  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* window, int, int) { note_input(window); });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) {
+    note_input(window);
+    static_cast<Display*>(glfwGetWindowUserPointer(window))->lost_picture_ = true;
+  });
+}
+
+Display::~Display() {
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+float Display::content_scale() const {
+  float x = 1.0f;
+  float y = 1.0f;
+  glfwGetWindowContentScale(window_, &x, &y);
+  return std::clamp(std::max(x, y), 1.0f, 4.0f);
+}
+
+double Display::refresh_rate_Hz() const {
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+  return mode == nullptr || mode->refreshRate < 30 ? 60.0 : mode->refreshRate;
+}
+
+bool Display::draws_in_software() const {
+  // Mesa's rasterisers (GL_RENDERER of llvmpipe and softpipe).
+  const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe");
+}
+
+ImVec2 Display::corner() const {
+  int x = 0;
+  int y = 0;
+  glfwGetWindowPos(window_, &x, &y);
+  return {static_cast<float>(x), static_cast<float>(y)};
+}
+
+void write_screenshot(const std::filesystem::path& path, int width, int height) {
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(width);
+  image.height = static_cast<png_uint_32>(height);
+  image.format = PNG_FORMAT_RGB;
+  // OpenGL's first row is the lowest one; a negative stride turns the picture over.
+  if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), -3 * width, nullptr) == 0)
+    throw DisplayError("The screenshot " + path.string() + " cannot be written: " + image.message + ".");
+}
+
+void FramePacer::wait() {
+  using Clock = std::chrono::steady_clock;
+  const double now_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  // After a frame that took too long the rhythm starts anew instead of hurrying to catch up.
+  next_s_ = std::max(next_s_ + period_s_, now_s - period_s_);
+  if (next_s_ > now_s) std::this_thread::sleep_for(std::chrono::duration<double>(next_s_ - now_s));
+
+  if (const double measured_s = now_s - half_second_began_s_; measured_s > 0.5) {
+    if (half_second_began_s_ > 0.0 && measured_s > 1.2 * period_s_ * frames_in_it_) keeps_up_ = false;
+    half_second_began_s_ = now_s;
+    frames_in_it_ = 0;
+  }
+  ++frames_in_it_;
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,15 @@
+#include <frame/frame_rhythm.hpp>
+
+namespace inkwell::window {
+
+bool FrameRhythm::is_due(bool something_happened, double now_s) const {
+  return something_happened || is_lively(now_s) || now_s - laid_out_s_ >= resting_period_s;
+}
+
+bool FrameRhythm::is_to_be_drawn(const FrameEvidence& evidence, double now_s) {
+  laid_out_s_ = now_s;
+  if (evidence.input || evidence.moves) lively_until_s_ = now_s + lively_for_s;
+  return evidence.moves || evidence.differs;
+}
+
+}  // namespace inkwell::window

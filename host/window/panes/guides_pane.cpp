@@ -1,0 +1,244 @@
+#include <panes/guides_pane.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <device/parameter_file.hpp>
+#include <frame/inspection.hpp>
+#include <plot/plot.hpp>
+
+namespace inkwell::window {
+namespace {
+
+using guides::Phase;
+
+Colour outcome_colour(Phase phase, const Palette& palette) {
+  switch (phase) {
+    case Phase::finished: return palette.good;
+    case Phase::failed: return palette.danger;
+    default: return palette.caution;
+  }
+}
+
+}  // namespace
+
+guides::SessionPort GuidesPane::port() {
+  return {desk_.session(), [this](std::vector<protocol::Signal> wanted) { signals_ = std::move(wanted); }};
+}
+
+std::vector<GuidesPane::Offer> GuidesPane::offers() const {
+  return {
+      {"First connection", "Versions, supply, inkwell, encoders and buttons. No current flows.",
+       guides::first_connection_guide},
+      {"Directions", "Each encoder while you turn its joint, then each motor with a small pulse of current.",
+       guides::direction_guide},
+      {"Joint stops", "You move each joint to both its stops; they are compared with the limits.",
+       [] { return guides::stops_guide(guides::StopsTrust::limits); }},
+      {"Potentiometers", "You turn each axis of the gimbal to both its stops.",
+       [] { return guides::potentiometer_guide({}); }},
+      {"Current-loop tuning",
+       "Measures resistance and inductance of the motors and tries gains for the bandwidth below.",
+       [this] {
+         guides::CurrentLoopOptions options;
+         options.bandwidth_Hz = static_cast<double>(bandwidth_Hz_);
+         return guides::current_loop_guide(options);
+       }},
+  };
+}
+
+void GuidesPane::start(guides::Guide guide) {
+  guide_.emplace(std::move(guide));
+  user_.reset();
+  user_problem_.clear();
+  signals_.clear();
+  if (control_port_ == 0 || !hand_helps_) return;
+  try {
+    const auto& held = desk_.view().parameters;
+    user_.emplace(device::ControlClient("127.0.0.1", control_port_),
+                  simulated_arm_ ? *simulated_arm_ : held.value_or(protocol::default_parameters()));
+  } catch (const device::Error& error) {
+    user_problem_ = error.what();
+  }
+}
+
+void GuidesPane::run_simulated_user() {
+  if (!user_ || !guide_ || guide_->phase() != Phase::working) return;
+  try {
+    user_->advance(guide_->step().user_task());
+  } catch (const device::Error& error) {
+    user_problem_ = error.what();
+    user_.reset();
+  }
+}
+
+void GuidesPane::follow(const std::vector<device::ScopeSamples>& frames) {
+  if (!guide_) return;
+  for (const auto& samples : frames) guide_->receive(samples);
+  auto to_device = port();
+  guide_->advance(guides::observe(desk_.session()), to_device);
+  run_simulated_user();
+}
+
+void GuidesPane::cancel() {
+  if (!is_running()) return;
+  auto to_device = port();
+  guide_->cancel(to_device);
+}
+
+void GuidesPane::draw(ImVec2 place, ImVec2 size, const Style& style) {
+  begin_pane("guides", place, size);
+  if (!guide_) {
+    draw_offers(style);
+  } else {
+    text(style.fonts.strong, style.palette->text, guide_->title());
+    const float room = ImGui::GetFrameHeightWithSpacing() + style.points(6);
+    if (ImGui::BeginChild("guide", {0, -room})) {
+      if (guide_->is_over()) {
+        draw_result(style);
+      } else {
+        draw_step(style);
+        draw_curves(style);
+      }
+    }
+    ImGui::EndChild();
+    draw_buttons(style);
+  }
+  end_pane();
+}
+
+void GuidesPane::draw_offers(const Style& style) {
+  const bool connected = desk_.view().connected();
+  wrapped_text(
+      style.palette->text_quiet,
+      connected
+          ? "Each guide says what it will do before anything moves, and changes nothing until you apply its result."
+          : "Guides need a device. Plug one in.");
+  ImGui::Dummy({0, style.points(4)});
+  ImGui::BeginDisabled(!connected);
+  for (const Offer& offer : offers()) {
+    if (button(offer.title, {ImGui::GetContentRegionAvail().x, style.points(30)})) start(offer.make());
+    wrapped_text(style.palette->text_quiet, offer.help);
+    ImGui::Dummy({0, style.points(4)});
+  }
+  ImGui::EndDisabled();
+  text(style.palette->text_quiet, "Bandwidth of the current loops");
+  bar_slider("##bandwidth", bandwidth_Hz_, static_cast<float>(guides::bandwidth_minimum_Hz),
+             static_cast<float>(guides::bandwidth_maximum_Hz), "%.0f Hz", ImGuiSliderFlags_AlwaysClamp,
+             ImGui::GetContentRegionAvail().x, style);
+  if (control_port_ == 0) return;
+  ImGui::Dummy({0, style.points(4)});
+  ImGui::Checkbox("The simulated hand does my part", &hand_helps_);
+  note_item("hand helps");
+}
+
+void GuidesPane::draw_step(const Style& style) {
+  const Palette& palette = *style.palette;
+  const auto& step = guide_->step();
+  text(style.fonts.caption, palette.text_quiet,
+       fmt::format("Step {} of {}", guide_->step_index() + 1, guide_->step_count()));
+  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, packed(palette.accent));
+  ImGui::ProgressBar(static_cast<float>(guide_->progress()), {-1, style.points(6)}, "");
+  ImGui::PopStyleColor();
+  ImGui::Dummy({0, style.points(2)});
+  text(style.fonts.strong, palette.text, step.title());
+  wrapped_text(palette.text, step.text());
+  if (guide_->phase() == Phase::asks) wrapped_text(palette.caution, "Nothing happens before you confirm.");
+  if (!user_problem_.empty()) wrapped_text(palette.danger, user_problem_);
+  ImGui::Dummy({0, style.points(4)});
+  if (guide_->phase() == Phase::working) draw_checks(style);
+}
+
+void GuidesPane::draw_checks(const Style& style) {
+  const Palette& palette = *style.palette;
+  for (const auto& check : guide_->step().checks()) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 0.58f * width);
+    text(palette.text_quiet, check.name);
+    ImGui::PopTextWrapPos();
+    ImGui::SameLine(0, 0);
+    ImGui::SetCursorPosX(0.58f * width);
+    right_text(check.expected.empty() || check.passed ? palette.text : palette.caution, guides::measured_text(check),
+               0.42f * width);
+    if (check.expected.empty()) continue;
+    // Told in words as well, not by colour alone.
+    text(style.fonts.caption, check.passed ? palette.good : palette.text_quiet,
+         fmt::format("{}: {}", check.passed ? "as expected" : "expected", check.expected));
+  }
+}
+
+void GuidesPane::draw_result(const Style& style) {
+  const Palette& palette = *style.palette;
+  const bool applied = guide_->applied() == guides::Applied::yes;
+  wrapped_text(outcome_colour(guide_->phase(), palette),
+               applied ? "Finished, and the device holds the proposals." : guide_->outcome());
+  draw_curves(style);
+  ImGui::Dummy({0, style.points(4)});
+  for (const auto& sentence : guide_->findings().sentences) wrapped_text(palette.text, sentence);
+  if (guide_->phase() != Phase::finished || guide_->findings().proposals.empty()) return;
+  ImGui::Dummy({0, style.points(4)});
+  text(style.fonts.strong, palette.text, applied ? "Applied" : "Proposed");
+  for (const auto& proposal : guide_->findings().proposals) {
+    text(palette.text, info(proposal.parameter).name);
+    wrapped_text(palette.text_quiet,
+                 fmt::format("{} instead of {}, {}", device::format_value(proposal.parameter, proposal.proposed),
+                             device::format_value(proposal.parameter, proposal.held), proposal.reason));
+  }
+  if (!guide_->refusal().empty()) wrapped_text(palette.danger, guide_->refusal());
+}
+
+void GuidesPane::draw_curves(const Style& style) {
+  const auto& curves = guide_->findings().curves;
+  if (curves.empty()) return;
+  const Palette& palette = *style.palette;
+  double most_A = 0.1, least_A = 0, last_ms = 1;
+  for (const auto& curve : curves)
+    for (const auto& [time_ms, current_A] : curve.points) {
+      most_A = std::max(most_A, current_A);
+      least_A = std::min(least_A, current_A);
+      last_ms = std::max(last_ms, time_ms);
+    }
+  ImGui::Dummy({0, style.points(6)});
+  text(style.fonts.strong, palette.text, "Step response");
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, height = style.points(170);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const PlotArea area{{corner.x + style.points(38), corner.y},
+                      {corner.x + width - style.points(4), corner.y + height - style.points(20)},
+                      {-0.2, std::min(last_ms, 2.0)},
+                      enclosing_range(least_A, most_A)};
+  draw_axes(list, area, style, "ms", "A");
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    draw_points(list, area, curves[i].points, palette.lines[i % palette.lines.size()], style);
+  ImGui::Dummy({width, height});
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (i % 2 == 1) ImGui::SameLine(0.5f * width);
+    text(style.fonts.caption, palette.lines[i % palette.lines.size()], curves[i].name);
+  }
+}
+
+void GuidesPane::draw_buttons(const Style& style) {
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 half{0.5f * (ImGui::GetContentRegionAvail().x - gap), 0};
+  if (!guide_->is_over()) {
+    ImGui::BeginDisabled(!guide_->takes_confirmation());
+    if (coloured_button("Confirm", style.palette->accent, style.palette->on_danger, half)) guide_->confirm();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (button("Cancel", half)) cancel();
+    return;
+  }
+  const bool applicable = guide_->phase() == Phase::finished && !guide_->findings().proposals.empty() &&
+                          (guide_->applied() == guides::Applied::no || guide_->applied() == guides::Applied::refused);
+  ImGui::BeginDisabled(!applicable || !desk_.view().connected());
+  if (coloured_button("Apply", style.palette->accent, style.palette->on_danger, half)) {
+    auto to_device = port();
+    guide_->apply(to_device);
+  }
+  ImGui::EndDisabled();
+  ImGui::SameLine();
+  if (button("Back", half)) guide_.reset();
+}
+
+}  // namespace inkwell::window

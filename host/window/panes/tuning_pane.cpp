@@ -1,0 +1,273 @@
+#include <panes/tuning_pane.hpp>
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include <device/parameter_file.hpp>
+#include <frame/inspection.hpp>
+
+namespace inkwell::window {
+
+using device::ParameterChange;
+using protocol::Parameter;
+using protocol::ParameterKind;
+
+namespace {
+
+constexpr float unit_points = 46.0f;
+constexpr float reset_points = 20.0f;
+
+std::array<const char*, 2> choice_names(Parameter parameter) {
+  if (parameter == Parameter::transmission) return {"serial", "parallelogram"};
+  if (parameter == Parameter::frame) return {"paper", "Omni"};
+  return {"no", "yes"};
+}
+
+std::string help_of(const protocol::ParameterInfo& info) {
+  return fmt::format("{}\n\nRange {} to {}{}{}, default {}.\nCtrl and click to type a value.\nIn files: {}", info.help,
+                     info.minimum, info.maximum, info.unit.empty() ? "" : " ", info.unit, info.default_value,
+                     info.name);
+}
+
+// Two arrows that turn back: drawn, because not every font has them.
+bool reset_button(const Style& style) {
+  const float size = style.points(reset_points - 2);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const bool pressed = ImGui::InvisibleButton("reset", {size, ImGui::GetFrameHeight()});
+  const ImVec2 centre{corner.x + 0.5f * size, corner.y + 0.5f * ImGui::GetFrameHeight()};
+  const float radius = style.points(4.6f);
+  const ImU32 colour = packed(ImGui::IsItemHovered() ? style.palette->text : style.palette->text_quiet);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PathArcTo(centre, radius, -2.2f, 2.4f, 14);
+  list.PathStroke(colour, 0, style.points(1.4f));
+  const ImVec2 tip{centre.x + radius * -0.59f, centre.y + radius * -0.81f};
+  list.AddTriangleFilled({tip.x - style.points(3.2f), tip.y + style.points(1.2f)},
+                         {tip.x + style.points(1.8f), tip.y + style.points(2.6f)},
+                         {tip.x - style.points(0.6f), tip.y - style.points(3.2f)}, colour);
+  return pressed;
+}
+
+}  // namespace
+
+void TuningPane::load(const std::filesystem::path& path, ParameterEditor& editor, double now_s) {
+  path_ = path.string();
+  messages_.clear();
+  try {
+    const device::ParameterFile file = device::load_parameters(path);
+    editor.apply("load " + path.filename().string(), file.changes, now_s);
+    messages_ = {fmt::format("Loaded {} values from {}.", file.changes.size(), path.filename().string())};
+    for (const std::string& name : file.unknown)
+      messages_.push_back(fmt::format("This version does not know {}; it was left out.", name));
+    message_is_error_ = false;
+  } catch (const device::Error& error) {
+    messages_ = {error.what()};
+    message_is_error_ = true;
+  }
+}
+
+void TuningPane::save(const ParameterEditor& editor) {
+  messages_.clear();
+  try {
+    device::save_parameters(path_, editor.shown());
+    messages_ = {fmt::format("Saved all parameters in {}.", path_)};
+    message_is_error_ = false;
+  } catch (const device::Error& error) {
+    messages_ = {error.what()};
+    message_is_error_ = true;
+  }
+}
+
+void TuningPane::draw_heading(const Style& style, ParameterEditor& editor, double now_s) {
+  ImGui::AlignTextToFramePadding();
+  text(style.fonts.strong, style.palette->text, "Tuning");
+  ImGui::SameLine();
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(2), style.points(7)});
+  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - style.points(208));
+  ImGui::BeginDisabled(!editor.known() || !editor.can_undo());
+  if (quiet_button("Undo", style)) editor.undo(now_s);
+  ImGui::EndDisabled();
+  if (editor.can_undo()) help_on_hover("", fmt::format("Takes back: {}. Ctrl+Z", editor.undo_title()), style);
+  ImGui::SameLine();
+  ImGui::BeginDisabled(!editor.known() || !editor.can_redo());
+  if (quiet_button("Redo", style)) editor.redo(now_s);
+  ImGui::EndDisabled();
+  if (editor.can_redo()) help_on_hover("", fmt::format("Does again: {}. Ctrl+Shift+Z", editor.redo_title()), style);
+  ImGui::SameLine();
+  ImGui::BeginDisabled(!editor.known());
+  if (quiet_button("Load", style)) ask_for_file(FileTask::load);
+  ImGui::SameLine();
+  if (quiet_button("Save", style)) ask_for_file(FileTask::save);
+  ImGui::EndDisabled();
+  ImGui::PopStyleVar();
+}
+
+void TuningPane::draw_presets(const Style& style, ParameterEditor& editor, double now_s) {
+  const auto all = presets();
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const auto count = static_cast<float>(all.size() + 1);
+  const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1.0f)) / count;
+  for (const Preset& preset : all) {
+    const bool on = editor.known() && std::ranges::all_of(preset.changes, [&](const ParameterChange& change) {
+                      return editor.shown(change.first) == change.second;
+                    });
+    if (toggle_button(std::string(preset.name).c_str(), on, style, {width, 0}))
+      editor.apply(std::string(preset.name), preset.changes, now_s);
+    help_on_hover(preset.name, preset.help, style);
+    ImGui::SameLine();
+  }
+  if (button("Defaults", {width, 0})) {
+    std::vector<ParameterChange> changes;
+    for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+      changes.emplace_back(static_cast<Parameter>(i), protocol::parameter_table[i].default_value);
+    editor.apply("all defaults", changes, now_s);
+  }
+  help_on_hover("Defaults", "Gives every parameter its default. It can be undone.", style);
+}
+
+void TuningPane::draw_messages(const Style& style, const std::string& refusal) {
+  ImGui::PushFont(style.fonts.caption);
+  if (!refusal.empty()) wrapped_text(style.palette->caution, refusal);
+  for (const std::string& message : messages_)
+    wrapped_text(message_is_error_ ? style.palette->caution : style.palette->text_quiet, message);
+  ImGui::PopFont();
+}
+
+void TuningPane::draw_row(Parameter parameter, const Style& style, ParameterEditor& editor, double now_s) {
+  const protocol::ParameterInfo& info = protocol::info(parameter);
+  const Palette& palette = *style.palette;
+  const bool changed = editor.known() && editor.differs_from_default(parameter);
+  ImGui::PushID(static_cast<int>(parameter));
+
+  const float left = ImGui::GetCursorPosX();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float label_width = std::min(0.42f * width, style.points(170));
+  const std::string label = label_of(info);
+  ImGui::AlignTextToFramePadding();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  if (changed)
+    ImGui::GetWindowDrawList()->AddCircleFilled({corner.x - style.points(7), corner.y + 0.5f * ImGui::GetFrameHeight()},
+                                                style.points(2.6f), packed(palette.accent));
+  ImGui::PushClipRect(corner, {corner.x + label_width - style.points(4), corner.y + ImGui::GetFrameHeight()}, true);
+  text(changed ? palette.text : palette.text_quiet, label);
+  ImGui::PopClipRect();
+  help_on_hover(label, help_of(info), style);
+
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(left + label_width);
+  const float field_width = width - label_width - style.points(unit_points + reset_points);
+  ImGui::SetNextItemWidth(field_width);
+  float value = editor.shown(parameter);
+  bool edited = false;
+  if (info.kind == ParameterKind::choice) {
+    int choice = value >= 0.5f ? 1 : 0;
+    const auto names = choice_names(parameter);
+    edited = ImGui::Combo("##value", &choice, names.data(), static_cast<int>(names.size()));
+    if (edited) {
+      const ParameterChange change{parameter, static_cast<float>(choice)};
+      editor.apply(label, {&change, 1}, now_s);
+    }
+  } else {
+    const bool wide = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f;
+    const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
+    edited = bar_slider("##value", value, info.minimum, info.maximum, fmt::format("%.{}f", decimals_of(info)).c_str(),
+                        flags, field_width, style);
+    note_item(info.name);
+    if (ImGui::IsItemActivated()) editor.begin_step(label);
+    if (edited) {
+      const ParameterChange change{parameter, info.kind == ParameterKind::whole ? std::round(value) : value};
+      editor.edit({&change, 1}, now_s);
+    }
+    if (ImGui::IsItemDeactivated()) editor.end_step();
+  }
+  help_on_hover(label, help_of(info), style);
+
+  ImGui::SameLine(0, style.points(6));
+  ImGui::AlignTextToFramePadding();
+  text(style.fonts.caption, palette.text_quiet, info.unit);
+  if (changed) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(left + width - style.points(reset_points - 4));
+    if (reset_button(style)) {
+      const ParameterChange change{parameter, info.default_value};
+      editor.apply(label, {&change, 1}, now_s);
+    }
+    help_on_hover("", fmt::format("Back to the default, {} {}", info.default_value, info.unit), style);
+  }
+  ImGui::PopID();
+}
+
+void TuningPane::draw_group(std::string_view group, const Style& style, ParameterEditor& editor, double now_s) {
+  std::string title{group};
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  const bool often_used = group == "box" || group == "contact" || group == "current loop";
+  int changed = 0;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    if (protocol::parameter_table[i].group == group && editor.known() &&
+        editor.differs_from_default(static_cast<Parameter>(i)))
+      ++changed;
+  ImGui::Dummy({0, style.points(1)});
+  ImGui::PushFont(style.fonts.strong);
+  const bool open = ImGui::CollapsingHeader((title + "###" + std::string(group)).c_str(),
+                                            often_used ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  ImGui::PopFont();
+  if (changed > 0) {
+    ImGui::PushFont(style.fonts.caption);
+    ImGui::SameLine();
+    right_text(style.palette->accent, fmt::format("{} changed", changed),
+               ImGui::GetContentRegionAvail().x - style.points(4));
+    ImGui::PopFont();
+  }
+  if (!open) return;
+  ImGui::Indent(style.points(12));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(3)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(4)});
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    if (protocol::parameter_table[i].group == group) draw_row(static_cast<Parameter>(i), style, editor, now_s);
+  ImGui::PopStyleVar(2);
+  ImGui::Unindent(style.points(12));
+}
+
+void TuningPane::ask_for_file(FileTask task) {
+  task_ = task;
+  const bool saving = task == FileTask::save;
+  chooser_.ask({.title = saving ? "Save the parameters" : "Load parameters",
+                .help = saving ? "A TOML file with every parameter, its unit, range and default."
+                               : "A file saved here, or an arm's description.",
+                .button = saving ? "Save" : "Load",
+                .endings = {".toml"},
+                .is_new_file = saving,
+                .suggestion = path_});
+}
+
+void TuningPane::draw_file_dialog(const Style& style, ParameterEditor& editor, double now_s) {
+  const auto chosen = chooser_.draw(style);
+  if (!chosen) return;
+  if (task_ == FileTask::load) return load(*chosen, editor, now_s);
+  path_ = chosen->string();
+  save(editor);
+}
+
+void TuningPane::draw(ImVec2 place, ImVec2 size, const Style& style, ParameterEditor& editor,
+                      const std::string& refusal, double now_s) {
+  begin_pane("tuning", place, size);
+  draw_heading(style, editor, now_s);
+  ImGui::BeginDisabled(!editor.known());
+  draw_presets(style, editor, now_s);
+  draw_messages(style, refusal);
+  if (ImGui::BeginChild("parameters")) {
+    std::string_view group;
+    for (const protocol::ParameterInfo& info : protocol::parameter_table) {
+      if (info.group == group) continue;
+      group = info.group;
+      draw_group(group, style, editor, now_s);
+    }
+  }
+  ImGui::EndChild();
+  ImGui::EndDisabled();
+  draw_file_dialog(style, editor, now_s);
+  end_pane();
+}
+
+}  // namespace inkwell::window

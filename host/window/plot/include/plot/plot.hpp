@@ -1,0 +1,62 @@
+// Drawing of plots on ImGui's draw lists: grid, numbers on the axes, lines.
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <frame/style.hpp>
+#include <plot/line_thinning.hpp>
+#include <plot/plot_axis.hpp>
+
+namespace inkwell::window {
+
+/// A rectangle of the screen with a range on each axis.
+struct PlotArea {
+  ImVec2 minimum;  ///< top left
+  ImVec2 maximum;  ///< bottom right
+  AxisRange x;
+  AxisRange y;
+
+  float width() const { return maximum.x - minimum.x; }
+  float height() const { return maximum.y - minimum.y; }
+  float to_x(double value) const { return minimum.x + static_cast<float>(x.part(value)) * width(); }
+  float to_y(double value) const { return maximum.y - static_cast<float>(y.part(value)) * height(); }
+};
+
+/// Rounded to whole pixels, which ImGui draws with a third of the triangles.
+inline float line_thickness(const Style& style) { return std::round(style.points(1.5f)); }
+
+/// Collects a line's points and draws them whenever there is a gap.
+class Polyline {
+ public:
+  Polyline(ImDrawList& list, ImU32 colour, float thickness) : list_(list), colour_(colour), thickness_(thickness) {}
+  ~Polyline() { finish(); }
+  Polyline(const Polyline&) = delete;
+  Polyline& operator=(const Polyline&) = delete;
+
+  void add(float x, float y) { line_.add({x, y}); }
+  void finish() {
+    const std::vector<ImVec2> points = line_.take();
+    if (points.size() > 1) list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour_, 0, thickness_);
+  }
+
+ private:
+  ImDrawList& list_;
+  ImU32 colour_;
+  float thickness_;
+  LineThinning<ImVec2> line_;
+};
+
+/// Ground, grid and the numbers on both axes. `x_unit` and `y_unit` stand at the ends of the axes.
+/// `x_is_logarithm`: the x axis holds powers of ten, which are written out.
+void draw_axes(ImDrawList& list, const PlotArea& area, const Style& style, const std::string& x_unit,
+               const std::string& y_unit, bool x_is_logarithm = false);
+
+/// Points in the units of the axes, joined; NaN makes a gap.
+void draw_points(ImDrawList& list, const PlotArea& area, std::span<const std::pair<double, double>> points,
+                 Colour colour, const Style& style);
+
+}  // namespace inkwell::window

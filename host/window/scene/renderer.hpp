@@ -1,0 +1,58 @@
+// Draws the scene with OpenGL 3.3 core.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <epoxy/gl.h>
+
+#include <frame/palette.hpp>
+#include <scene/camera.hpp>
+#include <scene/scene_look.hpp>
+#include <scene/scene_model.hpp>
+#include <scene/scene_solids.hpp>
+
+#include "line_batch.hpp"
+#include "shader.hpp"
+#include "solid_batch.hpp"
+
+namespace inkwell::window {
+
+class Renderer {
+ public:
+  Renderer();
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Draws into the part of the window's framebuffer, whose depth and stencil have been cleared.
+  void draw(const SceneModel& scene, const std::optional<HandView>& hand, const Camera& camera, const SceneLook& look,
+            const Viewport& viewport);
+
+ private:
+  void show_target(const Viewport& viewport) const;
+  /// False if the target had that size, and so its picture, before.
+  bool size_target(int width, int height);
+  void prepare_solids(const Camera& camera, const SceneLook& look) const;
+  void draw_sky(const Palette& palette) const;
+  void draw_floor(const SceneModel& scene, const SceneLook& look);
+  void draw_shadows(const SceneModel& scene, const SceneLook& look) const;
+  void draw_walls(const SceneModel& scene, const Camera& camera, const SceneLook& look);
+
+  GLuint no_vertices_ = 0;
+  GLuint target_ = 0;
+  std::array<GLuint, 2> target_buffers_{};  // colour, depth with stencil
+  int target_width_ = 0;
+  int target_height_ = 0;
+  bool target_is_drawn_ = false;
+  glm::vec2 size_pixels_{1.0f};
+  glm::mat4 to_clip_{1.0f};
+  ShaderProgram sky_;
+  ShaderProgram solid_;
+  ShaderProgram shadow_;
+  ShaderProgram pane_;
+  LineBatch lines_;
+  SolidBatch solids_;
+};
+
+}  // namespace inkwell::window

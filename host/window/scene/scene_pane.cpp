@@ -1,0 +1,291 @@
+#include <scene/scene_pane.hpp>
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include <frame/inspection.hpp>
+
+#include "renderer.hpp"
+
+namespace inkwell::window {
+
+namespace {
+
+constexpr float radians_per_pixel = 0.008f;
+constexpr float depth_per_wheel_step_m = 0.004f;
+constexpr float probe_grab_points = 22.0f;
+constexpr float wall_grab_points = 9.0f;
+constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+constexpr std::array<Colour, 3> axis_colours{scene_colours::axis_x, scene_colours::axis_y, scene_colours::axis_z};
+
+glm::vec2 to_glm(ImVec2 vector) { return {vector.x, vector.y}; }
+
+// A label on a quiet plate, so that it can be read over anything.
+void plate(ImDrawList& list, const Style& style, ImVec2 place, Colour colour, const std::string& content) {
+  const ImVec2 taken = ImGui::CalcTextSize(content.c_str());
+  const float pad = style.points(5);
+  list.AddRectFilled({place.x - pad, place.y - pad * 0.5f}, {place.x + taken.x + pad, place.y + taken.y + pad * 0.5f},
+                     packed(style.palette->panel.with_alpha(205)), style.points(4));
+  list.AddText(place, packed(colour), content.c_str());
+}
+
+}  // namespace
+
+ScenePane::ScenePane() : renderer_(std::make_unique<Renderer>()) {}
+ScenePane::~ScenePane() = default;
+
+ImVec2 ScenePane::on_screen(glm::vec3 workspace_point_m) const {
+  const glm::vec3 pixel = camera_.project(workspace_to_view(scene_.frame) * workspace_point_m, size_);
+  return {origin_.x + pixel.x, origin_.y + pixel.y};
+}
+
+glm::vec3 ScenePane::wall_handle(int wall) const {
+  const WallView& view = scene_.walls[static_cast<std::size_t>(wall)];
+  glm::vec3 centre = 0.5f * (scene_.box_minimum_m + scene_.box_maximum_m);
+  centre[view.axis] = view.upper ? scene_.box_maximum_m[view.axis] : scene_.box_minimum_m[view.axis];
+  return centre;
+}
+
+std::optional<int> ScenePane::wall_under(glm::vec2 mouse, float reach) const {
+  for (int wall = 0; wall < 6; ++wall)
+    if (glm::length(to_glm(on_screen(wall_handle(wall))) - mouse) < reach) return wall;
+  return std::nullopt;
+}
+
+void ScenePane::start_drag(const ScenePaneInput& input, glm::vec2 mouse) {
+  if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+    drag_ = Drag::pan;
+  } else if (over_probe_) {
+    drag_ = Drag::hand;
+    grabbed_ = workspace_to_view(scene_.frame) * scene_.probe_m;
+  } else if (marked_wall_) {
+    drag_ = Drag::wall;
+    dragged_wall_ = *marked_wall_;
+    const WallView& wall = scene_.walls[static_cast<std::size_t>(dragged_wall_)];
+    const Ray ray = camera_.ray(mouse - origin_, size_);
+    const glm::mat3 to_view = workspace_to_view(scene_.frame);
+    glm::vec3 axis{0.0f};
+    axis[wall.axis] = 1.0f;
+    wall_grab_offset_m_ = nearest_on_line(ray, to_view * wall_handle(dragged_wall_), to_view * axis);
+    input.editor.begin_step("moved wall");
+  } else {
+    drag_ = Drag::orbit;
+  }
+}
+
+void ScenePane::continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm::vec2 moved) {
+  const glm::mat3 to_view = workspace_to_view(scene_.frame);
+  const Ray ray = camera_.ray(mouse - origin_, size_);
+  switch (drag_) {
+    case Drag::none: break;
+    case Drag::orbit: camera_.orbit(-moved.x * radians_per_pixel, moved.y * radians_per_pixel); break;
+    case Drag::pan: camera_.pan(moved, size_.y); break;
+    case Drag::hand: {
+      grabbed_ += camera_.direction() * (ImGui::GetIO().MouseWheel * depth_per_wheel_step_m);
+      grabbed_ = on_view_plane(camera_, ray, grabbed_);
+      input.hand->pull_to(within_reach(scene_.probe_m, glm::transpose(to_view) * grabbed_));
+      break;
+    }
+    case Drag::wall: {
+      const WallView& wall = scene_.walls[static_cast<std::size_t>(dragged_wall_)];
+      const glm::vec3 handle = wall_handle(dragged_wall_);
+      glm::vec3 axis{0.0f};
+      axis[wall.axis] = 1.0f;
+      const float along_m = nearest_on_line(ray, to_view * handle, to_view * axis) - wall_grab_offset_m_;
+      const float place_m = dragged_wall_m(input.editor.shown(), wall.axis, wall.upper, handle[wall.axis] + along_m);
+      const device::ParameterChange change{wall_parameter(wall.axis, wall.upper), place_m};
+      input.editor.edit({&change, 1}, input.now_s);
+      break;
+    }
+  }
+}
+
+void ScenePane::end_drag(const ScenePaneInput& input) {
+  // The hand stays on the stylus and holds it still where the walls would have it.
+  if (drag_ == Drag::hand) input.hand->pull_to(scene_.proxy_m);
+  if (drag_ == Drag::wall) input.editor.end_step();
+  drag_ = Drag::none;
+}
+
+void ScenePane::handle_mouse(const ScenePaneInput& input) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::vec2 mouse = to_glm(io.MousePos);
+  ImGui::SetCursorScreenPos({origin_.x, origin_.y});
+  ImGui::SetItemAllowOverlap();
+  ImGui::InvisibleButton(
+      "scene", {size_.x, size_.y},
+      ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
+  ImGui::SetItemAllowOverlap();
+  const bool hovered = ImGui::IsItemHovered();
+  if (drag_ == Drag::none) {
+    const float reach = input.style.points(probe_grab_points);
+    over_probe_ = hovered && input.hand != nullptr && glm::length(to_glm(on_screen(scene_.probe_m)) - mouse) < reach;
+    marked_wall_ = hovered && !over_probe_ && input.editor.known()
+                       ? wall_under(mouse, input.style.points(wall_grab_points))
+                       : std::nullopt;
+    if (ImGui::IsItemActivated()) start_drag(input, mouse);
+  }
+  if (drag_ != Drag::none) {
+    continue_drag(input, mouse, to_glm(io.MouseDelta));
+    if (!ImGui::IsItemActive()) end_drag(input);
+  } else if (hovered && io.MouseWheel != 0.0f) {
+    camera_.zoom(io.MouseWheel);
+  }
+  if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !over_probe_ && !marked_wall_) reset_view();
+  if (over_probe_ || marked_wall_ || drag_ == Drag::hand || drag_ == Drag::wall)
+    ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+}
+
+void ScenePane::draw_axes(ImDrawList& list, const Style& style) const {
+  const glm::vec2 centre = origin_ + glm::vec2{style.points(46), size_.y - style.points(46)};
+  const glm::mat3 to_eye = glm::mat3(camera_.view()) * workspace_to_view(scene_.frame);
+  std::array<int, 3> order{0, 1, 2};
+  std::ranges::sort(order, {}, [&](int axis) { return to_eye[axis].z; });  // the nearest is drawn last
+  for (int axis : order) {
+    const glm::vec2 tip = centre + style.points(26) * glm::vec2{to_eye[axis].x, -to_eye[axis].y};
+    const glm::vec2 label = centre + style.points(37) * glm::vec2{to_eye[axis].x, -to_eye[axis].y};
+    const Colour colour = axis_colours[static_cast<std::size_t>(axis)];
+    list.AddLine({centre.x, centre.y}, {tip.x, tip.y}, packed(colour), style.points(2));
+    list.AddCircleFilled({tip.x, tip.y}, style.points(2.6f), packed(colour));
+    const char* name = axis_names[static_cast<std::size_t>(axis)];
+    const ImVec2 taken = ImGui::CalcTextSize(name);
+    list.AddText({label.x - 0.5f * taken.x, label.y - 0.5f * taken.y}, packed(style.palette->text), name);
+  }
+}
+
+// Where the mouse has to go to take the sphere or a wall.
+void ScenePane::note_handles() const {
+  const auto note_point = [](std::string_view name, ImVec2 point) { note_place(name, point, point); };
+  note_place("view", {origin_.x, origin_.y}, {origin_.x + size_.x, origin_.y + size_.y});
+  note_point("sphere", on_screen(scene_.probe_m));
+  for (const WallView& wall : scene_.walls)
+    note_point(protocol::info(wall_parameter(wall.axis, wall.upper)).name,
+               on_screen(wall_handle(2 * wall.axis + (wall.upper ? 1 : 0))));
+}
+
+void ScenePane::draw_labels(const ScenePaneInput& input) const {
+  const Style& style = input.style;
+  const Palette& palette = *style.palette;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImGui::PushFont(style.fonts.caption);
+  draw_axes(list, style);
+
+  if (ImGui::IsItemHovered() || drag_ != Drag::none) {
+    for (int wall = 0; wall < 6; ++wall) {
+      const bool marked = marked_wall_ == wall || (drag_ == Drag::wall && dragged_wall_ == wall);
+      const ImVec2 place = on_screen(wall_handle(wall));
+      list.AddCircleFilled(place, style.points(marked ? 5.5f : 3.5f), packed(palette.panel));
+      list.AddCircle(place, style.points(marked ? 5.5f : 3.5f), packed(marked ? palette.accent : palette.text_quiet), 0,
+                     style.points(1.5f));
+      if (!marked) continue;
+      const WallView& view = scene_.walls[static_cast<std::size_t>(wall)];
+      plate(list, style, {place.x + style.points(12), place.y - style.points(8)}, palette.text,
+            fmt::format("{} {} {:.0f} mm", axis_names[static_cast<std::size_t>(view.axis)],
+                        view.upper ? "maximum" : "minimum", 1000.0f * wall_handle(wall)[view.axis]));
+    }
+  }
+  if (over_probe_ || drag_ == Drag::hand) {
+    const ImVec2 probe = on_screen(scene_.probe_m);
+    list.AddCircle(probe, style.points(15), packed(scene_colours::probe.with_alpha(190)), 0, style.points(1.5f));
+  }
+  const float force_N = glm::length(scene_.force_N);
+  if (force_N > 0.02f) {
+    const ImVec2 tip = on_screen(force_arrow_tip_m(scene_));
+    plate(list, style, {tip.x + style.points(10), tip.y - style.points(8)}, palette.text,
+          fmt::format("{:.2f} N", force_N));
+  }
+  if (hand_view_) {
+    const float pull_N =
+        static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);
+    if (pull_N > 0.25f) {
+      // On the side away from the sphere, where the force's arrow is not.
+      const ImVec2 place = on_screen(hand_view_->target_m);
+      const std::string label = fmt::format("hand {:.1f} N", pull_N);
+      const bool to_the_left = place.x < on_screen(scene_.probe_m).x;
+      const float left =
+          to_the_left ? place.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : place.x + style.points(16);
+      plate(list, style, {left, place.y - style.points(22)}, palette.text_quiet, label);
+    }
+  }
+  float room_x = origin_.x + size_.x - style.points(16);
+  if (input.pose && is_referenced(*input.pose)) {
+    const std::string position = fmt::format("x {:+6.1f}   y {:+6.1f}   z {:+6.1f} mm", 1000.0f * scene_.probe_m.x,
+                                             1000.0f * scene_.probe_m.y, 1000.0f * scene_.probe_m.z);
+    const ImVec2 taken = ImGui::CalcTextSize(position.c_str());
+    room_x -= taken.x;
+    list.AddText({room_x, origin_.y + size_.y - taken.y - style.points(12)}, packed(palette.text), position.c_str());
+    room_x -= style.points(16);
+  }
+  const char* help =
+      input.hand == nullptr
+          ? "Drag to turn, right drag to move, wheel to zoom"
+          : "Drag the sphere to move the hand (wheel: depth), drag elsewhere to turn, right drag to move";
+  const float help_x = origin_.x + style.points(88);
+  if (help_x + ImGui::CalcTextSize(help).x < room_x)
+    list.AddText({help_x, origin_.y + size_.y - style.points(27)}, packed(palette.text_quiet.with_alpha(170)), help);
+  ImGui::PopFont();
+}
+
+void ScenePane::draw_tools(const ScenePaneInput& input) {
+  const Style& style = input.style;
+  ImGui::SetCursorScreenPos({origin_.x + style.points(14), origin_.y + style.points(12)});
+  if (button("Reset view")) reset_view();
+  help_on_hover("", "Shows the whole box again. A double click in the scene does the same.", style);
+  if (input.hand == nullptr) return;
+  ImGui::SameLine();
+  ImGui::BeginDisabled(!input.hand->target_m());
+  if (button("Let go")) input.hand->let_go();
+  ImGui::EndDisabled();
+  help_on_hover("", "The simulated hand lets go of the stylus, and the arm falls as its weight and friction have it.",
+                style);
+  ImGui::SameLine();
+  ImGui::BeginDisabled(input.hand->is_docked());
+  if (button("Into the inkwell")) input.hand->put_into_inkwell();
+  ImGui::EndDisabled();
+  help_on_hover("", "The simulated hand puts the stylus into the inkwell, where the board learns where the arm is.",
+                style);
+  if (const std::string error = input.hand->error(); !error.empty()) {
+    ImGui::SetCursorScreenPos({origin_.x + style.points(14), ImGui::GetCursorScreenPos().y});
+    text(style.palette->caution, error);
+  }
+}
+
+void ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
+  origin_ = to_glm(place);
+  size_ = glm::max(to_glm(size), glm::vec2{1.0f});
+  scene_ = build_scene(input.pose, input.editor.shown());
+  const auto target_m = input.hand == nullptr ? std::nullopt : input.hand->target_m();
+  hand_view_ = target_m ? std::optional(HandView{*target_m, drag_ == Drag::hand}) : std::nullopt;
+  if (view_is_to_be_reset_) {
+    const glm::mat3 to_view = workspace_to_view(scene_.frame);
+    const glm::vec3 a = to_view * scene_.box_minimum_m;
+    const glm::vec3 b = to_view * scene_.box_maximum_m;
+    camera_ = look_at_box(glm::min(a, b), glm::max(a, b));
+    view_is_to_be_reset_ = false;
+  }
+  begin_pane("scene", place, size, ImGuiWindowFlags_NoScrollWithMouse);
+  handle_mouse(input);
+  note_handles();
+  draw_labels(input);
+  draw_tools(input);
+  end_pane();
+}
+
+void ScenePane::add_to(PictureDigest& digest) const {
+  static_assert(sizeof camera_ == 6 * sizeof(float));
+  digest.add_bytes(&camera_, sizeof camera_);
+  if (hand_view_) {
+    digest.add_bytes(&hand_view_->target_m, sizeof hand_view_->target_m);
+    digest.add(hand_view_->held);
+  }
+  digest.add(drag_ == Drag::wall ? dragged_wall_ : marked_wall_.value_or(-1));
+}
+
+void ScenePane::draw_scene(const Viewport& viewport, SceneLook look) const {
+  look.marked_wall = drag_ == Drag::wall ? std::optional(dragged_wall_) : marked_wall_;
+  renderer_->draw(scene_, hand_view_, camera_, look, viewport);
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,99 @@
+#include <scope/scope_layout.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <protocol/reports.hpp>
+
+namespace inkwell::window {
+
+std::span<const ScopeLayout> built_in_layouts() {
+  using enum protocol::Signal;
+  using enum PaneKind;
+  static const std::array<ScopeLayout, 4> layouts{{
+      {"contact", 2, {{time, "Position", {position_x_m, position_y_m, position_z_m}}, {time, "Force", {force_N}}}},
+      {"paper",
+       2,
+       {{time, "Figure 11: penetration", {penetration_x_m, penetration_y_m, penetration_z_m}},
+        {time, "Figure 12: force", {force_N}},
+        {time, "Figure 13: torques", {torque_1_Nm, torque_2_Nm, torque_3_Nm}},
+        {time, "Figure 14: duty", {duty_1, duty_2, duty_3}}}},
+      {"currents",
+       2,
+       {{time, "Motor 1", {current_reference_1_A, current_1_A}},
+        {time, "Motor 2", {current_reference_2_A, current_2_A}},
+        {time, "Motor 3", {current_reference_3_A, current_3_A}},
+        {spectrum, "Spectrum of the currents", {current_1_A, current_2_A, current_3_A}}}},
+      {"interrupt",
+       2,
+       {{time, "Control interrupt", {servo_cycles}},
+        {time,
+         "Its stages",
+         {stage_sample_cycles, stage_pose_cycles, stage_contact_cycles, stage_torque_cycles, stage_current_cycles,
+          stage_report_cycles}}}},
+  }};
+  return layouts;
+}
+
+const ScopeLayout& built_in_layout(std::string_view name) {
+  const auto layouts = built_in_layouts();
+  const auto found = std::ranges::find(layouts, name, &ScopeLayout::name);
+  return found == layouts.end() ? layouts.front() : *found;
+}
+
+OwnLayouts::OwnLayouts(std::vector<ScopeLayout> layouts) {
+  for (ScopeLayout& layout : layouts)
+    if (refusal(layout.name).empty()) save(std::move(layout));
+}
+
+const ScopeLayout* OwnLayouts::find(std::string_view name) const {
+  const auto found = std::ranges::find(layouts_, name, &ScopeLayout::name);
+  return found == layouts_.end() ? nullptr : &*found;
+}
+
+std::string OwnLayouts::refusal(std::string_view name) {
+  if (name.find_first_not_of(' ') == std::string_view::npos) return "Give the layout a name.";
+  if (std::ranges::find(built_in_layouts(), name, &ScopeLayout::name) != built_in_layouts().end())
+    return fmt::format("\"{}\" comes with the window and stays as it is. Choose another name.", name);
+  return {};
+}
+
+void OwnLayouts::save(ScopeLayout layout) {
+  const auto found = std::ranges::find(layouts_, layout.name, &ScopeLayout::name);
+  if (found == layouts_.end())
+    layouts_.push_back(std::move(layout));
+  else
+    *found = std::move(layout);
+}
+
+std::string OwnLayouts::rename(std::string_view from, std::string_view to) {
+  if (from == to) return {};
+  if (std::string reason = refusal(to); !reason.empty()) return reason;
+  if (find(to) != nullptr) return fmt::format("There is a layout \"{}\" already. Choose another name.", to);
+  if (const auto found = std::ranges::find(layouts_, from, &ScopeLayout::name); found != layouts_.end())
+    found->name = std::string(to);
+  return {};
+}
+
+void OwnLayouts::remove(std::string_view name) {
+  std::erase_if(layouts_, [name](const ScopeLayout& layout) { return layout.name == name; });
+}
+
+const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own) {
+  const ScopeLayout* found = own.find(name);
+  return found == nullptr ? built_in_layout(name) : *found;
+}
+
+std::vector<protocol::Signal> signals_of(const ScopeLayout& layout) {
+  std::vector<protocol::Signal> signals;
+  for (const Pane& pane : layout.panes)
+    for (protocol::Signal signal : pane.signals)
+      if (signals.size() < protocol::scope_signals_maximum && std::ranges::find(signals, signal) == signals.end())
+        signals.push_back(signal);
+  return signals;
+}
+
+}  // namespace inkwell::window

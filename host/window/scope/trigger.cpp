@@ -1,0 +1,46 @@
+#include <scope/trigger.hpp>
+
+#include <algorithm>
+
+namespace inkwell::window {
+
+std::optional<std::uint64_t> find_crossing(const SignalSeries& series, std::uint64_t first, std::uint64_t last,
+                                           float level, TriggerEdge edge) {
+  first = std::max(first, series.begin() + 1);
+  last = std::min(last, series.end());
+  for (std::uint64_t i = first; i < last; ++i) {
+    const float before = series[i - 1];
+    const float now = series[i];
+    if (edge == TriggerEdge::rising ? before < level && now >= level : before > level && now <= level) return i;
+  }
+  return std::nullopt;
+}
+
+void Trigger::arm() {
+  coming_.reset();
+  event_.reset();
+  looked_at_ = UINT64_MAX;
+}
+
+void Trigger::advance(const SignalSeries& series, const TriggerSettings& settings, double span) {
+  if (settings.mode == TriggerMode::off) return;
+  // Just armed, or the history was started anew: only what comes from now on counts.
+  if (looked_at_ > series.end()) looked_at_ = series.end();
+  if (settings.mode == TriggerMode::single && event_) return;
+  const auto after = static_cast<std::uint64_t>(span * (1.0 - static_cast<double>(settings.pre_trigger)));
+  while (true) {
+    if (coming_) {
+      if (series.end() < *coming_ + after) return;
+      event_ = coming_;
+      looked_at_ = std::max(looked_at_, *coming_ + after);
+      coming_.reset();
+      if (settings.mode == TriggerMode::single) return;
+    }
+    coming_ = find_crossing(series, looked_at_, series.end(), settings.level, settings.edge);
+    looked_at_ = series.end();
+    if (!coming_) return;
+    looked_at_ = *coming_ + 1;
+  }
+}
+
+}  // namespace inkwell::window

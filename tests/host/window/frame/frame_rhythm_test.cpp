@@ -1,0 +1,41 @@
+// A window at rest draws seldom, and wakes at once.
+#include <doctest/doctest.h>
+
+#include <frame/frame_rhythm.hpp>
+
+using namespace inkwell::window;
+
+namespace {
+
+/// Frames drawn in ten seconds of a loop that looks 60 times a second and always sees the same.
+int frames_drawn(const FrameEvidence& evidence) {
+  FrameRhythm rhythm;
+  int drawn = 0;
+  for (int i = 0; i < 600; ++i) {
+    const double now_s = i / 60.0;
+    if (rhythm.is_due(evidence.input || evidence.moves, now_s) && rhythm.is_to_be_drawn(evidence, now_s)) ++drawn;
+  }
+  return drawn;
+}
+
+}  // namespace
+
+TEST_CASE("motion is drawn at the full rate, resting signals seldom, the same picture never") {
+  CHECK(frames_drawn({.moves = true}) == 600);
+  CHECK(frames_drawn({.differs = true}) >= 50);
+  CHECK(frames_drawn({.differs = true}) <= 61);
+  CHECK(frames_drawn({}) == 0);
+  CHECK(frames_drawn({.input = true}) == 0);  // a mouse that changes nothing
+}
+
+TEST_CASE("input wakes the window at once, and it stays awake for a moment") {
+  FrameRhythm rhythm;
+  rhythm.is_to_be_drawn({}, 10.0);
+  CHECK_FALSE(rhythm.is_lively(10.01));
+  CHECK_FALSE(rhythm.is_due(false, 10.01));
+  CHECK(rhythm.is_due(true, 10.01));
+  CHECK(rhythm.is_to_be_drawn({.input = true, .differs = true}, 10.01));
+  CHECK(rhythm.is_due(false, 10.02));
+  CHECK(rhythm.is_lively(10.01 + 0.9 * FrameRhythm::lively_for_s));
+  CHECK_FALSE(rhythm.is_lively(10.01 + 1.1 * FrameRhythm::lively_for_s));
+}
