@@ -13,7 +13,7 @@ namespace inkwell::window {
 namespace {
 
 constexpr std::array<std::string_view, 2> theme_names{"dark", "light"};
-constexpr std::array<std::string_view, 3> pane_kind_names{"time", "spectrum", "xy"};
+constexpr std::array<std::string_view, 3> plot_kind_names{"time", "spectrum", "xy"};
 constexpr std::array<std::string_view, 3> trigger_mode_names{"off", "normal", "single"};
 constexpr std::array<std::string_view, 2> trigger_edge_names{"rising", "falling"};
 
@@ -35,38 +35,38 @@ void read_number(toml::node_view<const toml::node> node, Number minimum, Number 
     value = static_cast<Number>(*number);
 }
 
-toml::table to_toml(const Pane& pane) {
+toml::table to_toml(const ScopePlot& plot) {
   toml::array signals;
-  for (protocol::Signal signal : pane.signals) signals.push_back(protocol::info(signal).name);
+  for (protocol::Signal signal : plot.signals) signals.push_back(protocol::info(signal).name);
   return toml::table{
-      {"kind", name_of(pane.kind, pane_kind_names)}, {"title", pane.title}, {"signals", std::move(signals)}};
+      {"kind", name_of(plot.kind, plot_kind_names)}, {"title", plot.title}, {"signals", std::move(signals)}};
 }
 
-std::optional<Pane> pane_from(const toml::table& table) {
-  Pane pane;
-  read_name(toml::node_view<const toml::node>(table["kind"]), pane_kind_names, pane.kind);
-  pane.title = table["title"].value_or(std::string{});
+std::optional<ScopePlot> plot_from(const toml::table& table) {
+  ScopePlot plot;
+  read_name(toml::node_view<const toml::node>(table["kind"]), plot_kind_names, plot.kind);
+  plot.title = table["title"].value_or(std::string{});
   if (const toml::array* signals = table["signals"].as_array())
     for (const auto& each : *signals)
-      if (const auto signal = protocol::find_signal(each.value_or(std::string_view{}))) pane.signals.push_back(*signal);
-  if (pane.signals.empty()) return std::nullopt;
-  return pane;
+      if (const auto signal = protocol::find_signal(each.value_or(std::string_view{}))) plot.signals.push_back(*signal);
+  if (plot.signals.empty()) return std::nullopt;
+  return plot;
 }
 
-toml::array to_toml(const std::vector<Pane>& panes) {
+toml::array to_toml(const std::vector<ScopePlot>& plots) {
   toml::array array;
-  for (const Pane& pane : panes) array.push_back(to_toml(pane));
+  for (const ScopePlot& plot : plots) array.push_back(to_toml(plot));
   return array;
 }
 
 std::optional<ScopeLayout> layout_from(const toml::table& table) {
   ScopeLayout layout{table["name"].value_or(std::string{}), 2, {}};
   read_number(table["columns"], 1, 4, layout.columns);
-  if (const toml::array* panes = table["panes"].as_array())
-    for (const auto& each : *panes)
-      if (const toml::table* pane_table = each.as_table())
-        if (auto pane = pane_from(*pane_table)) layout.panes.push_back(std::move(*pane));
-  if (layout.panes.empty()) return std::nullopt;
+  if (const toml::array* plots = table["plots"].as_array())
+    for (const auto& each : *plots)
+      if (const toml::table* plot_table = each.as_table())
+        if (auto plot = plot_from(*plot_table)) layout.plots.push_back(std::move(*plot));
+  if (layout.plots.empty()) return std::nullopt;
   return layout;
 }
 
@@ -84,7 +84,7 @@ std::string format_settings(const WindowSettings& settings) {
   toml::array own_layouts;
   for (const ScopeLayout& layout : settings.scope.own_layouts.all())
     own_layouts.push_back(
-        toml::table{{"name", layout.name}, {"columns", layout.columns}, {"panes", to_toml(layout.panes)}});
+        toml::table{{"name", layout.name}, {"columns", layout.columns}, {"plots", to_toml(layout.plots)}});
   const toml::table file{{"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
                                                 {"tuning_width", settings.tuning_width},
                                                 {"scope_height", settings.scope_height},
@@ -93,7 +93,7 @@ std::string format_settings(const WindowSettings& settings) {
                          {"scope", toml::table{{"name", settings.scope.layout.name},
                                                {"columns", settings.scope.layout.columns},
                                                {"span_s", settings.scope.span_s},
-                                               {"panes", to_toml(settings.scope.layout.panes)},
+                                               {"plots", to_toml(settings.scope.layout.plots)},
                                                {"layouts", std::move(own_layouts)}}},
                          {"trigger", toml::table{{"mode", name_of(settings.scope.trigger.mode, trigger_mode_names)},
                                                  {"signal", protocol::info(settings.scope.trigger.signal).name},

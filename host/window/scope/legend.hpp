@@ -1,4 +1,5 @@
-// How the scope writes numbers and tells its signals apart.
+// How the scope writes numbers and tells its signals apart: the line above a plot, with which colour is which signal
+// and its values at the cursors.
 #pragma once
 
 #include <string>
@@ -6,14 +7,20 @@
 #include <frame/style.hpp>
 #include <scope/scope_layout.hpp>
 
+#include "plot_view.hpp"
+
 namespace inkwell::window {
 
 /// Four digits; a dash where there is no value (NaN).
 std::string formatted(double value);
 
-/// Signals of one pane usually share a unit, which then stands once at the axis; else empty.
-std::string common_unit(const Pane& pane);
+/// Signals of one plot usually share a unit, which then stands once at the axis; else empty.
+std::string common_unit(const ScopePlot& plot);
 
 Colour line_colour(const Style& style, std::size_t index);
+
+/// The line above a plot: its unit at the left, its signals at the right of `width`, as much of them as there is room
+/// for.
+void draw_legend(const ScopePlot& plot, ImVec2 place, float width, const ScopeFrame& frame);
 
 }  // namespace inkwell::window

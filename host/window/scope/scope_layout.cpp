@@ -12,7 +12,7 @@ namespace inkwell::window {
 
 std::span<const ScopeLayout> built_in_layouts() {
   using enum protocol::Signal;
-  using enum PaneKind;
+  using enum PlotKind;
   static const std::array<ScopeLayout, 4> layouts{{
       {"contact", 2, {{time, "Position", {position_x_m, position_y_m, position_z_m}}, {time, "Force", {force_N}}}},
       {"paper",
@@ -89,8 +89,8 @@ const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own) {
 
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout) {
   std::vector<protocol::Signal> signals;
-  for (const Pane& pane : layout.panes)
-    for (protocol::Signal signal : pane.signals)
+  for (const ScopePlot& plot : layout.plots)
+    for (protocol::Signal signal : plot.signals)
       if (signals.size() < protocol::scope_signals_maximum && std::ranges::find(signals, signal) == signals.end())
         signals.push_back(signal);
   return signals;

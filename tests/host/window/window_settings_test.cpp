@@ -16,8 +16,8 @@ TEST_CASE("settings come back as they were written") {
   settings.scope.span_s = 0.05;
   settings.scope.trigger = {TriggerMode::single, protocol::Signal::current_2_A, TriggerEdge::falling, -0.25f, 0.5f};
   settings.scope.layout = built_in_layout("currents");
-  settings.scope.layout.panes.push_back(
-      {PaneKind::xy, "x against \"y\"", {protocol::Signal::position_x_m, protocol::Signal::position_y_m}});
+  settings.scope.layout.plots.push_back(
+      {PlotKind::xy, "x against \"y\"", {protocol::Signal::position_x_m, protocol::Signal::position_y_m}});
   ScopeLayout mine = built_in_layout("paper");
   mine.name = "My \"paper\"";
   mine.columns = 1;

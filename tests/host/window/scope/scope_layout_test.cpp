@@ -10,10 +10,10 @@ using namespace inkwell::window;
 TEST_CASE("layouts name existing signals, and fit into one selection") {
   for (const ScopeLayout& layout : built_in_layouts()) {
     CAPTURE(layout.name);
-    CHECK_FALSE(layout.panes.empty());
+    CHECK_FALSE(layout.plots.empty());
     CHECK(signals_of(layout).size() <= protocol::scope_signals_maximum);
   }
-  CHECK(built_in_layout("paper").panes.size() == 4);
+  CHECK(built_in_layout("paper").plots.size() == 4);
   CHECK(built_in_layout("none of them").name == built_in_layouts().front().name);
 }
 
@@ -40,15 +40,15 @@ TEST_CASE("layouts of one's own are saved, replaced, renamed and removed; the bu
   REQUIRE(own.find("third") != nullptr);
   own.remove("third");
   CHECK(own.all().size() == 1);
-  CHECK(built_in_layout("paper").panes.size() == 4);
+  CHECK(built_in_layout("paper").plots.size() == 4);
 
   layout.name = "paper";  // from a file that somebody edited
   CHECK(OwnLayouts({layout}).all().empty());
 }
 
 TEST_CASE("a layout with too many signals asks for as many as can be streamed, each once") {
-  ScopeLayout layout{"all", 2, {{PaneKind::time, "a", {}}, {PaneKind::time, "b", {}}}};
+  ScopeLayout layout{"all", 2, {{PlotKind::time, "a", {}}, {PlotKind::time, "b", {}}}};
   for (const auto& info : protocol::signal_table)
-    for (Pane& pane : layout.panes) pane.signals.push_back(static_cast<protocol::Signal>(info.id));
+    for (ScopePlot& plot : layout.plots) plot.signals.push_back(static_cast<protocol::Signal>(info.id));
   CHECK(signals_of(layout).size() == protocol::scope_signals_maximum);
 }

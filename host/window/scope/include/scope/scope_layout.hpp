@@ -1,4 +1,4 @@
-// What the scope's panes show, and the layouts that come with the window.
+// What the scope's plots show, and the layouts that come with the window.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace inkwell::window {
 
-enum class PaneKind : std::uint8_t {
+enum class PlotKind : std::uint8_t {
   time,      ///< signals against time
   spectrum,  ///< amplitude of the signals against frequency
   xy,        ///< the second signal against the first, the third against the first, ...
 };
 
-struct Pane {
-  PaneKind kind = PaneKind::time;
+struct ScopePlot {
+  PlotKind kind = PlotKind::time;
   std::string title;
   std::vector<protocol::Signal> signals;
-  bool operator==(const Pane&) const = default;
+  bool operator==(const ScopePlot&) const = default;
 };
 
 struct ScopeLayout {
   std::string name;
   int columns = 2;
-  std::vector<Pane> panes;
+  std::vector<ScopePlot> plots;
   bool operator==(const ScopeLayout&) const = default;
 };
 

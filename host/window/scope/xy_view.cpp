@@ -1,0 +1,66 @@
+// Signals against the first one.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "legend.hpp"
+#include "plot_view.hpp"
+
+namespace inkwell::window {
+
+namespace {
+
+constexpr std::uint64_t points_maximum = 4000;
+
+class XyView final : public PlotView {
+ public:
+  using PlotView::PlotView;
+
+  void draw(PlotArea area, ScopeFrame& frame) override {
+    const SignalHistory& history = frame.timeline.history();
+    const SignalSeries* x_series = history.find(plot_.signals.front());
+    const std::uint64_t first = std::max(frame.stretch.first_index(), history.begin());
+    const std::uint64_t last = std::min(frame.stretch.last_index(), history.end());
+    find_ranges(area, history, first, last);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    draw_axes(list, area, frame.style, unit_of(0), plot_.signals.size() > 1 ? unit_of(1) : "");
+    if (x_series == nullptr || first >= last) return;
+    const std::uint64_t stride = std::max<std::uint64_t>(1, (last - first) / points_maximum);
+    for (std::size_t i = 1; i < plot_.signals.size(); ++i) {
+      const SignalSeries* series = history.find(plot_.signals[i]);
+      if (series == nullptr) continue;
+      std::vector<std::pair<double, double>> points;
+      for (std::uint64_t at = first; at < last; at += stride) points.emplace_back((*x_series)[at], (*series)[at]);
+      draw_points(list, area, points, line_colour(frame.style, i), frame.style);
+    }
+  }
+
+ private:
+  std::string unit_of(std::size_t index) const { return std::string(protocol::info(plot_.signals[index]).unit); }
+
+  void find_ranges(PlotArea& area, const SignalHistory& history, std::uint64_t first, std::uint64_t last) {
+    Extremes x{std::nanf(""), std::nanf("")};
+    Extremes y = x;
+    for (std::size_t i = 0; i < plot_.signals.size(); ++i) {
+      const SignalSeries* series = history.find(plot_.signals[i]);
+      if (series == nullptr) continue;
+      const Extremes each = series->extremes(first, last);
+      Extremes& all = i == 0 ? x : y;
+      all = {std::fmin(all.minimum, each.minimum), std::fmax(all.maximum, each.maximum)};
+    }
+    const double now_s = ImGui::GetTime();
+    area.x = x_.update(static_cast<double>(x.minimum), static_cast<double>(x.maximum), now_s);
+    area.y = y_.update(static_cast<double>(y.minimum), static_cast<double>(y.maximum), now_s);
+  }
+
+  SteadyRange x_;
+  SteadyRange y_;
+};
+
+}  // namespace
+
+std::unique_ptr<PlotView> xy_view(const ScopePlot& plot) { return std::make_unique<XyView>(plot); }
+
+}  // namespace inkwell::window
