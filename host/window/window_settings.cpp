@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <fstream>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 namespace inkwell::window {
 
 namespace {
 
+constexpr float points_maximum = 10'000.0f;  // more than any display has
 constexpr std::array<std::string_view, 2> theme_names{"dark", "light"};
 constexpr std::array<std::string_view, 3> plot_kind_names{"time", "spectrum", "xy"};
 constexpr std::array<std::string_view, 3> trigger_mode_names{"off", "normal", "single"};
@@ -80,13 +84,34 @@ std::filesystem::path window_settings_path() {
   return {};
 }
 
+WindowSettings read_settings(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return parse_settings(text.str());
+}
+
+std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file) {
+  // A new file first, so that a full disk leaves the old one whole.
+  const std::filesystem::path unfinished = file.string() + ".new";
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  std::ofstream stream(unfinished);
+  stream << format_settings(settings);
+  stream.close();
+  if (stream) std::filesystem::rename(unfinished, file, error);
+  if (stream && !error) return {};
+  std::filesystem::remove(unfinished, error);
+  return fmt::format("The window's settings could not be kept in {}. Check that its disk is not full.", file.string());
+}
+
 std::string format_settings(const WindowSettings& settings) {
   toml::array own_layouts;
   for (const ScopeLayout& layout : settings.scope.own_layouts.all())
     own_layouts.push_back(
         toml::table{{"name", layout.name}, {"columns", layout.columns}, {"plots", to_toml(layout.plots)}});
   const toml::table file{{"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
-                                                {"tuning_width", settings.tuning_width},
+                                                {"tuning_width", settings.column_width},
                                                 {"scope_height", settings.scope_height},
                                                 {"scope_is_shown", settings.scope_is_shown},
                                                 {"parameters_file", settings.parameters_file.string()}}},
@@ -116,8 +141,8 @@ WindowSettings parse_settings(const std::string& text) {
   const toml::table& root = file;
   const auto window = root["window"];
   read_name(window["theme"], theme_names, settings.theme);
-  read_number(window["tuning_width"], 260.0f, 700.0f, settings.tuning_width);
-  read_number(window["scope_height"], 120.0f, 1200.0f, settings.scope_height);
+  read_number(window["tuning_width"], WindowSettings::column_width_minimum, points_maximum, settings.column_width);
+  read_number(window["scope_height"], WindowSettings::scope_height_minimum, points_maximum, settings.scope_height);
   settings.scope_is_shown = window["scope_is_shown"].value_or(settings.scope_is_shown);
   settings.parameters_file = window["parameters_file"].value_or(std::string{});
 

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <frame/widgets.hpp>
+
 namespace inkwell::window {
 namespace {
 

@@ -1,9 +1,7 @@
 #include <frame/display.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
-#include <thread>
 #include <vector>
 
 #include <GLFW/glfw3.h>
@@ -98,6 +96,19 @@ ImVec2 Display::corner() const {
   return {static_cast<float>(x), static_cast<float>(y)};
 }
 
+Display::Size Display::framebuffer_size() const {
+  Size size{};
+  glfwGetFramebufferSize(window_, &size.width, &size.height);
+  return size;
+}
+
+bool Display::is_to_be_closed() const { return glfwWindowShouldClose(window_) != 0; }
+void Display::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+void Display::take_events() { glfwPollEvents(); }
+void Display::wait_for_events(double at_most_s) { glfwWaitEventsTimeout(at_most_s); }
+void Display::wake() { glfwPostEmptyEvent(); }
+void Display::show() { glfwSwapBuffers(window_); }
+
 void write_screenshot(const std::filesystem::path& path, int width, int height) {
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -110,21 +121,6 @@ void write_screenshot(const std::filesystem::path& path, int width, int height) 
   // OpenGL's first row is the lowest one; a negative stride turns the picture over.
   if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), -3 * width, nullptr) == 0)
     throw DisplayError("The screenshot " + path.string() + " cannot be written: " + image.message + ".");
-}
-
-void FramePacer::wait() {
-  using Clock = std::chrono::steady_clock;
-  const double now_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
-  // After a frame that took too long the rhythm starts anew instead of hurrying to catch up.
-  next_s_ = std::max(next_s_ + period_s_, now_s - period_s_);
-  if (next_s_ > now_s) std::this_thread::sleep_for(std::chrono::duration<double>(next_s_ - now_s));
-
-  if (const double measured_s = now_s - half_second_began_s_; measured_s > 0.5) {
-    if (half_second_began_s_ > 0.0 && measured_s > 1.2 * period_s_ * frames_in_it_) keeps_up_ = false;
-    half_second_began_s_ = now_s;
-    frames_in_it_ = 0;
-  }
-  ++frames_in_it_;
 }
 
 }  // namespace inkwell::window

@@ -9,6 +9,7 @@
 #include <imgui_stdlib.h>
 
 #include <frame/inspection.hpp>
+#include <frame/widgets.hpp>
 
 namespace inkwell::window {
 
@@ -141,7 +142,7 @@ bool FileChooser::draw_buttons(const Style& style) {
     if (button("Keep it", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) to_be_replaced_.reset();
     return false;
   }
-  if (coloured_button(question_.button.c_str(), style.palette->accent, style.palette->panel, size)) accept();
+  if (coloured_button(question_.button.c_str(), style.palette->accent, style.palette->pane, size)) accept();
   ImGui::SameLine();
   return button("Cancel", size) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
 }

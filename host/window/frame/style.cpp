@@ -6,9 +6,6 @@
 #include <filesystem>
 
 #include <imgui_freetype.h>
-#include <imgui_internal.h>
-
-#include <frame/inspection.hpp>
 
 namespace inkwell::window {
 
@@ -103,14 +100,14 @@ void apply_theme(const Palette& palette, float scale) {
   const auto set = [&style](ImGuiCol slot, Colour colour) { style.Colors[slot] = vector(colour); };
   set(ImGuiCol_Text, palette.text);
   set(ImGuiCol_TextDisabled, palette.text_quiet);
-  set(ImGuiCol_WindowBg, palette.panel);
-  set(ImGuiCol_ChildBg, palette.panel.with_alpha(0));
-  set(ImGuiCol_PopupBg, palette.panel);
+  set(ImGuiCol_WindowBg, palette.pane);
+  set(ImGuiCol_ChildBg, palette.pane.with_alpha(0));
+  set(ImGuiCol_PopupBg, palette.pane);
   set(ImGuiCol_Border, palette.line);
   set(ImGuiCol_FrameBg, palette.raised);
   set(ImGuiCol_FrameBgHovered, palette.raised_hover);
   set(ImGuiCol_FrameBgActive, palette.raised_active);
-  set(ImGuiCol_ScrollbarBg, palette.panel.with_alpha(0));
+  set(ImGuiCol_ScrollbarBg, palette.pane.with_alpha(0));
   set(ImGuiCol_ScrollbarGrab, palette.raised);
   set(ImGuiCol_ScrollbarGrabHovered, palette.raised_hover);
   set(ImGuiCol_ScrollbarGrabActive, palette.raised_active);
@@ -120,7 +117,7 @@ void apply_theme(const Palette& palette, float scale) {
   set(ImGuiCol_Button, palette.raised);
   set(ImGuiCol_ButtonHovered, palette.raised_hover);
   set(ImGuiCol_ButtonActive, palette.raised_active);
-  set(ImGuiCol_Header, palette.panel.with_alpha(0));
+  set(ImGuiCol_Header, palette.pane.with_alpha(0));
   set(ImGuiCol_HeaderHovered, palette.raised);
   set(ImGuiCol_HeaderActive, palette.raised_hover);
   set(ImGuiCol_Separator, palette.line);
@@ -131,139 +128,5 @@ void apply_theme(const Palette& palette, float scale) {
   set(ImGuiCol_NavHighlight, palette.accent);
   ImGui::GetStyle() = style;
 }
-
-void text(Colour colour, std::string_view content) {
-  note_text(content);
-  ImGui::PushStyleColor(ImGuiCol_Text, packed(colour));
-  ImGui::TextUnformatted(content.data(), content.data() + content.size());
-  ImGui::PopStyleColor();
-}
-
-void text(ImFont* font, Colour colour, std::string_view content) {
-  ImGui::PushFont(font);
-  text(colour, content);
-  ImGui::PopFont();
-}
-
-void wrapped_text(Colour colour, std::string_view content) {
-  ImGui::PushTextWrapPos(0.0f);
-  text(colour, content);
-  ImGui::PopTextWrapPos();
-}
-
-void right_text(Colour colour, std::string_view content, float width) {
-  const float taken = ImGui::CalcTextSize(content.data(), content.data() + content.size()).x;
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, width - taken));
-  text(colour, content);
-}
-
-float warning_sign(ImVec2 corner, Colour colour, const Style& style) {
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float size = style.points(14);
-  const float middle = corner.x + 0.5f * size;
-  const float top = corner.y + style.points(3);
-  list.AddTriangleFilled({middle, top}, {corner.x + size, top + 0.9f * size}, {corner.x, top + 0.9f * size},
-                         packed(colour));
-  const ImU32 mark = packed(style.palette->panel);
-  list.AddLine({middle, top + 0.33f * size}, {middle, top + 0.6f * size}, mark, style.points(1.6f));
-  list.AddCircleFilled({middle, top + 0.74f * size}, style.points(1.0f), mark);
-  return size + style.points(4);
-}
-
-bool is_dialog_open() { return ImGui::GetTopMostPopupModal() != nullptr; }
-
-void same_line_if_room(float width) {
-  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) ImGui::SameLine();
-}
-
-void help_on_hover(std::string_view title, std::string_view help, const Style& style) {
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsItemActive()) return;
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(11), style.points(9)});
-  ImGui::BeginTooltip();
-  ImGui::PushTextWrapPos(style.points(300));
-  if (!title.empty()) text(style.fonts.strong, style.palette->text, title);
-  text(style.palette->text_quiet, help);
-  ImGui::PopTextWrapPos();
-  ImGui::EndTooltip();
-  ImGui::PopStyleVar();
-}
-
-bool button(const char* label, ImVec2 size) {
-  const bool pressed = ImGui::Button(label, size);
-  note_item(label);
-  return pressed;
-}
-
-bool quiet_button(const char* label, const Style& style) {
-  ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->panel.with_alpha(0)));
-  ImGui::PushStyleColor(ImGuiCol_Text, packed(style.palette->text_quiet));
-  const bool pressed = button(label);
-  ImGui::PopStyleColor(2);
-  return pressed;
-}
-
-bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec2 size) {
-  const auto lighter = [](Colour c, int by) {
-    const auto up = [by](std::uint8_t part) { return static_cast<std::uint8_t>(std::clamp(part + by, 0, 255)); };
-    return Colour{up(c.red), up(c.green), up(c.blue), c.alpha};
-  };
-  ImGui::PushStyleColor(ImGuiCol_Button, packed(colour));
-  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, packed(lighter(colour, 16)));
-  ImGui::PushStyleColor(ImGuiCol_ButtonActive, packed(lighter(colour, -16)));
-  ImGui::PushStyleColor(ImGuiCol_Text, packed(text_colour));
-  const bool pressed = button(label, size);
-  ImGui::PopStyleColor(4);
-  return pressed;
-}
-
-bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size) {
-  if (on) return coloured_button(label, style.palette->accent, style.palette->panel, size);
-  return button(label, size);
-}
-
-bool bar_slider(const char* label, float& value, float minimum, float maximum, const char* format,
-                ImGuiSliderFlags flags, float width, const Style& style) {
-  const Palette& palette = *style.palette;
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ImVec2 end{corner.x + width, corner.y + ImGui::GetFrameHeight()};
-  const bool hovered = ImGui::IsMouseHoveringRect(corner, end) && ImGui::IsWindowHovered();
-  const float linear = (value - minimum) / (maximum - minimum);
-  const float part =
-      (flags & ImGuiSliderFlags_Logarithmic) != 0 ? std::log(value / minimum) / std::log(maximum / minimum) : linear;
-  const float edge = corner.x + std::clamp(part, 0.0f, 1.0f) * width;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float rounding = ImGui::GetStyle().FrameRounding;
-  list.AddRectFilled(corner, end, packed(hovered ? palette.raised_hover : palette.raised), rounding);
-  if (edge - corner.x > 1.0f) {
-    list.PushClipRect(corner, {edge, end.y}, true);
-    list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
-    list.PopClipRect();
-  }
-  // Low, so that it does not cross the number.
-  list.AddLine({edge, end.y - style.points(4)}, {edge, end.y}, packed(palette.accent), style.points(2));
-  const ImU32 nothing = packed(palette.raised.with_alpha(0));
-  const bool typing = ImGui::TempInputIsActive(ImGui::GetID(label));
-  if (!typing)
-    for (ImGuiCol slot : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_SliderGrab,
-                          ImGuiCol_SliderGrabActive})
-      ImGui::PushStyleColor(slot, nothing);
-  ImGui::SetNextItemWidth(width);
-  ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 1.0f);  // the bar's edge is the grab, and stays under the mouse
-  const bool edited = ImGui::SliderFloat(label, &value, minimum, maximum, format, flags);
-  ImGui::PopStyleVar();
-  if (!typing) ImGui::PopStyleColor(5);
-  return edited;
-}
-
-bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags) {
-  ImGui::SetNextWindowPos(place);
-  ImGui::SetNextWindowSize(size);
-  return ImGui::Begin(name, nullptr,
-                      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoBackground | flags);
-}
-
-void end_pane() { ImGui::End(); }
 
 }  // namespace inkwell::window

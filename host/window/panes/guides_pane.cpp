@@ -1,12 +1,23 @@
-#include <panes/guides_pane.hpp>
-
+// The pane that leads through a guide: what will happen, the numbers as they are measured, the step response, and the
+// buttons Confirm, Cancel and Apply.
 #include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <device/parameter_file.hpp>
 #include <frame/inspection.hpp>
+#include <frame/widgets.hpp>
+#include <guides/guides.hpp>
+#include <guides/session_port.hpp>
+#include <guides/simulated_user.hpp>
+#include <panes/pane.hpp>
 #include <plot/plot.hpp>
 
 namespace inkwell::window {
@@ -22,7 +33,50 @@ Colour outcome_colour(Phase phase, const Palette& palette) {
   }
 }
 
-}  // namespace
+class GuidesPane final : public Pane {
+ public:
+  explicit GuidesPane(const PaneSurroundings& around)
+      : desk_(around.desk), control_port_(around.control_port), simulated_arm_(around.simulated_arm) {}
+  /// Closing the window in the middle of a guide leaves neither force nor parameters on trial on the device.
+  ~GuidesPane() override { GuidesPane::cancel(); }
+
+  std::string_view title() const override { return "Guides"; }
+  void follow(const PaneNews& news) override;
+  void draw(const PaneFrame& frame) override;
+  /// Ends a guide that runs, motors off.
+  void cancel() override;
+  /// The scope belongs to the guide while it wants signals.
+  PaneStream stream() const override { return {signals_, false}; }
+  bool is_moving() const override { return is_running(); }
+
+ private:
+  struct Offer {
+    const char* title;
+    const char* help;
+    std::function<guides::Guide()> make;
+  };
+  std::vector<Offer> offers() const;
+  void start(guides::Guide guide);
+  bool is_running() const { return guide_ && !guide_->is_over(); }
+  void draw_offers(const Style& style);
+  void draw_step(const Style& style);
+  void draw_checks(const Style& style);
+  void draw_result(const Style& style);
+  void draw_curves(const Style& style);
+  void draw_buttons(const Style& style);
+  guides::SessionPort port();
+  void run_simulated_user();
+
+  DeviceDesk& desk_;
+  std::uint16_t control_port_;
+  std::optional<protocol::ParameterSet> simulated_arm_;
+  bool hand_helps_ = true;
+  float bandwidth_Hz_ = static_cast<float>(guides::bandwidth_default_Hz);
+  std::optional<guides::Guide> guide_;
+  std::optional<guides::SimulatedUser> user_;
+  std::string user_problem_;
+  std::vector<protocol::Signal> signals_;
+};
 
 guides::SessionPort GuidesPane::port() {
   return {desk_.session(), [this](std::vector<protocol::Signal> wanted) { signals_ = std::move(wanted); }};
@@ -73,9 +127,9 @@ void GuidesPane::run_simulated_user() {
   }
 }
 
-void GuidesPane::follow(const std::vector<device::ScopeSamples>& frames) {
+void GuidesPane::follow(const PaneNews& news) {
   if (!guide_) return;
-  for (const auto& samples : frames) guide_->receive(samples);
+  for (const auto& samples : news.samples) guide_->receive(samples);
   auto to_device = port();
   guide_->advance(guides::observe(desk_.session()), to_device);
   run_simulated_user();
@@ -87,8 +141,8 @@ void GuidesPane::cancel() {
   guide_->cancel(to_device);
 }
 
-void GuidesPane::draw(ImVec2 place, ImVec2 size, const Style& style) {
-  begin_pane("guides", place, size);
+void GuidesPane::draw(const PaneFrame& frame) {
+  const Style& style = frame.style;
   if (!guide_) {
     draw_offers(style);
   } else {
@@ -105,7 +159,6 @@ void GuidesPane::draw(ImVec2 place, ImVec2 size, const Style& style) {
     ImGui::EndChild();
     draw_buttons(style);
   }
-  end_pane();
 }
 
 void GuidesPane::draw_offers(const Style& style) {
@@ -240,5 +293,9 @@ void GuidesPane::draw_buttons(const Style& style) {
   ImGui::SameLine();
   if (button("Back", half)) guide_.reset();
 }
+
+}  // namespace
+
+std::unique_ptr<Pane> guides_pane(const PaneSurroundings& around) { return std::make_unique<GuidesPane>(around); }
 
 }  // namespace inkwell::window

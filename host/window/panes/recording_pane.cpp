@@ -1,15 +1,26 @@
-#include <panes/recording_pane.hpp>
-
+// The pane that records: what, where to, start, stop and marks, with progress, size, free space and errors; and that
+// opens a recording to be replayed.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include <device/parameter_file.hpp>
+#include <frame/file_chooser.hpp>
 #include <frame/inspection.hpp>
+#include <frame/widgets.hpp>
+#include <panes/pane.hpp>
+#include <recording/recorder.hpp>
 #include <recording/signals.hpp>
 
 namespace inkwell::window {
@@ -30,8 +41,7 @@ void number(const char* name, const std::string& value, Colour colour, const Sty
   right_text(colour, value, 0.55f * width);
 }
 
-}  // namespace
-
+/// "wall_stiffness_N_per_m = 600", for each parameter that differs.
 std::vector<std::string> describe_changes(const protocol::ParameterSet& before, const protocol::ParameterSet& now) {
   std::vector<std::string> changes;
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
@@ -42,6 +52,7 @@ std::vector<std::string> describe_changes(const protocol::ParameterSet& before, 
   return changes;
 }
 
+/// How long a recording can go on until its disk is full, in words; empty while that cannot be told.
 std::string time_left(const RecorderStatus& status) {
   if (status.duration_s < 1 || status.bytes == 0) return {};
   const double left_s =
@@ -51,7 +62,53 @@ std::string time_left(const RecorderStatus& status) {
   return left_s < 48 * 3600.0 ? fmt::format("room for {:.0f} h", left_s / 3600) : "room for days";
 }
 
-void RecordingPane::start(const DeviceView& view, const std::vector<protocol::Signal>& scope_signals) {
+class RecordingPane final : public Pane {
+ public:
+  explicit RecordingPane(const PaneSurroundings& around)
+      : desk_(around.desk), replay_(around.replay), starts_with_replay_(around.starts_with_replay) {}
+
+  std::string_view title() const override { return "Recording"; }
+  /// Ends the recording when the device goes away, and marks each change of a parameter in it.
+  void follow(const PaneNews& news) override;
+  void draw(const PaneFrame& frame) override;
+  /// What the scope shows goes on being streamed, and is recorded with the rest.
+  PaneStream stream() const override { return recorder_ ? PaneStream{signals_, true} : PaneStream{}; }
+  bool is_shown_at_start() const override { return starts_with_replay_; }
+
+ private:
+  enum class Choice : std::uint8_t { standard, path, scope };
+
+  void start(const std::vector<protocol::Signal>& scope_signals);
+  void stop();
+  void follow_recording(const std::vector<device::ScopeSamples>& samples);
+  void follow_replay_wish();
+  void mark_changes(const protocol::ParameterSet& now);
+  void draw_choice(const PaneFrame& frame);
+  void draw_progress(const Style& style);
+  void draw_numbers(const Style& style, const RecorderStatus& status);
+  void draw_replay(const Style& style);
+
+  DeviceDesk& desk_;
+  std::function<void(const std::filesystem::path&)> replay_;
+  bool starts_with_replay_;
+  std::string file_;  ///< empty: a name made from the time
+  Choice choice_ = Choice::standard;
+  std::string mark_text_;
+  std::unique_ptr<recording::Recorder> recorder_;  ///< while it records
+  std::vector<protocol::Signal> signals_;          ///< that are recorded
+  protocol::ParameterSet parameters_{};            ///< as they were when last looked at
+  std::string written_file_;                       ///< the recording that runs, or ran last
+  std::optional<RecorderStatus> last_status_;
+  std::string start_error_;
+  enum class FileTask : std::uint8_t { record, replay } task_ = FileTask::replay;
+  FileChooser chooser_;
+  std::optional<std::filesystem::path> may_be_replaced_;
+  std::string replay_error_;
+  std::optional<std::filesystem::path> replay_wish_;  ///< of the user, until the next frame
+};
+
+void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
+  const DeviceView& view = desk_.view();
   start_error_.clear();
   last_status_.reset();
   signals_ = choice_ == Choice::standard ? recording::standard_signals()
@@ -90,9 +147,14 @@ void RecordingPane::mark_changes(const protocol::ParameterSet& now) {
   parameters_ = now;
 }
 
-void RecordingPane::follow(const DeviceView& view, const std::vector<device::ScopeSamples>& frames) {
-  if (!recorder_) return;
-  for (const auto& samples : frames) recorder_->push(samples);
+void RecordingPane::follow(const PaneNews& news) {
+  if (recorder_) follow_recording(news.samples);
+  follow_replay_wish();
+}
+
+void RecordingPane::follow_recording(const std::vector<device::ScopeSamples>& samples) {
+  const DeviceView& view = desk_.view();
+  for (const auto& each : samples) recorder_->push(each);
   if (view.parameters && *view.parameters != parameters_) mark_changes(*view.parameters);
   const bool went_away = !view.connected();
   if (!went_away && recorder_->status().running) return;
@@ -101,30 +163,35 @@ void RecordingPane::follow(const DeviceView& view, const std::vector<device::Sco
     last_status_->error = "The device went away. The recording holds everything up to then.";
 }
 
-std::optional<std::filesystem::path> RecordingPane::take_replay_wish() {
-  return std::exchange(replay_wish_, std::nullopt);
+void RecordingPane::follow_replay_wish() {
+  const auto file = std::exchange(replay_wish_, std::nullopt);
+  if (!file) return;
+  try {
+    replay_(*file);
+  } catch (const device::Error& error) {
+    replay_error_ = error.what();
+  }
 }
 
-void RecordingPane::draw(ImVec2 place, ImVec2 size, const Style& style, const DeviceView& view, bool scope_is_free,
-                         const std::vector<protocol::Signal>& scope_signals) {
-  begin_pane("recording", place, size);
+void RecordingPane::draw(const PaneFrame& frame) {
+  const Style& style = frame.style;
   text(style.fonts.strong, style.palette->text, "Record");
   if (recorder_)
     draw_progress(style);
   else
-    draw_choice(style, view, scope_is_free, scope_signals);
+    draw_choice(frame);
   ImGui::Dummy({0, style.points(10)});
   text(style.fonts.strong, style.palette->text, "Replay");
   draw_replay(style);
-  end_pane();
 }
 
-void RecordingPane::draw_choice(const Style& style, const DeviceView& view, bool scope_is_free,
-                                const std::vector<protocol::Signal>& scope_signals) {
+void RecordingPane::draw_choice(const PaneFrame& frame) {
+  const Style& style = frame.style;
+  const DeviceView& view = desk_.view();
   const Palette& palette = *style.palette;
   const bool connected = view.connected() && view.status.information && view.parameters;
   wrapped_text(palette.text_quiet, !connected ? "A recording needs a device. Plug one in."
-                                   : !scope_is_free
+                                   : !frame.scope_is_free
                                        ? "A guide uses the scope. Finish or cancel it first."
                                        : "Every control period, with the parameters, into HDF5 (.h5) or CSV.");
   const float button_width = style.points(74);
@@ -151,9 +218,9 @@ void RecordingPane::draw_choice(const Style& style, const DeviceView& view, bool
   int chosen = static_cast<int>(choice_);
   if (ImGui::Combo("##signals", &chosen, choices, 3)) choice_ = static_cast<Choice>(chosen);
   help_on_hover("Signals", "What the scope shows is recorded with them in any case.", style);
-  ImGui::BeginDisabled(!connected || !scope_is_free);
+  ImGui::BeginDisabled(!connected || !frame.scope_is_free);
   if (coloured_button("Start recording", palette.danger, palette.on_danger, {-1, style.points(34)}))
-    start(view, scope_signals);
+    start(frame.scope_signals);
   ImGui::EndDisabled();
   if (!start_error_.empty()) wrapped_text(palette.danger, start_error_);
   if (!last_status_) return;
@@ -217,5 +284,9 @@ void RecordingPane::draw_replay(const Style& style) {
   file_ = chosen->string();
   may_be_replaced_ = *chosen;  // the chooser asked, if there is such a file
 }
+
+}  // namespace
+
+std::unique_ptr<Pane> recording_pane(const PaneSurroundings& around) { return std::make_unique<RecordingPane>(around); }
 
 }  // namespace inkwell::window

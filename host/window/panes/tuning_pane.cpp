@@ -1,12 +1,21 @@
-#include <panes/tuning_pane.hpp>
-
+// The pane with a slider for every parameter of the table.
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <device/parameter_file.hpp>
+#include <frame/file_chooser.hpp>
 #include <frame/inspection.hpp>
+#include <frame/widgets.hpp>
+#include <panes/pane.hpp>
 
 namespace inkwell::window {
 
@@ -49,16 +58,50 @@ bool reset_button(const Style& style) {
   return pressed;
 }
 
-}  // namespace
+class TuningPane final : public Pane {
+ public:
+  explicit TuningPane(const PaneSurroundings& around)
+      : desk_(around.desk), file_(around.parameters_file), to_send_(around.parameters_to_send) {}
 
-void TuningPane::load(const std::filesystem::path& path, ParameterEditor& editor, double now_s) {
-  path_ = path.string();
+  std::string_view title() const override { return "Tuning"; }
+  void follow(const PaneNews& news) override;
+  void draw(const PaneFrame& frame) override;
+
+ private:
+  enum class FileTask : std::uint8_t { load, save };
+
+  void draw_heading(const PaneFrame& frame);
+  void draw_presets(const PaneFrame& frame);
+  void draw_messages(const PaneFrame& frame);
+  void draw_group(std::string_view group, const PaneFrame& frame);
+  void draw_row(Parameter parameter, const PaneFrame& frame);
+  void draw_file_dialog(const PaneFrame& frame);
+  void ask_for_file(FileTask task);
+  /// Loads a file as one undo step; says in the pane what became of it.
+  void load(const std::filesystem::path& file, ParameterEditor& editor, double now_s);
+  void save(const std::filesystem::path& file, const ParameterEditor& editor);
+
+  DeviceDesk& desk_;
+  std::filesystem::path& file_;    ///< loaded or saved last
+  std::filesystem::path to_send_;  ///< once a device is connected; empty: none any more
+  FileTask task_ = FileTask::load;
+  FileChooser chooser_;
+  std::vector<std::string> messages_;  ///< about the file loaded or saved last
+  bool message_is_error_ = false;
+};
+
+void TuningPane::follow(const PaneNews& news) {
+  if (!to_send_.empty() && news.editor.known()) load(std::exchange(to_send_, {}), news.editor, news.now_s);
+}
+
+void TuningPane::load(const std::filesystem::path& file, ParameterEditor& editor, double now_s) {
+  file_ = file;
   messages_.clear();
   try {
-    const device::ParameterFile file = device::load_parameters(path);
-    editor.apply("load " + path.filename().string(), file.changes, now_s);
-    messages_ = {fmt::format("Loaded {} values from {}.", file.changes.size(), path.filename().string())};
-    for (const std::string& name : file.unknown)
+    const device::ParameterFile loaded = device::load_parameters(file);
+    editor.apply("load " + file.filename().string(), loaded.changes, now_s);
+    messages_ = {fmt::format("Loaded {} values from {}.", loaded.changes.size(), file.filename().string())};
+    for (const std::string& name : loaded.unknown)
       messages_.push_back(fmt::format("This version does not know {}; it was left out.", name));
     message_is_error_ = false;
   } catch (const device::Error& error) {
@@ -67,11 +110,12 @@ void TuningPane::load(const std::filesystem::path& path, ParameterEditor& editor
   }
 }
 
-void TuningPane::save(const ParameterEditor& editor) {
+void TuningPane::save(const std::filesystem::path& file, const ParameterEditor& editor) {
+  file_ = file;
   messages_.clear();
   try {
-    device::save_parameters(path_, editor.shown());
-    messages_ = {fmt::format("Saved all parameters in {}.", path_)};
+    device::save_parameters(file, editor.shown());
+    messages_ = {fmt::format("Saved all parameters in {}.", file.string())};
     message_is_error_ = false;
   } catch (const device::Error& error) {
     messages_ = {error.what()};
@@ -79,19 +123,21 @@ void TuningPane::save(const ParameterEditor& editor) {
   }
 }
 
-void TuningPane::draw_heading(const Style& style, ParameterEditor& editor, double now_s) {
+void TuningPane::draw_heading(const PaneFrame& frame) {
+  const Style& style = frame.style;
+  ParameterEditor& editor = frame.editor;
   ImGui::AlignTextToFramePadding();
   text(style.fonts.strong, style.palette->text, "Tuning");
   ImGui::SameLine();
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(2), style.points(7)});
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - style.points(208));
   ImGui::BeginDisabled(!editor.known() || !editor.can_undo());
-  if (quiet_button("Undo", style)) editor.undo(now_s);
+  if (quiet_button("Undo", style)) editor.undo(frame.now_s);
   ImGui::EndDisabled();
   if (editor.can_undo()) help_on_hover("", fmt::format("Takes back: {}. Ctrl+Z", editor.undo_title()), style);
   ImGui::SameLine();
   ImGui::BeginDisabled(!editor.known() || !editor.can_redo());
-  if (quiet_button("Redo", style)) editor.redo(now_s);
+  if (quiet_button("Redo", style)) editor.redo(frame.now_s);
   ImGui::EndDisabled();
   if (editor.can_redo()) help_on_hover("", fmt::format("Does again: {}. Ctrl+Shift+Z", editor.redo_title()), style);
   ImGui::SameLine();
@@ -103,7 +149,9 @@ void TuningPane::draw_heading(const Style& style, ParameterEditor& editor, doubl
   ImGui::PopStyleVar();
 }
 
-void TuningPane::draw_presets(const Style& style, ParameterEditor& editor, double now_s) {
+void TuningPane::draw_presets(const PaneFrame& frame) {
+  const Style& style = frame.style;
+  ParameterEditor& editor = frame.editor;
   const auto all = presets();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const auto count = static_cast<float>(all.size() + 1);
@@ -113,7 +161,7 @@ void TuningPane::draw_presets(const Style& style, ParameterEditor& editor, doubl
                       return editor.shown(change.first) == change.second;
                     });
     if (toggle_button(std::string(preset.name).c_str(), on, style, {width, 0}))
-      editor.apply(std::string(preset.name), preset.changes, now_s);
+      editor.apply(std::string(preset.name), preset.changes, frame.now_s);
     help_on_hover(preset.name, preset.help, style);
     ImGui::SameLine();
   }
@@ -121,20 +169,25 @@ void TuningPane::draw_presets(const Style& style, ParameterEditor& editor, doubl
     std::vector<ParameterChange> changes;
     for (std::size_t i = 0; i < protocol::parameter_count; ++i)
       changes.emplace_back(static_cast<Parameter>(i), protocol::parameter_table[i].default_value);
-    editor.apply("all defaults", changes, now_s);
+    editor.apply("all defaults", changes, frame.now_s);
   }
   help_on_hover("Defaults", "Gives every parameter its default. It can be undone.", style);
 }
 
-void TuningPane::draw_messages(const Style& style, const std::string& refusal) {
+void TuningPane::draw_messages(const PaneFrame& frame) {
+  const Style& style = frame.style;
   ImGui::PushFont(style.fonts.caption);
+  const std::string refusal = frame.is_replay ? "These parameters are the recording's. Close it to tune the device."
+                                              : desk_.view().refusal.value_or("");
   if (!refusal.empty()) wrapped_text(style.palette->caution, refusal);
   for (const std::string& message : messages_)
     wrapped_text(message_is_error_ ? style.palette->caution : style.palette->text_quiet, message);
   ImGui::PopFont();
 }
 
-void TuningPane::draw_row(Parameter parameter, const Style& style, ParameterEditor& editor, double now_s) {
+void TuningPane::draw_row(Parameter parameter, const PaneFrame& frame) {
+  const Style& style = frame.style;
+  ParameterEditor& editor = frame.editor;
   const protocol::ParameterInfo& info = protocol::info(parameter);
   const Palette& palette = *style.palette;
   const bool changed = editor.known() && editor.differs_from_default(parameter);
@@ -166,7 +219,7 @@ void TuningPane::draw_row(Parameter parameter, const Style& style, ParameterEdit
     edited = ImGui::Combo("##value", &choice, names.data(), static_cast<int>(names.size()));
     if (edited) {
       const ParameterChange change{parameter, static_cast<float>(choice)};
-      editor.apply(label, {&change, 1}, now_s);
+      editor.apply(label, {&change, 1}, frame.now_s);
     }
   } else {
     const bool wide = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f;
@@ -177,7 +230,7 @@ void TuningPane::draw_row(Parameter parameter, const Style& style, ParameterEdit
     if (ImGui::IsItemActivated()) editor.begin_step(label);
     if (edited) {
       const ParameterChange change{parameter, info.kind == ParameterKind::whole ? std::round(value) : value};
-      editor.edit({&change, 1}, now_s);
+      editor.edit({&change, 1}, frame.now_s);
     }
     if (ImGui::IsItemDeactivated()) editor.end_step();
   }
@@ -191,14 +244,16 @@ void TuningPane::draw_row(Parameter parameter, const Style& style, ParameterEdit
     ImGui::SetCursorPosX(left + width - style.points(reset_points - 4));
     if (reset_button(style)) {
       const ParameterChange change{parameter, info.default_value};
-      editor.apply(label, {&change, 1}, now_s);
+      editor.apply(label, {&change, 1}, frame.now_s);
     }
     help_on_hover("", fmt::format("Back to the default, {} {}", info.default_value, info.unit), style);
   }
   ImGui::PopID();
 }
 
-void TuningPane::draw_group(std::string_view group, const Style& style, ParameterEditor& editor, double now_s) {
+void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
+  const Style& style = frame.style;
+  ParameterEditor& editor = frame.editor;
   std::string title{group};
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   const bool often_used = group == "box" || group == "contact" || group == "current loop";
@@ -224,7 +279,7 @@ void TuningPane::draw_group(std::string_view group, const Style& style, Paramete
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(3)});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(4)});
   for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    if (protocol::parameter_table[i].group == group) draw_row(static_cast<Parameter>(i), style, editor, now_s);
+    if (protocol::parameter_table[i].group == group) draw_row(static_cast<Parameter>(i), frame);
   ImGui::PopStyleVar(2);
   ImGui::Unindent(style.points(12));
 }
@@ -238,36 +293,38 @@ void TuningPane::ask_for_file(FileTask task) {
                 .button = saving ? "Save" : "Load",
                 .endings = {".toml"},
                 .is_new_file = saving,
-                .suggestion = path_});
+                .suggestion = file_});
 }
 
-void TuningPane::draw_file_dialog(const Style& style, ParameterEditor& editor, double now_s) {
-  const auto chosen = chooser_.draw(style);
+void TuningPane::draw_file_dialog(const PaneFrame& frame) {
+  const auto chosen = chooser_.draw(frame.style);
   if (!chosen) return;
-  if (task_ == FileTask::load) return load(*chosen, editor, now_s);
-  path_ = chosen->string();
-  save(editor);
+  if (task_ == FileTask::load)
+    load(*chosen, frame.editor, frame.now_s);
+  else
+    save(*chosen, frame.editor);
 }
 
-void TuningPane::draw(ImVec2 place, ImVec2 size, const Style& style, ParameterEditor& editor,
-                      const std::string& refusal, double now_s) {
-  begin_pane("tuning", place, size);
-  draw_heading(style, editor, now_s);
-  ImGui::BeginDisabled(!editor.known());
-  draw_presets(style, editor, now_s);
-  draw_messages(style, refusal);
+void TuningPane::draw(const PaneFrame& frame) {
+  draw_heading(frame);
+  ImGui::BeginDisabled(!frame.editor.known());
+  draw_presets(frame);
+  draw_messages(frame);
   if (ImGui::BeginChild("parameters")) {
     std::string_view group;
     for (const protocol::ParameterInfo& info : protocol::parameter_table) {
       if (info.group == group) continue;
       group = info.group;
-      draw_group(group, style, editor, now_s);
+      draw_group(group, frame);
     }
   }
   ImGui::EndChild();
   ImGui::EndDisabled();
-  draw_file_dialog(style, editor, now_s);
-  end_pane();
+  draw_file_dialog(frame);
 }
+
+}  // namespace
+
+std::unique_ptr<Pane> tuning_pane(const PaneSurroundings& around) { return std::make_unique<TuningPane>(around); }
 
 }  // namespace inkwell::window

@@ -20,7 +20,7 @@ struct WallPicture {
   int u, v;            // the axes along it
   glm::vec3 corner_m;  // in workspace axes
   glm::vec4 colour;    // without its alpha
-  float frame_alpha, grid_alpha, pane_alpha;
+  float frame_alpha, grid_alpha, face_alpha;
 };
 
 }  // namespace
@@ -29,7 +29,7 @@ Renderer::Renderer()
     : sky_(shaders::sky_vertex, shaders::sky_fragment),
       solid_(shaders::solid_vertex, shaders::solid_fragment),
       shadow_(shaders::shadow_vertex, shaders::shadow_fragment),
-      pane_(shaders::pane_vertex, shaders::pane_fragment) {
+      wall_(shaders::wall_vertex, shaders::wall_fragment) {
   glGenVertexArrays(1, &no_vertices_);
   glGenFramebuffers(1, &target_);
   glGenRenderbuffers(2, target_buffers_.data());
@@ -126,30 +126,30 @@ void Renderer::draw_walls(const SceneModel& scene, const Camera& camera, const S
     picture.colour = to_vector(touched ? scene_colours::wall_touched : scene_colours::wall_idle);
     picture.frame_alpha = look.flat_colours || touched || is_marked ? 1.0f : is_near ? 0.35f : 0.65f;
     picture.grid_alpha = touched ? (is_near ? 0.25f : 0.45f) : is_near ? 0.0f : 0.20f;
-    picture.pane_alpha = touched ? 0.17f : is_marked ? 0.14f : is_near ? 0.0f : 0.07f;
+    picture.face_alpha = touched ? 0.17f : is_marked ? 0.14f : is_near ? 0.0f : 0.07f;
     pictures.push_back(picture);
   }
   // A wall that pushes back comes last, for its frame has edges in common with its neighbours.
   std::stable_partition(pictures.begin(), pictures.end(),
                         [](const WallPicture& each) { return !each.wall->pushes_back; });
 
-  pane_.use();
-  pane_.set("to_clip", to_clip_);
+  wall_.use();
+  wall_.set("to_clip", to_clip_);
   glBindVertexArray(no_vertices_);
   for (const WallPicture& picture : pictures) {
     // Clang 14 cannot capture these names as such.
-    const auto [wall, u, v, corner_m, colour, frame_alpha, grid_alpha, pane_alpha] = picture;
+    const auto [wall, u, v, corner_m, colour, frame_alpha, grid_alpha, face_alpha] = picture;
     glm::vec3 edge_u{0.0f};
     glm::vec3 edge_v{0.0f};
     edge_u[u] = extent[u];
     edge_v[v] = extent[v];
-    if (pane_alpha > 0.0f) {
-      pane_.set("corner", to_view * corner_m);
-      pane_.set("edge_u", to_view * edge_u);
-      pane_.set("edge_v", to_view * edge_v);
-      pane_.set("base_colour", glm::vec4{glm::vec3{colour}, pane_alpha});
-      pane_.set("contact", glm::vec2{scene.proxy_m[u] - corner_m[u], scene.proxy_m[v] - corner_m[v]});
-      pane_.set("glow", wall->pushes_back ? 0.6f : 0.0f);
+    if (face_alpha > 0.0f) {
+      wall_.set("corner", to_view * corner_m);
+      wall_.set("edge_u", to_view * edge_u);
+      wall_.set("edge_v", to_view * edge_v);
+      wall_.set("base_colour", glm::vec4{glm::vec3{colour}, face_alpha});
+      wall_.set("contact", glm::vec2{scene.proxy_m[u] - corner_m[u], scene.proxy_m[v] - corner_m[v]});
+      wall_.set("glow", wall->pushes_back ? 0.6f : 0.0f);
       glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }
     const auto add = [&, colour = colour](glm::vec3 from, glm::vec3 to, float alpha, float width) {

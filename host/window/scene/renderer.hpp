@@ -50,7 +50,7 @@ class Renderer {
   ShaderProgram sky_;
   ShaderProgram solid_;
   ShaderProgram shadow_;
-  ShaderProgram pane_;
+  ShaderProgram wall_;
   LineBatch lines_;
   SolidBatch solids_;
 };

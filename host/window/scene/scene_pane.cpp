@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <frame/inspection.hpp>
+#include <frame/widgets.hpp>
 
 #include "renderer.hpp"
 
@@ -27,7 +28,7 @@ void plate(ImDrawList& list, const Style& style, ImVec2 place, Colour colour, co
   const ImVec2 taken = ImGui::CalcTextSize(content.c_str());
   const float pad = style.points(5);
   list.AddRectFilled({place.x - pad, place.y - pad * 0.5f}, {place.x + taken.x + pad, place.y + taken.y + pad * 0.5f},
-                     packed(style.palette->panel.with_alpha(205)), style.points(4));
+                     packed(style.palette->pane.with_alpha(205)), style.points(4));
   list.AddText(place, packed(colour), content.c_str());
 }
 
@@ -176,7 +177,7 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
     for (int wall = 0; wall < 6; ++wall) {
       const bool marked = marked_wall_ == wall || (drag_ == Drag::wall && dragged_wall_ == wall);
       const ImVec2 place = on_screen(wall_handle(wall));
-      list.AddCircleFilled(place, style.points(marked ? 5.5f : 3.5f), packed(palette.panel));
+      list.AddCircleFilled(place, style.points(marked ? 5.5f : 3.5f), packed(palette.pane));
       list.AddCircle(place, style.points(marked ? 5.5f : 3.5f), packed(marked ? palette.accent : palette.text_quiet), 0,
                      style.points(1.5f));
       if (!marked) continue;

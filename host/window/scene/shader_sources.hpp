@@ -72,7 +72,7 @@ out vec4 colour;
 void main() { colour = base_colour; })";
 
 /// A rectangle given by a corner and two edges; `place` is in metres along the edges.
-inline constexpr char pane_vertex[] = R"(#version 330 core
+inline constexpr char wall_vertex[] = R"(#version 330 core
 uniform vec3 corner;
 uniform vec3 edge_u;
 uniform vec3 edge_v;
@@ -85,7 +85,7 @@ void main() {
 })";
 
 /// The pane of a wall, with a glow around the place where it pushes back.
-inline constexpr char pane_fragment[] = R"(#version 330 core
+inline constexpr char wall_fragment[] = R"(#version 330 core
 in vec2 place;
 uniform vec4 base_colour;
 uniform vec2 contact;

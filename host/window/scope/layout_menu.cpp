@@ -4,7 +4,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include <frame/style.hpp>
+#include <frame/widgets.hpp>
 
 namespace inkwell::window {
 
@@ -65,7 +65,7 @@ void LayoutMenu::draw_name(ScopeLayout& layout, const Style& style) {
   const bool entered = ImGui::InputTextWithHint("##name", "a name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
   if (!refusal_.empty()) wrapped_text(style.palette->caution, refusal_);
   const bool confirmed =
-      coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->panel, {style.points(100), 0});
+      coloured_button(renames ? "Rename" : "Save", style.palette->accent, style.palette->pane, {style.points(100), 0});
   ImGui::SameLine();
   const bool cancelled =
       button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));

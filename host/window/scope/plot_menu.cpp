@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include <frame/style.hpp>
+#include <frame/widgets.hpp>
 #include <protocol/signals.hpp>
 
 namespace inkwell::window {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include <frame/style.hpp>
+#include <frame/widgets.hpp>
 #include <protocol/reports.hpp>
 
 #include "cursors.hpp"
@@ -105,7 +105,7 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFra
   ImGui::PushID(static_cast<int>(index));
   ImGui::SetCursorScreenPos({place.x, place.y - style.points(1)});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(6), style.points(2)});
-  ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->panel));
+  ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->pane));
   ImGui::PushFont(style.fonts.strong);
   if (button((plot.title.empty() ? "Plot" : plot.title).c_str())) ImGui::OpenPopup("plot menu");
   ImGui::PopFont();

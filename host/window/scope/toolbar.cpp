@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <frame/style.hpp>
+#include <frame/widgets.hpp>
 
 namespace inkwell::window {
 

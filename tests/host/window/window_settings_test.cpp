@@ -11,7 +11,7 @@ using namespace inkwell::window;
 TEST_CASE("settings come back as they were written") {
   WindowSettings settings;
   settings.theme = Theme::light;
-  settings.tuning_width = 412.0f;
+  settings.column_width = 412.0f;
   settings.scope_is_shown = false;
   settings.scope.span_s = 0.05;
   settings.scope.trigger = {TriggerMode::single, protocol::Signal::current_2_A, TriggerEdge::falling, -0.25f, 0.5f};

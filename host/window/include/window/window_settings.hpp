@@ -10,8 +10,11 @@
 namespace inkwell::window {
 
 struct WindowSettings {
+  static constexpr float column_width_minimum = 300.0f;
+  static constexpr float scope_height_minimum = 150.0f;
+
   Theme theme = Theme::dark;
-  float tuning_width = 330.0f;  ///< in points, before scaling
+  float column_width = 330.0f;  ///< of the panes at the right; in points, before scaling
   float scope_height = 270.0f;
   bool scope_is_shown = true;
   ScopeSettings scope;
@@ -21,6 +24,11 @@ struct WindowSettings {
 
 /// $XDG_CONFIG_HOME/inkwell/window.toml, or the same below ~/.config; empty if neither is known.
 std::filesystem::path window_settings_path();
+
+/// As they were kept; the defaults if there is no such file.
+WindowSettings read_settings(const std::filesystem::path& file);
+/// A sentence about why they could not be kept; empty if they were.
+std::string write_settings(const WindowSettings& settings, const std::filesystem::path& file);
 
 std::string format_settings(const WindowSettings& settings);
 /// What cannot be read, or makes no sense, keeps its default: a damaged file of settings must not keep the window shut.

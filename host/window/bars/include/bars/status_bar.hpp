@@ -1,8 +1,7 @@
-// The bar on top: which device, how it is, force on and off, stop; and under it the fault, if there is one.
+// The bar on top: which device, how it is, force on and off, stop.
 #pragma once
 
-#include <optional>
-#include <string>
+#include <cstdint>
 
 #include <device_desk/device_desk.hpp>
 #include <frame/style.hpp>
@@ -29,19 +28,5 @@ class StatusBar {
   /// The stylus' two buttons and the inkwell, as the board feels them.
   void draw_switches(ImVec2 corner, const Style& style, std::uint8_t switches) const;
 };
-
-/// What has to be said over the whole width: a fault with its cause and remedy, or a motor that is hot.
-struct Banner {
-  std::string what;
-  std::string remedy;
-  bool is_fault;
-};
-std::optional<Banner> banner_of(const DeviceView& view);
-float banner_height(float width, const Style& style, const Banner& banner);
-/// True when "Clear fault" was pressed.
-bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);
-
-/// A card in the middle of the scene that says why no device is connected and what to do.
-void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view);
 
 }  // namespace inkwell::window

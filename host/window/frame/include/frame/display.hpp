@@ -33,12 +33,27 @@ class Display {
   bool draws_in_software() const;  ///< OpenGL has no graphics card
   ImVec2 corner() const;           ///< top left of what is drawn, on the screen
 
+  /// What is drawn, in pixels; 0 by 0 while it is shrunk to an icon.
+  struct Size {
+    int width, height;
+  };
+  Size framebuffer_size() const;
+
+  bool is_to_be_closed() const;
+  void close();
+  void take_events();                      ///< what the user and the window system did
+  void wait_for_events(double at_most_s);  ///< until there are some, and takes them
+  /// Has `wait_for_events` return; from any thread.
+  static void wake();
+  /// What was drawn goes to the screen.
+  void show();
+
   /// True if the user or the window system did something since the last call.
   bool take_input() { return std::exchange(had_input_, false); }
   /// True if the screen lost the picture, so that it has to be drawn again though it stays the same.
   bool take_lost_picture() { return std::exchange(lost_picture_, false); }
 
-  /// `pressed(key)` is called for every key that goes down, before the panes see it.
+  /// `pressed(key, down)` is called for every key that goes down or up, before the panes see it.
   void on_key(std::function<void(int key, bool down)> pressed) { on_key_ = std::move(pressed); }
 
  private:
@@ -50,25 +65,5 @@ class Display {
 
 /// Writes the whole framebuffer as it stands. Throws DisplayError.
 void write_screenshot(const std::filesystem::path& path, int width, int height);
-
-/// Sleeps so that frames come at a steady rate where the display does not hold them back itself.
-class FramePacer {
- public:
-  /// `keeps_up`: what to suppose until frames tell.
-  FramePacer(double frames_per_second, bool keeps_up) : period_s_(1.0 / frames_per_second), keeps_up_(keeps_up) {}
-  void wait();
-  /// No frame is wanted for a while: what passes until the next `wait` is no slowness.
-  void rest() { half_second_began_s_ = 0.0; }
-
-  /// True while the frames come as they should; false once half a second of them was a fifth too slow, for good.
-  bool keeps_up() const { return keeps_up_; }
-
- private:
-  double period_s_;
-  double next_s_ = 0.0;
-  double half_second_began_s_ = 0.0;
-  int frames_in_it_ = 0;
-  bool keeps_up_;
-};
 
 }  // namespace inkwell::window

@@ -40,7 +40,7 @@ inline constexpr std::array<Colour, 6> line_colours_light{
 /// The surfaces, lines and texts of one theme.
 struct Palette {
   Colour ground;  ///< behind everything
-  Colour panel;
+  Colour pane;
   Colour raised;  ///< fields, buttons
   Colour raised_hover;
   Colour raised_active;
@@ -64,7 +64,7 @@ struct Palette {
 
 inline constexpr Palette dark_palette{
     .ground = {17, 20, 25},
-    .panel = {24, 28, 34},
+    .pane = {24, 28, 34},
     .raised = {37, 43, 52},
     .raised_hover = {47, 55, 66},
     .raised_active = {58, 68, 82},
@@ -88,7 +88,7 @@ inline constexpr Palette dark_palette{
 
 inline constexpr Palette light_palette{
     .ground = {226, 230, 235},
-    .panel = {246, 247, 249},
+    .pane = {246, 247, 249},
     .raised = {228, 232, 237},
     .raised_hover = {217, 223, 230},
     .raised_active = {203, 211, 220},

@@ -1,0 +1,69 @@
+#include <bars/banner.hpp>
+
+#include <fmt/format.h>
+
+#include <device_desk/motor_heat_view.hpp>
+#include <frame/widgets.hpp>
+
+namespace inkwell::window {
+
+using protocol::State;
+
+namespace {
+
+constexpr float margin_points = 12.0f;
+constexpr float button_points = 118.0f;
+
+float banner_text_width(float width, const Style& style, const Banner& banner) {
+  return width - style.points(44 + (banner.is_fault ? button_points + 2 * margin_points : margin_points));
+}
+
+}  // namespace
+
+std::optional<Banner> banner_of(const DeviceView& view) {
+  if (view.pose && view.pose->state == State::fault) {
+    const protocol::CodeInfo& info = protocol::info(view.pose->fault);
+    return Banner{std::string(info.cause), std::string(info.remedy), true};
+  }
+  if (!view.connected() || !view.status.information) return std::nullopt;
+  const MotorHeatView heat = motor_heat_view(view.status.information->report);
+  if (heat.level != HeatLevel::hot) return std::nullopt;
+  return Banner{fmt::format("Motor {} is hot: {:.0f} %.", heat.motor, 100.0f * heat.hottest), heat_advice(heat), false};
+}
+
+float banner_height(float width, const Style& style, const Banner& banner) {
+  const float room = banner_text_width(width, style, banner);
+  const auto taken = [room](ImFont* font, const std::string& text) {
+    return font->CalcTextSizeA(font->FontSize, 1e4f, room, text.c_str()).y;
+  };
+  return taken(style.fonts.strong, banner.what) + taken(style.fonts.body, banner.remedy) + style.points(26);
+}
+
+bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner) {
+  const Palette& palette = *style.palette;
+  const Colour colour = banner.is_fault ? palette.danger : palette.caution;
+  begin_pane("banner", place, size);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRectFullScreen();
+  list.AddRectFilled(place, {place.x + size.x, place.y + size.y}, packed(palette.raised));
+  list.AddRectFilled(place, {place.x + style.points(5), place.y + size.y}, packed(colour));
+  list.PopClipRect();
+  warning_sign({place.x + style.points(18), place.y + style.points(10)}, colour, style);
+  ImGui::SetCursorPos({style.points(44), style.points(9)});
+  ImGui::BeginGroup();
+  ImGui::PushTextWrapPos(style.points(44) + banner_text_width(size.x, style, banner));
+  text(style.fonts.strong, palette.text, banner.what);
+  text(palette.text_quiet, banner.remedy);
+  ImGui::PopTextWrapPos();
+  ImGui::EndGroup();
+  bool pressed = false;
+  if (banner.is_fault) {
+    ImGui::SetCursorPos({size.x - style.points(button_points + margin_points), style.points(14)});
+    pressed = coloured_button("Clear fault", palette.danger, palette.on_danger,
+                              {style.points(button_points), style.points(34)});
+  }
+  end_pane();
+  return pressed;
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,42 @@
+#include <bars/connection_card.hpp>
+
+#include <string>
+
+#include <frame/widgets.hpp>
+
+namespace inkwell::window {
+
+using device::Connection;
+
+const char* connection_title(const device::SessionStatus& status) {
+  switch (status.connection) {
+    case Connection::searching: return "Looking for a device";
+    case Connection::connected: return status.is_simulation ? "Connected to a simulation" : "Connected";
+    case Connection::incompatible: return "Another protocol version";
+    case Connection::no_permission: return "No permission";
+  }
+  return "";
+}
+
+Colour connection_colour(Connection connection, const Palette& palette) {
+  if (connection == Connection::connected) return palette.good;
+  return connection == Connection::searching ? palette.text_quiet : palette.caution;
+}
+
+void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view) {
+  const Palette& palette = *style.palette;
+  ImGui::SetNextWindowPos(centre, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({style.points(420), 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, style.points(8));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(20), style.points(16)});
+  ImGui::Begin("connection", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
+  const std::string& message = view.status.message.empty() ? view.list_error : view.status.message;
+  wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+}  // namespace inkwell::window

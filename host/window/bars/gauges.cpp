@@ -1,0 +1,71 @@
+#include "gauges.hpp"
+
+#include <fmt/format.h>
+
+#include <device_desk/motor_heat_view.hpp>
+#include <frame/widgets.hpp>
+
+namespace inkwell::window {
+
+using protocol::State;
+
+namespace {
+
+Colour colour_of(State state, const Palette& palette) {
+  switch (state) {
+    case State::active: return palette.good;
+    case State::fault: return palette.danger;
+    case State::ready: return palette.accent;
+    default: return palette.caution;
+  }
+}
+
+Colour colour_of(HeatLevel level, const Palette& palette) {
+  return level == HeatLevel::hot ? palette.danger : level == HeatLevel::warm ? palette.caution : palette.text;
+}
+
+}  // namespace
+
+std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette) {
+  const bool alive = view.connected() && view.pose.has_value() && view.status.information.has_value();
+  const protocol::PoseReport pose = view.pose.value_or(protocol::PoseReport{});
+  const device::SessionStatus& status = view.status;
+  const MotorHeatView heat = alive ? motor_heat_view(status.information->report) : MotorHeatView{};
+  const double load_percent = 100.0 * pose.servo_load / 255.0;
+  const std::uint64_t lost = status.poses_lost + status.scope_samples_lost;
+  const protocol::StateInfo& state = protocol::info(pose.state);
+  const std::string advice = heat_advice(heat);
+  std::vector<Gauge> gauges{
+      {"State", std::string(state.name), colour_of(pose.state, palette),
+       alive ? std::string(state.meaning) : "No device is connected.", pose.state == State::fault},
+      {"Servo load", fmt::format("{:.0f} %", load_percent), load_percent > 80 ? palette.caution : palette.text,
+       "The longest control interrupt since the pose report before, as a part of its period.", load_percent > 80},
+      {"Supply", fmt::format("{:.1f} V", pose.supply_dV / 10.0), palette.text, "Voltage of the bridges' supply."},
+      {"Motor heat", fmt::format("{:.0f} %", 100.0f * heat.hottest), colour_of(heat.level, palette),
+       fmt::format("Of the hottest motor, number {}. 100 % is what its continuous current leads to.{}{}", heat.motor,
+                   advice.empty() ? "" : "\n", advice),
+       heat.level != HeatLevel::cool},
+      {"Poses", fmt::format("{:.0f} Hz", status.pose_rate_Hz), palette.text,
+       fmt::format("Pose reports received in a second; the device sends {}.", protocol::pose_rate_Hz)},
+      {"Lost", fmt::format("{}", lost), lost > 0 ? palette.caution : palette.text,
+       fmt::format("Pose reports lost: {}. Scope samples lost: {} of {}.", status.poses_lost, status.scope_samples_lost,
+                   status.scope_samples_received + status.scope_samples_lost)}};
+  if (!alive)
+    for (Gauge& gauge : gauges) gauge = {gauge.caption, "—", palette.text_quiet, gauge.help};
+  return gauges;
+}
+
+void draw_gauge(const Gauge& gauge, ImVec2 corner, ImVec2 size, const Style& style) {
+  ImGui::SetCursorScreenPos(corner);
+  ImGui::InvisibleButton(gauge.caption, size);
+  help_on_hover(gauge.caption, gauge.help, style);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddText(style.fonts.caption, style.fonts.caption->FontSize, {corner.x, corner.y + style.points(1)},
+               packed(style.palette->text_quiet), gauge.caption);
+  float left = corner.x;
+  const float top = corner.y + style.points(16);
+  if (gauge.warns) left += warning_sign({left, top}, gauge.colour, style);
+  list.AddText(style.fonts.body, style.fonts.body->FontSize, {left, top}, packed(gauge.colour), gauge.value.c_str());
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,25 @@
+// The numbers of the status bar, each with its caption above.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <device_desk/device_desk.hpp>
+#include <frame/style.hpp>
+
+namespace inkwell::window {
+
+struct Gauge {
+  const char* caption;
+  std::string value;
+  Colour colour;
+  std::string help;
+  bool warns = false;  ///< told by a sign as well as by the colour
+};
+
+/// State, servo load, supply, motor heat, rate of poses, what was lost.
+std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette);
+
+void draw_gauge(const Gauge& gauge, ImVec2 corner, ImVec2 size, const Style& style);
+
+}  // namespace inkwell::window

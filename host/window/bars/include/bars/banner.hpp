@@ -1,0 +1,23 @@
+// The banner under the status bar, while there is something to say.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <device_desk/device_desk.hpp>
+#include <frame/style.hpp>
+
+namespace inkwell::window {
+
+/// What has to be said over the whole width: a fault with its cause and remedy, or a motor that is hot.
+struct Banner {
+  std::string what;
+  std::string remedy;
+  bool is_fault;
+};
+std::optional<Banner> banner_of(const DeviceView& view);
+float banner_height(float width, const Style& style, const Banner& banner);
+/// True when "Clear fault" was pressed.
+bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);
+
+}  // namespace inkwell::window

@@ -1,0 +1,132 @@
+#include <frame/frame_loop.hpp>
+
+#include <csignal>
+#include <cstdio>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <frame/picture_digest.hpp>
+#include <frame/style.hpp>
+
+namespace inkwell::window {
+
+namespace {
+
+constexpr double look_period_s = 1.0 / 60.0;  // at rest: how often it is looked whether the content asks for a frame
+constexpr double faster_than_display = 1.04;  // so that the display sets the pace; one that does not leaves it to us
+
+volatile std::sig_atomic_t asked_to_end = 0;
+
+}  // namespace
+
+void end_loop_at_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+}
+
+FrameLoop::FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content, FrameLoopOptions options)
+    : display_(display),
+      imgui_(imgui),
+      content_(content),
+      options_(std::move(options)),
+      pacer_(faster_than_display * display.refresh_rate_Hz(), !display.draws_in_software()),
+      frames_report_(1.0 / display.refresh_rate_Hz()),
+      started_s_(glfwGetTime()),
+      shown_s_(started_s_) {
+  if (options_.inspect) inspection_.emplace(&Display::wake);
+  display_.on_key([this](int key, bool down) {
+    if (down) imgui_.note_key_down(key);
+    content_.key(key, down);
+  });
+}
+
+void FrameLoop::run() {
+  while (!display_.is_to_be_closed() && asked_to_end == 0) {
+    Frame frame = next_frame();
+    if (!is_due(frame)) continue;
+    lay_out(frame);
+    if (!is_to_be_drawn(frame)) continue;
+    draw(frame);
+    show(frame);
+    if (frame.is_last) break;
+  }
+  if (!options_.frames_report) return;
+  fmt::print("{}", frames_report_.text());
+  std::fflush(stdout);
+}
+
+FrameLoop::Frame FrameLoop::next_frame() {
+  const bool is_lively = rhythm_.is_lively(glfwGetTime());
+  if (is_lively) {
+    pacer_.wait();
+    display_.take_events();
+  } else {
+    pacer_.rest();
+    display_.wait_for_events(look_period_s);
+  }
+  const double now_s = glfwGetTime();
+  return {.now_s = now_s,
+          .size = display_.framebuffer_size(),
+          .is_lively = is_lively,
+          .is_asked = inspection_ && inspection_->is_asked(),
+          .is_last = !options_.screenshot.empty() && now_s - started_s_ >= options_.after_seconds,
+          .evidence = {.input = display_.take_input()},
+          .look = {}};
+}
+
+bool FrameLoop::is_due(const Frame& frame) const {
+  const bool something_happened = frame.evidence.input || frame.is_last || frame.is_asked || content_.asks_for_frame();
+  return rhythm_.is_due(something_happened, frame.now_s) && frame.size.width > 0 && frame.size.height > 0;
+}
+
+void FrameLoop::lay_out(Frame& frame) {
+  imgui_.begin();
+  if (inspection_) inspection_->begin_frame(display_.corner());
+  content_.lay_out(imgui_.size(), frame.now_s);
+  imgui_.end();
+
+  PictureDigest panes;
+  panes.add(imgui_.data());
+  // At rest there is time for a smooth picture.
+  const bool is_photographed = frame.is_last || (inspection_ && inspection_->wants_picture());
+  frame.look = {.picture = content_.picture_digest(),
+                .panes = panes.value(),
+                .smooth = pacer_.keeps_up() || !frame.is_lively || is_photographed};
+}
+
+bool FrameLoop::is_to_be_drawn(Frame& frame) {
+  frame.evidence.moves = content_.is_moving();
+  frame.evidence.differs = frame.look != on_screen_ || display_.take_lost_picture() || frame.is_last || frame.is_asked;
+  return rhythm_.is_to_be_drawn(frame.evidence, frame.now_s);
+}
+
+void FrameLoop::draw(const Frame& frame) {
+  const auto [width, height] = frame.size;
+  const ImVec4 ground = vector(content_.ground());
+  glClearColor(ground.x, ground.y, ground.z, 1.0f);
+  glDisable(GL_SCISSOR_TEST);  // ImGui's back end leaves it on; a whole buffer is cleared fastest
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  content_.paint({.pixels_per_unit = static_cast<float>(width) / imgui_.size().x,
+                  .height_pixels = height,
+                  .smooth = frame.look.smooth,
+                  .is_as_before = frame.look.picture == on_screen_.picture});
+  glViewport(0, 0, width, height);
+  imgui_.draw();
+  if (frame.is_last) write_screenshot(options_.screenshot, width, height);
+  if (inspection_ && !inspection_->end_frame(content_.inspect(), width, height)) display_.close();
+}
+
+void FrameLoop::show(const Frame& frame) {
+  if (options_.frames_report) glFinish();  // so that the time is that of drawing, not that of asking for it
+  const double drawn_s = glfwGetTime();
+  display_.show();
+  on_screen_ = frame.look;
+  // At rest there are few frames on purpose.
+  if (frame.is_lively) frames_report_.add(frame.now_s - shown_s_, drawn_s - frame.now_s, content_.pose_age_s());
+  shown_s_ = frame.now_s;
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,32 @@
+// ImGui with its two back ends, for as long as the window is open, and its frames.
+#pragma once
+
+#include <imgui.h>
+
+#include <frame/key_taps.hpp>
+
+struct GLFWwindow;
+
+namespace inkwell::window {
+
+class ImGuiFrames {
+ public:
+  explicit ImGuiFrames(GLFWwindow* window);
+  ~ImGuiFrames();
+  ImGuiFrames(const ImGuiFrames&) = delete;
+  ImGuiFrames& operator=(const ImGuiFrames&) = delete;
+
+  /// Tells of every key that goes down, so that none is missed that comes up again before the next frame.
+  void note_key_down(int key) { taps_.note(key); }
+
+  void begin();
+  ImVec2 size() const;  ///< of the window, in screen coordinates
+  void end();
+  const ImDrawData& data() const;  ///< of the frame that has ended
+  void draw() const;               ///< it, into the framebuffer
+
+ private:
+  KeyTaps taps_;
+};
+
+}  // namespace inkwell::window

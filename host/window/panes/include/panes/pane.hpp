@@ -1,0 +1,80 @@
+// A pane of the right column: what it is given, and what it can do.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <device/device.hpp>
+#include <device_desk/device_desk.hpp>
+#include <device_desk/parameter_editor.hpp>
+#include <frame/style.hpp>
+
+namespace inkwell::window {
+
+/// What a pane is made with. All of it outlives the pane.
+struct PaneSurroundings {
+  DeviceDesk& desk;
+  /// The parameter file that was loaded or saved last; remembered from one time to the next.
+  std::filesystem::path& parameters_file;
+  std::filesystem::path parameters_to_send;  ///< once a device is connected; empty: none
+  /// Control port of the virtual board whose simulated hand can do the user's part; 0 for a real device.
+  std::uint16_t control_port = 0;
+  /// The arm of that board, if it is known otherwise than from the device.
+  std::optional<protocol::ParameterSet> simulated_arm;
+  /// Replays a recording in place of the device; throws device::Error with a sentence if it cannot be read.
+  std::function<void(const std::filesystem::path&)> replay;
+  bool starts_with_replay = false;
+};
+
+/// What has come since the last frame.
+struct PaneNews {
+  ParameterEditor& editor;  ///< of the device's parameters
+  const std::vector<device::ScopeSamples>& samples;
+  double now_s;
+};
+
+/// What a pane needs for drawing itself.
+struct PaneFrame {
+  const Style& style;
+  ParameterEditor& editor;  ///< of the device's parameters, or of those of the recording that is replayed
+  bool is_replay;
+  const std::vector<protocol::Signal>& scope_signals;  ///< what the scope shows
+  double now_s;
+  bool scope_is_free = true;  ///< no pane has taken the stream of samples from it
+};
+
+/// What has to be streamed for a pane in place of the scope's signals.
+struct PaneStream {
+  std::vector<protocol::Signal> signals;  ///< none: the scope's will do
+  bool feeds_scope = true;                ///< the scope's signals are among them, so that it goes on
+};
+
+class Pane {
+ public:
+  Pane() = default;
+  virtual ~Pane() = default;
+  Pane(const Pane&) = delete;
+  Pane& operator=(const Pane&) = delete;
+
+  /// Stands on its tab, and names it for inspections in small letters.
+  virtual std::string_view title() const = 0;
+  /// Once a frame, whether the pane is shown or not.
+  virtual void follow(const PaneNews&) {}
+  /// Draws what is in it while it is shown; its ImGui window is open.
+  virtual void draw(const PaneFrame& frame) = 0;
+  /// What it has the device do ends here: the user stops everything, or goes to another device.
+  virtual void cancel() {}
+
+  virtual PaneStream stream() const { return {}; }
+  /// Its picture changes by itself.
+  virtual bool is_moving() const { return false; }
+  /// The first pane of which this is true is shown at the start; the first of all if it is true of none.
+  virtual bool is_shown_at_start() const { return false; }
+};
+
+}  // namespace inkwell::window

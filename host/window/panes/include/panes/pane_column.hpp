@@ -1,0 +1,31 @@
+// The right column: its panes, one of them shown, under tabs.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <panes/pane.hpp>
+
+namespace inkwell::window {
+
+class PaneColumn {
+ public:
+  explicit PaneColumn(const PaneSurroundings& around);
+
+  void follow(const PaneNews& news);
+  void draw(ImVec2 place, ImVec2 size, PaneFrame frame);
+  void cancel();
+
+  /// Of the first pane that wants one.
+  PaneStream stream() const;
+  bool is_moving() const;
+
+ private:
+  /// Returns their height.
+  float draw_tabs(ImVec2 place, float width, const Style& style);
+
+  std::vector<std::unique_ptr<Pane>> panes_;
+  std::size_t shown_ = 0;
+};
+
+}  // namespace inkwell::window

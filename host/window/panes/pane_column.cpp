@@ -1,0 +1,77 @@
+#include <panes/pane_column.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <frame/widgets.hpp>
+
+#include "registry.hpp"
+
+namespace inkwell::window {
+
+namespace {
+
+constexpr float tabs_points = 40.0f;
+
+// "Tuning" -> "tuning"
+std::string name_of(const Pane& pane) {
+  std::string name{pane.title()};
+  std::ranges::transform(name, name.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  return name;
+}
+
+}  // namespace
+
+PaneColumn::PaneColumn(const PaneSurroundings& around) : panes_(make_panes(around)) {
+  const auto first = std::ranges::find_if(panes_, [](const auto& pane) { return pane->is_shown_at_start(); });
+  if (first != panes_.end()) shown_ = static_cast<std::size_t>(first - panes_.begin());
+}
+
+void PaneColumn::follow(const PaneNews& news) {
+  for (const auto& pane : panes_) pane->follow(news);
+}
+
+void PaneColumn::cancel() {
+  for (const auto& pane : panes_) pane->cancel();
+}
+
+PaneStream PaneColumn::stream() const {
+  for (const auto& pane : panes_)
+    if (PaneStream stream = pane->stream(); !stream.signals.empty()) return stream;
+  return {};
+}
+
+bool PaneColumn::is_moving() const {
+  return std::ranges::any_of(panes_, [](const auto& pane) { return pane->is_moving(); });
+}
+
+float PaneColumn::draw_tabs(ImVec2 place, float width, const Style& style) {
+  const float height = style.points(tabs_points);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(6)});
+  begin_pane("tabs", place, {width, height}, ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  const auto count = static_cast<float>(panes_.size());
+  const float gaps = (count - 1.0f) * ImGui::GetStyle().ItemSpacing.x;
+  const float tab_width = (ImGui::GetContentRegionAvail().x - gaps) / count;
+  for (std::size_t i = 0; i < panes_.size(); ++i) {
+    if (i > 0) ImGui::SameLine();
+    const std::string label = fmt::format("{}##tab", panes_[i]->title());
+    if (toggle_button(label.c_str(), i == shown_, style, {tab_width, 0})) shown_ = i;
+  }
+  end_pane();
+  return height;
+}
+
+void PaneColumn::draw(ImVec2 place, ImVec2 size, PaneFrame frame) {
+  frame.scope_is_free = stream().feeds_scope;
+  const float tabs = draw_tabs(place, size.x, frame.style);
+  Pane& pane = *panes_[shown_];
+  begin_pane(name_of(pane).c_str(), {place.x, place.y + tabs}, {size.x, size.y - tabs});
+  pane.draw(frame);
+  end_pane();
+}
+
+}  // namespace inkwell::window

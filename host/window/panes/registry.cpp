@@ -1,0 +1,23 @@
+#include "registry.hpp"
+
+// One line for each pane, in the order of their tabs: the function in the .cpp file of the same name that makes it.
+#define INKWELL_PANES(PANE) \
+  PANE(tuning_pane)         \
+  PANE(guides_pane)         \
+  PANE(recording_pane)
+
+namespace inkwell::window {
+
+#define INKWELL_DECLARE(pane) std::unique_ptr<Pane> pane(const PaneSurroundings& around);
+INKWELL_PANES(INKWELL_DECLARE)
+#undef INKWELL_DECLARE
+
+std::vector<std::unique_ptr<Pane>> make_panes(const PaneSurroundings& around) {
+  std::vector<std::unique_ptr<Pane>> panes;
+#define INKWELL_MAKE(pane) panes.push_back(pane(around));
+  INKWELL_PANES(INKWELL_MAKE)
+#undef INKWELL_MAKE
+  return panes;
+}
+
+}  // namespace inkwell::window
