@@ -15,7 +15,7 @@
 #include <scene/mouse_hand.hpp>
 #include <scene/scene_pane.hpp>
 #include <scope/scope_pane.hpp>
-#include <window/window.hpp>
+#include <window/window_options.hpp>
 #include <window/window_settings.hpp>
 
 #include "window_layout.hpp"

@@ -1,0 +1,50 @@
+// What a caller may ask of the window.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <device/link.hpp>
+#include <frame/palette.hpp>
+#include <protocol/parameters.hpp>
+
+namespace inkwell::window {
+
+struct WindowOptions {
+  /// Lists the arms that could be opened now. Called from other threads than the window's, about once a
+  /// second while nothing is connected or the device list is open; may throw device::Error, whose sentence
+  /// is shown. Must be given.
+  std::function<std::vector<device::Endpoint>()> list_devices;
+  /// Connect only to this arm; empty takes the first in the list.
+  std::string serial_number;
+  /// Control port of a virtual board on this machine, through which the mouse moves the simulated hand and
+  /// the keyboard presses the stylus' buttons; 0: there is none.
+  std::uint16_t virtual_board_control_port = 0;
+
+  /// The arm that this virtual board simulates, for the simulated hand of the guides; without it, the arm that the
+  /// device's parameters describe.
+  std::optional<protocol::ParameterSet> simulated_arm;
+
+  int width = 1280;  ///< in screen coordinates
+  int height = 800;
+  std::optional<Theme> theme;    ///< without it, the one of the last time
+  float scale = 0.0f;            ///< of fonts and spacing; 0 asks the display
+  bool persist_settings = true;  ///< read and write the settings in the user's configuration directory
+  /// Draws the scene without lighting, so that every solid pixel has exactly its colour of palette.hpp.
+  bool flat_colours = false;
+  std::string layout;  ///< layout of the scope to start with, e.g. "paper"; empty: that of the last time
+
+  std::filesystem::path recording;  ///< replayed from the start, in place of the device
+
+  std::filesystem::path screenshot;       ///< with it: write the framebuffer to this PNG and close
+  double after_seconds = 3.0;             ///< when the screenshot is taken, from the first frame on
+  std::filesystem::path parameters_file;  ///< sent to the device as soon as one is connected
+  bool inspect = false;                   ///< answer questions on standard input, for tests; see inspection.hpp
+  bool frames_report = false;             ///< print the measured frames per second when closing
+};
+
+}  // namespace inkwell::window
