@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <protocol/reports.hpp>
-
 namespace inkwell::window {
 
 namespace {
@@ -15,7 +13,7 @@ constexpr std::size_t branching = std::size_t{1} << bits_per_level;
 constexpr float nothing = std::numeric_limits<float>::quiet_NaN();
 
 // A NaN, which stands for lost samples, is passed over: a comparison with it is false. Written out because it runs
-// for every sample of every pane in every frame, where fmin and fmax would be calls.
+// for every sample of every plot in every frame, where fmin and fmax would be calls.
 float smaller(float a, float b) { return b < a || a != a ? b : a; }
 float larger(float a, float b) { return b > a || a != a ? b : a; }
 Extremes merge(Extremes a, Extremes b) { return {smaller(a.minimum, b.minimum), larger(a.maximum, b.maximum)}; }
@@ -89,7 +87,6 @@ void SignalHistory::append(const device::ScopeSamples& samples) {
     clear();
     signals_ = samples.signals;
     for (std::size_t i = 0; i < signals_.size(); ++i) series_.emplace_back(capacity_);
-    first_period_ = samples.first_period;
   } else {
     for (std::uint64_t i = 0; i < samples.lost_before; ++i)
       for (auto& series : series_) series.append(nothing);
@@ -97,10 +94,6 @@ void SignalHistory::append(const device::ScopeSamples& samples) {
   const std::size_t width = signals_.size();
   for (std::size_t j = 0; j < width; ++j)
     for (std::size_t i = 0; i < samples.count; ++i) series_[j].append(samples.values[i * width + j]);
-}
-
-double SignalHistory::time_s(double index) const {
-  return (static_cast<double>(first_period_) + index) / protocol::servo_rate_Hz;
 }
 
 const SignalSeries* SignalHistory::find(protocol::Signal signal) const {

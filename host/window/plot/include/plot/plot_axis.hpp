@@ -13,7 +13,6 @@ struct AxisRange {
   double extent() const { return maximum - minimum; }
   /// 0 at the minimum, 1 at the maximum.
   double part(double value) const { return (value - minimum) / extent(); }
-  double at(double part) const { return minimum + part * extent(); }
 };
 
 /// Multiples of 1, 2 or 5 times a power of ten that lie in the range, about `wanted` of them.

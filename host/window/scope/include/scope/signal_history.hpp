@@ -57,18 +57,14 @@ class SignalHistory {
   void append(const device::ScopeSamples& samples);
   void clear();
 
-  bool empty() const { return series_.empty() || end() == 0; }
   std::uint64_t begin() const { return series_.empty() ? 0 : series_.front().begin(); }
   std::uint64_t end() const { return series_.empty() ? 0 : series_.front().end(); }
-  /// Board time of an index, in seconds since the board started.
-  double time_s(double index) const;
   const SignalSeries* find(protocol::Signal signal) const;
 
  private:
   std::size_t capacity_;
   std::vector<protocol::Signal> signals_;
   std::vector<SignalSeries> series_;
-  std::uint32_t first_period_ = 0;
 };
 
 /// One pair for each of `columns` equal parts of [first, last), for drawing.
