@@ -1,17 +1,20 @@
 // Settings survive a round trip, and damage to their file never keeps the window shut.
 #include <filesystem>
+#include <iterator>
 
 #include <doctest/doctest.h>
 
+#include <temporary_directory.hpp>
 #include <window/window_settings.hpp>
 
 using namespace inkwell;
 using namespace inkwell::window;
+using inkwell::tests::TemporaryDirectory;
 
 TEST_CASE("settings come back as they were written") {
   WindowSettings settings;
   settings.theme = Theme::light;
-  settings.column_width = 412.0f;
+  settings.column_width = 912.0f;  // half of a wide display
   settings.scope_is_shown = false;
   settings.scope.span_s = 0.05;
   settings.scope.trigger = {TriggerMode::single, protocol::Signal::current_2_A, TriggerEdge::falling, -0.25f, 0.5f};
@@ -34,4 +37,17 @@ TEST_CASE("a damaged file gives the defaults, and what makes no sense keeps its 
       "[scope]\nspan_s = 1e9\npanes = [ { kind = \"time\", signals = [ \"no_such_signal\" ] }, 7 ]\n"
       "[trigger]\nsignal = \"force_N\"\npre_trigger = 3\n");
   CHECK(settings == WindowSettings{});
+}
+
+TEST_CASE("settings are kept in a file, whose folder need not exist; what prevents it is said") {
+  const TemporaryDirectory directory;
+  const std::filesystem::path file = directory.file("inkwell/window.toml");
+  WindowSettings settings;
+  settings.theme = Theme::light;
+  CHECK(write_settings(settings, file).empty());
+  CHECK(read_settings(file) == settings);
+  const std::filesystem::directory_iterator left(file.parent_path());
+  CHECK(std::distance(left, {}) == 1);  // nothing unfinished
+  CHECK(read_settings(directory.file("none.toml")) == WindowSettings{});
+  CHECK(write_settings(settings, "/proc/none/window.toml").find("/proc/none/window.toml") != std::string::npos);
 }
