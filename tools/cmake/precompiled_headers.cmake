@@ -1,0 +1,46 @@
+# Headers of others that take longer to parse than our own code to compile, parsed once for many targets. (With ccache,
+# set its sloppiness to "pch_defines,time_macros".)
+# CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows whether every file includes what it uses; the clang preset has it.
+
+# Makes `name`, which holds the precompiled HEADERS as targets that link to LIBRARIES see them.
+function(inkwell_add_precompiled_headers name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES")
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "// A target needs a source.\n" @ONLY)
+  add_library(${name} OBJECT ${source})
+  target_link_libraries(${name} PRIVATE inkwell_warnings ${arg_LIBRARIES})
+  target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
+endfunction()
+
+# Lets every compiled target of a directory and of those below it use the precompiled headers of `name`.
+function(inkwell_use_precompiled_headers name directory)
+  get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target IN LISTS targets)
+    get_target_property(type ${target} TYPE)
+    get_target_property(own ${target} PRECOMPILE_HEADERS_REUSE_FROM)
+    if(type MATCHES "STATIC_LIBRARY|EXECUTABLE" AND NOT own)
+      target_precompile_headers(${target} REUSE_FROM ${name})
+    endif()
+  endforeach()
+  get_property(subdirectories DIRECTORY ${directory} PROPERTY SUBDIRECTORIES)
+  foreach(subdirectory IN LISTS subdirectories)
+    inkwell_use_precompiled_headers(${name} ${subdirectory})
+  endforeach()
+endfunction()
+
+find_package(CLI11 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+set(headers <algorithm> <chrono> <filesystem> <functional> <map> <memory> <mutex> <optional> <string> <thread> <vector>
+            <fmt/format.h> <nlohmann/json.hpp>)
+inkwell_add_precompiled_headers(inkwell_host_headers HEADERS ${headers}
+                                LIBRARIES fmt::fmt nlohmann_json::nlohmann_json)
+# CLI11's leave code in every file that includes them, so only the commands get those.
+inkwell_add_precompiled_headers(inkwell_command_headers HEADERS ${headers} <CLI/CLI.hpp>
+                                LIBRARIES fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11)
+# They are also what takes longest to optimise, in code that waits for people; both sides have to agree on it.
+foreach(target inkwell_command_headers inkwell_command_line inkwell)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endforeach()
+inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/host/command_line)
+inkwell_use_precompiled_headers(inkwell_host_headers ${PROJECT_SOURCE_DIR}/host)
