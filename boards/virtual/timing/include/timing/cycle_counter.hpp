@@ -1,0 +1,126 @@
+// The cycles of a program as it runs, block by block.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <timing/block_price.hpp>
+#include <timing/flash_accelerator.hpp>
+#include <unordered_map>
+#include <vector>
+
+namespace inkwell::virtual_board {
+
+/// Where the two memories that hold instructions lie, in bytes.
+struct CodeMap {
+  std::uint32_t flash_base, flash_bytes, sram_base, sram_bytes;
+};
+
+class CycleCounter {
+ public:
+  /// `word` reads memory without any effect.
+  CycleCounter(Pricing pricing, const CodeMap& map, WordReader word);
+
+  const Costs& costs() const { return costs_; }
+  FlashAccelerator& flash() { return flash_; }
+
+  /// The price of the run of `code` that stands at `address`. The reference holds while the block runs.
+  const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);
+  /// The block begins at cycle `now`: what it waits for the refill after the last branch and for the FPU.
+  unsigned enter(const BlockPrice& block, std::uint64_t now);
+  /// What the whole block waits for the flash if it begins at cycle `now`; `register_value` reads a register as it
+  /// is then. Of the reads of data those count nothing whose base is not known yet; an index that is not known
+  /// yet is taken to be anywhere in a small table.
+  template <class RegisterValue>
+  unsigned wait_for_flash(const BlockPrice& block, std::uint64_t now, RegisterValue&& register_value);
+  /// What one of its reads waits at cycle `now`, with the registers as they are then.
+  template <class RegisterValue>
+  unsigned wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value);
+  /// What one of its requests waits at cycle `now`.
+  unsigned wait_for(const BlockPrice::Request& request, std::uint64_t now);
+  /// Something else than a branch decides what runs next: exception entry and return, reset.
+  void redirect() { redirected_ = true; }
+  /// The next use of the FPU stacks the context of whom the exception has interrupted, or no longer does.
+  void stack_lazily(bool due) { lazy_stacking_due_ = due; }
+  bool lazy_stacking_due() const { return lazy_stacking_due_; }
+  /// Instructions in the flash have changed; the block that runs still counts as it was.
+  void forget() {
+    forgets_ = redirected_ = true;
+    flash_.forget_lines();
+  }
+
+ private:
+  struct Known {
+    BlockPrice price;
+    std::vector<std::uint8_t> code;  ///< what it was priced from; in RAM it may have changed
+  };
+  const BlockPrice& remember(std::uint32_t& index, std::uint32_t address, std::span<const std::uint8_t> code,
+                             CodeMemory memory);
+  void forget_prices();
+
+  bool in_flash(std::uint32_t address) const {
+    return address < map_.flash_bytes || address - map_.flash_base < map_.flash_bytes;
+  }
+  /// Whether a block reads the flash is asked at its first runs and now and then; asking costs more than running.
+  static bool asks_for_reads(const BlockPrice& block) {
+    if (block.reads.empty()) return false;
+    const std::uint32_t run = block.runs++;
+    return block.reads_flash || run < runs_asked_at_first || run % runs_between_asking == 0;
+  }
+  /// For an index that the block itself computes: anywhere in a table of 1 KiB, the same in each run of the program.
+  std::uint32_t any_index() {
+    random_ = random_ * 1664525 + 1013904223;
+    return random_ >> 22 & ~3u;
+  }
+  static constexpr std::uint32_t runs_asked_at_first = 4, runs_between_asking = 64;
+  Costs costs_;
+  CodeMap map_;
+  FlashAccelerator flash_;
+  std::vector<std::uint32_t> index_of_flash_, index_of_sram_;  ///< by half word, from 1
+  std::unordered_map<std::uint32_t, std::uint32_t> index_of_others_;
+  WordReader word_;
+  std::deque<Known> known_;
+  // Of the block that ran last.
+  std::uint32_t last_end_ = 0;
+  unsigned last_taken_cycles_ = 0;
+  bool redirected_ = true, forgets_ = false;
+  std::uint64_t float_ready_ = 0;
+  bool lazy_stacking_due_ = false;
+  std::uint32_t random_ = 1;
+};
+
+template <class RegisterValue>
+unsigned CycleCounter::wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value) {
+  std::uint32_t address = register_value(read.base) + static_cast<std::uint32_t>(read.offset);
+  if (read.index != Instruction::no_register) address += register_value(read.index) << read.shift;
+  const std::uint32_t offset = address < map_.flash_bytes ? address : address - map_.flash_base;
+  return offset < map_.flash_bytes ? flash_.read(offset, now) : 0;
+}
+
+template <class RegisterValue>
+unsigned CycleCounter::wait_for_flash(const BlockPrice& block, std::uint64_t now, RegisterValue&& register_value) {
+  if (flash_.is_free()) return 0;
+  unsigned waited = 0;
+  auto request = block.requests.begin();
+  const auto ask_until = [&](std::uint16_t cycle) {
+    for (; request != block.requests.end() && request->after_cycles <= cycle; ++request)
+      waited += wait_for(*request, now + waited + request->after_cycles);
+  };
+  if (asks_for_reads(block))
+    for (const auto& read : block.reads) {
+      if (!read.base_at_entry && read.constant == 0) continue;
+      const std::uint32_t base = read.base_at_entry ? register_value(read.base) : read.constant;
+      if (!in_flash(base)) continue;
+      block.reads_flash = true;
+      ask_until(read.after_cycles);
+      const std::uint64_t when = now + waited + read.after_cycles;
+      const auto known = [&](std::uint8_t number) {
+        return number == read.base ? base : read.index_at_entry ? register_value(number) : any_index();
+      };
+      waited += wait_for(read, when, known);
+    }
+  ask_until(block.cycles);
+  return waited;
+}
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,88 @@
+// The ART accelerator between the core and the flash (RM0090, "Adaptive real-time memory accelerator").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <timing/costs.hpp>
+#include <vector>
+
+namespace inkwell::virtual_board {
+
+/// Lines of 128 bits that are kept, the one that was used longest ago is replaced. Which lines share a place is
+/// not published; taken as any.
+class LineCache {
+ public:
+  /// Of `lines` lines `places` at a time (at most 254).
+  LineCache(std::size_t places, std::size_t lines);
+  /// Whether the line is there; then it counts as used now.
+  bool holds(std::uint32_t line) {
+    const std::uint8_t place = place_of_[line];
+    if (place == 0) return false;
+    if (place != places_[0].newer) use(place);
+    return true;
+  }
+  void keep(std::uint32_t line);
+  void forget();
+
+ private:
+  static constexpr std::uint32_t nobody = ~0u;
+  /// A ring in the order of use; place 0 is its seam and holds nothing: the last used is its `newer`, the one to
+  /// be replaced its `older`.
+  struct Place {
+    std::uint32_t line = nobody;
+    std::uint8_t older = 0, newer = 0;
+  };
+  void use(std::uint8_t place);
+  std::vector<Place> places_;
+  std::vector<std::uint8_t> place_of_;  ///< by line; 0 is none
+};
+
+class FlashAccelerator {
+ public:
+  static constexpr std::uint32_t line_bytes = 16;
+  static constexpr std::size_t instruction_lines = 64, data_lines = 8;
+
+  /// `flash_bytes` is a multiple of line_bytes. Addresses are offsets in the flash.
+  FlashAccelerator(std::uint32_t flash_bytes, const Costs& costs);
+
+  /// FLASH_ACR: wait states, and what is switched on.
+  void set(unsigned wait_states, bool prefetch, bool instruction_cache, bool data_cache);
+  void forget_instructions() { instructions_.forget(); }  ///< ICRST
+  void forget_data() { data_.forget(); }                  ///< DCRST
+  /// After erasing or programming: what stands in the flash's own buffers is old.
+  void forget_lines() { current_ = ahead_ = nobody; }
+  /// Nothing ever waits.
+  bool is_free() const { return wait_states_ == 0; }
+  unsigned wait_states() const { return wait_states_; }
+
+  /// Cycles that the core waits at cycle `now` for the line of instructions at `offset`.
+  unsigned fetch(std::uint32_t offset, std::uint64_t now) {
+    const std::uint32_t line = offset / line_bytes;
+    if (line == current_) return 0;
+    return fetch_other(line, now);
+  }
+  /// Cycles that the core waits for data in the line at `offset`.
+  unsigned read(std::uint32_t offset, std::uint64_t now);
+  /// Cycles that the core waits at cycle `now` for a line that no cache holds.
+  unsigned miss(std::uint64_t now) const {
+    const bool busy = miss_waits_ && ahead_ != nobody && ahead_at_ > now;
+    return static_cast<unsigned>(busy ? ahead_at_ - now : 0) + wait_states_;
+  }
+
+ private:
+  static constexpr std::uint32_t nobody = ~0u;
+  unsigned fetch_other(std::uint32_t line, std::uint64_t now);
+  void read_ahead(std::uint32_t line, std::uint64_t now);
+
+  std::uint32_t flash_lines_;
+  unsigned wait_states_ = 0;
+  bool prefetch_ = false, instruction_cache_ = false, data_cache_ = false;
+  const bool prefetch_follows_hit_, keeps_prefetched_, miss_waits_;
+  std::uint32_t current_ = nobody;  ///< the line of instructions that was read last
+  std::uint32_t ahead_ = nobody;    ///< the line that is being prefetched, or has been
+  std::uint64_t ahead_at_ = 0;      ///< when it is there
+  std::uint32_t current_data_ = nobody;
+  LineCache instructions_, data_;
+};
+
+}  // namespace inkwell::virtual_board
