@@ -106,7 +106,7 @@ BENCHMARK_CAPTURE(virtual_board, exact, device::SimulationMode::exact)
 void print_stages() {
   BusyBoard board(device::SimulationMode::exact);
   board.run(1.0);
-  std::printf("Control interrupt on the virtual board (simulation), longest of 20000, one cycle an instruction:\n");
+  std::printf("Control interrupt on the virtual board (simulation), longest of 20000, in cycles:\n");
   for (std::size_t i = 1; i < BusyBoard::signals.size(); ++i) {
     const auto& row = protocol::info(BusyBoard::signals[i]);
     if (row.unit == "cycles")

@@ -119,6 +119,7 @@ void Bus::settle_processor() {
 }
 
 std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
+  machine_.processor->wait_for_register(address, false);
   synchronise();
   std::uint32_t value = 0;
   if (address >= private_base) {
@@ -137,6 +138,7 @@ std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
 }
 
 void Bus::write(std::uint32_t address, std::uint32_t value, unsigned size) {
+  machine_.processor->wait_for_register(address, true);
   synchronise();
   if (address >= private_base) {
     system_control_.write(address, value, size);

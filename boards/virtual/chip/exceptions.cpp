@@ -23,7 +23,7 @@ int float_registers[] = {UC_ARM_REG_D0, UC_ARM_REG_D1, UC_ARM_REG_D2, UC_ARM_REG
 }  // namespace
 
 void Processor::begin_counting(unsigned exception) {
-  if (!running_.empty()) running_.back().own_instructions += cycles_ - counted_until_;
+  if (!running_.empty()) running_.back().own_cycles += cycles_ - counted_until_;
   counted_until_ = cycles_;
   running_.push_back({exception, 0});
 }
@@ -31,11 +31,11 @@ void Processor::begin_counting(unsigned exception) {
 void Processor::end_counting() {
   if (running_.empty()) return;
   auto& done = running_.back();
-  done.own_instructions += cycles_ - counted_until_;
+  done.own_cycles += cycles_ - counted_until_;
   counted_until_ = cycles_;
   auto& entry = counters_.exceptions[done.exception];
   ++entry.count;
-  entry.longest_instructions = std::max(entry.longest_instructions, done.own_instructions);
+  entry.longest_cycles = std::max(entry.longest_cycles, done.own_cycles);
   running_.pop_back();
 }
 
@@ -47,13 +47,15 @@ bool Processor::start_handler(unsigned exception, std::uint32_t exception_return
   write(UC_ARM_REG_IPSR, exception);
   write(UC_ARM_REG_APSR_NZCV, 0);  // makes Unicorn notice the change of mode; flags are free at entry
   program_counter_ = vector;
+  timing_.redirect();
   current_exception_ = exception;
   machine_.nvic.enter(exception);
   begin_counting(exception);
   return (vector & 1) != 0;
 }
 
-bool Processor::enter_exception(unsigned exception, bool align_stack, bool float_context, std::uint32_t vector_table) {
+bool Processor::enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
+                                std::uint32_t vector_table) {
   std::uint32_t values[9];
   void* places[9];
   for (int i = 0; i < 9; ++i) places[i] = &values[i];
@@ -93,7 +95,14 @@ bool Processor::enter_exception(unsigned exception, bool align_stack, bool float
   // SPSEL must be off before the mode changes, or Unicorn mixes up its banked stack pointers.
   if ((control & (control_spsel | control_fpca)) != 0)
     write(UC_ARM_REG_CONTROL, control & ~(control_spsel | control_fpca));
-  return start_handler(exception, exception_return, vector_table);
+  const bool started = start_handler(exception, exception_return, vector_table);
+  const auto& costs = timing_.costs();
+  wait(costs[Cost::exception_entry] + costs[Cost::vector_from_flash] * timing_.flash().wait_states());
+  if (extended) {
+    timing_.stack_lazily(lazily);
+    if (!lazily) wait(costs[Cost::lazy_stacking] - 1);
+  }
+  return started;
 }
 
 bool Processor::return_from_exception(std::uint32_t vector_table) {
@@ -106,11 +115,13 @@ bool Processor::return_from_exception(std::uint32_t vector_table) {
   if (!nvic.active(leaving) || (!to_thread && process_stack)) return false;
 
   nvic.leave(leaving);
-  end_counting();
   if (leaving != exception_nmi) write(UC_ARM_REG_FAULTMASK, 0);
+  const unsigned next = nvic.next(masks());
+  wait(timing_.costs()[next != exception_none ? Cost::exception_tail_chain : Cost::exception_return]);
+  end_counting();
 
   // Tail-chaining: what is pending starts on the frame that is already there.
-  if (const unsigned next = nvic.next(masks()); next != exception_none) {
+  if (next != exception_none) {
     const std::uint32_t control = read(UC_ARM_REG_CONTROL);
     if ((control & control_fpca) != 0) write(UC_ARM_REG_CONTROL, control & ~control_fpca);
     return start_handler(next, exception_return, vector_table);
@@ -144,6 +155,12 @@ bool Processor::return_from_exception(std::uint32_t vector_table) {
   write(UC_ARM_REG_XPSR_NZCVQG, (xpsr & 0xF80F0000) | xpsr_thumb | exception);
   write(UC_ARM_REG_APSR_NZCV, xpsr & 0xF0000000);  // last: it rebuilds Unicorn's own copies of the flags
   program_counter_ = words[6];
+  timing_.redirect();
+  if (extended) {
+    // What was never stacked needs no unstacking.
+    if (!timing_.lazy_stacking_due()) wait(timing_.costs()[Cost::float_unstacking]);
+    timing_.stack_lazily(false);
+  }
   current_exception_ = exception;
   return true;
 }

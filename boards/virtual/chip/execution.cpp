@@ -47,7 +47,8 @@ void Execution::reset_if_requested() {
 
 const Counters& Execution::counters() {
   auto& counters = processor_.counters();
-  counters.instructions = processor_.cycles() - cycles_before_;
+  counters.instructions = processor_.instructions() - instructions_before_;
+  counters.cycles = processor_.cycles() - cycles_before_;
   counters.duration = machine_.timeline.now() - counting_since_;
   return counters;
 }
@@ -55,6 +56,7 @@ const Counters& Execution::counters() {
 void Execution::clear_counters() {
   processor_.clear_counters();
   cycles_before_ = processor_.cycles();
+  instructions_before_ = processor_.instructions();
   counting_since_ = machine_.timeline.now();
 }
 
@@ -136,7 +138,7 @@ void Execution::sleep_until(Ticks when) {
 void Execution::enter(unsigned exception) {
   const bool entered =
       processor_.enter_exception(exception, system_control_.aligns_stack(), system_control_.preserves_float_context(),
-                                 system_control_.vector_table());
+                                 system_control_.stacks_lazily(), system_control_.vector_table());
   if (entered) return;
   const std::uint32_t stack = processor_.read(UC_ARM_REG_SP);
   if (exception == exception_hard_fault || machine_.memory.ram_at(stack, 4) == nullptr) {

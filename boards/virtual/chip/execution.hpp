@@ -59,7 +59,7 @@ class Execution {
   int exit_code_ = 0;
   std::string lockup_reason_;
   Ticks counting_since_ = 0;
-  std::uint64_t cycles_before_ = 0;
+  std::uint64_t cycles_before_ = 0, instructions_before_ = 0;
 };
 
 }  // namespace inkwell::virtual_board

@@ -32,6 +32,7 @@ FlashController::FlashController(Machine& machine) : machine_(machine), slot_(ma
 
 void FlashController::reset() {
   access_ = status_ = 0;
+  set_accelerator(0);
   control_ = map.cr.reset_value;
   unlock_step_ = 0;
   unlock_failed_ = false;
@@ -46,6 +47,15 @@ void FlashController::check_wait_states() {
     machine_.log.say_once("FLASH_ACR.LATENCY " + std::to_string(map.acr.latency.of(access_)) +
                           " is too small for HCLK " + std::to_string(hclk_Hz) +
                           " Hz: a real chip would read wrong instructions");
+}
+
+void FlashController::set_accelerator(std::uint32_t access) {
+  auto& accelerator = machine_.processor->flash();
+  // The caches are emptied only while they are off (RM0090, "FLASH_ACR").
+  const bool instruction_cache = map.acr.icen.in(access), data_cache = map.acr.dcen.in(access);
+  if (map.acr.icrst.in(access) && !instruction_cache) accelerator.forget_instructions();
+  if (map.acr.dcrst.in(access) && !data_cache) accelerator.forget_data();
+  accelerator.set(map.acr.latency.of(access), map.acr.prften.in(access), instruction_cache, data_cache);
 }
 
 void FlashController::update_interrupt() {
@@ -130,6 +140,7 @@ void FlashController::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case map.acr:
       access_ = value & writable(map.acr);
+      set_accelerator(value);
       check_wait_states();
       return;
     case map.keyr: {

@@ -56,6 +56,7 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
  private:
   void erase();
   void check_wait_states();
+  void set_accelerator(std::uint32_t access);
   void begin(Ticks duration);
   void update_interrupt();
 

@@ -33,20 +33,20 @@ enum : std::uint32_t {
   invalid_state = 18,
 };
 
-constexpr bool is_wide(std::uint16_t first_half) { return first_half >= 0xE800; }
-
 }  // namespace
 
-Processor::Processor(Machine& machine, Bus& bus) : machine_(machine), block_lengths_(flash_bytes / 2) {
+Processor::Processor(Machine& machine, Bus& bus)
+    : machine_(machine),
+      timing_(machine.options.pricing, {flash_base, flash_bytes, sram_base, sram_bytes},
+              [&memory = machine.memory](std::uint32_t address) { return memory.word(address); }),
+      register_bus_(timing_.costs()) {
   machine.clock_users.push_back(this);
   check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &engine_), "start");
   // UC_MODE_MCLASS would force another model; the model alone makes it M-profile.
   check(uc_ctl_set_cpu_model(engine_, UC_CPU_ARM_CORTEX_M4), "be a Cortex-M4");
   map_memories(bus);
-  if (machine.options.mode == Mode::exact)
-    check(add_hook(engine_, UC_HOOK_CODE, code_hook, this), "be watched");
-  else
-    check(add_hook(engine_, UC_HOOK_BLOCK, block_hook, this), "be watched");
+  check(add_hook(engine_, UC_HOOK_BLOCK, block_hook, this), "be watched");
+  if (machine.options.mode == Mode::exact) check(add_hook(engine_, UC_HOOK_CODE, code_hook, this), "be watched");
   check(add_hook(engine_, UC_HOOK_INTR, interrupt_hook, this), "report exceptions");
   check(add_hook(engine_, UC_HOOK_INSN_INVALID, invalid_hook, this), "report instructions");
   check(add_hook(engine_, UC_HOOK_MEM_INVALID, memory_hook, this), "report faults");
@@ -86,6 +86,8 @@ void Processor::reset(std::uint32_t vector_table) {
   write(UC_ARM_REG_LR, 0xFFFFFFFF);
   program_counter_ = machine_.memory.word(vector_table + 4);
   current_exception_ = 0;
+  timing_.redirect();
+  timing_.stack_lazily(false);
   watch_masks_ = event_register_ = false;
   while (!running_.empty()) end_counting();
   // The firmware may have been replaced.
@@ -99,7 +101,7 @@ void Processor::forget_code(std::uint32_t address, std::uint32_t bytes) {
   const std::uint64_t alias = address - flash_base;
   uc_ctl_remove_cache(engine_, alias, alias + bytes);
   // A block that reaches into the changed range may start before it.
-  std::fill(block_lengths_.begin(), block_lengths_.end(), BlockLength{});
+  timing_.forget();
 }
 
 std::uint64_t Processor::cycles_until(Ticks when) const {
@@ -117,6 +119,8 @@ Masks Processor::masks() const {
 Outcome Processor::run(std::uint64_t cycles) {
   stop_cycle_ = cycles_ + cycles;
   stopped_ = false;
+  block_ = nullptr;
+  instruction_end_ = cycles_;
   outcome_ = Outcome::slice_over;
   if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
   uc_err error;
@@ -125,6 +129,7 @@ Outcome Processor::run(std::uint64_t cycles) {
     error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
   }
   program_counter_ = read(UC_ARM_REG_PC) & ~1u;
+  if (!stopped_ && block_ != nullptr) cycles_ = instruction_end_;
   if (!flash_stores_.empty()) finish_flash_stores();
   if (outcome_ != Outcome::slice_over) return outcome_;
   if (error == UC_ERR_INSN_INVALID) return Outcome::undefined_instruction;
@@ -144,23 +149,24 @@ void Processor::finish_flash_stores() {
   flash_stores_.clear();
 }
 
-unsigned Processor::count_instructions(std::uint32_t address, std::uint32_t bytes) const {
-  unsigned instructions = 0;
-  for (std::uint32_t end = address + bytes; address < end; ++instructions)
-    address += is_wide(machine_.memory.half_word(address)) ? 4 : 2;
-  return instructions;
+const BlockPrice& Processor::enter_block(std::uint32_t address, std::uint32_t bytes) {
+  if (address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes);
+  const auto& block = timing_.block(address, {machine_.memory.at(address, bytes), bytes});
+  cycles_ += timing_.enter(block, cycles_);
+  return block;
 }
 
-unsigned Processor::instructions_of(std::uint32_t address, std::uint32_t bytes) {
-  const std::uint32_t offset = address < flash_bytes ? address : address - flash_base;
-  if (offset >= flash_bytes) {
-    plain_stores_.code_runs_at(address, bytes);
-    return count_instructions(address, bytes);
-  }
-  BlockLength& known = block_lengths_[offset / 2];
-  if (known.bytes != bytes)
-    known = {static_cast<std::uint16_t>(bytes), static_cast<std::uint16_t>(count_instructions(address, bytes))};
-  return known.instructions;
+void Processor::wait_for_register(std::uint32_t address, bool write) {
+  const auto& clocks = machine_.clocks.frequencies;
+  const auto ratio = [&](std::uint32_t bus_Hz) { return bus_Hz == 0 ? 1u : clocks.hclk_Hz / bus_Hz; };
+  wait(register_bus_.access(address, write, cycles_, {ratio(clocks.pclk1_Hz), ratio(clocks.pclk2_Hz)}));
+}
+
+unsigned Processor::divide_wait(const BlockPrice::Divide& divide) const {
+  const auto& costs = timing_.costs();
+  const auto value = register_reader();
+  return divide_cycles(value(divide.dividend), value(divide.divisor), divide.is_signed, costs) -
+         costs[Cost::divide_shortest];
 }
 
 bool Processor::masks_open() {
@@ -172,21 +178,51 @@ bool Processor::masks_open() {
 void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
   const auto start = static_cast<std::uint32_t>(address);
-  const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
-  if (due && !self.begins_in_if_then_block(start)) return self.stop();
+  const bool exact = self.machine_.options.mode == Mode::exact;
+  if (exact) {
+    self.cycles_ = self.instruction_end_;  // the code hook decides whether to stop
+  } else {
+    const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
+    if (due && !self.begins_in_if_then_block(start)) return self.stop();
+  }
+  const auto& block = self.enter_block(start, size);
+  if (exact) {
+    self.block_ = &block;
+    self.block_start_ = self.cycles_;
+    self.next_request_ = 0;
+    return;
+  }
   self.last_code_address_ = start;
   self.last_code_bytes_ = size;
-  self.cycles_ += self.instructions_of(start, size);
+  self.cycles_ += self.timing_.wait_for_flash(block, self.cycles_, self.register_reader()) + block.cycles;
+  self.instructions_ += block.instructions;
+  // Operands that the block itself computes are not known yet.
+  for (const auto& divide : block.divides)
+    self.cycles_ += divide.known_at_entry ? self.divide_wait(divide) : divide_mean(self.timing_.costs());
 }
 
 void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  if (address >= sram_base) self.plain_stores_.code_runs_at(static_cast<std::uint32_t>(address), bytes);
+  const auto& starts = self.block_->starts;
+  const std::size_t half_word =
+      std::min<std::size_t>((static_cast<std::uint32_t>(address) - self.block_->address) / 2, starts.size() - 1);
+  self.cycles_ = self.block_start_ + starts[half_word];
   const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
   if (due && !self.in_if_then_block(static_cast<std::uint32_t>(address))) return self.stop();
+  const std::size_t next = half_word + bytes / 2;
+  self.instruction_end_ = self.block_start_ + (next < starts.size() ? starts[next] : self.block_->cycles);
+  const auto& requests = self.block_->requests;
+  for (auto& i = self.next_request_; i < requests.size() && requests[i].after_cycles <= starts[half_word]; ++i)
+    self.wait(self.timing_.wait_for(requests[i], self.cycles_));
   self.last_code_address_ = static_cast<std::uint32_t>(address);
-  self.recent_addresses_[self.cycles_ % self.recent_addresses_.size()] = self.last_code_address_;
-  ++self.cycles_;
+  self.recent_addresses_[self.instructions_ % self.recent_addresses_.size()] = self.last_code_address_;
+  ++self.instructions_;
+  for (const auto& divide : self.block_->divides)
+    if (divide.address == self.last_code_address_) self.wait(self.divide_wait(divide));
+  if (!self.timing_.flash().is_free())
+    for (const auto& read : self.block_->reads)
+      if (read.instruction == self.last_code_address_)
+        self.wait(self.timing_.wait_for(read, self.cycles_, self.register_reader()));
 }
 
 bool Processor::if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const {

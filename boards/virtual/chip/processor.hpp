@@ -7,6 +7,8 @@
 #include <chip/chip.hpp>
 #include <cstdint>
 #include <string>
+#include <timing/cycle_counter.hpp>
+#include <timing/peripheral_bus.hpp>
 #include <vector>
 
 #include "machine.hpp"
@@ -54,6 +56,16 @@ class Processor final : public ClockUser {
   void forget_code(std::uint32_t address, std::uint32_t bytes);
 
   std::uint64_t cycles() const { return cycles_; }
+  std::uint64_t instructions() const { return instructions_; }
+  /// The core stands still for `cycles` of HCLK.
+  void wait(unsigned cycles) {
+    cycles_ += cycles;
+    block_start_ += cycles;
+    instruction_end_ += cycles;
+  }
+  /// The core waits for a register on the way to it.
+  void wait_for_register(std::uint32_t address, bool write);
+  FlashAccelerator& flash() { return timing_.flash(); }
   void add_sleep_cycles(std::uint64_t cycles) { slept_cycles_ += cycles; }
   std::uint64_t slept_cycles() const { return slept_cycles_; }
   /// Board time of the current instruction (fast mode: of the end of the current block).
@@ -86,7 +98,8 @@ class Processor final : public ClockUser {
 
   // exceptions.cpp
   /// Stacks the context and starts the handler. False: the stack or the vector can not be used.
-  bool enter_exception(unsigned exception, bool align_stack, bool float_context, std::uint32_t vector_table);
+  bool enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
+                       std::uint32_t vector_table);
   /// Ends the handler that runs. False: what it returns to is not valid.
   bool return_from_exception(std::uint32_t vector_table);
   bool returned_to_thread() const { return current_exception_ == exception_none; }
@@ -96,7 +109,7 @@ class Processor final : public ClockUser {
  private:
   struct Running {
     unsigned exception;
-    std::uint64_t own_instructions;
+    std::uint64_t own_cycles;
   };
   static void block_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   static void code_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
@@ -111,8 +124,15 @@ class Processor final : public ClockUser {
   bool begins_in_if_then_block(std::uint32_t address) const;
   bool if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const;
   void finish_flash_stores();
-  unsigned instructions_of(std::uint32_t address, std::uint32_t bytes);
-  unsigned count_instructions(std::uint32_t address, std::uint32_t bytes) const;
+  const BlockPrice& enter_block(std::uint32_t address, std::uint32_t bytes);
+  /// R0 to R14 by number.
+  auto register_reader() const {
+    return [this](std::uint8_t number) {
+      return read(number <= 12 ? UC_ARM_REG_R0 + number : number == 13 ? UC_ARM_REG_SP : UC_ARM_REG_LR);
+    };
+  }
+  /// Of a divide with the operands that the registers hold now, beyond its shortest.
+  unsigned divide_wait(const BlockPrice::Divide& divide) const;
   void map_memories(Bus& bus);
   void stop() {
     stopped_ = true;
@@ -124,7 +144,7 @@ class Processor final : public ClockUser {
 
   Machine& machine_;
   uc_engine* engine_ = nullptr;
-  std::uint64_t cycles_ = 0, stop_cycle_ = 0, slept_cycles_ = 0;
+  std::uint64_t cycles_ = 0, instructions_ = 0, stop_cycle_ = 0, slept_cycles_ = 0;
   Ticks anchor_time_ = 0;
   std::uint64_t anchor_cycles_ = 0;
   std::uint32_t program_counter_ = 0;
@@ -134,11 +154,12 @@ class Processor final : public ClockUser {
   std::uint32_t fault_address_ = 0;
   Outcome outcome_ = Outcome::slice_over;
   bool stopped_ = false, watch_masks_ = false, masks_opened_ = false, event_register_ = false;
-  /// Instructions of the block that starts at each half word of the flash, and its bytes.
-  struct BlockLength {
-    std::uint16_t bytes, instructions;
-  };
-  std::vector<BlockLength> block_lengths_;
+  CycleCounter timing_;
+  PeripheralBus register_bus_;
+  // Exact mode: the block that runs, when it began, and when its current instruction ends.
+  const BlockPrice* block_ = nullptr;
+  std::uint64_t block_start_ = 0, instruction_end_ = 0;
+  std::size_t next_request_ = 0;  ///< of the block to the flash
   PlainStores plain_stores_;
   /// Unicorn makes stores into the flash by itself; what the flash made of them is put right after the slice.
   struct FlashStore {
@@ -147,7 +168,7 @@ class Processor final : public ClockUser {
   };
   std::vector<FlashStore> flash_stores_;
   std::vector<Running> running_;
-  std::uint64_t counted_until_ = 0;
+  std::uint64_t counted_until_ = 0;  ///< cycles
   Counters counters_;
 };
 

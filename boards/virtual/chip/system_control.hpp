@@ -42,6 +42,7 @@ class SystemControl {
   std::uint32_t vector_table() const { return vector_table_; }
   bool aligns_stack() const { return scb.ccr.stkalign.in(configuration_); }
   bool preserves_float_context() const { return fpu.fpccr.aspen.in(float_control_); }
+  bool stacks_lazily() const { return fpu.fpccr.lspen.in(float_control_); }
   bool sleeps_on_exit() const { return scb.scr.sleeponexit.in(sleep_control_); }
   bool sends_event_on_pending() const { return scb.scr.sevonpend.in(sleep_control_); }
 

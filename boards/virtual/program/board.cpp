@@ -27,6 +27,7 @@ std::string_view name_of(ResetCause cause) {
 Board::Board(const Options& options, std::function<void()> on_usb_request)
     : plant_(arms::read(options.arm), {.seed = options.seed}),
       chip_(plant_, {.mode = options.mode,
+                     .pricing = options.pricing,
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); }}) {
   chip_.load_elf(options.elf);

@@ -73,7 +73,7 @@ json status(const json&, Simulation& simulation) {
   for (const auto count : counters.resets) resets += count;
   unsigned longest = 16;
   for (unsigned exception = 16; exception < exception_numbers; ++exception)
-    if (counters.exceptions[exception].longest_instructions > counters.exceptions[longest].longest_instructions)
+    if (counters.exceptions[exception].longest_cycles > counters.exceptions[longest].longest_cycles)
       longest = exception;
   const auto of = [&](ResetCause cause) { return counters.resets[static_cast<std::size_t>(cause)]; };
   json reply{
@@ -85,13 +85,13 @@ json status(const json&, Simulation& simulation) {
       {"time_dropped_s", simulation.time_dropped_s()},
       {"seed", simulation.options().seed},
       {"instructions", counters.instructions},
+      {"cycles", counters.cycles},
       {"sleep_share", counters.sleep_share()},
       {"processor_clock_Hz", chip.clocks().hclk_Hz},
       {"resets", resets},
       {"watchdog_resets", of(ResetCause::independent_watchdog) + of(ResetCause::window_watchdog)},
       {"unmodelled", chip.unmodelled_accesses()},
-      {"longest_interrupt",
-       {{"exception", longest}, {"instructions", counters.exceptions[longest].longest_instructions}}},
+      {"longest_interrupt", {{"exception", longest}, {"cycles", counters.exceptions[longest].longest_cycles}}},
       {"usb",
        {{"connected", board.usb().connected()},
         {"enumerated", board.usb().enumerated()},

@@ -47,6 +47,13 @@ CommandLine read_command_line(int argc, char** argv) {
       ->check(CLI::IsMember({"exact", "fast"}).description(""))
       ->type_name("exact|fast")
       ->capture_default_str();
+  std::string pricing = "likely";
+  app.add_option("--pricing", pricing,
+                 "what instructions cost where the sources leave a choice (docs/cycles.md); deadlines are judged by\n"
+                 "the conservative figures")
+      ->check(CLI::IsMember({"likely", "conservative"}).description(""))
+      ->type_name("likely|conservative")
+      ->capture_default_str();
   app.add_flag("--real-time", options.real_time, "keep board time from running ahead of the clock on the wall");
   app.add_option("--seed", options.seed, "of all noise; the same seed and commands give the same run")
       ->type_name("N")
@@ -73,6 +80,7 @@ CommandLine read_command_line(int argc, char** argv) {
     return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
   }
   options.mode = mode == "exact" ? Mode::exact : Mode::fast;
+  options.pricing = pricing == "conservative" ? Pricing::conservative : Pricing::likely;
   if (*seconds_option) options.seconds = seconds;
   return {options, 0};
 }

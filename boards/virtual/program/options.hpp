@@ -15,6 +15,7 @@ struct Options {
   std::uint16_t usbip_port = 0;  ///< 0 is any free port
   std::uint16_t control_port = 0;
   Mode mode = Mode::fast;
+  Pricing pricing = Pricing::likely;
   bool real_time = false;
   std::uint64_t seed = 1;
   std::optional<double> seconds;  ///< of board time, after which the program ends

@@ -59,13 +59,15 @@ inline std::string firmware_path(const std::string& name) {
 
 /// A chip in its circuit, running a test firmware from reset.
 struct ChipUnderTest {
-  explicit ChipUnderTest(const std::string& firmware, Mode mode = Mode::exact) : chip(circuit, options(mode)) {
+  explicit ChipUnderTest(const std::string& firmware, Mode mode = Mode::exact, Pricing pricing = Pricing::likely)
+      : chip(circuit, options(mode, pricing)) {
     chip.load_elf(firmware_path(firmware));
     chip.reset();
   }
-  ChipOptions options(Mode mode) {
+  ChipOptions options(Mode mode, Pricing pricing) {
     ChipOptions chosen;
     chosen.mode = mode;
+    chosen.pricing = pricing;
     chosen.log = [this](const std::string& line) { log.push_back(line); };
     return chosen;
   }

@@ -72,7 +72,8 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(1) - before == 168'000'000 / 10 / 6000);
     for (unsigned n = 0; n < 4; ++n) {
       CHECK(test.result(4 + 2 * n) == 0);  // counting up again
-      CHECK(test.result(5 + 2 * n) < 40);  // a few instructions after the bottom
+      // After the bottom: entry, first lines from the flash, a crossing to APB.
+      CHECK(test.result(5 + 2 * n) < 100);
     }
   }
 
@@ -143,9 +144,9 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(2) == 1024);
     CHECK(test.result(3) == 2048);
     CHECK(test.result(4) == 3072);
-    // 15 cycles of 21 MHz are 60 counts of TIM2; then the interrupt's first instructions.
+    // 15 cycles of 21 MHz are 60 counts of TIM2; then entry, and the first instructions with their waits.
     CHECK(test.result(5) >= 60);
-    CHECK(test.result(5) < 75);
+    CHECK(test.result(5) < 100);
     REQUIRE(sequences.size() > 50);
     for (std::size_t i = 1; i < sequences.size(); ++i) CHECK(sequences[i] - sequences[i - 1] == ticks(20e-6));
     // Sampled 3 cycles of the converter after the trigger.
@@ -201,7 +202,7 @@ TEST_SUITE("virtual chip: peripherals") {
     constexpr Ticks frame = 10 * 365 * 4 * cycle;  // ten bits of 365 cycles of PCLK1
     CHECK(times[2] - times[1] == frame);
     // The crystal and the PLL take 0.6 ms to start; the text follows at once, and time does not stand still after it.
-    CHECK(times[0] < ticks(0.65e-3) + frame);
+    CHECK(times[0] < ticks(0.66e-3) + frame);
     CHECK(test.circuit.edges_of('C', 10).back().level == PinLevel::high);
     CHECK(test.result(2) == 1u << 5);
     CHECK(test.result(3) == 0x00310042);

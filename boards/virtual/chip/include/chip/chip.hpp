@@ -1,7 +1,8 @@
 // An STM32F405 for any firmware: Cortex-M4F processor, memories, and the peripherals of RM0090.
 //
-// One instruction costs one cycle of HCLK; the clock tree, timers, converters, and watchdogs run in board
-// time. `Chip` is not thread-safe: everything, the circuit included, runs in the thread that calls run_until().
+// Instructions cost the cycles that the core's pipeline, the flash and the buses take (timing/costs.hpp); the clock
+// tree, timers, converters, and watchdogs run in board time. `Chip` is not thread-safe: everything, the circuit
+// included, runs in the thread that calls run_until().
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <timing/costs.hpp>
 #include <vector>
 
 namespace inkwell::virtual_board {
@@ -30,6 +32,7 @@ enum class Mode : std::uint8_t {
 
 struct ChipOptions {
   Mode mode = Mode::fast;
+  Pricing pricing = Pricing::likely;
   std::uint32_t crystal_Hz = 8'000'000;                                           ///< HSE
   std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
   std::uint32_t random_seed = 1;                                                  ///< of the RNG peripheral
@@ -46,13 +49,14 @@ inline constexpr unsigned exception_numbers = 16 + 82;
 
 struct ExceptionCounters {
   std::uint64_t count = 0;
-  /// Instructions of the longest run from entry to return, without those of exceptions that preempted it.
-  std::uint64_t longest_instructions = 0;
+  /// Cycles of the longest run, entry and return included, without those of exceptions that preempted it.
+  std::uint64_t longest_cycles = 0;
 };
 
 /// Since construction, or since clear_counters().
 struct Counters {
   std::uint64_t instructions = 0;
+  std::uint64_t cycles = 0;  ///< without sleep
   Ticks duration = 0;
   Ticks asleep = 0;
   std::array<ExceptionCounters, exception_numbers> exceptions{};

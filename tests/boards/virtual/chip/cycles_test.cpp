@@ -1,0 +1,59 @@
+// The cycle model on the running chip: counts that follow from the manuals, the same in both modes.
+#include <doctest/doctest.h>
+
+#include "chip_fixture.hpp"
+
+using namespace inkwell::virtual_board;
+using namespace inkwell::virtual_board::test;
+
+TEST_SUITE("virtual chip: cycles") {
+  TEST_CASE("32 repetitions cost what the manuals say where memory does not wait") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("cycles", mode);
+      test.run_for(0.1);
+      REQUIRE(test.result(0) == finished);
+      // A slice of exact mode may end between two loads that would have gone in a row.
+      const auto about = [](double cycles) { return doctest::Approx(cycles).epsilon(0.02); };
+      CHECK(test.result(1) == about(32));      // additions
+      CHECK(test.result(2) == about(32));      // wide ones: a word a cycle is just what the core fetches
+      CHECK(test.result(3) == about(32 * 4));  // two loads in a row take three
+      CHECK(test.result(4) == about(32 * 2));
+      CHECK(test.result(5) == about(32 * 5));  // the address comes from the instruction before
+      CHECK(test.result(6) == about(32 * 2));  // a sum that is used at once
+      CHECK(test.result(7) == about(32 * 2));  // two sums that take turns
+      CHECK(test.result(8) == about(32 * 3));
+      CHECK(test.result(9) == about(32 * 5));  // 1 / 1: a quotient of one bit
+    }
+  }
+
+  TEST_CASE("flash that waits: nothing helps, prefetch helps, the cache helps what fits") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("cycles", mode);
+      test.run_for(0.1);
+      REQUIRE(test.result(0) == finished);
+      const double no_wait = test.result(10), off = test.result(11), prefetch = test.result(12), all = test.result(13);
+      // Four wide instructions a line: 4 cycles, or 5 more for a line that waits, or 6 behind a prefetch.
+      CHECK(no_wait == doctest::Approx(3 * 1024).epsilon(0.01));
+      CHECK(off / no_wait == doctest::Approx(9.0 / 4).epsilon(0.02));
+      CHECK(prefetch / no_wait == doctest::Approx(6.0 / 4).epsilon(0.02));
+      CHECK(all / no_wait == doctest::Approx(6.0 / 4).epsilon(0.02));
+      const double short_no_wait = test.result(14), short_off = test.result(15), short_all = test.result(17);
+      CHECK(short_off > 2 * short_no_wait);
+      CHECK(short_all == doctest::Approx(short_no_wait).epsilon(0.02));
+    }
+  }
+
+  TEST_CASE("the conservative pricing never counts noticeably less") {
+    ChipUnderTest likely("cycles", Mode::fast), conservative("cycles", Mode::fast, Pricing::conservative);
+    likely.run_for(0.1);
+    conservative.run_for(0.1);
+    REQUIRE(conservative.result(0) == finished);
+    for (unsigned i = 1; i < 18; ++i) {
+      CAPTURE(i);
+      // What the sources leave open about the cache can turn out either way for a single loop.
+      CHECK(conservative.result(i) >= 0.99 * likely.result(i));
+    }
+  }
+}
