@@ -150,7 +150,9 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
     endpoint.interrupts |= epint::otepdis;
     update_interrupt();
   }
-  if (!enabled || (endpoint.control & epctl::naksts) != 0 || endpoint.packets == 0 || global_out_nak_asked_)
+  // The empty packet of a status stage needs no packet count.
+  const bool is_expected = endpoint.packets != 0 || (number == 0 && data.empty());
+  if (!enabled || (endpoint.control & epctl::naksts) != 0 || !is_expected || global_out_nak_asked_)
     return Handshake::nak;
   const std::size_t words = 1 + words_for(data.size()) + 1;  // status, data, and a transfer-complete status
   if (receive_words_free() < words + reserved_receive_words) return Handshake::nak;
@@ -163,7 +165,7 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
   push_status(number, pktsts::out_data, data.size(), endpoint.data1);
   push_data(data);
   endpoint.data1 = !endpoint.data1;
-  --endpoint.packets;
+  if (endpoint.packets != 0) --endpoint.packets;
   endpoint.bytes -= static_cast<std::uint32_t>(std::min<std::size_t>(endpoint.bytes, data.size()));
   if (endpoint.packets == 0 || data.size() < maximum) {
     endpoint.control = (endpoint.control & ~epctl::epena) | epctl::naksts;

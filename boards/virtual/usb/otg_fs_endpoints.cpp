@@ -249,10 +249,18 @@ void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
       note("an OUT endpoint is disabled before the global OUT NAK is effective; it waits", where, true, value);
       endpoint.disable_pending = true;
     }
-  } else if ((value & epctl::epena) != 0 && (endpoint.control & epctl::epena) == 0) {
+  } else if (((value & epctl::epena) != 0 || armed_by_cnak(number, value)) && (endpoint.control & epctl::epena) == 0) {
     endpoint.control |= epctl::epena;
     check_out_transfer(number);
   }
+}
+
+// The manual asks for EPENA and CNAK together, but drivers in the field, ChibiOS's among them, start an OUT transfer
+// with CNAK alone, and silicon takes its packets.
+bool OtgFsDevice::armed_by_cnak(unsigned number, std::uint32_t control_written) const {
+  const OutEndpoint& endpoint = out_[number];
+  const bool clears_nak = (control_written & (epctl::cnak | epctl::snak)) == epctl::cnak;
+  return clears_nak && (number == 0 || ((endpoint.control & epctl::usbaep) != 0 && endpoint.packets != 0));
 }
 
 void OtgFsDevice::check_out_transfer(unsigned number) {

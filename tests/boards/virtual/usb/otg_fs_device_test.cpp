@@ -233,6 +233,36 @@ TEST_CASE("OUT: the receive FIFO keeps room for SETUP packets and answers NAK wh
   CHECK(bench.log.sentences.empty());
 }
 
+TEST_CASE("OUT: CNAK alone starts a transfer, and on endpoint 0 a status stage without a packet count") {
+  Bench bench;
+  bench.activate();
+  bench.write(0xB60, bench.read(0xB60) | cnak);
+  CHECK(bench.out(3, false, 64) == Handshake::nak);  // there is no transfer yet
+  bench.write(0xB70, 1u << 19 | 64);
+  bench.write(0xB60, (bench.read(0xB60) | cnak) & ~epena);
+  CHECK(bench.out(3, false, 64) == Handshake::ack);
+  CHECK(bench.out(3, true, 64) == Handshake::nak);
+  bench.read(grxstsp);
+  for (int i = 0; i < 16; ++i) bench.read(0x1000);
+  bench.read(grxstsp);
+  CHECK((bench.read(0xB68) & 1u) != 0);
+
+  bench.write(0xB10, 3u << 29);
+  bench.core.setup(0, 0, some_request);
+  CHECK(bench.out(0, true, 0) == Handshake::nak);
+  bench.read(grxstsp);
+  bench.read(0x1000);
+  bench.read(0x1000);
+  bench.read(grxstsp);
+  bench.write(0xB00, cnak);
+  CHECK(bench.out(0, true, 0) == Handshake::ack);
+  bench.read(grxstsp);
+  bench.read(grxstsp);
+  CHECK((bench.read(0xB08) & 1u) != 0);
+  CHECK((bench.read(0xB10) >> 19 & 1) == 0);
+  CHECK(bench.log.sentences.empty());
+}
+
 TEST_CASE("global NAKs") {
   Bench bench;
   bench.activate();

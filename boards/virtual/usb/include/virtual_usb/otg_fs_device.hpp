@@ -84,6 +84,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void disable_out(OutEndpoint& endpoint);
   void check_in_transfer(unsigned endpoint);
   void check_out_transfer(unsigned endpoint);
+  bool armed_by_cnak(unsigned endpoint, std::uint32_t control_written) const;
 
   std::uint32_t pop_receive_status();
   std::uint32_t pop_receive_data();
