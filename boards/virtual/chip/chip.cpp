@@ -32,7 +32,8 @@ Chip::Chip(Circuit& circuit, const ChipOptions& options) : parts_(std::make_uniq
 Chip::~Chip() = default;
 
 void Chip::load_elf(const std::filesystem::path& path) {
-  program_elf(path, parts_->machine.memory);
+  if (const std::string oddity = program_elf(path, parts_->machine.memory); !oddity.empty())
+    parts_->machine.log.say(oddity);
   parts_->machine.request_reset(ResetCause::power_on);
 }
 
@@ -71,6 +72,7 @@ const Counters& Chip::counters() const { return parts_->execution.counters(); }
 void Chip::clear_counters() { parts_->execution.clear_counters(); }
 int Chip::exit_code() const { return parts_->execution.exit_code(); }
 const std::string& Chip::lockup_reason() const { return parts_->execution.lockup_reason(); }
+const std::optional<Fault>& Chip::first_fault() const { return parts_->execution.first_fault(); }
 const std::vector<std::string>& Chip::unmodelled_accesses() const { return parts_->machine.log.lines(); }
 std::vector<RegisterMap> Chip::register_maps() const { return parts_->bus.register_maps(); }
 std::uint32_t Chip::memory_word(std::uint32_t address) const { return parts_->machine.memory.word(address); }

@@ -1,6 +1,7 @@
 // Reader for the few parts of an ELF file that a programmer needs (ELF for the ARM architecture, AAELF32).
 #include <elf.h>
 
+#include <algorithm>
 #include <chip/chip.hpp>
 #include <cstdio>
 #include <fstream>
@@ -26,20 +27,75 @@ T record_at(const std::vector<char>& file, std::size_t offset, const std::string
   return record;
 }
 
+std::string machine_name(unsigned machine) {
+  switch (machine) {
+    case EM_386: return "x86";
+    case EM_X86_64: return "x86-64, as the programs of a PC";
+    case EM_AARCH64: return "64-bit ARM";
+    case EM_ARM: return "ARM in another word size or byte order";
+    case EM_RISCV: return "RISC-V";
+    case EM_XTENSA: return "Xtensa";
+    case EM_AVR: return "AVR";
+    default: return "the machine of number " + std::to_string(machine);
+  }
+}
+
 void check_header(const Elf32_Ehdr& header, const std::string& name) {
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
     throw ChipError(name + " is not an ELF file. Give the .elf that the linker writes, not a .bin or .hex.");
   if (header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_ident[EI_DATA] != ELFDATA2LSB || header.e_machine != EM_ARM)
-    throw ChipError(name + " is not for a 32-bit ARM processor. Build it with tools/cmake/arm-none-eabi.cmake.");
+    throw ChipError(name + " is not for a 32-bit ARM processor, but for " + machine_name(header.e_machine) +
+                    ". Build it with a cross compiler: arm-none-eabi-gcc -mcpu=cortex-m4 -mthumb.");
   if (header.e_type != ET_EXEC)
     throw ChipError(name + " is not a linked executable. Link it with a linker script for the STM32F405.");
   if (header.e_phnum == 0 || header.e_phentsize != sizeof(Elf32_Phdr))
     throw ChipError(name + " has no load segments. Link it with a linker script for the STM32F405.");
 }
 
+/// The firmware as it lies in the file: its load segments.
+struct Image {
+  const std::vector<char>& file;
+  std::vector<Elf32_Phdr> segments;
+  /// The word that the image puts at `address`; of erased flash where it puts nothing.
+  std::uint32_t word(std::uint32_t address) const {
+    std::uint32_t value = 0xFFFF'FFFF;
+    for (const auto& segment : segments)
+      if (address >= segment.p_paddr && address - segment.p_paddr <= segment.p_filesz - sizeof value &&
+          segment.p_filesz >= sizeof value)
+        std::memcpy(&value, file.data() + segment.p_offset + (address - segment.p_paddr), sizeof value);
+    return value;
+  }
+};
+
+/// The processor takes its first stack pointer and its first instruction's address from where the flash begins
+/// (ARMv7-M, B1.5.5). Returns what is odd about the stack pointer, or nothing.
+std::string check_vectors(const Image& image, const std::string& name, Memory& memory) {
+  const bool is_at_alias = image.segments.front().p_paddr < flash_bytes;
+  const std::uint32_t base = is_at_alias ? 0 : flash_base;
+  const std::uint32_t stack = image.word(base), reset = image.word(base + 4);
+  const std::string table = "at " + hexadecimal(base) + ", where the processor looks for its first stack pointer and " +
+                            "the address of its first instruction";
+  if (stack == 0xFFFF'FFFF && reset == 0xFFFF'FFFF) {
+    std::uint32_t lowest = 0xFFFF'FFFF;
+    for (const auto& segment : image.segments) lowest = std::min<std::uint32_t>(lowest, segment.p_paddr);
+    throw ChipError(name + " has nothing " + table + "; it begins at " + hexadecimal(lowest) +
+                    ". It seems to be an application that a boot loader starts: link it to " + hexadecimal(flash_base) +
+                    ", or make one ELF of both.");
+  }
+  if ((reset & 1) == 0 || memory.at(reset & ~1u, 2) == nullptr)
+    throw ChipError(name + " has no vector table " + table + ": they would be " + hexadecimal(stack) + " and " +
+                    hexadecimal(reset) +
+                    ". Correct the linker script: the section of the vectors comes first, and "
+                    "KEEP holds it.");
+  if (memory.ram_at(stack - 4, 4) != nullptr) return {};
+  return name + " begins with its stack pointer at " + hexadecimal(stack) +
+         ", which is outside of the RAM of the STM32F405 (0x20000000 to 0x2001FFFF and 0x10000000 to 0x1000FFFF): it "
+         "is firmware for another chip, unless it sets its stack pointer itself.";
+}
+
 }  // namespace
 
-void program_elf(const std::filesystem::path& path, Memory& memory) {
+std::string program_elf(const std::filesystem::path& path, Memory& memory) {
   const std::string name = path.string();
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
@@ -67,11 +123,13 @@ void program_elf(const std::filesystem::path& path, Memory& memory) {
     segments.push_back(segment);
   }
   if (segments.empty()) throw ChipError(name + " has nothing to load. Link it with a linker script for the STM32F405.");
+  const std::string oddity = check_vectors({file, segments}, name, memory);
 
   // Only a file that is whole may replace what is in the flash.
   std::memset(memory.flash(), 0xFF, flash_bytes);
   for (const auto& segment : segments)
     std::memcpy(memory.at(segment.p_paddr, segment.p_filesz), file.data() + segment.p_offset, segment.p_filesz);
+  return oddity;
 }
 
 }  // namespace inkwell::virtual_board

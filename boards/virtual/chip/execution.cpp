@@ -10,6 +10,27 @@ namespace {
 
 constexpr std::uint16_t semihosting_breakpoint = 0xBEAB;
 
+std::string hexadecimal(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08X", static_cast<unsigned>(value));
+  return text;
+}
+
+std::string name_of(unsigned exception) {
+  switch (exception) {
+    case exception_nmi: return "NMI";
+    case exception_hard_fault: return "HardFault";
+    case exception_memory_fault: return "MemManage";
+    case exception_bus_fault: return "BusFault";
+    case exception_usage_fault: return "UsageFault";
+    case exception_svcall: return "SVCall";
+    case exception_debug: return "DebugMonitor";
+    case exception_pendsv: return "PendSV";
+    case exception_systick: return "SysTick";
+    default: return "interrupt " + std::to_string(exception - exception_interrupt_0);
+  }
+}
+
 std::string at(const char* what, std::uint32_t address, std::uint32_t program_counter) {
   char text[96];
   std::snprintf(text, sizeof text, "%s 0x%08X, program counter 0x%08X", what, static_cast<unsigned>(address),
@@ -30,6 +51,7 @@ void Execution::reset(ResetCause cause) {
   processor_.anchor(machine_.timeline.now());
   state_ = State::runs;
   lockup_reason_.clear();
+  first_fault_.reset();
   ++processor_.counters().resets[static_cast<std::size_t>(cause)];
   if (on_reset) on_reset(cause);
 }
@@ -136,17 +158,35 @@ void Execution::sleep_until(Ticks when) {
 }
 
 void Execution::enter(unsigned exception) {
-  const bool entered =
+  const std::uint32_t place = system_control_.vector_table() + 4 * exception;
+  const std::uint32_t vector = machine_.memory.word(place);
+  const bool has_handler = (vector & 1) != 0;
+  if (has_handler &&
       processor_.enter_exception(exception, system_control_.aligns_stack(), system_control_.preserves_float_context(),
-                                 system_control_.stacks_lazily(), system_control_.vector_table());
-  if (entered) return;
+                                 system_control_.stacks_lazily(), system_control_.vector_table()))
+    return;
   const std::uint32_t stack = processor_.read(UC_ARM_REG_SP);
-  if (exception == exception_hard_fault || machine_.memory.ram_at(stack, 4) == nullptr) {
+  if (has_handler || machine_.memory.ram_at(stack - 4, 4) == nullptr) {
+    const std::string what = "the stack is not in RAM when " + name_of(exception) +
+                             " comes:" + at(" stack pointer", stack, processor_.program_counter());
+    note_fault(what);
     system_control_.record_fault(scb.cfsr.stkerr.mask(), scb.hfsr.forced.mask());
-    return lock_up(at("no stack to enter an exception on at", stack, processor_.program_counter()));
+    return lock_up(what);
   }
+  const std::string what = "the vector table has no handler for " + name_of(exception) + ": it holds " +
+                           hexadecimal(vector) + at(" at", place, processor_.program_counter());
+  note_fault(what);
   system_control_.record_fault(0, scb.hfsr.vecttbl.mask());
-  enter(exception_hard_fault);
+  exception == exception_hard_fault ? lock_up(what) : enter(exception_hard_fault);
+}
+
+// A fault inside the handler of another one only hides what went wrong.
+void Execution::note_fault(const std::string& what) {
+  for (const unsigned handler :
+       {exception_hard_fault, exception_memory_fault, exception_bus_fault, exception_usage_fault})
+    if (machine_.nvic.active(handler) && first_fault_) return;
+  if (first_fault_ && first_fault_->when == processor_.now()) return;  // its escalation
+  first_fault_ = Fault{what, processor_.now(), processor_.core_registers()};
 }
 
 void Execution::lock_up(const std::string& what) {
@@ -156,6 +196,7 @@ void Execution::lock_up(const std::string& what) {
 }
 
 void Execution::raise_fault(unsigned exception, std::uint32_t configurable_bits, const std::string& what) {
+  note_fault(what);
   auto& nvic = machine_.nvic;
   const int priority = nvic.execution_priority(processor_.masks());
   system_control_.record_fault(configurable_bits, 0);

@@ -4,6 +4,7 @@
 #include <chip/chip.hpp>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "bus.hpp"
@@ -31,6 +32,7 @@ class Execution {
   void clear_counters();
   int exit_code() const { return exit_code_; }
   const std::string& lockup_reason() const { return lockup_reason_; }
+  const std::optional<Fault>& first_fault() const { return first_fault_; }
 
   std::function<void(std::uint8_t)> on_console;
   std::function<void(ResetCause)> on_reset;
@@ -47,6 +49,7 @@ class Execution {
   void handle_return();
   void raise_fault(unsigned exception, std::uint32_t configurable_bits, const std::string& what);
   void enter(unsigned exception);
+  void note_fault(const std::string& what);
   void lock_up(const std::string& what);
 
   Machine& machine_;
@@ -58,6 +61,7 @@ class Execution {
   bool running_ = false, stop_requested_ = false;
   int exit_code_ = 0;
   std::string lockup_reason_;
+  std::optional<Fault> first_fault_;
   Ticks counting_since_ = 0;
   std::uint64_t cycles_before_ = 0, instructions_before_ = 0;
 };

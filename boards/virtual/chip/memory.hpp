@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace inkwell::virtual_board {
@@ -44,7 +45,8 @@ class Memory {
   std::vector<std::uint8_t> flash_, sram_, ccm_, system_;
 };
 
-/// Erases the flash and writes the load segments of an ELF file by physical address. Throws ChipError.
-void program_elf(const std::filesystem::path& path, Memory& memory);
+/// Erases the flash and writes the load segments of an ELF file by physical address. Throws ChipError. Returns a
+/// sentence about what will hardly work, or nothing.
+std::string program_elf(const std::filesystem::path& path, Memory& memory);
 
 }  // namespace inkwell::virtual_board

@@ -112,6 +112,17 @@ std::uint64_t Processor::cycles_until(Ticks when) const {
       1, (std::min(when - time, ticks_per_s) * clock.denominator + clock.numerator - 1) / clock.numerator);
 }
 
+CoreRegisters Processor::core_registers() const {
+  CoreRegisters registers;
+  for (unsigned i = 0; i <= 12; ++i) registers.general[i] = read(UC_ARM_REG_R0 + static_cast<int>(i));
+  registers.general[CoreRegisters::sp] = read(UC_ARM_REG_SP);
+  registers.general[CoreRegisters::lr] = read(UC_ARM_REG_LR);
+  registers.general[CoreRegisters::pc] = program_counter_ & ~1u;
+  constexpr std::uint32_t thumb = 1u << 24, exception = 0x1FF;
+  registers.xpsr = (read(UC_ARM_REG_XPSR) & ~exception) | thumb | current_exception_;
+  return registers;
+}
+
 Masks Processor::masks() const {
   return {(read(UC_ARM_REG_PRIMASK) & 1) != 0, (read(UC_ARM_REG_FAULTMASK) & 1) != 0, read(UC_ARM_REG_BASEPRI)};
 }

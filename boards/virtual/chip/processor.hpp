@@ -87,6 +87,7 @@ class Processor final : public ClockUser {
     uc_reg_read(engine_, id, &value);
     return value;
   }
+  CoreRegisters core_registers() const;
   void write(int id, std::uint32_t value) { uc_reg_write(engine_, id, &value); }
   std::uint32_t program_counter() const { return program_counter_; }
   void set_program_counter(std::uint32_t value) { program_counter_ = value; }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <debugger/fault_report.hpp>
 
 #include "log.hpp"
 
@@ -25,12 +26,14 @@ std::string_view name_of(ResetCause cause) {
 }  // namespace
 
 Board::Board(const Options& options, std::function<void()> on_usb_request)
-    : plant_(arms::read(options.arm), {.seed = options.seed}),
+    : elf_(options.elf),
+      plant_(arms::read(options.arm), {.seed = options.seed}),
       chip_(plant_, {.mode = options.mode,
                      .pricing = options.pricing,
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); }}) {
-  chip_.load_elf(options.elf);
+  chip_.load_elf(elf_);
+  symbols_ = Symbols(elf_);
   try {
     usb_.emplace(chip_.scheduler(), chip_.interrupts(), chip_.unmodelled_log(), options.usbip_port,
                  std::move(on_usb_request));
@@ -56,7 +59,7 @@ Stop Board::run_until(Ticks when) {
   const Stop stop = chip_.run_until(when);
   if (stop == Stop::locked_up && !locked_up_) {
     locked_up_ = true;
-    log_line(chip_.now(), fmt::format("the processor locked up: {}", chip_.lockup_reason()));
+    for (const auto& line : explain_fault(chip_, symbols_, elf_)) log_line(line);
   }
   return stop;
 }

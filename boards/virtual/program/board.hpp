@@ -6,6 +6,7 @@
 #include <string>
 
 #include <chip/chip.hpp>
+#include <debugger/symbols.hpp>
 #include <plant/plant.hpp>
 #include <virtual_usb/virtual_usb.hpp>
 
@@ -35,6 +36,8 @@ class Board {
  private:
   void console(std::uint8_t byte);
 
+  const std::filesystem::path elf_;
+  Symbols symbols_;
   Plant plant_;
   Chip chip_;
   std::optional<VirtualUsb> usb_;  ///< there from construction to destruction

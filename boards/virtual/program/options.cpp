@@ -64,8 +64,8 @@ CommandLine read_command_line(int argc, char** argv) {
                              ->type_name("T");
   app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
   app.footer(
-      "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options; firmware that ends by\n"
-      "semihosting passes its own exit code on.\n"
+      "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options, 3 the processor was\n"
+      "locked up at the end of --seconds; firmware that ends by semihosting passes its own exit code on.\n"
       "\n"
       "Board time waits for the program that uses the device on USB: for up to 3 s of the clock on the wall, when it\n"
       "owes the next request at an endpoint where it asked before. So a busy computer loses no data.\n"

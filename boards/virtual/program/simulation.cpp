@@ -17,6 +17,7 @@ using namespace std::chrono_literals;
 constexpr Ticks slice = ticks_per_s / 1000;  // a USB frame
 constexpr auto attention = 50ms;             // how soon a paused board notices a signal
 constexpr double debt_maximum_s = 0.1;
+constexpr int exit_code_of_lock_up = 3;
 
 }  // namespace
 
@@ -39,7 +40,8 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
     if (time_passes()) advance();
   }
   end_run("the virtual board ends");
-  return firmware_exit_code_.value_or(0);
+  if (firmware_exit_code_) return *firmware_exit_code_;
+  return options_.seconds && board_.locked_up() ? exit_code_of_lock_up : 0;
 }
 
 bool Simulation::time_passes() const {
@@ -66,8 +68,9 @@ void Simulation::advance() {
     case Stop::time_reached:
     case Stop::requested: break;
     case Stop::locked_up:
-      pause();
       end_run("the processor locked up: " + board_.chip().lockup_reason());
+      // Nobody may be there to reset it: with --seconds the time goes on, as a watchdog may do so.
+      if (!options_.seconds) pause();
       return;
     case Stop::firmware_exit:
       firmware_exit_code_ = board_.chip().exit_code();

@@ -22,6 +22,7 @@ class Simulation {
   Simulation(const Options& options, Board& board, ControlServer& server);
 
   /// Runs until a client quits, `end_requested` is set, the time of --seconds is over or the firmware ends.
+  /// Without --seconds a locked-up board stands still, for somebody to look at it or reset it.
   /// Returns the exit code.
   int run(const std::atomic<bool>& end_requested);
 

@@ -65,6 +65,36 @@ TEST_SUITE("virtual chip: ELF") {
     CHECK(contains(complaint(relocatable), "not a linked executable"));
   }
 
+  TEST_CASE("firmware for another place or another chip is named as that") {
+    const std::string good = read_file(firmware_path("watchdog"));
+    std::uint32_t headers = 0, vectors = 0;
+    std::memcpy(&headers, good.data() + 28, 4);
+    std::memcpy(&vectors, good.data() + headers + 4, 4);  // p_offset of the first segment
+    const auto with_word = [&](std::uint32_t offset, std::uint32_t value) {
+      std::string changed = good;
+      std::memcpy(changed.data() + offset, &value, sizeof value);
+      return changed;
+    };
+    CHECK(contains(complaint(with_word(headers + 12, 0x0800'4000)), "boot loader"));
+    CHECK(contains(complaint(with_word(headers + 12, 0x0800'4000)), "0x08004000"));
+    CHECK(contains(complaint(with_word(vectors + 4, 0)), "no vector table"));
+    CHECK(contains(complaint(with_word(vectors + 4, 0x0900'0001)), "0x09000001"));
+    CHECK(contains(complaint(with_word(18, 243)), "RISC-V"));
+
+    // A stack for more RAM is said, but firmware may set its stack by itself.
+    const auto path = std::filesystem::temp_directory_path() / "inkwell-other-chip.elf";
+    std::ofstream(path, std::ios::binary) << with_word(vectors, 0x2003'0000);
+    ChipUnderTest test("watchdog");
+    CHECK(test.log.empty());
+    test.chip.load_elf(path);
+    std::filesystem::remove(path);
+    REQUIRE(test.log.size() == 1);
+    CHECK(contains(test.log[0], "0x20030000"));
+    CHECK(contains(test.log[0], "another chip"));
+    CHECK(test.chip.run_until(test.chip.now() + ticks(0.001)) == Stop::locked_up);
+    CHECK(contains(test.chip.lockup_reason(), "the stack is not in RAM"));
+  }
+
   TEST_CASE("a refused file leaves the flash as it was") {
     ChipUnderTest test("watchdog");
     const std::uint32_t before = test.chip.memory_word(0x0800'0004);

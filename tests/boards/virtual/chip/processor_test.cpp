@@ -66,6 +66,15 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(test.chip.run_until(test.chip.now() + ticks(10e-6)) == Stop::time_reached);
   }
 
+  TEST_CASE("a fault whose handler is missing locks up, and the missing handler is named") {
+    ChipUnderTest test("no_handler");
+    REQUIRE(test.chip.run_until(ticks(0.001)) == Stop::locked_up);
+    CHECK(test.result(0) == finished);
+    CHECK(test.chip.lockup_reason().find("no handler for HardFault") != std::string::npos);
+    REQUIRE(test.chip.first_fault());
+    CHECK(test.chip.first_fault()->what.find("0x60000000") != std::string::npos);
+  }
+
   TEST_CASE("an if-then block that is stopped or interrupted in its middle goes on as it began") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <timing/costs.hpp>
@@ -82,6 +83,20 @@ struct Clocks {
   std::uint32_t usb_Hz;     ///< PLL48CLK
 };
 
+/// What the core's programmer sees, without the FPU.
+struct CoreRegisters {
+  std::array<std::uint32_t, 16> general{};  ///< R0 to R12, SP, LR, PC
+  std::uint32_t xpsr = 0;
+  static constexpr unsigned sp = 13, lr = 14, pc = 15;
+};
+
+/// A fault as the processor met it.
+struct Fault {
+  std::string what;  ///< cause and addresses
+  Ticks when = 0;
+  CoreRegisters registers;  ///< before the fault's handler was entered; R0 to R3, R12, LR, PC, XPSR are what it stacks
+};
+
 class Chip {
  public:
   /// `circuit` must outlive the chip.
@@ -136,6 +151,8 @@ class Chip {
   int exit_code() const;
   /// Fault and addresses in a sentence, once run_until() returned Stop::locked_up.
   const std::string& lockup_reason() const;
+  /// The newest fault that did not come from the handler of another one: what a lock-up began with.
+  const std::optional<Fault>& first_fault() const;
   /// Registers of all peripherals, as their models declare them.
   std::vector<RegisterMap> register_maps() const;
   /// Lines of unmodelled accesses so far.

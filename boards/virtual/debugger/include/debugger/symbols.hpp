@@ -1,0 +1,28 @@
+// Names of functions, from the symbol table of an ELF file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace inkwell::virtual_board {
+
+class Symbols {
+ public:
+  Symbols() = default;
+  /// Of an ELF file that the chip has taken. A file without symbols (stripped, or damaged there) has no names.
+  explicit Symbols(const std::filesystem::path& elf);
+
+  /// The function at `address` and how far into it that is, such as "main+0x12"; empty if no function is there.
+  std::string name(std::uint32_t address) const;
+
+ private:
+  struct Function {
+    std::uint32_t address, bytes;
+    std::string name;
+  };
+  std::vector<Function> functions_;  ///< by address
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,77 @@
+#include <cxxabi.h>
+#include <elf.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <debugger/symbols.hpp>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace inkwell::virtual_board {
+namespace {
+
+template <class T>
+std::optional<T> record_at(const std::vector<char>& file, std::size_t offset) {
+  if (offset > file.size() || sizeof(T) > file.size() - offset) return std::nullopt;
+  T record;
+  std::memcpy(&record, file.data() + offset, sizeof record);
+  return record;
+}
+
+std::string text_at(const std::vector<char>& file, std::size_t offset) {
+  if (offset >= file.size()) return {};
+  const auto begin = file.begin() + static_cast<std::ptrdiff_t>(offset);
+  return {begin, std::find(begin, file.end(), '\0')};
+}
+
+std::string demangled(const std::string& name) {
+  int status = 0;
+  const std::unique_ptr<char, void (*)(void*)> text(abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &status),
+                                                    std::free);
+  return status == 0 ? text.get() : name;
+}
+
+}  // namespace
+
+Symbols::Symbols(const std::filesystem::path& elf) {
+  std::ifstream stream(elf, std::ios::binary);
+  const std::vector<char> file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const auto header = record_at<Elf32_Ehdr>(file, 0);
+  if (!header) return;
+  const auto section = [&](std::size_t number) {
+    return record_at<Elf32_Shdr>(file, std::size_t{header->e_shoff} + number * sizeof(Elf32_Shdr));
+  };
+  for (unsigned i = 0; i < header->e_shnum; ++i) {
+    const auto table = section(i);
+    if (!table || table->sh_type != SHT_SYMTAB) continue;
+    const auto names = section(table->sh_link);
+    if (!names) continue;
+    for (std::size_t at = 0; at + sizeof(Elf32_Sym) <= table->sh_size; at += sizeof(Elf32_Sym)) {
+      const auto symbol = record_at<Elf32_Sym>(file, table->sh_offset + at);
+      if (!symbol) break;
+      if (ELF32_ST_TYPE(symbol->st_info) == STT_FUNC && symbol->st_shndx != SHN_UNDEF)
+        functions_.push_back(
+            {symbol->st_value & ~1u, symbol->st_size, text_at(file, std::size_t{names->sh_offset} + symbol->st_name)});
+    }
+  }
+  std::stable_sort(functions_.begin(), functions_.end(),
+                   [](const Function& a, const Function& b) { return a.address < b.address; });
+}
+
+std::string Symbols::name(std::uint32_t address) const {
+  auto after = std::upper_bound(functions_.begin(), functions_.end(), address,
+                                [](std::uint32_t value, const Function& function) { return value < function.address; });
+  if (after == functions_.begin()) return {};
+  const Function& function = *std::prev(after);
+  const std::uint32_t offset = address - function.address;
+  // Functions in assembler often have no size; the next one ends them.
+  if (function.bytes != 0 ? offset >= function.bytes : after == functions_.end() && offset > 0) return {};
+  return offset == 0 ? demangled(function.name) : fmt::format("{}+0x{:X}", demangled(function.name), offset);
+}
+
+}  // namespace inkwell::virtual_board

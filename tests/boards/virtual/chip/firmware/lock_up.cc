@@ -1,0 +1,17 @@
+// What most firmware does at its end: two calls deep it reads where nothing is, and the handler of HardFault holds a
+// breakpoint, which locks the processor up without a debugger.
+#include "support.hpp"
+
+extern "C" [[gnu::noinline]] std::uint32_t read_too_far(std::uint32_t address) { return word(address) + 1; }
+
+extern "C" [[gnu::noinline]] std::uint32_t sum_up(std::uint32_t count) {
+  std::uint32_t sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i) sum += read_too_far(0x6000'0000 + i);
+  return sum;
+}
+
+void run() {
+  set_handler(3, [] { asm volatile("bkpt #0"); });
+  results[0] = finished;
+  results[1] = sum_up(8);
+}

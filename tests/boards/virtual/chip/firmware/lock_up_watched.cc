@@ -1,0 +1,16 @@
+// Locks the processor up once, under a watchdog of 62.5 ms.
+#include "support.hpp"
+
+void run() {
+  if ((word(rcc::csr) & 1u << 29) != 0) {
+    results[0] = finished;
+    return;
+  }
+  word(0x40003000) = 0xCCCC;
+  word(0x40003000) = 0x5555;
+  word(0x40003004) = 0;
+  word(0x40003008) = 499;
+  word(0x40003000) = 0xAAAA;
+  set_handler(3, [] { asm volatile("bkpt #0"); });
+  word(0x60000000) = 0;
+}
