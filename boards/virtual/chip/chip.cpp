@@ -52,6 +52,7 @@ Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
 void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
 void Chip::request_stop() { parts_->execution.request_stop(); }
 
+DebugPort& Chip::debug_port() { return parts_->debug_port; }
 Scheduler& Chip::scheduler() { return parts_->events; }
 InterruptController& Chip::interrupts() { return parts_->machine.nvic; }
 InputPins& Chip::input_pins() { return parts_->pins; }

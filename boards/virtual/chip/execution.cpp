@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "semihosting.hpp"
 
@@ -98,6 +99,7 @@ Stop Execution::run_slices(Ticks when) {
     machine_.advance_circuit(Machine::advance_period / 2);
     reset_if_requested();
     if (stop_requested_) return Stop::requested;
+    if (std::exchange(stopped_by_debugger_, false)) return Stop::debugger;
     if (state_ == State::exited) return Stop::firmware_exit;
     if (state_ == State::locked_up && timeline.now() >= when) return Stop::locked_up;
     if (timeline.now() >= when) return Stop::time_reached;
@@ -106,15 +108,19 @@ Stop Execution::run_slices(Ticks when) {
       if (wakes()) {
         state_ = State::runs;
         processor_.anchor(timeline.now());
-        take_exception();
+        exception_may_be_due_ = true;
       } else {
         sleep_until(when);
         continue;
       }
     }
     if (machine_.nvic.take_newly_pending() && system_control_.sends_event_on_pending()) processor_.set_event_register();
-    const bool opened = processor_.take_masks_opened();
-    if (machine_.nvic.take_changed() || opened) take_exception();
+    exception_may_be_due_ |= processor_.take_masks_opened();
+    // Interrupts wait until a debugger's step is over.
+    if (!machine_.debugging.steps) {
+      exception_may_be_due_ |= machine_.nvic.take_changed();
+      if (std::exchange(exception_may_be_due_, false)) take_exception();
+    }
     if (state_ != State::runs) continue;
 
     const Ticks stop_at = std::min({timeline.next_wake(), when, machine_.last_advance + Machine::advance_period});
@@ -211,6 +217,12 @@ void Execution::raise_fault(unsigned exception, std::uint32_t configurable_bits,
 void Execution::handle_breakpoint() {
   const std::uint32_t address = processor_.program_counter();
   if (machine_.memory.half_word(address) != semihosting_breakpoint) {
+    if (machine_.debugging.attached) {
+      machine_.debugging.last_stop = {DebugStop::Reason::breakpoint, 0};
+      machine_.debugging.steps = false;
+      stopped_by_debugger_ = true;
+      return;
+    }
     // Without a debugger a breakpoint is a fault (ARMv7-M, C1.4.1).
     system_control_.record_fault(0, scb.hfsr.debugevt.mask());
     return raise_fault(exception_hard_fault, 0, at("breakpoint without a debugger at", address, address));
@@ -239,6 +251,7 @@ void Execution::handle(Outcome outcome) {
   const std::uint32_t address = processor_.fault_address(), program_counter = processor_.program_counter();
   switch (outcome) {
     case Outcome::slice_over: break;
+    case Outcome::debugger: stopped_by_debugger_ = true; return;
     case Outcome::wait_for_interrupt: state_ = State::sleeps; break;
     case Outcome::wait_for_event:
       if (!processor_.take_event_register()) state_ = State::waits_for_event;
@@ -277,7 +290,11 @@ void Execution::handle(Outcome outcome) {
       break;
   }
   // Entry, return and sleep change what may run next.
-  if (outcome != Outcome::slice_over && state_ == State::runs) take_exception();
+  if (outcome == Outcome::slice_over || state_ != State::runs) return;
+  if (machine_.debugging.steps || stopped_by_debugger_)
+    exception_may_be_due_ = true;
+  else
+    take_exception();
 }
 
 }  // namespace inkwell::virtual_board

@@ -58,7 +58,8 @@ class Execution {
   SystemControl& system_control_;
   Rcc& rcc_;
   State state_ = State::runs;
-  bool running_ = false, stop_requested_ = false;
+  bool running_ = false, stop_requested_ = false, stopped_by_debugger_ = false;
+  bool exception_may_be_due_ = false;  ///< what runs has changed since exceptions were looked at
   int exit_code_ = 0;
   std::string lockup_reason_;
   std::optional<Fault> first_fault_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clock.hpp"
+#include "debugging.hpp"
 #include "log.hpp"
 #include "memory.hpp"
 #include "nvic.hpp"
@@ -52,6 +53,7 @@ struct Machine {
   Memory memory;
   Nvic nvic;
   ClockTree clocks;
+  Debugging debugging;
   std::vector<ClockUser*> clock_users;
 
   Adcs* adcs = nullptr;

@@ -8,6 +8,7 @@
 
 #include "adc.hpp"
 #include "bus.hpp"
+#include "debug_port.hpp"
 #include "dma.hpp"
 #include "execution.hpp"
 #include "exti.hpp"
@@ -45,6 +46,7 @@ struct ChipParts {
   std::deque<Usart> usarts;  ///< by number - 1
   Processor processor{machine, bus};
   Execution execution{machine, processor, bus, system_control, rcc};
+  ChipDebugPort debug_port{machine, processor, execution, bus, system_control};
 
  private:
   void put(std::uint32_t base, const std::string& name, Peripheral& peripheral);

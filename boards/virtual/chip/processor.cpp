@@ -112,17 +112,6 @@ std::uint64_t Processor::cycles_until(Ticks when) const {
       1, (std::min(when - time, ticks_per_s) * clock.denominator + clock.numerator - 1) / clock.numerator);
 }
 
-CoreRegisters Processor::core_registers() const {
-  CoreRegisters registers;
-  for (unsigned i = 0; i <= 12; ++i) registers.general[i] = read(UC_ARM_REG_R0 + static_cast<int>(i));
-  registers.general[CoreRegisters::sp] = read(UC_ARM_REG_SP);
-  registers.general[CoreRegisters::lr] = read(UC_ARM_REG_LR);
-  registers.general[CoreRegisters::pc] = program_counter_ & ~1u;
-  constexpr std::uint32_t thumb = 1u << 24, exception = 0x1FF;
-  registers.xpsr = (read(UC_ARM_REG_XPSR) & ~exception) | thumb | current_exception_;
-  return registers;
-}
-
 Masks Processor::masks() const {
   return {(read(UC_ARM_REG_PRIMASK) & 1) != 0, (read(UC_ARM_REG_FAULTMASK) & 1) != 0, read(UC_ARM_REG_BASEPRI)};
 }
@@ -181,7 +170,7 @@ unsigned Processor::divide_wait(const BlockPrice::Divide& divide) const {
 }
 
 bool Processor::masks_open() {
-  if (machine_.nvic.next(masks()) == exception_none) return false;
+  if (machine_.debugging.steps || machine_.nvic.next(masks()) == exception_none) return false;
   masks_opened_ = true;
   return true;
 }
@@ -220,6 +209,7 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   self.cycles_ = self.block_start_ + starts[half_word];
   const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
   if (due && !self.in_if_then_block(static_cast<std::uint32_t>(address))) return self.stop();
+  if (self.machine_.debugging.attached && self.stop_for_debugger(static_cast<std::uint32_t>(address))) return;
   const std::size_t next = half_word + bytes / 2;
   self.instruction_end_ = self.block_start_ + (next < starts.size() ? starts[next] : self.block_->cycles);
   const auto& requests = self.block_->requests;

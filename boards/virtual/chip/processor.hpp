@@ -32,6 +32,7 @@ enum class Outcome : std::uint8_t {
   no_coprocessor,
   data_fault,         ///< nothing answers at fault_address()
   instruction_fault,  ///< nothing to execute at fault_address()
+  debugger,           ///< a breakpoint, a watch point, the end of a step
   execute_never,      ///< fault_address() is in a region without instructions
 };
 
@@ -88,6 +89,13 @@ class Processor final : public ClockUser {
     return value;
   }
   CoreRegisters core_registers() const;
+  /// All but the program counter and the exception of xPSR.
+  void set_core_registers(const CoreRegisters& registers);
+  FloatRegisters read_float_registers() const;
+  void write_float_registers(const FloatRegisters& registers);
+  /// Stops behind the instruction that touches the place.
+  uc_hook watch(const WatchPoint& watch_point);
+  void unwatch(uc_hook hook);
   void write(int id, std::uint32_t value) { uc_reg_write(engine_, id, &value); }
   std::uint32_t program_counter() const { return program_counter_; }
   void set_program_counter(std::uint32_t value) { program_counter_ = value; }
@@ -118,6 +126,8 @@ class Processor final : public ClockUser {
   static bool memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value,
                           void* self);
   static bool invalid_hook(uc_engine*, void* self);
+  static void watch_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value, void* self);
+  bool stop_for_debugger(std::uint32_t address);
   bool masks_open();
   /// Unicorn loses the conditions of an if-then block in which it is stopped.
   bool in_if_then_block(std::uint32_t address) const;

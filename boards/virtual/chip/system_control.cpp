@@ -146,7 +146,7 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
     case scb_base + scb.bfar: return bus_fault_address_;
     case scb_base + scb.afsr: return auxiliary_faults_;
     case fpu_cpacr_base + fpu_cpacr.cpacr: return coprocessor_access_;
-    case core_debug_base + core_debug.dhcsr: return 0;  // no debugger
+    case core_debug_base + core_debug.dhcsr: return core_debug.dhcsr.c_debugen.with(machine_.debugging.attached);
     case core_debug_base + core_debug.demcr: return debug_monitor_;
     case fpu_base + fpu.fpccr: return float_control_;
     case fpu_base + fpu.fpcar: return float_address_;

@@ -109,7 +109,9 @@ inline constexpr CoprocessorRegisters fpu_cpacr;
 inline constexpr std::uint32_t fpu_cpacr_base = 0xE000'ED88;
 
 struct CoreDebugRegisters {
-  Register dhcsr{"DHCSR", 0x00};
+  struct : Register {
+    Field c_debugen{"C_DEBUGEN", 0, 1, Access::r};
+  } dhcsr{{"DHCSR", 0x00}};
   struct : Register {
     Field vc_corereset{"VC_CORERESET", 0}, vc_mmerr{"VC_MMERR", 4}, vc_nocperr{"VC_NOCPERR", 5},
         vc_chkerr{"VC_CHKERR", 6}, vc_staterr{"VC_STATERR", 7}, vc_buserr{"VC_BUSERR", 8}, vc_interr{"VC_INTERR", 9},

@@ -3,12 +3,14 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "board.hpp"
 #include "control_server.hpp"
+#include "gdb_server.hpp"
 #include "log.hpp"
 #include "options.hpp"
 #include "simulation.hpp"
@@ -36,9 +38,13 @@ int main(int argc, char** argv) {
   try {
     ControlServer server(options.control_port);
     Board board(options, [&server] { server.wake(); });
-    fmt::print("ready usbip={} control={}\n", board.usb().port(), server.port());
+    std::optional<GdbServer> gdb;
+    if (options.gdb_port) gdb.emplace(*options.gdb_port, [&server] { server.wake(); });
+    fmt::print("ready usbip={} control={}", board.usb().port(), server.port());
+    if (gdb) fmt::print(" gdb={}", gdb->port());
+    fmt::print("\n");
     std::fflush(stdout);
-    return Simulation(options, board, server).run(end_requested);
+    return Simulation(options, board, server, gdb ? &*gdb : nullptr).run(end_requested);
   } catch (const std::exception& error) {
     log_line(error.what());
     return 1;

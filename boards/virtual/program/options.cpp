@@ -29,7 +29,8 @@ CommandLine read_command_line(int argc, char** argv) {
       "hand. Its USB device is exported by the USB/IP protocol; a control socket moves the hand, presses buttons, "
       "runs\n"
       "and stops the time, and tells what no real board could. Both listen on 127.0.0.1 only.\n"
-      "When it is ready it prints one line: ready usbip=PORT control=PORT. Its log goes to stderr."};
+      "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT if asked for. Its log goes to "
+      "stderr."};
   app.name("virtual-board");
   app.get_formatter()->column_width(30);
   app.add_option("--elf", options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
@@ -42,11 +43,18 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option("--control", options.control_port, "TCP port of the control socket; 0 is any free one")
       ->check(port)
       ->type_name("PORT");
+  std::uint16_t gdb_port = 0;
+  auto* gdb_option = app.add_option("--gdb", gdb_port,
+                                    "TCP port where GDB may connect (target remote :PORT), 0 is any free one; "
+                                    "--mode is exact")
+                         ->check(port)
+                         ->type_name("PORT");
   std::string mode = "fast";
-  app.add_option("--mode", mode, "exact: interrupts come at any instruction; fast: between blocks of instructions")
-      ->check(CLI::IsMember({"exact", "fast"}).description(""))
-      ->type_name("exact|fast")
-      ->capture_default_str();
+  auto* mode_option =
+      app.add_option("--mode", mode, "exact: interrupts come at any instruction; fast: between blocks of instructions")
+          ->check(CLI::IsMember({"exact", "fast"}).description(""))
+          ->type_name("exact|fast")
+          ->capture_default_str();
   std::string pricing = "likely";
   app.add_option("--pricing", pricing,
                  "what instructions cost where the sources leave a choice (docs/cycles.md); deadlines are judged by\n"
@@ -78,6 +86,14 @@ CommandLine read_command_line(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
+  }
+  if (*gdb_option) {
+    if (*mode_option && mode != "exact") {
+      std::cerr << "virtual-board: --gdb stops at any instruction; leave --mode fast out.\n";
+      return {std::nullopt, 2};
+    }
+    options.gdb_port = gdb_port;
+    mode = "exact";
   }
   options.mode = mode == "exact" ? Mode::exact : Mode::fast;
   options.pricing = pricing == "conservative" ? Pricing::conservative : Pricing::likely;

@@ -14,6 +14,7 @@ struct Options {
   std::filesystem::path arm;
   std::uint16_t usbip_port = 0;  ///< 0 is any free port
   std::uint16_t control_port = 0;
+  std::optional<std::uint16_t> gdb_port;
   Mode mode = Mode::fast;
   Pricing pricing = Pricing::likely;
   bool real_time = false;

@@ -21,10 +21,12 @@ constexpr int exit_code_of_lock_up = 3;
 
 }  // namespace
 
-Simulation::Simulation(const Options& options, Board& board, ControlServer& server)
+Simulation::Simulation(const Options& options, Board& board, ControlServer& server, GdbServer* gdb_server)
     : options_(options),
       board_(board),
       server_(server),
+      gdb_server_(gdb_server),
+      gdb_(board.chip()),
       passing_(options.paused ? Passing::not_at_all : Passing::freely) {
   start_pacing();
 }
@@ -32,6 +34,7 @@ Simulation::Simulation(const Options& options, Board& board, ControlServer& serv
 int Simulation::run(const std::atomic<bool>& end_requested) {
   const Ticks end = options_.seconds ? ticks(*options_.seconds) : std::numeric_limits<Ticks>::max();
   while (!quit_ && !end_requested && !firmware_exit_code_ && board_.chip().now() < end) {
+    if (gdb_server_ != nullptr) serve_debugger();
     if (auto request = server_.take(time_passes() ? Clock::time_point::min() : Clock::now() + attention)) {
       serve(std::move(*request));
       continue;
@@ -45,7 +48,19 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
 }
 
 bool Simulation::time_passes() const {
+  // As long as GDB is there, it alone stops and starts the time.
+  if (gdb_.attached()) return !gdb_.halted();
   return run_ || passing_ == Passing::freely || (passing_ == Passing::when_asked && board_.usb().is_asked());
+}
+
+void Simulation::serve_debugger() {
+  const auto arrived = gdb_server_->take();
+  if (arrived.connected) {
+    gdb_.attach();
+    log_line(board_.chip().now(), "GDB has connected: board time stands still");
+  }
+  gdb_server_->send(gdb_.receive(arrived.bytes));
+  if (arrived.gone && gdb_.attached()) gdb_.detach();
 }
 
 void Simulation::serve(ControlRequest request) {
@@ -64,9 +79,12 @@ void Simulation::advance() {
   Ticks target = (board_.chip().now() / slice + 1) * slice;
   if (run_) target = std::min(target, run_->end);
   if (options_.seconds) target = std::min(target, ticks(*options_.seconds));
-  switch (board_.run_until(target)) {
+  const Stop stop = board_.run_until(target);
+  if (gdb_server_ != nullptr) gdb_server_->send(gdb_.report(stop));
+  switch (stop) {
     case Stop::time_reached:
-    case Stop::requested: break;
+    case Stop::requested:
+    case Stop::debugger: break;
     case Stop::locked_up:
       end_run("the processor locked up: " + board_.chip().lockup_reason());
       // Nobody may be there to reset it: with --seconds the time goes on, as a watchdog may do so.

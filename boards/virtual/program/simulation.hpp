@@ -11,15 +11,19 @@
 #include <optional>
 #include <string>
 
+#include <debugger/gdb_session.hpp>
+
 #include "board.hpp"
 #include "control_server.hpp"
+#include "gdb_server.hpp"
 #include "options.hpp"
 
 namespace inkwell::virtual_board {
 
 class Simulation {
  public:
-  Simulation(const Options& options, Board& board, ControlServer& server);
+  /// `gdb_server` may be null.
+  Simulation(const Options& options, Board& board, ControlServer& server, GdbServer* gdb_server);
 
   /// Runs until a client quits, `end_requested` is set, the time of --seconds is over or the firmware ends.
   /// Without --seconds a locked-up board stands still, for somebody to look at it or reset it.
@@ -52,6 +56,7 @@ class Simulation {
     std::promise<nlohmann::json> reply;
   };
   bool time_passes() const;
+  void serve_debugger();
   void serve(ControlRequest request);
   void advance();
   void pace();
@@ -61,6 +66,8 @@ class Simulation {
   const Options& options_;
   Board& board_;
   ControlServer& server_;
+  GdbServer* gdb_server_;
+  GdbSession gdb_;
   Passing passing_;
   bool quit_ = false;
   std::optional<Run> run_;

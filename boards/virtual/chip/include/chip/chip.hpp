@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <chip/debug_port.hpp>
 #include <chip/interfaces.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -73,6 +74,7 @@ enum class Stop : std::uint8_t {
   firmware_exit,  ///< semihosting SYS_EXIT or SYS_EXIT_EXTENDED, see exit_code()
   locked_up,  ///< time reached, but the processor is locked up: only reset() or a watchdog helps. See lockup_reason()
   requested,  ///< request_stop()
+  debugger,   ///< a breakpoint, a watch point or the end of a step: see debug_port()
 };
 
 /// Frequencies that firmware has set up, in Hz; 0 is a clock that stands still.
@@ -81,13 +83,6 @@ struct Clocks {
   std::uint32_t timer1_Hz;  ///< timers on APB1
   std::uint32_t timer2_Hz;  ///< timers on APB2
   std::uint32_t usb_Hz;     ///< PLL48CLK
-};
-
-/// What the core's programmer sees, without the FPU.
-struct CoreRegisters {
-  std::array<std::uint32_t, 16> general{};  ///< R0 to R12, SP, LR, PC
-  std::uint32_t xpsr = 0;
-  static constexpr unsigned sp = 13, lr = 14, pc = 15;
 };
 
 /// A fault as the processor met it.
@@ -121,6 +116,7 @@ class Chip {
   void request_stop();
 
   Scheduler& scheduler();
+  DebugPort& debug_port();
   InterruptController& interrupts();
   InputPins& input_pins();
   UnmodelledLog& unmodelled_log();

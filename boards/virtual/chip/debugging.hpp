@@ -1,0 +1,35 @@
+// What a debugger has asked of the processor.
+#pragma once
+
+#include <chip/debug_port.hpp>
+#include <cstdint>
+#include <optional>
+#include <set>
+
+namespace inkwell::virtual_board {
+
+struct Debugging {
+  bool attached = false;
+  bool steps = false;
+  std::set<std::uint32_t> breakpoints;
+  /// Where it goes on from: this place has been reported already.
+  std::optional<std::uint32_t> resumed_at;
+  /// A watch point that the current instruction has touched, by the address.
+  std::optional<std::uint32_t> touched;
+  DebugStop last_stop;
+
+  /// Whether to stop before the instruction at `address`.
+  bool stops_at(std::uint32_t address) const {
+    return touched || (steps && !resumed_at) || (resumed_at != address && breakpoints.contains(address));
+  }
+  void note_stop_at(std::uint32_t address) {
+    if (touched)
+      last_stop = {DebugStop::Reason::watch_point, *touched};
+    else
+      last_stop = {breakpoints.contains(address) ? DebugStop::Reason::breakpoint : DebugStop::Reason::step, 0};
+    touched.reset();
+    steps = false;
+  }
+};
+
+}  // namespace inkwell::virtual_board
