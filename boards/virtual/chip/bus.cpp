@@ -121,6 +121,7 @@ void Bus::settle_processor() {
 std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
   machine_.processor->wait_for_register(address, false);
   synchronise();
+  const Log::Access access(machine_.log);
   std::uint32_t value = 0;
   if (address >= private_base) {
     value = system_control_.read(address, size);
@@ -140,6 +141,7 @@ std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
 void Bus::write(std::uint32_t address, std::uint32_t value, unsigned size) {
   machine_.processor->wait_for_register(address, true);
   synchronise();
+  const Log::Access access(machine_.log);
   if (address >= private_base) {
     system_control_.write(address, value, size);
   } else if (address - sram_alias_base < sram_alias_bytes) {

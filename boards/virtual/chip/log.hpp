@@ -16,12 +16,25 @@ class Log final : public UnmodelledLog {
     if (!sink_) sink_ = [](const std::string& line) { std::fprintf(stderr, "chip: %s\n", line.c_str()); };
   }
   void say(const std::string& line) { sink_(line); }
-  /// Says each line once.
+  /// Says each line once, with the code that made the first access of a register it is about.
   void say_once(const std::string& line) {
     if (!said_.insert(line).second) return;
-    unmodelled_.push_back(line);
-    sink_(line);
+    unmodelled_.push_back(accessing_ && code ? line + ", " + code() : line);
+    sink_(unmodelled_.back());
   }
+  /// While it lives, lines are about what the processor does with a register.
+  class Access {
+   public:
+    explicit Access(Log& log) : log_(log) { log_.accessing_ = true; }
+    ~Access() { log_.accessing_ = false; }
+    Access(const Access&) = delete;
+    Access& operator=(const Access&) = delete;
+
+   private:
+    Log& log_;
+  };
+  /// The code that runs, in words.
+  std::function<std::string()> code;
   void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) override {
     char text[64];
     if (write)
@@ -39,6 +52,7 @@ class Log final : public UnmodelledLog {
   std::function<void(const std::string&)> sink_;
   std::set<std::string> said_, places_;
   std::vector<std::string> unmodelled_;
+  bool accessing_ = false;
 };
 
 }  // namespace inkwell::virtual_board

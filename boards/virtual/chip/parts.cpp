@@ -1,5 +1,6 @@
 #include "parts.hpp"
 
+#include <cstdio>
 #include <cstring>
 
 #include "crc.hpp"
@@ -71,6 +72,15 @@ void ChipParts::put(std::uint32_t base, const std::string& name, Peripheral& per
 
 ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(circuit, options) {
   machine.processor = &processor;
+  machine.log.code = [this] {
+    const std::uint32_t address = processor.code_address();
+    char text[64];
+    std::snprintf(text, sizeof text, "by the code %s 0x%08X",
+                  machine.options.mode == Mode::exact ? "at" : "that begins at", static_cast<unsigned>(address));
+    const auto& name = machine.options.name_of_code;
+    const std::string function = name ? name(address) : std::string();
+    return function.empty() ? text : text + (" " + function);
+  };
   for (unsigned i = 0; i < std::size(usart_places); ++i)
     usarts.emplace_back(machine, i + 1, usart_places[i].position,
                         usart_places[i].place.clock.enable_register == map.apb2enr);

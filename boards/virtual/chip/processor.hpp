@@ -100,6 +100,8 @@ class Processor final : public ClockUser {
   std::uint32_t program_counter() const { return program_counter_; }
   void set_program_counter(std::uint32_t value) { program_counter_ = value; }
   Masks masks() const;
+  /// Of the current instruction (fast mode: of the current block).
+  std::uint32_t code_address() const { return last_code_address_; }
   unsigned current_exception() const { return current_exception_; }
   std::uint32_t fault_address() const { return fault_address_; }
   bool take_event_register() { return std::exchange(event_register_, false); }

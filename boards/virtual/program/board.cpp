@@ -30,8 +30,10 @@ Board::Board(const Options& options, std::function<void()> on_usb_request)
       plant_(arms::read(options.arm), {.seed = options.seed}),
       chip_(plant_, {.mode = options.mode,
                      .pricing = options.pricing,
+                     .crystal_Hz = options.crystal_Hz,
                      .random_seed = static_cast<std::uint32_t>(options.seed),
-                     .log = [](const std::string& line) { log_line(line); }}) {
+                     .log = [](const std::string& line) { log_line(line); },
+                     .name_of_code = [this](std::uint32_t address) { return symbols_.name(address); }}) {
   chip_.load_elf(elf_);
   symbols_ = Symbols(elf_);
   try {

@@ -62,6 +62,10 @@ CommandLine read_command_line(int argc, char** argv) {
       ->check(CLI::IsMember({"likely", "conservative"}).description(""))
       ->type_name("likely|conservative")
       ->capture_default_str();
+  app.add_option("--crystal", options.crystal_Hz, "frequency of the crystal at the pins OSC, 4 to 26 MHz")
+      ->check(CLI::Range(4'000'000, 26'000'000).description(""))
+      ->type_name("HZ")
+      ->capture_default_str();
   app.add_flag("--real-time", options.real_time, "keep board time from running ahead of the clock on the wall");
   app.add_option("--seed", options.seed, "of all noise; the same seed and commands give the same run")
       ->type_name("N")

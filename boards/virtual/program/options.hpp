@@ -17,6 +17,7 @@ struct Options {
   std::optional<std::uint16_t> gdb_port;
   Mode mode = Mode::fast;
   Pricing pricing = Pricing::likely;
+  std::uint32_t crystal_Hz = 8'000'000;
   bool real_time = false;
   std::uint64_t seed = 1;
   std::optional<double> seconds;  ///< of board time, after which the program ends

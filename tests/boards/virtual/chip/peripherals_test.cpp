@@ -185,6 +185,7 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(7) == 0);
     REQUIRE(test.log.size() == 1);
     CHECK(test.log[0].find("CRC is used while its clock is off") != std::string::npos);
+    CHECK(test.log[0].find(", by the code that begins at 0x080") != std::string::npos);
   }
 
   TEST_CASE("pins, bit-band, identity, flash and USART") {

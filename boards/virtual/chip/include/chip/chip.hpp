@@ -40,6 +40,8 @@ struct ChipOptions {
   std::uint32_t random_seed = 1;                                                  ///< of the RNG peripheral
   /// Takes each line of the log (without a newline); by default it goes to stderr.
   std::function<void(const std::string&)> log;
+  /// The function at an address, for lines of the log; may give nothing. By default there are no names.
+  std::function<std::string(std::uint32_t address)> name_of_code;
 };
 
 /// RCC_CSR's reset flags, in the order of its bits 26..31.
