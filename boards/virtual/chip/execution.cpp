@@ -276,6 +276,10 @@ void Execution::handle(Outcome outcome) {
       raise_fault(exception_usage_fault, scb.cfsr.nocp.mask(),
                   at("coprocessor instruction at", program_counter, program_counter));
       break;
+    case Outcome::division_by_zero:
+      raise_fault(exception_usage_fault, scb.cfsr.divbyzero.mask(),
+                  at("division by zero at", program_counter, program_counter));
+      break;
     case Outcome::data_fault:
       system_control_.record_bus_fault_address(address);
       raise_fault(exception_bus_fault, scb.cfsr.preciserr.mask() | scb.cfsr.bfarvalid.mask(),

@@ -131,6 +131,7 @@ Outcome Processor::run(std::uint64_t cycles) {
   program_counter_ = read(UC_ARM_REG_PC) & ~1u;
   if (!stopped_ && block_ != nullptr) cycles_ = instruction_end_;
   if (!flash_stores_.empty()) finish_flash_stores();
+  if (!new_divides_.empty()) ask_about_new_divides();
   if (outcome_ != Outcome::slice_over) return outcome_;
   if (error == UC_ERR_INSN_INVALID) return Outcome::undefined_instruction;
   if (error == UC_ERR_FETCH_UNMAPPED || error == UC_ERR_FETCH_PROT) {
@@ -192,6 +193,8 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
     self.next_request_ = 0;
     return;
   }
+  if (self.machine_.traps_zero_division && self.has_new_divides(block) && !self.begins_in_if_then_block(start))
+    return self.stop();
   self.last_code_address_ = start;
   self.last_code_bytes_ = size;
   self.cycles_ += self.timing_.wait_for_flash(block, self.cycles_, self.register_reader()) + block.cycles;
@@ -210,6 +213,11 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
   const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
   if (due && !self.in_if_then_block(static_cast<std::uint32_t>(address))) return self.stop();
   if (self.machine_.debugging.attached && self.stop_for_debugger(static_cast<std::uint32_t>(address))) return;
+  if (self.machine_.traps_zero_division && !self.block_->divides.empty() &&
+      self.divides_by_zero(static_cast<std::uint32_t>(address))) {
+    self.outcome_ = Outcome::division_by_zero;
+    return self.stop();
+  }
   const std::size_t next = half_word + bytes / 2;
   self.instruction_end_ = self.block_start_ + (next < starts.size() ? starts[next] : self.block_->cycles);
   const auto& requests = self.block_->requests;

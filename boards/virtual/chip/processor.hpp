@@ -6,6 +6,7 @@
 #include <array>
 #include <chip/chip.hpp>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <timing/cycle_counter.hpp>
 #include <timing/peripheral_bus.hpp>
@@ -30,6 +31,7 @@ enum class Outcome : std::uint8_t {
   undefined_instruction,
   invalid_state,  ///< a branch out of Thumb state
   no_coprocessor,
+  division_by_zero,
   data_fault,         ///< nothing answers at fault_address()
   instruction_fault,  ///< nothing to execute at fault_address()
   debugger,           ///< a breakpoint, a watch point, the end of a step
@@ -130,6 +132,13 @@ class Processor final : public ClockUser {
   static bool invalid_hook(uc_engine*, void* self);
   static void watch_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value, void* self);
   bool stop_for_debugger(std::uint32_t address);
+  // division.cpp
+  /// The instruction at `address` divides by zero, outside of if-then blocks.
+  bool divides_by_zero(std::uint32_t address) const;
+  /// Fast mode: whether the block has divides that are not asked about yet; they are after the slice.
+  bool has_new_divides(const BlockPrice& block);
+  void ask_about_new_divides();
+  static void divide_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   bool masks_open();
   /// Unicorn loses the conditions of an if-then block in which it is stopped.
   bool in_if_then_block(std::uint32_t address) const;
@@ -180,6 +189,8 @@ class Processor final : public ClockUser {
     unsigned size;
   };
   std::vector<FlashStore> flash_stores_;
+  std::set<std::uint32_t> divides_asked_about_;
+  std::vector<std::uint32_t> new_divides_;
   std::vector<Running> running_;
   std::uint64_t counted_until_ = 0;  ///< cycles
   Counters counters_;

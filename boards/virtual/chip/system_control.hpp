@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "machine.hpp"
+#include "memory_protection.hpp"
 #include "system_map.hpp"
 
 namespace inkwell::virtual_board {
@@ -63,6 +64,7 @@ class SystemControl {
 
   Machine& machine_;
   SysTick systick_;
+  MemoryProtection memory_protection_;
   std::uint32_t vector_table_ = 0, sleep_control_ = 0, configuration_ = scb.ccr.reset_value, reset_control_ = 0;
   std::uint32_t configurable_faults_ = 0, hard_faults_ = 0, debug_faults_ = 0;
   std::uint32_t memory_fault_address_ = 0, bus_fault_address_ = 0, auxiliary_faults_ = 0;

@@ -66,6 +66,42 @@ TEST_SUITE("virtual chip: processor") {
     CHECK(test.chip.run_until(test.chip.now() + ticks(10e-6)) == Stop::time_reached);
   }
 
+  TEST_CASE("division by zero gives 0, or a fault if firmware asks for it") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("division", mode);
+      test.run_for(0.001);
+      REQUIRE(test.result(0) == finished);
+      CHECK(test.result(1) == 0);
+      CHECK(test.result(2) == 0);
+      CHECK(test.result(3) == 3);
+      CHECK(test.result(4) == 0);
+      CHECK(test.result(5) == 77);  // nothing was written
+      CHECK(test.result(6) == 1);
+      CHECK(test.result(7) == 1u << 25);  // DIVBYZERO
+      CHECK(test.result(8) == 0xFBB0);    // the stacked program counter is the divide's
+      CHECK(test.result(9) == 0);
+      CHECK(test.result(10) == 1);
+      CHECK(test.log.empty());
+    }
+  }
+
+  TEST_CASE("the memory protection unit keeps eight regions, and says that it does not check") {
+    ChipUnderTest test("memory_protection");
+    test.run_for(0.001);
+    REQUIRE(test.result(0) == finished);
+    CHECK(test.result(1) == 0x800);
+    CHECK(test.result(2) == 5);
+    CHECK(test.result(3) == 0x0800'0005);
+    CHECK(test.result(4) == 0x2000'0003);
+    CHECK(test.result(5) == 0x0306'0021);
+    CHECK(test.result(6) == 0);
+    CHECK(test.result(7) == 5);
+    REQUIRE(test.log.size() == 1);
+    CHECK(test.log[0].find("MPU") != std::string::npos);
+    CHECK(test.log[0].find(", by the code at 0x080") != std::string::npos);
+  }
+
   TEST_CASE("a fault whose handler is missing locks up, and the missing handler is named") {
     ChipUnderTest test("no_handler");
     REQUIRE(test.chip.run_until(ticks(0.001)) == Stop::locked_up);
