@@ -6,13 +6,21 @@
 
 namespace inkwell::application {
 
+/// The loops overshoot by a twentieth at most (the current loop's tests), and the amplifiers' offsets come on top.
+constexpr bool can_be_supervised(protocol::Parameter current_limit) {
+  return info(current_limit).maximum * 1.05f + control::CurrentOffsets::plausible_A < board::current_measurable_A;
+}
+static_assert(can_be_supervised(protocol::Parameter::current_limit_1_A) &&
+                  can_be_supervised(protocol::Parameter::current_limit_2_A) &&
+                  can_be_supervised(protocol::Parameter::current_limit_3_A),
+              "a current at its limit would be taken for one that cannot be measured");
 static_assert(board::servo_rate_Hz == protocol::servo_rate_Hz, "board and protocol count time in the same periods");
 
 INKWELL_CORE_COUPLED Part<drivers::Bridges> bridges;
 INKWELL_CORE_COUPLED Part<drivers::Encoders> encoders;
 INKWELL_CORE_COUPLED Part<drivers::Switches> switches;
 INKWELL_CORE_COUPLED control::Controller controller{
-    {board::supply_minimum_V, board::supply_maximum_V, board::duty_limit}};
+    {board::supply_minimum_V, board::supply_maximum_V, board::duty_limit, board::current_measurable_A}};
 
 // In main memory: one is written by the DMA controller, the other is large.
 Part<drivers::AnalogInputs> analog_inputs;

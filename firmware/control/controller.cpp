@@ -17,9 +17,10 @@ bool is_closed(std::uint8_t switches, protocol::Switch which) {
   return (switches & static_cast<std::uint8_t>(which)) != 0;
 }
 
-bool beyond(const Triple& values, const Triple& bounds) {
+/// Beyond its limit, or so near to a rail of its sensor that the true current may be any.
+bool over_current(const Triple& current_A, const Triple& limit_A, const Triple& reading_A, float measurable_A) {
   for (std::size_t i = 0; i < 3; ++i)
-    if (std::fabs(values[i]) > bounds[i]) return true;
+    if (std::fabs(current_A[i]) > limit_A[i] || std::fabs(reading_A[i]) > measurable_A) return true;
   return false;
 }
 
@@ -146,7 +147,8 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       .supply_low = (supply_.supply_V < board_.supply_minimum_V),
       .supply_high = (supply_.supply_V > board_.supply_maximum_V),
       .bridge_fault = samples.bridge_fault,
-      .over_current = beyond(current_A_, settings.limits.over_current_A),
+      .over_current =
+          over_current(current_A_, settings.limits.over_current_A, samples.current_A, board_.current_measurable_A),
       .encoder_implausible = joints_implausible(joint_rad_, settings.arm.transmission, settings.limits),
       .over_speed = dot(velocity_m_per_s_, velocity_m_per_s_) > settings.limits.speed_limit_squared_m2_per_s2,
       .host_silent = host_silence_periods_ > settings.limits.host_timeout_periods};

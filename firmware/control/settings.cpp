@@ -84,7 +84,8 @@ HeatScale heat(const ParameterSet& set) {
 }
 
 Limits limits(const ParameterSet& set) {
-  // Half above the limit, but never so low that the sensors' noise reaches it.
+  // Half above the limit, but never so low that the sensors' noise reaches it. Where this is more than the board can
+  // measure, the board's bound comes first (BoardLimits).
   constexpr float over_current_ratio = 1.5f;
   constexpr float over_current_minimum_A = 0.5f;
   // Counts may be lost or the stops yield a little before the angles are called impossible.

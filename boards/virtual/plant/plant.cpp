@@ -141,7 +141,8 @@ double Plant::analog_V(char port, unsigned pin, Ticks now) {
       const double volts = static_cast<double>(board::shunt_amplifier_offset_V) + imperfections_.amplifier_offset_V[i] +
                            V_per_A * (1.0 + imperfections_.amplifier_gain_error[i]) * motors_[i].amplifier_A() +
                            noise(imperfections_.amplifier_noise_V);
-      return std::clamp(volts, 0.0, reference_V);
+      constexpr double headroom_V = static_cast<double>(board::shunt_amplifier_headroom_V);
+      return std::clamp(volts, headroom_V, reference_V - headroom_V);
     }
     if (board::gimbal[i].pin == wanted)
       return std::clamp(gimbal_V(i) + noise(imperfections_.wiper_noise_V), 0.0, reference_V);

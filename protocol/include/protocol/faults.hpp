@@ -37,7 +37,7 @@ inline constexpr auto state_table = std::to_array<StateInfo>({
   X(2, supply_low, "The supply of the bridges is below 12 V.", "Check the 18 V supply and its fuse, then clear the fault.")       \
   X(3, supply_high, "The supply of the bridges is above 24 V.", "Use an 18 V supply; if it rises while the arm is moved fast, add bulk capacitance. Then clear the fault.") \
   X(4, current_sensor, "A current sensor does not read zero while its bridge is off.", "Check the shunt amplifier of that motor and its 1.65 V reference, then reset the board.") \
-  X(5, over_current, "A motor current exceeded its limit by half.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
+  X(5, over_current, "A motor current exceeded its limit by half, or what its sensor can measure.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
   X(6, over_speed, "The probe moved faster than speed_limit_m_per_s.", "Hold the stylus, lower wall_stiffness_N_per_m if it was thrown out of a wall, then clear the fault.") \
   X(7, encoder_implausible, "A joint angle lies far beyond its stop, so encoder counts were lost or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \
   X(8, host_silent, "The host was silent for longer than host_timeout_s while the force was on.", "Reconnect the companion and switch the force on again.") \

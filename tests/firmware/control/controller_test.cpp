@@ -297,6 +297,56 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
 }
 
 TEST_CASE("test pulses run in `ready` only, and not for motors or times that make no sense") {
+/// What the sensor of a motor shows: its amplifier follows the current to 0.2 V below its rails, here 3.6 A.
+float shown_A(float current_A) { return std::clamp(current_A, -3.6f, 3.6f); }
+
+TEST_CASE("a current that its sensor cannot show trips within two control periods, at the largest limit too") {
+  constexpr float resistance_ohm = 2.18f, inductance_H = 0.238e-3f;
+  for (const float amplitude_V : {16.0f, -16.0f}) {
+    CAPTURE(amplitude_V);
+    Settings settings = settings_near_wall();
+    protocol::ParameterSet set = tests::paper_parameters();
+    set[protocol::Parameter::current_limit_1_A] = info(protocol::Parameter::current_limit_1_A).maximum;
+    settings.limits = control::prepare(set).limits;
+    settings.motors = control::prepare(set).motors;
+    Controller controller = tests::ready_controller(settings);
+    Samples samples = tests::samples_at_rest();
+    controller.carry_out(pulse(Command::test_voltage, 1, amplitude_V, 0.5f));
+    float current_A = 0.0f, applied_V = 0.0f;
+    int periods_beyond = 0;
+    for (int period = 0; period < 1'000; ++period) {
+      samples.current_A[0] = shown_A(current_A);
+      const Drive drive = tests::run(controller, samples, settings, 1);
+      if (controller.state() == State::fault) break;
+      const float settled_A = applied_V / resistance_ohm;
+      current_A =
+          settled_A + (current_A - settled_A) * std::exp(-protocol::servo_period_s * resistance_ohm / inductance_H);
+      if (std::abs(current_A) > tests::board_limits.current_measurable_A) ++periods_beyond;
+      applied_V = drive.enabled ? drive.duty[0] * samples.supply_V : 0.0f;
+    }
+    CHECK(controller.fault() == Fault::over_current);
+    CHECK(periods_beyond >= 1);
+    CHECK(periods_beyond <= 2);
+  }
+}
+
+TEST_CASE("a reading near a rail of its sensor is an over-current whatever the offset is") {
+  const Settings settings = settings_near_wall();
+  for (const float offset_A : {-0.2f, 0.2f}) {
+    Samples samples = tests::samples_at_rest();
+    samples.current_A[1] = offset_A;
+    Controller controller{tests::board_limits};
+    tests::run(controller, samples, settings, 2'100);
+    REQUIRE(controller.state() == State::unreferenced);
+    samples.current_A[1] = std::copysign(tests::board_limits.current_measurable_A - 0.01f, offset_A);
+    tests::run(controller, samples, settings, 1);
+    CHECK(controller.state() == State::unreferenced);
+    samples.current_A[1] = std::copysign(tests::board_limits.current_measurable_A + 0.01f, offset_A);
+    tests::run(controller, samples, settings, 1);
+    CHECK(controller.fault() == Fault::over_current);
+  }
+}
+
   const Settings settings = settings_near_wall();
   const auto enabled_after = [&](Controller controller, const protocol::CommandReport& command) {
     controller.carry_out(command);

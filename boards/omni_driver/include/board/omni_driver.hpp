@@ -147,7 +147,15 @@ inline constexpr float shunt_amplifier_offset_V = adc_reference_V / 2;  ///< out
 /// Positive current flows from leg A through the motor to leg B and raises the reading.
 inline constexpr float current_step_A = adc_step_V / (shunt_ohm * shunt_amplifier_gain);
 inline constexpr float current_range_A = shunt_amplifier_offset_V / (shunt_ohm * shunt_amplifier_gain);
-static_assert(current_range_A > 4.0f, "the range must reach beyond the largest current limit by a third");
+/// The amplifiers run from the converters' 3.3 V; this near to either rail their output need not follow the current any
+/// more (INA240 data sheet, "Swing to VS power supply rail").
+inline constexpr float shunt_amplifier_headroom_V = 0.2f;
+inline constexpr float current_linear_A =
+    (shunt_amplifier_offset_V - shunt_amplifier_headroom_V) / (shunt_ohm * shunt_amplifier_gain);
+/// A reading beyond it may be an amplifier at its rail, whatever the current is. The twentieth is for the errors of
+/// shunt, gain, amplifier offset and reference.
+inline constexpr float current_measurable_A = 0.95f * current_linear_A;
+static_assert(current_measurable_A < current_linear_A && current_linear_A < current_range_A);
 
 /// Supply through 100 k over 10 k.
 inline constexpr float supply_divider = 11.0f;

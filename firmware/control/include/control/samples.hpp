@@ -26,9 +26,10 @@ struct Drive {
 
 /// What the board can bear and do. A fact of the board, so the application hands it in.
 struct BoardLimits {
-  float supply_minimum_V;  ///< below it: fault supply_low
-  float supply_maximum_V;  ///< above it: fault supply_high
-  float duty_limit;        ///< largest magnitude of a duty, 0..1
+  float supply_minimum_V;      ///< below it: fault supply_low
+  float supply_maximum_V;      ///< above it: fault supply_high
+  float duty_limit;            ///< largest magnitude of a duty, 0..1
+  float current_measurable_A;  ///< beyond it a sensor may show less than there is: fault over_current
 };
 
 }  // namespace inkwell::control
