@@ -29,7 +29,8 @@ INKWELL_INTERRUPT control::Samples read_samples() {
                                  .gimbal_ratio = analog_inputs.gimbal_ratio(),
                                  .supply_V = analog_inputs.supply_V(),
                                  .switches = switch_bits(switches.read()),
-                                 .bridge_fault = bridges.fault()};
+                                 .bridge_fault = bridges.fault(),
+                                 .slow_age_periods = analog_inputs.slow_age_periods()};
   analog_inputs.start_slow_conversions();
   return samples;
 }

@@ -147,6 +147,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       .supply_low = (supply_.supply_V < board_.supply_minimum_V),
       .supply_high = (supply_.supply_V > board_.supply_maximum_V),
       .bridge_fault = samples.bridge_fault,
+      .samples_stale = samples.slow_age_periods > SupplyFilter::stale_periods,
       .over_current =
           over_current(current_A_, settings.limits.over_current_A, samples.current_A, board_.current_measurable_A),
       .encoder_implausible = joints_implausible(joint_rad_, settings.arm.transmission, settings.limits),

@@ -15,6 +15,7 @@ Fault find_fault(State state, const Conditions& conditions, Fault raised) {
   if (raised != Fault::none) return raised;
   if (conditions.not_finite) return Fault::not_finite;
   if (conditions.offsets_measured && !conditions.offsets_plausible) return Fault::current_sensor;
+  if (started && conditions.samples_stale) return Fault::samples_stale;
   if (started && conditions.supply_low) return Fault::supply_low;
   if (started && conditions.supply_high) return Fault::supply_high;
   if (started && conditions.bridge_fault) return Fault::bridge_fault;
@@ -32,6 +33,7 @@ bool cause_is_gone(Fault fault, const Conditions& conditions) {
     case Fault::supply_low: return !conditions.supply_low;
     case Fault::supply_high: return !conditions.supply_high;
     case Fault::bridge_fault: return !conditions.bridge_fault;
+    case Fault::samples_stale: return !conditions.samples_stale;
     case Fault::over_current: return !conditions.over_current;
     default: return true;
   }

@@ -37,10 +37,10 @@ static_assert(in_first_register(board::motor_current[0]) && in_first_register(bo
               in_first_register(board::gimbal[1]) && in_first_register(board::gimbal[2]) &&
               !in_first_register(board::supply));
 
-/// ADC_CR2 of ADC1 before and after it listens to TIM1.
-constexpr std::uint32_t adc1_unarmed = ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits;
-constexpr std::uint32_t adc1_armed =
-    adc1_unarmed | ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
+/// ADC_CR2 of ADC1: with and without DMA requests, and what makes it listen to TIM1.
+constexpr std::uint32_t adc1_without_requests = ADC1::CR2::ADON(1).bits;
+constexpr std::uint32_t adc1_with_requests = adc1_without_requests | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits;
+constexpr std::uint32_t adc1_armed = ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
 
 template <class Converter>
 void set_up_injected(const board::AnalogInput& input) {
@@ -68,19 +68,23 @@ void set_up_slow_sequence() {
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
-void set_up_memory_access(const volatile std::uint16_t* destination) {
+/// Sets the stream up from its first transfer; it must be off.
+INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destination) {
   constexpr std::uint32_t channel_adc1 = 0, half_word = 0b01, from_peripheral = 0b00;
+  DMA2::LIFCR::write(DMA2::LIFCR::CFEIF0(1), DMA2::LIFCR::CDMEIF0(1), DMA2::LIFCR::CTEIF0(1), DMA2::LIFCR::CHTIF0(1),
+                     DMA2::LIFCR::CTCIF0(1));
   DMA2::S0PAR::write(ADC1::DR::address);
   DMA2::S0M0AR::write(reinterpret_cast<std::uint32_t>(destination));
   DMA2::S0NDTR::write(slow_channels);
-  DMA2::LIFCR::write(DMA2::LIFCR::CFEIF0(1), DMA2::LIFCR::CDMEIF0(1), DMA2::LIFCR::CTEIF0(1), DMA2::LIFCR::CHTIF0(1),
-                     DMA2::LIFCR::CTCIF0(1));
   const auto control = DMA2::S0CR::CHSEL(channel_adc1).bits | DMA2::S0CR::DIR(from_peripheral).bits |
                        DMA2::S0CR::PSIZE(half_word).bits | DMA2::S0CR::MSIZE(half_word).bits |
                        DMA2::S0CR::MINC(1).bits | DMA2::S0CR::CIRC(1).bits;
   DMA2::S0CR::write(control);
   DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
 }
+
+/// Periods without a whole sequence after which it is taken for dead. One is missed when a control interrupt is late.
+constexpr std::uint32_t patience_periods = 4;
 
 /// 3 us after switching on, the converters are accurate (data sheet, ADC characteristics, t_STAB).
 constexpr std::uint32_t stabilisation_cycles = board::processor_Hz / 100'000;
@@ -108,19 +112,19 @@ void AnalogInputs::start() {
   set_up_slow_sequence();
   set_up_memory_access(slow_.data());
 
-  ADC1::CR2::write(adc1_unarmed);
+  ADC1::CR2::write(adc1_with_requests);
   ADC2::CR2::write(ADC2::CR2::ADON(1));
   ADC3::CR2::write(ADC3::CR2::ADON(1));
   wait(stabilisation_cycles);
   // The first control period finds gimbal and supply measured already.
-  ADC1::CR2::write(adc1_unarmed | ADC1::CR2::SWSTART::mask);
+  ADC1::CR2::write(adc1_with_requests | ADC1::CR2::SWSTART::mask);
   wait(board::servo_cycles);
 }
 
 void AnalogInputs::arm() {
   ADC3::CR2::write(ADC3::CR2::ADON(1), ADC3::CR2::JEXTSEL(trigger_tim1_trgo), ADC3::CR2::JEXTEN(rising_edge));
   ADC2::CR2::write(ADC2::CR2::ADON(1), ADC2::CR2::JEXTSEL(trigger_tim1_trgo), ADC2::CR2::JEXTEN(rising_edge));
-  ADC1::CR2::write(adc1_armed);
+  ADC1::CR2::write(adc1_with_requests | adc1_armed);
   using Line = InterruptLine<AnalogInputs, Interrupt::analog_converters>;
   Line::set_priority(Priority::first);
   Line::enable();
@@ -131,9 +135,33 @@ INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::take_currents_A() {
 }
 
 INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
-  // After an overrun the sequence before may still be running. Starting it again in the middle would shift all later
-  // results by a place; the count of transfers is full again exactly when a sequence is over.
-  if (DMA2::S0NDTR::read() == slow_channels) ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
+  if (slow_stopped_) return start_slow_again();
+  if (!DMA2::LISR::TCIF0::is_set()) {
+    // After a late control interrupt the sequence may still be running; starting it again in its middle would shift all
+    // later results by a place. An overrun of the converter or an error of the transfer ends it for good.
+    if (++slow_age_periods_ % patience_periods == 0) stop_slow();
+    return;
+  }
+  slow_age_periods_ = 0;
+  DMA2::LIFCR::write(DMA2::LIFCR::CTCIF0(1));
+  ADC1::CR2::write(adc1_with_requests | adc1_armed | ADC1::CR2::SWSTART::mask);
+}
+
+// The way back of RM0090, "Overrun detection", in two periods: a stream that is told to stop first finishes its
+// transfer, and nothing waits here. Without requests there is no overrun meanwhile.
+INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
+  ADC1::CR2::write(adc1_without_requests | adc1_armed);
+  DMA2::S0CR::write(0);
+  slow_stopped_ = true;
+}
+
+INKWELL_INTERRUPT void AnalogInputs::start_slow_again() {
+  ++slow_age_periods_;
+  slow_stopped_ = false;
+  set_up_memory_access(slow_.data());
+  // A result that nobody took would make the first new one an overrun again.
+  ADC1::SR::write(~(ADC1::SR::OVR::mask | ADC1::SR::EOC::mask));
+  ADC1::CR2::write(adc1_with_requests | adc1_armed | ADC1::CR2::SWSTART::mask);
 }
 
 INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::gimbal_ratio() const {

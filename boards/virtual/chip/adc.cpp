@@ -158,6 +158,7 @@ void Adc::finish_regular(Ticks now) {
   if (checks_overrun && (sr_ & end_of_conversion) != 0) {
     // The old result was not read: no more requests until firmware clears OVR.
     sr_ |= overrun;
+    regular_rank_ = 0;
     idle();
     return update_interrupt();
   }

@@ -189,6 +189,7 @@ TEST_CASE("what the samples can show wrong switches the bridges off with the rig
       {Fault::over_current, [](Samples& s) { s.current_A[2] = -3.8f; }, 1},
       {Fault::supply_low, [](Samples& s) { s.supply_V = 9.0f; }, 60},
       {Fault::supply_high, [](Samples& s) { s.supply_V = 27.0f; }, 60},
+      {Fault::samples_stale, [](Samples& s) { s.slow_age_periods = 21; }, 1},
       {Fault::not_finite, [](Samples& s) { s.current_A[0] = std::numeric_limits<float>::quiet_NaN(); }, 1},
       {Fault::not_finite, [](Samples& s) { s.supply_V = std::numeric_limits<float>::infinity(); }, 1},
       {Fault::encoder_implausible, [](Samples& s) { s.encoder_counts[0] += 12'000; }, 1},
@@ -296,7 +297,6 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
   CHECK(drive.duty[0] == doctest::Approx(16.0f / 18.0f).epsilon(1e-4));
 }
 
-TEST_CASE("test pulses run in `ready` only, and not for motors or times that make no sense") {
 /// What the sensor of a motor shows: its amplifier follows the current to 0.2 V below its rails, here 3.6 A.
 float shown_A(float current_A) { return std::clamp(current_A, -3.6f, 3.6f); }
 
@@ -347,6 +347,7 @@ TEST_CASE("a reading near a rail of its sensor is an over-current whatever the o
   }
 }
 
+TEST_CASE("test pulses run in `ready` only, and not for motors or times that make no sense") {
   const Settings settings = settings_near_wall();
   const auto enabled_after = [&](Controller controller, const protocol::CommandReport& command) {
     controller.carry_out(command);

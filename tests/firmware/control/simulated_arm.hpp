@@ -20,7 +20,8 @@ inline control::Samples samples_at_rest() {
           .gimbal_ratio = {0.5f, 0.5f, 0.5f},
           .supply_V = 18.0f,
           .switches = 0,
-          .bridge_fault = false};
+          .bridge_fault = false,
+          .slow_age_periods = 0};
 }
 
 inline protocol::CommandReport command(protocol::Command which) {

@@ -54,6 +54,7 @@ std::vector<FaultCase> fault_cases() {
   return {{Fault::not_finite, &Conditions::not_finite, all, false},
           {Fault::supply_low, &Conditions::supply_low, started, false},
           {Fault::supply_high, &Conditions::supply_high, started, false},
+          {Fault::samples_stale, &Conditions::samples_stale, started, false},
           {Fault::bridge_fault, &Conditions::bridge_fault, started, false},
           {Fault::over_current, &Conditions::over_current, started, false},
           {Fault::encoder_implausible, &Conditions::encoder_implausible, {State::ready, State::active}, true},

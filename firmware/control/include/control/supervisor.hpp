@@ -19,6 +19,7 @@
 //   current_sensor       | once the offsets are measured      | never: the board must be reset
 //   supply_low, _high    | unreferenced, ready, active        | the supply is within its bounds
 //   bridge_fault         | unreferenced, ready, active        | the fault line is released
+//   samples_stale        | unreferenced, ready, active        | supply and gimbal are measured again
 //   over_current         | unreferenced, ready, active        | the currents are within their bounds
 //   encoder_implausible  | ready, active                      | at once: the reference is given up with it
 //   over_speed           | active                             | at once
@@ -39,6 +40,7 @@ struct Conditions {
   bool supply_low = false;
   bool supply_high = false;
   bool bridge_fault = false;
+  bool samples_stale = false;
   bool over_current = false;
   bool encoder_implausible = false;
   bool over_speed = false;

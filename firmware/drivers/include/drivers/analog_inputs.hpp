@@ -43,16 +43,24 @@ class AnalogInputs {
   /// Acknowledges the interrupt.
   std::array<float, 3> take_currents_A();
 
-  /// Starts the conversion of gimbal and supply, which takes 30 us; call it once in a control period.
+  /// Starts the conversion of gimbal and supply, which takes 30 us; call it once in a control period. If conversions
+  /// stop coming, it sets converter and stream up again.
   void start_slow_conversions();
 
-  /// Voltage of the gimbal's potentiometers over that of their supply, 0..1, at most one control period old.
+  /// Voltage of the gimbal's potentiometers over that of their supply, 0..1.
   std::array<float, 3> gimbal_ratio() const;
   float supply_V() const;
+  /// Control periods for which gimbal and supply have not been measured anew; 0 or 1 while all is well.
+  std::uint32_t slow_age_periods() const { return slow_age_periods_; }
 
  private:
+  void stop_slow();
+  void start_slow_again();
+
   /// Written by the DMA controller, which reaches the main RAM only.
   std::array<volatile std::uint16_t, 4> slow_{};
+  std::uint32_t slow_age_periods_ = 0;
+  bool slow_stopped_ = false;  ///< to be set up again in the next period
 };
 
 }  // namespace inkwell::drivers

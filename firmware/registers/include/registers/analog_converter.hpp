@@ -8,8 +8,10 @@ namespace inkwell::registers {
 template <std::uint32_t base>
 struct AnalogConverter {
   struct SR : Register<base + 0x00> {
+    using EOC = Field<SR, 1, 1>;
     using JEOC = Field<SR, 2, 1>;
     using JSTRT = Field<SR, 3, 1>;
+    using OVR = Field<SR, 5, 1>;
   };
   struct CR1 : Register<base + 0x04> {
     using JEOCIE = Field<CR1, 7, 1>;

@@ -7,6 +7,9 @@ namespace inkwell::registers {
 
 template <std::uint32_t base>
 struct DirectMemoryAccess {
+  struct LISR : Register<base + 0x00> {
+    using TCIF0 = Field<LISR, 5, 1>;
+  };
   struct LIFCR : Register<base + 0x08> {
     using CFEIF0 = Field<LIFCR, 0, 1>;
     using CDMEIF0 = Field<LIFCR, 2, 1>;

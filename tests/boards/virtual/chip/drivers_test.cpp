@@ -1,0 +1,53 @@
+// Drivers of the firmware on the virtual chip, where the whole firmware gives no way to disturb them.
+#include <doctest/doctest.h>
+
+#include "chip_fixture.hpp"
+
+using namespace inkwell::virtual_board;
+using namespace inkwell::virtual_board::test;
+
+namespace {
+
+constexpr double control_period_s = 50e-6;
+
+struct SlowConversions : ChipUnderTest {
+  SlowConversions() : ChipUnderTest("slow_conversions", Mode::fast) {
+    show(18.0, 0.25);
+    chip.input_pins().drive('B', 12, PinLevel::high);
+    chip.input_pins().drive('A', 6, PinLevel::high);
+  }
+  void show(double supply_V, double gimbal_ratio) {
+    circuit.voltages = {{{'B', 0}, supply_V / 11.0}, {{'C', 3}, gimbal_ratio * 3.3}};
+  }
+  void run_to_period(std::uint32_t period) {
+    for (int i = 0; i < 1'000 && result(1) < period; ++i) run_for(control_period_s);
+    REQUIRE(result(1) >= period);
+  }
+  void check_shown(double supply_V, double gimbal_ratio) {
+    CHECK(result(4) == doctest::Approx(1000 * supply_V).epsilon(0.002));
+    CHECK(result(5) == doctest::Approx(1000 * gimbal_ratio).epsilon(0.002));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("supply and gimbal are measured again after an overrun and after an error of their transfer") {
+  SlowConversions test;
+  test.run_to_period(90);
+  REQUIRE(test.result(0) == finished);
+  CHECK(test.result(2) == 0);
+  test.check_shown(18.0, 0.25);
+
+  test.show(15.0, 0.5);
+  test.run_to_period(120);  // the stream was stopped in period 100
+  CHECK(test.result(2) > 2);
+  CHECK(test.result(2) < 10);
+  CHECK(test.result(3) == 0);
+  test.check_shown(15.0, 0.5);
+
+  test.show(21.0, 0.75);
+  test.run_to_period(220);  // the transfer failed in period 200
+  CHECK(test.result(2) < 10);
+  CHECK(test.result(3) == 0);
+  test.check_shown(21.0, 0.75);
+}

@@ -1,0 +1,58 @@
+// The firmware's own drivers of bridges and converters, with a fault put into the slow conversions in chosen periods: the
+// stream stopped in the middle of a sequence, and its destination moved to where the DMA controller cannot write.
+#include <analog_inputs.cpp>
+#include <bridges.cpp>
+
+#include "support.hpp"
+
+namespace {
+
+using namespace inkwell::drivers;
+
+AnalogInputs analog_inputs;
+Bridges bridges;
+
+void period() {
+  bridges.begin_period();
+  static_cast<void>(analog_inputs.take_currents_A());
+  const std::uint32_t age = analog_inputs.slow_age_periods();
+  if (age > results[2]) results[2] = age;
+  results[3] = age;
+  results[4] = static_cast<std::uint32_t>(analog_inputs.supply_V() * 1000.0f);
+  results[5] = static_cast<std::uint32_t>(analog_inputs.gimbal_ratio()[0] * 1000.0f);
+  analog_inputs.start_slow_conversions();
+  results[1] = results[1] + 1;
+}
+
+void stop_stream_in_the_middle() {
+  while (DMA2::S0NDTR::read() == 4) {
+  }
+  DMA2::S0CR::write(0);
+}
+
+void move_destination_out_of_reach() {
+  constexpr std::uint32_t core_coupled_memory = 0x1000'0000;
+  const std::uint32_t control = DMA2::S0CR::read();
+  DMA2::S0CR::write(control & ~DMA2::S0CR::EN::mask);
+  DMA2::S0M0AR::write(core_coupled_memory);
+  DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
+}
+
+}  // namespace
+
+void run() {
+  run_at_168_MHz();
+  word(rcc::ahb1enr) |= 7;
+  CycleCounter::start();
+  analog_inputs.start();
+  bridges.start();
+  set_handler(interrupt(18), period);
+  if (!bridges.wait_for_update()) return;
+  analog_inputs.arm();
+  results[0] = finished;
+  while (results[1] < 100) wait_for_interrupt();
+  stop_stream_in_the_middle();
+  while (results[1] < 200) wait_for_interrupt();
+  move_destination_out_of_reach();
+  for (;;) wait_for_interrupt();
+}
