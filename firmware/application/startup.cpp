@@ -1,6 +1,7 @@
 // From reset to main(): floating-point unit, memory, constructors.
 #include <algorithm>
 
+#include <registers/clock.hpp>
 #include <registers/processor.hpp>
 
 #include "handlers.hpp"
@@ -16,7 +17,22 @@ void copy(const std::uint32_t* image, std::uint32_t* begin, const std::uint32_t*
 
 }  // namespace
 
-extern "C" void reset_handler() {
+/// The stack lies in the core-coupled memory, whose clock runs after a reset, but not when the boot loader in the chip
+/// starts the program (AN2606: it leaves RCC_AHB1ENR at 0). Loader and reset both load the stack pointer.
+extern "C" [[gnu::naked]] void reset_handler() {
+  using registers::RCC;
+  asm volatile(
+      "ldr r0, =%c[clocks] \n"
+      "ldr r1, [r0] \n"
+      "orr r1, r1, %[core_coupled] \n"
+      "str r1, [r0] \n"
+      "ldr r1, [r0] \n"  // erratum "Delay after an RCC peripheral clock enabling"
+      "b start \n"
+      ".ltorg \n" ::[clocks] "i"(RCC::AHB1ENR::address),
+      [core_coupled] "i"(RCC::AHB1ENR::CCMDATARAMEN::mask));
+}
+
+extern "C" [[noreturn, gnu::used]] void start() {
   using registers::FPU_CPACR;
   using registers::SCB;
   // Before any instruction on a float, among them those that save registers on entry to an interrupt. That the
