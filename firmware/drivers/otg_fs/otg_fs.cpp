@@ -237,12 +237,14 @@ void OtgFs::fill(unsigned endpoint) {
 
 void OtgFs::begin_receive(unsigned endpoint) {
   using Control = Device::DOEPCTL;
-  // An endpoint that was stalled or reopened may still be enabled; its size then stands.
-  if (!Control::EPENA::from(Control::read(endpoint))) {
+  using Size = Device::DOEPTSIZ;
+  // An endpoint that was stalled or reopened may still be enabled, and while it counts a packet its size stands. It counts
+  // none if a bus reset came when the packet was in the FIFO already.
+  if (!Control::EPENA::from(Control::read(endpoint)) || Size::PKTCNT::from(Size::read(endpoint)) == 0) {
     if (endpoint == 0)
       write_control_out_size();
     else
-      Device::DOEPTSIZ::write(endpoint, Device::DOEPTSIZ::PKTCNT(1), Device::DOEPTSIZ::XFRSIZ(packet_size_maximum));
+      Size::write(endpoint, Size::PKTCNT(1), Size::XFRSIZ(packet_size_maximum));
   }
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }

@@ -39,12 +39,14 @@ bool OtgFs::start() {
   Core::GAHBCFG::modify(Core::GAHBCFG::GINT(0));
   Core::GUSBCFG::modify(Core::GUSBCFG::PHYSEL(1));
   if (!reset_core()) return false;
-  // PA9 drives a bridge, so the core may not sense VBUS there.
-  Core::GCCFG::write(Core::GCCFG::PWRDWN(1), Core::GCCFG::NOVBUSSENS(1));
+  Core::GCCFG::write(Core::GCCFG::PWRDWN(1));
   Core::GUSBCFG::modify(Core::GUSBCFG::FDMOD(1), Core::GUSBCFG::TRDT(turnaround_clocks));
   wait(mode_change_cycles);
 
+  // PA9 drives a bridge, so the core may not sense VBUS there and takes it to be present: D+ would rise, so the soft
+  // disconnection comes first.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
+  Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
   registers::OTG_FS_PWRCLK::PCGCCTL::write(0);  // the PHY's clock is never stopped
   set_address(0);
   fifo_memory::lay_out();
