@@ -9,7 +9,7 @@ namespace inkwell::link {
 ///
 /// There is one core, and the interrupt preempts the main loop but never the other way round. So the
 /// processor keeps the order by itself and only the compiler has to be told: what stands before `store`
-/// is written before it, what stands after `load` is read after it. No barrier instruction, no lock, and
+/// happens before it and what stands after it happens after it; what stands after `load` happens after it. No barrier instruction, no lock, and
 /// `load` then `store` is no atomic change: a word has one writer at a time.
 template <class T>
 class Shared {
@@ -27,6 +27,7 @@ class Shared {
   void store(T value) {
     std::atomic_signal_fence(std::memory_order_release);
     value_.store(value, std::memory_order_relaxed);
+    std::atomic_signal_fence(std::memory_order_seq_cst);
   }
 
  private:
