@@ -1,5 +1,6 @@
 #include "descriptors.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -80,14 +81,15 @@ constexpr auto report_descriptor =
 
 /// 2.01 tells that there is a binary object store.
 constexpr std::size_t usb_version = 0x0201;
-constexpr std::size_t device_version = 0x0100;
+/// Where bcdDevice stands in the device descriptor: it belongs to the firmware, not to the tables here.
+constexpr std::size_t device_version_at = 12;
 
 constexpr auto device =
     bytes(18, type(DescriptorType::device), low(usb_version), high(usb_version), 0, 0,
           0,  // class, subclass and protocol stand in the interfaces
           packet_size_maximum, low(identity::vendor_id), high(identity::vendor_id), low(identity::product_id),
-          high(identity::product_id), low(device_version), high(device_version), string(StringIndex::manufacturer),
-          string(StringIndex::product), string(StringIndex::serial_number), 1);
+          high(identity::product_id), 0, 0, string(StringIndex::manufacturer), string(StringIndex::product),
+          string(StringIndex::serial_number), 1);
 
 constexpr auto hid =
     bytes(9, type(DescriptorType::hid), 0x11, 0x01,  // HID 1.11
@@ -113,7 +115,7 @@ constexpr auto interfaces = join(interface(identity::hid_interface, 2, hid_class
 
 constexpr std::size_t configuration_size = 9 + interfaces.size();
 constexpr std::uint8_t self_powered = 0xC0;
-constexpr std::uint8_t bus_current_2mA = 50;  ///< the logic may take 100 mA from the bus, the motors none
+constexpr std::uint8_t bus_current_2mA = 0;  ///< the board has a supply of its own, which feeds its logic too
 
 constexpr auto configuration =
     join(bytes(9, type(DescriptorType::configuration), low(configuration_size), high(configuration_size),
@@ -158,7 +160,15 @@ constexpr auto object_store = [] {
 
 }  // namespace
 
-std::span<const std::byte> device_descriptor() { return std::as_bytes(std::span(device)); }
+std::span<const std::byte> device_descriptor(std::span<std::byte> buffer,
+                                             const std::array<std::uint8_t, 3>& firmware_version) {
+  const auto digit = [](std::uint8_t number) { return std::min<unsigned>(number, 9); };
+  const auto [major, minor, patch] = firmware_version;
+  std::ranges::copy(std::as_bytes(std::span(device)), buffer.begin());
+  buffer[device_version_at] = static_cast<std::byte>(digit(minor) << 4 | digit(patch));
+  buffer[device_version_at + 1] = static_cast<std::byte>(major / 10 << 4 | major % 10);
+  return buffer.first(device.size());
+}
 std::span<const std::byte> configuration_descriptor() { return std::as_bytes(std::span(configuration)); }
 std::span<const std::byte> binary_object_store() { return std::as_bytes(std::span(object_store)); }
 std::span<const std::byte> hid_descriptor() { return std::as_bytes(std::span(hid)); }

@@ -29,7 +29,10 @@ inline constexpr std::uint8_t microsoft_request = 0x20;
 /// wIndex of that request.
 inline constexpr std::uint16_t microsoft_descriptor_index = 7;
 
-std::span<const std::byte> device_descriptor();
+/// Made in `buffer`. bcdDevice is the firmware's version, 1.2.3 as 0x0123 (numbers above 9 as 9): a host that keeps
+/// what it has learnt of a device keeps it for that version.
+std::span<const std::byte> device_descriptor(std::span<std::byte> buffer,
+                                             const std::array<std::uint8_t, 3>& firmware_version);
 std::span<const std::byte> configuration_descriptor();
 std::span<const std::byte> binary_object_store();
 std::span<const std::byte> hid_descriptor();

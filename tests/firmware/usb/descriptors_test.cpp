@@ -69,6 +69,7 @@ TEST_CASE("the device descriptor tells who it is") {
   CHECK(byte(device, 7) == 64);
   CHECK(half(device, 8) == 0x1209);
   CHECK(half(device, 10) == 0x0001);
+  CHECK(half(device, 12) == 0x0123);  // the firmware's version
   CHECK(byte(device, 17) == 1);
 }
 
@@ -81,6 +82,8 @@ TEST_CASE("the configuration is well formed and holds the endpoints of the proto
   REQUIRE(configuration.size() == total);
   CHECK(byte(configuration, 4) == 2);
   CHECK(byte(configuration, 5) == 1);
+  CHECK(byte(configuration, 7) == 0xC0);  // self-powered
+  CHECK(byte(configuration, 8) == 0);     // takes nothing from the bus
 
   unsigned interfaces = 0, hid_report_size = 0;
   std::map<unsigned, unsigned> endpoint_types;
