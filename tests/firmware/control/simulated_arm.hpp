@@ -12,7 +12,7 @@ struct FakeClock {
 };
 
 inline constexpr control::BoardLimits board_limits{
-    .supply_minimum_V = 12.0f, .supply_maximum_V = 24.0f, .duty_limit = 0.95f, .current_measurable_A = 3.44f};
+    .supply_minimum_V = 12.0f, .supply_maximum_V = 24.0f, .duty_limit = 0.92f, .current_measurable_A = 3.44f};
 
 inline control::Samples samples_at_rest() {
   return {.encoder_counts = {},

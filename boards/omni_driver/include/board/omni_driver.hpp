@@ -130,8 +130,11 @@ inline constexpr float antiphase_ripple_A = supply_nominal_V / (2.0f * servo_rat
 static_assert(current_ripple_A < 0.2f, "ripple bound: a sixth of the motor's continuous current of 1.24 A");
 static_assert(antiphase_ripple_A > 1.5f, "why locked antiphase at the servo rate is no choice");
 
-/// A leg is never on for all of a period, so that bridges with a charge pump can refresh theirs.
-inline constexpr float duty_limit = 0.95f;
+/// A leg is never on for all of a period, so that bridges with a charge pump can refresh theirs, and so that the
+/// currents are sampled before the next edge (below).
+inline constexpr float duty_limit = 0.92f;
+/// From an update to the edge of the shorter leg that follows it.
+constexpr float time_to_next_edge_s(float duty) { return (1.0f - duty) / (4.0f * pwm_Hz); }
 /// Made by the bridge itself; the firmware does not add to it.
 inline constexpr float bridge_dead_time_s = 0.2e-6f;
 
@@ -162,10 +165,15 @@ inline constexpr float supply_divider = 11.0f;
 inline constexpr float supply_step_V = adc_step_V * supply_divider;
 static_assert(supply_divider * adc_reference_V > supply_maximum_V + 6.0f, "over-voltage must be measurable");
 
-/// One injected conversion: 3 cycles of sampling and 12 of conversion.
+/// One injected conversion: 3 cycles of sampling and 12 of conversion. Between the update and the sampling lie at most
+/// 3 cycles (data sheet, ADC characteristics, injected trigger conversion latency).
 inline constexpr float injected_conversion_s = 15.0f / adc_Hz;
 static_assert(injected_conversion_s < 1e-6f);
+inline constexpr float injected_latency_s = 3.0f / adc_Hz;
+inline constexpr float injected_sampling_s = 3.0f / adc_Hz;
 
+static_assert(injected_latency_s + injected_sampling_s < time_to_next_edge_s(duty_limit),
+              "at the largest duty the sampling would end after the next edge");
 // ---- memory (RM0090, memory map) -----------------------------------------------------------------------
 
 inline constexpr std::uint32_t flash_bytes = 1024 * 1024;
