@@ -52,8 +52,9 @@ inline constexpr BridgeWiring bridges[3] = {
     {3, {{'A', 10}, 1}, {{'C', 8}, 3}},
 };
 
-/// High lets the bridges switch. A pull-down on the board keeps them off through reset.
-inline constexpr Pin bridge_enable{'B', 10};
+/// High lets the bridges switch. A pull-down on the board keeps them off through reset, and while the boot loader in
+/// the chip runs: it must be none of the pins that the loader pulls up or drives (AN2606).
+inline constexpr Pin bridge_enable{'B', 1};
 /// Open-drain fault of the bridges, low is a fault. Both pins hang on the one wire: each switches its
 /// timer's outputs off in hardware (RM0090, "Using the break function").
 inline constexpr PeripheralPin bridge_fault_tim1{{'B', 12}, 1};
@@ -168,12 +169,12 @@ static_assert(supply_divider * adc_reference_V > supply_maximum_V + 6.0f, "over-
 /// One injected conversion: 3 cycles of sampling and 12 of conversion. Between the update and the sampling lie at most
 /// 3 cycles (data sheet, ADC characteristics, injected trigger conversion latency).
 inline constexpr float injected_conversion_s = 15.0f / adc_Hz;
-static_assert(injected_conversion_s < 1e-6f);
 inline constexpr float injected_latency_s = 3.0f / adc_Hz;
 inline constexpr float injected_sampling_s = 3.0f / adc_Hz;
-
+static_assert(injected_conversion_s < 1e-6f);
 static_assert(injected_latency_s + injected_sampling_s < time_to_next_edge_s(duty_limit),
               "at the largest duty the sampling would end after the next edge");
+
 // ---- memory (RM0090, memory map) -----------------------------------------------------------------------
 
 inline constexpr std::uint32_t flash_bytes = 1024 * 1024;
