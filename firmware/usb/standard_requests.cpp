@@ -142,8 +142,7 @@ Answer Device::get_descriptor(const SetupPacket& setup) {
   if (type == DescriptorType::string) return string_descriptor(index);
   if (index != 0) return Answer::stall();
   switch (type) {
-    case DescriptorType::device:
-      return Answer::send(device_descriptor(control_.buffer(), identity_.firmware_version));
+    case DescriptorType::device: return Answer::send(device_descriptor(control_.buffer(), identity_.firmware_version));
     case DescriptorType::configuration: return Answer::send(configuration_descriptor());
     case DescriptorType::binary_object_store: return Answer::send(binary_object_store());
     default: return Answer::stall();  // a device qualifier too: there is no high speed

@@ -238,8 +238,8 @@ void OtgFs::fill(unsigned endpoint) {
 void OtgFs::begin_receive(unsigned endpoint) {
   using Control = Device::DOEPCTL;
   using Size = Device::DOEPTSIZ;
-  // An endpoint that was stalled or reopened may still be enabled, and while it counts a packet its size stands. It counts
-  // none if a bus reset came when the packet was in the FIFO already.
+  // An endpoint that was stalled or reopened may still be enabled, and while it counts a packet its size stands. It
+  // counts none if a bus reset came when the packet was in the FIFO already.
   if (!Control::EPENA::from(Control::read(endpoint)) || Size::PKTCNT::from(Size::read(endpoint)) == 0) {
     if (endpoint == 0)
       write_control_out_size();

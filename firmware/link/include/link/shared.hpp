@@ -9,8 +9,8 @@ namespace inkwell::link {
 ///
 /// There is one core, and the interrupt preempts the main loop but never the other way round. So the
 /// processor keeps the order by itself and only the compiler has to be told: what stands before `store`
-/// happens before it and what stands after it happens after it; what stands after `load` happens after it. No barrier instruction, no lock, and
-/// `load` then `store` is no atomic change: a word has one writer at a time.
+/// happens before it and what stands after it happens after it; what stands after `load` happens after it. No barrier
+/// instruction, no lock, and `load` then `store` is no atomic change: a word has one writer at a time.
 template <class T>
 class Shared {
   static_assert(std::atomic<T>::is_always_lock_free, "a lock would let the main loop hold up the interrupt");
