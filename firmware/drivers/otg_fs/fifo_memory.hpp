@@ -10,11 +10,16 @@
 //         72 +----------------------------------+
 //            | endpoint 1 IN, HID  16           |  one report
 //         88 +----------------------------------+
-//            | endpoint 2 IN, scope 232         |  14 packets, 0.75 ms of the bus
+//            | endpoint 2 IN, scope 128         |  8 packets, 0.4 ms of the bus: the core counts the packets in a
+//            |                                  |  FIFO with three bits, and a ninth would be lost to the count
+//        216 +----------------------------------+
+//            | not used            104          |
 //        320 +----------------------------------+
 #pragma once
 
 #include <cstdint>
+
+#include <usb/port.hpp>
 
 namespace inkwell::drivers::fifo_memory {
 
@@ -25,8 +30,14 @@ inline constexpr std::uint32_t hid_words = 16;
 inline constexpr std::uint32_t control_start = receive_words;
 inline constexpr std::uint32_t hid_start = control_start + control_words;
 inline constexpr std::uint32_t scope_start = hid_start + hid_words;
-inline constexpr std::uint32_t scope_words = memory_words - scope_start;
-static_assert(receive_words == 56 && scope_words == 232);
+/// RM0090, section 34.17.6. Within a transfer only the last packet is shorter than the others, and a transfer begins
+/// when the one before has left the FIFO: so what bounds the words bounds the packets.
+inline constexpr std::uint32_t packets_in_fifo_maximum = 8;
+inline constexpr std::uint32_t packet_words = usb::packet_size_maximum / 4;
+inline constexpr std::uint32_t scope_words = packets_in_fifo_maximum * packet_words;
+static_assert(control_words == packet_words && hid_words == packet_words);
+static_assert(scope_words / packet_words <= packets_in_fifo_maximum, "the core's count of packets would wrap");
+static_assert(scope_start + scope_words <= memory_words);
 
 /// TXFNUM that means every transmit FIFO.
 inline constexpr std::uint32_t all_transmit_fifos = 0x10;
