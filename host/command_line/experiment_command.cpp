@@ -45,10 +45,12 @@ int run_wall(const DeviceOptions& options, const WallCommandOptions& command) {
   experiment::WallOptions wall;
   wall.output_directory = command.output;
   if (!command.wall.empty()) wall.wall = experiment::parse_wall(command.wall);
-  if (options.is_virtual)
+  if (options.is_virtual) {
     wall.virtual_board = options.virtual_board(device::SimulationMode::exact, false);
-  else
+    wall.virtual_board->strict = true;  // what silicon would not do is no result
+  } else {
     wall.endpoint = find_one(options);
+  }
   const auto summary = experiment::run_wall_experiment(wall, ProgressBar());
   if (options.json)
     fmt::print("{}\n", summary.dump(2));

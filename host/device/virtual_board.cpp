@@ -62,6 +62,7 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   if (!options.arm.empty()) arguments.insert(arguments.end(), {"--arm", options.arm.string()});
   if (options.real_time) arguments.push_back("--real-time");
   if (options.paused) arguments.push_back("--paused");
+  if (options.strict) arguments.push_back("--strict");
   return arguments;
 }
 

@@ -18,6 +18,7 @@ device::VirtualBoardOptions options(device::SimulationMode mode, std::uint64_t s
   options.seed = seed;
   options.real_time = false;
   options.paused = true;
+  options.strict = true;
   return options;
 }
 

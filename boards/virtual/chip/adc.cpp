@@ -6,6 +6,7 @@
 
 #include "alternate_functions.hpp"
 #include "dma.hpp"
+#include "pins.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -76,7 +77,16 @@ void Adc::start_regular(Ticks now) {
   begin_conversion(now);
 }
 
+void Adc::check_start(Ticks now) {
+  constexpr std::uint32_t limit_Hz = 36'000'000;  // at 2.4 V to 3.6 V
+  const std::uint32_t clock_Hz = machine_.clocks.frequencies.pclk2_Hz / adcs_.prescaler();
+  spoilt_ = clock_Hz > limit_Hz || now < stable_at_;
+  if (clock_Hz > limit_Hz) machine_.violations.violate(Rule::converter_too_fast, std::to_string(clock_Hz) + " Hz");
+  if (now < stable_at_) machine_.violations.violate(Rule::converter_not_stable, name());
+}
+
 void Adc::begin_conversion(Ticks now) {
+  check_start(now);
   const unsigned channel = channel_of(group_, group_ == Group::injected ? rank_ : regular_rank_);
   phase_ = Phase::sampling;
   const Ticks sampled = now + duration(sampling_cycles(channel));
@@ -106,6 +116,11 @@ std::uint32_t Adc::sample(unsigned channel, Ticks now) const {
   if (channel == 18) return index_ == 0 && adcs_.battery_on() ? convert(reference_V / 2) : 0;
   if (channel > 18) return 0;
   const AnalogPin pin = index_ == 2 ? analog_pins_3[channel] : analog_pins_12[channel];
+  const bool analog = machine_.pins->is_analog(static_cast<unsigned>(pin.port - 'A'), pin.pin);
+  if (!analog) machine_.violations.violate(Rule::analog_pin_mode, std::string{'P', pin.port} + std::to_string(pin.pin));
+  // No value that firmware could take for a true one for long.
+  if (!analog || spoilt_)
+    return static_cast<std::uint32_t>(now * 2'654'435'761u >> 16 & 0xFFF) >> (12 - resolution_bits());
   return convert(machine_.circuit.analog_V(pin.port, pin.pin, now));
 }
 
@@ -226,6 +241,8 @@ void Adc::write(std::uint32_t offset, std::uint32_t value) {
       adcs_.connect_triggers();
       break;
     case adc.cr2: {
+      constexpr Ticks stabilisation = 3 * (ticks_per_s / 1'000'000);  // t_STAB
+      if (!is_on() && adc.cr2.adon.in(value)) stable_at_ = machine_.timeline.now() + stabilisation;
       cr2_ = value & writable(adc.cr2);
       if (!is_on()) idle();
       adcs_.connect_triggers();

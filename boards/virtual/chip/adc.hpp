@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <string>
 
 #include "adc_map.hpp"
 #include "bus.hpp"
@@ -16,6 +17,7 @@ class Adcs;
 class Adc final : public TimedPart {
  public:
   Adc(Machine& machine, Adcs& adcs, unsigned index);
+  std::string name() const { return "ADC" + std::to_string(index_ + 1); }
   void reset();
   void step(Ticks now) override;
   std::uint32_t read(std::uint32_t offset);
@@ -46,6 +48,7 @@ class Adc final : public TimedPart {
   void begin_conversion(Ticks now);
   void finish_regular(Ticks now);
   void finish_injected(Ticks now);
+  void check_start(Ticks now);
   std::uint32_t convert(double voltage_V) const;
   std::uint32_t sample(unsigned channel, Ticks now) const;
   void watch(unsigned channel);
@@ -65,11 +68,15 @@ class Adc final : public TimedPart {
   unsigned rank_ = 0, regular_rank_ = 0, injected_rank_ = 0;
   bool resume_regular_ = false, automatic_injected_ = false;
   std::uint32_t sample_ = 0;
+  Ticks stable_at_ = 0;
+  bool spoilt_ = false;  ///< the conversion cannot give a true result
 };
 
 class Adcs final : public RegisterBlock {
  public:
   explicit Adcs(Machine& machine);
+  /// RCC_APB2ENR, with a bit for each converter.
+  void clock_by(const std::uint32_t* enable_register) { enable_register_ = enable_register; }
   void reset() override;
   /// `channel` 1..4 of a timer matched, or trigger_output of timers.hpp.
   void timer_trigger(unsigned timer, unsigned channel) {
@@ -97,6 +104,7 @@ class Adcs final : public RegisterBlock {
 
  private:
   void trigger(unsigned timer, unsigned channel);
+  bool is_clocked(unsigned index) const;
   bool is_slave(unsigned index, bool injected) const;
   bool injected_simultaneous() const;
   bool regular_simultaneous() const;
@@ -104,6 +112,7 @@ class Adcs final : public RegisterBlock {
 
   Machine& machine_;
   std::deque<Adc> adcs_;
+  const std::uint32_t* enable_register_ = nullptr;
   std::uint32_t ccr_ = 0;
   std::uint64_t injected_sequences_ = 0;
   Ticks last_injected_ = never;

@@ -1,5 +1,6 @@
 // The three converters together: triggers, simultaneous modes, common registers.
 #include "adc.hpp"
+#include "rcc_map.hpp"
 #include "timers.hpp"
 
 namespace inkwell::virtual_board {
@@ -29,6 +30,12 @@ void Adcs::reset() {
   last_injected_ = never;
   for (auto& converter : adcs_) converter.reset();
   connect_triggers();
+}
+
+bool Adcs::is_clocked(unsigned index) const {
+  if (rcc_registers.apb2enr.adcen.in(*enable_register_, index)) return true;
+  machine_.violations.violate(Rule::clock_off, adcs_[index].name());
+  return false;
 }
 
 bool Adcs::injected_simultaneous() const {
@@ -120,7 +127,10 @@ std::uint32_t Adcs::stored(std::uint32_t offset) const {
 }
 
 std::uint32_t Adcs::read_word(std::uint32_t offset) {
-  if (offset < common) return adcs_[offset / converter_bytes].read(offset % converter_bytes);
+  if (offset < common) {
+    const unsigned index = offset / converter_bytes;
+    return is_clocked(index) ? adcs_[index].read(offset % converter_bytes) : 0;
+  }
   switch (offset) {
     case common + adc_common.csr: {
       std::uint32_t value = 0;
@@ -135,7 +145,11 @@ std::uint32_t Adcs::read_word(std::uint32_t offset) {
 }
 
 void Adcs::write_word(std::uint32_t offset, std::uint32_t value) {
-  if (offset < common) return adcs_[offset / converter_bytes].write(offset % converter_bytes, value);
+  if (offset < common) {
+    const unsigned index = offset / converter_bytes;
+    if (is_clocked(index)) adcs_[index].write(offset % converter_bytes, value);
+    return;
+  }
   if (offset != common + adc_common.ccr) return machine_.log.note("ADC common", offset, true, value);
   ccr_ = value & writable(adc_common.ccr);
   const unsigned mode = adc_common.ccr.multi.of(ccr_);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "processor.hpp"
+#include "rcc.hpp"
 #include "system_control.hpp"
 
 namespace inkwell::virtual_board {
@@ -84,8 +85,13 @@ Bus::Slot* Bus::slot_at(std::uint32_t address) {
 }
 
 bool Bus::is_clocked(const Slot& slot, std::uint32_t) {
-  if (slot.enable_register == nullptr || (*slot.enable_register & slot.enable_mask) != 0) return true;
-  machine_.log.say_once(slot.name + " is used while its clock is off in RCC: reads 0, writes are ignored");
+  if (slot.enable_register == nullptr) return true;
+  if ((*slot.enable_register & slot.enable_mask) != 0) {
+    if (!machine_.rcc->is_fresh(slot.enable_register, slot.enable_mask, access_began_)) return true;
+    machine_.violations.violate(Rule::clock_fresh, slot.name);
+    return false;
+  }
+  machine_.violations.violate(Rule::clock_off, slot.name);
   return false;
 }
 
@@ -119,6 +125,7 @@ void Bus::settle_processor() {
 }
 
 std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
+  access_began_ = machine_.processor->cycles();
   machine_.processor->wait_for_register(address, false);
   synchronise();
   const Log::Access access(machine_.log);
@@ -139,6 +146,7 @@ std::uint32_t Bus::read(std::uint32_t address, unsigned size) {
 }
 
 void Bus::write(std::uint32_t address, std::uint32_t value, unsigned size) {
+  access_began_ = machine_.processor->cycles();
   machine_.processor->wait_for_register(address, true);
   synchronise();
   const Log::Access access(machine_.log);

@@ -79,6 +79,7 @@ class Bus {
   std::vector<Slot> apb_and_ahb1_;  ///< by kilobyte from 0x40000000
   std::vector<Slot> ahb2_;          ///< by kilobyte from 0x50000000
   std::vector<Peripheral*> peripherals_;
+  std::uint64_t access_began_ = 0;  ///< cycle in which the processor asked
 };
 
 }  // namespace inkwell::virtual_board

@@ -15,6 +15,9 @@ Chip::Chip(Circuit& circuit, const ChipOptions& options) : parts_(std::make_uniq
   p.adcs.on_injected_sequence = [this](std::uint64_t index, Ticks when) {
     if (on_injected_sequence) on_injected_sequence(index, when);
   };
+  p.machine.violations.on_first = [this](const Violation& violation) {
+    if (on_violation) on_violation(violation);
+  };
   p.execution.on_console = [this](std::uint8_t byte) {
     if (on_console) on_console(byte);
   };
@@ -56,7 +59,10 @@ DebugPort& Chip::debug_port() { return parts_->debug_port; }
 Scheduler& Chip::scheduler() { return parts_->events; }
 InterruptController& Chip::interrupts() { return parts_->machine.nvic; }
 InputPins& Chip::input_pins() { return parts_->pins; }
-UnmodelledLog& Chip::unmodelled_log() { return parts_->machine.log; }
+ChipConnections Chip::connections() {
+  auto& machine = parts_->machine;
+  return {parts_->events, machine.nvic, machine.log, machine.violations, *parts_};
+}
 
 void Chip::add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral) {
   parts_->add_outside_peripheral(base, size, name, peripheral);
@@ -74,6 +80,7 @@ void Chip::clear_counters() { parts_->execution.clear_counters(); }
 int Chip::exit_code() const { return parts_->execution.exit_code(); }
 const std::string& Chip::lockup_reason() const { return parts_->execution.lockup_reason(); }
 const std::optional<Fault>& Chip::first_fault() const { return parts_->execution.first_fault(); }
+const std::vector<Violation>& Chip::violations() const { return parts_->machine.violations.list(); }
 const std::vector<std::string>& Chip::unmodelled_accesses() const { return parts_->machine.log.lines(); }
 std::vector<RegisterMap> Chip::register_maps() const { return parts_->bus.register_maps(); }
 std::uint32_t Chip::memory_word(std::uint32_t address) const { return parts_->machine.memory.word(address); }

@@ -136,7 +136,7 @@ void DmaController::enable(unsigned index) {
   s.reload = s.count;
   s.moved = 0;
   if (dma.cr.dir.of(s.control) == memory_to_memory) {
-    if (number_ == 1) return machine_.log.say_once("DMA1 can not move memory to memory: nothing is moved");
+    if (number_ == 1) return machine_.violations.violate(Rule::copy_by_first_controller);
     while (dma.cr.en.in(s.control) && s.count != 0) move_item(index);
   } else if (on_enabled) {
     on_enabled();

@@ -44,9 +44,8 @@ void FlashController::check_wait_states() {
   // One wait state for each 30 MHz at 2.7 V to 3.6 V (RM0090, table "Number of wait states").
   const std::uint32_t hclk_Hz = machine_.clocks.frequencies.hclk_Hz;
   if (hclk_Hz > 30'000'000 * (map.acr.latency.of(access_) + 1))
-    machine_.log.say_once("FLASH_ACR.LATENCY " + std::to_string(map.acr.latency.of(access_)) +
-                          " is too small for HCLK " + std::to_string(hclk_Hz) +
-                          " Hz: a real chip would read wrong instructions");
+    machine_.violations.violate(Rule::flash_wait_states,
+                                std::to_string(map.acr.latency.of(access_)) + " at " + std::to_string(hclk_Hz) + " Hz");
 }
 
 void FlashController::set_accelerator(std::uint32_t access) {

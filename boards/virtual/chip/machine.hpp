@@ -12,6 +12,7 @@
 #include "memory.hpp"
 #include "nvic.hpp"
 #include "timeline.hpp"
+#include "violations.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -49,6 +50,7 @@ struct Machine {
   Circuit& circuit;
   ChipOptions options;
   Log log;
+  Violations violations{*this};
   Timeline timeline;
   Memory memory;
   Nvic nvic;

@@ -112,6 +112,7 @@ void ChipParts::put_peripherals() {
     put(timer_places[i].base, "TIM" + std::to_string(i + 1), timers.timer(i + 1), timer_places[i].clock);
   // The three converters share a block; each has an enable bit, one bit resets them all.
   bus.add(0x4001'2000, 1024, "ADC", adcs, rcc.enable_register(map.apb2enr), map.apb2enr.adcen.masks());
+  adcs.clock_by(rcc.enable_register(map.apb2enr));
   rcc.add_reset(map.apb2rstr, map.apb2enr.adcen.mask(), adcs);
   put(0x4002'6000, "DMA1", dma.controller(1), gate(map.ahb1enr, map.ahb1enr.dmaen, 0));
   put(0x4002'6400, "DMA2", dma.controller(2), gate(map.ahb1enr, map.ahb1enr.dmaen, 1));

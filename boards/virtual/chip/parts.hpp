@@ -28,9 +28,15 @@ struct ClockGate {
   std::uint32_t enable_register, mask;
 };
 
-struct ChipParts {
+struct ChipParts : ChipState {
   ChipParts(Circuit& circuit, const ChipOptions& options);
   void add_outside_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral);
+
+  std::uint32_t hclk_Hz() const override { return machine.clocks.frequencies.hclk_Hz; }
+  std::uint32_t usb_Hz() const override { return machine.clocks.frequencies.usb_Hz; }
+  bool has_function(char port, unsigned pin, unsigned alternate_function) const override {
+    return machine.pins->has_function(static_cast<unsigned>(port - 'A'), pin, alternate_function);
+  }
 
   Machine machine;
   EventQueue events{machine.timeline};

@@ -50,6 +50,10 @@ class Pins final : public InputPins {
   static constexpr unsigned ports = 9;
   explicit Pins(Machine& machine);
   GpioPort& port(unsigned index) { return ports_[index]; }
+  bool has_function(unsigned port, unsigned pin, unsigned function) const {
+    return ports_[port].mode(pin) == GpioPort::Mode::alternate && ports_[port].alternate_function(pin) == function;
+  }
+  bool is_analog(unsigned port, unsigned pin) const { return ports_[port].mode(pin) == GpioPort::Mode::analog; }
   void drive(char port, unsigned pin, PinLevel level) override;
 
   /// A timer's output changes. Called in the order of time, hundreds of thousands of times a second.

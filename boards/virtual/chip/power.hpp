@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bus.hpp"
+#include "rcc.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -32,6 +33,7 @@ class PowerControl final : public RegisterBlock {
   void write_word(std::uint32_t offset, std::uint32_t value) override {
     if (offset == pwr.cr) {
       control_ = value & writable(pwr.cr);
+      machine_.rcc->set_voltage_scale(pwr.cr.vos.in(control_));
       if (pwr.cr.pdds.in(value)) machine_.log.say_once("PWR_CR.PDDS: standby is not modelled, the chip only sleeps");
     }
     if (offset == pwr.csr) status_ = value & writable(pwr.csr);

@@ -33,6 +33,16 @@ enum : std::uint32_t {
   invalid_state = 18,
 };
 
+template <class Function>
+void for_each_float_instruction(const Memory& memory, std::uint32_t address, std::uint32_t bytes, Function&& visit) {
+  for (std::uint32_t at = address; at < address + bytes;) {
+    const std::uint16_t first = memory.half_word(at);
+    const bool wide = is_wide(first);
+    if (decode(first, wide ? memory.half_word(at + 2) : std::uint16_t{0}, at).uses_float()) visit(at);
+    at += wide ? 4 : 2;
+  }
+}
+
 }  // namespace
 
 Processor::Processor(Machine& machine, Bus& bus)
@@ -82,13 +92,19 @@ void Processor::reset(std::uint32_t vector_table) {
   write(UC_ARM_REG_XPSR_NZCVQG, 1u << 24);
   write(UC_ARM_REG_APSR_NZCV, 0);
   write(UC_ARM_REG_PSP, 0);
-  write(UC_ARM_REG_MSP, machine_.memory.word(vector_table) & ~3u);
+  const std::uint32_t stack = machine_.memory.word(vector_table) & ~3u;
+  constexpr std::uint32_t erased = 0xFFFF'FFFC;
+  if (stack != erased && machine_.memory.ram_at(stack - 4, 4) == nullptr)
+    machine_.violations.violate(Rule::stack_outside_memory);
+  write(UC_ARM_REG_MSP, stack);
   write(UC_ARM_REG_LR, 0xFFFFFFFF);
   program_counter_ = machine_.memory.word(vector_table + 4);
   current_exception_ = 0;
   timing_.redirect();
   timing_.stack_lazily(false);
   watch_masks_ = event_register_ = false;
+  float_unit_on_ = false;
+  core_coupled_on_ = true;
   while (!running_.empty()) end_counting();
   // The firmware may have been replaced.
   forget_code(flash_base, flash_bytes);
@@ -118,6 +134,8 @@ Masks Processor::masks() const {
 
 Outcome Processor::run(std::uint64_t cycles) {
   stop_cycle_ = cycles_ + cycles;
+  if (guard_bytes_ != 0) guard_float_instructions();
+  if (core_coupled_on_ != core_coupled_mapped_) switch_core_coupled_memory();
   stopped_ = false;
   block_ = nullptr;
   instruction_end_ = cycles_;
@@ -140,6 +158,41 @@ Outcome Processor::run(std::uint64_t cycles) {
   }
   if (error != UC_ERR_OK) return Outcome::data_fault;
   return stopped_ ? Outcome::slice_over : Outcome::wait_for_interrupt;
+}
+
+bool Processor::has_unguarded_float(std::uint32_t address, std::uint32_t bytes) {
+  const auto& block = timing_.block(address, {machine_.memory.at(address, bytes), bytes});
+  if (!block.uses_float) return false;
+  bool unguarded = false;
+  for_each_float_instruction(machine_.memory, address, bytes,
+                             [&](std::uint32_t at) { unguarded |= !float_guards_.contains(at); });
+  return unguarded;
+}
+
+// Unicorn looks for hooks of an instruction only when it translates it.
+void Processor::guard_float_instructions() {
+  for_each_float_instruction(machine_.memory, guard_address_, guard_bytes_, [&](std::uint32_t at) {
+    if (!float_guards_.insert(at).second) return;
+    uc_hook hook;
+    check(uc_hook_add(engine_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(float_hook), this, at, at), "be watched");
+  });
+  uc_ctl_remove_cache(engine_, std::uint64_t{guard_address_}, std::uint64_t{guard_address_} + guard_bytes_);
+  guard_bytes_ = 0;
+}
+
+void Processor::float_hook(uc_engine*, std::uint64_t address, std::uint32_t, void* pointer) {
+  auto& self = *static_cast<Processor*>(pointer);
+  if (self.float_unit_on_ || self.stopped_) return;
+  self.last_code_address_ = static_cast<std::uint32_t>(address);
+  self.machine_.violations.violate(Rule::float_unit_off);
+  self.outcome_ = Outcome::no_coprocessor;
+  self.stop();
+}
+
+void Processor::switch_core_coupled_memory() {
+  core_coupled_mapped_ = core_coupled_on_;
+  check(uc_mem_protect(engine_, ccm_base, ccm_bytes, core_coupled_on_ ? UC_PROT_READ | UC_PROT_WRITE : UC_PROT_NONE),
+        "switch a memory");
 }
 
 void Processor::finish_flash_stores() {
@@ -185,6 +238,11 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   } else {
     const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
     if (due && !self.begins_in_if_then_block(start)) return self.stop();
+  }
+  if (!self.float_unit_on_ && self.has_unguarded_float(start, size)) {
+    self.guard_address_ = start;
+    self.guard_bytes_ = size;
+    return self.stop();
   }
   const auto& block = self.enter_block(start, size);
   if (exact) {
@@ -307,6 +365,8 @@ bool Processor::memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address,
                             void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
   self.fault_address_ = static_cast<std::uint32_t>(address);
+  if (!self.core_coupled_on_ && self.fault_address_ - ccm_base < ccm_bytes)
+    self.machine_.violations.violate(Rule::ccm_clock_off);
   switch (type) {
     case UC_MEM_WRITE_PROT:
       // The flash takes writes while it is being programmed (RM0090, "Flash programming").

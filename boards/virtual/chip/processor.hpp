@@ -55,6 +55,13 @@ class Processor final : public ClockUser {
   void watch_masks(bool watch) { watch_masks_ = watch; }
   /// The masks that were watched have let something through since the last call.
   bool take_masks_opened() { return std::exchange(masks_opened_, false); }
+  /// CPACR lets firmware use the FPU. While it does not, each of the FPU's instructions is stopped at.
+  void set_float_unit(bool on) { float_unit_on_ = on; }
+  /// CCM has its clock (RCC_AHB1ENR.CCMDATARAMEN). It takes effect from the next slice on, which begins at once.
+  void set_core_coupled_memory(bool on) {
+    core_coupled_on_ = on;
+    end_slice();
+  }
   /// After instructions in memory changed.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
 
@@ -146,6 +153,10 @@ class Processor final : public ClockUser {
   bool begins_in_if_then_block(std::uint32_t address) const;
   bool if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const;
   void finish_flash_stores();
+  static void float_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
+  bool has_unguarded_float(std::uint32_t address, std::uint32_t bytes);
+  void guard_float_instructions();
+  void switch_core_coupled_memory();
   const BlockPrice& enter_block(std::uint32_t address, std::uint32_t bytes);
   /// R0 to R14 by number.
   auto register_reader() const {
@@ -191,6 +202,9 @@ class Processor final : public ClockUser {
   std::vector<FlashStore> flash_stores_;
   std::set<std::uint32_t> divides_asked_about_;
   std::vector<std::uint32_t> new_divides_;
+  bool float_unit_on_ = false, core_coupled_on_ = true, core_coupled_mapped_ = true;
+  std::set<std::uint32_t> float_guards_;               ///< instructions of the FPU that are stopped at while it is off
+  std::uint32_t guard_address_ = 0, guard_bytes_ = 0;  ///< a block with such instructions to be guarded; 0 bytes: none
   std::vector<Running> running_;
   std::uint64_t counted_until_ = 0;  ///< cycles
   Counters counters_;

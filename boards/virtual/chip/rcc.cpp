@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "processor.hpp"
+
 namespace inkwell::virtual_board {
 namespace {
 
@@ -42,6 +44,7 @@ void Rcc::reset() {
   ready_at_.fill(never);
   ready_at_[hsi] = 0;
   system_clock_ = 0;
+  voltage_scale_1_ = true;
   machine_.timeline.set(slot_, never, never);
   update_tree();
 }
@@ -68,9 +71,10 @@ std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
   const std::uint32_t m = map.pllcfgr.pllm.of(value), n = map.pllcfgr.plln.of(value);
   if (m < 2 || n < 2) return 0;
   const std::uint64_t oscillator_Hz = std::uint64_t{source_Hz} / m * n;
+  if (source_Hz / m < 1'000'000 || source_Hz / m > 2'000'000)
+    machine_.violations.violate(Rule::pll_input, std::to_string(source_Hz / m) + " Hz");
   if (oscillator_Hz < 100'000'000 || oscillator_Hz > 432'000'000)
-    machine_.log.say_once("RCC_PLLCFGR asks for a PLL of " + std::to_string(oscillator_Hz) +
-                          " Hz, outside of 100 to 432 MHz");
+    machine_.violations.violate(Rule::pll_output, std::to_string(oscillator_Hz) + " Hz");
   const std::uint32_t divider =
       output == PllOutput::system ? 2 * (map.pllcfgr.pllp.of(value) + 1) : map.pllcfgr.pllq.of(value);
   return divider < 2 ? 0 : static_cast<std::uint32_t>(oscillator_Hz / divider);
@@ -94,12 +98,40 @@ void Rcc::step(Ticks) {
   switch_system_clock();
 }
 
+// ES0182: two cycles of AHB, or one and the divider of the APB. Only exact mode knows how far apart two accesses are.
+void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
+  if (risen == 0 || machine_.options.mode != Mode::exact) return;
+  const auto& clocks = machine_.clocks.frequencies;
+  std::uint32_t cycles = 2;
+  if (offset == map.apb1enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk1_Hz;
+  if (offset == map.apb2enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk2_Hz;
+  fresh_until_ = machine_.processor->cycles() + cycles;
+  fresh_offset_ = offset;
+  fresh_mask_ = risen;
+}
+
 void Rcc::switch_system_clock() {
   constexpr unsigned oscillator_of[] = {hsi, hse, pll};
   const unsigned wanted = map.cfgr.sw.of(words_[map.cfgr / 4]);
   // A switch to a clock that is not ready happens once it is (RM0090, "System clock (SYSCLK) selection").
   if (wanted < 3 && is_ready(oscillator_of[wanted])) system_clock_ = wanted;
   update_tree();
+}
+
+void Rcc::check_limits(const Clocks& clocks) const {
+  const auto check = [&](std::uint32_t clock_Hz, std::uint32_t limit_Hz, Rule rule) {
+    if (clock_Hz > limit_Hz) machine_.violations.violate(rule, std::to_string(clock_Hz) + " Hz");
+  };
+  check(clocks.hclk_Hz, 168'000'000, Rule::hclk_too_fast);
+  check(clocks.pclk1_Hz, 42'000'000, Rule::pclk1_too_fast);
+  check(clocks.pclk2_Hz, 84'000'000, Rule::pclk2_too_fast);
+  constexpr std::uint32_t scale_2_limit_Hz = 144'000'000;
+  if (!voltage_scale_1_) check(clocks.hclk_Hz, scale_2_limit_Hz, Rule::voltage_scale);
+}
+
+void Rcc::set_voltage_scale(bool scale_1) {
+  voltage_scale_1_ = scale_1;
+  check_limits(machine_.clocks.frequencies);
 }
 
 void Rcc::update_tree() {
@@ -117,8 +149,7 @@ void Rcc::update_tree() {
   f.timer2_Hz = f.pclk2_Hz * (divider2 == 1 ? 1 : 2);
   f.usb_Hz = is_ready(pll) ? pll_output_Hz(PllOutput::usb) : 0;
   if (f.hclk_Hz == 0) return;  // the PLL's dividers make no sense: stay as it was
-  if (f.hclk_Hz > 168'000'000 || f.pclk1_Hz > 42'000'000 || f.pclk2_Hz > 84'000'000)
-    machine_.log.say_once("RCC_CFGR asks for clocks beyond the data sheet (168, 42 and 84 MHz)");
+  check_limits(f);
 
   ClockTree tree{Clock::of(f.hclk_Hz),
                  Clock::of(f.pclk1_Hz),
@@ -165,8 +196,7 @@ void Rcc::write_word(std::uint32_t offset, std::uint32_t value) {
       switch_system_clock();
       return;
     case map.pllcfgr:
-      if (map.cr.pllon.in(words_[map.cr / 4]))
-        return machine_.log.say_once("RCC_PLLCFGR was written while the PLL is on: ignored");
+      if (map.cr.pllon.in(words_[map.cr / 4])) return machine_.violations.violate(Rule::pll_written_while_on);
       word = value;
       return;
     case map.cfgr:
@@ -185,8 +215,13 @@ void Rcc::write_word(std::uint32_t offset, std::uint32_t value) {
       word = value & writable(map.bdcr);
       start_oscillators();
       return;
+    case map.ahb1enr:
+      word = value;
+      machine_.processor->set_core_coupled_memory(map.ahb1enr.ccmdataramen.in(word));
+      break;
     default: word = value; break;
   }
+  if (offset >= map.ahb1enr && offset <= map.apb2enr) note_enabled(offset, risen);
   if (offset >= map.ahb1rstr && offset <= map.apb2rstr)
     for (const auto& line : resets_)
       if (line.offset == offset && (risen & line.mask) != 0) line.peripheral->reset();

@@ -25,7 +25,13 @@ class Rcc final : public RegisterBlock, public TimedPart {
   }
   /// The watchdog starts the low-speed oscillator by itself.
   void start_low_speed_internal() { words_[rcc_registers.csr / 4] |= rcc_registers.csr.lsion.mask(); }
+  /// The clock of a peripheral has been switched on so lately that it has not arrived there.
+  bool is_fresh(const std::uint32_t* enable, std::uint32_t mask, std::uint64_t cycle) const {
+    return cycle < fresh_until_ && enable == &words_[fresh_offset_ / 4] && (fresh_mask_ & mask) != 0;
+  }
   void step(Ticks now) override;
+  /// PWR_CR.VOS: scale 1 is for the highest clocks.
+  void set_voltage_scale(bool scale_1);
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;
@@ -46,6 +52,8 @@ class Rcc final : public RegisterBlock, public TimedPart {
   std::uint32_t pll_output_Hz(PllOutput output) const;
   void start_oscillators();
   void switch_system_clock();
+  void note_enabled(std::uint32_t offset, std::uint32_t risen);
+  void check_limits(const Clocks& clocks) const;
   void update_tree();
 
   Machine& machine_;
@@ -54,6 +62,9 @@ class Rcc final : public RegisterBlock, public TimedPart {
   std::array<Ticks, oscillators> ready_at_{};
   unsigned system_clock_ = 0;  ///< CFGR.SWS
   std::uint32_t reset_flags_ = 0;
+  bool voltage_scale_1_ = true;
+  std::uint64_t fresh_until_ = 0;  ///< cycle of the core
+  std::uint32_t fresh_offset_ = 0, fresh_mask_ = 0;
   std::vector<ResetLine> resets_;
 };
 

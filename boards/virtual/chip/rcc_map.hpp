@@ -29,7 +29,8 @@ struct RccRegisters {
       apb1rstr{"APB1RSTR", 0x20}, apb2rstr{"APB2RSTR", 0x24};
   struct : Register {
     Field gpioen{"GPIO#EN", 0, 1, Access::rw, {9, 1, 'A'}}, crcen{"CRCEN", 12}, bkpsramen{"BKPSRAMEN", 18},
-        dmaen{"DMA#EN", 21, 1, Access::rw, {2, 1, 1}}, ethmacen{"ETHMACEN", 25}, otghsen{"OTGHSEN", 29};
+        ccmdataramen{"CCMDATARAMEN", 20}, dmaen{"DMA#EN", 21, 1, Access::rw, {2, 1, 1}}, ethmacen{"ETHMACEN", 25},
+        otghsen{"OTGHSEN", 29};
   } ahb1enr{{"AHB1ENR", 0x30, 0x0010'0000}};
   struct : Register {
     Field dcmien{"DCMIEN", 0}, rngen{"RNGEN", 6}, otgfsen{"OTGFSEN", 7};

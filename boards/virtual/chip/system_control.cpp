@@ -228,7 +228,12 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case scb_base + scb.mmfar: memory_fault_address_ = value; return;
     case scb_base + scb.bfar: bus_fault_address_ = value; return;
     case scb_base + scb.afsr: auxiliary_faults_ = value; return;
-    case fpu_cpacr_base + fpu_cpacr.cpacr: coprocessor_access_ = value & writable(fpu_cpacr.cpacr); return;
+    case fpu_cpacr_base + fpu_cpacr.cpacr: {
+      coprocessor_access_ = value & writable(fpu_cpacr.cpacr);
+      constexpr std::uint32_t none = 0;  // CP10 and CP11 hold the same code (PM0214, CPACR)
+      machine_.processor->set_float_unit(coprocessor_access_ != none);
+      return;
+    }
     case core_debug_base + core_debug.dhcsr: return;
     case core_debug_base + core_debug.demcr: debug_monitor_ = value & writable(core_debug.demcr); return;
     case nvic_stir_base + nvic_stir.stir:

@@ -189,10 +189,35 @@ void Timer::write_events(std::uint32_t value) {
   }
 }
 
+// RM0090, TIMx_BDTR: LOCK. Each level protects what the one below it does and more. LOCK itself is written once.
+std::uint32_t Timer::locked_bits(std::uint32_t offset) const {
+  const unsigned level = tim.bdtr.lock.of(bdtr_);
+  if (level == 0) return 0;
+  constexpr std::uint32_t polarities = tim.ccer.ccp.masks() | tim.ccer.ccnp.masks(),
+                          idle_levels = tim.cr2.ois.masks() | tim.cr2.oisn.masks();
+  switch (offset) {
+    case tim.bdtr:
+      return tim.bdtr.lock.mask() | tim.bdtr.dtg.mask() | tim.bdtr.bke.mask() | tim.bdtr.bkp.mask() |
+             tim.bdtr.aoe.mask() | (level >= 2 ? tim.bdtr.ossr.mask() | tim.bdtr.ossi.mask() : 0);
+    case tim.cr2: return idle_levels;
+    case tim.ccer: return level >= 2 ? polarities : 0;
+    case tim.ccmr1:
+    case tim.ccmr2: return level == 3 ? tim.ccmr1.ocm.masks() | tim.ccmr1.ocpe.masks() : 0;
+    default: return 0;
+  }
+}
+
+std::uint32_t Timer::unlocked(std::uint32_t offset, std::uint32_t old, std::uint32_t value) {
+  const std::uint32_t locked = locked_bits(offset);
+  if (((old ^ value) & locked) != 0)
+    machine_.violations.violate(Rule::timer_locked, "TIM" + std::to_string(traits_.number));
+  return (old & locked) | (value & ~locked);
+}
+
 void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case tim.cr1: return write_control(value);
-    case tim.cr2: cr2_ = value & writable(tim.cr2); break;
+    case tim.cr2: cr2_ = unlocked(offset, cr2_, value & writable(tim.cr2)); break;
     case tim.smcr: {
       settle();
       smcr_ = value & writable(tim.smcr);
@@ -213,9 +238,9 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
       update_interrupts();
       return;
     case tim.egr: return write_events(value);
-    case tim.ccmr1: ccmr_[0] = value & writable(tim.ccmr1); break;
-    case tim.ccmr2: ccmr_[1] = value & writable(tim.ccmr2); break;
-    case tim.ccer: ccer_ = value & writable(tim.ccer); break;
+    case tim.ccmr1: ccmr_[0] = unlocked(offset, ccmr_[0], value & writable(tim.ccmr1)); break;
+    case tim.ccmr2: ccmr_[1] = unlocked(offset, ccmr_[1], value & writable(tim.ccmr2)); break;
+    case tim.ccer: ccer_ = unlocked(offset, ccer_, value & writable(tim.ccer)); break;
     case tim.cnt:
       settle();
       count_ = value & limit_;
@@ -233,7 +258,7 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
     case tim.rcr: rcr_ = traits_.repetition ? tim.rcr.rep.of(value) : 0; return;
     case tim.bdtr:
       if (!traits_.breaks) return;
-      bdtr_ = value & writable(tim.bdtr);
+      bdtr_ = unlocked(offset, bdtr_, value & writable(tim.bdtr));
       check_break();
       break;
     case tim.dcr: dcr_ = value; return;

@@ -125,6 +125,10 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   // timer_registers.cpp
   void write_control(std::uint32_t value);
   void write_events(std::uint32_t value);
+  /// Bits of a register that LOCK protects now.
+  std::uint32_t locked_bits(std::uint32_t offset) const;
+  /// What a write of `value` leaves in a register that holds `old`.
+  std::uint32_t unlocked(std::uint32_t offset, std::uint32_t old, std::uint32_t value);
   void update_interrupts();
   void raise(std::uint32_t flags);
 

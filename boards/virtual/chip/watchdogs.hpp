@@ -44,23 +44,37 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart {
     prescaler_ = 0;
     reload_ = iwdg.rlr.reset_value;
     unlocked_ = runs_ = false;
+    prescaler_taken_at_ = reload_taken_at_ = 0;
     machine_.timeline.set(slot_, never, never);
   }
   void step(Ticks) override { machine_.request_reset(ResetCause::independent_watchdog); }
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override {
-    return offset == iwdg.pr ? prescaler_ : offset == iwdg.rlr ? reload_ : 0;  // SR: never busy
+    const Ticks now = machine_.timeline.now();
+    if (offset == iwdg.sr)
+      return iwdg.sr.pvu.with(now < prescaler_taken_at_) | iwdg.sr.rvu.with(now < reload_taken_at_);
+    return offset == iwdg.pr ? prescaler_ : offset == iwdg.rlr ? reload_ : 0;
   }
   void write_word(std::uint32_t offset, std::uint32_t value) override {
     if (offset == iwdg.kr) return write_key(iwdg.kr.key.of(value));
     if (!unlocked_) return;
-    if (offset == iwdg.pr) prescaler_ = iwdg.pr.pr.of(value);
-    if (offset == iwdg.rlr) reload_ = iwdg.rlr.rl.of(value);
+    if (offset == iwdg.pr && takes(prescaler_taken_at_, "PR")) prescaler_ = iwdg.pr.pr.of(value);
+    if (offset == iwdg.rlr && takes(reload_taken_at_, "RLR")) reload_ = iwdg.rlr.rl.of(value);
   }
   std::span<const MapEntry> registers() const override { return shown<iwdg>(); }
 
  private:
+  /// A new value crosses to the slow clock within five of its cycles (RM0090, "Status register (IWDG_SR)").
+  bool takes(Ticks& taken_at, const char* name) {
+    const Ticks now = machine_.timeline.now();
+    if (now < taken_at) {
+      machine_.violations.violate(Rule::watchdog_busy, name);
+      return false;
+    }
+    taken_at = now + machine_.clocks.low_speed_internal.duration(5);
+    return true;
+  }
   void write_key(std::uint32_t key) {
     unlocked_ = key == 0x5555;
     if (key == 0xCCCC) {
@@ -77,6 +91,7 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart {
   Machine& machine_;
   Timeline::Slot slot_;
   std::uint32_t prescaler_ = 0, reload_ = iwdg.rlr.reset_value;
+  Ticks prescaler_taken_at_ = 0, reload_taken_at_ = 0;
   bool unlocked_ = false, runs_ = false;
 };
 

@@ -34,11 +34,11 @@ Board::Board(const Options& options, std::function<void()> on_usb_request)
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); },
                      .name_of_code = [this](std::uint32_t address) { return symbols_.name(address); }}) {
+  if (options.strict) chip_.on_violation = [this](const Violation&) { chip_.request_stop(); };
   chip_.load_elf(elf_);
   symbols_ = Symbols(elf_);
   try {
-    usb_.emplace(chip_.scheduler(), chip_.interrupts(), chip_.unmodelled_log(), options.usbip_port,
-                 std::move(on_usb_request));
+    usb_.emplace(chip_.connections(), options.usbip_port, std::move(on_usb_request));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{} (--usbip gives it)", error.what()));
   }

@@ -30,6 +30,8 @@ class Board {
   Plant& plant() { return plant_; }
   VirtualUsb& usb() { return *usb_; }
   Trace& trace() { return trace_; }
+  /// The function that holds `address`; empty if the ELF does not say.
+  std::string name_of_code(std::uint32_t address) const { return symbols_.name(address); }
   Truth truth() { return plant_.truth(chip_.now()); }
   bool locked_up() const { return locked_up_; }
 

@@ -65,6 +65,21 @@ constexpr double reach_m = 2.0;  // farther away than any arm of the description
 
 // ---- commands -------------------------------------------------------------------------------------------------
 
+json violations_of(Board& board) {
+  json list = json::array();
+  for (const Violation& violation : board.chip().violations())
+    list.push_back({{"rule", info(violation.rule).name},
+                    {"register", info(violation.rule).of_register},
+                    {"section", info(violation.rule).section},
+                    {"where", violation.where},
+                    {"sentence", sentence(violation)},
+                    {"code_address", violation.code_address},
+                    {"code", board.name_of_code(violation.code_address)},
+                    {"board_time_s", seconds(violation.first)},
+                    {"count", violation.count}});
+  return list;
+}
+
 json status(const json&, Simulation& simulation) {
   Board& board = simulation.board();
   const Chip& chip = board.chip();
@@ -91,6 +106,7 @@ json status(const json&, Simulation& simulation) {
       {"resets", resets},
       {"watchdog_resets", of(ResetCause::independent_watchdog) + of(ResetCause::window_watchdog)},
       {"unmodelled", chip.unmodelled_accesses()},
+      {"violations", violations_of(board)},
       {"longest_interrupt", {{"exception", longest}, {"cycles", counters.exceptions[longest].longest_cycles}}},
       {"usb",
        {{"connected", board.usb().connected()},

@@ -75,9 +75,15 @@ CommandLine read_command_line(int argc, char** argv) {
                              ->check(CLI::PositiveNumber.description(""))
                              ->type_name("T");
   app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
+  app.add_flag(
+      "--strict", options.strict,
+      "end, with exit code 3, when the firmware first does what silicon would not bear; without it such things\n"
+      "are logged and listed at the end");
   app.footer(
       "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options, 3 the processor was\n"
-      "locked up at the end of --seconds; firmware that ends by semihosting passes its own exit code on.\n"
+      "locked up at the end of --seconds, 4 a broken rule (--strict); firmware that ends by semihosting passes its "
+      "own\n"
+      "exit code on.\n"
       "\n"
       "Board time waits for the program that uses the device on USB: for up to 3 s of the clock on the wall, when it\n"
       "owes the next request at an endpoint where it asked before. So a busy computer loses no data.\n"

@@ -22,6 +22,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::optional<double> seconds;  ///< of board time, after which the program ends
   bool paused = false;
+  bool strict = false;  ///< the first broken rule of the chip ends the program
 };
 
 /// The options, or the exit code if the program is to end now: 0 after --help, 2 after a wrong option, which

@@ -18,6 +18,7 @@ constexpr Ticks slice = ticks_per_s / 1000;  // a USB frame
 constexpr auto attention = 50ms;             // how soon a paused board notices a signal
 constexpr double debt_maximum_s = 0.1;
 constexpr int exit_code_of_lock_up = 3;
+constexpr int exit_code_of_violation = 4;
 
 }  // namespace
 
@@ -33,7 +34,7 @@ Simulation::Simulation(const Options& options, Board& board, ControlServer& serv
 
 int Simulation::run(const std::atomic<bool>& end_requested) {
   const Ticks end = options_.seconds ? ticks(*options_.seconds) : std::numeric_limits<Ticks>::max();
-  while (!quit_ && !end_requested && !firmware_exit_code_ && board_.chip().now() < end) {
+  while (!quit_ && !end_requested && !firmware_exit_code_ && !ends_by_violation() && board_.chip().now() < end) {
     if (gdb_server_ != nullptr) serve_debugger();
     if (auto request = server_.take(time_passes() ? Clock::time_point::min() : Clock::now() + attention)) {
       serve(std::move(*request));
@@ -42,9 +43,26 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
     board_.usb().serve();
     if (time_passes()) advance();
   }
+  if (ends_by_violation()) {
+    end_run(fmt::format("the firmware broke a rule of the chip: {}", sentence(board_.chip().violations().front())));
+    list_violations();
+    return exit_code_of_violation;
+  }
   end_run("the virtual board ends");
+  list_violations();
   if (firmware_exit_code_) return *firmware_exit_code_;
   return options_.seconds && board_.locked_up() ? exit_code_of_lock_up : 0;
+}
+
+bool Simulation::ends_by_violation() const { return options_.strict && !board_.chip().violations().empty(); }
+
+void Simulation::list_violations() const {
+  const auto& violations = board_.chip().violations();
+  if (violations.empty()) return;
+  log_line(fmt::format("rules of the chip that the firmware broke: {}", violations.size()));
+  for (const Violation& violation : violations)
+    log_line(violation.first, fmt::format("{} times: {} {}", violation.count, sentence(violation),
+                                          board_.name_of_code(violation.code_address)));
 }
 
 bool Simulation::time_passes() const {

@@ -57,6 +57,8 @@ class Simulation {
   };
   bool time_passes() const;
   void serve_debugger();
+  bool ends_by_violation() const;
+  void list_violations() const;
   void serve(ControlRequest request);
   void advance();
   void pace();

@@ -44,6 +44,7 @@ void OtgFsDevice::begin_reset() {
 }
 
 void OtgFsDevice::end_reset() {
+  check_core();
   latched_interrupts_ |= gint::enumdne;
   update_interrupt();
 }
@@ -78,7 +79,7 @@ void OtgFsDevice::resume() {
 
 bool OtgFsDevice::answers(unsigned address, unsigned endpoint) const {
   const bool addressed = address == address_ || (control_transfer_open_ && address == programmed_address());
-  return pulled_up_ && addressed && endpoint < endpoint_count;
+  return pulled_up_ && addressed && endpoint < endpoint_count && clock_is_exact();
 }
 
 std::size_t OtgFsDevice::receive_depth() const { return std::min<std::size_t>(receive_size_, packet_memory_words); }
@@ -105,7 +106,7 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
   if (endpoint != 0 || !answers(address, endpoint)) return Handshake::nothing;
   constexpr std::size_t words = 1 + 2;
   if (receive_words_free() < words) {
-    note("a SETUP packet found no room in the receive FIFO", offset::grxfsiz, false, receive_size_);
+    rules_.violate(Rule::usb_no_room_for_setup);
     return Handshake::nothing;
   }
   if (control_transfer_open_) address_ = address;
@@ -160,8 +161,7 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
 
   const std::size_t maximum = number == 0 ? in_packet_maximum(0) : endpoint.control & epctl::mpsiz;
   if (data.size() > maximum) return Handshake::nothing;
-  if (data.size() > endpoint.bytes)
-    note("an OUT packet is larger than the rest of its transfer", offset::out_endpoints, false, endpoint.bytes);
+  if (data.size() > endpoint.bytes) rules_.violate(Rule::usb_out_overrun);
   push_status(number, pktsts::out_data, data.size(), endpoint.data1);
   push_data(data);
   endpoint.data1 = !endpoint.data1;
@@ -209,6 +209,7 @@ bool OtgFsDevice::finish_in(unsigned number) {
   endpoint.bytes_on_wire.reset();
   transmit_[transmit_fifo_of(number)].drop(words_for(bytes));
   endpoint.bytes_to_send -= bytes;
+  if (bytes != 0 && endpoint.packets_in_fifo != 0) --endpoint.packets_in_fifo;
   --endpoint.packets;
   endpoint.data1 = !endpoint.data1;
   if (endpoint.packets == 0) {

@@ -10,14 +10,36 @@ namespace inkwell::virtual_board {
 
 using namespace otg;
 
-OtgFsDevice::OtgFsDevice(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log)
-    : scheduler_(scheduler), interrupts_(interrupts), log_(log) {
+namespace {
+
+constexpr Ticks millisecond = ticks_per_s / 1000;
+/// RM0090, OTG_FS_GUSBCFG: FDMOD.
+constexpr Ticks mode_change_duration = 25 * millisecond;
+/// A host looks for a reset only when D+ has been up for 100 ms; a driver is done with its settings before.
+constexpr Ticks connection_settles = 50 * millisecond;
+
+/// RM0090, table "TRDT values".
+unsigned turnaround_needed(std::uint32_t hclk_Hz) {
+  constexpr std::uint32_t from_kHz[] = {32'000, 27'500, 24'000, 21'800, 20'000, 18'500, 17'200, 16'000, 15'000};
+  unsigned clocks = 6;
+  for (const std::uint32_t limit_kHz : from_kHz) {
+    if (hclk_Hz >= 1000 * limit_kHz) break;
+    ++clocks;
+  }
+  return clocks;
+}
+
+}  // namespace
+
+OtgFsDevice::OtgFsDevice(const ChipConnections& chip)
+    : scheduler_(chip.scheduler), interrupts_(chip.interrupts), log_(chip.log), rules_(chip.rules), chip_(chip.state) {
   reset();
 }
 
 void OtgFsDevice::reset() {
   usb_configuration_ = reset_value::gusbcfg;
   core_configuration_ = 0;
+  reset_since_selection_ = false;
   core_id_ = reset_value::cid;
   device_configuration_ = reset_value::dcfg;
   power_control_ = 0;
@@ -57,7 +79,7 @@ void OtgFsDevice::reset_core() {
 std::uint32_t OtgFsDevice::read(std::uint32_t offset, unsigned size_bytes) {
   writing_endpoint_.reset();
   const std::uint32_t aligned = offset & ~3u;
-  if (size_bytes != 4) note("registers are read by whole words only", offset, false, 0);
+  if (size_bytes != 4) rules_.violate(Rule::usb_narrow_access);
   std::uint32_t value = 0;
   if (aligned >= offset::fifos && aligned < offset::fifos + endpoint_count * offset::fifo_window_bytes)
     value = pop_receive_data();
@@ -68,13 +90,17 @@ std::uint32_t OtgFsDevice::read(std::uint32_t offset, unsigned size_bytes) {
 
 void OtgFsDevice::write(std::uint32_t offset, std::uint32_t value, unsigned size_bytes) {
   const std::uint32_t aligned = offset & ~3u;
-  if (size_bytes != 4) note("registers are written by whole words only", offset, true, value);
+  if (size_bytes != 4) rules_.violate(Rule::usb_narrow_access);
   value <<= 8 * (offset & 3);
   if (aligned >= offset::fifos && aligned < offset::fifos + endpoint_count * offset::fifo_window_bytes) {
     push_transmit_data((aligned - offset::fifos) / offset::fifo_window_bytes, value);
     return;
   }
   writing_endpoint_.reset();
+  const bool of_device = aligned >= offset::dcfg && aligned < offset::pcgcctl;
+  if (of_device && (usb_configuration_ & gusbcfg::fdmod) != 0 &&
+      scheduler_.now() - device_forced_at_ < mode_change_duration)
+    rules_.violate(Rule::usb_mode_wait);
   write_register(aligned, value);
   update_interrupt();
 }
@@ -145,8 +171,7 @@ void OtgFsDevice::write_register(std::uint32_t offset, std::uint32_t value) {
     case offset::gahbcfg: bus_configuration_ = value & gahbcfg::writable; break;
     case offset::gusbcfg:
       if ((value & gusbcfg::fhmod) != 0) note("host mode is not modelled", offset, true, value);
-      usb_configuration_ = value;
-      update_pull_up();
+      write_usb_configuration(value);
       break;
     case offset::grstctl: write_reset_control(value); break;
     case offset::gintsts: latched_interrupts_ &= ~(value & gint::cleared_by_one); break;
@@ -179,6 +204,7 @@ void OtgFsDevice::write_register(std::uint32_t offset, std::uint32_t value) {
 
 void OtgFsDevice::write_reset_control(std::uint32_t value) {
   if ((value & grstctl::csrst) != 0) {
+    reset_since_selection_ = (usb_configuration_ & gusbcfg::physel) != 0;
     reset_core();
     return;
   }
@@ -194,7 +220,7 @@ void OtgFsDevice::write_reset_control(std::uint32_t value) {
     else if (number < endpoint_count)
       flush_transmit(number);
     else
-      note("flush of a transmit FIFO that does not exist", offset::grstctl, true, value);
+      rules_.violate(Rule::usb_no_such_fifo);
   }
 }
 
@@ -226,8 +252,50 @@ void OtgFsDevice::update_pull_up() {
       (core_configuration_ & gccfg::novbussens) != 0 || (bus_power_ && (core_configuration_ & gccfg::vbusbsen) != 0);
   const bool pulled_up = (core_configuration_ & gccfg::pwrdwn) != 0 && session && (device_control_ & dctl::sdis) == 0 &&
                          (usb_configuration_ & gusbcfg::fhmod) == 0;
-  if (pulled_up && !pulled_up_) ++attachments_;
+  if (pulled_up && !pulled_up_) {
+    ++attachments_;
+    scheduler_.cancel(connection_check_);
+    connection_check_ = scheduler_.at(scheduler_.now() + connection_settles, [this] { check_connection(); });
+  }
   pulled_up_ = pulled_up;
+}
+
+void OtgFsDevice::write_usb_configuration(std::uint32_t value) {
+  const std::uint32_t risen = value & ~usb_configuration_;
+  usb_configuration_ = value;
+  if ((risen & gusbcfg::physel) != 0) reset_since_selection_ = false;
+  if ((risen & gusbcfg::fdmod) != 0) device_forced_at_ = scheduler_.now();
+  update_pull_up();
+}
+
+bool OtgFsDevice::pins_connected() const {
+  constexpr unsigned otg_fs = 10;
+  return chip_.has_function('A', 11, otg_fs) && chip_.has_function('A', 12, otg_fs);
+}
+
+bool OtgFsDevice::clock_is_exact() const {
+  constexpr std::uint32_t nominal_Hz = 48'000'000, tolerance_Hz = nominal_Hz / 400;
+  return chip_.usb_Hz() >= nominal_Hz - tolerance_Hz && chip_.usb_Hz() <= nominal_Hz + tolerance_Hz;
+}
+
+// What the host needs to see a device at all.
+void OtgFsDevice::check_connection() {
+  if (!pulled_up_) return;
+  if (!pins_connected()) rules_.violate(Rule::usb_pins);
+  if (!clock_is_exact()) rules_.violate(Rule::usb_clock, std::to_string(chip_.usb_Hz()) + " Hz");
+  constexpr unsigned otg_fs = 10;
+  if ((usb_configuration_ & gusbcfg::fdmod) == 0 && !chip_.has_function('A', 10, otg_fs))
+    rules_.violate(Rule::usb_mode);
+}
+
+// What must be in place when the host has reset the bus and transfers may begin.
+void OtgFsDevice::check_core() {
+  if ((usb_configuration_ & gusbcfg::physel) == 0)
+    rules_.violate(Rule::usb_transceiver);
+  else if (!reset_since_selection_)
+    rules_.violate(Rule::usb_core_reset);
+  if ((device_configuration_ & dcfg::dspd) != dcfg::full_speed) rules_.violate(Rule::usb_speed);
+  if (gusbcfg::trdt(usb_configuration_) < turnaround_needed(chip_.hclk_Hz())) rules_.violate(Rule::usb_turnaround);
 }
 
 std::uint32_t OtgFsDevice::in_interrupts(unsigned endpoint) const {

@@ -38,8 +38,7 @@ void OtgFsDevice::write_in_endpoint(std::uint32_t offset, std::uint32_t value) {
     case offset::interrupts: endpoint.interrupts &= ~value; break;
     case offset::transfer_size:
       if ((endpoint.control & epctl::epena) != 0 && (endpoint.control & epctl::naksts) == 0)
-        note("the size of a transfer changes while its IN endpoint is enabled", offset::in_endpoints + offset, true,
-             value);
+        rules_.violate(Rule::usb_size_while_enabled);
       endpoint.packets = tsiz::packets(value, number == 0);
       endpoint.bytes_to_load = endpoint.bytes_to_send = value & (number == 0 ? 0x7F : 0x7FFFF);
       endpoint.packet_words_to_load = 0;
@@ -70,8 +69,7 @@ void OtgFsDevice::write_in_control(unsigned number, std::uint32_t value) {
       endpoint.interrupts |= epint::epdisd;
       endpoint.bytes_on_wire.reset();
     } else {
-      note("EPDIS has no effect on an endpoint that is not enabled",
-           offset::in_endpoints + number * offset::endpoint_bytes, true, value);
+      rules_.violate(Rule::usb_disable_without_enable);
     }
   } else if ((value & epctl::epena) != 0 && (endpoint.control & epctl::epena) == 0) {
     endpoint.control |= epctl::epena;
@@ -83,17 +81,15 @@ void OtgFsDevice::check_in_transfer(unsigned number) {
   const InEndpoint& endpoint = in_[number];
   const std::uint32_t where = offset::in_endpoints + number * offset::endpoint_bytes;
   const unsigned maximum = in_packet_maximum(number);
-  if (endpoint.packets == 0) note("IN endpoint enabled with a packet count of 0", where, true, endpoint.control);
-  if (endpoint.bytes_to_send > endpoint.packets * maximum)
-    note("IN transfer has more bytes than its packets hold", where, true, endpoint.control);
+  if (endpoint.packets == 0) rules_.violate(Rule::usb_no_packets, "IN " + std::to_string(number));
+  if (endpoint.bytes_to_send > endpoint.packets * maximum) rules_.violate(Rule::usb_bytes_beyond_packets);
   if ((endpoint.control & epctl::usbaep) == 0)
-    note("IN endpoint enabled that is not active in this configuration", where, true, endpoint.control);
+    rules_.violate(Rule::usb_inactive_endpoint, "IN " + std::to_string(number));
   if (epctl::type(endpoint.control) == epctl::isochronous && number != 0)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
-  if (!transmit_[transmit_fifo_of(number)].empty())
-    note("IN endpoint enabled while its FIFO holds words of an earlier transfer", where, true, endpoint.control);
+  if (!transmit_[transmit_fifo_of(number)].empty()) rules_.violate(Rule::usb_stale_words);
   if (transmit_depth(transmit_fifo_of(number)) * 4 < std::min<std::size_t>(endpoint.bytes_to_send, maximum))
-    note("a packet of this transfer does not fit the transmit FIFO", where, true, endpoint.control);
+    rules_.violate(Rule::usb_fifo_too_small);
   note_memory_layout();
 }
 
@@ -101,20 +97,18 @@ void OtgFsDevice::push_transmit_data(unsigned number, std::uint32_t word) {
   InEndpoint& endpoint = in_[number];
   const unsigned fifo_number = transmit_fifo_of(number);
   WordFifo& fifo = transmit_[fifo_number];
-  const std::uint32_t where = offset::fifos + number * offset::fifo_window_bytes;
 
   if (endpoint.packet_words_to_load != 0 && writing_endpoint_ != number && !endpoint.damaged) {
     // Seen on silicon: the packet goes out with a bad CRC, again and again, until the FIFO is flushed.
-    note("a packet's FIFO writes are interleaved with other accesses; the packet is damaged", where, true, word);
+    rules_.violate(Rule::usb_interleaved);
     endpoint.damaged = true;
   }
   writing_endpoint_ = number;
   if (fifo.count() >= transmit_depth(fifo_number)) {
-    note("a word was written to a full transmit FIFO and is lost", where, true, word);
+    rules_.violate(Rule::usb_fifo_full);
     return;
   }
-  if ((endpoint.control & epctl::epena) == 0)
-    note("the FIFO of an IN endpoint was written before the endpoint was enabled", where, true, word);
+  if ((endpoint.control & epctl::epena) == 0) rules_.violate(Rule::usb_fifo_before_enable);
 
   const bool level_before = transmit_empty_level(number);
   fifo.push(word);
@@ -122,11 +116,19 @@ void OtgFsDevice::push_transmit_data(unsigned number, std::uint32_t word) {
     endpoint.packet_bytes_loading = std::min<std::uint32_t>(endpoint.bytes_to_load, in_packet_maximum(number));
     endpoint.packet_words_to_load = words_for(endpoint.packet_bytes_loading);
     if (endpoint.packet_words_to_load == 0) {
-      note("more words were written to a transmit FIFO than the transfer has", where, true, word);
+      rules_.violate(Rule::usb_words_beyond_transfer);
       return;
     }
   }
-  if (--endpoint.packet_words_to_load == 0) endpoint.bytes_to_load -= endpoint.packet_bytes_loading;
+  if (--endpoint.packet_words_to_load == 0) {
+    endpoint.bytes_to_load -= endpoint.packet_bytes_loading;
+    ++endpoint.packets_in_fifo;
+    constexpr unsigned packets_that_the_core_counts = 8;
+    if (endpoint.packets_in_fifo > packets_that_the_core_counts) {
+      rules_.violate(Rule::usb_fifo_packets, "IN " + std::to_string(number));
+      endpoint.damaged = true;
+    }
+  }
   if (level_before != transmit_empty_level(number)) update_interrupt();
 }
 
@@ -135,6 +137,7 @@ void OtgFsDevice::flush_transmit(unsigned number) {
   for (unsigned i = 0; i < endpoint_count; ++i) {
     if (transmit_fifo_of(i) != number) continue;
     in_[i].packet_words_to_load = 0;
+    in_[i].packets_in_fifo = 0;
     in_[i].damaged = false;
     in_[i].bytes_on_wire.reset();
   }
@@ -183,13 +186,10 @@ void OtgFsDevice::note_memory_layout() {
     regions[i + 1] = {begin, begin + (size_register >> 16)};
   }
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    if (regions[i].end > packet_memory_words)
-      note("a FIFO reaches beyond the 320 words of packet memory", offset::dieptxf0, true,
-           static_cast<std::uint32_t>(regions[i].end));
+    if (regions[i].end > packet_memory_words) rules_.violate(Rule::usb_memory_exceeded);
     for (std::size_t j = 0; j < i; ++j)
       if (regions[i].begin < regions[j].end && regions[j].begin < regions[i].end)
-        note("two FIFOs overlap in packet memory", offset::dieptxf0, true,
-             static_cast<std::uint32_t>(regions[i].begin));
+        rules_.violate(Rule::usb_memory_overlap);
   }
 }
 
@@ -239,14 +239,13 @@ void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
   if ((value & epctl::snak) != 0) endpoint.control |= epctl::naksts;
   if (number != 0 && (value & epctl::sd0pid) != 0) endpoint.data1 = false;
   if (number != 0 && (value & epctl::sd1pid) != 0) endpoint.data1 = true;
-  const std::uint32_t where = offset::out_endpoints + number * offset::endpoint_bytes;
   if ((value & epctl::epdis) != 0) {
     if (number == 0 || (endpoint.control & epctl::epena) == 0) {
-      note("EPDIS has no effect on OUT endpoint 0 or an endpoint that is not enabled", where, true, value);
+      rules_.violate(Rule::usb_out_disable);
     } else if (global_out_nak_effective_) {
       disable_out(endpoint);
     } else {
-      note("an OUT endpoint is disabled before the global OUT NAK is effective; it waits", where, true, value);
+      rules_.violate(Rule::usb_out_disable_early);
       endpoint.disable_pending = true;
     }
   } else if (((value & epctl::epena) != 0 || armed_by_cnak(number, value)) && (endpoint.control & epctl::epena) == 0) {
@@ -266,14 +265,12 @@ bool OtgFsDevice::armed_by_cnak(unsigned number, std::uint32_t control_written) 
 void OtgFsDevice::check_out_transfer(unsigned number) {
   const OutEndpoint& endpoint = out_[number];
   const std::uint32_t where = offset::out_endpoints + number * offset::endpoint_bytes;
-  if (endpoint.packets == 0 && number != 0)
-    note("OUT endpoint enabled with a packet count of 0", where, true, endpoint.control);
+  if (endpoint.packets == 0 && number != 0) rules_.violate(Rule::usb_no_packets, "OUT " + std::to_string(number));
   if (number == 0) return;
   const std::uint32_t maximum = endpoint.control & epctl::mpsiz;
-  if (maximum == 0 || endpoint.bytes == 0 || endpoint.bytes % maximum != 0)
-    note("the size of an OUT transfer is not a multiple of the packet size", where, true, endpoint.bytes);
+  if (maximum == 0 || endpoint.bytes == 0 || endpoint.bytes % maximum != 0) rules_.violate(Rule::usb_out_size);
   if ((endpoint.control & epctl::usbaep) == 0)
-    note("OUT endpoint enabled that is not active in this configuration", where, true, endpoint.control);
+    rules_.violate(Rule::usb_inactive_endpoint, "OUT " + std::to_string(number));
   if (epctl::type(endpoint.control) == epctl::isochronous)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
 }
@@ -288,19 +285,17 @@ void OtgFsDevice::disable_out(OutEndpoint& endpoint) {
 // loses that word.
 void OtgFsDevice::lose_setup_done_word() {
   if (!setup_done_unpopped_ || setup_done_lost_) return;
-  note("CNAK on OUT endpoint 0 before the setup-done word was popped; the word is lost", offset::out_endpoints, true,
-       epctl::cnak);
+  rules_.violate(Rule::usb_nak_cleared_early);
   setup_done_lost_ = true;
 }
 
 std::uint32_t OtgFsDevice::pop_receive_status() {
   if (receive_.empty()) {
-    note("GRXSTSP was read while the receive FIFO was empty", offset::grxstsp, false, 0);
+    rules_.violate(Rule::usb_pop_empty);
     return 0;
   }
   if (receive_data_words_ != 0) {
-    note("GRXSTSP was read before the data of the packet before; a data word is taken for a status", offset::grxstsp,
-         false, receive_.front());
+    rules_.violate(Rule::usb_pop_before_data);
     --receive_data_words_;
     const std::uint32_t word = receive_.pop();
     update_interrupt();
@@ -335,7 +330,7 @@ std::uint32_t OtgFsDevice::pop_receive_status() {
 
 std::uint32_t OtgFsDevice::pop_receive_data() {
   if (receive_data_words_ == 0) {
-    note("the receive FIFO was read beyond the packet", offset::fifos, false, 0);
+    rules_.violate(Rule::usb_read_beyond_packet);
     return 0;
   }
   --receive_data_words_;

@@ -38,8 +38,9 @@ namespace gahbcfg {
 inline constexpr std::uint32_t gint = 1u << 0, txfelvl = 1u << 7, writable = 0x181;
 }
 namespace gusbcfg {
-inline constexpr std::uint32_t fhmod = 1u << 29;
-}
+inline constexpr std::uint32_t physel = 1u << 6, fhmod = 1u << 29, fdmod = 1u << 30;
+constexpr unsigned trdt(std::uint32_t value) { return (value >> 10) & 0xF; }
+}  // namespace gusbcfg
 namespace grstctl {
 inline constexpr std::uint32_t csrst = 1u << 0, rxfflsh = 1u << 4, txfflsh = 1u << 5, ahbidl = 1u << 31;
 constexpr unsigned txfnum(std::uint32_t value) { return (value >> 6) & 0x1F; }
@@ -56,7 +57,7 @@ namespace gccfg {
 inline constexpr std::uint32_t pwrdwn = 1u << 16, vbusbsen = 1u << 19, novbussens = 1u << 21, writable = 0x003D'0000;
 }
 namespace dcfg {
-inline constexpr std::uint32_t dspd = 0x3, writable = 0x0000'1FF7;
+inline constexpr std::uint32_t dspd = 0x3, full_speed = 0x3, writable = 0x0000'1FF7;
 constexpr unsigned dad(std::uint32_t value) { return (value >> 4) & 0x7F; }
 /// End of the periodic part of a frame, in thousandths of it (PFIVL).
 constexpr unsigned periodic_frame_per_mille(std::uint32_t value) { return 800 + 50 * ((value >> 11) & 3); }

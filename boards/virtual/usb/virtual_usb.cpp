@@ -12,9 +12,8 @@
 namespace inkwell::virtual_board {
 
 struct VirtualUsb::Implementation final : RootPort::Client {
-  Implementation(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log, std::uint16_t tcp_port,
-                 std::function<void()> on_request)
-      : core(scheduler, interrupts, log), root_port(scheduler, core, *this), server(tcp_port, std::move(on_request)) {}
+  Implementation(const ChipConnections& chip, std::uint16_t tcp_port, std::function<void()> on_request)
+      : core(chip), root_port(chip.scheduler, core, *this), server(tcp_port, std::move(on_request)) {}
 
   void between_transactions() override { wait_while(&HostPace::is_starved); }
 
@@ -79,9 +78,8 @@ struct VirtualUsb::Implementation final : RootPort::Client {
   UsbIpServer server;
 };
 
-VirtualUsb::VirtualUsb(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log, std::uint16_t port,
-                       std::function<void()> on_request)
-    : implementation_(std::make_unique<Implementation>(scheduler, interrupts, log, port, std::move(on_request))) {
+VirtualUsb::VirtualUsb(const ChipConnections& chip, std::uint16_t port, std::function<void()> on_request)
+    : implementation_(std::make_unique<Implementation>(chip, port, std::move(on_request))) {
   connect();
 }
 VirtualUsb::~VirtualUsb() = default;

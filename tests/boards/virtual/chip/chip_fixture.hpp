@@ -1,6 +1,8 @@
 // What the chip is tested with: a circuit that writes down every edge, and the test firmwares.
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include <chip/chip.hpp>
 #include <map>
 #include <string>
@@ -57,12 +59,22 @@ inline std::string firmware_path(const std::string& name) {
   return std::string(INKWELL_BUILD_DIRECTORY) + "/chip-firmware/" + name + ".elf";
 }
 
-/// A chip in its circuit, running a test firmware from reset.
+/// A chip in its circuit, running a test firmware from reset. A rule of silicon that the firmware breaks fails the
+/// test, unless it says that it is about that.
 struct ChipUnderTest {
   explicit ChipUnderTest(const std::string& firmware, Mode mode = Mode::exact, Pricing pricing = Pricing::likely)
       : chip(circuit, options(mode, pricing)) {
     chip.load_elf(firmware_path(firmware));
     chip.reset();
+  }
+  ~ChipUnderTest() {
+    if (breaks_rules) return;
+    for (const Violation& violation : chip.violations()) FAIL_CHECK(sentence(violation));
+  }
+  bool has_broken(Rule rule) const {
+    for (const Violation& violation : chip.violations())
+      if (violation.rule == rule) return true;
+    return false;
   }
   ChipOptions options(Mode mode, Pricing pricing) {
     ChipOptions chosen;
@@ -77,6 +89,7 @@ struct ChipUnderTest {
   RecordingCircuit circuit;
   std::vector<std::string> log;
   Chip chip;
+  bool breaks_rules = false;
 };
 
 inline constexpr std::uint32_t finished = 0x600D600D;

@@ -85,6 +85,7 @@ TEST_SUITE("virtual chip: ELF") {
     const auto path = std::filesystem::temp_directory_path() / "inkwell-other-chip.elf";
     std::ofstream(path, std::ios::binary) << with_word(vectors, 0x2003'0000);
     ChipUnderTest test("watchdog");
+    test.breaks_rules = true;
     CHECK(test.log.empty());
     test.chip.load_elf(path);
     std::filesystem::remove(path);
@@ -93,6 +94,7 @@ TEST_SUITE("virtual chip: ELF") {
     CHECK(contains(test.log[0], "another chip"));
     CHECK(test.chip.run_until(test.chip.now() + ticks(0.001)) == Stop::locked_up);
     CHECK(contains(test.chip.lockup_reason(), "the stack is not in RAM"));
+    CHECK(test.has_broken(Rule::stack_outside_memory));
   }
 
   TEST_CASE("a refused file leaves the flash as it was") {

@@ -183,9 +183,11 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(5) == 0xFFFF'FFFF);
     CHECK(test.result(6) == 0xA5);
     CHECK(test.result(7) == 0);
-    REQUIRE(test.log.size() == 1);
-    CHECK(test.log[0].find("CRC is used while its clock is off") != std::string::npos);
-    CHECK(test.log[0].find(", by the code that begins at 0x080") != std::string::npos);
+    test.breaks_rules = true;
+    REQUIRE(test.chip.violations().size() == 1);
+    const Violation& violation = test.chip.violations()[0];
+    CHECK(violation.rule == Rule::clock_off);
+    CHECK(violation.where == "CRC");
   }
 
   TEST_CASE("pins, bit-band, identity, flash and USART") {

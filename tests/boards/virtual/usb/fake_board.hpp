@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <chip/interfaces.hpp>
+#include <chip/violations.hpp>
 
 namespace inkwell::virtual_usb_test {
 
@@ -55,10 +55,14 @@ class FakeInterrupts final : public virtual_board::InterruptController {
   bool asserted_ = false;
 };
 
-class FakeLog final : public virtual_board::UnmodelledLog {
+class FakeLog final : public virtual_board::UnmodelledLog, public virtual_board::RuleKeeper {
  public:
   void note(const std::string& peripheral, std::uint32_t, bool, std::uint32_t) override {
     sentences.push_back(peripheral);
+  }
+  void violate(virtual_board::Rule rule, const std::string&) override {
+    sentences.emplace_back(virtual_board::info(rule).done);
+    broken.push_back(rule);
   }
   bool has(const std::string& part) const {
     for (const std::string& sentence : sentences)
@@ -66,6 +70,19 @@ class FakeLog final : public virtual_board::UnmodelledLog {
     return false;
   }
   std::vector<std::string> sentences;
+  std::vector<virtual_board::Rule> broken;
+};
+
+/// Clocks and pins as a driver should have set them.
+class FakeChipState final : public virtual_board::ChipState {
+ public:
+  std::uint32_t hclk_Hz() const override { return hclk; }
+  std::uint32_t usb_Hz() const override { return usb; }
+  bool has_function(char port, unsigned pin, unsigned alternate_function) const override {
+    return connected && port == 'A' && (pin == 11 || pin == 12) && alternate_function == 10;
+  }
+  std::uint32_t hclk = 168'000'000, usb = 48'000'000;
+  bool connected = true;
 };
 
 }  // namespace inkwell::virtual_usb_test

@@ -37,12 +37,14 @@ constexpr std::array<std::uint8_t, 55> configuration_descriptor{
 }  // namespace
 
 void FakeFirmware::start() {
+  set(gusbcfg, 1u << 6);
   while ((read(grstctl) & 1u << 31) == 0) {
   }
   set(grstctl, 1);
   while ((read(grstctl) & 1) != 0) {
   }
   write(gusbcfg, 1u << 30 | 6u << 10 | 1u << 6);
+  scheduler_.pass_until(scheduler_.now() + virtual_board::ticks(0.025));
   write(gccfg, 1u << 21 | 1u << 16);
   set(dcfg, 3);
   set(dctl, 2);

@@ -9,13 +9,15 @@
 
 #include <virtual_usb/otg_fs_device.hpp>
 
+#include "fake_board.hpp"
+
 namespace inkwell::virtual_usb_test {
 
 using Bytes = std::vector<std::byte>;
 
 class FakeFirmware {
  public:
-  explicit FakeFirmware(virtual_board::OtgFsDevice& core) : core_(core) {}
+  FakeFirmware(virtual_board::OtgFsDevice& core, FakeScheduler& scheduler) : core_(core), scheduler_(scheduler) {}
 
   /// Starts the core and pulls D+ up.
   void start();
@@ -64,6 +66,7 @@ class FakeFirmware {
   void write_packet(unsigned endpoint, std::span<const std::byte> data);
 
   virtual_board::OtgFsDevice& core_;
+  FakeScheduler& scheduler_;
   std::array<std::byte, 8> setup_{};
   Bytes control_in_;
   std::size_t control_in_sent_ = 0;

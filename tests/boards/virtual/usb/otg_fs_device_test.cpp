@@ -21,7 +21,7 @@ constexpr std::uint32_t epena = 1u << 31, epdis = 1u << 30, snak = 1u << 27, cna
 constexpr std::array<std::byte, 8> some_request{};
 
 struct Bench {
-  Bench() : core(scheduler, interrupts, log), firmware(core) {
+  Bench() : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler) {
     firmware.start();
     core.set_bus_power(true);
     core.begin_reset();
@@ -44,6 +44,7 @@ struct Bench {
   FakeScheduler scheduler;
   FakeInterrupts interrupts;
   FakeLog log;
+  FakeChipState state;
   OtgFsDevice core;
   FakeFirmware firmware;
   std::array<std::byte, virtual_board::full_speed_packet_maximum> packet{};
@@ -53,7 +54,8 @@ TEST_CASE("reset values") {
   FakeScheduler scheduler;
   FakeInterrupts interrupts;
   FakeLog log;
-  OtgFsDevice core(scheduler, interrupts, log);
+  FakeChipState state;
+  OtgFsDevice core({scheduler, interrupts, log, log, state});
   const std::array<std::pair<std::uint32_t, std::uint32_t>, 16> expected{{{0x008, 0},
                                                                           {0x00C, 0x0A00},
                                                                           {0x010, 0x8000'0000},
@@ -83,7 +85,8 @@ TEST_CASE("the pull-up needs power, a session and no soft disconnect") {
   FakeScheduler scheduler;
   FakeInterrupts interrupts;
   FakeLog log;
-  OtgFsDevice core(scheduler, interrupts, log);
+  FakeChipState state;
+  OtgFsDevice core({scheduler, interrupts, log, log, state});
   CHECK(core.attachment() == 0);
   core.write(gccfg, 1u << 16, 4);
   CHECK(core.attachment() == 0);  // VBUS is not sensed

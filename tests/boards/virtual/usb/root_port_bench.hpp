@@ -26,7 +26,7 @@ struct Outcome {
 
 class Bench final : public RootPort::Client {
  public:
-  Bench() : core(scheduler, interrupts, log), firmware(core), port(scheduler, core, *this) {}
+  Bench() : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler), port(scheduler, core, *this) {}
 
   void run_for(double time_s) {
     const Ticks end = scheduler.now() + ticks(time_s);
@@ -98,6 +98,7 @@ class Bench final : public RootPort::Client {
   FakeScheduler scheduler;
   FakeInterrupts interrupts;
   FakeLog log;
+  FakeChipState state;
   OtgFsDevice core;
   FakeFirmware firmware;
   RootPort port;

@@ -33,6 +33,7 @@ class LiveBoard {
   FakeScheduler scheduler;
   FakeInterrupts interrupts;
   FakeLog log;
+  FakeChipState state;
   virtual_board::VirtualUsb usb;
   FakeFirmware firmware;
 

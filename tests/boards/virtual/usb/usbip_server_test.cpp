@@ -272,9 +272,10 @@ TEST_CASE("a busy port is reported in a sentence") {
   FakeScheduler scheduler;
   FakeInterrupts interrupts;
   FakeLog log;
+  FakeChipState state;
   std::string message;
   try {
-    virtual_board::VirtualUsb second(scheduler, interrupts, log, board.usb.port(), [] {});
+    virtual_board::VirtualUsb second({scheduler, interrupts, log, log, state}, board.usb.port(), [] {});
   } catch (const std::runtime_error& error) {
     message = error.what();
   }

@@ -8,6 +8,7 @@
 #include <array>
 #include <chip/debug_port.hpp>
 #include <chip/interfaces.hpp>
+#include <chip/violations.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -121,7 +122,7 @@ class Chip {
   DebugPort& debug_port();
   InterruptController& interrupts();
   InputPins& input_pins();
-  UnmodelledLog& unmodelled_log();
+  ChipConnections connections();
 
   /// Puts a peripheral on the bus; `base` is a multiple of 1024 in 0x40000000..0x400803FF or
   /// 0x50000000..0x50060BFF. It is reset with the chip. It must outlive the chip.
@@ -134,6 +135,8 @@ class Chip {
   std::function<void(std::uint8_t byte)> on_console;
   /// A character that USART `number` (1..6) has sent, at the end of its stop bit.
   std::function<void(unsigned number, std::uint8_t byte)> on_usart;
+  /// Called when the firmware breaks a rule, once for each place.
+  std::function<void(const Violation& violation)> on_violation;
   /// Called after each reset that the firmware or a watchdog causes (and those by reset()).
   std::function<void(ResetCause cause)> on_reset;
 
@@ -153,6 +156,8 @@ class Chip {
   const std::optional<Fault>& first_fault() const;
   /// Registers of all peripherals, as their models declare them.
   std::vector<RegisterMap> register_maps() const;
+  /// Rules that the firmware has broken so far, in the order of their first time.
+  const std::vector<Violation>& violations() const;
   /// Lines of unmodelled accesses so far.
   const std::vector<std::string>& unmodelled_accesses() const;
 

@@ -54,6 +54,15 @@ class UnmodelledLog {
   virtual void note(const std::string& peripheral, std::uint32_t offset, bool write, std::uint32_t value) = 0;
 };
 
+/// Clocks and pins as they are now, for a peripheral that depends on them.
+class ChipState {
+ public:
+  virtual ~ChipState() = default;
+  virtual std::uint32_t hclk_Hz() const = 0;
+  virtual std::uint32_t usb_Hz() const = 0;  ///< PLL48CLK; 0 if it stands still
+  virtual bool has_function(char port, unsigned pin, unsigned alternate_function) const = 0;
+};
+
 enum class PinLevel : std::uint8_t { low, high, floating };
 
 /// What is soldered to the chip. Times of calls never run backward.

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include <chip/interfaces.hpp>
+#include <chip/violations.hpp>
 #include <virtual_usb/bus.hpp>
 #include <virtual_usb/word_fifo.hpp>
 
@@ -22,7 +22,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   static constexpr unsigned endpoint_count = 4;  ///< IN and OUT each, endpoint 0 included
   static constexpr std::size_t packet_memory_words = 320;
 
-  OtgFsDevice(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log);
+  explicit OtgFsDevice(const ChipConnections& chip);
   OtgFsDevice(const OtgFsDevice&) = delete;
   OtgFsDevice& operator=(const OtgFsDevice&) = delete;
 
@@ -32,7 +32,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void reset() override;
 
   // BusDevice
-  std::uint32_t attachment() const override { return pulled_up_ ? attachments_ : 0; }
+  std::uint32_t attachment() const override { return pulled_up_ && pins_connected() ? attachments_ : 0; }
   void set_bus_power(bool present) override;
   void begin_reset() override;
   void end_reset() override;
@@ -55,6 +55,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
     std::uint32_t packet_words_to_load = 0;  ///< rest of the packet that firmware is writing; 0 between packets
     std::uint32_t packet_bytes_loading = 0;
     std::optional<std::uint32_t> bytes_on_wire;
+    unsigned packets_in_fifo = 0;
     bool data1 = false;
     bool damaged = false;  ///< FIFO content has a bad CRC until it is flushed
   };
@@ -112,11 +113,18 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::uint32_t endpoint_interrupts() const;
   void update_interrupt();
   void update_pull_up();
+  void write_usb_configuration(std::uint32_t value);
+  bool pins_connected() const;
+  bool clock_is_exact() const;
+  void check_connection();
+  void check_core();
   void note(const char* sentence, std::uint32_t offset, bool is_write, std::uint32_t value);
 
   Scheduler& scheduler_;
   InterruptController& interrupts_;
   UnmodelledLog& log_;
+  RuleKeeper& rules_;
+  const ChipState& chip_;
 
   // Registers, by the names of RM0090 in words.
   std::uint32_t otg_interrupts_ = 0;                           // GOTGINT
@@ -163,6 +171,9 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::uint16_t frame_number_ = 0;
   Scheduler::Id end_of_periodic_frame_ = 0;
   bool interrupt_asserted_ = false;
+  bool reset_since_selection_ = false;  ///< CSRST after PHYSEL
+  Ticks device_forced_at_ = 0;          ///< FDMOD rose
+  Scheduler::Id connection_check_ = 0;
 };
 
 }  // namespace inkwell::virtual_board

@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include <chip/interfaces.hpp>
+#include <chip/violations.hpp>
 #include <virtual_usb/otg_fs_device.hpp>
 
 namespace inkwell::virtual_board {
@@ -14,10 +14,9 @@ namespace inkwell::virtual_board {
 class VirtualUsb {
  public:
   /// Listens on 127.0.0.1:`port` (0: any free port); throws std::runtime_error with a sentence if it is
-  /// taken. The cable is plugged in. All references must outlive this object. `on_request` is called from another
-  /// thread when there is something to `serve`.
-  VirtualUsb(Scheduler& scheduler, InterruptController& interrupts, UnmodelledLog& log, std::uint16_t port,
-             std::function<void()> on_request);
+  /// taken. The cable is plugged in. What `chip` refers to must outlive this object. `on_request` is called from
+  /// another thread when there is something to `serve`.
+  VirtualUsb(const ChipConnections& chip, std::uint16_t port, std::function<void()> on_request);
   ~VirtualUsb();
 
   /// The peripheral to map at OtgFsDevice::base.

@@ -24,11 +24,14 @@ void run() {
   word(rcc::ahb1enr) |= 7 | 1 << 22;
   word(rcc::apb1enr) |= 1;
   word(rcc::apb2enr) |= 7 << 8;
-  word(gpio::c + gpio::moder) = 0x3F;  // C0, C1, C2 analogue
-  word(adc::ccr) = 1 << 16 | 0x15;     // PCLK2 / 4, injected simultaneous, three converters
+  word(gpio::c + gpio::moder) = 0x3FF;  // C0 to C4 analogue
+  word(adc::ccr) = 1 << 16 | 0x15;      // PCLK2 / 4, injected simultaneous, three converters
   for (unsigned i = 0; i < 3; ++i) {
     word(adc::adc1 + 0x100 * i + adc::jsqr) = (10 + i) << 15;
     word(adc::adc1 + 0x100 * i + adc::cr2) = 1;
+  }
+  start_cycle_counter();
+  while (cycles() < 3 * 168) {  // the converters become stable
   }
   // Stream 4, channel 0: 16 bits, memory increments, circular, interrupts for half and complete.
   word(0x40026410 + 0x18 * 4 + 0x8) = adc::adc1 + adc::dr;

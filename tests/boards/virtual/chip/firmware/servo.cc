@@ -50,6 +50,7 @@ void run() {
   word(rcc::apb2enr) |= 3 | 7 << 8;
   for (unsigned pin = 8; pin < 11; ++pin) gpio::alternate(gpio::a, pin, 1);
   for (unsigned pin = 6; pin < 9; ++pin) gpio::alternate(gpio::c, pin, 3);
+  word(gpio::c + gpio::moder) |= 0x3F;  // C0 to C2 analogue
   set_up_bridge_timer(tim1);
   set_up_bridge_timer(tim8);
   word(tim1 + cr2) = 2 << 4;

@@ -1,0 +1,151 @@
+// Starts clocks, converter, watchdog, a locked timer and the USB core as the manual wants it, but for the one rule that
+// the test names on port D. That port is read before anything else.
+#include "support.hpp"
+
+namespace {
+
+// The same numbers as in violations_test.cpp.
+enum Fault : std::uint32_t {
+  none,
+  float_unit_off,
+  voltage_scale,
+  usb_clock,
+  usb_pins,
+  usb_transceiver,
+  usb_core_reset,
+  usb_mode_wait,
+  usb_turnaround,
+  usb_speed,
+  converter_too_fast,
+  converter_clock_off,
+  analog_pin_mode,
+  converter_not_stable,
+  usb_mode,
+  usb_fifo_packets,
+  flash_wait_states,
+  pclk1_too_fast,
+  pll_input,
+  clock_fresh,
+  ccm_clock_off,
+  timer_locked,
+  watchdog_busy,
+};
+
+std::uint32_t fault;
+
+void read_back(std::uint32_t address) { [[maybe_unused]] const std::uint32_t value = word(address); }
+
+void wait_us(std::uint32_t time_us) {
+  start_cycle_counter();
+  while (cycles() < time_us * 168) {
+  }
+}
+
+void start_clocks() {
+  word(rcc::apb1enr) |= 1u << 28;
+  read_back(rcc::apb1enr);
+  word(0x40007000) = fault == voltage_scale ? 0 : 1u << 14;
+  word(0x40023C00) = (fault == flash_wait_states ? 4 : 5) | 7 << 8;
+  word(rcc::cr) |= 1u << 16;
+  while ((word(rcc::cr) & 1u << 17) == 0) {
+  }
+  const std::uint32_t q = fault == usb_clock ? 8 : 7;
+  word(rcc::pllcfgr) = (fault == pll_input ? 2 | 84 << 6 : 4 | 168 << 6) | 1 << 22 | q << 24;
+  word(rcc::cr) |= 1u << 24;
+  while ((word(rcc::cr) & 1u << 25) == 0) {
+  }
+  word(rcc::cfgr) = (fault == pclk1_too_fast ? 4 : 5) << 10 | 4 << 13;
+  word(rcc::cfgr) = word(rcc::cfgr) | 2;
+  while ((word(rcc::cfgr) & 0xC) != 8) {
+  }
+}
+
+void convert() {
+  word(rcc::ahb1enr) |= 7;
+  word(rcc::apb2enr) |= (fault == converter_clock_off ? 1 : 7) << 8;
+  read_back(rcc::apb2enr);
+  if (fault != analog_pin_mode) word(gpio::c + gpio::moder) = 0x3F;
+  word(adc::ccr) = fault == converter_too_fast ? 0 : 1 << 16;
+  for (unsigned i = 0; i < 3; ++i) {
+    word(adc::adc1 + 0x100 * i + adc::sqr3) = 10 + i;
+    word(adc::adc1 + 0x100 * i + adc::cr2) = 1;
+  }
+  if (fault != converter_not_stable) wait_us(4);
+  for (unsigned i = 0; i < 3; ++i) word(adc::adc1 + 0x100 * i + adc::cr2) = 1 | 1u << 30;
+  wait_us(10);
+  for (unsigned i = 0; i < 3; ++i) results[1 + i] = word(adc::adc1 + 0x100 * i + adc::dr);
+}
+
+void use_others() {
+  constexpr std::uint32_t tim8 = timer::tim8;
+  word(rcc::apb2enr) |= 2;
+  read_back(rcc::apb2enr);
+  word(tim8 + timer::bdtr) = 1u << 8 | 1u << 12;
+  word(tim8 + timer::bdtr) = 1u << 8 | 1u << 12 | 1u << 15 | (fault == timer_locked ? 20 : 0);
+  results[4] = word(tim8 + timer::bdtr) & 0xFF;
+
+  if (fault == clock_fresh)
+    asm volatile("str %1, [%0]\n str %3, [%2]" ::"r"(rcc::apb1enr), "r"(word(rcc::apb1enr) | 1),
+                 "r"(timer::tim2 + timer::arr), "r"(1000)
+                 : "memory");
+
+  word(0x40003000) = 0xCCCC;
+  word(0x40003000) = 0x5555;
+  word(0x40003008) = 4000;
+  if (fault != watchdog_busy)
+    while (word(0x4000300C) != 0) {
+    }
+  word(0x40003000) = 0x5555;
+  word(0x40003008) = 3000;
+
+  if (fault == ccm_clock_off) word(rcc::ahb1enr) &= ~(1u << 20);
+  word(0x10000000) = 1;
+}
+
+// RM0090, "OTG_FS programming model".
+void start_usb() {
+  constexpr std::uint32_t core = 0x50000000, gusbcfg = core + 0x0C, grstctl = core + 0x10;
+  word(0x40023834) |= 1u << 7;  // AHB2ENR
+  read_back(0x40023834);
+  if (fault != usb_pins) {
+    gpio::alternate(gpio::a, 11, 10);
+    gpio::alternate(gpio::a, 12, 10);
+  }
+  if (fault != usb_transceiver) word(gusbcfg) |= 1u << 6;
+  if (fault != usb_core_reset) word(grstctl) |= 1;
+  word(core + 0x38) = 1u << 16 | 1u << 21;
+  word(gusbcfg) =
+      (word(gusbcfg) & ~(0xFu << 10)) | (fault == usb_mode ? 0 : 1u << 30) | (fault == usb_turnaround ? 0 : 6u << 10);
+  if (fault != usb_mode_wait) wait_us(25'100);
+  word(core + 0x800) |= fault == usb_speed ? 0 : 3;
+  word(core + 0x804) &= ~2u;
+  // What comes next needs no host: an endpoint is loaded as if one had configured the device.
+  word(core + 0x024) = 56;
+  word(core + 0x028) = 16u << 16 | 56;
+  word(core + 0x108) = 200u << 16 | 72;
+  word(core + 0x940) = 1u << 28 | 2u << 22 | 2u << 18 | 1u << 15 | 64;
+  word(core + 0x950) = 9u << 19 | 9 * 64;
+  word(core + 0x940) |= 1u << 31 | 1u << 26;
+  const unsigned packets = fault == usb_fifo_packets ? 9 : 8;
+  for (unsigned i = 0; i < packets * 16; ++i) word(core + 0x3000) = i;
+}
+
+}  // namespace
+
+void run() {
+  word(rcc::ahb1enr) |= 8;
+  read_back(rcc::ahb1enr);
+  fault = word(0x40020C00 + gpio::idr);
+  set_handler(3, [] {
+    results[5] = word(0xE000ED28);
+    for (;;) wait_for_interrupt();
+  });
+  if (fault == float_unit_off) word(0xE000ED88) = 0;
+  asm volatile("dsb\n isb\n vmov.f32 s0, #1.0" ::: "s0", "memory");
+  start_clocks();
+  convert();
+  use_others();
+  start_usb();
+  results[0] = finished;
+  for (;;) wait_for_interrupt();
+}
