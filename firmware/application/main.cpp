@@ -79,11 +79,12 @@ int main() {
   if (!drivers::start_clocks()) give_up(drivers::internal_oscillator_Hz);
   report_start(reset_cause, crash);
 
+  // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
+  analog_inputs.start_clocks();
+  bridges.start();
   encoders.start();
   switches.start();
-  // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
   analog_inputs.start();
-  bridges.start();
   if (crash)
     controller.raise(protocol::Fault::processor_fault);
   else if (reset_cause.watchdog())

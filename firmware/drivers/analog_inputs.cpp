@@ -91,6 +91,11 @@ constexpr std::uint32_t stabilisation_cycles = board::processor_Hz / 100'000;
 
 }  // namespace
 
+void AnalogInputs::start_clocks() {
+  start_clock_of_stream<AnalogInputs, DMA2, 0>();
+  start_clocks_of<AnalogInputs, ADC1, ADC2, ADC3>();
+}
+
 void AnalogInputs::start() {
   connect_analog<AnalogInputs, board::motor_current[0]>();
   connect_analog<AnalogInputs, board::motor_current[1]>();
@@ -99,9 +104,6 @@ void AnalogInputs::start() {
   connect_analog<AnalogInputs, board::gimbal[1]>();
   connect_analog<AnalogInputs, board::gimbal[2]>();
   connect_analog<AnalogInputs, board::supply>();
-
-  start_clock_of_stream<AnalogInputs, DMA2, 0>();
-  start_clocks_of<AnalogInputs, ADC1, ADC2, ADC3>();
 
   static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
                 board::adc_divider == 8);

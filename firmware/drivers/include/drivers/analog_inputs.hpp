@@ -32,6 +32,9 @@ class AnalogInputs {
                                      pin(board::gimbal[2]),
                                      pin(board::supply)};
 
+  /// Before TIM1 runs: the converters miss a trigger that comes before their clocks.
+  void start_clocks();
+
   /// Switches the converters on, sets their sequences up and measures gimbal and supply once. The converters do not
   /// listen to TIM1 yet.
   void start();

@@ -44,8 +44,9 @@ void run() {
   run_at_168_MHz();
   word(rcc::ahb1enr) |= 7;
   CycleCounter::start();
-  analog_inputs.start();
+  analog_inputs.start_clocks();
   bridges.start();
+  analog_inputs.start();
   set_handler(interrupt(18), period);
   if (!bridges.wait_for_update()) return;
   analog_inputs.arm();
