@@ -100,6 +100,7 @@ def known_differences() -> list[Known]:
         Known("DBG", "DBGMCU_APB1_FZ", "DBG_IWDG_STOP", "DBG_IWDEG_STOP", "a misspelling in the SVD"),
         Known("IWDG", "PR", "PR_", "PR", IN_CPP),
         Known("PWR", "CR", "VOS", None, "not in the SVD; RM0090, PWR_CR of the STM32F405: bit 14"),
+        Known("RCC", "AHB1ENR", "CCMDATARAMEN", None, "not in the SVD; RM0090, RCC_AHB1ENR of the STM32F405: bit 20"),
         Known("SCB", "AIRCR", "VECTKEY", "VECTKEYSTAT", "the SVD has the name for reading"),
         Known("OTG_FS_GLOBAL", "GCCFG", "NOVBUSSENS", None, "not in the SVD; RM0090, OTG_FS_GCCFG: bit 21"),
         Known("OTG_FS_DEVICE", "DIEPCTL[1-3]|DOEPCTL[0-3]", "STALL", "Stall", "the SVD has it in small letters"),
