@@ -38,7 +38,7 @@ std::span<std::byte> writable_bytes(Report& report) {
 Refused::Refused(const protocol::TransactionReport& refusal) : Error(refusal_sentence(refusal)), report(refusal) {}
 
 struct Device::Implementation {
-  std::unique_ptr<Link> link;
+  std::unique_ptr<Transport> transport;
   std::uint8_t token = 0;
   Clock::time_point last_command_at{};
   std::uint32_t last_command_period = 0;
@@ -48,7 +48,7 @@ struct Device::Implementation {
 
   template <class Report>
   void get(Report& report, const char* what) {
-    const std::size_t length = link->get_feature(writable_bytes(report));
+    const std::size_t length = transport->get_feature(writable_bytes(report));
     if (length < sizeof report)
       throw Incompatible(
           fmt::format("The device's {} report has {} bytes instead of {}. Flash the firmware that "
@@ -64,7 +64,7 @@ struct Device::Implementation {
   std::uint8_t send(protocol::CommandReport& command) {
     command.report_id = ReportId::command;
     command.version = protocol::protocol_version;
-    link->write_report(std::as_bytes(std::span(&command, 1)));
+    transport->write_report(std::as_bytes(std::span(&command, 1)));
     last_command_at = Clock::now();
     last_command_period = newest_period;
     return command.token;
@@ -85,7 +85,7 @@ struct Device::Implementation {
     for (;;) {
       std::optional<Stalled> stalled;
       try {
-        link->set_feature(bytes);
+        transport->set_feature(bytes);
       } catch (const Stalled& error) {
         stalled = error;  // a device may refuse by a stall; the report below says why
       }
@@ -100,7 +100,7 @@ struct Device::Implementation {
 };
 
 std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
-  auto device = std::make_unique<Device>(open_link(endpoint));
+  auto device = std::make_unique<Device>(open_transport(endpoint));
   const auto information = device->information();
   const auto& report = information.report;
   if (information.protocol_version != protocol::protocol_version)
@@ -117,8 +117,8 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
   return device;
 }
 
-Device::Device(std::unique_ptr<Link> link) : implementation_(std::make_unique<Implementation>()) {
-  implementation_->link = std::move(link);
+Device::Device(std::unique_ptr<Transport> transport) : implementation_(std::make_unique<Implementation>()) {
+  implementation_->transport = std::move(transport);
 }
 Device::~Device() = default;
 
@@ -129,7 +129,7 @@ Information Device::information() {
   const auto& version = information.report.firmware_version;
   information.firmware_version = fmt::format("{}.{}.{}", version[0], version[1], version[2]);
   information.protocol_version = information.report.version;
-  information.serial_number = implementation_->link->endpoint().serial_number;
+  information.serial_number = implementation_->transport->endpoint().serial_number;
   return information;
 }
 
@@ -138,7 +138,7 @@ std::optional<protocol::PoseReport> Device::read_pose(std::chrono::milliseconds 
   const auto give_up_at = Clock::now() + timeout;
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(give_up_at - Clock::now());
-    const std::size_t length = implementation_->link->read_report(writable_bytes(pose), std::max(left, 0ms));
+    const std::size_t length = implementation_->transport->read_report(writable_bytes(pose), std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     if (length != sizeof pose || pose.report_id != ReportId::pose) continue;
     implementation_->newest_period = pose.time_periods;
@@ -187,7 +187,7 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
 protocol::ParameterSet Device::parameters() {
   protocol::ParametersReport report{};
   report.report_id = ReportId::parameters;
-  const std::size_t length = implementation_->link->get_feature(writable_bytes(report));
+  const std::size_t length = implementation_->transport->get_feature(writable_bytes(report));
   const bool is_whole = length >= protocol::parameters_report_size(protocol::parameter_count) &&
                         report.version == protocol::protocol_version && report.count == protocol::parameter_count;
   if (!is_whole)
@@ -226,7 +226,7 @@ std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout
   const auto give_up_at = Clock::now() + timeout;
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(give_up_at - Clock::now());
-    const std::size_t length = implementation_->link->read_bulk(frame, std::max(left, 0ms));
+    const std::size_t length = implementation_->transport->read_bulk(frame, std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     const std::lock_guard lock(implementation_->scope_mutex);
     if (auto samples = implementation_->decoder.decode(std::span(frame).first(length))) return samples;

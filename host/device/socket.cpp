@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 
 namespace inkwell::device {
 

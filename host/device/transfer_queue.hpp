@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 
 namespace inkwell::device {
 

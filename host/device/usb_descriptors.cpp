@@ -1,6 +1,6 @@
 #include "usb_descriptors.hpp"
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 
 namespace inkwell::device {
 namespace {

@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 
 #include "socket.hpp"
 #include "usb_descriptors.hpp"

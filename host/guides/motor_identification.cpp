@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 
 namespace inkwell::guides {
 namespace {

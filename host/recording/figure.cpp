@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 #include <recording/gnuplot.hpp>
 #include <recording/signals.hpp>
 

@@ -1,6 +1,6 @@
 #include "hdf5_file.hpp"
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 
 namespace inkwell::recording {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 
 namespace inkwell::recording {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 #include <device/nearest_name.hpp>
 #include <protocol/reports.hpp>
 

@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <device/link.hpp>
+#include <device/transport.hpp>
 
 #include "board_rig.hpp"
 #include "program.hpp"
@@ -26,10 +26,10 @@ namespace {
 constexpr std::uint16_t next_version = protocol::protocol_version + 1;
 
 template <class Report>
-Report feature(device::Link& link, protocol::ReportId id) {
+Report feature(device::Transport& transport, protocol::ReportId id) {
   Report report{};
   report.report_id = id;
-  REQUIRE(link.get_feature(std::as_writable_bytes(std::span(&report, 1))) == sizeof report);
+  REQUIRE(transport.get_feature(std::as_writable_bytes(std::span(&report, 1))) == sizeof report);
   return report;
 }
 
@@ -70,8 +70,8 @@ TEST_CASE("the companion refuses firmware with another version of the protocol, 
   CHECK_FALSE(std::filesystem::exists(directory.file("recording.h5")));
 
   // Not one transaction reached it, and no motor had current at any control period.
-  const auto link = device::open_link(*board.find());
-  CHECK(feature<protocol::TransactionReport>(*link, protocol::ReportId::transaction).transactions == 0);
+  const auto transport = device::open_transport(*board.find());
+  CHECK(feature<protocol::TransactionReport>(*transport, protocol::ReportId::transaction).transactions == 0);
   control.trace_stop();
   double largest_A = 0;
   std::size_t rows = 0;
@@ -98,18 +98,19 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
   rig.device.reset();
   rig.control.resume();
   REQUIRE(endpoint.has_value());
-  auto link = device::open_link(*endpoint);
+  auto transport = device::open_transport(*endpoint);
 
-  const auto transactions = feature<protocol::TransactionReport>(*link, protocol::ReportId::transaction).transactions;
+  const auto transactions =
+      feature<protocol::TransactionReport>(*transport, protocol::ReportId::transaction).transactions;
   protocol::ParametersReport changes{};
   changes.operation = protocol::ParameterOperation::set;
   changes.version = next_version;
   changes.count = 1;
   changes.entries[0] = {info(Parameter::wall_stiffness_N_per_m).id, 0, 123.0f};
-  link->set_feature(std::as_bytes(std::span(&changes, 1)).first(protocol::parameters_report_size(1)));
+  transport->set_feature(std::as_bytes(std::span(&changes, 1)).first(protocol::parameters_report_size(1)));
   protocol::TransactionReport told{};
   do {
-    told = feature<protocol::TransactionReport>(*link, protocol::ReportId::transaction);
+    told = feature<protocol::TransactionReport>(*transport, protocol::ReportId::transaction);
   } while (told.transactions == transactions);
   CHECK(told.refusal == protocol::Refusal::wrong_version);
   CHECK(std::string(info(told.refusal).remedy).find("companion") != std::string::npos);
@@ -119,10 +120,10 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
   enable.command = protocol::Command::enable_force;
   enable.version = static_cast<std::uint8_t>(next_version);
   enable.token = 77;
-  link->write_report(std::as_bytes(std::span(&enable, 1)));
+  transport->write_report(std::as_bytes(std::span(&enable, 1)));
   protocol::PoseReport pose{};
   for (int i = 0; i < 100; ++i) {
-    REQUIRE(link->read_report(std::as_writable_bytes(std::span(&pose, 1)), 2000ms) == sizeof pose);
+    REQUIRE(transport->read_report(std::as_writable_bytes(std::span(&pose, 1)), 2000ms) == sizeof pose);
     REQUIRE(pose.state == protocol::State::ready);
     REQUIRE(pose.command_token != enable.token);
   }
@@ -130,12 +131,12 @@ TEST_CASE("the firmware refuses a companion with another version of the protocol
 
   // The same report in this version is, so it was the version that kept it out.
   enable.version = static_cast<std::uint8_t>(protocol::protocol_version);
-  link->write_report(std::as_bytes(std::span(&enable, 1)));
+  transport->write_report(std::as_bytes(std::span(&enable, 1)));
   for (int i = 0; i < 100 && pose.state != protocol::State::active; ++i)
-    REQUIRE(link->read_report(std::as_writable_bytes(std::span(&pose, 1)), 2000ms) == sizeof pose);
+    REQUIRE(transport->read_report(std::as_writable_bytes(std::span(&pose, 1)), 2000ms) == sizeof pose);
   CHECK(pose.state == protocol::State::active);
   CHECK(pose.command_token == enable.token);
 
-  link.reset();
+  transport.reset();
   CHECK(device::Device::open(*endpoint)->parameters() == before);
 }

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include <device/link.hpp>
+#include <device/transport.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::tests {

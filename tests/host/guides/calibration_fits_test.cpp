@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 #include <guides/calibration_fits.hpp>
 
 using namespace inkwell::guides;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 #include <guides/motor_identification.hpp>
 
 using namespace inkwell;

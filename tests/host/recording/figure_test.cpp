@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 #include <recording/figure.hpp>
 #include <recording/gnuplot.hpp>
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 #include <recording/replay.hpp>
 #include <recording/signals.hpp>
 

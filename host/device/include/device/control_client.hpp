@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 
 namespace inkwell::device {
 

@@ -1,4 +1,4 @@
-// The protocol on top of a link: poses, commands, parameters, scope. Synchronous; see session.hpp for the
+// The protocol on top of a transport: poses, commands, parameters, scope. Synchronous; see session.hpp for the
 // threaded client that the window uses.
 #pragma once
 
@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include <device/link.hpp>
 #include <device/scope_decoder.hpp>
+#include <device/transport.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::device {
@@ -43,7 +43,7 @@ class Device {
  public:
   /// Opens the device and checks the protocol version first. Throws Error with the remedy if it differs.
   static std::unique_ptr<Device> open(const Endpoint& endpoint);
-  explicit Device(std::unique_ptr<Link> link);
+  explicit Device(std::unique_ptr<Transport> transport);
   ~Device();
 
   Information information();

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include <device/control_client.hpp>
-#include <device/link.hpp>
+#include <device/transport.hpp>
 
 namespace inkwell::device {
 

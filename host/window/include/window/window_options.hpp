@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <device/link.hpp>
+#include <device/transport.hpp>
 #include <frame/palette.hpp>
 #include <protocol/parameters.hpp>
 

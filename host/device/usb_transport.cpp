@@ -1,4 +1,4 @@
-#include "links.hpp"
+#include "transports.hpp"
 
 #include <hidapi/hidapi.h>
 #include <libusb-1.0/libusb.h>
@@ -157,9 +157,9 @@ class BulkReader {
   std::thread thread_;
 };
 
-class UsbLink : public Link {
+class UsbTransport : public Transport {
  public:
-  explicit UsbLink(const Endpoint& endpoint) : endpoint_(endpoint), hid_(open_hid(endpoint.path), &hid_close) {
+  explicit UsbTransport(const Endpoint& endpoint) : endpoint_(endpoint), hid_(open_hid(endpoint.path), &hid_close) {
     bulk_ = std::make_unique<BulkReader>(endpoint.serial_number);
   }
 
@@ -208,7 +208,9 @@ class UsbLink : public Link {
 
 }  // namespace
 
-std::unique_ptr<Link> open_usb_link(const Endpoint& endpoint) { return std::make_unique<UsbLink>(endpoint); }
+std::unique_ptr<Transport> open_usb_transport(const Endpoint& endpoint) {
+  return std::make_unique<UsbTransport>(endpoint);
+}
 
 std::vector<Endpoint> find_usb_devices() {
   std::vector<Endpoint> endpoints;

@@ -1,4 +1,4 @@
-// One USB device, however it is reached: a real one through hidapi and libusb, a virtual one through USB/IP.
+// The way to one USB device: to a real one through hidapi and libusb, to a virtual one through USB/IP.
 #pragma once
 
 #include <chrono>
@@ -6,35 +6,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <device/error.hpp>
+
 namespace inkwell::device {
-
-/// Every failure of this library: `what()` is a sentence that says what is wrong and what to do.
-class Error : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// The device went away (unplugged, board stopped). A Session reconnects by itself.
-class Disconnected : public Error {
- public:
-  using Error::Error;
-};
-
-/// The device answered a request with a stall: it does not know it, or does not accept it.
-class Stalled : public Error {
- public:
-  using Error::Error;
-};
-
-/// The device is there, but this user may not open it. `what()` holds the udev line to install.
-class NoPermission : public Error {
- public:
-  using Error::Error;
-};
 
 /// Where a device is.
 struct Endpoint {
@@ -51,26 +28,26 @@ struct Endpoint {
 /// The arms on this computer's USB.
 std::vector<Endpoint> find_usb_devices();
 /// The arms exported by a USB/IP server such as a virtual board. Throws Error if it does not answer. Their
-/// serial numbers are known only after open_link, because a USB/IP list of devices does not hold them.
+/// serial numbers are known only after open_transport, because a USB/IP list of devices does not hold them.
 std::vector<Endpoint> find_usbip_devices(const std::string& host, std::uint16_t port);
 
 /// Raw reports and bulk data. Calls may come from two threads: one for reports, one for the bulk stream.
-class Link {
+class Transport {
  public:
-  virtual ~Link() = default;
+  virtual ~Transport() = default;
   /// Waits for an input report. Returns its length with the report id in front, 0 on time-out.
   virtual std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) = 0;
   virtual void write_report(std::span<const std::byte> report) = 0;
   /// `report[0]` holds the report id. Returns the length received.
   virtual std::size_t get_feature(std::span<std::byte> report) = 0;
   virtual void set_feature(std::span<const std::byte> report) = 0;
-  /// Waits for one bulk transfer of the scope. Returns its length, 0 on time-out. Enough transfers are
-  /// kept under way that a reader who is late by 100 ms loses nothing.
+  /// Waits for one bulk transfer of the scope. Returns its length, 0 on time-out.
+  /// Enough transfers are kept under way that a reader who is late by 100 ms loses nothing.
   virtual std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) = 0;
-  /// Where this link leads, with the serial number and product name that the device told.
+  /// Where this leads, with the serial number and product name that the device told.
   virtual const Endpoint& endpoint() const = 0;
 };
 
-std::unique_ptr<Link> open_link(const Endpoint& endpoint);
+std::unique_ptr<Transport> open_transport(const Endpoint& endpoint);
 
 }  // namespace inkwell::device

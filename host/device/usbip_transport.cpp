@@ -1,4 +1,4 @@
-#include "links.hpp"
+#include "transports.hpp"
 
 #include <algorithm>
 #include <condition_variable>
@@ -24,9 +24,9 @@ constexpr std::size_t reports_kept = 1024;  // a second; then the oldest go, and
 constexpr std::size_t bulk_kept = 2048;     // 4 MiB; then the device has to wait, and it counts what it drops
 constexpr std::size_t writes_under_way = 16;
 
-class UsbipLink : public Link {
+class UsbipTransport : public Transport {
  public:
-  explicit UsbipLink(const Endpoint& endpoint)
+  explicit UsbipTransport(const Endpoint& endpoint)
       : endpoint_(endpoint), connection_(endpoint.host, endpoint.port, endpoint.path) {
     connection_.start([this](const std::string& reason) { lose(reason); });
     try {
@@ -39,7 +39,7 @@ class UsbipLink : public Link {
     }
   }
 
-  ~UsbipLink() override { close(); }
+  ~UsbipTransport() override { close(); }
 
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
     return read(reports_, report, timeout);
@@ -165,7 +165,9 @@ class UsbipLink : public Link {
 
 }  // namespace
 
-std::unique_ptr<Link> open_usbip_link(const Endpoint& endpoint) { return std::make_unique<UsbipLink>(endpoint); }
+std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint) {
+  return std::make_unique<UsbipTransport>(endpoint);
+}
 
 // What the virtual board's USB/IP server calls the platform that its device is on.
 constexpr char virtual_board_path[] = "/inkwell_virtual_board/";

@@ -1,4 +1,4 @@
-#include "links.hpp"
+#include "transports.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 
 namespace inkwell::device {
 
-std::unique_ptr<Link> open_link(const Endpoint& endpoint) {
-  return endpoint.kind == Endpoint::Kind::usb ? open_usb_link(endpoint) : open_usbip_link(endpoint);
+std::unique_ptr<Transport> open_transport(const Endpoint& endpoint) {
+  return endpoint.kind == Endpoint::Kind::usb ? open_usb_transport(endpoint) : open_usbip_transport(endpoint);
 }
 
 std::string permission_message(const std::string& path) {

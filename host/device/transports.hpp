@@ -1,15 +1,15 @@
-// The two kinds of link; open_link chooses.
+// The two kinds of transport; open_transport chooses.
 #pragma once
 
 #include <memory>
 #include <string>
 
-#include <device/link.hpp>
+#include <device/transport.hpp>
 
 namespace inkwell::device {
 
-std::unique_ptr<Link> open_usb_link(const Endpoint& endpoint);
-std::unique_ptr<Link> open_usbip_link(const Endpoint& endpoint);
+std::unique_ptr<Transport> open_usb_transport(const Endpoint& endpoint);
+std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint);
 
 /// The sentence for a user who may not open the device, with the udev line that changes it.
 std::string permission_message(const std::string& path);
