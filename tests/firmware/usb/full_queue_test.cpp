@@ -1,7 +1,7 @@
 // A host that sends commands faster than the control interrupt takes them.
 #include <doctest/doctest.h>
 
-#include "host.hpp"
+#include "device_bench.hpp"
 
 namespace inkwell {
 
@@ -16,7 +16,7 @@ using test::stall_result;
 namespace {
 
 /// A device whose queue is full and that holds one command more, enable_force. Tokens count up from 1.
-struct FullQueue : test::Bench {
+struct FullQueue : test::DeviceBench {
   std::uint8_t token = 0;
 
   explicit FullQueue(const protocol::CommandReport& held = command(Command::enable_force, 9)) {

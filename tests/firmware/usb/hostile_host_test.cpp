@@ -2,15 +2,15 @@
 #include <doctest/doctest.h>
 
 #include "../link/transaction.hpp"
-#include "host.hpp"
+#include "device_bench.hpp"
 
 namespace inkwell {
 
-using test::Bench;
 using test::Bytes;
 using test::bytes_of;
 using test::command;
 using test::ControlResult;
+using test::DeviceBench;
 using test::done_result;
 using test::Handshake;
 using test::InPacket;
@@ -19,19 +19,19 @@ using test::stall_result;
 
 namespace {
 
-void check_alive(Bench& bench) { CHECK(bench.get_descriptor(0x0100, 18).data.size() == 18); }
+void check_alive(DeviceBench& bench) { CHECK(bench.get_descriptor(0x0100, 18).data.size() == 18); }
 
 /// A SET_REPORT of all parameters: 13 packets, the longest transfer that endpoint 0 takes.
 constexpr usb::SetupPacket set_parameters = {0x21, 9, 0x0311, 0, sizeof(protocol::ParametersReport)};
 
-std::uint32_t transactions(Bench& bench) {
+std::uint32_t transactions(DeviceBench& bench) {
   return bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction).transactions;
 }
 
 }  // namespace
 
 TEST_CASE("wLength around every size: exactly what was asked for, or what there is, with the right end") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   struct {
     std::uint8_t type, number;
@@ -46,7 +46,7 @@ TEST_CASE("wLength around every size: exactly what was asked for, or what there 
                                   192u, 256u, 512u, 576u, 640u, 4096u, exact - 1, exact, exact + 1, 65535u}) {
       if (length == 0) continue;
       CAPTURE(length);
-      // Bench::read checks that the data stage ends with a short packet exactly if less came than was asked for.
+      // DeviceBench::read checks that the data stage ends with a short packet exactly if less came than was asked for.
       const auto w_length = static_cast<std::uint16_t>(length);
       const Bytes data = bench.control(request(read.type, read.number, read.value, read.index, w_length)).data;
       CHECK(data == Bytes(all.begin(), all.begin() + std::min(length, exact)));
@@ -56,7 +56,7 @@ TEST_CASE("wLength around every size: exactly what was asked for, or what there 
 }
 
 TEST_CASE("an answer that is a multiple of 64 ends with an empty packet only if more was asked for") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.run(20);
   // The pose has 64 bytes.
@@ -79,7 +79,7 @@ TEST_CASE("an answer that is a multiple of 64 ends with an empty packet only if 
 }
 
 TEST_CASE("SETUP in any packet of a data or status stage begins anew") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   const usb::SetupPacket get_parameters = {0xA1, 1, 0x0311, 0, 4096};
   for (int packets = 0; packets < 12; ++packets) {  // break off a read after so many packets
@@ -117,7 +117,7 @@ TEST_CASE("SETUP in any packet of a data or status stage begins anew") {
 }
 
 TEST_CASE("SETUPs back to back: only the last one is answered") {
-  Bench bench;
+  DeviceBench bench;
   const usb::SetupPacket packets[] = {{0x80, 6, 0x0200, 0, 255}, {0x00, 9, 1, 0, 0}, {0x80, 6, 0x0100, 0, 18}};
   for (const usb::SetupPacket& packet : packets) bench.port.setup(std::as_bytes(std::span(&packet, 1)));
   bench.device.poll();
@@ -127,7 +127,7 @@ TEST_CASE("SETUPs back to back: only the last one is answered") {
 }
 
 TEST_CASE("a host that ends a read early by its status stage is let go") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.setup(request(0xA1, 1, 0x0311, 0, 4096));
   CHECK(bench.port.in(0).data.size() == 64);
@@ -139,7 +139,7 @@ TEST_CASE("a host that ends a read early by its status stage is let go") {
 }
 
 TEST_CASE("a write of no bytes, of too many for the buffer, or more or less than wLength is refused") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   CHECK(bench.control(request(0x21, 9, 0x0311, 0, 0)) == stall_result);
   for (const unsigned length : {sizeof(protocol::ParametersReport) + 1, std::size_t{832}, std::size_t{65535}}) {
@@ -173,7 +173,7 @@ TEST_CASE("a write of no bytes, of too many for the buffer, or more or less than
 }
 
 TEST_CASE("writes of 64, 65, 128 and the whole buffer arrive whole") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   // The length does not fit the count, so each is refused by the parameters, which saw all of it.
   std::uint32_t count = 0;
@@ -190,7 +190,7 @@ TEST_CASE("writes of 64, 65, 128 and the whole buffer arrive whole") {
 }
 
 TEST_CASE("a request that goes to the host with wLength 0, or to the device with data it has not, is survived") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.setup(request(0x00, 9, 1, 0, 4));  // SET_CONFIGURATION with data
   CHECK(bench.port.out(0, {}) == Handshake::stall);
@@ -203,7 +203,7 @@ TEST_CASE("a request that goes to the host with wLength 0, or to the device with
 }
 
 TEST_CASE("packets that nobody asked for are not taken") {
-  Bench bench;
+  DeviceBench bench;
   CHECK(bench.port.out(0, {}) == Handshake::nak);
   CHECK(bench.port.out(1, {}) == Handshake::nak);  // not configured
   CHECK(bench.port.in(1).handshake == Handshake::nak);
@@ -215,7 +215,7 @@ TEST_CASE("packets that nobody asked for are not taken") {
 
 TEST_CASE("reset in every stage of a control transfer") {
   for (int stage = 0; stage < 5; ++stage) {
-    Bench bench;
+    DeviceBench bench;
     bench.configure();
     const std::array<std::byte, 64> part{std::byte{0x11}};
     switch (stage) {
@@ -245,7 +245,7 @@ TEST_CASE("reset in every stage of a control transfer") {
 }
 
 TEST_CASE("SETUP at random moments of random transfers never leaves the device dumb") {
-  Bench bench;
+  DeviceBench bench;
   std::uint32_t random = 12345;
   const auto next = [&random](std::uint32_t bound) {
     random = random * 1664525u + 1013904223u;

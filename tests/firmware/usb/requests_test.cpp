@@ -1,15 +1,15 @@
 #include <doctest/doctest.h>
 
 #include "../link/transaction.hpp"
-#include "host.hpp"
+#include "device_bench.hpp"
 
 namespace inkwell {
 
-using test::Bench;
 using test::Bytes;
 using test::bytes_of;
 using test::command;
 using test::ControlResult;
+using test::DeviceBench;
 using test::done_result;
 using test::Handshake;
 using test::request;
@@ -26,7 +26,7 @@ ControlResult answer(std::initializer_list<int> bytes) {
 }  // namespace
 
 TEST_CASE("addresses up to 127 are taken, others refused") {
-  Bench bench;
+  DeviceBench bench;
   CHECK(bench.control(request(0x00, 5, 42, 0, 0)) == done_result);
   CHECK(bench.port.address() == 42);
   for (const std::uint16_t address : {128, 255, 256, 0xFFFF})
@@ -38,7 +38,7 @@ TEST_CASE("addresses up to 127 are taken, others refused") {
 }
 
 TEST_CASE("a configuration is set, repeated, refused and taken back") {
-  Bench bench;
+  DeviceBench bench;
   const auto current = [&] { return bench.control(request(0x80, 8, 0, 0, 1)); };
   CHECK(current() == answer({0}));
   CHECK_FALSE(bench.port.is_open(0x81));
@@ -61,7 +61,7 @@ TEST_CASE("a configuration is set, repeated, refused and taken back") {
 }
 
 TEST_CASE("a repeated configuration starts toggles and transfers again") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.run(20);
   bench.device.poll();
@@ -77,7 +77,7 @@ TEST_CASE("a repeated configuration starts toggles and transfers again") {
 }
 
 TEST_CASE("status of device, interfaces and endpoints") {
-  Bench bench;
+  DeviceBench bench;
   CHECK(bench.control(request(0x80, 0, 0, 0, 2)) == answer({1, 0}));  // self-powered
   CHECK(bench.control(request(0x81, 0, 0, 0, 2)) == stall_result);    // not configured
   CHECK(bench.control(request(0x82, 0, 0, 0x81, 2)) == stall_result);
@@ -95,7 +95,7 @@ TEST_CASE("status of device, interfaces and endpoints") {
 }
 
 TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   for (const int address : {0x81, 0x01, 0x82}) {
     const auto endpoint = static_cast<std::uint8_t>(address);
@@ -121,7 +121,7 @@ TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
 }
 
 TEST_CASE("the one setting of each interface is taken, others are refused") {
-  Bench bench;
+  DeviceBench bench;
   CHECK(bench.control(request(0x01, 11, 0, 0, 0)) == stall_result);
   bench.configure();
   for (const std::uint16_t index : {0, 1}) {
@@ -134,7 +134,7 @@ TEST_CASE("the one setting of each interface is taken, others are refused") {
 }
 
 TEST_CASE("requests that do not exist are refused, whatever their type") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   for (unsigned type = 0; type < 256; ++type)
     for (const unsigned number : {2u, 4u, 7u, 12u, 13u, 100u, 255u}) {
@@ -147,7 +147,7 @@ TEST_CASE("requests that do not exist are refused, whatever their type") {
 }
 
 TEST_CASE("HID: idle rate is kept, boot protocol is refused") {
-  Bench bench;
+  DeviceBench bench;
   CHECK(bench.control(request(0x21, 10, 0x0400, 0, 0)) == stall_result);  // not configured
   bench.configure();
   CHECK(bench.control(request(0x21, 10, 0x0400, 0, 0)) == done_result);
@@ -158,7 +158,7 @@ TEST_CASE("HID: idle rate is kept, boot protocol is refused") {
 }
 
 TEST_CASE("HID: the newest pose can be asked for") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   CHECK(bench.get_report(1, 0x01, 64) == stall_result);  // there is none yet
   bench.run(100);
@@ -170,7 +170,7 @@ TEST_CASE("HID: the newest pose can be asked for") {
 }
 
 TEST_CASE("HID: information tells tables, clocks and counters") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.run(5);
   bench.link.status.record(protocol::State::ready, {0.25f, 0.5f, 1.5f}, 4321, true);
@@ -193,7 +193,7 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
 }
 
 TEST_CASE("HID: parameters are read, set as a transaction and its result is told") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   const test::Transaction transaction{test::entry(protocol::Parameter::wall_stiffness_N_per_m, 321.0f),
                                       test::entry(protocol::Parameter::wall_damping_Ns_per_m, 4.0f)};
@@ -222,7 +222,7 @@ TEST_CASE("HID: parameters are read, set as a transaction and its result is told
 }
 
 TEST_CASE("HID: the arm does not change while the force is on or about to be") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   const test::Transaction transaction{test::entry(protocol::Parameter::link_2_m, 0.2f)};
   const auto refusal = [&] {
@@ -240,7 +240,7 @@ TEST_CASE("HID: the arm does not change while the force is on or about to be") {
 }
 
 TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   CHECK(bench.port.out(1, bytes_of(command(protocol::Command::clear_fault, 11))) == Handshake::ack);
   bench.device.poll();
@@ -256,7 +256,7 @@ TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
 }
 
 TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, and nothing happens") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.run(1);  // the reset's disable_force is taken
   bench.last_command.reset();

@@ -1,15 +1,15 @@
 // Poses, scope frames, and a host that sleeps, vanishes or comes back.
 #include <doctest/doctest.h>
 
-#include "host.hpp"
+#include "device_bench.hpp"
 
 namespace inkwell {
 
 using protocol::PoseReport;
-using test::Bench;
 using test::Bytes;
 using test::bytes_of;
 using test::command;
+using test::DeviceBench;
 using test::done_result;
 using test::Handshake;
 using test::InPacket;
@@ -17,7 +17,7 @@ using test::request;
 
 namespace {
 
-std::optional<PoseReport> read_pose(Bench& bench) {
+std::optional<PoseReport> read_pose(DeviceBench& bench) {
   const InPacket packet = bench.port.in(1);
   if (packet.handshake != Handshake::ack) return std::nullopt;
   REQUIRE(packet.data.size() == sizeof(PoseReport));
@@ -27,7 +27,7 @@ std::optional<PoseReport> read_pose(Bench& bench) {
   return pose;
 }
 
-void select_scope(Bench& bench, std::uint8_t count, std::uint8_t token) {
+void select_scope(DeviceBench& bench, std::uint8_t count, std::uint8_t token) {
   protocol::CommandReport report = command(protocol::Command::select_signals, token);
   report.selection.count = count;
   for (std::uint8_t i = 0; i < count; ++i) report.selection.signals[i] = i;
@@ -36,7 +36,7 @@ void select_scope(Bench& bench, std::uint8_t count, std::uint8_t token) {
 }
 
 /// One bulk transfer as a host reads it: packets up to a short or empty one.
-Bytes read_frame(Bench& bench) {
+Bytes read_frame(DeviceBench& bench) {
   Bytes frame;
   for (int i = 0; i < 40; ++i) {
     const InPacket packet = bench.port.in(2);
@@ -61,7 +61,7 @@ protocol::ScopeFrameHeader header_of(const Bytes& frame) {
   return header;
 }
 
-bool force_goes_off(Bench& bench) {
+bool force_goes_off(DeviceBench& bench) {
   bench.last_command.reset();
   bench.run(1);
   return bench.last_command && bench.last_command->command == protocol::Command::disable_force;
@@ -70,7 +70,7 @@ bool force_goes_off(Bench& bench) {
 }  // namespace
 
 TEST_CASE("a pose comes every millisecond, in order, none lost") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   std::uint32_t next = 0;
   for (std::uint32_t i = 0; i < 500; ++i) {
@@ -85,7 +85,7 @@ TEST_CASE("a pose comes every millisecond, in order, none lost") {
 }
 
 TEST_CASE("a host that polls late gets what waited, in order, and the loss is counted") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.run(20);
   bench.device.poll();  // report 0 is in the port
@@ -103,7 +103,7 @@ TEST_CASE("a host that polls late gets what waited, in order, and the loss is co
 }
 
 TEST_CASE("scope frames come whole and in order") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   select_scope(bench, 14, 21);
   std::uint32_t sequence = 0, next_period = bench.periods;
@@ -126,7 +126,7 @@ TEST_CASE("scope frames come whole and in order") {
 }
 
 TEST_CASE("a frame that is a multiple of 64 ends with an empty packet") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   select_scope(bench, 2, 1);  // 24 + 253 * 8 = 2048
   bench.run(600);
@@ -139,7 +139,7 @@ TEST_CASE("a frame that is a multiple of 64 ends with an empty packet") {
 }
 
 TEST_CASE("the next frame is at hand when one was sent, without waiting for the interrupt") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   select_scope(bench, 14, 1);
   bench.run(100);
@@ -149,7 +149,7 @@ TEST_CASE("the next frame is at hand when one was sent, without waiting for the 
 }
 
 TEST_CASE("a host that stops reading costs samples, which are counted, and nothing else") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   select_scope(bench, 14, 1);
   const std::uint32_t start = bench.periods;
@@ -174,7 +174,7 @@ TEST_CASE("a host that stops reading costs samples, which are counted, and nothi
 }
 
 TEST_CASE("a halted scope endpoint starts the frame again from its first byte") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   select_scope(bench, 14, 1);
   bench.run(200);
@@ -197,7 +197,7 @@ TEST_CASE("a halted scope endpoint starts the frame again from its first byte") 
 }
 
 TEST_CASE("a halted pose endpoint sends the report that was on its way again") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.run(20);
   bench.device.poll();
@@ -206,7 +206,7 @@ TEST_CASE("a halted pose endpoint sends the report that was on its way again") {
 }
 
 TEST_CASE("suspend switches the force and the scope off, and resume goes on with fresh poses") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   select_scope(bench, 14, 1);
   bench.run(200);
@@ -235,7 +235,7 @@ TEST_CASE("suspend switches the force and the scope off, and resume goes on with
 }
 
 TEST_CASE("reset and configuration 0 switch the force off") {
-  Bench bench;
+  DeviceBench bench;
   bench.configure();
   bench.run(1);
   SUBCASE("reset") { bench.port.reset(); }
@@ -247,7 +247,7 @@ TEST_CASE("reset and configuration 0 switch the force off") {
 TEST_CASE("unplugged and plugged in again in every state, the device works as the first time") {
   for (int state = 0; state < 7; ++state) {
     CAPTURE(state);
-    Bench bench;
+    DeviceBench bench;
     if (state >= 1) bench.control(request(0x00, 5, 9, 0, 0));
     if (state >= 2) bench.configure();
     if (state >= 3) {

@@ -31,13 +31,13 @@ struct ControlResult {
 inline const ControlResult stall_result{true, {}};
 inline const ControlResult done_result{false, {}};
 
-struct Bench {
+struct DeviceBench {
   FakePort port;
   link::Link& link = fresh_link();
   usb::Device device{port, link, identity};
   std::uint32_t periods = 0;
 
-  Bench() {
+  DeviceBench() {
     port.reset();
     device.poll();
   }
