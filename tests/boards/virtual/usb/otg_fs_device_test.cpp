@@ -20,8 +20,8 @@ constexpr std::uint32_t epena = 1u << 31, epdis = 1u << 30, snak = 1u << 27, cna
                         stall = 1u << 21;
 constexpr std::array<std::byte, 8> some_request{};
 
-struct Bench {
-  Bench() : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler) {
+struct CoreBench {
+  CoreBench() : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler) {
     firmware.start();
     core.set_bus_power(true);
     core.begin_reset();
@@ -107,7 +107,7 @@ TEST_CASE("the pull-up needs power, a session and no soft disconnect") {
 }
 
 TEST_CASE("the interrupt line follows status, mask and the global switch") {
-  Bench bench;
+  CoreBench bench;
   bench.write(gintsts, 0xFFFF'FFFF);
   bench.core.start_of_frame(0x7A5);
   CHECK_FALSE(bench.interrupts.asserted());
@@ -124,7 +124,7 @@ TEST_CASE("the interrupt line follows status, mask and the global switch") {
 }
 
 TEST_CASE("a SETUP packet is taken against NAK and STALL, clears the stall and sets NAK") {
-  Bench bench;
+  CoreBench bench;
   bench.write(0x900, stall | snak);
   bench.write(0xB00, stall | snak);
   CHECK(bench.in(0).handshake == Handshake::stall);
@@ -147,7 +147,7 @@ TEST_CASE("a SETUP packet is taken against NAK and STALL, clears the stall and s
 }
 
 TEST_CASE("back-to-back SETUP packets all arrive, four exceed the count") {
-  Bench bench;
+  CoreBench bench;
   for (int i = 0; i < 4; ++i) CHECK(bench.core.setup(0, 0, some_request) == Handshake::ack);
   CHECK((bench.read(0xB08) & 1u << 6) != 0);
   for (int i = 0; i < 4; ++i) {
@@ -158,7 +158,7 @@ TEST_CASE("back-to-back SETUP packets all arrive, four exceed the count") {
 }
 
 TEST_CASE("a new address holds from the end of the status stage") {
-  Bench bench;
+  CoreBench bench;
   bench.core.setup(0, 0, some_request);
   bench.write(dcfg, bench.read(dcfg) | 9u << 4);
   bench.core.in(0, 0, bench.packet);  // ends the setup stage
@@ -173,7 +173,7 @@ TEST_CASE("a new address holds from the end of the status stage") {
 }
 
 TEST_CASE("IN: NAK until the whole packet is loaded, then data with alternating toggles") {
-  Bench bench;
+  CoreBench bench;
   bench.activate();
   CHECK(bench.in(2).handshake == Handshake::nak);
   bench.write(0x950, 2u << 19 | 70);
@@ -202,7 +202,7 @@ TEST_CASE("IN: NAK until the whole packet is loaded, then data with alternating 
 }
 
 TEST_CASE("a flush or a disable spoils the packet on the wire") {
-  Bench bench;
+  CoreBench bench;
   bench.activate();
   bench.write(0x950, 1u << 19 | 4);
   bench.write(0x940, bench.read(0x940) | epena | cnak);
@@ -217,7 +217,7 @@ TEST_CASE("a flush or a disable spoils the packet on the wire") {
 }
 
 TEST_CASE("OUT: the receive FIFO keeps room for SETUP packets and answers NAK when full") {
-  Bench bench;
+  CoreBench bench;
   bench.activate();
   bench.write(0xB70, 8u << 19 | 512);
   bench.write(0xB60, bench.read(0xB60) | epena | cnak);
@@ -237,7 +237,7 @@ TEST_CASE("OUT: the receive FIFO keeps room for SETUP packets and answers NAK wh
 }
 
 TEST_CASE("OUT: CNAK alone starts a transfer, and on endpoint 0 a status stage without a packet count") {
-  Bench bench;
+  CoreBench bench;
   bench.activate();
   bench.write(0xB60, bench.read(0xB60) | cnak);
   CHECK(bench.out(3, false, 64) == Handshake::nak);  // there is no transfer yet
@@ -267,7 +267,7 @@ TEST_CASE("OUT: CNAK alone starts a transfer, and on endpoint 0 a status stage w
 }
 
 TEST_CASE("global NAKs") {
-  Bench bench;
+  CoreBench bench;
   bench.activate();
   bench.write(0xB70, 1u << 19 | 64);
   bench.write(0xB60, bench.read(0xB60) | epena | cnak);
@@ -289,7 +289,7 @@ TEST_CASE("global NAKs") {
 }
 
 TEST_CASE("TXFE follows the level that GAHBCFG chooses") {
-  Bench bench;
+  CoreBench bench;
   bench.activate();
   bench.write(0x950, 8u << 19 | 512);
   bench.write(0x940, bench.read(0x940) | epena | cnak);
@@ -310,7 +310,7 @@ TEST_CASE("TXFE follows the level that GAHBCFG chooses") {
 }
 
 TEST_CASE("what the manual forbids is said and has its consequence") {
-  Bench bench;
+  CoreBench bench;
   bench.activate();
   SUBCASE("another access within a packet's FIFO writes") {
     bench.write(0x950, 1u << 19 | 8);

@@ -24,9 +24,9 @@ struct Outcome {
   Ticks when;
 };
 
-class Bench final : public RootPort::Client {
+class RootPortBench final : public RootPort::Client {
  public:
-  Bench() : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler), port(scheduler, core, *this) {}
+  RootPortBench() : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler), port(scheduler, core, *this) {}
 
   void run_for(double time_s) {
     const Ticks end = scheduler.now() + ticks(time_s);

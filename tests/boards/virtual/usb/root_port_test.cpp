@@ -18,7 +18,7 @@ Bytes patterned(std::size_t length) {
 }
 
 TEST_CASE("the host enumerates the device and then lets the bus fall silent") {
-  Bench bench;
+  RootPortBench bench;
   bench.enumerate();
   CHECK(bench.interrupts.position() == 67);
   CHECK(bench.description.vendor() == 0x1209);
@@ -38,7 +38,7 @@ TEST_CASE("the host enumerates the device and then lets the bus fall silent") {
 }
 
 TEST_CASE("nothing is enumerated without the cable, or with a device that does not answer") {
-  Bench bench;
+  RootPortBench bench;
   bench.firmware.start();
   bench.run_for(0.5);
   CHECK(bench.firmware.resets == 0);
@@ -53,7 +53,7 @@ TEST_CASE("nothing is enumerated without the cable, or with a device that does n
 }
 
 TEST_CASE("an import resets, addresses and runs frames of one millisecond") {
-  Bench bench;
+  RootPortBench bench;
   bench.enumerate();
   bench.port.import();
   const std::uint32_t held = bench.submit_control(0x80, 6, 0x0100, 18);
@@ -71,7 +71,7 @@ TEST_CASE("an import resets, addresses and runs frames of one millisecond") {
 }
 
 TEST_CASE("control transfers of every awkward length") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   for (const unsigned length : {0u, 1u, 8u, 63u, 64u, 65u, 127u, 128u, 129u, 1000u, 4096u}) {
     CAPTURE(length);
@@ -91,7 +91,7 @@ TEST_CASE("control transfers of every awkward length") {
 }
 
 TEST_CASE("an unknown request stalls and the next one works") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   for (int i = 0; i < 3; ++i) {
     CHECK(bench.control(0xC0, 99, 0, 8).status == status::stalled);
@@ -101,7 +101,7 @@ TEST_CASE("an unknown request stalls and the next one works") {
 }
 
 TEST_CASE("bulk IN fills the frame: 19 packets of 64 bytes, in order") {
-  Bench bench;
+  RootPortBench bench;
   bench.firmware.stream(true);
   bench.use();
   constexpr std::uint32_t length = 4096;
@@ -127,7 +127,7 @@ TEST_CASE("bulk IN fills the frame: 19 packets of 64 bytes, in order") {
 }
 
 TEST_CASE("interrupt IN keeps its millisecond beside a full bulk stream") {
-  Bench bench;
+  RootPortBench bench;
   bench.firmware.stream(true);
   bench.firmware.report_every_millisecond = true;
   bench.use();
@@ -152,7 +152,7 @@ TEST_CASE("interrupt IN keeps its millisecond beside a full bulk stream") {
 }
 
 TEST_CASE("bInterval is honoured") {
-  Bench bench;
+  RootPortBench bench;
   bench.firmware.report_interval = 8;
   bench.firmware.report_every_millisecond = true;
   bench.use();
@@ -163,7 +163,7 @@ TEST_CASE("bInterval is honoured") {
 }
 
 TEST_CASE("NAK keeps a transfer pending until the device has something") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   const std::uint32_t urb = bench.submit_in(1, 64);
   bench.run_for(0.3);
@@ -177,7 +177,7 @@ TEST_CASE("NAK keeps a transfer pending until the device has something") {
 }
 
 TEST_CASE("OUT transfers: reports, long bulk, a device that does not listen for a while") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   CHECK(bench.wait_for(bench.submit_out(1, patterned(33))).actual == 33);
   CHECK(bench.firmware.report_received == patterned(33));
@@ -197,7 +197,7 @@ TEST_CASE("OUT transfers: reports, long bulk, a device that does not listen for 
 }
 
 TEST_CASE("a halted endpoint answers -EPIPE until the host clears it, toggles start anew") {
-  Bench bench;
+  RootPortBench bench;
   bench.firmware.stream(true);
   bench.use();
   CHECK(bench.wait_for(bench.submit_in(2, 64 * 3)).status == 0);  // an odd number of packets: toggle at DATA1
@@ -213,7 +213,7 @@ TEST_CASE("a halted endpoint answers -EPIPE until the host clears it, toggles st
 }
 
 TEST_CASE("a packet larger than the room left is an overflow") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   const std::uint32_t urb = bench.submit_in(1, 20);
   bench.firmware.send_report(patterned(40));
@@ -222,7 +222,7 @@ TEST_CASE("a packet larger than the room left is an overflow") {
 }
 
 TEST_CASE("endpoints exist only once configured") {
-  Bench bench;
+  RootPortBench bench;
   bench.use(false);
   bench.run_for(0.1);
   CHECK(bench.wait_for(bench.submit_in(2, 64)).status == status::invalid);
@@ -235,7 +235,7 @@ TEST_CASE("endpoints exist only once configured") {
 }
 
 TEST_CASE("unlinked transfers are never answered, the others are") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   const std::uint32_t first = bench.submit_in(1, 64);
   const std::uint32_t second = bench.submit_in(1, 64);
@@ -251,7 +251,7 @@ TEST_CASE("unlinked transfers are never answered, the others are") {
 TEST_CASE("unplug in the middle of everything, then plug in again") {
   for (const double moment_s : {0.05, 0.105, 0.125, 0.15, 0.2, 0.5003, 0.5211, 0.5407, 0.6001}) {
     CAPTURE(moment_s);
-    Bench bench;
+    RootPortBench bench;
     bench.firmware.stream(true);
     bench.firmware.start();
     bench.port.plug(true);
@@ -279,7 +279,7 @@ TEST_CASE("unplug in the middle of everything, then plug in again") {
 }
 
 TEST_CASE("a soft disconnect is noticed even if it is over within a frame") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   constexpr std::uint32_t dctl = 0x804;
   bench.firmware.set(dctl, 2);
@@ -291,7 +291,7 @@ TEST_CASE("a soft disconnect is noticed even if it is over within a frame") {
 }
 
 TEST_CASE("a reset of the chip takes the device off the bus") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   bench.core.reset();
   bench.run_for(0.01);
@@ -303,7 +303,7 @@ TEST_CASE("a reset of the chip takes the device off the bus") {
 }
 
 TEST_CASE("CNAK before the setup-done word is popped loses that word, as on silicon") {
-  Bench bench;
+  RootPortBench bench;
   bench.use();
   bench.firmware.clears_nak_too_early = true;
   const unsigned done = bench.firmware.setup_done;
