@@ -18,7 +18,7 @@
 #include <string>
 #include <utility>
 
-#include "usbip_protocol.hpp"
+#include "usbip_transfers.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -27,8 +27,6 @@ constexpr std::size_t connections_maximum = 16;
 constexpr std::size_t receive_bytes = 256 * 1024;
 /// A client that lets more than this wait is not reading; it is disconnected.
 constexpr std::size_t unsent_maximum = 64u << 20;
-constexpr std::size_t pending_urbs_maximum = 4096;
-constexpr std::uint64_t pending_bytes_maximum = 64u << 20;
 
 std::runtime_error cannot_listen(std::uint16_t port) {
   const std::string where = "port " + std::to_string(port) + " of 127.0.0.1";
@@ -131,6 +129,11 @@ void UsbIpServer::wake() {
   [[maybe_unused]] const auto written = ::write(wake_.number(), &one, sizeof one);
 }
 
+std::optional<DeviceDescription> UsbIpServer::offered() {
+  const std::lock_guard lock(mutex_);
+  return withdrawn_ ? std::nullopt : offered_;
+}
+
 void UsbIpServer::give(Order&& order) {
   {
     const std::lock_guard lock(mutex_);
@@ -175,7 +178,7 @@ void UsbIpServer::run() {
       if ((events & (POLLIN | POLLHUP | POLLERR)) != 0 && !connection.dead) receive(connection);
       send(connection);
     }
-    remove_dead();
+    connections_.remove_if([](const Connection& connection) { return connection.dead; });
     if (descriptors[1].revents != 0) accept_connections();
   }
 }
@@ -184,18 +187,34 @@ void UsbIpServer::accept_connections() {
   while (true) {
     Descriptor socket(::accept4(listener_.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (socket.number() < 0) return;
-    if (connections_.size() >= connections_maximum) continue;  // closes it
+    if (connections_.size() >= connections_maximum) make_room();
     const int yes = 1;
     ::setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     connections_.emplace_back().socket = std::move(socket);
   }
 }
 
+// Clients that only hold their connection must not keep others out. There is one importer at most.
+void UsbIpServer::make_room() {
+  const auto oldest = std::find_if(connections_.begin(), connections_.end(),
+                                   [](const Connection& connection) { return !connection.import; });
+  std::cerr << "USB/IP: the oldest of " << connections_.size() << " clients is disconnected to make room.\n";
+  connections_.erase(oldest);
+}
+
+// The order to release goes out at once, so that it comes before that of the next import.
+void UsbIpServer::end(Connection& connection) {
+  connection.dead = true;
+  if (!connection.import) return;
+  give({Order::Kind::release, connection.import->session(), {}});
+  connection.import.reset();
+}
+
 void UsbIpServer::receive(Connection& connection) {
   std::array<std::byte, receive_bytes> buffer;
   const ssize_t count = ::recv(connection.socket.number(), buffer.data(), buffer.size(), 0);
   if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) {
-    connection.dead = true;
+    end(connection);
     return;
   }
   if (count < 0 || connection.closing) return;
@@ -204,7 +223,7 @@ void UsbIpServer::receive(Connection& connection) {
     handle_received(connection);
   } catch (const std::exception& error) {
     std::cerr << "USB/IP: a client is disconnected because " << error.what() << ".\n";
-    connection.dead = true;
+    end(connection);
   }
 }
 
@@ -213,7 +232,7 @@ void UsbIpServer::send(Connection& connection) {
     const ssize_t count = ::send(connection.socket.number(), connection.to_send.data() + connection.sent,
                                  connection.to_send.size() - connection.sent, MSG_NOSIGNAL);
     if (count < 0) {
-      if (errno != EAGAIN && errno != EINTR) connection.dead = true;
+      if (errno != EAGAIN && errno != EINTR) end(connection);
       break;
     }
     connection.sent += static_cast<std::size_t>(count);
@@ -221,10 +240,10 @@ void UsbIpServer::send(Connection& connection) {
   if (connection.sent == connection.to_send.size()) {
     connection.to_send.clear();
     connection.sent = 0;
-    if (connection.closing) connection.dead = true;
+    if (connection.closing) end(connection);
   } else if (connection.to_send.size() - connection.sent > unsent_maximum) {
     std::cerr << "USB/IP: a client is disconnected because it does not read.\n";
-    connection.dead = true;
+    end(connection);
   }
 }
 
@@ -232,7 +251,7 @@ void UsbIpServer::handle_received(Connection& connection) {
   bool complete = true;
   while (complete && !connection.closing) {
     const std::span<const std::byte> rest = std::span(connection.received).subspan(connection.consumed);
-    complete = connection.importer ? handle_command(connection, rest) : handle_operation(connection, rest);
+    complete = connection.import ? handle_command(connection, rest) : handle_operation(connection, rest);
   }
   // Shift rarely: only when most of the buffer is used up.
   if (connection.consumed * 2 >= connection.received.size()) {
@@ -243,57 +262,58 @@ void UsbIpServer::handle_received(Connection& connection) {
 }
 
 bool UsbIpServer::handle_operation(Connection& connection, std::span<const std::byte> bytes) {
-  if (bytes.size() < usbip::operation_bytes) return false;
-  const usbip::OperationHeader header = usbip::read_operation(bytes.first<usbip::operation_bytes>());
-  if (header.version != usbip::version) throw std::runtime_error("it speaks another version of USB/IP than 1.1.1");
-  std::unique_lock lock(mutex_);
-  const DeviceDescription* device = offered_ && !withdrawn_ ? &*offered_ : nullptr;
-  if (header.code == static_cast<std::uint16_t>(usbip::Operation::list_devices)) {
-    connection.consumed += usbip::operation_bytes;
-    usbip::append_device_list(connection.to_send, device);
+  if (bytes.size() < sizeof(usbip::OperationHeader)) return false;
+  const auto header = usbip::read<usbip::OperationHeader>(bytes);
+  if (header.version != usbip::protocol_version)
+    throw std::runtime_error("it speaks another version of USB/IP than 1.1.1");
+  const std::optional<DeviceDescription> device = offered();
+  if (header.operation == usbip::Operation::request_device_list) {
+    connection.consumed += sizeof header;
+    append_device_list(connection.to_send, device ? &*device : nullptr);
     return true;
   }
-  if (header.code != static_cast<std::uint16_t>(usbip::Operation::import))
+  if (header.operation != usbip::Operation::request_import)
     throw std::runtime_error("it asks for an unknown operation");
-  if (bytes.size() < usbip::operation_bytes + usbip::bus_id_bytes) return false;
-  connection.consumed += usbip::operation_bytes + usbip::bus_id_bytes;
+  if (bytes.size() < sizeof(usbip::ImportRequest)) return false;
+  const auto request = usbip::read<usbip::ImportRequest>(bytes);
+  connection.consumed += sizeof request;
 
-  const std::string bus_id = usbip::read_bus_id(bytes.subspan<usbip::operation_bytes, usbip::bus_id_bytes>());
+  const bool known = device && request.bus_id.view() == exported_bus_id;
   const bool busy = std::any_of(connections_.begin(), connections_.end(),
-                                [](const Connection& other) { return other.importer && !other.dead; });
-  if (device == nullptr || bus_id != usbip::bus_id || busy) {
-    const bool known = device != nullptr && bus_id == usbip::bus_id;
-    usbip::append_import_refused(connection.to_send,
-                                 known ? usbip::ImportStatus::busy : usbip::ImportStatus::no_device);
+                                [](const Connection& other) { return other.import.has_value(); });
+  if (!known || busy) {
+    append_import_refused(connection.to_send, known ? usbip::OperationStatus::busy : usbip::OperationStatus::no_device);
     connection.closing = true;
     return true;
   }
-  usbip::append_imported(connection.to_send, *device);
-  connection.importer = true;
-  lock.unlock();
-  give({Order::Kind::import, ++session_, {}});
+  append_imported(connection.to_send, *device);
+  connection.import.emplace(++sessions_);
+  give({Order::Kind::import, sessions_, {}});
   return true;
 }
 
 bool UsbIpServer::handle_command(Connection& connection, std::span<const std::byte> bytes) {
-  if (bytes.size() < usbip::header_bytes) return false;
-  usbip::CommandHeader header = usbip::read_command(bytes.first<usbip::header_bytes>());
-  if (header.isochronous) throw std::runtime_error("it submits an isochronous transfer, which is not modelled");
-  if (bytes.size() < usbip::header_bytes + header.data_bytes) return false;
-  connection.consumed += usbip::header_bytes + header.data_bytes;
-
+  static_assert(sizeof(usbip::Submit) == sizeof(usbip::Unlink));
+  if (bytes.size() < sizeof(usbip::Submit)) return false;
+  const auto header = usbip::read<usbip::TransferHeader>(bytes);
+  check_transfer(header);
+  const std::uint32_t session = connection.import->session();
   if (header.command == usbip::Command::unlink) {
-    give({Order::Kind::unlink, session_, std::move(header.urb), header.unlink_sequence});
+    const auto unlink = usbip::read<usbip::Unlink>(bytes);
+    connection.consumed += sizeof unlink;
+    Urb urb;
+    urb.sequence = header.sequence;
+    give({Order::Kind::unlink, session, std::move(urb), unlink.unlinked_sequence});
     return true;
   }
-  if (!pending_.emplace(header.urb.sequence, header.urb.length).second)
-    throw std::runtime_error("it uses a sequence number again before the first one was answered");
-  pending_bytes_ += header.urb.length;
-  if (pending_.size() > pending_urbs_maximum || pending_bytes_ > pending_bytes_maximum)
-    throw std::runtime_error("it submits more transfers at a time than the server holds");
-  const auto data = bytes.subspan(usbip::header_bytes, header.data_bytes);
-  header.urb.data.assign(data.begin(), data.end());
-  give({Order::Kind::submit, session_, std::move(header.urb)});
+  Urb urb = transfer_of(usbip::read<usbip::Submit>(bytes));
+  const auto rest = bytes.subspan(sizeof(usbip::Submit));
+  const std::size_t length = urb.in ? 0 : urb.length;
+  if (rest.size() < length) return false;
+  connection.consumed += sizeof(usbip::Submit) + length;
+  connection.import->add(urb);
+  urb.data.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(length));
+  give({Order::Kind::submit, session, std::move(urb)});
   return true;
 }
 
@@ -306,43 +326,21 @@ void UsbIpServer::deliver_results() {
     withdrawn = std::exchange(withdrawn_, false);
   }
   const auto importer = std::find_if(connections_.begin(), connections_.end(),
-                                     [](const Connection& one) { return one.importer && !one.dead; });
+                                     [](const Connection& one) { return one.import.has_value(); });
   if (importer == connections_.end()) return;
   for (const Result& result : results) {
-    if (result.session != session_) continue;
+    if (result.session != importer->import->session()) continue;
     if (result.kind == Result::Kind::submitted) {
-      forget_pending(result.urb.sequence);
-      usbip::append_submitted(importer->to_send, result.urb, result.status);
+      importer->import->forget(result.urb.sequence);
+      append_submitted(importer->to_send, result.urb, result.status);
     } else {
-      if (result.status == transfer_status::unlinked) forget_pending(result.unlink_sequence);
-      usbip::append_unlinked(importer->to_send, result.urb.sequence, result.status);
+      if (result.status == transfer_status::unlinked) importer->import->forget(result.unlink_sequence);
+      append_unlinked(importer->to_send, result.urb.sequence, result.status);
     }
   }
   if (withdrawn) {
     send(*importer);  // as much as goes without waiting
-    importer->dead = true;
-  }
-}
-
-void UsbIpServer::forget_pending(std::uint32_t sequence) {
-  const auto found = pending_.find(sequence);
-  if (found == pending_.end()) return;
-  pending_bytes_ -= found->second;
-  pending_.erase(found);
-}
-
-void UsbIpServer::remove_dead() {
-  for (auto connection = connections_.begin(); connection != connections_.end();) {
-    if (!connection->dead) {
-      ++connection;
-      continue;
-    }
-    if (connection->importer) {
-      give({Order::Kind::release, session_, {}});
-      pending_.clear();
-      pending_bytes_ = 0;
-    }
-    connection = connections_.erase(connection);
+    end(*importer);
   }
 }
 

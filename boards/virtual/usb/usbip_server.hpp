@@ -14,11 +14,12 @@
 #include <optional>
 #include <span>
 #include <thread>
-#include <unordered_map>
 #include <vector>
 
 #include <virtual_usb/descriptors.hpp>
 #include <virtual_usb/urb.hpp>
+
+#include "usbip_import.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -82,21 +83,22 @@ class UsbIpServer {
     std::size_t consumed = 0;
     std::vector<std::byte> to_send;
     std::size_t sent = 0;
-    bool importer = false;
-    bool closing = false;  ///< once everything is sent
+    std::optional<UsbIpImport> import;  ///< of the device, by this client
+    bool closing = false;               ///< once everything is sent
     bool dead = false;
   };
 
   void run();
   void accept_connections();
+  void make_room();
+  void end(Connection& connection);
   void receive(Connection& connection);
   void send(Connection& connection);
   void handle_received(Connection& connection);
   bool handle_operation(Connection& connection, std::span<const std::byte> bytes);
   bool handle_command(Connection& connection, std::span<const std::byte> bytes);
   void deliver_results();
-  void remove_dead();
-  void forget_pending(std::uint32_t sequence);
+  std::optional<DeviceDescription> offered();
   void give(Order&& order);
   void wake();
 
@@ -117,9 +119,7 @@ class UsbIpServer {
 
   // Only for the server's thread.
   std::list<Connection> connections_;
-  std::uint32_t session_ = 0;
-  std::unordered_map<std::uint32_t, std::uint32_t> pending_;  ///< lengths of transfers without an answer, by sequence
-  std::uint64_t pending_bytes_ = 0;
+  std::uint32_t sessions_ = 0;
 
   std::thread thread_;
 };

@@ -6,8 +6,8 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <stdexcept>
 
 namespace inkwell::virtual_usb_test {
@@ -100,59 +100,36 @@ Bytes UsbIpClient::receive(std::size_t length) {
   return bytes;
 }
 
-namespace {
-void append_32(Bytes& bytes, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(std::byte(value >> shift & 0xFF));
-}
-}  // namespace
-
-void UsbIpClient::send_operation(std::uint16_t code, std::uint16_t version) {
-  Bytes bytes;
-  append_32(bytes, std::uint32_t{version} << 16 | code);
-  append_32(bytes, 0);
-  send(bytes);
+void UsbIpClient::ask_for_list() {
+  send(usbip::bytes_of(usbip::OperationHeader{.operation = usbip::Operation::request_device_list}));
 }
 
-std::uint32_t UsbIpClient::import(const std::string& bus_id) {
-  send_operation(0x8003);
-  Bytes name(32);
-  std::transform(bus_id.begin(), bus_id.end(), name.begin(), [](char c) { return std::byte(c); });
-  send(name);
-  const Bytes header = receive(8);
-  if (header.size() != 8 || read_32(header, 0) != 0x0111'0003) throw std::runtime_error("no reply to the import");
-  const std::uint32_t status = read_32(header, 4);
-  if (status == 0 && receive(312).size() != 312) throw std::runtime_error("the reply to the import is cut off");
-  return status;
-}
-
-void UsbIpClient::send_header(const std::array<std::uint32_t, 10>& words, std::array<std::uint8_t, 8> setup) {
-  Bytes bytes;
-  for (const std::uint32_t word : words) append_32(bytes, word);
-  for (const std::uint8_t byte : setup) bytes.push_back(std::byte(byte));
-  send(bytes);
+usbip::OperationStatus UsbIpClient::import(const std::string& bus_id) {
+  send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));
+  const auto reply = receive<usbip::OperationHeader>();
+  if (reply.operation != usbip::Operation::reply_import) throw std::runtime_error("no reply to the import");
+  if (reply.status == usbip::OperationStatus::success && receive(sizeof(usbip::Device)).size() != sizeof(usbip::Device))
+    throw std::runtime_error("the reply to the import is cut off");
+  return reply.status;
 }
 
 void UsbIpClient::submit(std::uint32_t sequence, unsigned endpoint, bool in, std::uint32_t length, Bytes out_data,
                          std::array<std::uint8_t, 8> setup) {
-  send_header({1, sequence, 0x0001'0002, in ? 1u : 0u, endpoint, 0, length, 0, 0xFFFF'FFFF, 0}, setup);
+  usbip::Submit submit{.length = length, .packet_count = usbip::not_isochronous};
+  submit.header.sequence = sequence;
+  submit.header.device = exported_device;
+  submit.header.direction = in ? usbip::Direction::in : usbip::Direction::out;
+  submit.header.endpoint = endpoint;
+  std::memcpy(submit.setup.data(), setup.data(), setup.size());
+  send(usbip::bytes_of(submit));
   send(out_data);
 }
 
 void UsbIpClient::unlink(std::uint32_t sequence, std::uint32_t victim) {
-  send_header({2, sequence, 0x0001'0002, 0, 0, victim, 0, 0, 0, 0});
-}
-
-Reply UsbIpClient::read_reply() {
-  const Bytes header = receive(48);
-  if (header.size() != 48) return {};
-  return {read_32(header, 0), read_32(header, 4), static_cast<std::int32_t>(read_32(header, 20)), read_32(header, 24)};
-}
-
-std::uint32_t read_32(std::span<const std::byte> bytes, std::size_t at) {
-  return read_16(bytes, at) << 16 | read_16(bytes, at + 2);
-}
-std::uint32_t read_16(std::span<const std::byte> bytes, std::size_t at) {
-  return std::to_integer<std::uint32_t>(bytes[at]) << 8 | std::to_integer<std::uint32_t>(bytes[at + 1]);
+  usbip::Unlink unlink{.unlinked_sequence = victim};
+  unlink.header.sequence = sequence;
+  unlink.header.device = exported_device;
+  send(usbip::bytes_of(unlink));
 }
 
 }  // namespace inkwell::virtual_usb_test

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include <usbip/messages.hpp>
 #include <virtual_usb/virtual_usb.hpp>
 
 #include "fake_board.hpp"
@@ -47,12 +48,8 @@ class LiveBoard {
   std::thread thread_;
 };
 
-struct Reply {
-  std::uint32_t command = 0;
-  std::uint32_t sequence = 0;
-  std::int32_t status = 0;
-  std::uint32_t actual_length = 0;
-};
+/// How the server calls what it exports.
+inline constexpr std::uint32_t exported_device = usbip::device_of(1, 2);
 
 class UsbIpClient {
  public:
@@ -62,25 +59,26 @@ class UsbIpClient {
   void send(std::span<const std::byte> bytes);
   /// Fewer bytes than asked for if the server closed the connection or nothing came for 5 s.
   Bytes receive(std::size_t length);
+  template <class Message>
+  Message receive() {
+    const Bytes bytes = receive(sizeof(Message));
+    return bytes.size() == sizeof(Message) ? usbip::read<Message>(bytes) : Message{};
+  }
   /// The server closed the connection (and sent nothing before that).
   bool closed() { return receive(1).empty() && closed_; }
 
-  void send_operation(std::uint16_t code, std::uint16_t version = 0x0111);
-  /// Status of OP_REP_IMPORT.
-  std::uint32_t import(const std::string& bus_id = "1-1");
+  void ask_for_list();
+  usbip::OperationStatus import(const std::string& bus_id = "1-1");
 
   void submit(std::uint32_t sequence, unsigned endpoint, bool in, std::uint32_t length, Bytes out_data = {},
               std::array<std::uint8_t, 8> setup = {});
   void unlink(std::uint32_t sequence, std::uint32_t victim);
-  void send_header(const std::array<std::uint32_t, 10>& words, std::array<std::uint8_t, 8> setup = {});
-  Reply read_reply();
+  /// An answer to `submit`, without its data; all zeros if none came.
+  usbip::ReturnSubmit read_reply() { return receive<usbip::ReturnSubmit>(); }
 
  private:
   int socket_;
   bool closed_ = false;
 };
-
-std::uint32_t read_32(std::span<const std::byte> bytes, std::size_t at);
-std::uint32_t read_16(std::span<const std::byte> bytes, std::size_t at);
 
 }  // namespace inkwell::virtual_usb_test

@@ -3,15 +3,20 @@
 
 #include <chrono>
 #include <cstring>
+#include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "usbip_client.hpp"
 
 namespace inkwell::virtual_usb_test {
 namespace {
 
-constexpr std::uint32_t submitted = 3, unlinked = 4;
+using usbip::Command;
+using usbip::OperationStatus;
+
 constexpr std::array<std::uint8_t, 8> get_device_descriptor{0x80, 6, 0, 1, 0, 0, 18, 0};
 constexpr std::array<std::uint8_t, 8> set_configuration{0x00, 9, 5, 0, 0, 0, 0, 0};
 constexpr std::array<std::uint8_t, 8> set_address{0x00, 5, 77, 0, 0, 0, 0, 0};
@@ -20,9 +25,9 @@ constexpr std::array<std::uint8_t, 8> store_100_bytes{0x40, 2, 0, 0, 0, 0, 100, 
 
 void configure(UsbIpClient& client, std::uint32_t sequence = 1) {
   client.submit(sequence, 0, false, 0, {}, set_configuration);
-  const Reply reply = client.read_reply();
-  REQUIRE(reply.command == submitted);
-  REQUIRE(reply.sequence == sequence);
+  const auto reply = client.read_reply();
+  REQUIRE(reply.header.command == Command::return_submit);
+  REQUIRE(reply.header.sequence == sequence);
   REQUIRE(reply.status == 0);
 }
 
@@ -31,43 +36,47 @@ TEST_CASE("the device list shows descriptors once the device is enumerated") {
   board.call([&] { board.usb.disconnect(); });
   {
     UsbIpClient client(board.usb.port());
-    client.send_operation(0x8005);
-    const Bytes empty = client.receive(12);
-    REQUIRE(empty.size() == 12);
-    CHECK(read_32(empty, 8) == 0);
+    client.ask_for_list();
+    const auto empty = client.receive<usbip::DeviceListReply>();
+    CHECK(empty.header.operation == usbip::Operation::reply_device_list);
+    CHECK(empty.device_count == 0);
   }
   board.call([&] { board.usb.connect(); });
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
-  client.send_operation(0x8005);
-  const Bytes list = client.receive(12 + 312 + 2 * 4);
-  REQUIRE(list.size() == 12 + 312 + 2 * 4);
-  CHECK(read_32(list, 0) == 0x0111'0005);
-  CHECK(read_32(list, 4) == 0);
-  CHECK(read_32(list, 8) == 1);
-  CHECK(std::string(reinterpret_cast<const char*>(list.data() + 12 + 256)) == "1-1");
-  constexpr std::size_t device = 12 + 256 + 32;
-  CHECK(read_32(list, device) == 1);
-  CHECK(read_32(list, device + 4) == 2);
-  CHECK(read_32(list, device + 8) == 2);  // full speed
-  CHECK(read_16(list, device + 12) == 0x1209);
-  CHECK(read_16(list, device + 14) == 0x0001);
-  CHECK(read_16(list, device + 16) == 0x0134);
-  CHECK(std::to_integer<int>(list[device + 22]) == 1);  // configurations
-  CHECK(std::to_integer<int>(list[device + 23]) == 2);  // interfaces
-  CHECK(std::to_integer<int>(list[device + 24]) == 3);  // HID
-  CHECK(std::to_integer<int>(list[device + 28]) == 0xFF);
+  client.ask_for_list();
+  const auto list = client.receive<usbip::DeviceListReply>();
+  CHECK(list.header.version == 0x0111);
+  CHECK(list.header.status == OperationStatus::success);
+  REQUIRE(list.device_count == 1);
+  const auto device = client.receive<usbip::Device>();
+  CHECK(device.path.view() == "/sys/devices/platform/inkwell_virtual_board/usb1/1-1");
+  CHECK(device.bus_id.view() == "1-1");
+  CHECK(device.bus_number == 1);
+  CHECK(device.device_number == 2);
+  CHECK(device.speed == usbip::Speed::full);
+  CHECK(device.vendor_id == 0x1209);
+  CHECK(device.product_id == 0x0001);
+  CHECK(device.device_release == 0x0134);
+  CHECK(device.configuration == 0);
+  CHECK(device.configuration_count == 1);
+  REQUIRE(device.interface_count == 2);
+  CHECK(client.receive<usbip::Interface>().interface_class == 3);  // HID
+  const auto vendor = client.receive<usbip::Interface>();
+  CHECK(vendor.interface_class == 0xFF);
+  CHECK(vendor.interface_subclass == 1);
+  CHECK(vendor.interface_protocol == 2);
 }
 
 TEST_CASE("control transfers and errors over the socket") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
-  REQUIRE(client.import() == 0);
+  REQUIRE(client.import() == OperationStatus::success);
   client.submit(7, 0, true, 18, {}, get_device_descriptor);
-  Reply reply = client.read_reply();
-  CHECK(reply.command == submitted);
-  CHECK(reply.sequence == 7);
+  auto reply = client.read_reply();
+  CHECK(reply.header.command == Command::return_submit);
+  CHECK(reply.header.sequence == 7);
   CHECK(reply.status == 0);
   REQUIRE(reply.actual_length == 18);
   const Bytes descriptor = client.receive(18);
@@ -76,7 +85,7 @@ TEST_CASE("control transfers and errors over the socket") {
 
   client.submit(8, 0, true, 8, {}, unknown_request);
   reply = client.read_reply();
-  CHECK(reply.sequence == 8);
+  CHECK(reply.header.sequence == 8);
   CHECK(reply.status == -32);
   CHECK(reply.actual_length == 0);
 
@@ -102,12 +111,12 @@ TEST_CASE("a second importer is refused, an unknown device too, and a next one i
   REQUIRE(board.wait_until_enumerated());
   {
     UsbIpClient first(board.usb.port());
-    REQUIRE(first.import() == 0);
+    REQUIRE(first.import() == OperationStatus::success);
     UsbIpClient second(board.usb.port());
-    CHECK(second.import() == 2);
+    CHECK(second.import() == OperationStatus::busy);
     CHECK(second.closed());
     UsbIpClient third(board.usb.port());
-    CHECK(third.import("2-1") == 4);
+    CHECK(third.import("2-1") == OperationStatus::no_device);
     CHECK(third.closed());
     configure(first);
   }
@@ -117,7 +126,7 @@ TEST_CASE("a second importer is refused, an unknown device too, and a next one i
   for (int i = 0; i < 3; ++i) {
     REQUIRE(board.wait_until_enumerated());
     UsbIpClient next(board.usb.port());
-    REQUIRE(next.import() == 0);
+    REQUIRE(next.import() == OperationStatus::success);
     configure(next);
   }
   board.call([&] { CHECK(board.firmware.resets == resets + 3); });
@@ -128,15 +137,15 @@ TEST_CASE("64 bulk transfers deep, nothing lost") {
   board.firmware.stream(true);
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
-  REQUIRE(client.import() == 0);
+  REQUIRE(client.import() == OperationStatus::success);
   configure(client);
   constexpr std::uint32_t length = 1024;
   std::uint32_t submitted_count = 0;
   for (; submitted_count < 64; ++submitted_count) client.submit(100 + submitted_count, 2, true, length);
   std::uint32_t expected = 0;
   for (std::uint32_t i = 0; i < 500; ++i) {
-    const Reply reply = client.read_reply();
-    REQUIRE(reply.sequence == 100 + i);
+    const auto reply = client.read_reply();
+    REQUIRE(reply.header.sequence == 100 + i);
     REQUIRE(reply.actual_length == length);
     const Bytes data = client.receive(length);
     for (std::size_t at = 0; at < length; at += 4) {
@@ -152,28 +161,28 @@ TEST_CASE("an unlinked transfer is answered once, by the unlink") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
-  REQUIRE(client.import() == 0);
+  REQUIRE(client.import() == OperationStatus::success);
   configure(client);
   client.submit(20, 1, true, 64);
   client.submit(21, 1, true, 64);
   client.unlink(22, 20);
-  Reply reply = client.read_reply();
-  CHECK(reply.command == unlinked);
-  CHECK(reply.sequence == 22);
-  CHECK(reply.status == -104);
+  auto unlinked = client.receive<usbip::ReturnUnlink>();
+  CHECK(unlinked.header.command == Command::return_unlink);
+  CHECK(unlinked.header.sequence == 22);
+  CHECK(unlinked.status == -104);
   const Bytes report(10, std::byte{42});
   board.call([&] { board.firmware.send_report(report); });
-  reply = client.read_reply();
-  CHECK(reply.command == submitted);
-  CHECK(reply.sequence == 21);
+  const auto reply = client.read_reply();
+  CHECK(reply.header.command == Command::return_submit);
+  CHECK(reply.header.sequence == 21);
   CHECK(client.receive(reply.actual_length) == report);
   client.unlink(23, 21);  // too late: it was answered
-  reply = client.read_reply();
-  CHECK(reply.command == unlinked);
-  CHECK(reply.sequence == 23);
-  CHECK(reply.status == 0);
+  unlinked = client.receive<usbip::ReturnUnlink>();
+  CHECK(unlinked.header.command == Command::return_unlink);
+  CHECK(unlinked.header.sequence == 23);
+  CHECK(unlinked.status == 0);
   client.submit(20, 0, true, 18, {}, get_device_descriptor);  // its number is free again
-  CHECK(client.read_reply().sequence == 20);
+  CHECK(client.read_reply().header.sequence == 20);
 }
 
 TEST_CASE("unplug closes the importer's connection; after replug it can import again") {
@@ -182,18 +191,18 @@ TEST_CASE("unplug closes the importer's connection; after replug it can import a
   REQUIRE(board.wait_until_enumerated());
   {
     UsbIpClient client(board.usb.port());
-    REQUIRE(client.import() == 0);
+    REQUIRE(client.import() == OperationStatus::success);
     configure(client);
     client.submit(30, 1, true, 64);
     board.call([&] { board.usb.disconnect(); });
     CHECK(client.closed());
     UsbIpClient other(board.usb.port());
-    CHECK(other.import() == 4);
+    CHECK(other.import() == OperationStatus::no_device);
   }
   board.call([&] { board.usb.connect(); });
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
-  REQUIRE(client.import() == 0);
+  REQUIRE(client.import() == OperationStatus::success);
   configure(client);
   client.submit(31, 2, true, 64);
   CHECK(client.read_reply().actual_length == 64);
@@ -204,14 +213,14 @@ TEST_CASE("while the simulation is paused, lists and imports are answered and tr
   REQUIRE(board.wait_until_enumerated());
   board.pause(true);
   UsbIpClient client(board.usb.port());
-  client.send_operation(0x8005);
+  client.ask_for_list();
   CHECK(client.receive(12 + 312 + 8).size() == 12 + 312 + 8);
-  REQUIRE(client.import() == 0);
+  REQUIRE(client.import() == OperationStatus::success);
   client.submit(40, 0, true, 18, {}, get_device_descriptor);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   board.call([&] { CHECK(board.firmware.resets == 2); });
   board.pause(false);
-  CHECK(client.read_reply().sequence == 40);
+  CHECK(client.read_reply().header.sequence == 40);
 }
 
 TEST_CASE("nonsense closes the connection, not the server") {
@@ -220,36 +229,44 @@ TEST_CASE("nonsense closes the connection, not the server") {
   const std::uint16_t port = board.usb.port();
   {
     UsbIpClient client(port);
-    client.send_operation(0x8005, 0x0100);
+    client.send(
+        usbip::bytes_of(usbip::OperationHeader{.version = 0x0100, .operation = usbip::Operation::request_device_list}));
     CHECK(client.closed());
   }
   {
     UsbIpClient client(port);
-    client.send_operation(0x8888);
+    client.send(usbip::bytes_of(usbip::OperationHeader{.operation = static_cast<usbip::Operation>(0x8888)}));
     CHECK(client.closed());
   }
-  constexpr std::uint32_t device = 0x0001'0002;
-  const std::array<std::array<std::uint32_t, 10>, 8> headers{{
-      {9, 1, device, 1, 0, 0, 18, 0, 0, 0},           // unknown command
-      {1, 1, 0x0001'0003, 1, 0, 0, 18, 0, 0, 0},      // another device
-      {1, 1, device, 2, 0, 0, 18, 0, 0, 0},           // neither IN nor OUT
-      {1, 1, device, 1, 16, 0, 18, 0, 0, 0},          // no such endpoint number
-      {1, 1, device, 1, 2, 0, 0xFFFF'FFF0, 0, 0, 0},  // endless
-      {1, 1, device, 0, 2, 0, 0x7FFF'FFFF, 0, 0, 0},  // endless
-      {1, 1, device, 1, 2, 0, 64, 0, 4, 0},           // isochronous
-      {1, 1, device, 0, 0, 0, 18, 0, 0, 0},           // OUT, but the request says IN
-  }};
-  for (const auto& header : headers) {
+  usbip::Submit sound{.length = 18};
+  sound.header = {Command::submit, 1, exported_device, usbip::Direction::in, 0};
+  std::memcpy(sound.setup.data(), get_device_descriptor.data(), sound.setup.size());
+  const std::vector<std::function<void(usbip::Submit&)>> mistakes{
+      [](usbip::Submit& submit) { submit.header.command = static_cast<Command>(9); },
+      [](usbip::Submit& submit) { submit.header.device = exported_device + 1; },
+      [](usbip::Submit& submit) { submit.header.direction = static_cast<usbip::Direction>(2); },
+      [](usbip::Submit& submit) { submit.header.endpoint = 16; },
+      [](usbip::Submit& submit) { submit.length = 0xFFFF'FFF0; },
+      [](usbip::Submit& submit) {
+        submit.header.endpoint = 2;
+        submit.header.direction = usbip::Direction::out;
+        submit.length = 0x7FFF'FFFF;
+      },
+      [](usbip::Submit& submit) { submit.packet_count = 4; },                           // isochronous
+      [](usbip::Submit& submit) { submit.header.direction = usbip::Direction::out; }};  // but the request says IN
+  for (const auto& make : mistakes) {
     REQUIRE(board.wait_until_enumerated());
     UsbIpClient client(port);
-    REQUIRE(client.import() == 0);
-    client.send_header(header, get_device_descriptor);
+    REQUIRE(client.import() == OperationStatus::success);
+    usbip::Submit submit = sound;
+    make(submit);
+    client.send(usbip::bytes_of(submit));
     CHECK(client.closed());
   }
   {
     REQUIRE(board.wait_until_enumerated());
     UsbIpClient client(port);
-    REQUIRE(client.import() == 0);
+    REQUIRE(client.import() == OperationStatus::success);
     configure(client);
     client.submit(50, 1, true, 64);
     client.submit(50, 1, true, 64);  // the same number twice
@@ -258,13 +275,45 @@ TEST_CASE("nonsense closes the connection, not the server") {
   {
     REQUIRE(board.wait_until_enumerated());
     UsbIpClient client(port);
-    REQUIRE(client.import() == 0);
+    REQUIRE(client.import() == OperationStatus::success);
     client.send(Bytes(20));  // half a command, then gone
   }
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(port);
-  REQUIRE(client.import() == 0);
+  REQUIRE(client.import() == OperationStatus::success);
   configure(client);
+}
+
+TEST_CASE("who imports right after a client died with transfers under way is served") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  for (int i = 0; i < 20; ++i) {
+    auto dying = std::make_unique<UsbIpClient>(board.usb.port());
+    while (dying->import() != OperationStatus::success) dying = std::make_unique<UsbIpClient>(board.usb.port());
+    for (std::uint32_t sequence = 1; sequence <= 64; ++sequence)
+      dying->submit(sequence, 0, true, 18, {}, get_device_descriptor);
+    UsbIpClient next(board.usb.port());
+    dying.reset();
+    const auto status = next.import();
+    if (status != OperationStatus::success) continue;  // it came before the server saw the other one die
+    next.submit(7, 0, true, 18, {}, get_device_descriptor);
+    const auto reply = next.read_reply();
+    REQUIRE(reply.header.sequence == 7);
+    REQUIRE(reply.status == 0);
+  }
+}
+
+TEST_CASE("clients that do nothing lock nobody out, and do not cost the importer its connection") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  UsbIpClient importer(board.usb.port());
+  REQUIRE(importer.import() == OperationStatus::success);
+  std::vector<std::unique_ptr<UsbIpClient>> idle;
+  for (int i = 0; i < 40; ++i) idle.push_back(std::make_unique<UsbIpClient>(board.usb.port()));
+  UsbIpClient another(board.usb.port());
+  another.ask_for_list();
+  CHECK(another.receive<usbip::DeviceListReply>().device_count == 1);
+  configure(importer);
 }
 
 TEST_CASE("a busy port is reported in a sentence") {

@@ -1,0 +1,43 @@
+// A client's hold on the exported device, and what it still waits for.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <unordered_map>
+
+#include <virtual_usb/urb.hpp>
+
+namespace inkwell::virtual_board {
+
+class UsbIpImport {
+ public:
+  explicit UsbIpImport(std::uint32_t session) : session_(session) {}
+
+  /// Counts imports, so that late answers find nobody.
+  std::uint32_t session() const { return session_; }
+
+  /// Throws std::runtime_error if the transfer's number is not free, or if this is more than the server holds.
+  void add(const Urb& urb) {
+    if (!lengths_.emplace(urb.sequence, urb.length).second)
+      throw std::runtime_error("it uses a sequence number again before the first one was answered");
+    bytes_ += urb.length;
+    if (lengths_.size() > transfers_maximum || bytes_ > bytes_maximum)
+      throw std::runtime_error("it submits more transfers at a time than the server holds");
+  }
+  void forget(std::uint32_t sequence) {
+    const auto found = lengths_.find(sequence);
+    if (found == lengths_.end()) return;
+    bytes_ -= found->second;
+    lengths_.erase(found);
+  }
+
+ private:
+  static constexpr std::size_t transfers_maximum = 4096;
+  static constexpr std::uint64_t bytes_maximum = 64u << 20;
+
+  std::uint32_t session_;
+  std::unordered_map<std::uint32_t, std::uint32_t> lengths_;  ///< of transfers without an answer, by sequence
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace inkwell::virtual_board

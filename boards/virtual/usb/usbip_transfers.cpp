@@ -1,0 +1,98 @@
+#include "usbip_transfers.hpp"
+
+#include <stdexcept>
+
+namespace inkwell::virtual_board {
+
+namespace {
+
+constexpr std::uint32_t bus_number = 1, device_number = 2;
+
+template <class Message>
+void append(std::vector<std::byte>& out, const Message& message) {
+  const auto bytes = usbip::bytes_of(message);
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+usbip::Device describe(const DeviceDescription& device) {
+  const auto& configurations = device.configurations;
+  return {
+      .path = {"/sys/devices/platform/inkwell_virtual_board/usb1/1-1"},
+      .bus_id = {exported_bus_id},
+      .bus_number = bus_number,
+      .device_number = device_number,
+      .speed = usbip::Speed::full,
+      .vendor_id = device.vendor(),
+      .product_id = device.product(),
+      .device_release = device.release(),
+      .device_class = device.byte(4),
+      .device_subclass = device.byte(5),
+      .device_protocol = device.byte(6),
+      .configuration = 0,  // none: that is the importer's first task
+      .configuration_count = device.configuration_count(),
+      .interface_count = static_cast<std::uint8_t>(configurations.empty() ? 0 : configurations[0].interfaces.size())};
+}
+
+}  // namespace
+
+void check_transfer(const usbip::TransferHeader& header) {
+  if (header.command != usbip::Command::submit && header.command != usbip::Command::unlink)
+    throw std::runtime_error("the command is unknown");
+  if (header.device != usbip::device_of(bus_number, device_number))
+    throw std::runtime_error("the command is for another device");
+  if (header.direction != usbip::Direction::out && header.direction != usbip::Direction::in)
+    throw std::runtime_error("the direction of a transfer is neither OUT nor IN");
+  if (header.endpoint > 15) throw std::runtime_error("an endpoint number is above 15");
+}
+
+Urb transfer_of(const usbip::Submit& submit) {
+  Urb urb;
+  urb.sequence = submit.header.sequence;
+  urb.endpoint = static_cast<std::uint8_t>(submit.header.endpoint);
+  urb.in = submit.header.direction == usbip::Direction::in;
+  urb.flags = submit.transfer_flags;
+  urb.length = submit.length;
+  urb.setup = submit.setup;
+  if (urb.length > transfer_maximum) throw std::runtime_error("a transfer is longer than 16 MiB");
+  if (submit.packet_count != 0 && submit.packet_count != usbip::not_isochronous)
+    throw std::runtime_error("it submits an isochronous transfer, which is not modelled");
+  // The direction of a control transfer is what its request says; the two must not differ.
+  const bool request_in = (urb.setup[0] & std::byte{0x80}) != std::byte{0};
+  if (urb.endpoint == 0 && urb.length > 0 && request_in != urb.in)
+    throw std::runtime_error("the direction of a control transfer differs from its request");
+  return urb;
+}
+
+void append_device_list(std::vector<std::byte>& out, const DeviceDescription* device) {
+  append(out, usbip::DeviceListReply{.device_count = device == nullptr ? 0u : 1u});
+  if (device == nullptr) return;
+  append(out, describe(*device));
+  if (device->configurations.empty()) return;
+  for (const InterfaceDescription& interface : device->configurations[0].interfaces)
+    append(out,
+           usbip::Interface{interface.interface_class, interface.interface_subclass, interface.interface_protocol});
+}
+
+void append_import_refused(std::vector<std::byte>& out, usbip::OperationStatus status) {
+  append(out, usbip::OperationHeader{.operation = usbip::Operation::reply_import, .status = status});
+}
+
+void append_imported(std::vector<std::byte>& out, const DeviceDescription& device) {
+  append(out, usbip::OperationHeader{.operation = usbip::Operation::reply_import});
+  append(out, describe(device));
+}
+
+void append_submitted(std::vector<std::byte>& out, const Urb& urb, std::int32_t status) {
+  usbip::ReturnSubmit answer{.status = status, .actual_length = urb.actual_length()};
+  answer.header.sequence = urb.sequence;
+  append(out, answer);
+  if (urb.in) out.insert(out.end(), urb.data.begin(), urb.data.end());
+}
+
+void append_unlinked(std::vector<std::byte>& out, std::uint32_t sequence, std::int32_t status) {
+  usbip::ReturnUnlink answer{.status = status};
+  answer.header.sequence = sequence;
+  append(out, answer);
+}
+
+}  // namespace inkwell::virtual_board
