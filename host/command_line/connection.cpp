@@ -44,7 +44,7 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->check(CLI::IsMember({"exact", "fast"}))
       ->needs(is_virtual_flag)
       ->group(group);
-  app.add_option("--seed", seed, "Seed of its noise")
+  app.add_option("--seed", seed, "Seed of its noise and of its serial number")
       ->type_name("NUMBER")
       ->capture_default_str()
       ->needs(is_virtual_flag)

@@ -35,6 +35,14 @@ TEST_CASE("the device enumerates within a second of board time and says who it i
   CHECK(status.unmodelled.empty());
 }
 
+TEST_CASE("two boards are told apart by their serial numbers, which their seeds make") {
+  const auto serial_number_of = [](std::uint64_t seed) {
+    return BoardRig(device::SimulationMode::fast, seed).device->information().serial_number;
+  };
+  CHECK(serial_number_of(1) == "000000010000000039323539");
+  CHECK(serial_number_of(0xABCDEF0012345678) == "12345678ABCDEF0039323539");
+}
+
 TEST_CASE("the device holds the table's defaults, takes a transaction whole, and gives the defaults back") {
   BoardRig rig;
   const auto before = rig.device->parameters();

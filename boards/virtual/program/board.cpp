@@ -1,5 +1,6 @@
 #include "board.hpp"
 
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -23,6 +24,12 @@ std::string_view name_of(ResetCause cause) {
   return "an unknown cause";
 }
 
+/// The seed makes a board the individual that it is, so it is what its serial number tells.
+std::array<std::uint32_t, 3> unique_id_of(std::uint64_t seed) {
+  constexpr std::uint32_t lot = 0x3932'3539;
+  return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), lot};
+}
+
 }  // namespace
 
 Board::Board(const Options& options, std::function<void()> on_usb_request)
@@ -31,6 +38,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request)
       chip_(plant_, {.mode = options.mode,
                      .pricing = options.pricing,
                      .crystal_Hz = options.crystal_Hz,
+                     .unique_id = unique_id_of(options.seed),
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); },
                      .name_of_code = [this](std::uint32_t address) { return symbols_.name(address); }}) {

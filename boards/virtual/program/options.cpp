@@ -67,7 +67,8 @@ CommandLine read_command_line(int argc, char** argv) {
       ->type_name("HZ")
       ->capture_default_str();
   app.add_flag("--real-time", options.real_time, "keep board time from running ahead of the clock on the wall");
-  app.add_option("--seed", options.seed, "of all noise; the same seed and commands give the same run")
+  app.add_option("--seed", options.seed,
+                 "of all noise and of the serial number; the same seed and commands give the same run")
       ->type_name("N")
       ->capture_default_str();
   double seconds = 0.0;

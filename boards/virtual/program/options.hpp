@@ -19,7 +19,7 @@ struct Options {
   Pricing pricing = Pricing::likely;
   std::uint32_t crystal_Hz = 8'000'000;
   bool real_time = false;
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;         ///< of all noise and of the serial number
   std::optional<double> seconds;  ///< of board time, after which the program ends
   bool paused = false;
   bool strict = false;  ///< the first broken rule of the chip ends the program
