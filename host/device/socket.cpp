@@ -4,6 +4,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -53,6 +54,12 @@ Socket& Socket::operator=(Socket&& other) noexcept {
   return *this;
 }
 
+void Socket::wait_at_most(std::optional<std::chrono::milliseconds> limit) {
+  const auto microseconds = std::chrono::microseconds(limit.value_or(std::chrono::milliseconds(0))).count();
+  const timeval wait{microseconds / 1'000'000, microseconds % 1'000'000};  // 0 is no limit
+  setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &wait, sizeof wait);
+}
+
 void Socket::send(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -67,6 +74,11 @@ std::size_t Socket::receive_some(std::span<std::byte> bytes) {
     const ssize_t received = recv(descriptor_, bytes.data(), bytes.size(), 0);
     if (received > 0) return static_cast<std::size_t>(received);
     if (received < 0 && errno == EINTR) continue;
+    if (received < 0 && errno == EAGAIN)
+      throw Error(
+          fmt::format("What listens at {} gives no answer. Check that this is the port that virtual-board printed "
+                      "for this.",
+                      peer_));
     throw Disconnected(fmt::format("The other end of {} closed the connection. Start the board again.", peer_));
   }
 }

@@ -1,8 +1,10 @@
 // A TCP connection of a client, closed with the object.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -16,7 +18,10 @@ class Socket {
   Socket(Socket&& other) noexcept;
   Socket& operator=(Socket&& other) noexcept;
 
-  /// Both throw Disconnected when the other end is gone.
+  /// How long a receive waits for more bytes before it throws Error; without a limit it waits for ever, as at first.
+  void wait_at_most(std::optional<std::chrono::milliseconds> limit);
+
+  /// These throw Disconnected when the other end is gone.
   void send(std::span<const std::byte> bytes);
   void receive(std::span<std::byte> bytes);  ///< fills `bytes`
   std::size_t receive_some(std::span<std::byte> bytes);

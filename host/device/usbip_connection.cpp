@@ -17,12 +17,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr auto reply_timeout = 3s;
 constexpr auto control_timeout = 3s;
-
-template <class Message>
-std::span<const std::byte> bytes_of(const Message& message) {
-  return std::as_bytes(std::span(&message, 1));
-}
 
 template <class Message>
 Message receive(Socket& socket) {
@@ -31,46 +27,45 @@ Message receive(Socket& socket) {
   return message;
 }
 
-std::string text_of(std::span<const char> field) { return {field.data(), strnlen(field.data(), field.size())}; }
-
-void check_reply(const usbip::OperationHeader& reply, std::uint16_t operation) {
+/// A reply before the import. What is no USB/IP server may wait for something else for ever.
+usbip::OperationHeader receive_reply(Socket& socket, usbip::Operation operation) {
+  socket.wait_at_most(reply_timeout);
+  const auto reply = receive<usbip::OperationHeader>(socket);
   if (reply.version != usbip::protocol_version || reply.operation != operation)
     throw Error(
         "What answers at this port does not speak USB/IP 1.1.1. Give the USB/IP port that virtual-board printed.");
+  return reply;
 }
 
 }  // namespace
 
 std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16_t port) {
   Socket socket(host, port);
-  socket.send(bytes_of(usbip::OperationHeader{.operation = usbip::request_device_list}));
-  check_reply(receive<usbip::OperationHeader>(socket), usbip::reply_device_list);
+  socket.send(usbip::bytes_of(usbip::OperationHeader{.operation = usbip::Operation::request_device_list}));
+  receive_reply(socket, usbip::Operation::reply_device_list);
   const std::uint32_t count = receive<usbip::Big32>(socket);
   std::vector<UsbipDevice> devices;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const auto description = receive<usbip::DeviceDescription>(socket);
-    for (int j = 0; j < description.interface_count; ++j) receive<std::array<std::uint8_t, 4>>(socket);
+    const auto device = receive<usbip::Device>(socket);
+    for (int j = 0; j < device.interface_count; ++j) receive<usbip::Interface>(socket);
     devices.push_back(
-        {text_of(description.path), text_of(description.bus_id), description.vendor_id, description.product_id});
+        {std::string(device.path.view()), std::string(device.bus_id.view()), device.vendor_id, device.product_id});
   }
   return devices;
 }
 
 UsbipConnection::UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id)
     : socket_(host, port) {
-  std::array<char, 32> field{};
-  bus_id.copy(field.data(), field.size() - 1);
-  socket_.send(bytes_of(usbip::OperationHeader{.operation = usbip::request_import}));
-  socket_.send(bytes_of(field));
-  const auto reply = receive<usbip::OperationHeader>(socket_);
-  check_reply(reply, usbip::reply_import);
-  if (reply.status != 0)
+  socket_.send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));
+  const auto reply = receive_reply(socket_, usbip::Operation::reply_import);
+  if (reply.status != usbip::OperationStatus::success)
     throw Error(
         fmt::format("The device {} at {}:{} cannot be taken: another program uses it, or its cable is out. "
                     "Close the other program.",
                     bus_id, host, port));
-  const auto description = receive<usbip::DeviceDescription>(socket_);
-  device_ = description.bus_number << 16 | description.device_number;
+  const auto device = receive<usbip::Device>(socket_);
+  device_ = usbip::device_of(device.bus_number, device.device_number);
+  socket_.wait_at_most(std::nullopt);  // from here on silence is a device with nothing to say
 }
 
 UsbipConnection::~UsbipConnection() { close(); }
@@ -92,32 +87,32 @@ void UsbipConnection::close() {
 std::uint32_t UsbipConnection::submit(usbip::Direction direction, std::uint8_t endpoint, const Setup* setup,
                                       std::uint32_t length, std::span<const std::byte> data,
                                       OnCompletion on_completion) {
-  usbip::Submit message{};
-  message.header.command = usbip::submit;
+  usbip::Submit message{.length = length};
   message.header.device = device_;
   message.header.direction = direction;
   message.header.endpoint = endpoint & 0x0Fu;
-  message.length = length;
-  if (setup != nullptr) std::memcpy(message.setup, setup, sizeof message.setup);  // little-endian, as USB is
+  if (setup != nullptr) std::memcpy(message.setup.data(), setup, sizeof *setup);  // little-endian, as USB is
 
   const std::lock_guard lock(mutex_);
   if (closed_) throw Disconnected("The device is gone. Connect it again.");
   const std::uint32_t sequence = ++sequence_;
   message.header.sequence = sequence;
   pending_.emplace(sequence, Pending{direction, length, std::move(on_completion)});
-  std::vector<std::byte> packet(bytes_of(message).begin(), bytes_of(message).end());
+  const auto bytes = usbip::bytes_of(message);
+  std::vector<std::byte> packet(bytes.begin(), bytes.end());
   packet.insert(packet.end(), data.begin(), data.end());
   socket_.send(packet);
   return sequence;
 }
 
 std::uint32_t UsbipConnection::submit_in(std::uint8_t endpoint, std::uint32_t length, OnCompletion on_completion) {
-  return submit(usbip::in, endpoint, nullptr, length, {}, std::move(on_completion));
+  return submit(usbip::Direction::in, endpoint, nullptr, length, {}, std::move(on_completion));
 }
 
 std::uint32_t UsbipConnection::submit_out(std::uint8_t endpoint, std::span<const std::byte> data,
                                           OnCompletion on_completion) {
-  return submit(usbip::out, endpoint, nullptr, static_cast<std::uint32_t>(data.size()), data, std::move(on_completion));
+  return submit(usbip::Direction::out, endpoint, nullptr, static_cast<std::uint32_t>(data.size()), data,
+                std::move(on_completion));
 }
 
 void UsbipConnection::unlink(std::uint32_t sequence) {
@@ -126,13 +121,11 @@ void UsbipConnection::unlink(std::uint32_t sequence) {
   // The server may have sent the answer already; its data must still be read off the stream, so the transfer stays
   // pending until the server has answered the unlink.
   pending_.at(sequence).on_completion = [](Completion) {};
-  usbip::Unlink message{};
-  message.header.command = usbip::unlink;
+  usbip::Unlink message{.unlinked_sequence = sequence};
   message.header.sequence = ++sequence_;
   unlinks_.emplace(sequence_, sequence);
   message.header.device = device_;
-  message.unlinked_sequence = sequence;
-  socket_.send(bytes_of(message));
+  socket_.send(usbip::bytes_of(message));
 }
 
 UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction, const Setup& setup,
@@ -161,10 +154,12 @@ UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction,
   return completion;
 }
 
-std::vector<std::byte> UsbipConnection::control_in(const Setup& setup) { return control(usbip::in, setup, {}).data; }
+std::vector<std::byte> UsbipConnection::control_in(const Setup& setup) {
+  return control(usbip::Direction::in, setup, {}).data;
+}
 
 void UsbipConnection::control_out(const Setup& setup, std::span<const std::byte> data) {
-  control(usbip::out, setup, data);
+  control(usbip::Direction::out, setup, data);
 }
 
 void UsbipConnection::receive_answers() {
@@ -188,13 +183,12 @@ void UsbipConnection::receive_answers() {
 void UsbipConnection::receive_answer() {
   const auto answer = receive<usbip::ReturnSubmit>(socket_);
   const std::uint32_t sequence = answer.header.sequence;
-  const auto status = static_cast<std::int32_t>(static_cast<std::uint32_t>(answer.status));
-  if (answer.header.command == usbip::return_unlink) {
+  if (answer.header.command == usbip::Command::return_unlink) {
     const std::lock_guard lock(mutex_);
     if (const auto unlinked = unlinks_.extract(sequence)) pending_.erase(unlinked.mapped());
     return;
   }
-  if (answer.header.command != usbip::return_submit)
+  if (answer.header.command != usbip::Command::return_submit)
     throw Disconnected("The USB/IP server sent a message that is not of the protocol. Start the board again.");
   Pending pending;
   {
@@ -205,8 +199,8 @@ void UsbipConnection::receive_answer() {
     pending = std::move(found->second);
     pending_.erase(found);
   }
-  Completion completion{status, answer.actual_length, {}};
-  if (pending.direction == usbip::in) {
+  Completion completion{answer.status, answer.actual_length, {}};
+  if (pending.direction == usbip::Direction::in) {
     completion.data.resize(answer.actual_length);
     socket_.receive(completion.data);
   }

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include <device/error.hpp>
+#include <usbip/messages.hpp>
 
 #include "socket.hpp"
 #include "usb_descriptors.hpp"
-#include "usbip_wire.hpp"
 
 namespace inkwell::device {
 
@@ -26,6 +26,7 @@ struct UsbipDevice {
   std::uint16_t product_id = 0;
 };
 
+/// What a USB/IP server exports. Throws Error if nobody or something else answers, or nothing for 3 s.
 std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16_t port);
 
 class UsbipConnection {
@@ -37,7 +38,8 @@ class UsbipConnection {
   };
   using OnCompletion = std::function<void(Completion)>;
 
-  /// Imports the device. Throws Error if it is in use or gone. Call `start` before the first transfer.
+  /// Imports the device. Throws Error if it is in use or gone, or as list_usbip_devices does. Call `start` before the
+  /// first transfer.
   UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id);
   ~UsbipConnection();
 

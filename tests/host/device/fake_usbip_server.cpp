@@ -6,26 +6,31 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <span>
+
+#include <usbip/messages.hpp>
 
 namespace inkwell::tests {
 namespace {
 
-constexpr std::uint32_t pipe_error = static_cast<std::uint32_t>(-EPIPE);
-
-bool receive(int socket, void* data, std::size_t size) {
-  return size == 0 || recv(socket, data, size, MSG_WAITALL) == static_cast<ssize_t>(size);
+bool receive(int socket, std::span<std::byte> data) {
+  return data.empty() || recv(socket, data.data(), data.size(), MSG_WAITALL) == static_cast<ssize_t>(data.size());
 }
 
-void put32(Bytes& bytes, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::byte>(value >> shift));
+template <class Message>
+std::optional<Message> receive(int socket) {
+  Message message;
+  if (!receive(socket, std::as_writable_bytes(std::span(&message, 1)))) return std::nullopt;
+  return message;
 }
-void put16(Bytes& bytes, std::uint16_t value) {
-  bytes.push_back(static_cast<std::byte>(value >> 8));
-  bytes.push_back(static_cast<std::byte>(value));
+
+template <class Message>
+void append(Bytes& bytes, const Message& message) {
+  const auto added = usbip::bytes_of(message);
+  bytes.insert(bytes.end(), added.begin(), added.end());
 }
 
 Bytes bytes(std::initializer_list<int> values) {
@@ -107,31 +112,38 @@ void FakeUsbipServer::accept_clients() {
 }
 
 void FakeUsbipServer::serve(int client) {
-  std::array<std::uint8_t, 8> request{};
-  if (!receive(client, request.data(), request.size())) return;
-  const bool imports_device = request[3] == 0x03;
-  std::array<char, 32> bus_id{};
-  if (imports_device && !receive(client, bus_id.data(), bus_id.size())) return;
+  const auto request = receive<usbip::OperationHeader>(client);
+  if (!request) return;
+  if (silent) {
+    while (receive<usbip::OperationHeader>(client)) {
+    }
+    return;
+  }
+  const bool imports_device = request->operation == usbip::Operation::request_import;
+  std::optional<usbip::BusId> bus_id;
+  if (imports_device && !(bus_id = receive<usbip::BusId>(client))) return;
 
+  const usbip::Device device{.bus_id = {"1-1"},
+                             .bus_number = 1,
+                             .device_number = 2,
+                             .speed = usbip::Speed::full,
+                             .vendor_id = 0x1209,
+                             .product_id = product_id,
+                             .device_release = 0x0100,
+                             .configuration = 1,
+                             .configuration_count = 1,
+                             .interface_count = 2};
   Bytes reply;
-  put16(reply, 0x0111);
-  put16(reply, imports_device ? 0x0003 : 0x0005);
-  const bool refused = imports_device && (refuses_import || std::strcmp(bus_id.data(), "1-1") != 0);
-  put32(reply, refused ? 1 : 0);
-  if (!imports_device) put32(reply, 1);
-  if (!refused) {
-    Bytes description(288);
-    std::memcpy(description.data() + 256, "1-1", 3);
-    put32(description, 1);
-    put32(description, 2);
-    put32(description, 2);
-    put16(description, 0x1209);
-    put16(description, product_id);
-    put16(description, 0x0100);
-    const Bytes tail = bytes({0, 0, 0, 1, 1, 2});
-    description.insert(description.end(), tail.begin(), tail.end());
-    reply.insert(reply.end(), description.begin(), description.end());
-    if (!imports_device) reply.resize(reply.size() + 8);
+  const bool refused = imports_device && (refuses_import || bus_id->view() != "1-1");
+  if (!imports_device) {
+    append(reply, usbip::DeviceListReply{.device_count = 1});
+    append(reply, device);
+    for (int i = 0; i < device.interface_count; ++i) append(reply, usbip::Interface{});
+  } else {
+    append(reply,
+           usbip::OperationHeader{.operation = usbip::Operation::reply_import,
+                                  .status = refused ? usbip::OperationStatus::busy : usbip::OperationStatus::success});
+    if (!refused) append(reply, device);
   }
   ::send(client, reply.data(), reply.size(), MSG_NOSIGNAL);
   if (imports_device && !refused) {
@@ -144,23 +156,23 @@ void FakeUsbipServer::serve(int client) {
 }
 
 void FakeUsbipServer::serve_transfers(int client) {
-  for (;;) {
-    std::array<std::uint8_t, 48> message{};
-    if (!receive(client, message.data(), message.size())) return;
-    const auto number = [&](std::size_t at) {
-      return static_cast<std::uint32_t>(message[at]) << 24 | static_cast<std::uint32_t>(message[at + 1]) << 16 |
-             static_cast<std::uint32_t>(message[at + 2]) << 8 | message[at + 3];
-    };
-    const std::uint32_t command = number(0), sequence = number(4), length = number(24);
-    const bool is_in = number(12) == 1;
-    const auto endpoint = static_cast<std::uint8_t>(number(16));
-    if (command != 1) return;
+  while (const auto submit = receive<usbip::Submit>(client)) {
+    if (submit->header.command != usbip::Command::submit) return;
+    const std::uint32_t sequence = submit->header.sequence;
+    const auto endpoint = static_cast<std::uint8_t>(submit->header.endpoint);
+    const bool is_in = submit->header.direction == usbip::Direction::in;
+    const std::uint32_t length = submit->length;
     Bytes data(is_in ? 0 : length);
-    if (!receive(client, data.data(), data.size())) return;
+    if (!receive(client, data)) return;
     const std::lock_guard lock(mutex_);
+    const bool is_transaction = endpoint == 0 && !is_in && submit->setup[1] == std::byte{9} && !data.empty();
+    if (is_transaction && transactions_to_break_at > 0) {
+      --transactions_to_break_at;
+      return;
+    }
     if (endpoint == 0) {
       std::uint8_t setup[8];
-      std::memcpy(setup, message.data() + 40, 8);
+      std::memcpy(setup, submit->setup.data(), sizeof setup);
       const auto result = answer_control(setup, data);
       const Bytes empty;
       answer(client, sequence, result ? 0 : -EPIPE, result && is_in ? *result : empty,
@@ -189,13 +201,11 @@ void FakeUsbipServer::match(std::uint8_t endpoint) {
 
 void FakeUsbipServer::answer(int client, std::uint32_t sequence, std::int32_t status, const Bytes& data,
                              std::uint32_t length) {
+  usbip::ReturnSubmit header{.status = status,
+                             .actual_length = data.empty() ? length : static_cast<std::uint32_t>(data.size())};
+  header.header.sequence = sequence;
   Bytes reply;
-  put32(reply, 3);
-  put32(reply, sequence);
-  for (int i = 0; i < 3; ++i) put32(reply, 0);
-  put32(reply, status == 0 ? 0 : pipe_error);
-  put32(reply, data.empty() ? length : static_cast<std::uint32_t>(data.size()));
-  reply.resize(48);
+  append(reply, header);
   reply.insert(reply.end(), data.begin(), data.end());
   ::send(client, reply.data(), reply.size(), MSG_NOSIGNAL);
 }

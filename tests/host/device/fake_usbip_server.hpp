@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -45,6 +44,10 @@ class FakeUsbipServer {
     return protocol::Refusal::accepted;
   };
   bool stalls_refusals = false;
+  /// Cuts the connection at this many transactions, before it takes them in.
+  std::atomic<int> transactions_to_break_at = 0;
+  /// Takes connections and answers nothing.
+  bool silent = false;
 
   /// Answers the oldest waiting transfer of this IN endpoint (1 pose, 2 scope), now or when it comes.
   void send(std::uint8_t endpoint, Bytes data);
@@ -57,9 +60,6 @@ class FakeUsbipServer {
   std::size_t imports();
 
  private:
-  struct Waiting {
-    std::uint32_t sequence;
-  };
   void accept_clients();
   void serve(int client);
   void serve_transfers(int client);
