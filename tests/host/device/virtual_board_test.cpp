@@ -1,0 +1,114 @@
+// How the virtual board's program is started and ended, with shell scripts in its place.
+#include <doctest/doctest.h>
+
+#include <signal.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include <device/virtual_board.hpp>
+
+#include "fake_usbip_server.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+namespace {
+
+/// A program in a folder of its own that is gone after the test.
+class Script {
+ public:
+  explicit Script(const std::string& lines) {
+    char name[] = "/tmp/inkwell-test-XXXXXX";
+    REQUIRE(mkdtemp(name) != nullptr);
+    folder_ = name;
+    std::ofstream(program()) << "#!/bin/sh\ncd " << folder_.string() << "\n" << lines;
+    std::filesystem::permissions(program(), std::filesystem::perms::owner_all);
+  }
+  ~Script() { std::filesystem::remove_all(folder_); }
+  std::filesystem::path program() const { return folder_ / "board"; }
+  device::VirtualBoardOptions options() const { return {.program = program(), .elf = program()}; }
+  /// What the script wrote into the file of this name; empty if it did not.
+  std::string file(const char* name) const {
+    std::string line;
+    std::getline(std::ifstream(folder_ / name), line);
+    return line;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+constexpr char run_until_told[] = "echo $$ > process\necho ready usbip=7 control=8\nwhile :; do sleep 0.01; done\n";
+
+std::string failure_of(const device::VirtualBoardOptions& options) {
+  try {
+    device::VirtualBoard board(options);
+  } catch (const device::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("a virtual board is asked to end, so that it can put its things in order") {
+  const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_told);
+  {
+    device::VirtualBoard board(script.options());
+    CHECK(board.usbip_port() == 7);
+    CHECK(board.control_port() == 8);
+    CHECK(board.is_running());
+    CHECK(script.file("end").empty());
+  }
+  CHECK(script.file("end") == "asked");
+}
+
+TEST_CASE("a virtual board that does not end when it is asked to is ended") {
+  const Script script(std::string("trap '' TERM\n") + run_until_told);
+  pid_t process = 0;
+  {
+    device::VirtualBoard board(script.options());
+    process = std::stoi(script.file("process"));
+    CHECK(kill(process, 0) == 0);
+  }
+  CHECK(kill(process, 0) != 0);
+}
+
+TEST_CASE("a virtual board ends with the thread that made it") {
+  const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_told);
+  std::unique_ptr<device::VirtualBoard> board;
+  std::thread([&] { board = std::make_unique<device::VirtualBoard>(script.options()); }).join();
+  CHECK(eventually([&] { return script.file("end") == "asked"; }));
+  CHECK(eventually([&] { return !board->is_running(); }));
+}
+
+TEST_CASE("a virtual board that does not start tells what it said") {
+  CHECK(contains(failure_of(Script("echo the port is taken >&2\nexit 1\n").options()), "the port is taken"));
+  CHECK(contains(failure_of(Script("exit 1\n").options()), "It said nothing"));
+  CHECK(contains(failure_of(Script("echo hello\nexec sleep 60\n").options()), "did not start"));
+  const Script script("");
+  auto options = script.options();
+  options.elf = "/nowhere.elf";
+  CHECK(contains(failure_of(options), "/nowhere.elf is missing"));
+  options.program = "/nowhere";
+  CHECK(contains(failure_of(options), "/nowhere is missing"));
+}
+
+TEST_CASE("a virtual board gets its options") {
+  const Script script(std::string("echo \"$@\" > arguments\n") + run_until_told);
+  auto options = script.options();
+  options.arm = "arm.toml";
+  options.mode = device::SimulationMode::exact;
+  options.seed = 42;
+  options.paused = true;
+  const device::VirtualBoard board(options);
+  CHECK(script.file("arguments") ==
+        "--elf " + options.elf.string() + " --mode exact --seed 42 --arm arm.toml --real-time --paused");
+}
