@@ -172,6 +172,7 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
   if (signals.size() > protocol::scope_signals_maximum)
     throw Error(fmt::format("{} signals are more than the scope carries. Choose at most {}.", signals.size(),
                             protocol::scope_signals_maximum));
+  if (!signals.empty()) implementation_->transport->claim_scope();
   protocol::CommandReport report{};
   report.command = Command::select_signals;
   report.token = implementation_->next_token();

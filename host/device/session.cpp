@@ -26,11 +26,16 @@ struct QueuedCommand {
   std::optional<protocol::TestPulse> pulse;
 };
 
+/// What shall become of the parameters: first the defaults, if they are asked for, then the changes.
+struct ParameterRequests {
+  bool restore_defaults = false;
+  std::vector<ParameterChange> changes;
+};
+
 /// What the caller asked for and the report thread has not sent yet.
 struct Requests {
   std::vector<QueuedCommand> commands;
-  std::vector<ParameterChange> changes;
-  bool restore_defaults = false;
+  ParameterRequests parameters;
   bool select = false;
 };
 
@@ -95,7 +100,8 @@ struct Session::Implementation {
     state.information = information;
     state.is_simulation = endpoint.is_virtual;
     state.connection = Connection::connected;
-    state.message = "Connected to " + information.serial_number + ".";
+    state.message = connected_message();
+    scope_denied = false;
     parameter_set = held;
     ++revision;
     requests.select = !signals.empty();
@@ -134,6 +140,8 @@ struct Session::Implementation {
         refresh_parameters(*served);
         refresh_information(*served);
         last_check = now;
+        const std::lock_guard lock(mutex);
+        if (scope_denied) requests.select = true;  // the other program may be done
       }
     }
     send_requests(*served);  // what was asked for last, such as to put parameters back
@@ -155,15 +163,44 @@ struct Session::Implementation {
       taken = std::exchange(requests, {});
       selection = signals;
     }
-    for (const auto& queued : taken.commands) {
-      if (queued.pulse)
-        to.send(queued.command, *queued.pulse);
-      else
-        to.send(queued.command);
+    auto& [restore_defaults, changes] = taken.parameters;
+    try {
+      for (const auto& queued : taken.commands) {
+        if (queued.pulse)
+          to.send(queued.command, *queued.pulse);
+        else
+          to.send(queued.command);
+      }
+      if (taken.select) select(to, selection);
+      if (restore_defaults) transact(to, [&] { return to.restore_default_parameters(); });
+      restore_defaults = false;
+      if (!changes.empty()) transact(to, [&] { return to.set_parameters(changes); });
+    } catch (const Stalled&) {
+      throw;  // sent again, it would be refused again
+    } catch (const Error&) {
+      put_back(std::move(taken.parameters));
+      throw;
     }
-    if (taken.select) to.select_signals(selection);
-    if (taken.restore_defaults) transact(to, [&] { return to.restore_default_parameters(); });
-    if (!taken.changes.empty()) transact(to, [&] { return to.set_parameters(taken.changes); });
+  }
+
+  /// For the next connection. What was asked for since comes after it.
+  void put_back(ParameterRequests unsent) {
+    const std::lock_guard lock(mutex);
+    if (requests.parameters.restore_defaults) return;  // overwritten since
+    merge(unsent.changes, requests.parameters.changes);
+    requests.parameters = std::move(unsent);
+  }
+
+  void select(Device& to, const std::vector<protocol::Signal>& selection) {
+    std::optional<std::string> denial;
+    try {
+      to.select_signals(selection);
+    } catch (const InUse& error) {  // all but the scope goes on
+      denial = error.what();
+    }
+    const std::lock_guard lock(mutex);
+    if (denial || scope_denied) state.message = denial.value_or(connected_message());
+    scope_denied = denial.has_value();
   }
 
   template <class Transaction>
@@ -197,6 +234,8 @@ struct Session::Implementation {
     const std::lock_guard lock(mutex);
     state.information = information;
   }
+
+  std::string connected_message() const { return "Connected to " + state.information->serial_number + "."; }
 
   void set_connection(Connection connection, const std::string& message) {
     const std::lock_guard lock(mutex);
@@ -260,6 +299,7 @@ struct Session::Implementation {
   std::optional<std::string> newest_refusal;
   Requests requests;
   std::vector<protocol::Signal> signals;
+  bool scope_denied = false;  ///< another program has it
   std::function<void(const ScopeSamples&)> receive_scope;
   std::thread report_thread, scope_thread;  ///< last: they use all of the above
 };
@@ -300,13 +340,12 @@ std::uint64_t Session::parameters_revision() const {
 
 void Session::set_parameters(std::vector<ParameterChange> changes) {
   const std::lock_guard lock(implementation_->mutex);
-  merge(implementation_->requests.changes, changes);
+  merge(implementation_->requests.parameters.changes, changes);
 }
 
 void Session::restore_default_parameters() {
   const std::lock_guard lock(implementation_->mutex);
-  implementation_->requests.changes.clear();  // changes asked for before are overwritten by the defaults
-  implementation_->requests.restore_defaults = true;
+  implementation_->requests.parameters = {.restore_defaults = true};  // which overwrite the changes asked for before
 }
 
 std::optional<std::string> Session::refusal() const {

@@ -36,7 +36,7 @@ std::string narrow(const wchar_t* text) {
 /// The bulk interface through libusb. The kernel keeps the HID interface, which hidapi uses.
 class BulkReader {
  public:
-  explicit BulkReader(const std::string& serial_number) {
+  BulkReader(const std::string& serial_number, TransferQueue& queue) : queue_(queue) {
     if (libusb_init(&context_) != 0) throw Error("libusb does not start. Check that /dev/bus/usb exists.");
     try {
       open(serial_number);
@@ -49,8 +49,6 @@ class BulkReader {
   ~BulkReader() { stop(); }
   BulkReader(const BulkReader&) = delete;
   BulkReader& operator=(const BulkReader&) = delete;
-
-  TransferQueue& queue() { return queue_; }
 
  private:
   struct Slot {
@@ -92,8 +90,10 @@ class BulkReader {
         libusb_get_descriptor(handle_, LIBUSB_DT_CONFIG, 0, descriptor.data(), static_cast<int>(descriptor.size()));
     if (length < 0) throw Disconnected(unplugged);
     layout_ = parse_configuration(std::as_bytes(std::span(descriptor.data(), static_cast<std::size_t>(length))));
-    if (libusb_claim_interface(handle_, layout_.scope_interface) != 0)
-      throw Error("The arm's scope interface is in use. Close the other program that reads it.");
+    const int result = libusb_claim_interface(handle_, layout_.scope_interface);
+    if (result == LIBUSB_ERROR_BUSY)
+      throw InUse("The arm's scope is in use. Close the other program that records it or shows its signals.");
+    if (result != 0) throw Disconnected(unplugged);
     claimed_ = true;
   }
 
@@ -153,15 +153,13 @@ class BulkReader {
   std::array<Slot, bulk_transfers> slots_{};
   std::atomic<int> under_way_ = 0;
   std::atomic<bool> stopping_ = false;
-  TransferQueue queue_;
+  TransferQueue& queue_;
   std::thread thread_;
 };
 
 class UsbTransport : public Transport {
  public:
-  explicit UsbTransport(const Endpoint& endpoint) : endpoint_(endpoint), hid_(open_hid(endpoint.path), &hid_close) {
-    bulk_ = std::make_unique<BulkReader>(endpoint.serial_number);
-  }
+  explicit UsbTransport(const Endpoint& endpoint) : endpoint_(endpoint), hid_(open_hid(endpoint.path), &hid_close) {}
 
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
     return check(hid_read_timeout(hid_.get(), data(report), report.size(), static_cast<int>(timeout.count())));
@@ -175,8 +173,11 @@ class UsbTransport : public Transport {
   void set_feature(std::span<const std::byte> report) override {
     check(hid_send_feature_report(hid_.get(), data(report), report.size()));
   }
+  void claim_scope() override {
+    if (!scope_) scope_ = std::make_unique<BulkReader>(endpoint_.serial_number, bulk_);
+  }
   std::size_t read_bulk(std::span<std::byte> buffer, std::chrono::milliseconds timeout) override {
-    const auto transfer = bulk_->queue().pop(timeout);
+    const auto transfer = bulk_.pop(timeout);
     if (!transfer) return 0;
     const std::size_t length = std::min(transfer->size(), buffer.size());
     std::copy_n(transfer->begin(), length, buffer.begin());
@@ -203,7 +204,8 @@ class UsbTransport : public Transport {
 
   Endpoint endpoint_;
   std::unique_ptr<hid_device, decltype(&hid_close)> hid_;
-  std::unique_ptr<BulkReader> bulk_;
+  TransferQueue bulk_;
+  std::unique_ptr<BulkReader> scope_;  ///< once it is claimed
 };
 
 }  // namespace

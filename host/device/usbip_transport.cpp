@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -32,7 +33,6 @@ class UsbipTransport : public Transport {
     try {
       configure();
       for (int i = 0; i < report_transfers; ++i) ask_for_report();
-      for (int i = 0; i < bulk_transfers; ++i) ask_for_bulk();
     } catch (...) {
       close();
       throw;
@@ -72,6 +72,11 @@ class UsbipTransport : public Transport {
     const auto id = std::to_integer<std::uint8_t>(report[0]);
     connection_.control_out(
         setup::set_feature_report(layout_.hid_interface, id, static_cast<std::uint16_t>(report.size())), report);
+  }
+
+  void claim_scope() override {  // the import has made all of the device ours
+    if (std::exchange(scope_claimed_, true)) return;
+    for (int i = 0; i < bulk_transfers; ++i) ask_for_bulk();
   }
 
   std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) override {
@@ -154,6 +159,7 @@ class UsbipTransport : public Transport {
   Endpoint endpoint_;
   UsbLayout layout_;
   TransferQueue reports_, bulk_;
+  bool scope_claimed_ = false;
   std::mutex bulk_mutex_;
   int bulk_owed_ = 0;  ///< transfers not under way because the reader is behind
   std::mutex writes_mutex_;

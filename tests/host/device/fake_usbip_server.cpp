@@ -168,6 +168,7 @@ void FakeUsbipServer::serve_transfers(int client) {
     const bool is_transaction = endpoint == 0 && !is_in && submit->setup[1] == std::byte{9} && !data.empty();
     if (is_transaction && transactions_to_break_at > 0) {
       --transactions_to_break_at;
+      on_break();
       return;
     }
     if (endpoint == 0) {

@@ -46,6 +46,8 @@ class FakeUsbipServer {
   bool stalls_refusals = false;
   /// Cuts the connection at this many transactions, before it takes them in.
   std::atomic<int> transactions_to_break_at = 0;
+  /// Called just before that.
+  std::function<void()> on_break = [] {};
   /// Takes connections and answers nothing.
   bool silent = false;
 

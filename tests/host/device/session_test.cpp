@@ -110,6 +110,53 @@ TEST_CASE("what was asked for last still reaches the device when the session end
   CHECK(server.parameters[Parameter::force_limit_N] == 1.5f);
 }
 
+TEST_CASE("changes on their way when the connection breaks reach the device after all") {
+  FakeUsbipServer server;
+  server.parameters[Parameter::sphere_radius_m] = 0.004f;
+  server.transactions_to_break_at = 2;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  SUBCASE("changes") { session.set_parameters({{Parameter::force_limit_N, 2.5f}}); }
+  SUBCASE("the defaults, and changes after them") {
+    session.restore_default_parameters();
+    session.set_parameters({{Parameter::force_limit_N, 2.5f}});
+  }
+  REQUIRE(eventually([&] { return server.imports() == 3 && server.transactions() > 0; }));
+  REQUIRE(eventually([&] { return (*session.parameters())[Parameter::force_limit_N] == 2.5f; }));
+}
+
+TEST_CASE("what is asked for while a change is on its way in vain comes after it") {
+  FakeUsbipServer server;
+  server.transactions_to_break_at = 1;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  auto expected = protocol::default_parameters();
+  SUBCASE("another value") {
+    server.on_break = [&] { session.set_parameters({{Parameter::force_limit_N, 1.5f}}); };
+    expected[Parameter::force_limit_N] = 1.5f;
+    expected[Parameter::sphere_radius_m] = 0.004f;
+  }
+  SUBCASE("the defaults") {
+    server.on_break = [&] { session.restore_default_parameters(); };
+  }
+  session.set_parameters({{Parameter::force_limit_N, 2.5f}, {Parameter::sphere_radius_m, 0.004f}});
+  REQUIRE(eventually([&] { return server.transactions() > 0 && is_connected(session); }));
+  CHECK(eventually([&] { return session.parameters() == expected; }));
+  CHECK(server.transactions() == 1);
+}
+
+TEST_CASE("while there is no device it is looked for five times a second, not without a break") {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  std::atomic<int> searches = 0;
+  device::Session session([&]() -> std::optional<device::Endpoint> {
+    ++searches;
+    return std::nullopt;
+  });
+  REQUIRE(eventually([&] { return searches >= 4; }));
+  const int count = searches;
+  CHECK(count <= 1 + (Clock::now() - begin) / std::chrono::milliseconds(200));
+}
+
 TEST_CASE("a session says why it is not connected") {
   SUBCASE("nothing there") {
     device::Session session([]() -> std::optional<device::Endpoint> { return std::nullopt; });

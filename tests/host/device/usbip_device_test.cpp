@@ -2,7 +2,9 @@
 // which the other end can fail.
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include <device/device.hpp>
 
@@ -66,11 +68,13 @@ TEST_CASE("an arm on USB/IP tells who it is and streams its pose") {
   }
 }
 
-TEST_CASE("enough transfers are under way that a late reader loses nothing") {
+TEST_CASE("enough transfers are under way that a late reader loses nothing; the scope's, once it is selected") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
-  CHECK(eventually([&] { return server.waiting_transfers(2) >= 60; }));  // 60 frames of 2 KiB are 100 ms
   CHECK(eventually([&] { return server.waiting_transfers(1) >= 16; }));
+  CHECK(server.waiting_transfers(2) == 0);
+  arm->select_signals(std::vector{protocol::Signal::force_N});
+  CHECK(eventually([&] { return server.waiting_transfers(2) >= 60; }));  // 60 frames of 2 KiB are 100 ms
 }
 
 TEST_CASE("commands carry version and a token that is never 0") {
@@ -97,6 +101,53 @@ TEST_CASE("keep_alive follows board time where that is faster than the clock") {
   REQUIRE(arm->read_pose(1s));
   arm->keep_alive();
   CHECK(eventually([&] { return server.commands().size() >= 2; }));
+}
+
+TEST_CASE("a sign of life goes out 10 ms after the last command, or 200 control periods, and no sooner") {
+  using Clock = std::chrono::steady_clock;
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  const auto commands_sent = [&] {  // commands arrive in order, so the count is complete when this one is there
+    const auto token = arm->send(protocol::Command::clear_fault);
+    REQUIRE(eventually([&] { return !server.commands().empty() && server.commands().back().token == token; }));
+    return server.commands().size();
+  };
+  SUBCASE("by the clock") {
+    const std::size_t before = commands_sent();
+    std::this_thread::sleep_for(10ms);
+    arm->keep_alive();
+    CHECK(commands_sent() == before + 2);
+  }
+  SUBCASE("no sooner") {
+    for (;;) {  // until this computer is quick enough for it
+      const auto begin = Clock::now();
+      const std::size_t before = commands_sent();
+      std::this_thread::sleep_for(4ms);
+      arm->keep_alive();
+      if (Clock::now() - begin >= 10ms) continue;
+      CHECK(commands_sent() == before + 1);
+      break;
+    }
+  }
+  SUBCASE("by board time") {
+    std::uint32_t time_periods = 0;
+    const auto heartbeats_after = [&](std::uint32_t periods) {
+      for (;;) {  // until the clock has no part in it
+        const std::size_t before = commands_sent();
+        const auto begin = Clock::now();
+        auto pose = pose_number(1);
+        arm->send(protocol::Command::heartbeat);
+        pose.time_periods = time_periods += periods;
+        server.send(1, bytes_of(pose));
+        REQUIRE(arm->read_pose(1s));
+        arm->keep_alive();
+        if (Clock::now() - begin < 10ms) return commands_sent() - before - 2;
+      }
+    };
+    heartbeats_after(0);
+    CHECK(heartbeats_after(199) == 0);
+    CHECK(heartbeats_after(200) == 1);
+  }
 }
 
 TEST_CASE("parameters are read, set as one transaction, and restored") {
@@ -203,4 +254,15 @@ TEST_CASE("a device that is in use, or is none of ours, is refused") {
   SUBCASE("nobody there") {
     CHECK(contains(message_of<device::Error>([] { device::find_usbip_devices("127.0.0.1", 1); }), "Nothing answers"));
   }
+}
+
+TEST_CASE("a server that answers nothing is given up; a device that says nothing is not") {
+  FakeUsbipServer silent, quiet;
+  silent.silent = true;
+  const auto arm = device::Device::open(quiet.endpoint());
+  const auto address = std::to_string(silent.port());
+  const auto message = message_of<device::Error>([&] { device::find_usbip_devices("127.0.0.1", silent.port()); });
+  CHECK(contains(message, "gives no answer"));
+  CHECK(contains(message, address.c_str()));
+  CHECK_NOTHROW(arm->information());
 }

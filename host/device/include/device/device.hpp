@@ -57,7 +57,8 @@ class Device {
   /// tell, of board time (a virtual board may run faster than the clock). Belongs in the loop that reads poses.
   void keep_alive();
   std::uint8_t send(protocol::Command command, const protocol::TestPulse& pulse);
-  std::uint8_t select_signals(std::span<const protocol::Signal> signals);  ///< none stops the scope
+  /// None stops the scope. Throws InUse if another program has it.
+  std::uint8_t select_signals(std::span<const protocol::Signal> signals);
 
   protocol::ParameterSet parameters();
   /// One transaction: all take effect at one control period, or none does and Refused is thrown.

@@ -23,6 +23,12 @@ class Stalled : public Error {
   using Error::Error;
 };
 
+/// Another program has what was asked for.
+class InUse : public Error {
+ public:
+  using Error::Error;
+};
+
 /// The device is there, but this user may not open it. `what()` holds the udev line to install.
 class NoPermission : public Error {
  public:

@@ -41,7 +41,9 @@ class Transport {
   /// `report[0]` holds the report id. Returns the length received.
   virtual std::size_t get_feature(std::span<std::byte> report) = 0;
   virtual void set_feature(std::span<const std::byte> report) = 0;
-  /// Waits for one bulk transfer of the scope. Returns its length, 0 on time-out.
+  /// Makes the scope's bulk stream this program's own; only one program can have it. Throws InUse if another has.
+  virtual void claim_scope() = 0;
+  /// Waits for one bulk transfer of the scope; none come before it is claimed. Returns its length, 0 on time-out.
   /// Enough transfers are kept under way that a reader who is late by 100 ms loses nothing.
   virtual std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) = 0;
   /// Where this leads, with the serial number and product name that the device told.

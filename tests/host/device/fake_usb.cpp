@@ -1,0 +1,339 @@
+#include "fake_usb.hpp"
+
+#include <hidapi/hidapi.h>
+#include <libusb-1.0/libusb.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <thread>
+
+using inkwell::tests::Bytes;
+using inkwell::tests::FakeUsb;
+using inkwell::tests::FakeUsbDevice;
+
+// The libraries leave these to themselves.
+struct libusb_context {};
+struct libusb_device {
+  FakeUsbDevice* device;
+};
+struct libusb_device_handle {
+  FakeUsbDevice* device;
+};
+struct hid_device_ {
+  FakeUsbDevice* device;
+};
+
+namespace {
+
+FakeUsb* usb = nullptr;  // of the test that runs
+std::mutex no_usb;       // without one there is nothing to guard
+
+std::unique_lock<std::mutex> lock_usb() { return std::unique_lock(usb != nullptr ? usb->mutex : no_usb); }
+
+void count(int things) {
+  const auto lock = lock_usb();
+  usb->open_things += things;
+}
+
+/// Copies as much as fits and tells how much that was.
+int give(const Bytes& bytes, unsigned char* data, std::size_t room) {
+  const std::size_t length = std::min(bytes.size(), room);
+  std::memcpy(data, bytes.data(), length);
+  return static_cast<int>(length);
+}
+
+Bytes to_bytes(const unsigned char* data, std::size_t length) {
+  const auto* begin = reinterpret_cast<const std::byte*>(data);
+  return {begin, begin + length};
+}
+
+int fail(int reason) {
+  errno = reason;
+  return -1;
+}
+
+/// Ends one transfer if one can end. Its callback runs without the lock, because it submits again.
+bool complete_one() {
+  libusb_transfer* ended = nullptr;
+  {
+    const auto lock = lock_usb();
+    for (FakeUsbDevice& device : usb->devices) {
+      for (libusb_transfer* transfer : device.under_way) {
+        if (transfer->status == LIBUSB_TRANSFER_CANCELLED) {
+          ended = transfer;
+        } else if (!device.ready.empty()) {
+          ended = transfer;
+          ended->actual_length =
+              give(device.ready.front(), transfer->buffer, static_cast<std::size_t>(transfer->length));
+          device.ready.pop_front();
+        } else if (device.unplugged) {
+          ended = transfer;
+          ended->status = LIBUSB_TRANSFER_NO_DEVICE;
+        }
+        if (ended != nullptr) break;
+      }
+      if (ended == nullptr) continue;
+      std::erase(device.under_way, ended);
+      break;
+    }
+  }
+  if (ended == nullptr) return false;
+  ended->callback(ended);
+  return true;
+}
+
+}  // namespace
+
+// --- libusb -----------------------------------------------------------------------------------------------
+
+extern "C" {
+
+int LIBUSB_CALL libusb_init(libusb_context** context) {
+  *context = new libusb_context;
+  count(+1);
+  return 0;
+}
+
+void LIBUSB_CALL libusb_exit(libusb_context* context) {
+  delete context;
+  count(-1);
+}
+
+ssize_t LIBUSB_CALL libusb_get_device_list(libusb_context*, libusb_device*** list) {
+  const auto lock = lock_usb();
+  *list = new libusb_device*[usb->devices.size()];
+  for (std::size_t i = 0; i < usb->devices.size(); ++i) (*list)[i] = new libusb_device{&usb->devices[i]};
+  ++usb->open_things;
+  return static_cast<ssize_t>(usb->devices.size());
+}
+
+void LIBUSB_CALL libusb_free_device_list(libusb_device** list, int) {
+  const auto lock = lock_usb();
+  for (std::size_t i = 0; i < usb->devices.size(); ++i) delete list[i];
+  delete[] list;
+  --usb->open_things;
+}
+
+int LIBUSB_CALL libusb_get_device_descriptor(libusb_device* device, libusb_device_descriptor* descriptor) {
+  descriptor->idVendor = device->device->vendor_id;
+  descriptor->idProduct = device->device->product_id;
+  descriptor->iSerialNumber = 3;
+  return 0;
+}
+
+int LIBUSB_CALL libusb_open(libusb_device* device, libusb_device_handle** handle) {
+  if (device->device->open_result != 0) return device->device->open_result;
+  *handle = new libusb_device_handle{device->device};
+  count(+1);
+  return 0;
+}
+
+void LIBUSB_CALL libusb_close(libusb_device_handle* handle) {
+  delete handle;
+  count(-1);
+}
+
+int LIBUSB_CALL libusb_get_string_descriptor_ascii(libusb_device_handle* handle, std::uint8_t index,
+                                                   unsigned char* data, int length) {
+  if (index != 3) return LIBUSB_ERROR_INVALID_PARAM;
+  const std::string& text = handle->device->serial_number;
+  return give(to_bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size()), data,
+              static_cast<std::size_t>(length));
+}
+
+int LIBUSB_CALL libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std::uint8_t request,
+                                        std::uint16_t value, std::uint16_t, unsigned char* data, std::uint16_t length,
+                                        unsigned int) {
+  constexpr std::uint8_t get_descriptor = 6;
+  if (type != 0x80 || request != get_descriptor || value != 0x0200) return LIBUSB_ERROR_PIPE;
+  return give(handle->device->configuration, data, length);
+}
+
+int LIBUSB_CALL libusb_claim_interface(libusb_device_handle* handle, int number) {
+  const auto lock = lock_usb();
+  if (handle->device->taken.contains(number) || !handle->device->claimed.insert(number).second)
+    return LIBUSB_ERROR_BUSY;
+  ++usb->open_things;
+  return 0;
+}
+
+int LIBUSB_CALL libusb_release_interface(libusb_device_handle* handle, int number) {
+  const auto lock = lock_usb();
+  if (handle->device->claimed.erase(number) == 0) return LIBUSB_ERROR_NOT_FOUND;
+  --usb->open_things;
+  return 0;
+}
+
+libusb_transfer* LIBUSB_CALL libusb_alloc_transfer(int) {
+  count(+1);
+  return new libusb_transfer{};
+}
+
+void LIBUSB_CALL libusb_free_transfer(libusb_transfer* transfer) {
+  if (transfer == nullptr) return;
+  delete transfer;
+  count(-1);
+}
+
+int LIBUSB_CALL libusb_submit_transfer(libusb_transfer* transfer) {
+  const auto lock = lock_usb();
+  FakeUsbDevice& device = *transfer->dev_handle->device;
+  if (device.unplugged) return LIBUSB_ERROR_NO_DEVICE;
+  transfer->status = LIBUSB_TRANSFER_COMPLETED;
+  transfer->actual_length = 0;
+  device.under_way.push_back(transfer);
+  return 0;
+}
+
+int LIBUSB_CALL libusb_cancel_transfer(libusb_transfer* transfer) {
+  const auto lock = lock_usb();
+  const auto& under_way = transfer->dev_handle->device->under_way;
+  if (std::find(under_way.begin(), under_way.end(), transfer) == under_way.end()) return LIBUSB_ERROR_NOT_FOUND;
+  transfer->status = LIBUSB_TRANSFER_CANCELLED;
+  return 0;
+}
+
+int LIBUSB_CALL libusb_handle_events_timeout(libusb_context*, timeval*) {
+  if (!complete_one()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return 0;
+}
+
+// --- hidapi -----------------------------------------------------------------------------------------------
+
+hid_device_info* hid_enumerate(unsigned short vendor_id, unsigned short product_id) {
+  const auto lock = lock_usb();
+  hid_device_info* list = nullptr;
+  if (usb == nullptr) return list;
+  for (FakeUsbDevice& device : usb->devices) {
+    if (device.vendor_id != vendor_id || device.product_id != product_id) continue;
+    auto* info = new hid_device_info{};
+    info->path = strdup(device.path().c_str());
+    info->serial_number = wcsdup(std::wstring(device.serial_number.begin(), device.serial_number.end()).c_str());
+    info->product_string = wcsdup(device.product.c_str());
+    info->next = list;
+    list = info;
+    ++usb->open_things;
+  }
+  return list;
+}
+
+void hid_free_enumeration(hid_device_info* list) {
+  while (list != nullptr) {
+    hid_device_info* next = list->next;
+    std::free(list->path);
+    std::free(list->serial_number);
+    std::free(list->product_string);
+    delete list;
+    count(-1);
+    list = next;
+  }
+}
+
+hid_device* hid_open_path(const char* path) {
+  const auto lock = lock_usb();
+  for (FakeUsbDevice& device : usb->devices) {
+    if (device.path() != path || device.unplugged) continue;
+    ++usb->open_things;
+    return new hid_device_{&device};
+  }
+  return nullptr;
+}
+
+void hid_close(hid_device* hid) {
+  delete hid;
+  count(-1);
+}
+
+int hid_read_timeout(hid_device* hid, unsigned char* data, std::size_t length, int timeout_ms) {
+  {
+    const auto lock = lock_usb();
+    FakeUsbDevice& device = *hid->device;
+    if (!device.reports.empty()) {
+      const int given = give(device.reports.front(), data, length);
+      device.reports.pop_front();
+      return given;
+    }
+    if (device.unplugged) return fail(ENODEV);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(std::min(timeout_ms, 1)));
+  return 0;
+}
+
+int hid_write(hid_device* hid, const unsigned char* data, std::size_t length) {
+  const auto lock = lock_usb();
+  if (hid->device->unplugged) return fail(ENODEV);
+  hid->device->written.push_back(to_bytes(data, length));
+  return static_cast<int>(length);
+}
+
+int hid_get_feature_report(hid_device* hid, unsigned char* data, std::size_t length) {
+  const auto lock = lock_usb();
+  if (hid->device->unplugged) return fail(ENODEV);
+  const auto found = hid->device->features.find(data[0]);
+  return found == hid->device->features.end() ? fail(EPIPE) : give(found->second, data, length);
+}
+
+int hid_send_feature_report(hid_device* hid, const unsigned char* data, std::size_t length) {
+  const auto lock = lock_usb();
+  if (hid->device->unplugged) return fail(ENODEV);
+  if (!hid->device->features.contains(data[0])) return fail(EPIPE);
+  hid->device->features[data[0]] = to_bytes(data, length);
+  return static_cast<int>(length);
+}
+
+}  // extern "C"
+
+namespace inkwell::tests {
+
+FakeUsb::FakeUsb() { usb = this; }
+FakeUsb::~FakeUsb() { usb = nullptr; }
+
+FakeUsbDevice& FakeUsb::add_arm(std::string serial_number, std::uint8_t scope_interface, std::uint8_t scope_endpoint) {
+  const unsigned hid_interface = 1u - scope_interface;
+  const std::vector<unsigned> hid{9, 4, hid_interface, 0, 2,  3, 0, 0, 0,  //
+                                  7, 5, 0x81,          3, 64, 0, 1, 7, 5, 0x01, 3, 64, 0, 1};
+  const std::vector<unsigned> scope{9, 4, scope_interface, 0, 1, 0xFF, 0, 0, 0, 7, 5, scope_endpoint, 2, 64, 0, 0};
+  FakeUsbDevice arm{.serial_number = std::move(serial_number)};
+  const auto append = [&](const std::vector<unsigned>& bytes) {
+    std::transform(bytes.begin(), bytes.end(), std::back_inserter(arm.configuration),
+                   [](unsigned byte) { return static_cast<std::byte>(byte); });
+  };
+  append({9, 2, 48, 0, 2, 1, 0, 0x80, 50});
+  append(scope_interface == 0 ? scope : hid);
+  append(scope_interface == 0 ? hid : scope);
+  const std::lock_guard lock(mutex);
+  return devices.emplace_back(std::move(arm));
+}
+
+std::vector<std::uint8_t> FakeUsb::endpoints_under_way(const FakeUsbDevice& device) {
+  const std::lock_guard lock(mutex);
+  std::vector<std::uint8_t> endpoints;
+  for (const libusb_transfer* transfer : device.under_way) endpoints.push_back(transfer->endpoint);
+  return endpoints;
+}
+
+void FakeUsb::send_bulk(FakeUsbDevice& device, Bytes data) {
+  const std::lock_guard lock(mutex);
+  device.ready.push_back(std::move(data));
+}
+
+void FakeUsb::send_report(FakeUsbDevice& device, Bytes report) {
+  const std::lock_guard lock(mutex);
+  device.reports.push_back(std::move(report));
+}
+
+void FakeUsb::unplug(FakeUsbDevice& device) {
+  const std::lock_guard lock(mutex);
+  device.unplugged = true;
+}
+
+std::size_t FakeUsb::bulk_left(const FakeUsbDevice& device) {
+  const std::lock_guard lock(mutex);
+  return device.ready.size();
+}
+
+}  // namespace inkwell::tests

@@ -1,0 +1,69 @@
+// Devices on this computer's USB, for tests. The functions of hidapi and libusb that the device library calls are
+// defined beside this, and the linker takes them before those of the libraries: no test touches a real USB.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <device/transport.hpp>
+
+struct libusb_transfer;
+
+namespace inkwell::tests {
+
+using Bytes = std::vector<std::byte>;
+
+/// A device as both libraries see it. What the test sets and looks at while transfers run is guarded by FakeUsb.
+struct FakeUsbDevice {
+  std::uint16_t vendor_id = 0x1209;
+  std::uint16_t product_id = 0x0001;
+  std::wstring product = L"Inkwell haptic arm";
+  std::string serial_number;
+  Bytes configuration;      ///< descriptor
+  int open_result = 0;      ///< of libusb_open
+  std::set<int> taken{};    ///< interfaces that another program has claimed
+  std::set<int> claimed{};  ///< interfaces that this program has claimed
+  bool unplugged = false;
+  std::map<std::uint8_t, Bytes> features{};  ///< reports by their id; others are stalled
+  std::deque<Bytes> reports{};               ///< input reports that wait to be read
+  std::vector<Bytes> written{};              ///< output reports
+  std::vector<libusb_transfer*> under_way{};
+  std::deque<Bytes> ready{};  ///< what the bulk transfers will bring
+
+  std::string path() const { return "/fake/" + serial_number; }
+  device::Endpoint endpoint() const {
+    return {device::Endpoint::Kind::usb, serial_number, "Inkwell haptic arm", path(), "", 0};
+  }
+};
+
+/// The one USB of a test; empty again after it.
+class FakeUsb {
+ public:
+  FakeUsb();
+  ~FakeUsb();
+
+  /// An arm whose scope has this interface and endpoint, and whose HID interface has the other number.
+  FakeUsbDevice& add_arm(std::string serial_number, std::uint8_t scope_interface = 1,
+                         std::uint8_t scope_endpoint = 0x82);
+
+  /// The endpoints of the transfers that are under way.
+  std::vector<std::uint8_t> endpoints_under_way(const FakeUsbDevice& device);
+  void send_bulk(FakeUsbDevice& device, Bytes data);
+  void send_report(FakeUsbDevice& device, Bytes report);
+  void unplug(FakeUsbDevice& device);
+  /// Bulk data that no transfer has taken yet.
+  std::size_t bulk_left(const FakeUsbDevice& device);
+
+  std::mutex mutex;
+  std::deque<FakeUsbDevice> devices;
+  /// Contexts, handles, claims, transfers and HID devices that were not given back.
+  int open_things = 0;
+};
+
+}  // namespace inkwell::tests

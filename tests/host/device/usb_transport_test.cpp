@@ -1,0 +1,233 @@
+// An arm on a cable: hidapi for reports, libusb for the scope, both replaced by a fake USB.
+#include <doctest/doctest.h>
+
+#include <libusb-1.0/libusb.h>
+
+#include <algorithm>
+#include <memory>
+
+#include <device/device.hpp>
+#include <device/session.hpp>
+#include <protocol/usb_identity.hpp>
+
+#include "fake_usb.hpp"
+#include "fake_usbip_server.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using namespace std::chrono_literals;
+
+namespace {
+
+Bytes bulk_number(int number) { return Bytes(100, static_cast<std::byte>(number)); }
+
+template <class Failure>
+std::string message_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Failure& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// What a session asks an arm first.
+void answer_as_inkwell(FakeUsbDevice& arm) {
+  protocol::InformationReport information{};
+  information.report_id = protocol::ReportId::information;
+  information.version = protocol::protocol_version;
+  information.parameter_table_hash = protocol::parameter_table_hash;
+  information.signal_table_hash = protocol::signal_table_hash;
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::information)] = bytes_of(information);
+  protocol::ParametersReport parameters{};
+  parameters.report_id = protocol::ReportId::parameters;
+  parameters.version = protocol::protocol_version;
+  parameters.count = protocol::parameter_count;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    parameters.entries[i] = {protocol::parameter_table[i].id, 0, protocol::default_parameters().values[i]};
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::parameters)] = bytes_of(parameters);
+}
+
+}  // namespace
+
+TEST_CASE("arms on USB are told from others by identifiers and product name") {
+  FakeUsb usb;
+  usb.add_arm("A");
+  usb.add_arm("B").product = L"Somebody's test";
+  usb.add_arm("C").vendor_id = 0x1234;
+  usb.add_arm("D").product_id = 2;
+  const auto found = device::find_usb_devices();
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].kind == device::Endpoint::Kind::usb);
+  CHECK(found[0].serial_number == "A");
+  CHECK(found[0].product == protocol::usb::product);
+  CHECK(found[0].path == "/fake/A");
+  CHECK_FALSE(found[0].is_virtual);
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("the scope is read from the arm with this serial number, where its descriptors say") {
+  FakeUsb usb;
+  usb.add_arm("other");
+  usb.add_arm("this").vendor_id = 0x1234;
+  usb.add_arm("this").product_id = 2;
+  usb.add_arm("locked").open_result = LIBUSB_ERROR_ACCESS;  // not ours to open, and not what is looked for
+  auto& arm = usb.add_arm("this", 0, 0x83);
+  {
+    const auto transport = device::open_transport(arm.endpoint());
+    std::array<std::byte, 200> buffer{};
+    CHECK(transport->read_bulk(buffer, 1ms) == 0);
+    CHECK(arm.claimed.empty());
+    CHECK(usb.endpoints_under_way(arm).empty());
+
+    transport->claim_scope();
+    transport->claim_scope();  // once is enough
+    CHECK(arm.claimed == std::set<int>{0});
+    CHECK(usb.endpoints_under_way(arm) == std::vector<std::uint8_t>(64, 0x83));
+    for (int i = 0; i < 100; ++i) usb.send_bulk(arm, bulk_number(i));
+    for (int i = 0; i < 100; ++i) {
+      REQUIRE(transport->read_bulk(buffer, 5s) == 100);
+      CHECK(std::to_integer<int>(buffer[99]) == i);
+    }
+    for (const auto& device : usb.devices) CHECK(device.claimed.empty() == (&device != &arm));
+  }
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("a scope that another program has claimed costs only the scope") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  arm.taken = {1};
+  arm.features[0x10] = Bytes(4, std::byte{0x10});
+  {
+    const auto transport = device::open_transport(arm.endpoint());
+    CHECK(message_of<device::InUse>([&] { transport->claim_scope(); }).find("other program") != std::string::npos);
+    Bytes report(4, std::byte{0x10});
+    CHECK(transport->get_feature(report) == 4);
+    arm.taken.clear();
+    transport->claim_scope();  // it is free again
+    CHECK(arm.claimed == std::set<int>{1});
+  }
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("a session goes on without the scope while another program has it, says so, and asks again") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  answer_as_inkwell(arm);
+  {
+    const std::lock_guard lock(usb.mutex);
+    arm.taken = {1};
+  }
+  std::atomic<int> searches = 0;
+  {
+    device::Session session([&] {
+      ++searches;
+      return std::optional(arm.endpoint());
+    });
+    session.select_signals({protocol::Signal::force_N});
+    REQUIRE(eventually([&] { return session.status().message.find("scope is in use") != std::string::npos; }));
+    CHECK(session.status().connection == device::Connection::connected);
+    {
+      const std::lock_guard lock(usb.mutex);
+      arm.taken.clear();
+    }
+    for (std::uint32_t sequence = 1; usb.endpoints_under_way(arm).empty(); ++sequence) {
+      REQUIRE(sequence < 5000);
+      protocol::PoseReport pose{.report_id = protocol::ReportId::pose};
+      pose.sequence = sequence;
+      usb.send_report(arm, bytes_of(pose));
+      std::this_thread::sleep_for(1ms);
+    }
+    CHECK(eventually([&] { return session.status().message.find("Connected") != std::string::npos; }));
+    CHECK(searches == 1);
+  }
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("an arm that this user may not open is told with the udev line") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  arm.open_result = LIBUSB_ERROR_ACCESS;
+  {
+    const auto transport = device::open_transport(arm.endpoint());
+    const auto message = message_of<device::NoPermission>([&] { transport->claim_scope(); });
+    CHECK(message.find("1209") != std::string::npos);
+    CHECK(message.find("/etc/udev/rules.d") != std::string::npos);
+  }
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("an unplugged arm: what came is still read, then every call says so") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  {
+    const auto transport = device::open_transport(arm.endpoint());
+    transport->claim_scope();
+    usb.send_bulk(arm, bulk_number(1));
+    REQUIRE(eventually([&] { return usb.bulk_left(arm) == 0; }));
+    usb.unplug(arm);
+    std::array<std::byte, 200> buffer{};
+    CHECK(transport->read_bulk(buffer, 5s) == 100);
+    CHECK_THROWS_AS(transport->read_bulk(buffer, 5s), device::Disconnected);
+    CHECK_THROWS_AS(transport->read_report(buffer, 1ms), device::Disconnected);
+    CHECK_THROWS_AS(transport->write_report(buffer), device::Disconnected);
+    CHECK_THROWS_AS(transport->get_feature(buffer), device::Disconnected);
+    CHECK_THROWS_AS(transport->set_feature(buffer), device::Disconnected);
+    CHECK_THROWS_AS(device::open_transport(arm.endpoint()), device::Disconnected);
+  }
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("an arm that went away before its scope is claimed is disconnected") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  const auto transport = device::open_transport(arm.endpoint());
+  SUBCASE("and another one came") {
+    arm.serial_number = std::string("B");
+    CHECK_THROWS_AS(transport->claim_scope(), device::Disconnected);
+  }
+  SUBCASE("while its transfers begin") {
+    usb.unplug(arm);
+    CHECK_THROWS_AS(transport->claim_scope(), device::Disconnected);
+  }
+}
+
+TEST_CASE("a reader who stops reading the scope loses the oldest, and what is kept is bounded") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  const auto transport = device::open_transport(arm.endpoint());
+  transport->claim_scope();
+  constexpr int kept = 2048;
+  for (int i = 0; i < kept + 3; ++i) usb.send_bulk(arm, bulk_number(i % 100));
+  REQUIRE(eventually([&] { return usb.bulk_left(arm) == 0; }));
+  std::array<std::byte, 200> buffer{};
+  int count = 0;
+  while (transport->read_bulk(buffer, count == 0 ? 5s : 100ms) > 0) {
+    if (count == 0) CHECK(std::to_integer<int>(buffer[0]) <= 3);
+    ++count;
+  }
+  CHECK(count >= kept);
+  CHECK(count <= kept + 1);  // the newest may have come while the oldest was read
+}
+
+TEST_CASE("reports pass through hidapi as they are; a stall is told from an unplugged cable") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  const auto transport = device::open_transport(arm.endpoint());
+  CHECK(transport->endpoint().serial_number == "A");
+  Bytes report(8, std::byte{7});
+  CHECK(transport->read_report(report, 1ms) == 0);
+  usb.send_report(arm, Bytes(5, std::byte{1}));
+  CHECK(transport->read_report(report, 5s) == 5);
+  CHECK(report[4] == std::byte{1});
+  CHECK(report[5] == std::byte{7});
+  transport->write_report(Bytes(3, std::byte{2}));
+  CHECK(arm.written == std::vector<Bytes>{Bytes(3, std::byte{2})});
+  report.assign(8, std::byte{7});
+  CHECK_THROWS_AS(transport->get_feature(report), device::Stalled);
+  CHECK_THROWS_AS(transport->set_feature(report), device::Stalled);
+  arm.features[7] = {};
+  transport->set_feature(Bytes(4, std::byte{7}));
+  CHECK(transport->get_feature(report) == 4);
+}
