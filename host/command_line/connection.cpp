@@ -27,6 +27,14 @@ std::pair<std::string, std::uint16_t> split_address(const std::string& address) 
   return {host, port};
 }
 
+arms::Description read_arm(const std::filesystem::path& file) {
+  try {
+    return arms::read(file);
+  } catch (const arms::DescriptionError& error) {
+    throw device::Error(error.what());
+  }
+}
+
 }  // namespace
 
 void DeviceOptions::add_to(CLI::App& app) {
@@ -70,6 +78,7 @@ device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode 
                                  : device::SimulationMode::fast;
   board.seed = seed;
   board.real_time = real_time || real_time_by_default;
+  board.strict = is_strict;
   return board;
 }
 
@@ -110,20 +119,20 @@ Endpoint find_one(const DeviceOptions& options) {
   return endpoints.front();
 }
 
-std::vector<device::ParameterChange> arm_parameters(const std::filesystem::path& file) {
-  try {
-    const auto arm = arms::read(file);
-    std::vector<device::ParameterChange> changes;
-    for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-      if (arms::belongs_to_arm(protocol::parameter_table[i]))
-        changes.emplace_back(static_cast<protocol::Parameter>(i), arm.parameters.values[i]);
-    return changes;
-  } catch (const arms::DescriptionError& error) {
-    throw device::Error(error.what());
-  }
+std::string arm_name(const DeviceOptions& options) {
+  return options.arm.empty() ? std::string() : read_arm(options.arm).name;
 }
 
-Connection connect(const DeviceOptions& options, bool real_time_by_default) {
+std::vector<device::ParameterChange> arm_parameters(const std::filesystem::path& file) {
+  const auto arm = read_arm(file);
+  std::vector<device::ParameterChange> changes;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    if (arms::belongs_to_arm(protocol::parameter_table[i]))
+      changes.emplace_back(static_cast<protocol::Parameter>(i), arm.parameters.values[i]);
+  return changes;
+}
+
+Connection connect(const DeviceOptions& options, bool real_time_by_default, device::SimulationMode default_mode) {
   Connection connection;
   if (!options.is_virtual) {
     const auto endpoint = find_one(options);
@@ -133,8 +142,7 @@ Connection connect(const DeviceOptions& options, bool real_time_by_default) {
   }
   std::vector<device::ParameterChange> arm;
   if (!options.arm.empty()) arm = arm_parameters(options.arm);
-  connection.board =
-      std::make_unique<device::VirtualBoard>(options.virtual_board(device::SimulationMode::fast, real_time_by_default));
+  connection.board = std::make_unique<device::VirtualBoard>(options.virtual_board(default_mode, real_time_by_default));
   const auto give_up_at = std::chrono::steady_clock::now() + virtual_start_limit;
   std::optional<Endpoint> endpoint;
   while (!(endpoint = connection.board->find())) {

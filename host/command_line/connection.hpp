@@ -31,6 +31,7 @@ struct DeviceOptions {
   std::string usbip;  ///< HOST:PORT
   std::string serial_number;
   bool json = false;
+  bool is_strict = false;  ///< a virtual board ends when the firmware does what silicon would not bear
 
   void add_to(CLI::App& app);
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, bool real_time_by_default) const;
@@ -47,10 +48,14 @@ struct Connection {
 };
 
 /// Opens the device that the options name. With --arm, a virtual board's firmware gets that arm's parameters.
-Connection connect(const DeviceOptions& options, bool real_time_by_default = false);
+Connection connect(const DeviceOptions& options, bool real_time_by_default = false,
+                   device::SimulationMode default_mode = device::SimulationMode::fast);
 
 /// The endpoint of a real device, or of one at --usbip. Throws device::Error if there is none.
 device::Endpoint find_one(const DeviceOptions& options);
+
+/// Name of the arm that --arm describes; empty without it, because a board does not know which arm it is built into.
+std::string arm_name(const DeviceOptions& options);
 
 /// The rows of the parameter table that an arm description sets.
 std::vector<device::ParameterChange> arm_parameters(const std::filesystem::path& file);

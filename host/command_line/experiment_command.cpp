@@ -41,17 +41,21 @@ void print(const nlohmann::ordered_json& summary, const std::string& directory) 
   fmt::print("written          {}: recording.csv, summary.json, figure-11.png to figure-14.png\n", directory);
 }
 
-int run_wall(const DeviceOptions& options, const WallCommandOptions& command) {
-  experiment::WallOptions wall;
-  wall.output_directory = command.output;
+int run_wall(DeviceOptions options, const WallCommandOptions& command) {
+  options.is_strict = true;  // what silicon would not do is no result
+  ProgressBar progress;
+  experiment::WallOptions wall{.output_directory = command.output, .arm = arm_name(options)};
   if (!command.wall.empty()) wall.wall = experiment::parse_wall(command.wall);
+  constexpr auto mode = device::SimulationMode::exact;
   if (options.is_virtual) {
-    wall.virtual_board = options.virtual_board(device::SimulationMode::exact, false);
-    wall.virtual_board->strict = true;  // what silicon would not do is no result
-  } else {
-    wall.endpoint = find_one(options);
+    progress("The virtual board starts.", 0.0);
+    wall.virtual_board = options.virtual_board(mode, false);
   }
-  const auto summary = experiment::run_wall_experiment(wall, ProgressBar());
+  const auto connection = connect(options, false, mode);
+  wall.simulation = connection.is_simulation;
+  std::optional<device::ControlClient> hand;
+  if (connection.board) hand.emplace(connection.board->control());
+  const auto summary = experiment::run_wall_experiment(*connection.device, hand ? &*hand : nullptr, wall, progress);
   if (options.json)
     fmt::print("{}\n", summary.dump(2));
   else

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <arms/description.hpp>
 #include <recording/recorder.hpp>
 #include <recording/signals.hpp>
 
@@ -83,11 +82,6 @@ class ScopeRecorder {
   std::atomic<bool> stopping_ = false, is_done_ = false;
   std::thread thread_;
 };
-
-/// The board does not know which arm it is built into; the user may have said it.
-std::string arm_name(const DeviceOptions& options) {
-  return options.arm.empty() ? std::string() : arms::read(options.arm).name;
-}
 
 std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
   if (options.all) return recording::signal_path();

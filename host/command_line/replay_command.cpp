@@ -17,8 +17,11 @@ using recording::Recording;
 
 ordered_json to_json(const Recording& recording) {
   const auto& about = recording.information;
-  ordered_json signals = ordered_json::array(), marks = ordered_json::array(), parameters = ordered_json::object();
+  ordered_json signals = ordered_json::array(), simulated = ordered_json::array(), marks = ordered_json::array(),
+               parameters = ordered_json::object();
   for (const auto signal : about.signals) signals.push_back({{"name", info(signal).name}, {"unit", info(signal).unit}});
+  for (const auto known : about.simulated)
+    simulated.push_back({{"name", info(known).name}, {"unit", info(known).unit}});
   for (const auto& mark : recording.marks)
     marks.push_back({{"time_s", recording.elapsed_s_at(mark.period)}, {"text", mark.text}});
   for (std::size_t i = 0; i < protocol::parameter_count; ++i)
@@ -34,9 +37,17 @@ ordered_json to_json(const Recording& recording) {
           {"samples", recording.size()},
           {"lost", recording.lost()},
           {"signals", signals},
+          {"simulated", simulated},
           {"marks", marks},
           {"parameters", parameters},
           {"remarks", recording.remarks}};
+}
+
+template <class Value>
+void print_names(const char* what, const std::vector<Value>& values) {
+  std::vector<std::string_view> names;
+  for (const auto value : values) names.push_back(info(value).name);
+  fmt::print("{:<20}{}\n", fmt::format("{} {}", names.size(), what), fmt::join(names, ", "));
 }
 
 void print(const Recording& recording) {
@@ -47,9 +58,8 @@ void print(const Recording& recording) {
   if (!about.arm.empty()) fmt::print("arm                 {}\n", about.arm);
   fmt::print("duration            {:.3f} s, {} samples, {} lost{}\n", recording.duration_s(), recording.size(),
              recording.lost(), recording.complete ? "" : "; its end is missing");
-  std::vector<std::string_view> names;
-  for (const auto signal : about.signals) names.push_back(info(signal).name);
-  fmt::print("{} signals          {}\n", names.size(), fmt::join(names, ", "));
+  print_names("signals", about.signals);
+  if (!about.simulated.empty()) print_names("simulated", about.simulated);
   for (const auto& mark : recording.marks)
     fmt::print("mark at {:9.3f} s   {}\n", recording.elapsed_s_at(mark.period), mark.text);
   const auto defaults = protocol::default_parameters();
@@ -79,7 +89,7 @@ void add_replay_command(CLI::App& program, const DeviceOptions& options, const O
   auto* command =
       program.add_subcommand("replay", "Open the window on a recording; or, with --info or --json, say what it holds");
   const auto replay_options = std::make_shared<ReplayOptions>();
-  command->add_option("FILE", replay_options->file, "Written by `inkwell record`")->required();
+  command->add_option("FILE", replay_options->file, "Written by `inkwell record` or `inkwell experiment`")->required();
   command->add_flag("--info", replay_options->information, "Only say what it holds");
   add_examples(*command, "inkwell replay push.h5\ninkwell replay push.h5 --info");
   command->callback([&options, &action, open_window, replay_options] {

@@ -1,45 +1,44 @@
 #include <experiment/figures.hpp>
 
 #include <algorithm>
-#include <fstream>
-#include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include <protocol/reports.hpp>
-#include <recording/gnuplot.hpp>
 
 namespace inkwell::experiment {
 namespace {
 
 using protocol::Parameter;
+using protocol::ParameterSet;
+using protocol::Signal;
+using recording::FigureData;
+using recording::Recording;
 
 constexpr std::size_t samples_per_point = protocol::servo_rate_Hz / 1000;
 
-/// A quantity of the figures: column of the recording, how it is scaled and moved, name in the data.
-struct Quantity {
-  std::string column;
-  double scale = 1;
-  double offset = 0;
+/// What the figures show: a signal, how it is scaled and moved, and its name in the data.
+struct Shown {
+  Signal signal;
+  double scale;
+  double offset;
   std::string name;
 };
 
-std::vector<Quantity> quantities(const FigureOptions& options) {
-  const double side = options.wall.side;
-  const double radius_m = static_cast<double>(options.parameters[Parameter::sphere_radius_m]);
-  const double wall_m = wall_position_m(options.parameters, options.wall);
-  const char axis = axis_letter(options.wall.axis);
+std::vector<Shown> shown_quantities(const ParameterSet& parameters, Wall wall) {
+  const double side = wall.side;
+  const double radius_m = static_cast<double>(parameters[Parameter::sphere_radius_m]);
+  const double wall_m = wall_position_m(parameters, wall);
   return {
       // The point of the sphere that touches: above zero it is inside the wall.
-      {fmt::format("position_{}_m", axis), 1e3 * side, 1e3 * (radius_m - side * wall_m), "distance_mm"},
-      {"force_N", 1, 0, "force_N"},
-      {"torque_1_Nm", 1, 0, "torque_1_Nm"},
-      {"torque_2_Nm", 1, 0, "torque_2_Nm"},
-      {"torque_3_Nm", 1, 0, "torque_3_Nm"},
-      {"duty_1", 100, 0, "duty_1_percent"},
-      {"duty_2", 100, 0, "duty_2_percent"},
-      {"duty_3", 100, 0, "duty_3_percent"},
+      {on_axis(Signal::position_x_m, wall.axis), 1e3 * side, 1e3 * (radius_m - side * wall_m), "distance_mm"},
+      {Signal::force_N, 1, 0, "force_N"},
+      {Signal::torque_1_Nm, 1, 0, "torque_1_Nm"},
+      {Signal::torque_2_Nm, 1, 0, "torque_2_Nm"},
+      {Signal::torque_3_Nm, 1, 0, "torque_3_Nm"},
+      {Signal::duty_1, 100, 0, "duty_1_percent"},
+      {Signal::duty_2, 100, 0, "duty_2_percent"},
+      {Signal::duty_3, 100, 0, "duty_3_percent"},
   };
 }
 
@@ -52,27 +51,33 @@ set tmargin at screen 0.79
 set bmargin at screen 0.13
 )";
 
-std::string head(const FigureOptions& options, int number, const char* title) {
-  const auto& parameters = options.parameters;
+std::string head(const recording::Information& about, Wall wall, int number, const char* title) {
+  const auto& parameters = about.parameters;
   const std::string subtitle = fmt::format(
       "Figure {}  ·  {}{}  ·  wall {}  ·  k = {} N/m, c = {} Ns/m  ·  line: mean of a millisecond, band: its extremes",
-      number, options.simulation ? "simulation  ·  " : "", options.arm, wall_name(options.wall),
+      number, about.simulation ? "simulation  ·  " : "", about.arm.empty() ? "unknown arm" : about.arm, wall_name(wall),
       parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m]);
   return fmt::format("\nset output 'figure-{}.png'\nunset label\n{}", number,
-                     recording::figure_titles(fmt::format("{}{}", title, options.simulation ? " (simulation)" : ""),
+                     recording::figure_titles(fmt::format("{}{}", title, about.simulation ? " (simulation)" : ""),
                                               subtitle, height_pixels));
 }
 
-std::string script(const FigureOptions& options, const Recording& data) {
+/// The part of the time axis that shows the contact and a little around it.
+Interval interval_around(Interval contact, double end_s) {
+  constexpr double margin_s = 0.25;
+  return {std::max(0.0, contact.from_s - margin_s), std::min(end_s, contact.to_s + margin_s)};
+}
+
+std::string script(const recording::Information& about, const FigureData& data, Wall wall, Interval shown) {
   std::string text =
       "# Draws figure-11.png to figure-14.png. Made by `inkwell experiment`; run it with: gnuplot figures.gnuplot\n";
   text += recording::figure_head("figure-data.csv", width_pixels, height_pixels) + layout;
-  text += fmt::format("set xrange [{:.3f}:{:.3f}]\n", options.shown.from_s, options.shown.to_s);
+  text += fmt::format("set xrange [{:.3f}:{:.3f}]\n", shown.from_s, shown.to_s);
 
-  const auto largest = data.values_of("distance_mm_maximum");
-  const double deepest_mm = std::max(0.5, largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end()));
+  double deepest_mm = 0.5;
+  for (const auto& row : data.rows) deepest_mm = std::max(deepest_mm, row.bands.front().maximum);
   // The free movement is centimetres, the penetration millimetres: the paper's question is about the latter.
-  text += head(options, 11, "Position of the sphere relative to the wall");
+  text += head(about, wall, 11, "Position of the sphere relative to the wall");
   text += fmt::format(
       "set ylabel 'sphere’s surface beyond the wall  /  mm' textcolor rgb ink\n"
       "set yrange [{0:.3f}:{1:.3f}]\n"
@@ -84,18 +89,18 @@ std::string script(const FigureOptions& options, const Recording& data) {
   text += recording::plot_command({{"distance_mm", "blue", ""}});
   text += "unset object 1\nunset arrow 1\nset yrange [*:*]\n";
 
-  text += head(options, 12, "Magnitude of the force");
+  text += head(about, wall, 12, "Magnitude of the force");
   text += "set ylabel 'force  /  N' textcolor rgb ink\nset yrange [0:*]\n";
   text += recording::plot_command({{"force_N", "blue", ""}});
   text += "set yrange [*:*]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n";
 
-  text += head(options, 13, "Torques at the three joints");
+  text += head(about, wall, 13, "Torques at the three joints");
   text += "set ylabel 'torque  /  Nm' textcolor rgb ink\n";
   text += recording::plot_command({{"torque_1_Nm", "green", "T1z, waist"},
                                    {"torque_2_Nm", "blue", "T2x, shoulder"},
                                    {"torque_3_Nm", "vermilion", "T3x, elbow"}});
 
-  text += head(options, 14, "Duty of the three bridges");
+  text += head(about, wall, 14, "Duty of the three bridges");
   text += "set ylabel 'duty  /  % of the supply' textcolor rgb ink\n";
   text += recording::plot_command({{"duty_1_percent", "green", "bridge 1"},
                                    {"duty_2_percent", "blue", "bridge 2"},
@@ -105,37 +110,53 @@ std::string script(const FigureOptions& options, const Recording& data) {
 
 }  // namespace
 
-Recording figure_data(const Recording& source, const FigureOptions& options) {
-  const auto shown = quantities(options);
-  std::vector<std::string> columns{"time_s"};
-  std::vector<std::size_t> sources;
+FigureData figure_data(const Recording& recording, Wall wall) {
+  const auto shown = shown_quantities(recording.information.parameters, wall);
+  FigureData data;
+  std::vector<const std::vector<float>*> columns;
   for (const auto& quantity : shown) {
-    for (auto& column : recording::band_columns(quantity.name)) columns.push_back(std::move(column));
-    sources.push_back(source.column(quantity.column));
+    data.names.push_back(quantity.name);
+    columns.push_back(&recording.column(quantity.signal));
   }
-  Recording data(columns);
-  const std::size_t time = source.column("time_s");
-  std::vector<double> row;
-  for (std::size_t first = 0; first + samples_per_point <= source.size(); first += samples_per_point) {
-    row.assign(1, source.at(first + samples_per_point / 2, time));
-    for (std::size_t j = 0; j < shown.size(); ++j) {
-      const auto band = recording::band_of(samples_per_point, [&](std::size_t i) {
-        return shown[j].scale * source.at(first + i, sources[j]) + shown[j].offset;
-      });
-      row.insert(row.end(), {band.mean, band.minimum, band.maximum});
-    }
-    data.append(row);
+  for (std::size_t first = 0; first + samples_per_point <= recording.size(); first += samples_per_point) {
+    FigureData::Row row{recording.elapsed_s(first + samples_per_point / 2), {}};
+    for (std::size_t j = 0; j < shown.size(); ++j)
+      row.bands.push_back(recording::band_of(samples_per_point, [&](std::size_t i) {
+        return shown[j].scale * static_cast<double>((*columns[j])[first + i]) + shown[j].offset;
+      }));
+    data.rows.push_back(std::move(row));
   }
   return data;
 }
 
-void draw_figures(const Recording& source, const FigureOptions& options, const std::filesystem::path& directory) {
-  const Recording data = figure_data(source, options);
-  write_csv(data, directory / "figure-data.csv");
-  std::ofstream stream(directory / "figures.gnuplot", std::ios::binary | std::ios::trunc);
-  stream << script(options, data) << std::flush;
-  if (!stream) throw device::Error(fmt::format("{} cannot be written. Check the space left.", directory.string()));
+std::vector<std::string> draw_figures(const Recording& recording, const std::filesystem::path& directory,
+                                      const FigureOptions& options) {
+  const Wall wall = options.wall ? *options.wall : pushed_wall(recording);
+  const auto contact = contact_with(recording, wall);
+  if (!contact)
+    throw device::Error(fmt::format("The sphere does not touch the wall {} in this recording. Record a push into it.",
+                                    wall_name(wall)));
+  const double end_s = recording.duration_s();
+  Interval shown = interval_around(*contact, end_s);
+  if (options.from_s) shown.from_s = *options.from_s;
+  if (options.to_s) shown.to_s = std::min(end_s, *options.to_s);
+  if (shown.from_s >= shown.to_s)
+    throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.3f} s.",
+                                    shown.from_s, shown.to_s, end_s));
+  std::error_code code;
+  if (!directory.empty()) std::filesystem::create_directories(directory, code);
+  if (code)
+    throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with --out.",
+                                    directory.string(), code.message()));
+
+  const FigureData data = figure_data(recording, wall);
+  data.write(directory / "figure-data.csv");
+  recording::write_text(directory / "figures.gnuplot", script(recording.information, data, wall, shown));
   recording::run_gnuplot(directory / "figures.gnuplot");
+  std::vector<std::string> pictures;
+  for (int number = 11; number <= 14; ++number)
+    pictures.push_back((directory / fmt::format("figure-{}.png", number)).string());
+  return pictures;
 }
 
 }  // namespace inkwell::experiment

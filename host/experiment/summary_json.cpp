@@ -1,4 +1,4 @@
-#include <experiment/wall_experiment.hpp>
+#include <experiment/summary_json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ double shortest(float value) { return std::stod(fmt::format("{}", value)); }
 ordered_json interval_json(const Interval& interval) { return {{"from_s", interval.from_s}, {"to_s", interval.to_s}}; }
 
 /// The worst of the three motors, and each of them.
-ordered_json current_step_json(const std::vector<CurrentStep>& steps) {
-  CurrentStep worst;
+ordered_json current_step_json(const std::vector<recording::CurrentStep>& steps) {
+  recording::CurrentStep worst;
   ordered_json motors = ordered_json::array();
   for (const auto& step : steps) {
     worst.amplitude_A = std::max(worst.amplitude_A, step.amplitude_A);
@@ -41,23 +41,23 @@ ordered_json current_step_json(const std::vector<CurrentStep>& steps) {
 }  // namespace
 
 ordered_json summary_json(const Circumstances& circumstances, const WallResult& result,
-                          const std::vector<CurrentStep>& steps) {
+                          const std::vector<recording::CurrentStep>& steps) {
   ordered_json summary;
-  summary["simulation"] = circumstances.simulation;
+  const auto& about = circumstances.about;
+  summary["simulation"] = about.simulation;
   summary["experiment"] = "wall";
   summary["wall"] = wall_name(circumstances.wall);
-  summary["arm"] = circumstances.arm;
-  summary["versions"] = {{"companion", INKWELL_VERSION},
-                         {"firmware", circumstances.firmware_version},
-                         {"protocol", protocol::protocol_version}};
-  summary["serial_number"] = circumstances.serial_number;
-  if (circumstances.simulation) {
-    summary["mode"] = circumstances.mode;
-    summary["seed"] = circumstances.seed;
+  summary["arm"] = about.arm;
+  summary["versions"] = {
+      {"companion", INKWELL_VERSION}, {"firmware", about.firmware_version}, {"protocol", about.protocol_version}};
+  summary["serial_number"] = about.serial_number;
+  if (circumstances.virtual_board) {
+    summary["mode"] = circumstances.virtual_board->mode == device::SimulationMode::exact ? "exact" : "fast";
+    summary["seed"] = circumstances.virtual_board->seed;
   }
   summary["sample_rate_Hz"] = protocol::servo_rate_Hz;
   summary["samples"] = result.samples;
-  summary["samples_lost"] = circumstances.samples_lost;
+  summary["samples_lost"] = result.samples_lost;
   summary["samples_in_contact"] = result.samples_in_contact;
   if (result.contact) summary["contact"] = interval_json(*result.contact);
   summary["pose_reports_received"] = circumstances.poses_received;
@@ -82,7 +82,7 @@ ordered_json summary_json(const Circumstances& circumstances, const WallResult& 
   if (!steps.empty()) summary["current_step"] = current_step_json(steps);
   ordered_json parameters;
   for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    parameters[std::string(protocol::parameter_table[i].name)] = shortest(circumstances.parameters.values[i]);
+    parameters[std::string(protocol::parameter_table[i].name)] = shortest(about.parameters.values[i]);
   summary["parameters"] = parameters;
   return summary;
 }

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 
-#include <arm/defaults.hpp>
-#include <arms/description.hpp>
+#include <experiment/figures.hpp>
+#include <experiment/paced_device.hpp>
+#include <experiment/simulated_columns.hpp>
+#include <experiment/summary.hpp>
+#include <experiment/summary_json.hpp>
 #include <protocol/reports.hpp>
+#include <recording/signals.hpp>
+#include <recording/writer.hpp>
 
-#include "rig.hpp"
+#include "scope_capture.hpp"
 
 namespace inkwell::experiment {
 namespace {
@@ -19,7 +23,10 @@ using device::Vector3;
 using protocol::Command;
 using protocol::Parameter;
 using protocol::ParameterSet;
+using protocol::Signal;
 using protocol::State;
+using recording::CurrentStep;
+using recording::Recording;
 
 // The simulated hand: a relaxed human hand and arm, damped so that it does not swing.
 constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
@@ -80,59 +87,38 @@ std::vector<device::HandWaypoint> hand_path(const ParameterSet& parameters, Wall
           {end_s, middle}};
 }
 
-std::vector<device::ParameterChange> arm_parameters(const arms::Description& arm) {
-  std::vector<device::ParameterChange> changes;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    if (arms::belongs_to_arm(protocol::parameter_table[i]))
-      changes.emplace_back(static_cast<Parameter>(i), arm.parameters.values[i]);
-  return changes;
-}
-
-arms::Description read_arm(const std::filesystem::path& file) {
-  try {
-    return arms::read(file);
-  } catch (const arms::DescriptionError& error) {
-    throw device::Error(error.what());
-  }
-}
-
 std::size_t samples_of(double time_s) {
   return static_cast<std::size_t>(std::lround(time_s * protocol::servo_rate_Hz));
 }
 
 /// One pulse of current in each motor while the stylus rests in the inkwell.
-Recording record_current_steps(Rig& rig, device::Device& device) {
-  ScopeCapture capture(device);
-  rig.select_signals(recorded_signals());
+Recording record_current_steps(PacedDevice& device, const recording::Information& about) {
+  ScopeCapture capture(device, about);
   for (std::uint8_t motor = 1; motor <= 3; ++motor) {
-    rig.test_current({motor, test_amplitude_A, test_duration_s});
-    rig.pass(test_spacing_s);
+    device.test_current({motor, test_amplitude_A, test_duration_s});
+    device.pass(test_spacing_s);
   }
-  const auto scope = capture.take(capture.size());
-  rig.select_signals({});
-  return make_recording(scope, nullptr);
+  return capture.take(capture.size());
 }
 
 std::vector<CurrentStep> current_steps(const Recording& recording) {
   std::vector<CurrentStep> steps;
-  for (int motor = 1; motor <= 3; ++motor)
-    steps.push_back(current_step(recording.values_of(fmt::format("current_reference_{}_A", motor)),
-                                 recording.values_of(fmt::format("current_{}_A", motor)),
-                                 1.0 / protocol::servo_rate_Hz));
+  for (int motor = 0; motor < 3; ++motor)
+    steps.push_back(recording::current_step(recording.column(on_axis(Signal::current_reference_1_A, motor)),
+                                            recording.column(on_axis(Signal::current_1_A, motor))));
   return steps;
 }
 
-void switch_force_on(Rig& rig, const ParameterSet& parameters) {
-  rig.command(Command::enable_force);
-  rig.wait_until([](const auto& pose) { return pose.state == State::active; }, 1.0,
-                 "The device did not switch the force on. Look at its state with `inkwell watch`.");
-  rig.pass(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
+void switch_force_on(PacedDevice& device, const ParameterSet& parameters) {
+  device.command(Command::enable_force);
+  device.wait_for_pose([](const auto& pose) { return pose.state == State::active; }, 1.0,
+                       "The device did not switch the force on. Look at its state with `inkwell watch`.");
+  device.pass(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
 }
 
 struct Push {
   Recording recording;
-  std::optional<Interval> hold;
-  std::uint64_t samples_lost = 0;
+  std::optional<Interval> hold;  ///< when the hand is steady, if that was planned
 };
 
 device::Trace read_trace(device::ControlClient& control) {
@@ -147,55 +133,45 @@ device::Trace read_trace(device::ControlClient& control) {
 
 // ---- with a virtual board -------------------------------------------------------------------------------
 
-void take_to_middle(Rig& rig, device::ControlClient& control, const ParameterSet& parameters) {
-  const auto& here = rig.pose().position_m;
+void take_to_middle(PacedDevice& device, device::ControlClient& control, const ParameterSet& parameters) {
+  const auto& here = device.pose().position_m;
   const Vector3 here_m{static_cast<double>(here[0]), static_cast<double>(here[1]), static_cast<double>(here[2])};
   control.hand({true, here_m, hand_stiffness_N_per_m, hand_damping_Ns_per_m});
   control.dock(false);
   constexpr double duration_s = 0.8;
   control.hand_path({{0.0, here_m}, {duration_s, middle_of_box_m(parameters)}});
-  rig.pass(duration_s + 0.2);
+  device.pass(duration_s + 0.2);
 }
 
-Push push_by_simulated_hand(Rig& rig, device::Device& device, device::ControlClient& control,
-                            const ParameterSet& parameters, Wall wall, const Progress& progress) {
+Push push_by_simulated_hand(PacedDevice& device, device::ControlClient& control, const recording::Information& about,
+                            Wall wall, const Progress& progress) {
+  const ParameterSet& parameters = about.parameters;
   progress("The hand takes the stylus to the middle of the box.", 0.25);
-  take_to_middle(rig, control, parameters);
-  switch_force_on(rig, parameters);
+  take_to_middle(device, control, parameters);
+  switch_force_on(device, parameters);
 
-  ScopeCapture capture(device);
   control.trace_start();
-  rig.select_signals(recorded_signals());
-  const std::uint32_t path_begins_at = rig.pose().time_periods;
+  ScopeCapture capture(device, about);
+  const std::uint32_t path_begins_at = device.pose().time_periods;
   control.hand_path(hand_path(parameters, wall));
   constexpr double step_s = 0.1;
   for (double passed_s = 0; passed_s < end_s; passed_s += step_s) {
     progress(fmt::format("The hand pushes into the wall {}: {:.1f} of {:.1f} s of board time.", wall_name(wall),
                          passed_s, end_s),
              0.3 + 0.5 * passed_s / end_s);
-    rig.pass(step_s);
+    device.pass(step_s);
   }
-  rig.pass(step_s);
-  const auto scope = capture.take(samples_of(end_s));
+  device.pass(step_s);
+  Recording recording = capture.take(samples_of(end_s));
   control.trace_stop();
-  rig.select_signals({});
-  rig.command(Command::disable_force);
+  device.command(Command::disable_force);
 
   progress("The simulation's own values are read.", 0.82);
-  const auto truth = read_trace(control);
-  const double offset_s =
-      static_cast<double>(static_cast<std::int32_t>(path_begins_at - scope.first_period)) / protocol::servo_rate_Hz;
-  return {make_recording(scope, &truth), Interval{offset_s + pushed_s + settling_s, offset_s + held_s - 0.01},
-          scope.lost_samples};
-}
-
-device::Endpoint wait_for_endpoint(const device::VirtualBoard& board) {
-  using namespace std::chrono_literals;
-  for (int attempts = 0; attempts < 500; ++attempts) {
-    if (const auto endpoint = board.find()) return *endpoint;
-    std::this_thread::sleep_for(20ms);
-  }
-  throw device::Error("The virtual board shows no USB device. Check that --elf names Inkwell's firmware.");
+  add_simulated_columns(recording, read_trace(control), recorded_quantities());
+  // Signed, because the path may begin a little before the first sample.
+  const double offset_s = static_cast<double>(static_cast<std::int32_t>(path_begins_at - recording.periods.front())) /
+                          protocol::servo_rate_Hz;
+  return {std::move(recording), Interval{offset_s + pushed_s + settling_s, offset_s + held_s - 0.01}};
 }
 
 /// Board time runs freely until the host is connected. From a whole second on it stands still whenever the host
@@ -218,18 +194,17 @@ bool is_clear(const protocol::PoseReport& pose, const ParameterSet& parameters) 
   return true;
 }
 
-Push push_by_user(Rig& rig, device::Device& device, const ParameterSet& parameters, Wall wall,
-                  const Progress& progress) {
+Push push_by_user(PacedDevice& device, const recording::Information& about, Wall wall, const Progress& progress) {
+  const ParameterSet& parameters = about.parameters;
   progress("Take the stylus out of the inkwell to the middle of the box. The force will come on there.", 0.25);
   const auto in_the_middle = [&](const auto& pose) {
     return is_clear(pose, parameters) && (pose.switches & static_cast<std::uint8_t>(protocol::Switch::inkwell)) == 0;
   };
-  rig.wait_until(in_the_middle, user_limit_s,
-                 "The stylus did not come to the middle of the box. Run the experiment again.");
-  switch_force_on(rig, parameters);
+  device.wait_for_pose(in_the_middle, user_limit_s,
+                       "The stylus did not come to the middle of the box. Run the experiment again.");
+  switch_force_on(device, parameters);
 
-  ScopeCapture capture(device);
-  rig.select_signals(recorded_signals());
+  ScopeCapture capture(device, about);
   progress(
       fmt::format("Push into the wall {}, harder and harder, hold still for a second, then let go.", wall_name(wall)),
       0.4);
@@ -237,101 +212,66 @@ Push push_by_user(Rig& rig, device::Device& device, const ParameterSet& paramete
     return wall.side * (static_cast<double>(pose.position_m[wall.axis]) - contact_m(parameters, wall));
   };
   const std::string too_late = "The push into the wall was not finished in 30 s. Run the experiment again.";
-  rig.wait_until([&](const auto& pose) { return beyond_m(pose) > 0; }, push_limit_s, too_late);
-  rig.wait_until([&](const auto& pose) { return beyond_m(pose) < -clear_m; }, push_limit_s, too_late);
-  rig.pass(0.2);
-  const auto scope = capture.take(capture.size());
-  rig.select_signals({});
-  rig.command(Command::disable_force);
-  return {make_recording(scope, nullptr), std::nullopt, scope.lost_samples};
+  device.wait_for_pose([&](const auto& pose) { return beyond_m(pose) > 0; }, push_limit_s, too_late);
+  device.wait_for_pose([&](const auto& pose) { return beyond_m(pose) < -clear_m; }, push_limit_s, too_late);
+  device.pass(0.2);
+  Recording recording = capture.take(capture.size());
+  device.command(Command::disable_force);
+  return {std::move(recording), std::nullopt};
 }
 
 // ---- both -----------------------------------------------------------------------------------------------
 
-void write_summary(const nlohmann::ordered_json& summary, const std::filesystem::path& file) {
-  std::ofstream stream(file, std::ios::trunc);
-  stream << summary.dump(2) << '\n' << std::flush;
-  if (!stream) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
-}
-
-}  // namespace
-
-nlohmann::ordered_json run_wall_experiment(const WallOptions& options, const Progress& progress) {
-  const auto& directory = options.output_directory;
+void make_folder(const std::filesystem::path& directory) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
   if (!std::filesystem::is_directory(directory))
     throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with --out.",
                                     directory.string(), code.message()));
+}
 
+}  // namespace
+
+nlohmann::ordered_json run_wall_experiment(device::Device& device, device::ControlClient* hand,
+                                           const WallOptions& options, const Progress& progress) {
+  const auto& directory = options.output_directory;
+  make_folder(directory);
   Circumstances circumstances;
-  circumstances.arm = arm_defaults::name;
-  std::vector<device::ParameterChange> changes;
-  std::optional<device::VirtualBoard> board;
-  std::optional<device::ControlClient> control;
-  device::Endpoint endpoint;
-  if (options.virtual_board) {
-    circumstances.simulation = true;
-    circumstances.seed = options.virtual_board->seed;
-    circumstances.mode = options.virtual_board->mode == device::SimulationMode::exact ? "exact" : "fast";
-    if (!options.virtual_board->arm.empty()) {
-      const auto arm = read_arm(options.virtual_board->arm);
-      circumstances.arm = arm.name;
-      changes = arm_parameters(arm);
-    }
-    progress("The virtual board starts.", 0.0);
-    board.emplace(*options.virtual_board);
-    control.emplace(board->control());
-    control->resume();
-    endpoint = wait_for_endpoint(*board);
-  } else if (options.endpoint) {
-    endpoint = *options.endpoint;
-    circumstances.simulation = endpoint.is_virtual;
-  } else {
-    throw device::Error("No arm was found. Plug one in, or give --virtual.");
-  }
+  circumstances.virtual_board = options.virtual_board;
+  auto& about = circumstances.about;
+  about = recording::describe(device.information(), device.parameters(), recording::signal_path(), options.arm,
+                              options.simulation);
+  const Wall wall = circumstances.wall = options.wall.value_or(forward_wall(about.parameters));
+  if (hand != nullptr) stop_at_whole_second(*hand);
 
-  const auto device = device::Device::open(endpoint);
-  if (!changes.empty()) device->set_parameters(changes);
-  circumstances.parameters = device->parameters();
-  const auto information = device->information();
-  circumstances.firmware_version = information.firmware_version;
-  circumstances.serial_number = information.serial_number;
-  circumstances.wall = options.wall.value_or(forward_wall(circumstances.parameters));
-  if (control) stop_at_whole_second(*control);
-
-  Rig rig(*device, control ? &*control : nullptr);
+  PacedDevice paced(device, hand);
   progress("Waiting for the stylus to rest in the inkwell.", 0.1);
-  rig.wait_until([](const auto& pose) { return pose.state == State::ready || pose.state == State::active; },
-                 control ? 3.0 : user_limit_s,
-                 "The arm was not put into its inkwell, so the board does not know where it is. Put the stylus in.");
-  if (rig.pose().state == State::active) rig.command(Command::disable_force);
+  paced.wait_for_pose(
+      [](const auto& pose) { return pose.state == State::ready || pose.state == State::active; },
+      hand != nullptr ? 3.0 : user_limit_s,
+      "The arm was not put into its inkwell, so the board does not know where it is. Put the stylus in.");
+  if (paced.pose().state == State::active) paced.command(Command::disable_force);
 
   progress("The current loops are tested with a pulse in each motor. Leave the stylus in the inkwell.", 0.15);
-  const auto steps_recording = record_current_steps(rig, *device);
+  const auto steps_recording = record_current_steps(paced, about);
   const auto steps = current_steps(steps_recording);
 
-  const Push push =
-      control ? push_by_simulated_hand(rig, *device, *control, circumstances.parameters, circumstances.wall, progress)
-              : push_by_user(rig, *device, circumstances.parameters, circumstances.wall, progress);
-  circumstances.poses_received = rig.poses_received();
-  circumstances.poses_lost = rig.poses_lost();
-  circumstances.samples_lost = push.samples_lost;
-  const auto result = evaluate(push.recording, circumstances.parameters, circumstances.wall, push.hold);
+  const Push push = hand != nullptr ? push_by_simulated_hand(paced, *hand, about, wall, progress)
+                                    : push_by_user(paced, about, wall, progress);
+  circumstances.poses_received = paced.poses_received();
+  circumstances.poses_lost = paced.poses_lost();
+  const auto result = evaluate(push.recording, about.parameters, wall, push.hold);
   if (!result.contact)
-    throw device::Error(fmt::format("The sphere never touched the wall {}. Choose another with --wall.",
-                                    wall_name(circumstances.wall)));
+    throw device::Error(
+        fmt::format("The sphere never touched the wall {}. Choose another with --wall.", wall_name(wall)));
 
   progress("The recording is written.", 0.88);
-  write_csv(steps_recording, directory / "current-step.csv");
-  write_csv(push.recording, directory / "recording.csv");
+  recording::save(steps_recording, directory / "current-step.csv");
+  recording::save(push.recording, directory / "recording.csv");
   progress("The figures are drawn.", 0.94);
-  draw_figures(push.recording,
-               {circumstances.simulation, circumstances.arm, circumstances.wall, circumstances.parameters,
-                interval_to_show(*result.contact, result.samples)},
-               directory);
-  const auto summary = summary_json(circumstances, result, steps);
-  write_summary(summary, directory / "summary.json");
+  draw_figures(push.recording, directory, {.wall = wall});
+  auto summary = summary_json(circumstances, result, steps);
+  recording::write_text(directory / "summary.json", summary.dump(2) + '\n');
   progress("Done.", 1.0);
   return summary;
 }

@@ -9,8 +9,8 @@
 
 #include <board/omni_driver.hpp>
 #include <device/parameter_file.hpp>
-#include <experiment/summary.hpp>
 #include <guides/motor_identification.hpp>
+#include <recording/current_step.hpp>
 
 #include "joint_motion.hpp"
 #include "pulse_recorder.hpp"
@@ -42,7 +42,7 @@ struct Tuning {
   CurrentLoopOptions options;
   std::vector<MotorCircuit> motors;  ///< in the order of options.motors
   std::optional<CurrentLoopGains> gains;
-  std::vector<experiment::CurrentStep> before, after;
+  std::vector<recording::CurrentStep> before, after;
 };
 
 double held(const ParameterSet& set, Parameter first, int motor) {
@@ -238,7 +238,7 @@ class TryGains final : public Step {
   }
 
  private:
-  std::vector<experiment::CurrentStep>& steps() { return suggested_ ? tuning_->after : tuning_->before; }
+  std::vector<recording::CurrentStep>& steps() { return suggested_ ? tuning_->after : tuning_->before; }
 
   void start_pulse(const Observation& now, DevicePort& port) {
     const int motor = tuning_->options.motors[steps().size()];
@@ -251,15 +251,15 @@ class TryGains final : public Step {
 
   void take_step() {
     const int motor = tuning_->options.motors[steps().size()];
-    const auto reference_A = recorder_->values_of(signal_of(Signal::current_reference_1_A, motor));
-    const auto current_A = recorder_->values_of(signal_of(Signal::current_1_A, motor));
-    const auto step = experiment::current_step(reference_A, current_A, period_s);
+    const auto& reference_A = recorder_->column(signal_of(Signal::current_reference_1_A, motor));
+    const auto& current_A = recorder_->column(signal_of(Signal::current_1_A, motor));
+    const auto step = recording::current_step(reference_A, current_A);
     steps().push_back(step);
     const char* when = suggested_ ? "after" : "before";
     Curve curve{fmt::format("motor {}, {}", motor, when), {}};
     constexpr double shown_ms = 4;
     const auto begin =
-        static_cast<double>(std::ranges::find_if(reference_A, [](double r) { return r != 0; }) - reference_A.begin());
+        static_cast<double>(std::ranges::find_if(reference_A, [](float r) { return r != 0; }) - reference_A.begin());
     for (std::size_t i = 0; i < current_A.size(); ++i) {
       const double time_ms = 1e3 * (static_cast<double>(i) - begin) * period_s;
       if (time_ms <= shown_ms) curve.points.emplace_back(time_ms, current_A[i]);

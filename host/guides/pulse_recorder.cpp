@@ -14,32 +14,25 @@ constexpr double scope_limit_s = 2.0, pulse_limit_s = 1.0;
 
 PulseRecorder::PulseRecorder(protocol::Command command, const protocol::TestPulse& pulse,
                              std::vector<protocol::Signal> signals, protocol::Signal seen_in)
-    : command_(command),
-      pulse_(pulse),
-      signals_(std::move(signals)),
-      seen_in_(static_cast<std::size_t>(std::ranges::find(signals_, seen_in) - signals_.begin())) {}
+    : command_(command), pulse_(pulse), seen_in_(seen_in) {
+  recording::Information information;
+  information.signals = std::move(signals);
+  recording_ = recording::Recording::without_samples(std::move(information));
+}
 
 void PulseRecorder::begin(const protocol::PoseReport& pose, DevicePort& port) {
-  port.select_signals(signals_);
+  port.select_signals(recording_.information.signals);
   start_over(pose);
 }
 
 void PulseRecorder::start_over(const protocol::PoseReport& pose) {
-  recording_ = {};
+  recording_.keep(0, 0);
   state_ = State::waits_for_scope;
   since_.start(pose);
 }
 
 void PulseRecorder::receive(const device::ScopeSamples& samples) {
-  if (samples.signals != signals_ || state_ == State::done) return;
-  // What the scope's start loses is no gap in what counts.
-  if (recording_.size() == 0) {
-    device::ScopeSamples first = samples;
-    first.lost_before = 0;
-    recording_.append(first);
-  } else {
-    recording_.append(samples);
-  }
+  if (samples.signals == recording_.information.signals && state_ != State::done) recording_.append(samples);
 }
 
 bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) {
@@ -48,7 +41,7 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
     throw device::Error(
         "Test pulses need the state ready. Put the stylus into the inkwell once, leave the force off "
         "and start the guide again.");
-  if (recording_.lost_samples > 0) {
+  if (recording_.lost() > 0) {
     if (--attempts_left_ == 0)
       throw device::Error(
           "Samples of the scope were lost again and again. Close other programs that load this "
@@ -63,9 +56,9 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
     since_.start(pose);
     state_ = State::waits_for_end;
   }
-  const std::size_t width = signals_.size();
-  std::size_t begin = 0;
-  while (begin < recording_.size() && recording_.values[begin * width + seen_in_] == 0.0f) ++begin;
+  const auto& seen = recording_.column(seen_in_);
+  const auto begin =
+      static_cast<std::size_t>(std::ranges::find_if(seen, [](float value) { return value != 0.0f; }) - seen.begin());
   const auto needed = static_cast<std::size_t>(2.0f * pulse_.duration_s * protocol::servo_rate_Hz);
   if (recording_.size() < begin + needed || begin == recording_.size()) {
     if (since_.seconds(pose) > pulse_limit_s + 2.0 * static_cast<double>(pulse_.duration_s))
@@ -76,19 +69,14 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
   }
   // From a little before the pulse to the end of the rest after it.
   const std::size_t from = begin > samples_before ? begin - samples_before : 0;
-  recording_.values.resize((begin + needed) * width);
-  recording_.values.erase(recording_.values.begin(),
-                          recording_.values.begin() + static_cast<std::ptrdiff_t>(from * width));
+  recording_.keep(from, begin + needed);
   state_ = State::done;
   return true;
 }
 
 std::vector<double> PulseRecorder::values_of(protocol::Signal signal) const {
-  const auto place = static_cast<std::size_t>(std::ranges::find(signals_, signal) - signals_.begin());
-  std::vector<double> values(recording_.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = static_cast<double>(recording_.values[i * signals_.size() + place]);
-  return values;
+  const auto& column = recording_.column(signal);
+  return {column.begin(), column.end()};
 }
 
 }  // namespace inkwell::guides

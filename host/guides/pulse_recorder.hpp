@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <experiment/recording.hpp>
 #include <guides/step.hpp>
+#include <recording/recording.hpp>
 
 namespace inkwell::guides {
 
@@ -21,6 +21,7 @@ class PulseRecorder {
   /// times at most. Throws device::Error if the scope or the pulse does not come.
   bool advance(const protocol::PoseReport& pose, DevicePort& port);
 
+  const std::vector<float>& column(protocol::Signal signal) const { return recording_.column(signal); }
   std::vector<double> values_of(protocol::Signal signal) const;
   std::size_t size() const { return recording_.size(); }
 
@@ -30,9 +31,8 @@ class PulseRecorder {
 
   protocol::Command command_;
   protocol::TestPulse pulse_;
-  std::vector<protocol::Signal> signals_;
-  std::size_t seen_in_;  ///< place of the signal in the recording
-  experiment::ScopeRecording recording_;
+  protocol::Signal seen_in_;
+  recording::Recording recording_;
   State state_ = State::waits_for_scope;
   Stopwatch since_;
   int attempts_left_ = 3;

@@ -43,6 +43,8 @@ class CsvReader {
   }
 
  private:
+  enum class Holds : std::uint8_t { signal, simulated, unknown };
+
   void comment(std::string_view text) {
     const auto equals = text.find(" = ");
     const auto key = text.substr(0, equals);
@@ -86,16 +88,22 @@ class CsvReader {
     for (line.remove_prefix(6); !line.empty();) {
       line.remove_prefix(1);
       const auto name = line.substr(0, line.find(','));
-      const auto signal = protocol::find_signal(name);
-      if (!signal)
+      auto& about = recording_.information;
+      if (const auto signal = protocol::find_signal(name)) {
+        about.signals.push_back(*signal);
+        holds_.push_back(Holds::signal);
+      } else if (const auto simulated = protocol::find_simulated_quantity(name)) {
+        about.simulated.push_back(*simulated);
+        holds_.push_back(Holds::simulated);
+      } else {
         recording_.remarks.push_back(
             fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
-      else
-        recording_.information.signals.push_back(*signal);
-      known_.push_back(signal.has_value());
+        holds_.push_back(Holds::unknown);
+      }
       line.remove_prefix(name.size());
     }
     recording_.columns.resize(recording_.information.signals.size());
+    recording_.simulated_columns.resize(recording_.information.simulated.size());
   }
   void sample(std::string_view line) {
     const auto next = [&]() -> double {
@@ -106,10 +114,11 @@ class CsvReader {
       return *value;
     };
     recording_.periods.push_back(static_cast<std::uint32_t>(std::llround(next() * protocol::servo_rate_Hz)));
-    std::size_t column = 0;
-    for (const bool known : known_) {
-      const double value = next();
-      if (known) recording_.columns[column++].push_back(static_cast<float>(value));
+    auto column = recording_.columns.begin(), simulated_column = recording_.simulated_columns.begin();
+    for (const Holds holds : holds_) {
+      const auto value = static_cast<float>(next());
+      if (holds == Holds::signal) (column++)->push_back(value);
+      if (holds == Holds::simulated) (simulated_column++)->push_back(value);
     }
     if (!line.empty()) fail(fmt::format("is damaged in line {}: it has more values than columns", line_number_));
   }
@@ -120,7 +129,7 @@ class CsvReader {
   std::string name_;
   std::ifstream stream_;
   Recording recording_;
-  std::vector<bool> known_;  ///< for each column after the time
+  std::vector<Holds> holds_;  ///< for each column after the time
   std::size_t line_number_ = 0;
   bool is_recording_ = false;
   bool columns_known_ = false;

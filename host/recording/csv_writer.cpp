@@ -1,4 +1,5 @@
-// CSV recordings: lines "# key = value" about the recording, a line of column names, a line for each sample.
+// CSV recordings: lines "# key = value" about the recording, a line of column names, a line for each sample. A line
+// "# simulated NAME = what it is" marks a column that no device filled, but a simulation.
 #include "formats.hpp"
 
 #include <cerrno>
@@ -13,7 +14,7 @@ namespace {
 class CsvWriter final : public Writer {
  public:
   CsvWriter(const std::filesystem::path& file, const Information& information)
-      : name_(file.string()), file_(std::fopen(file.c_str(), "wbx")) {
+      : name_(file.string()), file_(std::fopen(file.c_str(), "wbx")), simulated_(information.simulated.size()) {
     if (!file_) fail();
     write_head(information);
     flush();
@@ -22,13 +23,15 @@ class CsvWriter final : public Writer {
     if (file_) std::fclose(file_);
   }
 
-  void append(const device::ScopeSamples& samples) override {
+  void append(const device::ScopeSamples& samples, std::span<const float> simulated) override {
     const std::size_t width = samples.signals.size();
     for (std::size_t i = 0; i < samples.count; ++i) {
       const std::uint32_t period = samples.first_period + static_cast<std::uint32_t>(i);
       fmt::format_to(std::back_inserter(text_), "{:.5f}", static_cast<double>(period) / protocol::servo_rate_Hz);
       for (std::size_t j = 0; j < width; ++j)
         fmt::format_to(std::back_inserter(text_), ",{}", samples.values[i * width + j]);
+      for (std::size_t j = 0; j < simulated_; ++j)
+        fmt::format_to(std::back_inserter(text_), ",{}", simulated[i * simulated_ + j]);
       text_.push_back('\n');
     }
     if (text_.size() > 1 << 20) write_text();
@@ -61,8 +64,13 @@ class CsvWriter final : public Writer {
     fmt::format_to(out, "# unit time_s = s\n");
     for (const auto signal : about.signals)
       fmt::format_to(out, "# unit {} = {}\n", protocol::info(signal).name, protocol::info(signal).unit);
+    for (const auto quantity : about.simulated) {
+      const auto& row = protocol::info(quantity);
+      fmt::format_to(out, "# unit {0} = {1}\n# simulated {0} = {2}\n", row.name, row.unit, row.help);
+    }
     fmt::format_to(out, "time_s");
     for (const auto signal : about.signals) fmt::format_to(out, ",{}", protocol::info(signal).name);
+    for (const auto quantity : about.simulated) fmt::format_to(out, ",{}", protocol::info(quantity).name);
     fmt::format_to(out, "\n");
   }
   void write_text() {
@@ -76,6 +84,7 @@ class CsvWriter final : public Writer {
 
   std::string name_;
   std::FILE* file_;
+  std::size_t simulated_;  ///< how many simulated quantities stand behind the signals
   fmt::memory_buffer text_;
 };
 

@@ -4,19 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include <device/error.hpp>
 #include <recording/gnuplot.hpp>
-#include <recording/signals.hpp>
 
 namespace inkwell::recording {
 namespace {
 
 using protocol::Parameter;
-using protocol::Signal;
 
 constexpr std::size_t points_maximum = 1200;  ///< about one for each pixel of the plot's width
 constexpr int width_pixels = 1600;
@@ -51,17 +48,14 @@ class WorkDirectory {
   std::filesystem::path path_;
 };
 
-void write_data(const Recording& recording, const std::vector<Signal>& signals, Range shown, double from_s, double to_s,
-                const std::filesystem::path& file) {
-  std::vector<std::string> names{"time_s"};
+FigureData data_of(const Recording& recording, const std::vector<Quantity>& quantities, Range shown, double from_s,
+                   double to_s) {
+  FigureData data;
   std::vector<const std::vector<float>*> columns;
-  for (const auto signal : signals) {
-    for (const auto& name : band_columns(std::string(info(signal).name))) names.push_back(name);
-    columns.push_back(&recording.column(signal));
+  for (const auto quantity : quantities) {
+    data.names.emplace_back(name_of(quantity));
+    columns.push_back(&recording.column(quantity));
   }
-  fmt::memory_buffer text;
-  fmt::format_to(std::back_inserter(text), "{}\n", fmt::join(names, ","));
-
   const std::size_t points = std::min(points_maximum, shown.end - shown.begin);
   // With few points, each of them is one sample; the half period keeps rounding from moving one to its neighbour.
   const double half_period_s = 0.5 / protocol::servo_rate_Hz;
@@ -71,17 +65,14 @@ void write_data(const Recording& recording, const std::vector<Signal>& signals, 
     const double start_s = from_s - half_period_s + step_s * static_cast<double>(point);
     const std::size_t end =
         point + 1 == points ? shown.end : std::min(shown.end, recording.sample_at(start_s + step_s));
-    fmt::format_to(std::back_inserter(text), "{:.7g}", start_s + 0.5 * step_s);
-    for (const auto* column : columns) {
-      const Band band = band_of(end - begin, [&](std::size_t i) { return static_cast<double>((*column)[begin + i]); });
-      fmt::format_to(std::back_inserter(text), ",{:.7g},{:.7g},{:.7g}", band.mean, band.minimum, band.maximum);
-    }
-    text.push_back('\n');
+    FigureData::Row row{start_s + 0.5 * step_s, {}};
+    for (const auto* column : columns)
+      row.bands.push_back(
+          band_of(end - begin, [&](std::size_t i) { return static_cast<double>((*column)[begin + i]); }));
+    data.rows.push_back(std::move(row));
     begin = end;
   }
-  std::ofstream stream(file, std::ios::binary);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.flush()) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
+  return data;
 }
 
 std::string subtitle(const Recording& recording) {
@@ -124,7 +115,7 @@ std::string marks(const Recording& recording, double from_s, double to_s, bool w
   return text;
 }
 
-std::string script(const Recording& recording, const std::vector<FigurePane>& panes, const std::string& name,
+std::string script(const Recording& recording, const std::vector<FigurePane>& panes, const std::string& title,
                    double from_s, double to_s) {
   const auto count = static_cast<int>(panes.size());
   const int height = titles_pixels + count * pane_pixels + (count - 1) * pane_gap_pixels + time_axis_pixels;
@@ -132,9 +123,9 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
   text += fmt::format(
       "set output 'figure.png'\nset multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.77\n"
       "set xrange [{:.6f}:{:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
-      "set key at screen 0.785, graph 1 left top\n",
+      "set key at screen 0.785, graph 1 left top font 'Inter,16' spacing 1.1\n",
       from_s, to_s);
-  text += figure_titles(name + (recording.information.simulation ? " (simulation)" : ""), subtitle(recording), height);
+  text += figure_titles(title + (recording.information.simulation ? " (simulation)" : ""), subtitle(recording), height);
   text += marks(recording, from_s, to_s, true);
   text += "set format x ''\nunset xlabel\n";
   int top = height - titles_pixels;
@@ -153,10 +144,10 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
     text += fmt::format("set label 3 {} at screen 0.018, graph 0.5 center rotate textcolor rgb ink noenhanced\n",
                         gnuplot_text(pane.label));
     std::vector<Curve> curves;
-    for (std::size_t j = 0; j < pane.signals.size(); ++j) {
+    for (std::size_t j = 0; j < pane.quantities.size(); ++j) {
       const std::string colour = colours[j % colours.size()];
-      const std::string signal(info(pane.signals[j]).name);
-      curves.push_back({signal, j < colours.size() ? colour : colour + " dashtype 2", signal});
+      const std::string name(name_of(pane.quantities[j]));
+      curves.push_back({name, j < colours.size() ? colour : colour + " dashtype 2", name});
     }
     text += plot_command(curves);
   }
@@ -165,28 +156,27 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
 
 }  // namespace
 
-std::vector<FigurePane> figure_panes(const std::vector<Signal>& signals) {
-  constexpr std::size_t quantities_maximum = 2;  // more would not fit beside their axis
+std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities) {
+  constexpr std::size_t words_maximum = 2;  // more would not fit beside their axis
   std::vector<FigurePane> panes;
   std::vector<std::string_view> units;
-  std::vector<std::vector<std::string>> quantities;
-  for (const auto signal : signals) {
-    const auto unit = info(signal).unit;
+  std::vector<std::vector<std::string>> words;
+  for (const auto quantity : quantities) {
+    const auto unit = unit_of(quantity);
     const auto pane = static_cast<std::size_t>(std::find(units.begin(), units.end(), unit) - units.begin());
     if (pane == units.size()) {
       units.push_back(unit);
       panes.emplace_back();
-      quantities.emplace_back();
+      words.emplace_back();
     }
-    panes[pane].signals.push_back(signal);
-    const auto quantity = quantity_of(signal);
-    if (std::find(quantities[pane].begin(), quantities[pane].end(), quantity) == quantities[pane].end())
-      quantities[pane].push_back(quantity);
+    panes[pane].quantities.push_back(quantity);
+    const auto word = words_of(quantity);
+    if (std::find(words[pane].begin(), words[pane].end(), word) == words[pane].end()) words[pane].push_back(word);
   }
   for (std::size_t i = 0; i < panes.size(); ++i) {
     std::vector<std::string> parts;
-    if (quantities[i].size() <= quantities_maximum || units[i].empty())
-      parts.push_back(fmt::format("{}", fmt::join(quantities[i], ", ")));
+    if (words[i].size() <= words_maximum || units[i].empty())
+      parts.push_back(fmt::format("{}", fmt::join(words[i], ", ")));
     if (!units[i].empty()) parts.emplace_back(units[i]);
     panes[i].label = fmt::format("{}", fmt::join(parts, "  /  "));
   }
@@ -195,7 +185,7 @@ std::vector<FigurePane> figure_panes(const std::vector<Signal>& signals) {
 
 void draw_figure(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture) {
   if (recording.size() == 0) throw device::Error("The recording holds no samples, so there is nothing to draw.");
-  const auto& signals = options.signals.empty() ? recording.information.signals : options.signals;
+  const auto quantities = options.quantities.empty() ? recording.quantities() : options.quantities;
   const double end_s = recording.duration_s();
   const double from_s = std::max(0.0, options.from_s), to_s = std::min(end_s, options.to_s.value_or(end_s));
   const Range shown{recording.sample_at(from_s), recording.sample_at(to_s + 0.5 / protocol::servo_rate_Hz)};
@@ -204,11 +194,8 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
                                     options.from_s, options.to_s.value_or(end_s), end_s));
 
   const WorkDirectory work;
-  write_data(recording, signals, shown, from_s, to_s, work.path() / "data.csv");
-  std::ofstream stream(work.path() / "figure.gnuplot", std::ios::binary);
-  stream << script(recording, figure_panes(signals), recording.name, from_s, to_s) << std::flush;
-  if (!stream) throw device::Error(fmt::format("{} cannot be written. Check the space left.", work.path().string()));
-  stream.close();
+  data_of(recording, quantities, shown, from_s, to_s).write(work.path() / "data.csv");
+  write_text(work.path() / "figure.gnuplot", script(recording, figure_panes(quantities), recording.name, from_s, to_s));
   run_gnuplot(work.path() / "figure.gnuplot");
   std::error_code error;
   std::filesystem::copy_file(work.path() / "figure.png", picture, std::filesystem::copy_options::overwrite_existing,

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -34,8 +36,24 @@ std::string shell_quoted(const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> band_columns(const std::string& name) {
-  return {name + "_mean", name + "_minimum", name + "_maximum"};
+void write_text(const std::filesystem::path& file, std::string_view text) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream.flush()) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
+}
+
+void FigureData::write(const std::filesystem::path& file) const {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "time_s");
+  for (const auto& name : names) fmt::format_to(out, ",{0}_mean,{0}_minimum,{0}_maximum", name);
+  for (const auto& row : rows) {
+    fmt::format_to(out, "\n{:.7g}", row.time_s);
+    for (const auto& band : row.bands)
+      fmt::format_to(out, ",{:.7g},{:.7g},{:.7g}", band.mean, band.minimum, band.maximum);
+  }
+  fmt::format_to(out, "\n");
+  write_text(file, {text.data(), text.size()});
 }
 
 std::string figure_head(const std::string& data_file, int width, int height) {

@@ -6,6 +6,7 @@
 //   /period              uint32[N], control period of each sample
 //   /time_s              float64[N]
 //   /signals/NAME        float32[N], attributes unit and help
+//   /simulated/NAME      float32[N], attributes unit and help: what a simulation knew beside the signals, if it did
 //   /marks/period        uint32[M]
 //   /marks/text          fixed-length UTF-8 text[M]
 //   /samples             uint64, how many samples are whole on the disk; a column may be longer after a crash

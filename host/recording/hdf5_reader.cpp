@@ -31,7 +31,9 @@ class Hdf5Reader {
     recording_.periods.resize(whole);
     read_values("/period", H5T_NATIVE_UINT32, whole, recording_.periods.data());
     for (const auto& path : columns_) {
-      auto& column = recording_.columns.emplace_back(whole);
+      auto& place = recording_.columns.size() < recording_.information.signals.size() ? recording_.columns
+                                                                                      : recording_.simulated_columns;
+      auto& column = place.emplace_back(whole);
       read_values(path, H5T_NATIVE_FLOAT, whole, column.data());
     }
     read_marks();
@@ -62,17 +64,26 @@ class Hdf5Reader {
       }
       read_scalar("/parameters/" + name, H5T_NATIVE_FLOAT, &about.parameters[*parameter]);
     }
-    for (const auto& name : names("/signals")) {
-      if (const auto signal = protocol::find_signal(name)) {
-        about.signals.push_back(*signal);
-      } else {
+    about.signals = read_columns("/signals", protocol::find_signal);
+    // A file of an earlier version has no such group.
+    if (H5Lexists(root, "/simulated", H5P_DEFAULT) > 0)
+      about.simulated = read_columns("/simulated", protocol::find_simulated_quantity);
+  }
+  /// What the columns of a group hold, by their names.
+  template <class Value>
+  std::vector<Value> read_columns(const char* group_name, std::optional<Value> (*find)(std::string_view)) {
+    std::vector<Value> found;
+    for (const auto& name : names(group_name)) {
+      if (const auto value = find(name))
+        found.push_back(*value);
+      else
         recording_.remarks.push_back(
             fmt::format("The signal {} of {} is not known here; it was left out.", name, name_));
-      }
     }
     // HDF5 gives names in alphabetical order; in the table's order those that belong together stand together.
-    std::sort(about.signals.begin(), about.signals.end());
-    for (const auto signal : about.signals) columns_.push_back(fmt::format("/signals/{}", info(signal).name));
+    std::sort(found.begin(), found.end());
+    for (const auto value : found) columns_.push_back(fmt::format("{}/{}", group_name, info(value).name));
+    return found;
   }
   void read_marks() {
     const std::size_t count = std::min(length("/marks/period"), length("/marks/text"));

@@ -20,7 +20,9 @@ constexpr hsize_t chunk_marks = 16;
 class Hdf5Writer final : public Writer {
  public:
   Hdf5Writer(const std::filesystem::path& file, const Information& information)
-      : name_(file.string()), values_(information.signals.size()) {
+      : name_(file.string()),
+        width_(information.signals.size()),
+        values_(information.signals.size() + information.simulated.size()) {
     const QuietHdf5 quiet;
     lay_out(information);
     open_for_writing(information);
@@ -31,13 +33,15 @@ class Hdf5Writer final : public Writer {
     close();
   }
 
-  void append(const device::ScopeSamples& samples) override {
-    const std::size_t width = samples.signals.size();
+  void append(const device::ScopeSamples& samples, std::span<const float> simulated) override {
+    const std::size_t simulated_width = values_.size() - width_;
     for (std::size_t i = 0; i < samples.count; ++i) {
       const std::uint32_t period = samples.first_period + static_cast<std::uint32_t>(i);
       periods_.push_back(period);
       times_s_.push_back(static_cast<double>(period) / protocol::servo_rate_Hz);
-      for (std::size_t j = 0; j < width; ++j) values_[j].push_back(samples.values[i * width + j]);
+      for (std::size_t j = 0; j < width_; ++j) values_[j].push_back(samples.values[i * width_ + j]);
+      for (std::size_t j = 0; j < simulated_width; ++j)
+        values_[width_ + j].push_back(simulated[i * simulated_width + j]);
     }
     // A scope frame has some tens of samples, and HDF5 takes as long for them as for thousands.
     if (periods_.size() >= chunk_samples) write_samples();
@@ -119,12 +123,9 @@ class Hdf5Writer final : public Writer {
     growing(file.id(), "period", H5T_STD_U32LE, chunk_samples);
     write_attribute(growing(file.id(), "time_s", H5T_IEEE_F64LE, chunk_samples).id(), "unit", std::string("s"));
     const Handle signals = group(file.id(), "signals");
-    for (const auto signal : about.signals) {
-      const auto& row = protocol::info(signal);
-      const Handle column = growing(signals.id(), std::string(row.name), H5T_IEEE_F32LE, chunk_samples);
-      write_attribute(column.id(), "unit", std::string(row.unit));
-      write_attribute(column.id(), "help", std::string(row.help));
-    }
+    for (const auto signal : about.signals) lay_out_column(signals, protocol::info(signal));
+    const Handle simulated = group(file.id(), "simulated");
+    for (const auto quantity : about.simulated) lay_out_column(simulated, protocol::info(quantity));
     const Handle marks = group(file.id(), "marks");
     growing(marks.id(), "period", H5T_STD_U32LE, chunk_marks);
     growing(marks.id(), "text", text_type(mark_text_bytes).id(), chunk_marks);
@@ -132,6 +133,12 @@ class Hdf5Writer final : public Writer {
     scalar(file.id(), "complete", H5T_NATIVE_INT32, &no);
     const hsize_t none = 0;
     scalar(file.id(), "samples", H5T_NATIVE_HSIZE, &none);
+  }
+  template <class Row>
+  void lay_out_column(const Handle& place, const Row& row) {
+    const Handle column = growing(place.id(), std::string(row.name), H5T_IEEE_F32LE, chunk_samples);
+    write_attribute(column.id(), "unit", std::string(row.unit));
+    write_attribute(column.id(), "help", std::string(row.help));
   }
   void open_for_writing(const Information& about) {
     file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access().id()), H5Fclose);
@@ -144,7 +151,9 @@ class Hdf5Writer final : public Writer {
     period_ = open("/period");
     time_ = open("/time_s");
     for (const auto signal : about.signals)
-      signals_.push_back(open(fmt::format("/signals/{}", protocol::info(signal).name)));
+      columns_.push_back(open(fmt::format("/signals/{}", protocol::info(signal).name)));
+    for (const auto quantity : about.simulated)
+      columns_.push_back(open(fmt::format("/simulated/{}", protocol::info(quantity).name)));
     mark_period_ = open("/marks/period");
     mark_text_ = open("/marks/text");
     complete_ = open("/complete");
@@ -157,7 +166,7 @@ class Hdf5Writer final : public Writer {
     extend(period_, size_, count, H5T_NATIVE_UINT32, periods_.data());
     extend(time_, size_, count, H5T_NATIVE_DOUBLE, times_s_.data());
     for (std::size_t j = 0; j < values_.size(); ++j) {
-      extend(signals_[j], size_, count, H5T_NATIVE_FLOAT, values_[j].data());
+      extend(columns_[j], size_, count, H5T_NATIVE_FLOAT, values_[j].data());
       values_[j].clear();
     }
     size_ += count;
@@ -173,7 +182,7 @@ class Hdf5Writer final : public Writer {
     if (H5Dwrite(dataset.id(), type, memory.id(), space.id(), H5P_DEFAULT, values) < 0) fail();
   }
   void close() {
-    signals_.clear();
+    columns_.clear();
     for (Handle* handle : {&period_, &time_, &mark_period_, &mark_text_, &complete_, &samples_, &file_})
       *handle = Handle();
   }
@@ -187,8 +196,9 @@ class Hdf5Writer final : public Writer {
   }
 
   std::string name_;
+  std::size_t width_;  ///< how many signals there are
   Handle file_, period_, time_, mark_period_, mark_text_, complete_, samples_;
-  std::vector<Handle> signals_;
+  std::vector<Handle> columns_;         ///< of the signals, then of the simulated quantities
   std::vector<std::uint32_t> periods_;  ///< of samples that are not in the file yet, and the columns beside them
   std::vector<double> times_s_;
   std::vector<std::vector<float>> values_;

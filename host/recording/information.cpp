@@ -30,7 +30,8 @@ Information describe(const device::Information& device, const protocol::Paramete
           .arm = arm.empty() && is_default_arm(parameters) ? arm_defaults::name : arm,
           .simulation = simulation,
           .parameters = parameters,
-          .signals = std::move(signals)};
+          .signals = std::move(signals),
+          .simulated = {}};
 }
 
 }  // namespace inkwell::recording

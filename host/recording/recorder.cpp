@@ -23,6 +23,12 @@ std::size_t size_of(const device::ScopeSamples& samples) {
   return samples.values.size() * sizeof(float) + sizeof samples;
 }
 
+/// No device tells what a simulation knows.
+Information only_signals(Information information) {
+  information.simulated.clear();
+  return information;
+}
+
 }  // namespace
 
 struct Recorder::Implementation {
@@ -66,7 +72,7 @@ struct Recorder::Implementation {
   }
   void write(const Item& item) {
     if (const auto* mark = std::get_if<Mark>(&item)) return writer->mark(*mark);
-    writer->append(std::get<device::ScopeSamples>(item));
+    writer->append(std::get<device::ScopeSamples>(item), {});
   }
   void update_sizes() {
     std::error_code error;
@@ -92,7 +98,7 @@ struct Recorder::Implementation {
 };
 
 Recorder::Recorder(const std::filesystem::path& file, const Information& information)
-    : implementation_(std::make_unique<Implementation>(file, information)) {}
+    : implementation_(std::make_unique<Implementation>(file, only_signals(information))) {}
 
 Recorder::~Recorder() { stop(); }
 

@@ -10,6 +10,14 @@
 
 namespace inkwell::recording {
 
+Recording Recording::without_samples(Information information) {
+  Recording recording;
+  recording.columns.resize(information.signals.size());
+  recording.simulated_columns.resize(information.simulated.size());
+  recording.information = std::move(information);
+  return recording;
+}
+
 std::uint64_t Recording::lost() const {
   if (periods.size() < 2) return 0;
   return std::uint64_t{periods.back() - periods.front()} + 1 - periods.size();
@@ -29,14 +37,54 @@ std::size_t Recording::sample_at(double elapsed) const {
   return first;
 }
 
-const std::vector<float>& Recording::column(protocol::Signal signal) const {
-  const auto& recorded = information.signals;
-  const auto found = std::find(recorded.begin(), recorded.end(), signal);
-  if (found != recorded.end()) return columns[static_cast<std::size_t>(found - recorded.begin())];
+std::vector<Quantity> Recording::quantities() const {
+  std::vector<Quantity> all(information.signals.begin(), information.signals.end());
+  all.insert(all.end(), information.simulated.begin(), information.simulated.end());
+  return all;
+}
+
+const std::vector<float>& Recording::column(Quantity quantity) const {
+  const auto recorded = quantities();
+  const auto place = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), quantity) - recorded.begin());
+  if (place < columns.size()) return columns[place];
+  if (place < recorded.size()) return simulated_columns[place - columns.size()];
   std::vector<std::string_view> names;
-  for (const auto each : recorded) names.push_back(info(each).name);
+  for (const auto each : recorded) names.push_back(name_of(each));
   throw device::Error(
-      fmt::format("The recording does not hold {}. It holds {}.", info(signal).name, fmt::join(names, ", ")));
+      fmt::format("The recording does not hold {}. It holds {}.", name_of(quantity), fmt::join(names, ", ")));
+}
+
+std::size_t Recording::end_of_stretch(std::size_t begin, std::size_t end) const {
+  std::size_t last = begin + 1;
+  while (last < end && periods[last] == periods[last - 1] + 1) ++last;
+  return last;
+}
+
+device::ScopeSamples Recording::samples(std::size_t begin, std::size_t end) const {
+  device::ScopeSamples samples{
+      .signals = information.signals, .first_period = periods[begin], .count = end - begin, .values = {}};
+  if (begin > 0) samples.lost_before = periods[begin] - periods[begin - 1] - 1;
+  samples.values.reserve(samples.count * samples.signals.size());
+  for (std::size_t i = begin; i < end; ++i)
+    for (const auto& column : columns) samples.values.push_back(column[i]);
+  return samples;
+}
+
+void Recording::append(const device::ScopeSamples& samples) {
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    periods.push_back(samples.first_period + static_cast<std::uint32_t>(i));
+    for (std::size_t j = 0; j < columns.size(); ++j) columns[j].push_back(samples.values[i * columns.size() + j]);
+  }
+}
+
+void Recording::keep(std::size_t begin, std::size_t end) {
+  const auto cut = [&](auto& values) {
+    values.resize(std::min(end, values.size()));
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(std::min(begin, values.size())));
+  };
+  cut(periods);
+  for (auto& column : columns) cut(column);
+  for (auto& column : simulated_columns) cut(column);
 }
 
 namespace {
@@ -77,6 +125,30 @@ void check_can_be_created(const std::filesystem::path& file) {
 std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information) {
   check_can_be_created(file);
   return file.extension() == ".csv" ? create_csv(file, information) : create_hdf5(file, information);
+}
+
+void save(const Recording& recording, const std::filesystem::path& file) {
+  constexpr std::size_t block_samples = 4096;
+  // The ending stays last, because it chooses the format.
+  const auto part = file.parent_path() / fmt::format("{}.part{}", file.stem().string(), file.extension().string());
+  std::error_code error;
+  std::filesystem::remove(part, error);
+  const auto writer = create(part, recording.information);
+  std::vector<float> simulated;
+  for (std::size_t begin = 0; begin < recording.size();) {
+    const std::size_t end = recording.end_of_stretch(begin, std::min(recording.size(), begin + block_samples));
+    simulated.clear();
+    for (std::size_t i = begin; i < end; ++i)
+      for (const auto& column : recording.simulated_columns) simulated.push_back(column[i]);
+    writer->append(recording.samples(begin, end), simulated);
+    begin = end;
+  }
+  for (const auto& mark : recording.marks) writer->mark(mark);
+  writer->finish();
+  std::filesystem::rename(part, file, error);
+  if (error)
+    throw device::Error(
+        fmt::format("{} cannot be written: {}. Its content is in {}.", file.string(), error.message(), part.string()));
 }
 
 }  // namespace inkwell::recording

@@ -40,27 +40,13 @@ Replay::Passed Replay::advance(double passed_s, double history_s) {
 
   const std::size_t end = recording_.sample_at(position_s_ + half_period_s);
   while (next_sample_ < end) {
-    std::size_t last = next_sample_ + 1;
-    while (last < end && last - next_sample_ < block_samples_maximum &&
-           recording_.periods[last] == recording_.periods[last - 1] + 1)
-      ++last;
-    passed.blocks.push_back(block(next_sample_, last));
+    const std::size_t last =
+        recording_.end_of_stretch(next_sample_, std::min(end, next_sample_ + block_samples_maximum));
+    passed.blocks.push_back(recording_.samples(next_sample_, last));
     next_sample_ = last;
   }
   if (passed.starts_anew && !passed.blocks.empty()) passed.blocks.front().lost_before = 0;
   return passed;
-}
-
-device::ScopeSamples Replay::block(std::size_t begin, std::size_t end) const {
-  device::ScopeSamples samples{.signals = recording_.information.signals,
-                               .first_period = recording_.periods[begin],
-                               .count = end - begin,
-                               .values = {}};
-  if (begin > 0) samples.lost_before = recording_.periods[begin] - recording_.periods[begin - 1] - 1;
-  samples.values.reserve(samples.count * samples.signals.size());
-  for (std::size_t i = begin; i < end; ++i)
-    for (const auto& column : recording_.columns) samples.values.push_back(column[i]);
-  return samples;
 }
 
 std::optional<std::size_t> Replay::column_of(Signal signal) const { return columns_[static_cast<std::size_t>(signal)]; }

@@ -17,8 +17,19 @@ void append_range(std::vector<Signal>& signals, Signal first, Signal last) {
   for (auto i = static_cast<int>(first); i <= static_cast<int>(last); ++i) signals.push_back(static_cast<Signal>(i));
 }
 
-void remove_suffix(std::string& text, std::string_view suffix) {
-  if (!suffix.empty() && text.ends_with(suffix)) text.resize(text.size() - suffix.size());
+std::vector<std::string_view> split(std::string_view names) {
+  std::vector<std::string_view> parts;
+  while (!names.empty()) {
+    parts.push_back(names.substr(0, names.find(',')));
+    names.remove_prefix(std::min(names.size(), parts.back().size() + 1));
+  }
+  if (parts.empty()) throw device::Error("No signal is named. Name at least one, such as force_N.");
+  return parts;
+}
+
+template <class Value>
+void add_once(std::vector<Value>& values, Value value) {
+  if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
 }
 
 }  // namespace
@@ -39,30 +50,37 @@ std::vector<Signal> signal_path() {
 
 std::vector<Signal> parse_signals(std::string_view names) {
   std::vector<Signal> signals;
-  while (!names.empty()) {
-    const auto name = names.substr(0, names.find(','));
-    names.remove_prefix(std::min(names.size(), name.size() + 1));
+  for (const auto name : split(names)) {
     const auto signal = protocol::find_signal(name);
     if (!signal)
       throw device::Error(fmt::format("There is no signal `{}`. Did you mean {}?", name,
                                       device::nearest_name(protocol::signal_table, name)));
-    if (std::find(signals.begin(), signals.end(), *signal) == signals.end()) signals.push_back(*signal);
+    add_once(signals, *signal);
   }
-  if (signals.empty()) throw device::Error("No signal is named. Name at least one, such as force_N.");
   if (signals.size() > protocol::scope_signals_maximum)
     throw device::Error(fmt::format("{} signals are named, but the scope carries {} at once. Leave some out.",
                                     signals.size(), protocol::scope_signals_maximum));
   return signals;
 }
 
-std::string quantity_of(Signal signal) {
-  const auto& row = protocol::info(signal);
-  std::string name(row.name), unit(row.unit);
-  std::replace(unit.begin(), unit.end(), '/', '_');
-  if (!unit.empty()) remove_suffix(name, "_" + unit);
-  for (const char* part : {"_x", "_y", "_z", "_1", "_2", "_3"}) remove_suffix(name, part);
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
+std::vector<Quantity> parse_quantities(std::string_view names) {
+  struct Named {
+    std::string_view name;
+  };
+  std::vector<Named> known;
+  for (const auto& row : protocol::signal_table) known.push_back({row.name});
+  for (const auto& row : protocol::simulated_quantity_table) known.push_back({row.name});
+  std::vector<Quantity> quantities;
+  for (const auto name : split(names)) {
+    if (const auto signal = protocol::find_signal(name))
+      add_once(quantities, Quantity(*signal));
+    else if (const auto simulated = protocol::find_simulated_quantity(name))
+      add_once(quantities, Quantity(*simulated));
+    else
+      throw device::Error(
+          fmt::format("There is no signal `{}`. Did you mean {}?", name, device::nearest_name(known, name)));
+  }
+  return quantities;
 }
 
 }  // namespace inkwell::recording

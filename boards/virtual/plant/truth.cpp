@@ -4,8 +4,8 @@
 
 namespace inkwell::virtual_board {
 
-std::array<double, traced_quantities.size()> traced_values(const Truth& t) {
-  std::array<double, traced_quantities.size()> values;
+TracedValues traced_values(const Truth& t) {
+  TracedValues values;
   std::size_t next = 0;
   for (const Vector3* v : {&t.position_m, &t.velocity_m_s, &t.joints_rad, &t.joint_speeds_rad_s, &t.current_A,
                            &t.torque_Nm, &t.hand_force_N, &t.hand_target_m})

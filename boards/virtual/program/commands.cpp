@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <protocol/simulation.hpp>
+
 #include "simulation.hpp"
 
 namespace inkwell::virtual_board {
@@ -246,7 +248,8 @@ json truth(const json&, Simulation& simulation) {
              {"bridges_enabled", t.bridges_enabled}};
   for (const auto& legs : t.leg_levels) reply["bridge_legs"].push_back({name_of(legs[0]), name_of(legs[1])});
   const auto values = traced_values(t);
-  for (std::size_t i = 0; i < values.size(); ++i) reply[std::string(traced_quantities[i])] = values[i];
+  for (std::size_t i = 0; i < values.size(); ++i)
+    reply[std::string(protocol::simulated_quantity_table[i].name)] = values[i];
   return reply;
 }
 
@@ -260,7 +263,7 @@ json trace(const json& request, Simulation& simulation) {
   } else if (action == "read") {
     const auto maximum = static_cast<std::size_t>(number_or(request, "maximum", 10'000, 0, Trace::rows_maximum));
     json columns{"period", "board_time_s"};
-    for (const auto name : traced_quantities) columns.push_back(name);
+    for (const auto& quantity : protocol::simulated_quantity_table) columns.push_back(quantity.name);
     json rows = json::array();
     for (const Trace::Row& row : trace.read(maximum)) {
       json cells{row.period, seconds(row.at)};

@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <functional>
 
-#include <experiment/wall_experiment.hpp>
+#include <experiment/summary_json.hpp>
+#include <recording/signals.hpp>
 
 using namespace inkwell;
 using namespace inkwell::experiment;
@@ -10,41 +12,41 @@ using protocol::Parameter;
 
 namespace {
 
-constexpr double sample_period_s = 50e-6;
+using protocol::Signal;
+using recording::Recording;
 
-/// A scope recording of all signals of the experiment, zero unless the filler sets them.
-ScopeRecording synthetic(std::size_t samples, const std::function<void(std::size_t, protocol::SignalValues&)>& fill) {
-  ScopeRecording scope;
-  scope.signals = recorded_signals();
-  scope.first_period = 500;
+/// A recording of the whole signal path, zero unless the filler sets it.
+Recording synthetic(std::size_t samples, const std::function<void(std::size_t, protocol::SignalValues&)>& fill) {
+  recording::Information about;
+  about.signals = recording::signal_path();
+  about.parameters = protocol::default_parameters();
+  device::ScopeSamples scope{.signals = about.signals, .first_period = 500, .count = samples, .values = {}};
   for (std::size_t i = 0; i < samples; ++i) {
     protocol::SignalValues values{};
     fill(i, values);
-    for (auto signal : scope.signals) scope.values.push_back(values[signal]);
+    for (const auto signal : scope.signals) scope.values.push_back(values[signal]);
   }
-  return scope;
+  auto recording = Recording::without_samples(about);
+  recording.append(scope);
+  return recording;
 }
 
 /// A push into the upper z wall with 0.4 N at rest, `error_N` off the law.
 Recording push(double error_N = 0) {
-  return make_recording(synthetic(20'000,
-                                  [&](std::size_t i, protocol::SignalValues& values) {
-                                    using protocol::Signal;
-                                    if (i < 5000 || i >= 17'000) return;
-                                    const bool steady = i >= 6000;
-                                    values[Signal::penetration_z_m] = -0.0005f;
-                                    values[Signal::velocity_z_m_s] = steady ? 0.0f : 0.1f;
-                                    // d' = v towards the wall: F = 800 * 0.0005 + 2 * 0.1
-                                    const double force_N = -(0.4 + (steady ? 0.0 : 0.2)) - error_N;
-                                    values[Signal::force_z_N] = static_cast<float>(force_N);
-                                    values[Signal::force_N] = static_cast<float>(std::abs(force_N));
-                                    values[Signal::encoder_2_counts] =
-                                        steady ? 100.0f + static_cast<float>(i % 2) : 50.0f;
-                                    values[Signal::position_z_m] = steady ? 0.0355f : 0.0350f;
-                                    values[Signal::torque_1_Nm] = -0.001f;
-                                    values[Signal::torque_3_Nm] = -0.08f;
-                                  }),
-                        nullptr);
+  return synthetic(20'000, [&](std::size_t i, protocol::SignalValues& values) {
+    if (i < 5000 || i >= 17'000) return;
+    const bool steady = i >= 6000;
+    values[Signal::penetration_z_m] = -0.0005f;
+    values[Signal::velocity_z_m_s] = steady ? 0.0f : 0.1f;
+    // d' = v towards the wall: F = 800 * 0.0005 + 2 * 0.1
+    const double force_N = -(0.4 + (steady ? 0.0 : 0.2)) - error_N;
+    values[Signal::force_z_N] = static_cast<float>(force_N);
+    values[Signal::force_N] = static_cast<float>(std::abs(force_N));
+    values[Signal::encoder_2_counts] = steady ? 100.0f + static_cast<float>(i % 2) : 50.0f;
+    values[Signal::position_z_m] = steady ? 0.0355f : 0.0350f;
+    values[Signal::torque_1_Nm] = -0.001f;
+    values[Signal::torque_3_Nm] = -0.08f;
+  });
 }
 
 protocol::ParameterSet omni() {
@@ -54,48 +56,7 @@ protocol::ParameterSet omni() {
   return parameters;
 }
 
-/// A first-order answer with the given time constant and overshoot added to its plateau's first sample.
-std::vector<double> answer(double amplitude_A, double time_constant_s, std::size_t begin, std::size_t end,
-                           std::size_t size) {
-  std::vector<double> current_A(size, 0.0);
-  for (std::size_t i = begin; i < end; ++i)
-    current_A[i] = amplitude_A * (1 - std::exp(-static_cast<double>(i - begin) * sample_period_s / time_constant_s));
-  return current_A;
-}
-
-std::vector<double> pulse(double amplitude_A, std::size_t begin, std::size_t end, std::size_t size) {
-  std::vector<double> reference_A(size, 0.0);
-  for (std::size_t i = begin; i < end; ++i) reference_A[i] = amplitude_A;
-  return reference_A;
-}
-
 }  // namespace
-
-TEST_CASE("the rise time of a first-order answer is its time constant") {
-  for (double amplitude_A : {0.5, -0.5}) {
-    const auto step =
-        current_step(pulse(amplitude_A, 100, 900, 1000), answer(amplitude_A, 0.2e-3, 100, 900, 1000), sample_period_s);
-    CHECK(step.amplitude_A == amplitude_A);
-    CHECK(step.rise_time_s == doctest::Approx(0.2e-3).epsilon(0.02));
-    CHECK(step.overshoot == 0);
-    CHECK(step.steady_error_A == doctest::Approx(0).epsilon(1e-6));
-  }
-}
-
-TEST_CASE("overshoot and steady error of a current step are measured") {
-  auto current_A = answer(0.5, 0.1e-3, 100, 900, 1000);
-  current_A[140] = 0.55;
-  for (std::size_t i = 500; i < 900; ++i) current_A[i] = 0.48;
-  const auto step = current_step(pulse(0.5, 100, 900, 1000), current_A, sample_period_s);
-  CHECK(step.overshoot == doctest::Approx(0.1));
-  CHECK(step.steady_error_A == doctest::Approx(-0.02));
-}
-
-TEST_CASE("a current that does not follow, or a missing pulse, is an error") {
-  const std::vector<double> nothing(1000, 0.0);
-  CHECK_THROWS_AS(current_step(pulse(0.5, 100, 900, 1000), nothing, sample_period_s), device::Error);
-  CHECK_THROWS_AS(current_step(nothing, nothing, sample_period_s), device::Error);
-}
 
 TEST_CASE("the force law holds for a recording that was made by it") {
   const auto law = force_law(push(), omni());
@@ -117,13 +78,10 @@ TEST_CASE("the law's force is limited as the firmware limits it, and never pulls
   auto parameters = omni();
   parameters[Parameter::force_limit_N] = 0.3f;
   CHECK(force_law(push(), parameters).error_maximum_N == doctest::Approx(0.3).epsilon(1e-3));
-  const auto leaving = make_recording(synthetic(10,
-                                                [](std::size_t, protocol::SignalValues& values) {
-                                                  values[protocol::Signal::penetration_z_m] = -0.0005f;
-                                                  values[protocol::Signal::velocity_z_m_s] =
-                                                      -1.0f;  // out of the wall faster than the spring pushes
-                                                }),
-                                      nullptr);
+  const auto leaving = synthetic(10, [](std::size_t, protocol::SignalValues& values) {
+    values[Signal::penetration_z_m] = -0.0005f;
+    values[Signal::velocity_z_m_s] = -1.0f;  // out of the wall faster than the spring pushes
+  });
   CHECK(force_law(leaving, omni()).error_maximum_N == 0);
 }
 
@@ -148,9 +106,19 @@ TEST_CASE("without a plan the steadiest half second in the wall is taken") {
   REQUIRE(interval);
   CHECK(interval->from_s >= 0.25);
   CHECK(interval->to_s <= 0.85);
-  const auto nothing = make_recording(synthetic(20'000, [](std::size_t, protocol::SignalValues&) {}), nullptr);
+  const auto nothing = synthetic(20'000, [](std::size_t, protocol::SignalValues&) {});
   CHECK_FALSE(find_steady_hold(nothing, {2, 1}));
   CHECK_FALSE(evaluate(nothing, omni(), {2, 1}, std::nullopt).contact);
+}
+
+TEST_CASE("the wall that was pushed is known by the deepest penetration") {
+  CHECK(pushed_wall(push()) == Wall{2, 1});
+  const auto to_the_left = synthetic(10, [](std::size_t i, protocol::SignalValues& values) {
+    values[Signal::penetration_x_m] = i == 4 ? 0.0004f : 0.0f;
+    values[Signal::penetration_y_m] = i == 7 ? -0.0003f : 0.0f;
+  });
+  CHECK(pushed_wall(to_the_left) == Wall{0, -1});
+  CHECK_THROWS_AS(pushed_wall(synthetic(10, [](std::size_t, protocol::SignalValues&) {})), device::Error);
 }
 
 TEST_CASE("walls have names; the forward one lies in the arm's plane") {
@@ -167,13 +135,14 @@ TEST_CASE("walls have names; the forward one lies in the arm's plane") {
 
 TEST_CASE("the summary says what it is and takes its numbers from the result") {
   Circumstances circumstances;
-  circumstances.simulation = true;
-  circumstances.seed = 5;
-  circumstances.parameters = omni();
+  circumstances.about.simulation = true;
+  circumstances.about.parameters = omni();
+  circumstances.virtual_board = device::VirtualBoardOptions{.seed = 5};
   const auto result = evaluate(push(), omni(), {2, 1}, Interval{0.35, 0.85});
   const auto summary = summary_json(circumstances, result, {{0.5, 1e-4, 0.02, 0.001}, {0.5, 2e-4, 0.01, -0.003}});
   CHECK(summary.at("simulation") == true);
   CHECK(summary.at("seed") == 5);
+  CHECK(summary.at("samples_lost") == 0);
   CHECK(summary.at("samples") == 20'000);
   CHECK(summary.at("parameters").at("force_limit_N") == 3.3);
   CHECK(summary.at("parameters").size() == protocol::parameter_count);

@@ -75,6 +75,7 @@ class FakeArm final : public guides::DevicePort {
   void pass_millisecond(guides::Guide& guide) {
     if (now_.connected) {
       ++now_.pose->sequence;
+      if (loses_scope) ++now_.pose->time_periods;
       device::ScopeSamples samples;
       samples.signals = selected;
       samples.first_period = now_.pose->time_periods;

@@ -4,15 +4,20 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <optional>
 
 #include <device/error.hpp>
 #include <recording/figure.hpp>
 #include <recording/gnuplot.hpp>
 
+#include <system/image.hpp>
 #include <temporary_directory.hpp>
 
 using namespace inkwell;
 using namespace inkwell::recording;
+using inkwell::tests::Colour;
+using inkwell::tests::Image;
+using inkwell::tests::read_png;
 using inkwell::tests::TemporaryDirectory;
 using protocol::Signal;
 
@@ -34,6 +39,61 @@ Recording wave(std::uint32_t samples) {
   }
   recording.marks = {{700 + samples / 4, "it's here"}};
   return recording;
+}
+
+/// Signals that keep one value each.
+Recording constant(const std::vector<std::pair<Quantity, float>>& values, std::uint32_t samples) {
+  Recording recording;
+  recording.information.parameters = protocol::default_parameters();
+  for (std::uint32_t i = 0; i < samples; ++i) recording.periods.push_back(i);
+  for (const auto& [quantity, value] : values) {
+    const std::vector<float> column(samples, value);
+    if (const auto* signal = std::get_if<Signal>(&quantity)) {
+      recording.information.signals.push_back(*signal);
+      recording.columns.push_back(column);
+    } else {
+      recording.information.simulated.push_back(std::get<protocol::SimulatedQuantity>(quantity));
+      recording.simulated_columns.push_back(column);
+    }
+  }
+  return recording;
+}
+
+// The first colours of a pane's lines, and where the panes lie in the picture.
+constexpr Colour blue{0x00, 0x72, 0xb2}, vermilion{0xd5, 0x5e, 0x00}, green{0x00, 0x9e, 0x73}, purple{0xcc, 0x79, 0xa7};
+constexpr std::size_t first_pane = 120, pane_height = 320, pane_step = 360, plot_left = 190, plot_right = 1225;
+
+/// The rows of a pane that a horizontal line of a colour fills, in the middle; none if there is no such line.
+std::optional<double> line_at(const Image& image, std::size_t pane, Colour colour) {
+  double sum = 0;
+  int rows = 0;
+  for (std::size_t y = first_pane + pane * pane_step; y < first_pane + pane * pane_step + pane_height; ++y) {
+    std::size_t found = 0;
+    for (std::size_t x = plot_left; x < plot_right; ++x) {
+      const Colour at = image.at(x, y);
+      found += std::abs(at.red - colour.red) < 30 && std::abs(at.green - colour.green) < 30 &&
+               std::abs(at.blue - colour.blue) < 30;
+    }
+    if (found < (plot_right - plot_left) * 9 / 10) continue;
+    sum += static_cast<double>(y);
+    ++rows;
+  }
+  if (rows == 0) return std::nullopt;
+  return sum / rows;
+}
+
+/// How many names stand beside a pane.
+int names_beside(const Image& image, std::size_t pane) {
+  constexpr std::size_t names_left = 1330;
+  int names = 0;
+  bool was_empty = true;
+  for (std::size_t y = first_pane + pane * pane_step; y < first_pane + (pane + 1) * pane_step; ++y) {
+    bool is_empty = true;
+    for (std::size_t x = names_left; x < image.width; ++x) is_empty &= image.at(x, y).red > 128;
+    names += was_empty && !is_empty;
+    was_empty = is_empty;
+  }
+  return names;
 }
 
 std::uint32_t png_size(const std::filesystem::path& file, std::size_t at) {
@@ -61,9 +121,9 @@ TEST_CASE("there is one pane for each unit, and its axis says quantity and unit"
                                    Signal::force_x_N, Signal::duty_2});
   REQUIRE(panes.size() == 3);
   CHECK(panes[0].label == "position, penetration  /  m");
-  CHECK(panes[0].signals == std::vector{Signal::position_x_m, Signal::penetration_x_m});
+  CHECK(panes[0].quantities == std::vector<Quantity>{Signal::position_x_m, Signal::penetration_x_m});
   CHECK(panes[1].label == "force  /  N");
-  CHECK(panes[1].signals == std::vector{Signal::force_N, Signal::force_x_N});
+  CHECK(panes[1].quantities == std::vector<Quantity>{Signal::force_N, Signal::force_x_N});
   CHECK(panes[2].label == "duty");
   const auto cycles = figure_panes({Signal::servo_cycles, Signal::stage_pose_cycles, Signal::stage_contact_cycles});
   REQUIRE(cycles.size() == 1);
@@ -74,21 +134,64 @@ TEST_CASE("a figure grows with its panes and shows what is asked for") {
   const TemporaryDirectory directory;
   const auto recording = wave(30'000);
   draw_figure(recording, {}, directory / "all.png");
-  draw_figure(recording, {.signals = {Signal::force_N}, .from_s = 0.1, .to_s = 0.11}, directory / "one.png");
+  draw_figure(recording, {.quantities = {Signal::force_N}, .from_s = 0.1, .to_s = 0.11}, directory / "one.png");
   CHECK(png_size(directory / "all.png", 16) == 1600);
   CHECK(png_size(directory / "all.png", 20) == png_size(directory / "one.png", 20) + 2 * 360);
   CHECK(std::filesystem::file_size(directory / "all.png") > 20'000);
   CHECK(std::filesystem::file_size(directory / "one.png") > 8'000);
 }
 
+TEST_CASE("every line is drawn in its colour, at the height of its value, in the pane of its unit") {
+  const TemporaryDirectory directory;
+  using protocol::SimulatedQuantity;
+  const auto recording = constant({{Signal::current_1_A, 1.0f},
+                                   {Signal::current_2_A, 2.0f},
+                                   {Signal::current_3_A, 4.0f},
+                                   {Signal::duty_1, 0.25f},
+                                   {SimulatedQuantity::true_current_1_A, 3.0f}},
+                                  3000);
+  draw_figure(recording, {}, directory / "a.png");
+  const auto image = read_png((directory / "a.png").string());
+  const auto one_A = line_at(image, 0, blue), two_A = line_at(image, 0, vermilion), four_A = line_at(image, 0, green),
+             three_A = line_at(image, 0, purple);
+  REQUIRE(one_A);
+  REQUIRE(two_A);
+  REQUIRE(three_A);
+  REQUIRE(four_A);
+  const double ampere = *one_A - *two_A;
+  CHECK(ampere > 20);
+  CHECK(*two_A - *three_A == doctest::Approx(ampere).epsilon(0.03));
+  CHECK(*three_A - *four_A == doctest::Approx(ampere).epsilon(0.03));
+  CHECK(line_at(image, 1, blue));
+  CHECK_FALSE(line_at(image, 1, vermilion));
+}
+
+TEST_CASE("every line of a full pane is named beside it") {
+  const TemporaryDirectory directory;
+  std::vector<std::pair<Quantity, float>> currents;
+  for (int i = 0; i < 3; ++i) {
+    currents.emplace_back(static_cast<Signal>(static_cast<int>(Signal::current_reference_1_A) + i),
+                          0.1f * static_cast<float>(i));
+    currents.emplace_back(static_cast<Signal>(static_cast<int>(Signal::current_1_A) + i), 0.2f * static_cast<float>(i));
+    currents.emplace_back(
+        static_cast<protocol::SimulatedQuantity>(static_cast<int>(protocol::SimulatedQuantity::true_current_1_A) + i),
+        0.3f);
+  }
+  draw_figure(constant(currents, 100), {}, directory / "a.png");
+  const auto image = read_png((directory / "a.png").string());
+  CHECK(names_beside(image, 0) == 9);
+  // None is cut at the picture's edge.
+  for (std::size_t y = 0; y < image.height; ++y) REQUIRE(image.at(image.width - 2, y).red == 255);
+}
+
 TEST_CASE("what cannot be drawn is said in a sentence") {
   const TemporaryDirectory directory;
   const auto recording = wave(3000);
-  CHECK(error_of(recording, {.signals = {Signal::torque_1_Nm}}, directory / "a.png")
+  CHECK(error_of(recording, {.quantities = {Signal::torque_1_Nm}}, directory / "a.png")
             .find("position_x_m, force_N, duty_1") != std::string::npos);
-  CHECK(error_of(recording, {.signals = {}, .from_s = 5}, directory / "a.png").find("takes 0.150 s") !=
+  CHECK(error_of(recording, {.quantities = {}, .from_s = 5}, directory / "a.png").find("takes 0.150 s") !=
         std::string::npos);
-  CHECK(error_of(recording, {.signals = {}, .from_s = 0.1, .to_s = 0.05}, directory / "a.png").find("no samples") !=
+  CHECK(error_of(recording, {.quantities = {}, .from_s = 0.1, .to_s = 0.05}, directory / "a.png").find("no samples") !=
         std::string::npos);
   CHECK(error_of(recording, {}, directory / "nowhere" / "a.png").find("--out") != std::string::npos);
   CHECK(error_of(wave(0), {}, directory / "a.png").find("no samples") != std::string::npos);

@@ -22,6 +22,7 @@ using namespace inkwell::recording;
 using inkwell::tests::TemporaryDirectory;
 using protocol::Parameter;
 using protocol::Signal;
+using protocol::SimulatedQuantity;
 
 namespace {
 
@@ -46,6 +47,28 @@ device::ScopeSamples samples(std::uint32_t first_period, std::size_t count) {
     samples.values.insert(samples.values.end(), {at * 0.001f, 1.0f / (1.0f + at), -at});
   }
   return samples;
+}
+
+const std::string long_text(120, 'x');  // as long as HDF5's place for it
+
+/// With a gap, and beside the signals what a simulation knew.
+Recording simulated() {
+  auto recording = Recording::without_samples(about());
+  recording.append(samples(300, 5000));
+  recording.append(samples(6000, 700));
+  recording.information.simulated = {SimulatedQuantity::hand_force_z_N, SimulatedQuantity::true_current_2_A};
+  recording.simulated_columns.resize(2);
+  for (const std::uint32_t period : recording.periods) {
+    recording.simulated_columns[0].push_back(0.5f * static_cast<float>(period));
+    recording.simulated_columns[1].push_back(-1.0f / static_cast<float>(period));
+  }
+  recording.marks = {{310, "first"}, {6001, "second"}};
+  return recording;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 void check_is_whole(const Recording& recording, std::uint32_t first_period, std::size_t count) {
@@ -77,8 +100,12 @@ TEST_CASE("a recording comes back as it was written") {
     const auto file = directory / name;
     {
       Recorder recorder(file, about());
-      for (std::uint32_t period = 5000; period < 15000; period += 50) recorder.push(samples(period, 50));
+      for (std::uint32_t period = 5000; period < 15000; period += 50) {
+        recorder.push(samples(period, 50));
+        if (period == 5950) recorder.mark("approach");
+      }
       recorder.mark("touch");
+      recorder.mark(long_text);
       const auto end = recorder.stop();
       CHECK(end.error.empty());
       CHECK(end.samples == 10'000);
@@ -91,9 +118,13 @@ TEST_CASE("a recording comes back as it was written") {
     CHECK(recording.complete);
     CHECK(recording.lost() == 0);
     CHECK(recording.remarks.empty());
-    REQUIRE(recording.marks.size() == 1);
-    CHECK(recording.marks[0].text == "touch");
-    CHECK(recording.marks[0].period == 14'999);
+    REQUIRE(recording.marks.size() == 3);
+    CHECK(recording.marks[0].text == "approach");
+    CHECK(recording.marks[0].period == 5'999);
+    CHECK(recording.marks[1].text == "touch");
+    CHECK(recording.marks[1].period == 14'999);
+    CHECK(recording.marks[2].text == long_text);
+    CHECK(recording.marks[2].period == 14'999);
     CHECK(recording.information.parameters == about().parameters);
     CHECK(recording.information.arm == "PHANTOM Omni");
     CHECK(recording.information.firmware_version == "0.1.0");
@@ -101,6 +132,76 @@ TEST_CASE("a recording comes back as it was written") {
     CHECK(recording.information.simulation);
     CHECK(recording.information.created_utc == about().created_utc);
   }
+}
+
+TEST_CASE("what a simulation knew is kept beside the signals") {
+  const TemporaryDirectory directory;
+  const auto whole = simulated();
+  for (const char* name : {"a.h5", "a.csv"}) {
+    CAPTURE(name);
+    save(whole, directory / name);
+    CHECK_FALSE(fs::exists(directory / (std::string("a.part") + fs::path(name).extension().string())));
+    const auto recording = read(directory / name);
+    CHECK(recording.complete);
+    CHECK(recording.remarks.empty());
+    CHECK(recording.lost() == 700);
+    CHECK(recording.periods == whole.periods);
+    REQUIRE(recording.quantities().size() == 5);
+    for (const auto quantity : whole.quantities()) CHECK(recording.column(quantity) == whole.column(quantity));
+    REQUIRE(recording.marks.size() == 2);
+    CHECK(recording.marks[1].text == "second");
+    CHECK(recording.information.parameters == about().parameters);
+  }
+  const auto csv = text_of(directory / "a.csv");
+  CHECK(csv.find("\n# unit true_current_2_A = A\n") != std::string::npos);
+  CHECK(csv.find("\n# simulated true_current_2_A = Current in the simulated motor 2") != std::string::npos);
+  CHECK(csv.find("\ntime_s,force_N,position_x_m,duty_1,hand_force_z_N,true_current_2_A\n") != std::string::npos);
+}
+
+TEST_CASE("a recording that cannot be saved leaves the one before as it is") {
+  const TemporaryDirectory directory;
+  save(simulated(), directory / "a.csv");
+  auto other = simulated();
+  other.keep(0, 10);
+  save(other, directory / "a.csv");
+  CHECK(read(directory / "a.csv").size() == 10);
+  CHECK(read(directory / "a.csv").column(SimulatedQuantity::hand_force_z_N)[9] == 0.5f * 309);
+  CHECK_THROWS_AS(save(other, directory / "nowhere" / "a.csv"), device::Error);
+
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{100'000, 100'000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      save(simulated(), directory / "a.csv");
+    } catch (const device::Error&) {
+      _exit(42);
+    }
+    _exit(1);
+  }
+  int result = 0;
+  waitpid(child, &result, 0);
+  CHECK(WEXITSTATUS(result) == 42);
+  CHECK(read(directory / "a.csv").size() == 10);
+}
+
+TEST_CASE("a recording is cut to a part of its samples") {
+  auto recording = simulated();
+  recording.keep(4990, 5010);
+  CHECK(recording.size() == 20);
+  CHECK(recording.periods.front() == 5290);
+  CHECK(recording.lost() == 700);
+  CHECK(recording.end_of_stretch(0, 20) == 10);
+  CHECK(recording.column(Signal::duty_1).size() == 20);
+  CHECK(recording.column(SimulatedQuantity::hand_force_z_N)[19] == 0.5f * 6009);
+  const auto stretch = recording.samples(10, 20);
+  CHECK(stretch.first_period == 6000);
+  CHECK(stretch.lost_before == 700);
+  recording.keep(0, 0);
+  CHECK(recording.size() == 0);
+  CHECK(recording.column(Signal::duty_1).empty());
 }
 
 TEST_CASE("samples that were lost show as a gap and are counted") {

@@ -10,6 +10,7 @@
 using namespace inkwell;
 using namespace inkwell::recording;
 using protocol::Signal;
+using protocol::SimulatedQuantity;
 
 namespace {
 
@@ -125,9 +126,21 @@ TEST_CASE("the pose at a position is what the device reported then") {
 
   auto without_force = recorded(standard_signals(), {{2000, 10}});
   for (std::size_t j = 0; j < without_force.columns.size(); ++j)
-    if (quantity_of(without_force.information.signals[j]) == "force") without_force.columns[j].assign(10, 0.0f);
+    if (words_of(without_force.information.signals[j]) == "force") without_force.columns[j].assign(10, 0.0f);
   CHECK(Replay(without_force).pose()->state == protocol::State::ready);
   CHECK_FALSE(Replay(recorded({Signal::force_N}, {{0, 1}})).pose());
+}
+
+TEST_CASE("what a simulation knew is no part of a replay, because no device tells it") {
+  auto recording = recorded({Signal::force_N}, {{100, 10}});
+  recording.information.simulated = {SimulatedQuantity::true_current_1_A};
+  recording.simulated_columns = {std::vector<float>(10, 7.0f)};
+  Replay replay(recording);
+  replay.play();
+  const auto passed = replay.advance(1, 0);
+  REQUIRE(passed.blocks.size() == 1);
+  CHECK(passed.blocks[0].signals == std::vector{Signal::force_N});
+  CHECK(passed.blocks[0].values.size() == 10);
 }
 
 TEST_CASE("nothing can be replayed from an empty recording") {
@@ -148,8 +161,13 @@ TEST_CASE("signals are chosen by name") {
   CHECK_THROWS_AS(parse_signals(all), device::Error);
   CHECK(signal_path().size() == 31);
   CHECK(standard_signals().size() <= protocol::scope_signals_maximum);
-  CHECK(quantity_of(Signal::current_reference_2_A) == "current reference");
-  CHECK(quantity_of(Signal::velocity_x_m_s) == "velocity");
-  CHECK(quantity_of(Signal::force_N) == "force");
-  CHECK(quantity_of(Signal::duty_3) == "duty");
+  CHECK(words_of(Signal::current_reference_2_A) == "current reference");
+  CHECK(words_of(Signal::velocity_x_m_s) == "velocity");
+  CHECK(words_of(Signal::force_N) == "force");
+  CHECK(words_of(Signal::duty_3) == "duty");
+  CHECK(words_of(SimulatedQuantity::true_current_3_A) == "true current");
+  CHECK(parse_quantities("force_N,true_current_3_A,force_N") ==
+        std::vector<Quantity>{Signal::force_N, SimulatedQuantity::true_current_3_A});
+  CHECK_THROWS_AS(parse_quantities("true_curent_3_A"), device::Error);
+  CHECK_THROWS_AS(parse_signals("true_current_3_A"), device::Error);  // no board can record it
 }

@@ -6,36 +6,26 @@
 #include <string>
 #include <vector>
 
-#include <experiment/recording.hpp>
 #include <experiment/summary.hpp>
-#include <protocol/parameters.hpp>
+#include <recording/gnuplot.hpp>
+#include <recording/recording.hpp>
 
 namespace inkwell::experiment {
 
+/// Mean, smallest and largest value of each millisecond of what the figures show.
+recording::FigureData figure_data(const recording::Recording& recording, Wall wall);
+
 struct FigureOptions {
-  bool simulation = false;
-  std::string arm;
-  Wall wall;
-  protocol::ParameterSet parameters{};
-  Interval shown;  ///< part of the time axis that is drawn
+  std::optional<Wall> wall;      ///< without it the one that was pushed into deepest
+  std::optional<double> from_s;  ///< since the first sample; without it a little before the contact
+  std::optional<double> to_s;    ///< without it a little after the contact
 };
 
-/// Mean, smallest and largest value of each millisecond of what the figures show.
-Recording figure_data(const Recording& recording, const FigureOptions& options);
-
 /// Writes figure-11.png to figure-14.png, and figures.gnuplot with figure-data.csv from which they can be drawn
-/// again. Throws device::Error with gnuplot's words if it fails.
-void draw_figures(const Recording& recording, const FigureOptions& options, const std::filesystem::path& directory);
-
-/// The part of the time axis that shows the contact and a little around it.
-Interval interval_to_show(Interval contact, std::size_t samples);
-
-/// Whether a file is the recording.csv of an experiment, by its first line.
-bool is_experiment(const std::filesystem::path& file);
-
-/// Draws the figures of an experiment again, from its recording.csv and the summary.json beside it, into a folder;
-/// times since the first sample narrow what is shown. Returns the four pictures. Throws device::Error.
-std::vector<std::string> redraw_figures(const std::filesystem::path& recording, const std::filesystem::path& directory,
-                                        double from_s, std::optional<double> to_s);
+/// again, into a folder, which is made if it is missing. Returns the four pictures. Throws device::Error if a signal
+/// was not recorded, the wall was not touched, the stretch of time holds no samples, a file cannot be written, or
+/// gnuplot fails, in its own words.
+std::vector<std::string> draw_figures(const recording::Recording& recording, const std::filesystem::path& directory,
+                                      const FigureOptions& options);
 
 }  // namespace inkwell::experiment

@@ -11,20 +11,20 @@
 namespace inkwell::recording {
 
 struct FigureOptions {
-  std::vector<protocol::Signal> signals;  ///< empty: all that were recorded
-  double from_s = 0;                      ///< since the first sample
-  std::optional<double> to_s;             ///< without it, the last sample
+  std::vector<Quantity> quantities;  ///< empty: all that were recorded
+  double from_s = 0;                 ///< since the first sample
+  std::optional<double> to_s;        ///< without it, the last sample
 };
 
-/// Signals of one unit, in the order in which they are drawn.
+/// Quantities of one unit, in the order in which they are drawn.
 struct FigurePane {
-  std::string label;  ///< of its axis: quantities and unit
-  std::vector<protocol::Signal> signals;
+  std::string label;  ///< of its axis: what is drawn and its unit
+  std::vector<Quantity> quantities;
 };
 
-std::vector<FigurePane> figure_panes(const std::vector<protocol::Signal>& signals);
+std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities);
 
-/// Draws a PNG by gnuplot. Throws device::Error with a sentence if a signal was not recorded, the stretch of time
+/// Draws a PNG by gnuplot. Throws device::Error with a sentence if a quantity was not recorded, the stretch of time
 /// holds no samples, the picture cannot be written, or gnuplot fails.
 void draw_figure(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture);
 

@@ -30,8 +30,21 @@ Band band_of(std::size_t count, ValueAt value_at) {
   return {sum / static_cast<double>(count), smallest, largest};
 }
 
-/// Names of the three columns that the data of a figure has for a band.
-std::vector<std::string> band_columns(const std::string& name);
+/// What a figure draws: bands over time.
+struct FigureData {
+  struct Row {
+    double time_s;
+    std::vector<Band> bands;  ///< one for each name
+  };
+  std::vector<std::string> names;
+  std::vector<Row> rows;
+
+  /// As CSV, for the script beside it. Throws device::Error if it cannot be written whole.
+  void write(const std::filesystem::path& file) const;
+};
+
+/// Throws device::Error if the text cannot be written whole.
+void write_text(const std::filesystem::path& file, std::string_view text);
 
 struct Curve {
   std::string name;   ///< of the band in the data

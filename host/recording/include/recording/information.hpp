@@ -1,4 +1,4 @@
-// What a recording says about itself: device, firmware, arm, parameters, signals.
+// What a recording says about itself: device, firmware, arm, parameters, and what its columns hold.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <device/device.hpp>
 #include <protocol/parameters.hpp>
 #include <protocol/signals.hpp>
+#include <protocol/simulation.hpp>
 
 namespace inkwell::recording {
 
@@ -24,6 +25,8 @@ struct Information {
   bool simulation = false;  ///< recorded from a virtual board
   protocol::ParameterSet parameters{};
   std::vector<protocol::Signal> signals;
+  /// What a simulation knew beside them. No device tells these, so a replay passes them over.
+  std::vector<protocol::SimulatedQuantity> simulated;
 };
 
 /// What is to be written about a recording that starts now. An empty `arm` is recognized by the parameters if it is the

@@ -1,4 +1,4 @@
-// A recording read back from a file.
+// A recording in memory: read back from a file, or as it grows.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include <device/scope_decoder.hpp>
 #include <recording/information.hpp>
+#include <recording/quantity.hpp>
 
 namespace inkwell::recording {
 
@@ -23,8 +25,11 @@ struct Recording {
   bool complete = true;                     ///< false: the program or the disk gave up before the end was written
   std::vector<std::uint32_t> periods;       ///< control period of each sample
   std::vector<std::vector<float>> columns;  ///< one for each of information.signals, as long as `periods`
+  std::vector<std::vector<float>> simulated_columns;  ///< one for each of information.simulated, as long, too
   std::vector<Mark> marks;
   std::vector<std::string> remarks;  ///< sentences about what this version did not understand
+
+  static Recording without_samples(Information information);
 
   std::size_t size() const { return periods.size(); }
   /// Board time since the first sample.
@@ -37,10 +42,21 @@ struct Recording {
   double duration_s() const { return periods.empty() ? 0.0 : elapsed_s(size() - 1); }
   /// The first sample at or after a time since the first sample; size() if there is none.
   std::size_t sample_at(double elapsed_s) const;
-  /// Throws device::Error, with what was recorded, if the signal was not.
-  const std::vector<float>& column(protocol::Signal signal) const;
+  /// Signals first, then what the simulation knew.
+  std::vector<Quantity> quantities() const;
+  /// Throws device::Error, with what was recorded, if the quantity was not.
+  const std::vector<float>& column(Quantity quantity) const;
   /// Control periods between the first and the last sample that are missing.
   std::uint64_t lost() const;
+
+  /// Where the stretch without a gap ends that `begin` lies in; `end` at the latest.
+  std::size_t end_of_stretch(std::size_t begin, std::size_t end) const;
+  /// A stretch as the scope gave it; periods that are missing before it count as lost.
+  device::ScopeSamples samples(std::size_t begin, std::size_t end) const;
+  /// Adds samples of information.signals to a recording without simulated columns.
+  void append(const device::ScopeSamples& samples);
+  /// Forgets the samples before `begin` and from `end` on.
+  void keep(std::size_t begin, std::size_t end);
 };
 
 /// Reads an HDF5 or CSV recording, told apart by their content. A file whose end is missing is read as far as

@@ -49,7 +49,6 @@ class Replay {
 
  private:
   std::optional<std::size_t> column_of(protocol::Signal signal) const;
-  device::ScopeSamples block(std::size_t begin, std::size_t end) const;
   std::size_t present_sample() const;  ///< the newest at or before the position
 
   Recording recording_;

@@ -1,4 +1,4 @@
-// Which signals are recorded, and how they are named on the command line.
+// Which signals are recorded, and how columns are named on the command line.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <protocol/signals.hpp>
+#include <recording/quantity.hpp>
 
 namespace inkwell::recording {
 
@@ -19,8 +20,8 @@ std::vector<protocol::Signal> signal_path();
 /// unknown, and one for more than the scope carries at once.
 std::vector<protocol::Signal> parse_signals(std::string_view names);
 
-/// The quantity that a signal belongs to, in words: "position" for position_x_m, "current reference" for
-/// current_reference_1_A.
-std::string quantity_of(protocol::Signal signal);
+/// Reads names of signals and of what a simulation knows, with commas between them. Throws device::Error that names the
+/// nearest one for one that is unknown.
+std::vector<Quantity> parse_quantities(std::string_view names);
 
 }  // namespace inkwell::recording

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include <device/scope_decoder.hpp>
 #include <recording/information.hpp>
@@ -16,8 +17,9 @@ namespace inkwell::recording {
 class Writer {
  public:
   virtual ~Writer() = default;
-  /// Samples of the signals that the recording was opened with.
-  virtual void append(const device::ScopeSamples& samples) = 0;
+  /// Samples of the signals that the recording was opened with, and beside each of them the simulated quantities that
+  /// it was opened with: simulated[i * information.simulated.size() + j], empty if there are none.
+  virtual void append(const device::ScopeSamples& samples, std::span<const float> simulated) = 0;
   virtual void mark(const Mark& mark) = 0;
   /// Afterwards everything appended so far survives the end of this process.
   virtual void flush() = 0;
@@ -30,5 +32,8 @@ void check_can_be_created(const std::filesystem::path& file);
 
 /// The ending chooses the format: .h5 and .hdf5, or .csv. An existing file is refused, not overwritten.
 std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information);
+
+/// Writes a whole recording. A file of that name is replaced, but only once the new one is complete.
+void save(const Recording& recording, const std::filesystem::path& file);
 
 }  // namespace inkwell::recording

@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <string_view>
 #include <vector>
 
 #include <chip/interfaces.hpp>
 #include <plant/arm_dynamics.hpp>
+#include <protocol/simulation.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -29,16 +29,9 @@ struct Truth {
   std::array<std::array<PinLevel, 2>, 3> leg_levels{};  ///< what the chip drives the inputs of the bridges with
 };
 
-/// Names and values of what a trace records, in one order.
-inline constexpr std::array<std::string_view, 25> traced_quantities = {
-    "true_position_x_m",   "true_position_y_m",        "true_position_z_m",        "true_velocity_x_m_s",
-    "true_velocity_y_m_s", "true_velocity_z_m_s",      "true_joint_1_rad",         "true_joint_2_rad",
-    "true_joint_3_rad",    "true_joint_speed_1_rad_s", "true_joint_speed_2_rad_s", "true_joint_speed_3_rad_s",
-    "true_current_1_A",    "true_current_2_A",         "true_current_3_A",         "true_torque_1_Nm",
-    "true_torque_2_Nm",    "true_torque_3_Nm",         "hand_force_x_N",           "hand_force_y_N",
-    "hand_force_z_N",      "hand_target_x_m",          "hand_target_y_m",          "hand_target_z_m",
-    "true_supply_V"};
-std::array<double, traced_quantities.size()> traced_values(const Truth& truth);
+/// What a trace records, in the order of protocol::simulated_quantity_table.
+using TracedValues = std::array<double, protocol::simulated_quantity_count>;
+TracedValues traced_values(const Truth& truth);
 
 /// Rows of true quantities, one for each control period. Bounded: when it is full the oldest rows are dropped
 /// and counted.
@@ -47,7 +40,7 @@ class Trace {
   struct Row {
     std::uint64_t period;  ///< index of the injected sequence since reset
     Ticks at;
-    std::array<double, traced_quantities.size()> values;
+    TracedValues values;
   };
   static constexpr std::size_t rows_maximum = 1'200'000;  // one minute
 

@@ -1,0 +1,55 @@
+// A device whose time passes only as the experiment lets it. It is the board's time: a virtual board stands still while
+// the host works, a real one tells its time with every pose. How busy the host's computer is makes no difference.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <device/control_client.hpp>
+#include <device/device.hpp>
+
+namespace inkwell::experiment {
+
+class PacedDevice {
+ public:
+  /// `control` is null for a real device.
+  PacedDevice(device::Device& device, device::ControlClient* control) : device_(device), control_(control) {}
+
+  /// Lets time pass, reads every pose and keeps the host's sign of life. Throws device::Error with cause and remedy
+  /// when the device reports a fault or falls silent.
+  void pass(double time_s);
+  /// Lets time pass until the condition is true; at once if it is. Throws device::Error with `otherwise` if it does not
+  /// come true in time.
+  void wait_until(const std::function<bool()>& condition, double limit_s, const std::string& otherwise);
+  void wait_for_pose(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s,
+                     const std::string& otherwise);
+  /// Sends a command and waits until it was carried out.
+  void command(protocol::Command command) { wait_for_token(device_.send(command)); }
+  void test_current(const protocol::TestPulse& pulse) {
+    wait_for_token(device_.send(protocol::Command::test_current, pulse));
+  }
+  void select_signals(std::span<const protocol::Signal> signals) { wait_for_token(device_.select_signals(signals)); }
+
+  device::Device& device() { return device_; }
+  const protocol::PoseReport& pose() const { return *pose_; }
+  std::uint64_t poses_received() const { return poses_received_; }
+  std::uint64_t poses_lost() const { return poses_lost_; }
+
+ private:
+  void pass_slice();
+  void read_poses(std::chrono::milliseconds timeout);
+  void wait_for_token(std::uint8_t token);
+
+  device::Device& device_;
+  device::ControlClient* control_;
+  std::chrono::nanoseconds passed_{};  ///< board time since the beginning
+  std::optional<protocol::PoseReport> pose_;
+  std::uint64_t poses_received_ = 0;
+  std::uint64_t poses_lost_ = 0;
+  int silent_reads_ = 0;  ///< since the last pose
+};
+
+}  // namespace inkwell::experiment

@@ -1,0 +1,34 @@
+// The walls of the box that the sphere moves in.
+#pragma once
+
+#include <string>
+
+#include <protocol/parameters.hpp>
+#include <recording/recording.hpp>
+
+namespace inkwell::experiment {
+
+/// One wall of the box.
+struct Wall {
+  int axis = 2;  ///< 0 x, 1 y, 2 z
+  int side = 1;  ///< 1 the upper wall, -1 the lower one
+  bool operator==(const Wall&) const = default;
+};
+
+/// "z+" and the like. Throws device::Error.
+Wall parse_wall(const std::string& name);
+std::string wall_name(Wall wall);
+/// The wall in the arm's plane, away from its base: pushing into it takes no torque about the waist.
+Wall forward_wall(const protocol::ParameterSet& parameters);
+/// Where the wall stands along its axis, in metres.
+double wall_position_m(const protocol::ParameterSet& parameters, Wall wall);
+char axis_letter(int axis);
+/// The wall that was pushed into deepest. Throws device::Error if there was no contact.
+Wall pushed_wall(const recording::Recording& recording);
+
+/// The signal for axis 0, 1 or 2 of three that begin with `first`.
+constexpr protocol::Signal on_axis(protocol::Signal first, int axis) {
+  return static_cast<protocol::Signal>(static_cast<int>(first) + axis);
+}
+
+}  // namespace inkwell::experiment

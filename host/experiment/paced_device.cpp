@@ -1,0 +1,96 @@
+#include <experiment/paced_device.hpp>
+
+#include <fmt/format.h>
+
+#include <protocol/reports.hpp>
+
+namespace inkwell::experiment {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Short against the host's time-out, and against the 100 ms of scope that the link keeps room for.
+constexpr std::chrono::nanoseconds slice = 5ms;
+constexpr double slice_s = std::chrono::duration<double>(slice).count();
+constexpr auto control_period = std::chrono::nanoseconds(1s) / protocol::servo_rate_Hz;
+constexpr auto slice_poses = static_cast<std::uint64_t>(slice_s * protocol::pose_rate_Hz);
+// Reads without a pose until the device counts as dead: half a minute where each waits its 10 ms. A board that lives
+// sends ten in one of them.
+constexpr auto read_timeout = 10ms;
+constexpr int silent_reads_limit = 3000;
+constexpr double command_limit_s = 0.5;
+
+std::chrono::nanoseconds nanoseconds(double time_s) {
+  return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(time_s));
+}
+
+/// Tokens count from 1 to 255 and begin again; 0 stands for no command yet. The device carries commands out in their
+/// order, so a later token tells as much as the token itself, and a sign of life that the host sent meanwhile may be
+/// all that a pose still shows.
+bool is_at_or_after(std::uint8_t token, std::uint8_t awaited) {
+  constexpr int tokens = 255;
+  return token != 0 && (token - awaited + tokens) % tokens < tokens / 2;
+}
+
+}  // namespace
+
+void PacedDevice::read_poses(std::chrono::milliseconds timeout) {
+  const std::uint64_t before = poses_received_;
+  while (const auto pose = device_.read_pose(timeout)) {
+    ++poses_received_;
+    if (pose_) {
+      poses_lost_ += pose->sequence - pose_->sequence - 1;
+      if (control_ == nullptr) passed_ += control_period * (pose->time_periods - pose_->time_periods);
+    }
+    pose_ = pose;
+    timeout = 0ms;
+    if (pose->state == protocol::State::fault) {
+      const auto& fault = protocol::info(pose->fault);
+      throw device::Error(fmt::format("The device reports the fault {}: {} {}", fault.name, fault.cause, fault.remedy));
+    }
+  }
+  if (timeout == 0ms && poses_received_ == before) return;  // it was only asked what is there
+  silent_reads_ = poses_received_ > before ? 0 : silent_reads_ + 1;
+  if (silent_reads_ > silent_reads_limit)
+    throw device::Error("The device is silent. Reset the board and run the experiment again.");
+}
+
+void PacedDevice::pass_slice() {
+  device_.keep_alive();
+  if (control_ == nullptr) return read_poses(read_timeout);
+  const std::uint64_t before = poses_received_;
+  control_->run(slice_s);
+  passed_ += slice;
+  // Board time stands still now; the reports of the slice may still be on their way. One or two of them belong to
+  // frames that the slice's end cut.
+  const std::uint64_t expected = pose_ ? slice_poses - 2 : 0;
+  read_poses(0ms);
+  while (poses_received_ - before < expected) read_poses(read_timeout);
+}
+
+void PacedDevice::pass(double time_s) {
+  read_poses(0ms);  // what waits here is of the past
+  const auto end = passed_ + nanoseconds(time_s);
+  while (passed_ < end) pass_slice();
+}
+
+void PacedDevice::wait_until(const std::function<bool()>& condition, double limit_s, const std::string& otherwise) {
+  read_poses(0ms);
+  const auto give_up_at = passed_ + nanoseconds(limit_s);
+  while (!condition()) {
+    if (passed_ > give_up_at) throw device::Error(otherwise);
+    pass_slice();
+  }
+}
+
+void PacedDevice::wait_for_pose(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s,
+                                const std::string& otherwise) {
+  wait_until([&] { return pose_ && condition(*pose_); }, limit_s, otherwise);
+}
+
+void PacedDevice::wait_for_token(std::uint8_t token) {
+  wait_for_pose([&](const auto& pose) { return is_at_or_after(pose.command_token, token); }, command_limit_s,
+                "The device does not carry out commands. Reset the board and run the experiment again.");
+}
+
+}  // namespace inkwell::experiment
