@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <thread>
@@ -11,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <arms/description.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
 
@@ -21,6 +23,8 @@ using namespace inkwell;
 using namespace std::chrono_literals;
 
 namespace {
+
+arms::Motor simulated_motor() { return arms::read(INKWELL_SOURCE_DIRECTORY "/boards/arms/omni.toml").motor; }
 
 nlohmann::json guide(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--virtual", "--yes", "--json"});
@@ -38,9 +42,8 @@ TEST_CASE("current-loop tuning finds the simulated motors within 5 % and its gai
   CHECK(result.at("applied") == false);
   REQUIRE(result.at("motors").size() == 3);
   for (const auto& motor : result.at("motors")) {
-    // [motor] of boards/arms/omni.toml
-    CHECK(motor.at("resistance_ohm").get<double>() == doctest::Approx(2.18).epsilon(0.05));
-    CHECK(motor.at("inductance_H").get<double>() == doctest::Approx(0.238e-3).epsilon(0.05));
+    CHECK(motor.at("resistance_ohm").get<double>() == doctest::Approx(simulated_motor().resistance_ohm).epsilon(0.05));
+    CHECK(motor.at("inductance_H").get<double>() == doctest::Approx(simulated_motor().inductance_H).epsilon(0.05));
     CHECK(std::abs(motor.at("delay_s").get<double>() - 50e-6) < 10e-6);
   }
   REQUIRE(result.at("steps").size() == 6);
@@ -60,7 +63,7 @@ TEST_CASE("a wider bandwidth rises faster, and is applied when asked") {
   CHECK(after_s < 0.75 * before_s);
   REQUIRE(result.at("proposals").size() == 2);
   CHECK(result.at("proposals")[0].at("proposed").get<double>() ==
-        doctest::Approx(0.238e-3 * 2 * 3.14159 * 1500).epsilon(0.05));
+        doctest::Approx(simulated_motor().inductance_H * 2 * std::numbers::pi * 1500).epsilon(0.05));
 }
 
 TEST_CASE("a healthy simulated arm needs no change of directions") {

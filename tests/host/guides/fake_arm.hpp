@@ -13,8 +13,8 @@
 namespace inkwell::tests {
 
 struct Winding {
-  double resistance_ohm = 2.26;
-  double inductance_H = 0.238e-3;
+  double resistance_ohm = 2.3;
+  double inductance_H = 0.25e-3;
 };
 
 class FakeArm final : public guides::DevicePort {
