@@ -1,6 +1,7 @@
 // The commands of the `inkwell` program. Each adds itself to the program's options and, if it was chosen, runs.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 
 #include "connection.hpp"
@@ -12,16 +13,32 @@ using Action = std::function<int()>;
 /// Opens the window, on a recording unless its name is empty; returns the exit code.
 using OpenWindow = std::function<int(const std::filesystem::path& recording)>;
 
-void add_info_command(CLI::App& program, const DeviceOptions& options, Action& action);
-void add_watch_command(CLI::App& program, const DeviceOptions& options, Action& action);
-void add_parameters_command(CLI::App& program, const DeviceOptions& options, Action& action);
-void add_experiment_command(CLI::App& program, const DeviceOptions& options, Action& action);
-void add_record_command(CLI::App& program, const DeviceOptions& options, Action& action);
-void add_replay_command(CLI::App& program, const DeviceOptions& options, const OpenWindow& open_window, Action& action);
-void add_plot_command(CLI::App& program, const DeviceOptions& options, Action& action);
-void add_calibrate_command(CLI::App& program, const DeviceOptions& options, Action& action);
-void add_tune_command(CLI::App& program, const DeviceOptions& options, Action& action);
-void add_check_command(CLI::App& program, const DeviceOptions& options, Action& action);
+/// Where a command adds itself, and what it may use when it runs.
+struct Place {
+  CLI::App& program;
+  const DeviceOptions& device;
+  Action& action;  ///< to be set when the command is chosen
+  OpenWindow open_window;
+};
+
+/// In the order of the program's help. A new command is a line here, and a file NAME_command.cpp that defines
+/// add_NAME_command.
+#define INKWELL_COMMANDS(X) \
+  X(info)                   \
+  X(watch)                  \
+  X(parameters)             \
+  X(experiment)             \
+  X(calibrate)              \
+  X(tune)                   \
+  X(check)                  \
+  X(record)                 \
+  X(replay)                 \
+  X(plot)
+
+#define X(name) void add_##name##_command(const Place& place);
+INKWELL_COMMANDS(X)
+#undef X
+
 /// Without a command the window opens. Returns what opens it for a command, with the same options.
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
 

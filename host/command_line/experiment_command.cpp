@@ -65,8 +65,9 @@ int run_wall(DeviceOptions options, const WallCommandOptions& command) {
 
 }  // namespace
 
-void add_experiment_command(CLI::App& program, const DeviceOptions& options, Action& action) {
-  auto* command = program.add_subcommand("experiment", "Experiments that record every control period and draw figures");
+void add_experiment_command(const Place& place) {
+  auto* command =
+      place.program.add_subcommand("experiment", "Experiments that record every control period and draw figures");
   command->require_subcommand(1);
   add_examples(*command, "inkwell experiment wall --virtual --out results");
   auto* wall = command->add_subcommand(
@@ -84,8 +85,8 @@ void add_experiment_command(CLI::App& program, const DeviceOptions& options, Act
                "inkwell experiment wall --virtual --out results\n"
                "inkwell experiment wall --virtual --arm boards/arms/paper.toml --out results-paper\n"
                "inkwell experiment wall --wall y- --out results");
-  wall->callback([&options, &action, wall_options] {
-    action = [&options, wall_options] { return run_wall(options, *wall_options); };
+  wall->callback([place, wall_options] {
+    place.action = [&options = place.device, wall_options] { return run_wall(options, *wall_options); };
   });
 }
 

@@ -63,12 +63,12 @@ void print(const device::Information& information, const std::optional<protocol:
 
 }  // namespace
 
-void add_info_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+void add_info_command(const Place& place) {
   auto* command =
-      program.add_subcommand("info", "Who is connected: versions, counters, state and fault with its remedy");
+      place.program.add_subcommand("info", "Who is connected: versions, counters, state and fault with its remedy");
   add_examples(*command, "inkwell info\ninkwell info --virtual --json");
-  command->callback([&] {
-    action = [&] {
+  command->callback([place] {
+    place.action = [&options = place.device] {
       const auto connection = connect(options);
       const auto pose = connection.device->read_pose(500ms);
       const auto information = connection.device->information();

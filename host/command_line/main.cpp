@@ -46,17 +46,10 @@ int main(int argument_count, char** arguments) {
   DeviceOptions options;
   Action action;
   options.add_to(program);
-  const auto open_window = add_window_options(program, options, action);
-  add_info_command(program, options, action);
-  add_watch_command(program, options, action);
-  add_parameters_command(program, options, action);
-  add_experiment_command(program, options, action);
-  add_calibrate_command(program, options, action);
-  add_tune_command(program, options, action);
-  add_check_command(program, options, action);
-  add_record_command(program, options, action);
-  add_replay_command(program, options, open_window, action);
-  add_plot_command(program, options, action);
+  const Place place{program, options, action, add_window_options(program, options, action)};
+#define X(name) add_##name##_command(place);
+  INKWELL_COMMANDS(X)
+#undef X
 
   try {
     program.parse(argument_count, arguments);

@@ -148,12 +148,13 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
 
 }  // namespace
 
-void add_parameters_command(CLI::App& program, const DeviceOptions& options, Action& action) {
-  auto* command = program.add_subcommand(
+void add_parameters_command(const Place& place) {
+  auto* command = place.program.add_subcommand(
       "parameters", "Every parameter with value, default, range and unit; or one of the commands below");
   command->require_subcommand(0, 1);
-  command->callback([&options, &action, command] {
-    if (command->get_subcommands().empty()) action = [&options] { return list(options); };
+  const DeviceOptions& options = place.device;
+  command->callback([place, command] {
+    if (command->get_subcommands().empty()) place.action = [&options = place.device] { return list(options); };
   });
 
   add_examples(*command,
@@ -166,7 +167,7 @@ void add_parameters_command(CLI::App& program, const DeviceOptions& options, Act
   const auto add = [&](const char* name, const char* help, const char* examples, std::function<int()> run) {
     auto* subcommand = command->add_subcommand(name, help);
     add_examples(*subcommand, examples);
-    subcommand->callback([&action, run] { action = run; });
+    subcommand->callback([place, run] { place.action = run; });
     return subcommand;
   };
   add("get", "The value of one or more parameters", "inkwell parameters get wall_stiffness_N_per_m box_maximum_z_m",

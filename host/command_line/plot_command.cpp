@@ -61,9 +61,9 @@ int plot(const DeviceOptions& device_options, const PlotOptions& options) {
 
 }  // namespace
 
-void add_plot_command(CLI::App& program, const DeviceOptions& options, Action& action) {
-  auto* command =
-      program.add_subcommand("plot", "Draw a recording against time, one pane for each unit, or as the paper drew it");
+void add_plot_command(const Place& place) {
+  auto* command = place.program.add_subcommand(
+      "plot", "Draw a recording against time, one pane for each unit, or as the paper drew it");
   const auto plot_options = std::make_shared<PlotOptions>();
   command->add_option("FILE", plot_options->file, "Written by `inkwell record` or `inkwell experiment`")->required();
   auto* signals = command
@@ -86,8 +86,8 @@ void add_plot_command(CLI::App& program, const DeviceOptions& options, Action& a
                "inkwell plot push.h5 --signals force_N,position_z_m --from 1 --to 2.5 --out push.png\n"
                "inkwell plot results/recording.csv --signals current_1_A,true_current_1_A\n"
                "inkwell plot results/recording.csv --paper --out figures");
-  command->callback([&options, &action, plot_options] {
-    action = [&options, plot_options] { return plot(options, *plot_options); };
+  command->callback([place, plot_options] {
+    place.action = [&options = place.device, plot_options] { return plot(options, *plot_options); };
   });
 }
 

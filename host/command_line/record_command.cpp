@@ -36,20 +36,20 @@ struct RecordOptions {
 
 /// Reads the scope in a thread of its own, so that a slow terminal costs no samples, and ends by itself after a
 /// given number of control periods.
-class ScopeRecorder {
+class RecordingThread {
  public:
-  ScopeRecorder(device::Device& device, recording::Recorder& recorder, double seconds)
+  RecordingThread(device::Device& device, recording::Recorder& recorder, double seconds)
       : device_(device),
         recorder_(recorder),
         periods_(static_cast<std::uint32_t>(seconds * protocol::servo_rate_Hz + 0.5)) {
     thread_ = std::thread([this] { read(); });
   }
-  ~ScopeRecorder() {
+  ~RecordingThread() {
     stopping_ = true;
     thread_.join();
   }
-  ScopeRecorder(const ScopeRecorder&) = delete;
-  ScopeRecorder& operator=(const ScopeRecorder&) = delete;
+  RecordingThread(const RecordingThread&) = delete;
+  RecordingThread& operator=(const RecordingThread&) = delete;
 
   bool is_done() const { return is_done_; }
 
@@ -100,7 +100,7 @@ void run(device::Device& device, recording::Recorder& recorder, const RecordOpti
   const InterruptGuard interrupt;
   std::optional<MarkKeys> keys;
   if (options.mark_key) keys.emplace(STDIN_FILENO);
-  ScopeRecorder scope(device, recorder, options.seconds);
+  RecordingThread scope(device, recorder, options.seconds);
   ProgressBar progress;
   const auto show = [&](const RecorderStatus& status) {
     if (options.seconds == 0) return progress(progress_text(status) + ". Ctrl-C ends it.", std::nullopt);
@@ -170,9 +170,9 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
 
 }  // namespace
 
-void add_record_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+void add_record_command(const Place& place) {
   auto* command =
-      program.add_subcommand("record", "Record signals at every control period, until Ctrl-C or for a time");
+      place.program.add_subcommand("record", "Record signals at every control period, until Ctrl-C or for a time");
   const auto record_options = std::make_shared<RecordOptions>();
   command
       ->add_option("FILE", record_options->file,
@@ -194,8 +194,8 @@ void add_record_command(CLI::App& program, const DeviceOptions& options, Action&
   add_examples(*command,
                "inkwell record push.h5 --mark-key\n"
                "inkwell record push.csv --signals force_N,position_z_m --seconds 10");
-  command->callback([&options, &action, record_options] {
-    action = [&options, record_options] { return record(options, *record_options); };
+  command->callback([place, record_options] {
+    place.action = [&options = place.device, record_options] { return record(options, *record_options); };
   });
 }
 

@@ -80,22 +80,21 @@ int describe(const DeviceOptions& options, const std::string& file) {
 
 }  // namespace
 
-void add_replay_command(CLI::App& program, const DeviceOptions& options, const OpenWindow& open_window,
-                        Action& action) {
+void add_replay_command(const Place& place) {
   struct ReplayOptions {
     std::string file;
     bool information = false;
   };
-  auto* command =
-      program.add_subcommand("replay", "Open the window on a recording; or, with --info or --json, say what it holds");
+  auto* command = place.program.add_subcommand(
+      "replay", "Open the window on a recording; or, with --info or --json, say what it holds");
   const auto replay_options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", replay_options->file, "Written by `inkwell record` or `inkwell experiment`")->required();
   command->add_flag("--info", replay_options->information, "Only say what it holds");
   add_examples(*command, "inkwell replay push.h5\ninkwell replay push.h5 --info");
-  command->callback([&options, &action, open_window, replay_options] {
-    action = [&options, open_window, replay_options] {
-      return options.json || replay_options->information ? describe(options, replay_options->file)
-                                                         : open_window(replay_options->file);
+  command->callback([place, replay_options] {
+    place.action = [place, replay_options] {
+      return place.device.json || replay_options->information ? describe(place.device, replay_options->file)
+                                                              : place.open_window(replay_options->file);
     };
   });
 }

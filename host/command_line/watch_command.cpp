@@ -85,9 +85,9 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
 
 }  // namespace
 
-void add_watch_command(CLI::App& program, const DeviceOptions& options, Action& action) {
+void add_watch_command(const Place& place) {
   auto* command =
-      program.add_subcommand("watch", "The pose, live: position, force, buttons and state, ten lines a second");
+      place.program.add_subcommand("watch", "The pose, live: position, force, buttons and state, ten lines a second");
   const auto watch_options = std::make_shared<WatchOptions>();
   command->add_option("--seconds", watch_options->seconds, "End after this time of the board; without it, at Ctrl+C")
       ->type_name("SECONDS")
@@ -97,8 +97,8 @@ void add_watch_command(CLI::App& program, const DeviceOptions& options, Action& 
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   add_examples(*command, "inkwell watch\ninkwell watch --virtual --seconds 2 --rate 100 --json");
-  command->callback([&options, &action, watch_options] {
-    action = [&options, watch_options] { return watch(options, *watch_options); };
+  command->callback([place, watch_options] {
+    place.action = [&options = place.device, watch_options] { return watch(options, *watch_options); };
   });
 }
 

@@ -93,18 +93,21 @@ class PressButton final : public Step {
   Stopwatch since_;
 };
 
+Plan plan_connection(const Choices&) {
+  Plan plan;
+  auto reversed = std::make_shared<ReversedEncoders>();
+  plan.steps.push_back(std::make_unique<LookAtDevice>(plan.findings));
+  plan.steps.push_back(std::make_unique<RestInInkwell>(plan.findings, true));
+  for (int joint = 1; joint <= 3; ++joint)
+    plan.steps.push_back(std::make_unique<TurnJointForward>(plan.findings, reversed, joint));
+  for (int button = 1; button <= 2; ++button)
+    plan.steps.push_back(std::make_unique<PressButton>(plan.findings, button));
+  return plan;
+}
+
 }  // namespace
 
-Guide first_connection_guide() {
-  auto findings = std::make_shared<Findings>();
-  auto reversed = std::make_shared<ReversedEncoders>();
-  std::vector<std::unique_ptr<Step>> steps;
-  steps.push_back(std::make_unique<LookAtDevice>(findings));
-  steps.push_back(std::make_unique<RestInInkwell>(findings, true));
-  for (int joint = 1; joint <= 3; ++joint)
-    steps.push_back(std::make_unique<TurnJointForward>(findings, reversed, joint));
-  for (int button = 1; button <= 2; ++button) steps.push_back(std::make_unique<PressButton>(findings, button));
-  return {"first-connection", "First connection", std::move(steps), findings};
-}
+const Offer connection_guide{"check", "connection", "First connection",
+                             "Versions, supply, inkwell, encoders and buttons. No current flows.", plan_connection};
 
 }  // namespace inkwell::guides

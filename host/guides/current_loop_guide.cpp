@@ -25,7 +25,7 @@ using protocol::Signal;
 using protocol::TestPulse;
 
 constexpr double period_s = 1.0 / protocol::servo_rate_Hz;
-constexpr float voltage_pulse_s = 0.01f;  // some ninety time constants of the winding
+constexpr float voltage_pulse_s = 0.01f;  // tens of time constants of a small motor's winding
 constexpr float first_voltage_V = 1.0f, largest_voltage_V = 4.0f;
 constexpr int pairs_of_pulses = 3;  // at the larger voltage; one pulse forward and one back cancel the arm's motion
 constexpr float step_pulse_s = 0.02f, step_A = 0.5f;
@@ -62,10 +62,10 @@ class IdentifyMotor final : public Step {
   std::string title() const override { return fmt::format("Identify motor {}", motor_); }
   std::string text() const override {
     return fmt::format(
-        "Motor {} gets {} pulses of 10 ms, {:.0f} V at first and {:.0f} V at most, forward and back. The "
+        "Motor {} gets {} pulses of {:.0f} ms, {:.0f} V at first and {:.0f} V at most, forward and back. The "
         "arm may twitch. Leave the stylus in the inkwell and keep your hands off. The walls' force stays "
         "off.",
-        motor_, 2 * (1 + pairs_of_pulses), first_voltage_V, largest_voltage_V);
+        motor_, 2 * (1 + pairs_of_pulses), 1e3f * voltage_pulse_s, first_voltage_V, largest_voltage_V);
   }
   bool asks_first() const override { return true; }
 
@@ -171,8 +171,8 @@ class TryGains final : public Step {
     return suggested_ ? "Step response with the suggested gains" : "Step response now";
   }
   std::string text() const override {
-    const std::string pulses = fmt::format("Motor {} gets a step of {:.1f} A for 20 ms",
-                                           fmt::join(tuning_->options.motors, ", then "), step_A);
+    const std::string pulses = fmt::format("Motor {} gets a step of {:.1f} A for {:.0f} ms",
+                                           fmt::join(tuning_->options.motors, ", then "), step_A, 1e3f * step_pulse_s);
     if (!suggested_) return pulses + " with the gains that the device holds now. Leave the stylus in the inkwell.";
     return pulses +
            " with the suggested gains. They are on the device for this test only; afterwards it holds the old "
@@ -332,18 +332,22 @@ class TryGains final : public Step {
   std::optional<PulseRecorder> recorder_;
 };
 
+Plan plan_current_loop(const Choices& choices) {
+  Plan plan;
+  auto tuning = std::make_shared<Tuning>();
+  tuning->options = choices.current_loop;
+  plan.steps.push_back(std::make_unique<RestInInkwell>(plan.findings, false));
+  for (const int motor : tuning->options.motors)
+    plan.steps.push_back(std::make_unique<IdentifyMotor>(tuning, plan.findings, motor));
+  plan.steps.push_back(std::make_unique<TryGains>(tuning, plan.findings, false));
+  plan.steps.push_back(std::make_unique<TryGains>(tuning, plan.findings, true));
+  return plan;
+}
+
 }  // namespace
 
-Guide current_loop_guide(const CurrentLoopOptions& options) {
-  auto tuning = std::make_shared<Tuning>();
-  tuning->options = options;
-  auto findings = std::make_shared<Findings>();
-  std::vector<std::unique_ptr<Step>> steps;
-  steps.push_back(std::make_unique<RestInInkwell>(findings, false));
-  for (const int motor : options.motors) steps.push_back(std::make_unique<IdentifyMotor>(tuning, findings, motor));
-  steps.push_back(std::make_unique<TryGains>(tuning, findings, false));
-  steps.push_back(std::make_unique<TryGains>(tuning, findings, true));
-  return {"current-loop", "Current-loop tuning", std::move(steps), findings};
-}
+const Offer current_loop_guide{"tune", "current-loop", "Current-loop tuning",
+                               "Measures resistance and inductance of the motors, and tries gains for a bandwidth.",
+                               plan_current_loop};
 
 }  // namespace inkwell::guides

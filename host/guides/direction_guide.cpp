@@ -149,17 +149,21 @@ class PulseMotor final : public Step {
   std::vector<double> turned_rad_;
 };
 
+Plan plan_directions(const Choices&) {
+  Plan plan;
+  auto reversed = std::make_shared<ReversedEncoders>();
+  plan.steps.push_back(std::make_unique<RestInInkwell>(plan.findings, false));
+  for (int joint = 1; joint <= 3; ++joint)
+    plan.steps.push_back(std::make_unique<TurnJointForward>(plan.findings, reversed, joint));
+  for (int motor = 1; motor <= 3; ++motor)
+    plan.steps.push_back(std::make_unique<PulseMotor>(plan.findings, reversed, motor));
+  return plan;
+}
+
 }  // namespace
 
-Guide direction_guide() {
-  auto findings = std::make_shared<Findings>();
-  auto reversed = std::make_shared<ReversedEncoders>();
-  std::vector<std::unique_ptr<Step>> steps;
-  steps.push_back(std::make_unique<RestInInkwell>(findings, false));
-  for (int joint = 1; joint <= 3; ++joint)
-    steps.push_back(std::make_unique<TurnJointForward>(findings, reversed, joint));
-  for (int motor = 1; motor <= 3; ++motor) steps.push_back(std::make_unique<PulseMotor>(findings, reversed, motor));
-  return {"directions", "Directions of motors and encoders", std::move(steps), findings};
-}
+const Offer directions_guide{"check", "directions", "Directions",
+                             "Each encoder while you turn its joint, then each motor with a small pulse of current.",
+                             plan_directions};
 
 }  // namespace inkwell::guides

@@ -43,9 +43,11 @@ void Findings::propose(const protocol::ParameterSet& held, protocol::Parameter p
   proposals.push_back({parameter, held[parameter], proposed, reason});
 }
 
-Guide::Guide(std::string name, std::string title, std::vector<std::unique_ptr<Step>> steps,
-             std::shared_ptr<Findings> findings)
-    : name_(std::move(name)), title_(std::move(title)), steps_(std::move(steps)), findings_(std::move(findings)) {
+Guide::Guide(std::string name, std::string title, Plan plan)
+    : name_(std::move(name)),
+      title_(std::move(title)),
+      steps_(std::move(plan.steps)),
+      findings_(std::move(plan.findings)) {
   enter(0);
 }
 

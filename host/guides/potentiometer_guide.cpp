@@ -183,21 +183,24 @@ class FitPotentiometers final : public Step {
   bool quadratic_;
 };
 
-}  // namespace
-
-Guide potentiometer_guide(const PotentiometerOptions& options) {
-  auto findings = std::make_shared<Findings>();
+Plan plan_potentiometers(const Choices& choices) {
+  const PotentiometerOptions& options = choices.potentiometers;
+  Plan plan;
   std::vector<std::shared_ptr<AxisPoints>> axes;
-  std::vector<std::unique_ptr<Step>> steps;
   for (int axis = 1; axis <= 3; ++axis) {
     auto points = std::make_shared<AxisPoints>();
     points->range = options.range[static_cast<std::size_t>(axis - 1)].value_or(described_range(axis));
-    steps.push_back(std::make_unique<TurnGimbal>(points, axis, false));
-    if (options.quadratic) steps.push_back(std::make_unique<TurnGimbal>(points, axis, true));
+    plan.steps.push_back(std::make_unique<TurnGimbal>(points, axis, false));
+    if (options.quadratic) plan.steps.push_back(std::make_unique<TurnGimbal>(points, axis, true));
     axes.push_back(std::move(points));
   }
-  steps.push_back(std::make_unique<FitPotentiometers>(findings, axes, options.quadratic));
-  return {"pots", "Potentiometers of the gimbal", std::move(steps), findings};
+  plan.steps.push_back(std::make_unique<FitPotentiometers>(plan.findings, axes, options.quadratic));
+  return plan;
 }
+
+}  // namespace
+
+const Offer potentiometer_guide{"calibrate", "pots", "Potentiometers",
+                                "You turn each axis of the gimbal to both its stops.", plan_potentiometers};
 
 }  // namespace inkwell::guides

@@ -1,4 +1,4 @@
-// Calibration: the reference in the inkwell, and the joint stops.
+// Calibration of the joints: their stops.
 #include <guides/guides.hpp>
 
 #include <cmath>
@@ -168,23 +168,18 @@ class CompareStops final : public Step {
   StopsFit shoulder_{1, 0, 0, 0};
 };
 
+Plan plan_stops(const Choices& choices) {
+  Plan plan;
+  auto found = std::make_shared<StopsFound>();
+  plan.steps.push_back(std::make_unique<RestInInkwell>(plan.findings, false));
+  for (int joint = 1; joint <= 3; ++joint) plan.steps.push_back(std::make_unique<MoveJointToStops>(found, joint));
+  plan.steps.push_back(std::make_unique<CompareStops>(plan.findings, found, choices.trust));
+  return plan;
+}
+
 }  // namespace
 
-Guide inkwell_guide() {
-  auto findings = std::make_shared<Findings>();
-  std::vector<std::unique_ptr<Step>> steps;
-  steps.push_back(std::make_unique<RestInInkwell>(findings, true));
-  return {"inkwell", "Reference in the inkwell", std::move(steps), findings};
-}
-
-Guide stops_guide(StopsTrust trust) {
-  auto findings = std::make_shared<Findings>();
-  auto found = std::make_shared<StopsFound>();
-  std::vector<std::unique_ptr<Step>> steps;
-  steps.push_back(std::make_unique<RestInInkwell>(findings, false));
-  for (int joint = 1; joint <= 3; ++joint) steps.push_back(std::make_unique<MoveJointToStops>(found, joint));
-  steps.push_back(std::make_unique<CompareStops>(findings, found, trust));
-  return {"stops", "Joint stops", std::move(steps), findings};
-}
+const Offer stops_guide{"calibrate", "stops", "Joint stops",
+                        "You move each joint to both its stops; they are compared with the limits.", plan_stops};
 
 }  // namespace inkwell::guides

@@ -2,7 +2,6 @@
 // buttons Confirm, Cancel and Apply.
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,12 +49,6 @@ class GuidesPane final : public Pane {
   bool is_moving() const override { return is_running(); }
 
  private:
-  struct Offer {
-    const char* title;
-    const char* help;
-    std::function<guides::Guide()> make;
-  };
-  std::vector<Offer> offers() const;
   void start(guides::Guide guide);
   bool is_running() const { return guide_ && !guide_->is_over(); }
   void draw_offers(const Style& style);
@@ -80,26 +73,6 @@ class GuidesPane final : public Pane {
 
 guides::SessionPort GuidesPane::port() {
   return {desk_.session(), [this](std::vector<protocol::Signal> wanted) { signals_ = std::move(wanted); }};
-}
-
-std::vector<GuidesPane::Offer> GuidesPane::offers() const {
-  return {
-      {"First connection", "Versions, supply, inkwell, encoders and buttons. No current flows.",
-       guides::first_connection_guide},
-      {"Directions", "Each encoder while you turn its joint, then each motor with a small pulse of current.",
-       guides::direction_guide},
-      {"Joint stops", "You move each joint to both its stops; they are compared with the limits.",
-       [] { return guides::stops_guide(guides::StopsTrust::limits); }},
-      {"Potentiometers", "You turn each axis of the gimbal to both its stops.",
-       [] { return guides::potentiometer_guide({}); }},
-      {"Current-loop tuning",
-       "Measures resistance and inductance of the motors and tries gains for the bandwidth below.",
-       [this] {
-         guides::CurrentLoopOptions options;
-         options.bandwidth_Hz = static_cast<double>(bandwidth_Hz_);
-         return guides::current_loop_guide(options);
-       }},
-  };
 }
 
 void GuidesPane::start(guides::Guide guide) {
@@ -170,9 +143,13 @@ void GuidesPane::draw_offers(const Style& style) {
           : "Guides need a device. Plug one in.");
   ImGui::Dummy({0, style.points(4)});
   ImGui::BeginDisabled(!connected);
-  for (const Offer& offer : offers()) {
-    if (button(offer.title, {ImGui::GetContentRegionAvail().x, style.points(30)})) start(offer.make());
-    wrapped_text(style.palette->text_quiet, offer.help);
+  for (const guides::Offer* offer : guides::all_guides()) {
+    if (button(std::string(offer->title).c_str(), {ImGui::GetContentRegionAvail().x, style.points(30)})) {
+      guides::Choices choices;
+      choices.current_loop.bandwidth_Hz = static_cast<double>(bandwidth_Hz_);
+      start(offer->start(choices));
+    }
+    wrapped_text(style.palette->text_quiet, offer->help);
     ImGui::Dummy({0, style.points(4)});
   }
   ImGui::EndDisabled();

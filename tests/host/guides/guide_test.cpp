@@ -45,7 +45,7 @@ constexpr std::size_t identify_step = 1, trial_step = 3;  // after the inkwell; 
 
 TEST_CASE("nothing is powered before the user agrees, and the text says how much it will be") {
   FakeArm arm;
-  Guide guide = guides::current_loop_guide(one_motor());
+  Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   for (int ms = 0; ms < 2000; ++ms) arm.pass_millisecond(guide);
   CHECK(guide.phase() == Phase::asks);
   CHECK(guide.step_index() == identify_step);
@@ -57,7 +57,7 @@ TEST_CASE("nothing is powered before the user agrees, and the text says how much
 TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one transaction") {
   FakeArm arm;
   arm.winding = {3.0, 0.4e-3};
-  Guide guide = guides::current_loop_guide(one_motor());
+  Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   arm.run(guide, true);
   INFO(guide.outcome());
   REQUIRE(guide.phase() == Phase::finished);
@@ -83,7 +83,7 @@ TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one t
 
 TEST_CASE("a refused proposal is told with the device's words") {
   FakeArm arm;
-  Guide guide = guides::current_loop_guide(one_motor());
+  Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   arm.run(guide, true);
   REQUIRE(guide.phase() == Phase::finished);
   arm.pass_millisecond(guide);
@@ -96,7 +96,7 @@ TEST_CASE("a refused proposal is told with the device's words") {
 
 TEST_CASE("cancel ends a pulse at once") {
   FakeArm arm;
-  Guide guide = guides::current_loop_guide(one_motor());
+  Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   arm.run(guide, false);
   guide.confirm();
   for (int ms = 0; ms < 500 && !arm.current_flows(); ++ms) arm.pass_millisecond(guide);
@@ -111,7 +111,7 @@ TEST_CASE("cancel ends a pulse at once") {
 
 TEST_CASE("cancel in the trial puts the old gains back") {
   FakeArm arm;
-  Guide guide = guides::current_loop_guide(one_motor());
+  Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   run_to_step(arm, guide, trial_step);
   guide.confirm();
   arm.pass_millisecond(guide);
@@ -127,7 +127,7 @@ TEST_CASE("cancel in the trial puts the old gains back") {
 
 TEST_CASE("a device that goes away ends the guide with a sentence; what was on trial is to be put back") {
   FakeArm arm;
-  Guide guide = guides::current_loop_guide(one_motor());
+  Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   run_to_step(arm, guide, trial_step);
   guide.confirm();
   arm.pass_millisecond(guide);
@@ -145,7 +145,7 @@ TEST_CASE("a device that goes away ends the guide with a sentence; what was on t
 TEST_CASE("every guide survives a device that goes away at any moment") {
   for (const int after_ms : {0, 1, 50, 230, 300, 420, 700}) {
     FakeArm arm;
-    Guide guide = guides::current_loop_guide(one_motor());
+    Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
     for (int ms = 0; ms < after_ms; ++ms) {
       if (guide.phase() == Phase::asks) guide.confirm();
       arm.pass_millisecond(guide);
@@ -160,7 +160,7 @@ TEST_CASE("every guide survives a device that goes away at any moment") {
 
 TEST_CASE("a fault ends the guide with its cause and remedy") {
   FakeArm arm;
-  Guide guide = guides::first_connection_guide();
+  Guide guide = guides::connection_guide.start();
   arm.pass_millisecond(guide);
   arm.pose().state = protocol::State::fault;
   arm.pose().fault = protocol::Fault::supply_low;
@@ -173,7 +173,7 @@ TEST_CASE("a fault ends the guide with its cause and remedy") {
 TEST_CASE("a scope with gaps is not believed") {
   FakeArm arm;
   arm.loses_scope = true;
-  Guide guide = guides::current_loop_guide(one_motor());
+  Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
   arm.run(guide, true);
   REQUIRE(guide.phase() == Phase::failed);
   CHECK(guide.outcome().find("were lost") != std::string::npos);
@@ -185,7 +185,7 @@ TEST_CASE("encoders that count down and motors that turn backward are found") {
       FakeArm arm;
       // The fake's joints follow the sign that the encoder shows.
       arm.motor_turns_backward = motor_wrong != encoder_wrong;
-      Guide guide = guides::direction_guide();
+      Guide guide = guides::directions_guide.start();
       for (int ms = 0; ms < 20'000 && !guide.is_over(); ++ms) {
         const auto task = guide.step().user_task();
         if (guide.phase() == Phase::asks) guide.confirm();
@@ -211,7 +211,7 @@ TEST_CASE("encoders that count down and motors that turn backward are found") {
 TEST_CASE("a joint that does not turn under its motor is told, not guessed") {
   FakeArm arm;
   arm.motor_is_stuck = true;
-  Guide guide = guides::direction_guide();
+  Guide guide = guides::directions_guide.start();
   for (int ms = 0; ms < 20'000 && !guide.is_over(); ++ms) {
     const auto task = guide.step().user_task();
     if (guide.phase() == Phase::asks) guide.confirm();
@@ -226,7 +226,7 @@ TEST_CASE("a joint that does not turn under its motor is told, not guessed") {
 TEST_CASE("joint stops need both ends before the button counts, and trust decides what is proposed") {
   for (const auto trust : {guides::StopsTrust::limits, guides::StopsTrust::encoders}) {
     FakeArm arm;
-    Guide guide = guides::stops_guide(trust);
+    Guide guide = guides::stops_guide.start({.trust = trust});
     const auto rest = [&](int joint, float angle_rad) {
       arm.pose().joint_rad[joint - 1] = angle_rad;
       for (int ms = 0; ms < 400; ++ms) arm.pass_millisecond(guide);
@@ -277,7 +277,7 @@ TEST_CASE("potentiometers are fitted between the stops that are given") {
   FakeArm arm;
   guides::PotentiometerOptions options;
   options.range[0] = guides::AngleRange{-2.0, 2.0};
-  Guide guide = guides::potentiometer_guide(options);
+  Guide guide = guides::potentiometer_guide.start({.potentiometers = options});
   const auto hold = [&](int axis, double ratio) {
     const double slope = arm.parameters()[guides::parameter_of(Parameter::gimbal_1_slope_rad, axis, 3)];
     const double offset = arm.parameters()[guides::parameter_of(Parameter::gimbal_1_offset_rad, axis, 3)];

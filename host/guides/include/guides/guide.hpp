@@ -25,10 +25,15 @@ enum class Phase : std::uint8_t { asks, working, finished, cancelled, failed };
 
 enum class Applied : std::uint8_t { no, sent, yes, refused };
 
+/// The steps of a guide, and what they write their findings into.
+struct Plan {
+  std::vector<std::unique_ptr<Step>> steps;
+  std::shared_ptr<Findings> findings = std::make_shared<Findings>();
+};
+
 class Guide {
  public:
-  Guide(std::string name, std::string title, std::vector<std::unique_ptr<Step>> steps,
-        std::shared_ptr<Findings> findings);
+  Guide(std::string name, std::string title, Plan plan);
 
   /// Call again and again, with the newest of the device, from one thread.
   void advance(const Observation& now, DevicePort& port);

@@ -1,27 +1,21 @@
-// The guides that there are.
+// The guides that there are, and what may be chosen before they start.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <guides/guide.hpp>
 
 namespace inkwell::guides {
 
-/// Versions, supply, state, inkwell, each encoder's direction while the user turns the joint, buttons. No current.
-Guide first_connection_guide();
-
-/// Referencing: the stylus rests in the inkwell and the pose is compared with the inkwell's angles.
-Guide inkwell_guide();
-
 /// What is trusted when counts and stops disagree.
 enum class StopsTrust : std::uint8_t {
   limits,    ///< the arm's limits: counts per turn or the inkwell's angles are wrong
   encoders,  ///< counts and inkwell: the limits are to be moved to where the stops were found
 };
-/// The user moves each joint to both stops.
-Guide stops_guide(StopsTrust trust);
 
 struct AngleRange {
   double minimum_rad;
@@ -32,18 +26,45 @@ struct PotentiometerOptions {
   std::array<std::optional<AngleRange>, 3> range;
   bool quadratic = false;  ///< a third point in the middle gives the square term
 };
-/// The user turns each axis of the gimbal to both stops.
-Guide potentiometer_guide(const PotentiometerOptions& options);
 
 inline constexpr double bandwidth_default_Hz = 800, bandwidth_minimum_Hz = 50, bandwidth_maximum_Hz = 2000;
 struct CurrentLoopOptions {
   std::vector<int> motors{1, 2, 3};
   double bandwidth_Hz = bandwidth_default_Hz;
 };
-/// Identifies each motor, suggests gains and tries them.
-Guide current_loop_guide(const CurrentLoopOptions& options);
 
-/// First the encoders, turned by the user, then a pulse of current in each motor.
-Guide direction_guide();
+/// What a user may choose before a guide starts. Each guide reads what is its own.
+struct Choices {
+  StopsTrust trust = StopsTrust::limits;
+  PotentiometerOptions potentiometers;
+  CurrentLoopOptions current_loop;
+};
+
+/// A guide as the window and the command line offer it.
+struct Offer {
+  std::string_view group;  ///< the command that it stands under
+  std::string_view name;   ///< on the command line, and in its result
+  std::string_view title;
+  std::string_view help;  ///< what it does, in a sentence
+  Plan (*plan)(const Choices& choices);
+
+  Guide start(const Choices& choices = {}) const;
+};
+
+/// In the order in which a new arm needs them. A new guide is a line here, and a file beside the others that defines
+/// its `NAME_guide`.
+#define INKWELL_GUIDES(X) \
+  X(connection)           \
+  X(directions)           \
+  X(inkwell)              \
+  X(stops)                \
+  X(potentiometer)        \
+  X(current_loop)
+
+#define X(name) extern const Offer name##_guide;
+INKWELL_GUIDES(X)
+#undef X
+
+std::span<const Offer* const> all_guides();
 
 }  // namespace inkwell::guides

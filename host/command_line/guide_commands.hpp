@@ -1,0 +1,27 @@
+// Guides as subcommands of the command that they are grouped under.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "guide_run.hpp"
+
+namespace inkwell::command_line {
+
+/// What the user chose and agreed to, filled in while the options are read.
+struct GuideOptions {
+  guides::Choices choices;
+  Consent consent;
+};
+
+std::vector<const guides::Offer*> guides_of(std::string_view group);
+
+/// Adds a subcommand for each guide of a group. `add_options` adds what may be chosen for one of them.
+void add_guides(
+    CLI::App& command, const Place& place, std::string_view group,
+    const std::function<void(CLI::App& guide, const guides::Offer& offer, GuideOptions& options)>& add_options = {});
+
+}  // namespace inkwell::command_line

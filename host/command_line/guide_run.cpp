@@ -1,0 +1,220 @@
+#include "guide_run.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include <guides/session_port.hpp>
+
+#include "guided_device.hpp"
+#include "interrupt.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using guides::Guide;
+using guides::Phase;
+
+constexpr auto silence_limit = 5s, transaction_limit = 5s;
+
+/// A line that the user typed, if there is one; none while he has not. Throws UsageError when no one can type.
+std::optional<std::string> typed_line() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (poll(&input, 1, 0) <= 0) return std::nullopt;
+  std::string line;
+  for (char c = 0;;) {
+    if (read(STDIN_FILENO, &c, 1) != 1)
+      throw UsageError("This step needs your consent, but nothing can be typed here. Give --yes to agree beforehand.");
+    if (c == '\n') return line;
+    line += c;
+  }
+}
+
+/// Where a guide stands, on standard error, so that --json stays clean.
+class Display {
+ public:
+  void show(const Guide& guide, bool asks) {
+    if (guide.step_index() != shown_step_) {
+      end_line();
+      shown_step_ = guide.step_index();
+      shown_text_.clear();
+      asked_ = false;
+      fmt::print(stderr, "[{}/{}] {}\n", shown_step_ + 1, guide.step_count(), guide.step().title());
+    }
+    if (const std::string text = guide.step().text(); text != shown_text_) {
+      end_line();
+      shown_text_ = text;
+      fmt::print(stderr, "{}\n", text);
+    }
+    if (asks && !asked_ && guide.phase() == Phase::asks)
+      fmt::print(stderr, "Press Enter to agree, Ctrl+C to cancel.\n");
+    if (asks) asked_ = true;
+    if (is_terminal_ && guide.phase() == Phase::working) live(guide);
+    std::fflush(stderr);
+  }
+  void end_line() {
+    if (line_is_open_) fmt::print(stderr, "\n");
+    line_is_open_ = false;
+  }
+
+ private:
+  void live(const Guide& guide) {
+    if (Clock::now() - drawn_at_ < 100ms) return;
+    drawn_at_ = Clock::now();
+    std::string line;
+    for (const auto& check : guide.step().checks())
+      line += fmt::format(
+          "{}{} {}{}", line.empty() ? "" : "; ", check.name, guides::measured_text(check),
+          check.expected.empty() ? "" : fmt::format(" ({}: {})", check.passed ? "ok" : "expected", check.expected));
+    fmt::print(stderr, "\r\x1b[K{:.160}", line);
+    line_is_open_ = true;
+  }
+
+  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+  std::size_t shown_step_ = SIZE_MAX;
+  std::string shown_text_;
+  bool asked_ = false, line_is_open_ = false;
+  Clock::time_point drawn_at_{};
+};
+
+class GuideRun {
+ public:
+  /// Ctrl+C cancels the guide, which leaves the motors off, instead of ending the program in the middle.
+  GuideRun(GuidedDevice& device, Guide& guide, const Consent& options, bool json, const InterruptGuard& interrupt)
+      : device_(device),
+        guide_(guide),
+        consent_(options),
+        json_(json),
+        interrupt_(interrupt),
+        port_(device.session()) {}
+
+  void run() {
+    fmt::print(stderr, "{}\n", guide_.title());
+    while (!guide_.is_over()) {
+      round();
+      if (guide_.is_over()) break;
+      display_.show(guide_, guide_.takes_confirmation() && !consent_.yes);
+      if (guide_.takes_confirmation() && agrees()) guide_.confirm();
+      if (guide_.phase() == Phase::working) device_.carry_out(guide_.step().user_task());
+    }
+    display_.end_line();
+    settle();
+    if (guide_.phase() == Phase::finished && !guide_.findings().proposals.empty() && wants_to_apply()) {
+      guide_.apply(port_);
+      settle();
+    }
+  }
+
+ private:
+  void round() {
+    if (interrupt_.was_asked_to_end()) guide_.cancel(port_);
+    for (const auto& samples : device_.take_frames()) guide_.receive(samples);
+    const auto now = guides::observe(device_.session());
+    guide_.advance(now, port_);
+    if (now.pose && now.pose->sequence != sequence_) {
+      sequence_ = now.pose->sequence;
+      heard_at_ = Clock::now();
+    }
+    if (now.connected && Clock::now() - heard_at_ > silence_limit) {
+      guide_.cancel(port_);
+      throw device::Error(
+          "The device is silent. Reset the board, or let a paused virtual board run, and start the guide again.");
+    }
+    std::this_thread::sleep_for(1ms);
+  }
+
+  /// --yes agrees to what the device will do; that the user's own part is done only he can say, or button 1.
+  bool agrees() {
+    if (guide_.phase() == Phase::asks && consent_.yes) return true;
+    if (guide_.phase() == Phase::working && (consent_.yes || isatty(STDIN_FILENO) != 1)) return false;
+    return typed_line().has_value();
+  }
+
+  /// Until the device holds what the guide put back or applied.
+  void settle() {
+    const auto give_up_at = Clock::now() + transaction_limit;
+    while (!guide_.at_rest() && Clock::now() < give_up_at && guides::observe(device_.session()).connected) round();
+  }
+
+  bool wants_to_apply() {
+    if (consent_.apply) return true;
+    if (json_ || consent_.yes || isatty(STDIN_FILENO) != 1) return false;
+    for (const auto& proposal : guide_.findings().proposals) print(proposal, stderr);
+    fmt::print(stderr, "Apply these changes? Type yes: ");
+    std::fflush(stderr);
+    for (;;) {
+      if (const auto line = typed_line()) return *line == "yes" || *line == "y";
+      round();
+      if (interrupt_.was_asked_to_end()) return false;
+    }
+  }
+
+ public:
+  static void print(const guides::Proposal& proposal, std::FILE* file) {
+    fmt::print(file, "  {} = {} (now {}): {}\n", info(proposal.parameter).name, proposal.proposed, proposal.held,
+               proposal.reason);
+  }
+
+ private:
+  GuidedDevice& device_;
+  Guide& guide_;
+  const Consent& consent_;
+  bool json_;
+  const InterruptGuard& interrupt_;
+  guides::SessionPort port_;
+  Display display_;
+  std::uint32_t sequence_ = 0;
+  Clock::time_point heard_at_ = Clock::now();
+};
+
+void print_result(const Guide& guide) {
+  for (const auto& sentence : guide.findings().sentences) fmt::print("{}\n", sentence);
+  if (guide.phase() != Phase::finished) return;
+  if (guide.findings().proposals.empty()) {
+    fmt::print("Nothing needs to change.\n");
+    return;
+  }
+  fmt::print("{}\n", guide.applied() == guides::Applied::yes ? "Applied:" : "Proposed, not applied (--apply does it):");
+  for (const auto& proposal : guide.findings().proposals) GuideRun::print(proposal, stdout);
+}
+
+}  // namespace
+
+void Consent::add_to(CLI::App& command) {
+  command.add_flag("--yes", yes, "Agree to every step beforehand: motors get current without a question");
+  command.add_flag("--apply", apply, "Send the proposed changes to the device without a question");
+}
+
+int run_guides(const DeviceOptions& options, const Consent& consent, const std::vector<const guides::Offer*>& offers,
+               const guides::Choices& choices) {
+  const InterruptGuard interrupt;
+  GuidedDevice device(options);
+  nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  std::string failure;
+  for (const guides::Offer* offer : offers) {
+    Guide guide = offer->start(choices);
+    GuideRun(device, guide, consent, options.json, interrupt).run();
+    if (options.json)
+      results.push_back(to_json(guide));
+    else
+      print_result(guide);
+    if (guide.phase() != Phase::finished) failure = guide.outcome();
+    if (guide.applied() == guides::Applied::refused) failure = guide.refusal();
+    if (guide.applied() == guides::Applied::sent)
+      failure = "The device did not confirm the changes. Read them back with `inkwell parameters`.";
+    if (!failure.empty()) break;
+  }
+  if (options.json) fmt::print("{}\n", (offers.size() == 1 ? results[0] : results).dump(2));
+  std::fflush(stdout);
+  if (!failure.empty()) throw device::Error(failure);
+  return 0;
+}
+
+}  // namespace inkwell::command_line

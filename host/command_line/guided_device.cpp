@@ -1,0 +1,75 @@
+#include "guided_device.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+namespace inkwell::command_line {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto connection_limit = 15s, transaction_limit = 5s;
+
+}  // namespace
+
+GuidedDevice::GuidedDevice(const DeviceOptions& options) {
+  std::vector<device::ParameterChange> changes;
+  if (!options.arm.empty()) changes = arm_parameters(options.arm);
+  if (options.is_virtual) {
+    protocol::ParameterSet arm = protocol::default_parameters();
+    for (const auto& [parameter, value] : changes) arm[parameter] = value;
+    board_ = std::make_unique<device::VirtualBoard>(options.virtual_board(device::SimulationMode::fast, true));
+    user_.emplace(board_->control(), arm);
+    session_ = std::make_unique<device::Session>([this] { return board_->find(); });
+  } else {
+    const auto endpoint = find_one(options);  // complains at once if there is none
+    session_ = std::make_unique<device::Session>([endpoint] { return endpoint; });
+  }
+  session_->on_scope([this](const device::ScopeSamples& samples) {
+    const std::lock_guard lock(mutex_);
+    frames_.push_back(samples);
+  });
+  wait_for_device();
+  if (!changes.empty()) give_parameters(changes);
+}
+
+void GuidedDevice::wait_for_device() {
+  const auto give_up_at = Clock::now() + connection_limit;
+  for (;;) {
+    const auto status = session_->status();
+    if (status.connection == device::Connection::connected && session_->newest_pose()) return;
+    const bool hopeless =
+        status.connection == device::Connection::incompatible || status.connection == device::Connection::no_permission;
+    if (hopeless || Clock::now() > give_up_at) throw device::Error(status.message);
+    std::this_thread::sleep_for(5ms);
+  }
+}
+
+void GuidedDevice::give_parameters(const std::vector<device::ParameterChange>& changes) {
+  session_->set_parameters(changes);
+  const auto give_up_at = Clock::now() + transaction_limit;
+  const auto holds_them = [&] {
+    const auto held = session_->parameters();
+    return held &&
+           std::ranges::all_of(changes, [&](const auto& change) { return (*held)[change.first] == change.second; });
+  };
+  while (!holds_them()) {
+    if (Clock::now() > give_up_at)
+      throw device::Error(session_->refusal().value_or("The device did not take the arm's parameters."));
+    std::this_thread::sleep_for(5ms);
+  }
+}
+
+std::vector<device::ScopeSamples> GuidedDevice::take_frames() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(frames_, {});
+}
+
+void GuidedDevice::carry_out(const guides::UserTask& task) {
+  if (user_) user_->advance(task);
+}
+
+}  // namespace inkwell::command_line

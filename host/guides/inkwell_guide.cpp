@@ -1,0 +1,23 @@
+// Referencing: the stylus rests in the inkwell, and the pose is compared with the inkwell's angles.
+#include <memory>
+
+#include <guides/guides.hpp>
+
+#include "joint_motion.hpp"
+
+namespace inkwell::guides {
+namespace {
+
+Plan plan_inkwell(const Choices&) {
+  Plan plan;
+  plan.steps.push_back(std::make_unique<RestInInkwell>(plan.findings, true));
+  return plan;
+}
+
+}  // namespace
+
+const Offer inkwell_guide{"calibrate", "inkwell", "Reference in the inkwell",
+                          "The stylus rests in the inkwell, and the pose there is compared with the arm's description.",
+                          plan_inkwell};
+
+}  // namespace inkwell::guides
