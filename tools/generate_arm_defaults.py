@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes <arm/defaults.hpp> from an arm description: the arm's rows of the parameter table as constants.
+"""Writes <arm/defaults.hpp> from an arm description: its rows of the parameter table and its motor as constants.
 
 usage: generate_arm_defaults.py ARM.toml OUTPUT.hpp
 """
@@ -16,10 +16,10 @@ def main() -> None:
         description = tomllib.loads(source.read_text())
     except (OSError, tomllib.TOMLDecodeError) as error:
         sys.exit(f"{source}: {error}. Give a readable arm description such as boards/arms/omni.toml.")
-    parameters = description.get("parameters")
+    sections = {"arm_defaults": description.get("parameters"), "arm_defaults::motor": description.get("motor")}
     name = description.get("arm", {}).get("name")
-    if not isinstance(parameters, dict) or not isinstance(name, str):
-        sys.exit(f"{source}: [arm] with a name and [parameters] are needed; see boards/arms/omni.toml.")
+    if not all(isinstance(section, dict) for section in sections.values()) or not isinstance(name, str):
+        sys.exit(f"{source}: [arm] with a name, [parameters] and [motor] are needed; see boards/arms/omni.toml.")
     lines = [
         f"// Made by the build from {source.name}; edit that file instead.",
         "#pragma once",
@@ -27,12 +27,17 @@ def main() -> None:
         "namespace inkwell::arm_defaults {",
         "",
         f'inline constexpr char name[] = "{name}";',
+        "",
+        "}  // namespace inkwell::arm_defaults",
     ]
-    for key, value in parameters.items():
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            sys.exit(f"{source}: {key} = {value!r} is not a number.")
-        lines.append(f"inline constexpr float {key} = {float(value)!r}f;")
-    lines += ["", "}  // namespace inkwell::arm_defaults", ""]
+    for namespace, section in sections.items():
+        lines += ["", f"namespace inkwell::{namespace} {{", ""]
+        for key, value in section.items():
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
+                sys.exit(f"{source}: {key} = {value!r} is not a number.")
+            lines.append(f"inline constexpr float {key} = {float(value)!r}f;")
+        lines += ["", f"}}  // namespace inkwell::{namespace}"]
+    lines.append("")
     output.parent.mkdir(parents=True, exist_ok=True)
     output.write_text("\n".join(lines))
 

@@ -16,8 +16,6 @@
 namespace inkwell::arms {
 namespace {
 
-using protocol::Parameter;
-
 /// A number of [motor] or [simulation]: where it goes and what it may be.
 struct Number {
   std::string_view name;
@@ -93,28 +91,20 @@ void read_numbers(const Section& section, std::span<const Number> numbers) {
 protocol::ParameterSet read_parameters(const Section& section) {
   std::vector<std::string_view> known;
   for (const auto& row : protocol::parameter_table)
-    if (belongs_to_arm(row)) known.push_back(row.name);
+    if (row.belongs_to_arm) known.push_back(row.name);
   section.refuse_unknown(known);
 
   auto set = protocol::default_parameters();
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
     const auto& row = protocol::parameter_table[i];
-    if (!belongs_to_arm(row)) continue;
+    if (!row.belongs_to_arm) continue;
     const double value = section.number(row.name, static_cast<double>(row.minimum), static_cast<double>(row.maximum));
     if (row.kind != protocol::ParameterKind::real && value != std::floor(value))
       section.fail(section.get(row.name), fmt::format("{} = {} must be a whole number", row.name, value));
     set.values[i] = static_cast<float>(value);
   }
 
-  constexpr std::pair<Parameter, Parameter> bounds[] = {
-      {Parameter::box_minimum_x_m, Parameter::box_maximum_x_m},
-      {Parameter::box_minimum_y_m, Parameter::box_maximum_y_m},
-      {Parameter::box_minimum_z_m, Parameter::box_maximum_z_m},
-      {Parameter::joint_1_minimum_rad, Parameter::joint_1_maximum_rad},
-      {Parameter::joint_2_minimum_rad, Parameter::joint_2_maximum_rad},
-      {Parameter::elbow_minimum_rad, Parameter::elbow_maximum_rad},
-  };
-  for (const auto& [lower, upper] : bounds)
+  for (const auto& [lower, upper, hold_sphere] : protocol::parameter_bounds)
     if (!(set[lower] < set[upper]))
       section.fail(section.get(info(lower).name),
                    fmt::format("{} must be below {}", info(lower).name, info(upper).name));

@@ -20,6 +20,8 @@ constexpr Unit units[] = {
     {"_counts_per_turn", "encoders are in counts per turn"},
     {"_Nms_per_rad", "damping is in newton metre seconds per radian"},
     {"_Nm_per_rad", "stiffness is in newton metres per radian"},
+    {"_V_per_As", "integral gains are in volts per ampere second"},
+    {"_V_per_A", "proportional gains are in volts per ampere"},
     {"_Nm_per_A", "torque constants are in newton metres per ampere"},
     {"_m_per_s2", "accelerations are in metres per second squared"},
     {"_kg_m2", "inertias are in kilogram square metres"},

@@ -34,12 +34,13 @@ bool joints_implausible(const Triple& joint_rad, Transmission transmission, cons
 float sum(const Triple& values) { return values[0] + values[1] + values[2]; }
 float sum(const Vector3& vector) { return vector.x + vector.y + vector.z; }
 
-/// Writes consecutive rows of the signal table.
-void put(protocol::SignalValues& signals, Signal first, const Triple& values) {
-  for (std::size_t i = 0; i < 3; ++i) signals.values[static_cast<std::size_t>(first) + i] = values[i];
+using Rows = protocol::EachAxis<Signal>;
+
+void put(protocol::SignalValues& signals, Rows rows, const Triple& values) {
+  for (std::size_t i = 0; i < 3; ++i) signals[rows[i]] = values[i];
 }
-void put(protocol::SignalValues& signals, Signal first, const Vector3& vector) {
-  put(signals, first, Triple{vector.x, vector.y, vector.z});
+void put(protocol::SignalValues& signals, Rows rows, const Vector3& vector) {
+  put(signals, rows, Triple{vector.x, vector.y, vector.z});
 }
 
 }  // namespace
@@ -184,8 +185,10 @@ void Controller::write_signals() {
   put(signals_, Signal::motor_heat_1, heat_.heat);
   signals_[Signal::supply_V] = supply_.supply_V;
   signals_[Signal::servo_cycles] = static_cast<float>(servo_cycles_);
-  for (std::size_t i = 0; i < stage_count; ++i)
-    signals_.values[static_cast<std::size_t>(Signal::stage_sample_cycles) + i] = static_cast<float>(cycles_[i]);
+  static constexpr Signal cycles_of_stage[stage_count] = {Signal::stage_sample_cycles,  Signal::stage_pose_cycles,
+                                                          Signal::stage_contact_cycles, Signal::stage_torque_cycles,
+                                                          Signal::stage_current_cycles, Signal::stage_report_cycles};
+  for (std::size_t i = 0; i < stage_count; ++i) signals_[cycles_of_stage[i]] = static_cast<float>(cycles_[i]);
 }
 
 }  // namespace inkwell::control

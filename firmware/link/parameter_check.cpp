@@ -9,6 +9,7 @@ namespace inkwell::link {
 
 namespace {
 
+using protocol::Bounds;
 using protocol::Parameter;
 using protocol::parameter_count;
 using protocol::ParameterKind;
@@ -49,26 +50,11 @@ std::optional<std::size_t> find(std::uint16_t id) {
   return std::nullopt;
 }
 
-struct Bounds {
-  Parameter minimum;
-  Parameter maximum;
-  bool holds_sphere;  ///< the distance must be more than the sphere's diameter
-};
-
-constexpr Bounds bounds[] = {
-    {Parameter::box_minimum_x_m, Parameter::box_maximum_x_m, true},
-    {Parameter::box_minimum_y_m, Parameter::box_maximum_y_m, true},
-    {Parameter::box_minimum_z_m, Parameter::box_maximum_z_m, true},
-    {Parameter::joint_1_minimum_rad, Parameter::joint_1_maximum_rad, false},
-    {Parameter::joint_2_minimum_rad, Parameter::joint_2_maximum_rad, false},
-    {Parameter::elbow_minimum_rad, Parameter::elbow_maximum_rad, false},
-};
-
 /// The first pair of bounds that contradict each other, or null.
 constexpr const Bounds* find_contradiction(const ParameterSet& set) {
-  for (const Bounds& pair : bounds) {
-    const float room = pair.holds_sphere ? 2.0f * set[Parameter::sphere_radius_m] : 0.0f;
-    if (!(set[pair.maximum] - set[pair.minimum] > room)) return &pair;
+  for (const Bounds& pair : protocol::parameter_bounds) {
+    const float room = pair.hold_sphere ? 2.0f * set[Parameter::sphere_radius_m] : 0.0f;
+    if (!(set[pair.upper] - set[pair.lower] > room)) return &pair;
   }
   return nullptr;
 }
@@ -90,8 +76,8 @@ using Given = std::array<bool, parameter_count>;
 
 /// Which of the parameters in a contradiction the transaction is to blame for.
 Parameter blamed(const Bounds& pair, const Given& given) {
-  if (given[static_cast<std::size_t>(pair.minimum)]) return pair.minimum;
-  if (given[static_cast<std::size_t>(pair.maximum)]) return pair.maximum;
+  if (given[static_cast<std::size_t>(pair.lower)]) return pair.lower;
+  if (given[static_cast<std::size_t>(pair.upper)]) return pair.upper;
   return Parameter::sphere_radius_m;  // what was accepted before had no contradiction
 }
 

@@ -23,9 +23,8 @@ INKWELL_INTERRUPT void PoseRecorder::write(const protocol::SignalValues& signals
   report.fault = summary.fault;
   report.sequence = written;
   report.time_periods = summary.periods;
-  const auto copy_three = [&signals](float* target, Signal first) {
-    const float* source = &signals.values[static_cast<std::size_t>(first)];
-    for (int i = 0; i < 3; ++i) target[i] = source[i];
+  const auto copy_three = [&signals](float* target, protocol::EachAxis<Signal> rows) {
+    for (std::size_t i = 0; i < 3; ++i) target[i] = signals[rows[i]];
   };
   copy_three(report.position_m, Signal::position_x_m);
   copy_three(report.gimbal_rad, Signal::gimbal_1_rad);

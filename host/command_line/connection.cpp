@@ -127,7 +127,7 @@ std::vector<device::ParameterChange> arm_parameters(const std::filesystem::path&
   const auto arm = read_arm(file);
   std::vector<device::ParameterChange> changes;
   for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    if (arms::belongs_to_arm(protocol::parameter_table[i]))
+    if (protocol::parameter_table[i].belongs_to_arm)
       changes.emplace_back(static_cast<protocol::Parameter>(i), arm.parameters.values[i]);
   return changes;
 }

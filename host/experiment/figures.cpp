@@ -31,7 +31,7 @@ std::vector<Shown> shown_quantities(const ParameterSet& parameters, Wall wall) {
   const double wall_m = wall_position_m(parameters, wall);
   return {
       // The point of the sphere that touches: above zero it is inside the wall.
-      {on_axis(Signal::position_x_m, wall.axis), 1e3 * side, 1e3 * (radius_m - side * wall_m), "distance_mm"},
+      {of_axis(Signal::position_x_m, wall.axis), 1e3 * side, 1e3 * (radius_m - side * wall_m), "distance_mm"},
       {Signal::force_N, 1, 0, "force_N"},
       {Signal::torque_1_Nm, 1, 0, "torque_1_Nm"},
       {Signal::torque_2_Nm, 1, 0, "torque_2_Nm"},

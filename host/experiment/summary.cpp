@@ -19,8 +19,9 @@ constexpr double tolerance_N = 0.005, tolerance_relative = 0.01;
 constexpr double hold_duration_s = 0.5;
 
 /// The columns of a vector's three components.
-std::array<const std::vector<float>*, 3> vector_columns(const Recording& recording, Signal first) {
-  return {&recording.column(first), &recording.column(on_axis(first, 1)), &recording.column(on_axis(first, 2))};
+std::array<const std::vector<float>*, 3> vector_columns(const Recording& recording,
+                                                         protocol::EachAxis<Signal> rows) {
+  return {&recording.column(rows[0]), &recording.column(rows[1]), &recording.column(rows[2])};
 }
 
 double magnitude(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
@@ -86,13 +87,13 @@ SteadyHold steady_hold(const Recording& recording, Wall wall, Interval interval)
   SteadyHold hold;
   hold.interval = interval;
   for (int encoder = 0; encoder < 3; ++encoder) {
-    const auto& counts = recording.column(on_axis(Signal::encoder_1_counts, encoder));
+    const auto& counts = recording.column(of_axis(Signal::encoder_1_counts, encoder));
     Span span;
     for (std::size_t i = first; i < last; ++i) span.take(counts[i]);
     hold.encoder_spread_counts[static_cast<std::size_t>(encoder)] = span.width();
   }
-  const auto& position_m = recording.column(on_axis(Signal::position_x_m, wall.axis));
-  const auto& penetration_m = recording.column(on_axis(Signal::penetration_x_m, wall.axis));
+  const auto& position_m = recording.column(of_axis(Signal::position_x_m, wall.axis));
+  const auto& penetration_m = recording.column(of_axis(Signal::penetration_x_m, wall.axis));
   Span span;
   double sum_m = 0;
   for (std::size_t i = first; i < last; ++i) {
@@ -105,7 +106,7 @@ SteadyHold steady_hold(const Recording& recording, Wall wall, Interval interval)
 }
 
 std::optional<Interval> find_steady_hold(const Recording& recording, Wall wall) {
-  auto depth_m = recording.column(on_axis(Signal::penetration_x_m, wall.axis));
+  auto depth_m = recording.column(of_axis(Signal::penetration_x_m, wall.axis));
   for (float& depth : depth_m) depth = std::abs(depth);
   if (depth_m.empty()) return std::nullopt;
   const float enough_m = *std::max_element(depth_m.begin(), depth_m.end()) / 2;
@@ -125,7 +126,7 @@ std::optional<Interval> find_steady_hold(const Recording& recording, Wall wall) 
 }
 
 std::optional<Interval> contact_with(const Recording& recording, Wall wall) {
-  const auto& penetration_m = recording.column(on_axis(Signal::penetration_x_m, wall.axis));
+  const auto& penetration_m = recording.column(of_axis(Signal::penetration_x_m, wall.axis));
   std::optional<Interval> contact;
   for (std::size_t i = 0; i < penetration_m.size(); ++i) {
     if (penetration_m[i] == 0) continue;
@@ -140,7 +141,7 @@ WallResult evaluate(const Recording& recording, const ParameterSet& parameters, 
   WallResult result;
   result.samples = recording.size();
   result.samples_lost = recording.lost();
-  const auto& penetration_m = recording.column(on_axis(Signal::penetration_x_m, wall.axis));
+  const auto& penetration_m = recording.column(of_axis(Signal::penetration_x_m, wall.axis));
   const auto& force_N = recording.column(Signal::force_N);
   const auto torque_Nm = vector_columns(recording, Signal::torque_1_Nm);
   const auto grow = [](double& largest, float value) {

@@ -41,7 +41,7 @@ Wall pushed_wall(const recording::Recording& recording) {
   float deepest_m = 0;
   Wall wall;
   for (int axis = 0; axis < 3; ++axis)
-    for (const float penetration_m : recording.column(on_axis(protocol::Signal::penetration_x_m, axis))) {
+    for (const float penetration_m : recording.column(of_axis(protocol::Signal::penetration_x_m, axis))) {
       if (std::abs(penetration_m) <= deepest_m) continue;
       deepest_m = std::abs(penetration_m);
       // It points out of the wall, back into the box.

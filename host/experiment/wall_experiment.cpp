@@ -104,8 +104,8 @@ Recording record_current_steps(PacedDevice& device, const recording::Information
 std::vector<CurrentStep> current_steps(const Recording& recording) {
   std::vector<CurrentStep> steps;
   for (int motor = 0; motor < 3; ++motor)
-    steps.push_back(recording::current_step(recording.column(on_axis(Signal::current_reference_1_A, motor)),
-                                            recording.column(on_axis(Signal::current_1_A, motor))));
+    steps.push_back(recording::current_step(recording.column(of_axis(Signal::current_reference_1_A, motor)),
+                                            recording.column(of_axis(Signal::current_1_A, motor))));
   return steps;
 }
 

@@ -45,13 +45,13 @@ struct Tuning {
   std::vector<recording::CurrentStep> before, after;
 };
 
-double held(const ParameterSet& set, Parameter first, int motor) {
-  return static_cast<double>(set[parameter_of(first, motor)]);
+double held(const ParameterSet& set, protocol::EachAxis<Parameter> rows, int motor) {
+  return static_cast<double>(set[of_number(rows, motor)]);
 }
 
 /// Test pulses stay well below what the motor may carry.
 float test_current_A(const ParameterSet& set, int motor) {
-  return std::min(step_A, 0.5f * set[parameter_of(Parameter::current_limit_1_A, motor)]);
+  return std::min(step_A, 0.5f * set[of_number(Parameter::current_limit_1_A, motor)]);
 }
 
 class IdentifyMotor final : public Step {
@@ -108,20 +108,20 @@ class IdentifyMotor final : public Step {
  private:
   void start_pulse(float voltage_V, const Observation& now, DevicePort& port) {
     recorder_.emplace(Command::test_voltage, TestPulse{static_cast<std::uint8_t>(motor_), voltage_V, voltage_pulse_s},
-                      std::vector<Signal>{signal_of(Signal::current_1_A, motor_), signal_of(Signal::duty_1, motor_),
-                                          Signal::supply_V, signal_of(Signal::joint_speed_1_rad_s, motor_)},
-                      signal_of(Signal::duty_1, motor_));
+                      std::vector<Signal>{of_number(Signal::current_1_A, motor_), of_number(Signal::duty_1, motor_),
+                                          Signal::supply_V, of_number(Signal::joint_speed_1_rad_s, motor_)},
+                      of_number(Signal::duty_1, motor_));
     recorder_->begin(*now.pose, port);
   }
 
   VoltagePulse taken_pulse() const {
     const auto supply_V = recorder_->values_of(Signal::supply_V);
-    const auto speed_rad_s = recorder_->values_of(signal_of(Signal::joint_speed_1_rad_s, motor_));
+    const auto speed_rad_s = recorder_->values_of(of_number(Signal::joint_speed_1_rad_s, motor_));
     const double sign = held(set_, Parameter::motor_1_reversed, motor_) == 1.0 ? -1.0 : 1.0;
     const double back_emf_Vs =
         sign * held(set_, Parameter::gear_ratio_1, motor_) * held(set_, Parameter::torque_constant_1_Nm_per_A, motor_);
-    VoltagePulse pulse{recorder_->values_of(signal_of(Signal::duty_1, motor_)),
-                       recorder_->values_of(signal_of(Signal::current_1_A, motor_)), speed_rad_s};
+    VoltagePulse pulse{recorder_->values_of(of_number(Signal::duty_1, motor_)),
+                       recorder_->values_of(of_number(Signal::current_1_A, motor_)), speed_rad_s};
     for (std::size_t i = 0; i < pulse.voltage_V.size(); ++i) {
       pulse.voltage_V[i] *= supply_V[i];
       pulse.back_emf_V[i] *= back_emf_Vs;
@@ -244,15 +244,15 @@ class TryGains final : public Step {
     const int motor = tuning_->options.motors[steps().size()];
     recorder_.emplace(
         Command::test_current, TestPulse{static_cast<std::uint8_t>(motor), test_current_A(old_, motor), step_pulse_s},
-        std::vector<Signal>{signal_of(Signal::current_reference_1_A, motor), signal_of(Signal::current_1_A, motor)},
-        signal_of(Signal::current_reference_1_A, motor));
+        std::vector<Signal>{of_number(Signal::current_reference_1_A, motor), of_number(Signal::current_1_A, motor)},
+        of_number(Signal::current_reference_1_A, motor));
     recorder_->begin(*now.pose, port);
   }
 
   void take_step() {
     const int motor = tuning_->options.motors[steps().size()];
-    const auto& reference_A = recorder_->column(signal_of(Signal::current_reference_1_A, motor));
-    const auto& current_A = recorder_->column(signal_of(Signal::current_1_A, motor));
+    const auto& reference_A = recorder_->column(of_number(Signal::current_reference_1_A, motor));
+    const auto& current_A = recorder_->column(of_number(Signal::current_1_A, motor));
     const auto step = recording::current_step(reference_A, current_A);
     steps().push_back(step);
     const char* when = suggested_ ? "after" : "before";

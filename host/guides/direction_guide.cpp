@@ -36,7 +36,7 @@ class PulseMotor final : public Step {
 
   void begin(const Observation& now, DevicePort&) override {
     const auto& set = *now.parameters;
-    amplitude_A_ = std::min(pulse_A, 0.5f * set[parameter_of(Parameter::current_limit_1_A, motor_)]);
+    amplitude_A_ = std::min(pulse_A, 0.5f * set[of_number(Parameter::current_limit_1_A, motor_)]);
     since_.start(*now.pose);
   }
   void receive(const device::ScopeSamples& samples) override {
@@ -85,16 +85,16 @@ class PulseMotor final : public Step {
     const float amplitude_A = turned_rad_.empty() ? amplitude_A_ : -amplitude_A_;
     recorder_.emplace(
         protocol::Command::test_current, protocol::TestPulse{static_cast<std::uint8_t>(motor_), amplitude_A, pulse_s},
-        std::vector<Signal>{signal_of(Signal::current_reference_1_A, motor_), signal_of(Signal::current_1_A, motor_),
-                            signal_of(Signal::joint_1_rad, motor_)},
-        signal_of(Signal::current_reference_1_A, motor_));
+        std::vector<Signal>{of_number(Signal::current_reference_1_A, motor_), of_number(Signal::current_1_A, motor_),
+                            of_number(Signal::joint_1_rad, motor_)},
+        of_number(Signal::current_reference_1_A, motor_));
     recorder_->begin(*now.pose, port);
   }
 
   double measured_turn_rad() {
-    const auto reference_A = recorder_->values_of(signal_of(Signal::current_reference_1_A, motor_));
-    const auto current_A = recorder_->values_of(signal_of(Signal::current_1_A, motor_));
-    const auto joint_rad = recorder_->values_of(signal_of(Signal::joint_1_rad, motor_));
+    const auto reference_A = recorder_->values_of(of_number(Signal::current_reference_1_A, motor_));
+    const auto current_A = recorder_->values_of(of_number(Signal::current_1_A, motor_));
+    const auto joint_rad = recorder_->values_of(of_number(Signal::joint_1_rad, motor_));
     const auto is_on = [](double reference) { return reference != 0; };
     const auto begin = static_cast<std::size_t>(std::ranges::find_if(reference_A, is_on) - reference_A.begin());
     std::size_t end = begin;
@@ -122,7 +122,7 @@ class PulseMotor final : public Step {
     const auto place = static_cast<std::size_t>(motor_ - 1);
     const bool encoder_wrong = (*reversed_)[place].value_or(false);
     const bool forward = (difference_rad > 0) != encoder_wrong;
-    const auto parameter = parameter_of(Parameter::motor_1_reversed, motor_);
+    const auto parameter = of_number(Parameter::motor_1_reversed, motor_);
     const bool held_reversed = (*now.parameters)[parameter] == 1.0f;
     // A test pulse is a motor current as it is, before motor_n_reversed.
     const bool right = forward != held_reversed;

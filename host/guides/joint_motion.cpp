@@ -27,9 +27,7 @@ const char* joint_name(int joint) {
 
 std::string forward_direction(const protocol::ParameterSet& parameters, int joint) {
   const control::Arm arm = control::prepare(parameters).arm;
-  control::Triple angles{};
-  for (int i = 1; i <= 3; ++i)
-    angles[static_cast<std::size_t>(i - 1)] = parameters[parameter_of(Parameter::inkwell_joint_1_rad, i)];
+  const control::Triple angles = parameters.of_each(Parameter::inkwell_joint_1_rad);
   control::Triple turned = angles;
   turned[static_cast<std::size_t>(joint - 1)] += 0.1f;
   // The shoulder carries the elbow; the other two joints are seen best at the probe.
@@ -63,7 +61,7 @@ bool RestInInkwell::advance(const Observation& now, DevicePort&) {
              {"state " + std::string(info(pose.state).name), referenced ? 1.0 : 0.0, "", "ready", referenced}};
   for (int joint = 1; joint <= 3; ++joint) {
     const double expected_rad =
-        static_cast<double>((*now.parameters)[parameter_of(Parameter::inkwell_joint_1_rad, joint)]);
+        static_cast<double>((*now.parameters)[of_number(Parameter::inkwell_joint_1_rad, joint)]);
     const double measured_rad = joint_rad(pose, joint);
     checks_.push_back({fmt::format("joint {}", joint), measured_rad, "rad", fmt::format("{:.3f}", expected_rad),
                        std::abs(measured_rad - expected_rad) < 0.005});
@@ -120,7 +118,7 @@ bool TurnJointForward::advance(const Observation& now, DevicePort&) {
                     "encoder {}.",
                     joint_, turn_rad, joint_));
   if (std::abs(turned_rad_) < turn_rad) return false;
-  const auto parameter = parameter_of(Parameter::encoder_1_reversed, joint_);
+  const auto parameter = of_number(Parameter::encoder_1_reversed, joint_);
   const bool wrong = turned_rad_ < 0;
   (*reversed_)[static_cast<std::size_t>(joint_ - 1)] = wrong;
   findings_->sentences.push_back(fmt::format("Encoder {} counts {} when joint {} turns forward.", joint_,

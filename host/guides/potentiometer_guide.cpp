@@ -26,12 +26,9 @@ const char* axis_name(int axis) {
   return names[axis - 1];
 }
 
-constexpr int rows_per_axis = 3;
-
 PotentiometerCurve held_curve(const ParameterSet& set, int axis) {
-  return {value(set, Parameter::gimbal_1_square_rad, axis, rows_per_axis),
-          value(set, Parameter::gimbal_1_slope_rad, axis, rows_per_axis),
-          value(set, Parameter::gimbal_1_offset_rad, axis, rows_per_axis)};
+  return {value(set, Parameter::gimbal_1_square_rad, axis), value(set, Parameter::gimbal_1_slope_rad, axis),
+          value(set, Parameter::gimbal_1_offset_rad, axis)};
 }
 
 /// What the arm's description says of the whole track.
@@ -171,11 +168,9 @@ class FitPotentiometers final : public Step {
     if (agrees) return;
     const std::string reason =
         fmt::format("fits the {} stops of the {}", quadratic_ ? "middle and the" : "two", axis_name(axis));
-    findings_->propose(set, parameter_of(Parameter::gimbal_1_square_rad, axis, rows_per_axis), curve.square_rad,
-                       reason);
-    findings_->propose(set, parameter_of(Parameter::gimbal_1_slope_rad, axis, rows_per_axis), curve.slope_rad, reason);
-    findings_->propose(set, parameter_of(Parameter::gimbal_1_offset_rad, axis, rows_per_axis), curve.offset_rad,
-                       reason);
+    findings_->propose(set, of_number(Parameter::gimbal_1_square_rad, axis), curve.square_rad, reason);
+    findings_->propose(set, of_number(Parameter::gimbal_1_slope_rad, axis), curve.slope_rad, reason);
+    findings_->propose(set, of_number(Parameter::gimbal_1_offset_rad, axis), curve.offset_rad, reason);
   }
 
   std::shared_ptr<Findings> findings_;

@@ -11,6 +11,7 @@ namespace inkwell::guides {
 namespace {
 
 using protocol::Parameter;
+using Rows = protocol::EachAxis<Parameter>;
 
 constexpr double firm_N_per_m = 600, loose_N_per_m = 120, damping_Ns_per_m = 6;
 constexpr double joint_speed_rad_s = 1.0;
@@ -25,7 +26,7 @@ constexpr double press_s = 0.1;
 SimulatedUser::SimulatedUser(device::ControlClient control, const protocol::ParameterSet& arm)
     : control_(std::move(control)), arm_(arm) {
   for (int axis = 1; axis <= 3; ++axis) {
-    const auto of = [&](Parameter first) { return static_cast<double>(arm_[parameter_of(first, axis, 3)]); };
+    const auto of = [&](Rows rows) { return static_cast<double>(arm_[of_number(rows, axis)]); };
     // The wipers start in the middle of their tracks.
     gimbal_rad_[static_cast<std::size_t>(axis - 1)] = of(Parameter::gimbal_1_square_rad) / 4 +
                                                       of(Parameter::gimbal_1_slope_rad) / 2 +
@@ -42,15 +43,13 @@ device::Vector3 SimulatedUser::probe_m(const Joints& joints) const {
 }
 
 double SimulatedUser::limit_rad(int joint, bool upper) const {
-  const auto first = upper ? Parameter::joint_1_maximum_rad : Parameter::joint_1_minimum_rad;
-  return static_cast<double>(arm_[parameter_of(first, joint, 2)]);
+  return static_cast<double>(arm_[of_number(upper ? protocol::upper_stops : protocol::lower_stops, joint)]);
 }
 
 SimulatedUser::Joints SimulatedUser::inkwell() const {
+  const auto joints_rad = arm_.of_each(Parameter::inkwell_joint_1_rad);
   Joints joints{};
-  for (int joint = 1; joint <= 3; ++joint)
-    joints[static_cast<std::size_t>(joint - 1)] =
-        static_cast<double>(arm_[parameter_of(Parameter::inkwell_joint_1_rad, joint)]);
+  std::copy(joints_rad.begin(), joints_rad.end(), joints.begin());
   return joints;
 }
 
@@ -111,7 +110,7 @@ void SimulatedUser::begin(const UserTask& task, double now_s) {
   using Kind = UserTask::Kind;
   const auto place = static_cast<std::size_t>(std::max(task.number, 1) - 1);
   const auto turn_gimbal = [&](double ratio, double at_s) {
-    const auto of = [&](Parameter first) { return static_cast<double>(arm_[parameter_of(first, task.number, 3)]); };
+    const auto of = [&](Rows rows) { return static_cast<double>(arm_[of_number(rows, task.number)]); };
     const double angle_rad = (of(Parameter::gimbal_1_square_rad) * ratio + of(Parameter::gimbal_1_slope_rad)) * ratio +
                              of(Parameter::gimbal_1_offset_rad);
     planned_.push_back({at_s, [this, place, angle_rad] {

@@ -49,8 +49,7 @@ class MoveJointToStops final : public UserMoves {
   void look(const Observation& now, double time_s) override {
     constexpr double still_rad = 0.003, rest_s = 0.3;
     const auto& set = *now.parameters;
-    expected_ = {value(set, Parameter::joint_1_minimum_rad, joint_, 2),
-                 value(set, Parameter::joint_1_maximum_rad, joint_, 2)};
+    expected_ = {value(set, protocol::lower_stops, joint_), value(set, protocol::upper_stops, joint_)};
     Angles joints{};
     for (std::size_t i = 0; i < 3; ++i) joints[i] = static_cast<double>(now.pose->joint_rad[i]);
     // The elbow's stops lie between the links; see control::elbow_rad.
@@ -101,8 +100,7 @@ class CompareStops final : public Step {
       const auto place = static_cast<std::size_t>(joint - 1);
       const bool relative = joint == 3 && set[Parameter::transmission] == 1.0f;
       const JointStops found{found_->low[place][place], found_->high[place][place]};
-      JointStops expected{value(set, Parameter::joint_1_minimum_rad, joint, 2),
-                          value(set, Parameter::joint_1_maximum_rad, joint, 2)};
+      JointStops expected{value(set, protocol::lower_stops, joint), value(set, protocol::upper_stops, joint)};
       if (relative) {
         expected.low_rad += corrected_shoulder_rad(set, found_->low[2][1]);
         expected.high_rad += corrected_shoulder_rad(set, found_->high[2][1]);
@@ -142,9 +140,9 @@ class CompareStops final : public Step {
                                             {"agrees", width_agrees && place_agrees}});
     if (width_agrees && place_agrees) return;
     if (!trusts_limits) {
-      findings_->propose(set, parameter_of(Parameter::joint_1_minimum_rad, joint, 2), found.low_rad - base.low_rad,
+      findings_->propose(set, of_number(protocol::lower_stops, joint), found.low_rad - base.low_rad,
                          "the lower stop was found here");
-      findings_->propose(set, parameter_of(Parameter::joint_1_maximum_rad, joint, 2), found.high_rad - base.high_rad,
+      findings_->propose(set, of_number(protocol::upper_stops, joint), found.high_rad - base.high_rad,
                          "the upper stop was found here");
       return;
     }
@@ -152,13 +150,13 @@ class CompareStops final : public Step {
       // Four counts a line; stops that yield leave about a hundredth open, which the encoder's data sheet settles.
       const double counts = value(set, Parameter::encoder_1_counts_per_turn, joint) / fit.scale;
       findings_->propose(
-          set, parameter_of(Parameter::encoder_1_counts_per_turn, joint), 4 * std::round(counts / 4),
+          set, of_number(Parameter::encoder_1_counts_per_turn, joint), 4 * std::round(counts / 4),
           fmt::format("the travel was found {:.2f} times as wide as it is; prefer the encoder's data sheet "
                       "where it is near",
                       1 / fit.scale));
     }
     if (std::abs(fit.inkwell_rad - inkwell_rad) > stops_tolerance_rad)
-      findings_->propose(set, parameter_of(Parameter::inkwell_joint_1_rad, joint), fit.inkwell_rad,
+      findings_->propose(set, of_number(Parameter::inkwell_joint_1_rad, joint), fit.inkwell_rad,
                          "then the stops lie at the limits");
   }
 

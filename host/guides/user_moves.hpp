@@ -13,8 +13,8 @@ namespace inkwell::guides {
 using Angles = std::array<double, 3>;
 
 /// A parameter of one of three joints or axes, counted from 1.
-inline double value(const protocol::ParameterSet& set, protocol::Parameter first, int number, int stride = 1) {
-  return static_cast<double>(set[parameter_of(first, number, stride)]);
+inline double value(const protocol::ParameterSet& set, protocol::EachAxis<protocol::Parameter> rows, int number) {
+  return static_cast<double>(set[of_number(rows, number)]);
 }
 
 /// The user does something with the arm or the stylus and says so with Confirm or with button 1.

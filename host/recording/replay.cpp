@@ -67,8 +67,8 @@ std::optional<protocol::PoseReport> Replay::pose() const {
   protocol::PoseReport pose{};
   pose.time_periods = recording_.periods[present];
   pose.sequence = pose.time_periods / (protocol::servo_rate_Hz / protocol::pose_rate_Hz);
-  const auto vector = [&](float(&to)[3], Signal first) {
-    for (int i = 0; i < 3; ++i) to[i] = value(static_cast<Signal>(static_cast<int>(first) + i));
+  const auto vector = [&](float(&to)[3], protocol::EachAxis<Signal> rows) {
+    for (std::size_t i = 0; i < 3; ++i) to[i] = value(rows[i]);
   };
   vector(pose.joint_rad, Signal::joint_1_rad);
   vector(pose.position_m, Signal::position_x_m);

@@ -1,6 +1,7 @@
 // The tables that both ends read: complete, unambiguous, and their hash notices a change.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -98,23 +99,121 @@ TEST_CASE("every state has a meaning, and one from another version reads as faul
   for (const StateInfo& row : state_table) CHECK(row.meaning.ends_with('.'));
   CHECK(info(State::active).name == "active");
   CHECK(info(static_cast<State>(77)).name == "fault");
+  CHECK(info(static_cast<State>(state_table.size())).name == "fault");
 }
 
-TEST_CASE("a change of an id, a name or a unit changes the tables' hash") {
-  const auto hash_of = [](std::uint32_t id, std::string_view name, std::string_view unit) {
-    return detail::fnv1a(detail::fnv1a(detail::hash_number(2166136261u, id), name), unit);
-  };
-  const std::uint32_t hash = hash_of(100, "box_m", "m");
-  CHECK(hash == hash_of(100, "box_m", "m"));
-  CHECK(hash != hash_of(101, "box_m", "m"));
-  CHECK(hash != hash_of(100 + 65'536, "box_m", "m"));
-  CHECK(hash != hash_of(100, "bax_m", "m"));
-  CHECK(hash != hash_of(100, "box_m", "mm"));
-  CHECK(hash != hash_of(100, "box_mm", ""));
-  CHECK(parameter_table_hash != signal_table_hash);
+template <class Table, class Hash>
+void check_hash_notices(const Table& table, std::uint32_t hash, Hash hash_of) {
+  CHECK(hash_of(table) == hash);
+  for (const std::size_t i : {std::size_t{0}, table.size() / 2, table.size() - 1}) {
+    CAPTURE(table[i].name);
+    static Table changed;  // too large for the target's stack
+    changed = table;
+    ++changed[i].id;
+    CHECK(hash_of(changed) != hash);
+    changed = table;
+    changed[i].name = "another";
+    CHECK(hash_of(changed) != hash);
+    changed = table;
+    changed[i].unit = "furlong";
+    CHECK(hash_of(changed) != hash);
+  }
+}
 
-  // FNV-1a of "a" is published; the table's form appends a zero byte, so that neighbours do not merge.
+TEST_CASE("a change of an id, a name, a unit or a wire changes the tables' hash") {
+  check_hash_notices(parameter_table, parameter_table_hash, [](const auto& t) { return detail::hash_parameters(t); });
+  check_hash_notices(signal_table, signal_table_hash, [](const auto& t) { return detail::hash_signals(t); });
+  static auto changed = signal_table;
+  changed[3].wire = SignalWire::duty_int16;
+  CHECK(detail::hash_signals(changed) != signal_table_hash);
+  const std::array one_row{SignalInfo{3, "name", "unit", SignalWire::duty_int16, ""}};
+  CHECK(detail::hash_signals(one_row) ==
+        detail::fnv1a(detail::fnv1a(detail::hash_number(2166136261u, 3 + 2 * 256), "name"), "unit"));
+  // Every byte of a number counts, and neighbouring texts do not merge.
+  for (const std::uint32_t bit : {0u, 8u, 16u, 31u})
+    CHECK(detail::hash_number(2166136261u, 1u << bit) != detail::hash_number(2166136261u, 0));
+  CHECK(detail::fnv1a(detail::fnv1a(1, "ab"), "c") != detail::fnv1a(detail::fnv1a(1, "a"), "bc"));
+  // FNV-1a of "a" is published; the table's form appends a zero byte.
   CHECK(detail::fnv1a(2166136261u, "a") == 0xE40C292Cu * 16777619u);
+}
+
+TEST_CASE("a parameter table with a default out of range, ids that do not rise or a scattered group is refused") {
+  CHECK(detail::is_sound(parameter_table));
+  const auto refused = [](auto change) {
+    static auto table = parameter_table;
+    table = parameter_table;
+    change(table);
+    return !detail::is_sound(table);
+  };
+  CHECK(refused([](auto& table) { table[7].default_value = table[7].maximum + 1.0f; }));
+  CHECK(refused([](auto& table) { table[7].default_value = table[7].minimum - 1.0f; }));
+  CHECK(refused([](auto& table) { table[7].group = table[0].group; }));
+  CHECK(refused([](auto& table) { table[7].id = table[6].id; }));
+  CHECK(refused([](auto& table) { table[7].id = table[8].id; }));
+  CHECK_FALSE(refused([](auto& table) { table[7].default_value = table[7].minimum; }));
+  CHECK_FALSE(refused([](auto& table) { table[7].default_value = table[7].maximum; }));
+}
+
+TEST_CASE("the rows for three axes are found by their names") {
+  CHECK(of_axis(Parameter::gear_ratio_1, 0) == Parameter::gear_ratio_1);
+  CHECK(of_axis(Parameter::gear_ratio_1, 2) == Parameter::gear_ratio_3);
+  CHECK(of_axis(Parameter::gimbal_1_slope_rad, 1) == Parameter::gimbal_2_slope_rad);
+  CHECK(of_axis(Parameter::box_minimum_x_m, 2) == Parameter::box_minimum_z_m);
+  CHECK(of_number(Parameter::motor_1_reversed, 1) == Parameter::motor_1_reversed);
+  CHECK(of_number(Parameter::motor_1_reversed, 3) == Parameter::motor_3_reversed);
+  CHECK(of_axis(lower_stops, 2) == Parameter::elbow_minimum_rad);
+  CHECK(of_axis(upper_stops, 1) == Parameter::joint_2_maximum_rad);
+  CHECK(of_axis(Signal::velocity_x_m_s, 1) == Signal::velocity_y_m_s);
+  CHECK(of_number(Signal::current_reference_1_A, 2) == Signal::current_reference_2_A);
+  ParameterSet set{};
+  set[Parameter::origin_x_m] = 1.0f;
+  set[Parameter::origin_y_m] = 2.0f;
+  set[Parameter::origin_z_m] = 3.0f;
+  CHECK(set.of_each(Parameter::origin_x_m) == std::array{1.0f, 2.0f, 3.0f});
+}
+
+TEST_CASE("a table in which the rows for three axes differ, or one lacks, is refused") {
+  CHECK(detail::is_named_after("gear_ratio_2", "gear_ratio_1", 1));
+  CHECK(detail::is_named_after("box_minimum_z_m", "box_minimum_x_m", 2));
+  CHECK_FALSE(detail::is_named_after("gear_ratio_3", "gear_ratio_1", 1));
+  CHECK_FALSE(detail::is_named_after("gear_radio_2", "gear_ratio_1", 1));
+  CHECK_FALSE(detail::is_named_after("gear_ratio_2_m", "gear_ratio_1", 1));
+  CHECK_FALSE(detail::is_named_after("wall_stiffness_N_per_m", "wall_damping_Ns_per_m", 0));
+
+  const auto refused = [](auto change) {
+    static auto table = parameter_table;
+    table = parameter_table;
+    change(table[static_cast<std::size_t>(Parameter::current_limit_2_A)]);
+    return !detail::neighbours_are_alike(table);
+  };
+  CHECK(refused([](auto& row) { row.name = "current_limit_two_A"; }));
+  CHECK(refused([](auto& row) { row.unit = "mA"; }));
+  CHECK(refused([](auto& row) { row.minimum = -1.0f; }));
+  CHECK(refused([](auto& row) { row.maximum = 2.0f; }));
+  CHECK(refused([](auto& row) { row.kind = ParameterKind::whole; }));
+  CHECK(refused([](auto& row) { row.group = "arm"; }));
+  CHECK(refused([](auto& row) { row.belongs_to_arm = false; }));
+  CHECK_FALSE(refused([](auto& row) { row.default_value = 0.5f; }));
+
+  static auto signals = signal_table;
+  signals[static_cast<std::size_t>(Signal::duty_3)].wire = SignalWire::float32;
+  CHECK_FALSE(detail::neighbours_are_alike(signals));
+}
+
+TEST_CASE("the numbers of the protocol, which both ends of another version count on") {
+  CHECK(std::string_view(reinterpret_cast<const char*>(&scope_magic), 4) == "IWSC");
+  CHECK(static_cast<int>(ReportId::pose) == 1);
+  CHECK(static_cast<int>(ReportId::command) == 2);
+  CHECK(static_cast<int>(ReportId::information) == 16);
+  CHECK(static_cast<int>(ReportId::parameters) == 17);
+  CHECK(static_cast<int>(ReportId::transaction) == 18);
+  CHECK(servo_rate_Hz == 20'000);
+  CHECK(servo_period_s == 50e-6f);
+  CHECK(std::int16_t{32'767} * current_step_A > 6.5f);
+  CHECK(std::int16_t{32'767} * duty_step == 1.0f);
+  CHECK(wire_size(SignalWire::float32) == 4);
+  CHECK(wire_size(SignalWire::current_int16) == 2);
+  CHECK(wire_size(SignalWire::duty_int16) == 2);
 }
 
 TEST_CASE("what is on the wire lies where it should") {

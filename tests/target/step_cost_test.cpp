@@ -70,9 +70,11 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2000 instr
 
   float longest = 0.0f;
   float sum = 0.0f;
-  std::array<float, 6> stages{};
+  using enum protocol::Signal;
+  constexpr std::array stage_signals{stage_sample_cycles, stage_pose_cycles,    stage_contact_cycles,
+                                     stage_torque_cycles, stage_current_cycles, stage_report_cycles};
+  std::array<float, stage_signals.size()> stages{};
   constexpr int steps = 400;
-  constexpr auto first_stage = static_cast<std::size_t>(protocol::Signal::stage_sample_cycles);
   for (int i = 0; i < steps; ++i) {
     controller.host_alive();
     // An edge in two of three periods on every joint: the velocity windows are at their longest walk.
@@ -85,7 +87,7 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2000 instr
     sum += instructions;
     longest = instructions > longest ? instructions : longest;
     for (std::size_t stage = 0; stage < stages.size(); ++stage)
-      stages[stage] += controller.signals().values[first_stage + stage] * counter.instructions_per_tick() / steps;
+      stages[stage] += controller.signals()[stage_signals[stage]] * counter.instructions_per_tick() / steps;
   }
   MESSAGE("instructions of a step: mean " << sum / steps << ", longest " << longest);
   MESSAGE("by stage: sample " << stages[0] << ", pose " << stages[1] << ", contact " << stages[2] << ", torque "

@@ -13,17 +13,9 @@ using protocol::Parameter;
 
 static_assert(ticks_per_s % 60'000 == 0, "the mechanical step must be exact");
 
-/// The parameter for motor 1, 2 or 3 of a row of three.
-Parameter of_motor(Parameter first, unsigned motor) {
-  return static_cast<Parameter>(static_cast<unsigned>(first) + motor);
-}
-static_assert(static_cast<unsigned>(Parameter::gear_ratio_3) == static_cast<unsigned>(Parameter::gear_ratio_1) + 2);
-static_assert(static_cast<unsigned>(Parameter::gimbal_2_square_rad) ==
-              static_cast<unsigned>(Parameter::gimbal_1_square_rad) + 3);
-
 Vector3 inkwell_joints_rad(const arms::Description& arm) {
-  const auto& p = arm.parameters;
-  return {p[Parameter::inkwell_joint_1_rad], p[Parameter::inkwell_joint_2_rad], p[Parameter::inkwell_joint_3_rad]};
+  const auto joints_rad = arm.parameters.of_each(Parameter::inkwell_joint_1_rad);
+  return {joints_rad[0], joints_rad[1], joints_rad[2]};
 }
 
 MotorDrive motor_drive(const arms::Description& arm, const Imperfections& imperfections) {
@@ -35,25 +27,24 @@ MotorDrive motor_drive(const arms::Description& arm, const Imperfections& imperf
 
 double torque_per_A(const arms::Description& arm, unsigned motor) {
   const auto& p = arm.parameters;
-  const double sign = p[of_motor(Parameter::motor_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
-  return sign * static_cast<double>(p[of_motor(Parameter::gear_ratio_1, motor)]) *
-         static_cast<double>(p[of_motor(Parameter::torque_constant_1_Nm_per_A, motor)]);
+  const double sign = p[of_axis(Parameter::motor_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
+  return sign * static_cast<double>(p[of_axis(Parameter::gear_ratio_1, motor)]) *
+         static_cast<double>(p[of_axis(Parameter::torque_constant_1_Nm_per_A, motor)]);
 }
 
 QuadratureEncoder encoder(const arms::Description& arm, unsigned motor) {
   const auto& p = arm.parameters;
-  const double sign = p[of_motor(Parameter::encoder_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
-  const double counts_per_rad = static_cast<double>(p[of_motor(Parameter::gear_ratio_1, motor)]) *
-                                static_cast<double>(p[of_motor(Parameter::encoder_1_counts_per_turn, motor)]) /
+  const double sign = p[of_axis(Parameter::encoder_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
+  const double counts_per_rad = static_cast<double>(p[of_axis(Parameter::gear_ratio_1, motor)]) *
+                                static_cast<double>(p[of_axis(Parameter::encoder_1_counts_per_turn, motor)]) /
                                 (2.0 * std::numbers::pi);
   return QuadratureEncoder(sign * counts_per_rad, inkwell_joints_rad(arm)[motor]);
 }
 
 std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) {
-  const auto first = static_cast<unsigned>(Parameter::gimbal_1_square_rad) + 3 * axis;
-  std::array<double, 3> terms;
-  for (unsigned i = 0; i < 3; ++i) terms[i] = arm.parameters[static_cast<Parameter>(first + i)];
-  return terms;
+  const auto& p = arm.parameters;
+  return {p[of_axis(Parameter::gimbal_1_square_rad, axis)], p[of_axis(Parameter::gimbal_1_slope_rad, axis)],
+          p[of_axis(Parameter::gimbal_1_offset_rad, axis)]};
 }
 
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }

@@ -104,10 +104,8 @@ SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const pr
 }
 
 Parameter wall_parameter(int axis, bool upper) {
-  static constexpr std::array<Parameter, 6> parameters{Parameter::box_minimum_x_m, Parameter::box_maximum_x_m,
-                                                       Parameter::box_minimum_y_m, Parameter::box_maximum_y_m,
-                                                       Parameter::box_minimum_z_m, Parameter::box_maximum_z_m};
-  return parameters[static_cast<std::size_t>(2 * axis + (upper ? 1 : 0))];
+  const auto index = static_cast<std::size_t>(axis);
+  return upper ? of_axis(Parameter::box_maximum_x_m, index) : of_axis(Parameter::box_minimum_x_m, index);
 }
 
 float dragged_wall_m(const protocol::ParameterSet& parameters, int axis, bool upper, float wanted_m) {

@@ -5,8 +5,9 @@
 //   X(id, name, kind, unit, minimum, maximum, default, group, help)
 //
 // `id` is what goes over the wire and never changes its meaning; a removed parameter's id is not used
-// again. `name` ends in its unit, as it does in files and on the command line. Defaults that belong to
-// an arm come from its description in boards/arms/ through the generated header <arm/defaults.hpp>.
+// again. `name` ends in its unit, as it does in files and on the command line. A row whose default is
+// arm_defaults::name belongs to the arm: every description in boards/arms/ sets it, and the one that the
+// build names gives the default, through the generated header <arm/defaults.hpp>.
 #pragma once
 
 #include <array>
@@ -17,6 +18,7 @@
 #include <string_view>
 
 #include <arm/defaults.hpp>
+#include <protocol/each_axis.hpp>
 
 namespace inkwell::protocol {
 
@@ -39,8 +41,8 @@ enum class ParameterKind : std::uint8_t {
   X(202, wall_damping_Ns_per_m, real, "Ns/m", 0.0f, 20.0f, 2.0f, "contact", "Damping constant c of the walls (paper, section 3.3). It acts only in contact.") \
   X(203, force_limit_N, real, "N", 0.0f, 8.0f, 3.3f, "contact", "Largest magnitude of the force that is asked of the motors.")    \
   X(204, force_ramp_s, real, "s", 0.0f, 2.0f, 0.25f, "contact", "Time in which the force rises from nothing to full after it is switched on.") \
-  X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, 1.35f, "current loop", "Proportional gain of the current loops. The inductance times the wanted bandwidth in rad/s.") \
-  X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, 12400.0f, "current loop", "Integral gain of the current loops. The resistance times the wanted bandwidth in rad/s.") \
+  X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, arm_defaults::current_proportional_gain_V_per_A, "current loop", "Proportional gain of the current loops. The inductance times the wanted bandwidth in rad/s.") \
+  X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, arm_defaults::current_integral_gain_V_per_As, "current loop", "Integral gain of the current loops. The resistance times the wanted bandwidth in rad/s.") \
   X(302, voltage_limit_V, real, "V", 0.0f, 24.0f, 16.0f, "current loop", "Largest voltage that a current loop may put on a motor; the supply bounds it as well.") \
   X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Largest current asked of motor 1.") \
   X(401, current_limit_2_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_2_A, "limits", "Largest current asked of motor 2.") \
@@ -111,16 +113,68 @@ struct ParameterInfo {
   float default_value;
   std::string_view group;
   std::string_view help;
+  bool belongs_to_arm;  ///< set by every arm description
 };
+
+namespace detail {
+constexpr bool is_from_arm(std::string_view default_value) { return default_value.starts_with("arm_defaults::"); }
+}  // namespace detail
 
 inline constexpr auto parameter_table = std::to_array<ParameterInfo>({
 #define X(id, name, kind, unit, minimum, maximum, default_value, group, help) \
-  {id, #name, ParameterKind::kind, unit, minimum, maximum, default_value, group, help},
+  {id,                                                                        \
+   #name,                                                                     \
+   ParameterKind::kind,                                                       \
+   unit,                                                                      \
+   minimum,                                                                   \
+   maximum,                                                                   \
+   default_value,                                                             \
+   group,                                                                     \
+   help,                                                                      \
+   detail::is_from_arm(#default_value)},
     INKWELL_PARAMETERS(X)
 #undef X
 });
 
 inline constexpr std::size_t parameter_count = parameter_table.size();
+
+constexpr const ParameterInfo& info(Parameter parameter) {
+  return parameter_table[static_cast<std::size_t>(parameter)];
+}
+constexpr std::size_t row_count(Parameter) { return parameter_count; }
+constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {
+  return a.kind == b.kind && a.unit == b.unit && a.minimum == b.minimum && a.maximum == b.maximum &&
+         a.group == b.group && a.belongs_to_arm == b.belongs_to_arm;
+}
+
+/// The parameter of one of three motors, joints or axes, `rows` named by that of the first; `axis` is 0, 1 or 2.
+constexpr Parameter of_axis(EachAxis<Parameter> rows, std::size_t axis) { return rows[axis]; }
+/// The same for a `number` 1, 2 or 3, as in the rows' names.
+constexpr Parameter of_number(EachAxis<Parameter> rows, int number) {
+  return rows[static_cast<std::size_t>(number) - 1];
+}
+
+/// Stops of the arm. The third are the elbow's: they bound the angle between the links, on every arm.
+inline constexpr EachAxis<Parameter> lower_stops{Parameter::joint_1_minimum_rad, Parameter::joint_2_minimum_rad,
+                                                 Parameter::elbow_minimum_rad};
+inline constexpr EachAxis<Parameter> upper_stops{Parameter::joint_1_maximum_rad, Parameter::joint_2_maximum_rad,
+                                                 Parameter::elbow_maximum_rad};
+
+struct Bounds {
+  Parameter lower;
+  Parameter upper;
+  bool hold_sphere;  ///< the upper must be above the lower by more than the sphere's diameter, else just above it
+};
+
+/// What no set of parameters may contradict, beside each parameter's own range.
+inline constexpr Bounds parameter_bounds[] = {
+    {Parameter::box_minimum_x_m, Parameter::box_maximum_x_m, true},
+    {Parameter::box_minimum_y_m, Parameter::box_maximum_y_m, true},
+    {Parameter::box_minimum_z_m, Parameter::box_maximum_z_m, true},
+    {Parameter::joint_1_minimum_rad, Parameter::joint_1_maximum_rad, false},
+    {Parameter::joint_2_minimum_rad, Parameter::joint_2_maximum_rad, false},
+    {Parameter::elbow_minimum_rad, Parameter::elbow_maximum_rad, false},
+};
 
 /// A value for every parameter, in the table's order.
 struct ParameterSet {
@@ -128,6 +182,9 @@ struct ParameterSet {
 
   constexpr float& operator[](Parameter parameter) { return values[static_cast<std::size_t>(parameter)]; }
   constexpr float operator[](Parameter parameter) const { return values[static_cast<std::size_t>(parameter)]; }
+  constexpr std::array<float, 3> of_each(EachAxis<Parameter> rows) const {
+    return {(*this)[rows[0]], (*this)[rows[1]], (*this)[rows[2]]};
+  }
   bool operator==(const ParameterSet&) const = default;
 };
 
@@ -149,20 +206,27 @@ constexpr std::optional<Parameter> find_parameter(std::string_view name) {
   return std::nullopt;
 }
 
-constexpr const ParameterInfo& info(Parameter parameter) {
-  return parameter_table[static_cast<std::size_t>(parameter)];
-}
-
 namespace detail {
-constexpr bool table_is_sound() {
-  for (std::size_t i = 0; i < parameter_count; ++i) {
-    const auto& row = parameter_table[i];
+template <class Table>
+constexpr bool is_sound(const Table& table) {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const auto& row = table[i];
     if (!(row.minimum <= row.default_value && row.default_value <= row.maximum)) return false;
-    if (i > 0 && parameter_table[i - 1].id >= row.id) return false;
+    if (i > 0 && table[i - 1].id >= row.id) return false;
+    if (i > 0 && table[i - 1].group != row.group)
+      for (std::size_t earlier = 0; earlier < i; ++earlier)
+        if (table[earlier].group == row.group) return false;
   }
   return true;
 }
 }  // namespace detail
-static_assert(detail::table_is_sound(), "ids must rise and each default must lie in its range");
+static_assert(detail::is_sound(parameter_table),
+              "ids must rise, each default must lie in its range, and a group must stand together");
+#define X(id, name, kind, unit, minimum, maximum, default_value, group, help)                                       \
+  static_assert(!detail::is_from_arm(#default_value) || #default_value == std::string_view{"arm_defaults::" #name}, \
+                #name " takes another row's default");
+INKWELL_PARAMETERS(X)
+#undef X
+static_assert(detail::neighbours_are_alike(parameter_table), "rows 1 to 3, or x to z, must agree in unit and range");
 
 }  // namespace inkwell::protocol

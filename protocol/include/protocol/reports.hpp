@@ -171,21 +171,23 @@ constexpr std::uint32_t hash_number(std::uint32_t hash, std::uint32_t number) {
   for (int i = 0; i < 4; ++i, number >>= 8) hash = (hash ^ (number & 0xFFu)) * 16777619u;
   return hash;
 }
-constexpr std::uint32_t hash_parameters() {
+template <class Table>
+constexpr std::uint32_t hash_parameters(const Table& table) {
   std::uint32_t hash = 2166136261u;
-  for (const auto& row : parameter_table) hash = fnv1a(fnv1a(hash_number(hash, row.id), row.name), row.unit);
+  for (const auto& row : table) hash = fnv1a(fnv1a(hash_number(hash, row.id), row.name), row.unit);
   return hash;
 }
-constexpr std::uint32_t hash_signals() {
+template <class Table>
+constexpr std::uint32_t hash_signals(const Table& table) {
   std::uint32_t hash = 2166136261u;
-  for (const auto& row : signal_table)
+  for (const auto& row : table)
     hash = fnv1a(fnv1a(hash_number(hash, row.id + 256u * static_cast<std::uint32_t>(row.wire)), row.name), row.unit);
   return hash;
 }
 }  // namespace detail
 
 /// Equal on both ends exactly if ids, names and units agree (FNV-1a of the tables).
-inline constexpr std::uint32_t parameter_table_hash = detail::hash_parameters();
-inline constexpr std::uint32_t signal_table_hash = detail::hash_signals();
+inline constexpr std::uint32_t parameter_table_hash = detail::hash_parameters(parameter_table);
+inline constexpr std::uint32_t signal_table_hash = detail::hash_signals(signal_table);
 
 }  // namespace inkwell::protocol

@@ -10,6 +10,8 @@
 #include <optional>
 #include <string_view>
 
+#include <protocol/each_axis.hpp>
+
 namespace inkwell::protocol {
 
 /// How one value of a signal is written into a scope frame.
@@ -97,6 +99,15 @@ inline constexpr auto signal_table = std::to_array<SignalInfo>({
 
 inline constexpr std::size_t signal_count = signal_table.size();
 
+constexpr const SignalInfo& info(Signal signal) { return signal_table[static_cast<std::size_t>(signal)]; }
+constexpr std::size_t row_count(Signal) { return signal_count; }
+constexpr bool alike(const SignalInfo& a, const SignalInfo& b) { return a.unit == b.unit && a.wire == b.wire; }
+
+/// The signal of one of three motors, joints or axes, `rows` named by that of the first; `axis` is 0, 1 or 2.
+constexpr Signal of_axis(EachAxis<Signal> rows, std::size_t axis) { return rows[axis]; }
+/// The same for a `number` 1, 2 or 3, as in the rows' names.
+constexpr Signal of_number(EachAxis<Signal> rows, int number) { return rows[static_cast<std::size_t>(number) - 1]; }
+
 /// The value of every signal in one control period, in the table's order.
 struct SignalValues {
   std::array<float, signal_count> values;
@@ -104,8 +115,6 @@ struct SignalValues {
   constexpr float& operator[](Signal signal) { return values[static_cast<std::size_t>(signal)]; }
   constexpr float operator[](Signal signal) const { return values[static_cast<std::size_t>(signal)]; }
 };
-
-constexpr const SignalInfo& info(Signal signal) { return signal_table[static_cast<std::size_t>(signal)]; }
 
 constexpr std::size_t wire_size(SignalWire wire) { return wire == SignalWire::float32 ? 4 : 2; }
 
@@ -123,5 +132,6 @@ constexpr bool signal_ids_are_indices() {
 }
 }  // namespace detail
 static_assert(detail::signal_ids_are_indices(), "a signal's id is its place in the table");
+static_assert(detail::neighbours_are_alike(signal_table), "rows 1 to 3, or x to z, must agree in unit and wire");
 
 }  // namespace inkwell::protocol

@@ -57,14 +57,30 @@ TEST_CASE("both arms of the repository are read") {
   CHECK(paper_arm.parameters[Parameter::inkwell_joint_3_rad] == -2.0f);
 }
 
+TEST_CASE("every arm of the repository is read, and its current loops have one bandwidth") {
+  for (const auto& file : std::filesystem::directory_iterator(arms_directory)) {
+    if (file.path().extension() != ".toml") continue;
+    CAPTURE(file.path());
+    const auto arm = arms::read(file.path());
+    const double pi = 3.14159265358979;
+    const double by_inductance_Hz =
+        arm.parameters[Parameter::current_proportional_gain_V_per_A] / (2 * pi * arm.motor.inductance_H);
+    const double by_resistance_Hz =
+        arm.parameters[Parameter::current_integral_gain_V_per_As] / (2 * pi * arm.motor.resistance_ohm);
+    CHECK(by_inductance_Hz == doctest::Approx(by_resistance_Hz).epsilon(0.02));
+    CHECK(by_inductance_Hz > 400);
+    CHECK(by_inductance_Hz < 1600);
+  }
+}
+
 TEST_CASE("rows that no arm sets keep their defaults") {
   const auto arm = arms::read(arms_directory / "paper.toml");
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
     const auto& row = protocol::parameter_table[i];
-    if (!arms::belongs_to_arm(row)) CHECK(arm.parameters.values[i] == row.default_value);
+    if (!row.belongs_to_arm) CHECK(arm.parameters.values[i] == row.default_value);
   }
-  CHECK(arms::belongs_to_arm(info(Parameter::current_limit_2_A)));
-  CHECK_FALSE(arms::belongs_to_arm(info(Parameter::speed_limit_m_per_s)));
+  CHECK(info(Parameter::current_limit_2_A).belongs_to_arm);
+  CHECK_FALSE(info(Parameter::speed_limit_m_per_s).belongs_to_arm);
 }
 
 TEST_CASE("a missing file is named") {

@@ -379,10 +379,10 @@ TEST_CASE("every signal of the table is written, stage times of this period and 
   CHECK(signals[Signal::stage_current_cycles] == 11.0f);
   CHECK(signals[Signal::stage_report_cycles] == 6.0f);
   CHECK(signals[Signal::supply_V] == doctest::Approx(18.0f));
-  for (int i = 0; i < 3; ++i) {
-    const control::GimbalCurve& curve = settings.gimbal[static_cast<std::size_t>(i)];
-    const float r = samples.gimbal_ratio[static_cast<std::size_t>(i)];
-    CHECK(signals.values[static_cast<std::size_t>(Signal::gimbal_1_rad) + static_cast<std::size_t>(i)] ==
+  for (std::size_t i = 0; i < 3; ++i) {
+    const control::GimbalCurve& curve = settings.gimbal[i];
+    const float r = samples.gimbal_ratio[i];
+    CHECK(signals[of_axis(Signal::gimbal_1_rad, i)] ==
           doctest::Approx(curve.square_rad * r * r + curve.slope_rad * r + curve.offset_rad));
   }
 }

@@ -33,7 +33,7 @@ class FakeArm final : public guides::DevicePort {
     pose.supply_dV = 180;
     pose.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
     for (int i = 0; i < 3; ++i)
-      pose.joint_rad[i] = (*now_.parameters)[guides::parameter_of(protocol::Parameter::inkwell_joint_1_rad, i + 1)];
+      pose.joint_rad[i] = (*now_.parameters)[of_number(protocol::Parameter::inkwell_joint_1_rad, i + 1)];
     now_.pose = pose;
   }
 
@@ -136,10 +136,10 @@ class FakeArm final : public guides::DevicePort {
   double value_of(protocol::Signal signal) {
     using protocol::Signal;
     const int motor = pulse_.motor == 0 ? 1 : pulse_.motor;
-    if (signal == guides::signal_of(Signal::current_1_A, motor)) return measured_A_;
-    if (signal == guides::signal_of(Signal::current_reference_1_A, motor)) return reference_A_;
-    if (signal == guides::signal_of(Signal::duty_1, motor)) return is_voltage_ ? acting_V_ / supply_V : 0;
-    if (signal == guides::signal_of(Signal::joint_1_rad, motor)) return joint_offset_rad_;
+    if (signal == of_number(Signal::current_1_A, motor)) return measured_A_;
+    if (signal == of_number(Signal::current_reference_1_A, motor)) return reference_A_;
+    if (signal == of_number(Signal::duty_1, motor)) return is_voltage_ ? acting_V_ / supply_V : 0;
+    if (signal == of_number(Signal::joint_1_rad, motor)) return joint_offset_rad_;
     if (signal == Signal::supply_V) return supply_V;
     return 0;
   }

@@ -279,8 +279,8 @@ TEST_CASE("potentiometers are fitted between the stops that are given") {
   options.range[0] = guides::AngleRange{-2.0, 2.0};
   Guide guide = guides::potentiometer_guide.start({.potentiometers = options});
   const auto hold = [&](int axis, double ratio) {
-    const double slope = arm.parameters()[guides::parameter_of(Parameter::gimbal_1_slope_rad, axis, 3)];
-    const double offset = arm.parameters()[guides::parameter_of(Parameter::gimbal_1_offset_rad, axis, 3)];
+    const double slope = arm.parameters()[of_number(Parameter::gimbal_1_slope_rad, axis)];
+    const double offset = arm.parameters()[of_number(Parameter::gimbal_1_offset_rad, axis)];
     arm.pose().gimbal_rad[axis - 1] = static_cast<float>(slope * ratio + offset);
     for (int ms = 0; ms < 60; ++ms) arm.pass_millisecond(guide);
   };

@@ -44,13 +44,6 @@ struct Description {
   Simulation simulation;
 };
 
-/// Whether an arm description sets this row of the parameter table. It must set all of them: geometry,
-/// gimbal, box, and what the motors bear.
-constexpr bool belongs_to_arm(const protocol::ParameterInfo& row) {
-  return row.group == "arm" || row.group == "gimbal" || row.group == "box" || row.name.starts_with("current_limit_") ||
-         row.name.starts_with("continuous_current_") || row.name == "winding_time_constant_s";
-}
-
 /// A sentence that names the file, the line where there is one, what is wrong and what to do.
 class DescriptionError : public std::runtime_error {
  public:

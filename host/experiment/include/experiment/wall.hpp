@@ -26,9 +26,4 @@ char axis_letter(int axis);
 /// The wall that was pushed into deepest. Throws device::Error if there was no contact.
 Wall pushed_wall(const recording::Recording& recording);
 
-/// The signal for axis 0, 1 or 2 of three that begin with `first`.
-constexpr protocol::Signal on_axis(protocol::Signal first, int axis) {
-  return static_cast<protocol::Signal>(static_cast<int>(first) + axis);
-}
-
 }  // namespace inkwell::experiment

@@ -111,12 +111,4 @@ inline bool is_closed(const protocol::PoseReport& pose, protocol::Switch which) 
   return (pose.switches & static_cast<std::uint8_t>(which)) != 0;
 }
 
-/// The parameter for joint, motor or gimbal axis `number`, counted from 1; `stride` rows lie between two of them.
-constexpr protocol::Parameter parameter_of(protocol::Parameter first, int number, int stride = 1) {
-  return static_cast<protocol::Parameter>(static_cast<int>(first) + (number - 1) * stride);
-}
-constexpr protocol::Signal signal_of(protocol::Signal first, int number) {
-  return static_cast<protocol::Signal>(static_cast<int>(first) + number - 1);
-}
-
 }  // namespace inkwell::guides

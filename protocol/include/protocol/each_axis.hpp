@@ -1,0 +1,80 @@
+// Rows that stand in a table three times: for motor, encoder, joint or potentiometer 1 to 3, or for x, y and z.
+//
+// The three are named alike but for their number or letter: gear_ratio_1, gear_ratio_2, gear_ratio_3. Code names
+// the first and counts from there: of_axis() from 0, as in arrays; of_number() from 1, as in the rows' names.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace inkwell::protocol {
+
+namespace detail {
+
+/// Where a name says which of the three it is: a digit 1 to 3 or a letter x to z that stands alone, else npos.
+constexpr std::size_t axis_place(std::string_view name) {
+  for (std::size_t i = 1; i < name.size(); ++i) {
+    const bool alone = name[i - 1] == '_' && (i + 1 == name.size() || name[i + 1] == '_');
+    if (alone && ((name[i] >= '1' && name[i] <= '3') || (name[i] >= 'x' && name[i] <= 'z'))) return i;
+  }
+  return std::string_view::npos;
+}
+
+/// Whether `name` is `other` but for a number or letter that lies `distance` further.
+constexpr bool is_named_after(std::string_view name, std::string_view other, int distance) {
+  const std::size_t place = axis_place(other);
+  return place != std::string_view::npos && name.size() == other.size() && axis_place(name) == place &&
+         name[place] == other[place] + distance && name.substr(0, place) == other.substr(0, place) &&
+         name.substr(place + 1) == other.substr(place + 1);
+}
+
+/// Whether every row 1, 3, x or z has its neighbour 2 or y, alike() in all that must agree.
+template <class Table>
+constexpr bool neighbours_are_alike(const Table& table) {
+  for (const auto& row : table) {
+    const std::size_t place = axis_place(row.name);
+    if (place == std::string_view::npos || row.name[place] == '2' || row.name[place] == 'y') continue;
+    const int distance = row.name[place] == '1' || row.name[place] == 'x' ? 1 : -1;
+    bool found = false;
+    for (const auto& other : table)
+      found = found || (is_named_after(other.name, row.name, distance) && alike(other, row));
+    if (!found) return false;
+  }
+  return true;
+}
+
+// Not constexpr: a call ends the compilation, and the compiler's message shows the name.
+void the_table_has_no_three_rows_of_this_name();
+void the_three_rows_differ_in_unit_range_or_kind();
+
+}  // namespace detail
+
+/// Three rows of the table of `Row`s (Parameter or Signal). Made while compiling, from the first of them, and checked
+/// against the table then: names, units, kinds and ranges must agree.
+template <class Row>
+class EachAxis {
+ public:
+  // Implicit, so that a function that takes EachAxis can be given a row.
+  consteval EachAxis(Row first) : EachAxis(first, named_after(first, 1), named_after(first, 2)) {}
+  /// For three rows that are not named alike.
+  consteval EachAxis(Row first, Row second, Row third) : rows_{first, second, third} {
+    for (const Row row : rows_)
+      if (!alike(info(row), info(first))) detail::the_three_rows_differ_in_unit_range_or_kind();
+  }
+
+  constexpr Row operator[](std::size_t axis) const { return rows_[axis]; }
+
+ private:
+  static consteval Row named_after(Row first, int distance) {
+    for (std::size_t i = 0; i < row_count(first); ++i)
+      if (detail::is_named_after(info(static_cast<Row>(i)).name, info(first).name, distance))
+        return static_cast<Row>(i);
+    detail::the_table_has_no_three_rows_of_this_name();
+    return first;
+  }
+
+  std::array<Row, 3> rows_;
+};
+
+}  // namespace inkwell::protocol
