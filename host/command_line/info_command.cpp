@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <device/fault_text.hpp>
 #include <protocol/reports.hpp>
 
 #include "help.hpp"
@@ -56,9 +57,7 @@ void print(const device::Information& information, const std::optional<protocol:
   }
   fmt::print("supply              {:.1f} V\n", pose->supply_dV / 10.0);
   fmt::print("state               {}: {}\n", info(pose->state).name, info(pose->state).meaning);
-  if (pose->fault != protocol::Fault::none)
-    fmt::print("fault               {}: {} {}\n", info(pose->fault).name, info(pose->fault).cause,
-               info(pose->fault).remedy);
+  if (pose->fault != protocol::Fault::none) fmt::print("fault               {}\n", device::fault_line(pose->fault));
 }
 
 }  // namespace

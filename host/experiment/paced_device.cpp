@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <device/fault_text.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::experiment {
@@ -44,10 +45,8 @@ void PacedDevice::read_poses(std::chrono::milliseconds timeout) {
     }
     pose_ = pose;
     timeout = 0ms;
-    if (pose->state == protocol::State::fault) {
-      const auto& fault = protocol::info(pose->fault);
-      throw device::Error(fmt::format("The device reports the fault {}: {} {}", fault.name, fault.cause, fault.remedy));
-    }
+    if (pose->state == protocol::State::fault)
+      throw device::Error("The device reports the fault " + device::fault_line(pose->fault));
   }
   if (timeout == 0ms && poses_received_ == before) return;  // it was only asked what is there
   silent_reads_ = poses_received_ > before ? 0 : silent_reads_ + 1;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <device/fault_text.hpp>
 #include <device/parameter_file.hpp>
 
 namespace inkwell::guides {
@@ -96,10 +97,8 @@ void Guide::run(const Observation& now, DevicePort& port) {
         step().title(), lent ? " Parameters that were on trial are still on it if it kept its power." : ""));
   }
   if (!now.connected || !now.pose || !now.parameters) return;  // it is still being connected
-  if (now.pose->state == protocol::State::fault) {
-    const auto& fault = protocol::info(now.pose->fault);
-    throw device::Error(fmt::format("The device reports the fault {}: {} {}", fault.name, fault.cause, fault.remedy));
-  }
+  if (now.pose->state == protocol::State::fault)
+    throw device::Error("The device reports the fault " + device::fault_line(now.pose->fault));
   if (!made_safe_) {
     make_safe(port);
     made_safe_ = true;

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <arms/description.hpp>
+#include <board/omni_driver.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
 
@@ -81,7 +82,7 @@ TEST_CASE("a healthy simulated arm needs no change of directions") {
 TEST_CASE("first connection looks at everything once") {
   const auto result = guide({"check", "connection"});
   CHECK(result.at("result") == "finished");
-  CHECK(std::abs(result.at("device").at("supply_V").get<double>() - 18.0) < 0.5);
+  CHECK(std::abs(result.at("device").at("supply_V").get<double>() - board::supply_nominal_V) < 0.5);
   CHECK(result.at("encoders").size() == 3);
   CHECK(result.at("buttons") == nlohmann::json::array({1, 2}));
 }

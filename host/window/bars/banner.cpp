@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <device/fault_text.hpp>
 #include <device_desk/motor_heat_view.hpp>
 #include <frame/widgets.hpp>
 
@@ -22,8 +23,8 @@ float banner_text_width(float width, const Style& style, const Banner& banner) {
 
 std::optional<Banner> banner_of(const DeviceView& view) {
   if (view.pose && view.pose->state == State::fault) {
-    const protocol::CodeInfo& info = protocol::info(view.pose->fault);
-    return Banner{std::string(info.cause), std::string(info.remedy), true};
+    const auto [cause, remedy] = device::fault_text(view.pose->fault);
+    return Banner{cause, remedy, true};
   }
   if (!view.connected() || !view.status.information) return std::nullopt;
   const MotorHeatView heat = motor_heat_view(view.status.information->report);

@@ -30,13 +30,13 @@ inline constexpr auto state_table = std::to_array<StateInfo>({
 });
 
 // clang-format off
-/// X(code, name, cause, remedy)
+/// X(code, name, cause, remedy). A name in braces stands for that figure of the board: device::fault_text() writes it.
 #define INKWELL_FAULTS(X)                                                                                                         \
   X(0, none, "No fault.", "Nothing to do.")                                                                                       \
   X(1, bridge_fault, "A bridge reported over-current, over-temperature or under-voltage.", "Check the motor wiring for a short, let the bridges cool, then clear the fault.") \
-  X(2, supply_low, "The supply of the bridges is below 12 V.", "Check the 18 V supply and its fuse, then clear the fault.")       \
-  X(3, supply_high, "The supply of the bridges is above 24 V.", "Use an 18 V supply; if it rises while the arm is moved fast, add bulk capacitance. Then clear the fault.") \
-  X(4, current_sensor, "A current sensor does not read zero while its bridge is off.", "Check the shunt amplifier of that motor and its 1.65 V reference, then reset the board.") \
+  X(2, supply_low, "The supply of the bridges is below {supply_minimum_V} V.", "Check the {supply_nominal_V} V supply and its fuse, then clear the fault.")       \
+  X(3, supply_high, "The supply of the bridges is above {supply_maximum_V} V.", "Use a supply of {supply_nominal_V} V; if it rises while the arm is moved fast, add bulk capacitance. Then clear the fault.") \
+  X(4, current_sensor, "A current sensor does not read zero while its bridge is off.", "Check the shunt amplifier of that motor and its {shunt_amplifier_offset_V} V reference, then reset the board.") \
   X(5, over_current, "A motor current exceeded its limit by half, or what its sensor can measure.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
   X(6, over_speed, "The probe moved faster than speed_limit_m_per_s.", "Hold the stylus, lower wall_stiffness_N_per_m if it was thrown out of a wall, then clear the fault.") \
   X(7, encoder_implausible, "A joint angle lies far beyond its stop, so encoder counts were lost or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \

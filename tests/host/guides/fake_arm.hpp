@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include <board/omni_driver.hpp>
 #include <guides/guide.hpp>
 
 namespace inkwell::tests {
@@ -20,7 +21,7 @@ struct Winding {
 class FakeArm final : public guides::DevicePort {
  public:
   static constexpr double period_s = 1.0 / protocol::servo_rate_Hz;
-  static constexpr double supply_V = 18.0;
+  static constexpr double supply_V = board::supply_nominal_V;
 
   FakeArm() {
     now_.connected = true;
@@ -30,7 +31,7 @@ class FakeArm final : public guides::DevicePort {
     now_.information->protocol_version = protocol::protocol_version;
     protocol::PoseReport pose{};
     pose.state = protocol::State::ready;
-    pose.supply_dV = 180;
+    pose.supply_dV = static_cast<std::uint8_t>(10 * supply_V);
     pose.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
     for (int i = 0; i < 3; ++i)
       pose.joint_rad[i] = (*now_.parameters)[of_number(protocol::Parameter::inkwell_joint_1_rad, i + 1)];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <device/fault_text.hpp>
 #include <guides/guides.hpp>
 
 #include "fake_arm.hpp"
@@ -167,7 +168,7 @@ TEST_CASE("a fault ends the guide with its cause and remedy") {
   arm.pass_millisecond(guide);
   REQUIRE(guide.phase() == Phase::failed);
   CHECK(guide.outcome().find("supply_low") != std::string::npos);
-  CHECK(guide.outcome().find("18 V") != std::string::npos);
+  CHECK(guide.outcome().find(device::fault_text(protocol::Fault::supply_low).remedy) != std::string::npos);
 }
 
 TEST_CASE("a scope with gaps is not believed") {

@@ -1,0 +1,29 @@
+#include <device/fault_text.hpp>
+
+#include <fmt/format.h>
+
+#include <board/omni_driver.hpp>
+
+namespace inkwell::device {
+namespace {
+
+std::string with_figures(std::string_view text) {
+  return fmt::format(fmt::runtime(text), fmt::arg("supply_minimum_V", board::supply_minimum_V),
+                     fmt::arg("supply_nominal_V", board::supply_nominal_V),
+                     fmt::arg("supply_maximum_V", board::supply_maximum_V),
+                     fmt::arg("shunt_amplifier_offset_V", board::shunt_amplifier_offset_V));
+}
+
+}  // namespace
+
+FaultText fault_text(protocol::Fault fault) {
+  const auto& row = protocol::info(fault);
+  return {with_figures(row.cause), with_figures(row.remedy)};
+}
+
+std::string fault_line(protocol::Fault fault) {
+  const auto [cause, remedy] = fault_text(fault);
+  return fmt::format("{}: {} {}", protocol::info(fault).name, cause, remedy);
+}
+
+}  // namespace inkwell::device

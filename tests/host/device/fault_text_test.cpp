@@ -1,0 +1,24 @@
+#include <doctest/doctest.h>
+
+#include <board/omni_driver.hpp>
+#include <device/fault_text.hpp>
+
+using namespace inkwell;
+using protocol::Fault;
+
+TEST_CASE("every fault's text gets its figures, and no brace is left") {
+  for (const auto& row : protocol::fault_table) {
+    CAPTURE(row.name);
+    const auto text = device::fault_text(static_cast<Fault>(row.code));
+    CHECK((text.cause + text.remedy).find_first_of("{}") == std::string::npos);
+    CHECK(device::fault_line(static_cast<Fault>(row.code)) ==
+          std::string(row.name) + ": " + text.cause + " " + text.remedy);
+  }
+}
+
+TEST_CASE("the supply's faults name the limits at which the firmware switches off") {
+  CHECK(device::fault_text(Fault::supply_low).cause == "The supply of the bridges is below 12 V.");
+  CHECK(device::fault_text(Fault::supply_low).remedy == "Check the 18 V supply and its fuse, then clear the fault.");
+  CHECK(device::fault_text(Fault::supply_high).cause == "The supply of the bridges is above 24 V.");
+  CHECK(device::fault_text(Fault::current_sensor).remedy.find("its 1.65 V reference") != std::string::npos);
+}
