@@ -29,7 +29,7 @@ constexpr float voltage_pulse_s = 0.01f;  // tens of time constants of a small m
 constexpr float first_voltage_V = 1.0f, largest_voltage_V = 4.0f;
 constexpr int pairs_of_pulses = 3;  // at the larger voltage; one pulse forward and one back cancel the arm's motion
 constexpr float step_pulse_s = 0.02f, step_A = 0.5f;
-constexpr double ripple_A = static_cast<double>(board::current_ripple_A) / 2;
+constexpr double ripple_A = static_cast<double>(board::current_ripple_A(arm_defaults::motor::inductance_H)) / 2;
 
 /// More digits than the fit supports would only be harder to read and to compare.
 double to_four_digits(double value) {

@@ -1,4 +1,4 @@
-// The driver board as facts: pins, clocks, timers, scales and limits.
+// The driver board as facts: pins, clocks, timers, scales and limits. README.md has the same as wires and parts.
 //
 // Nothing here knows a register. The firmware programs the chip from these facts, the virtual board wires
 // its simulated arm by them, and static_assert refuses a set that cannot work. Sections are those of
@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace inkwell::board {
 
@@ -79,6 +80,54 @@ inline constexpr PeripheralPin console_receive{{'A', 3}, 7};
 inline constexpr Pin debug_data{'A', 13};   ///< SWDIO
 inline constexpr Pin debug_clock{'A', 14};  ///< SWCLK
 
+/// What a pin is used for, by the name of its fact.
+struct PinUse {
+  constexpr PinUse(std::string_view fact, Pin plain) : name(fact), pin(plain), function("-") {}
+  constexpr PinUse(std::string_view fact, PeripheralPin peripheral)
+      : name(fact), pin(peripheral.pin), function("AF"), number(peripheral.alternate_function) {}
+  constexpr PinUse(std::string_view fact, AnalogInput input)
+      : name(fact), pin(input.pin), function("IN"), number(input.channel) {}
+
+  std::string_view name;
+  Pin pin;
+  const char* function;  ///< "-" input or output of a port, "AF" alternate function, "IN" channel of the ADCs
+  int number = -1;       ///< of the alternate function or the channel
+};
+
+#define INKWELL_USE(fact) \
+  PinUse { #fact, fact }
+inline constexpr PinUse pin_uses[] = {
+    INKWELL_USE(encoders[0].a),    INKWELL_USE(encoders[0].b),     INKWELL_USE(encoders[1].a),
+    INKWELL_USE(encoders[1].b),    INKWELL_USE(encoders[2].a),     INKWELL_USE(encoders[2].b),
+    INKWELL_USE(bridges[0].leg_a), INKWELL_USE(bridges[0].leg_b),  INKWELL_USE(bridges[1].leg_a),
+    INKWELL_USE(bridges[1].leg_b), INKWELL_USE(bridges[2].leg_a),  INKWELL_USE(bridges[2].leg_b),
+    INKWELL_USE(bridge_enable),    INKWELL_USE(bridge_fault_tim1), INKWELL_USE(bridge_fault_tim8),
+    INKWELL_USE(motor_current[0]), INKWELL_USE(motor_current[1]),  INKWELL_USE(motor_current[2]),
+    INKWELL_USE(gimbal[0]),        INKWELL_USE(gimbal[1]),         INKWELL_USE(gimbal[2]),
+    INKWELL_USE(supply),           INKWELL_USE(button_1),          INKWELL_USE(button_2),
+    INKWELL_USE(inkwell_switch),   INKWELL_USE(status_led),        INKWELL_USE(usb_minus),
+    INKWELL_USE(usb_plus),         INKWELL_USE(console_transmit),  INKWELL_USE(console_receive),
+    INKWELL_USE(debug_data),       INKWELL_USE(debug_clock),
+};
+#undef INKWELL_USE
+
+namespace detail {
+constexpr bool pins_are_distinct() {
+  for (const auto& a : pin_uses)
+    for (const auto& b : pin_uses)
+      if (&a != &b && a.pin == b.pin) return false;
+  return true;
+}
+/// The LQFP64 part has ports A, B and C whole, D only pin 2 and H only pins 0 and 1.
+constexpr bool package_has_pins() {
+  for (const auto& use : pin_uses)
+    if (use.pin.port < 'A' || use.pin.port > 'C' || use.pin.number > 15) return false;
+  return true;
+}
+}  // namespace detail
+static_assert(detail::pins_are_distinct(), "two uses of one pin");
+static_assert(detail::package_has_pins(), "a pin that the LQFP64 part does not have");
+
 // ---- clocks (RM0090, RCC) ----------------------------------------------------------------------------
 
 inline constexpr std::uint32_t crystal_Hz = 8'000'000;
@@ -118,18 +167,15 @@ inline constexpr std::uint32_t pwm_repetition = 2 * pwm_periods_per_servo_period
 static_assert(pwm_top * 2 * pwm_Hz == timer_apb2_Hz, "the servo rate must be exact");
 static_assert(pwm_top >= 1000, "at least 10 bits of duty");
 static_assert(pwm_repetition <= 255);
+inline constexpr std::uint32_t servo_cycles = processor_Hz / servo_rate_Hz;
 
 inline constexpr float supply_nominal_V = 18.0f;
 inline constexpr float supply_minimum_V = 12.0f;
 inline constexpr float supply_maximum_V = 24.0f;
-/// The smallest motor inductance that the board is meant for (Maxon RE25 118743).
-inline constexpr float motor_inductance_H = 0.238e-3f;
-/// Peak to peak, at its worst (half duty): V / (8 f L) with unipolar switching, V / (2 f L) with locked
-/// antiphase at the servo rate.
-inline constexpr float current_ripple_A = supply_nominal_V / (8.0f * pwm_Hz * motor_inductance_H);
-inline constexpr float antiphase_ripple_A = supply_nominal_V / (2.0f * servo_rate_Hz * motor_inductance_H);
-static_assert(current_ripple_A < 0.2f, "ripple bound: a sixth of the motor's continuous current of 1.24 A");
-static_assert(antiphase_ripple_A > 1.5f, "why locked antiphase at the servo rate is no choice");
+/// Ripple of a motor's current, peak to peak, at its worst (half duty).
+constexpr float current_ripple_A(float inductance_H) { return supply_nominal_V / (8.0f * pwm_Hz * inductance_H); }
+/// The motors' continuous current is meant to be six times as much, or more.
+inline constexpr float current_ripple_maximum_A = 0.2f;
 
 /// A leg is never on for all of a period, so that bridges with a charge pump can refresh theirs, and so that the
 /// currents are sampled before the next edge (below).
@@ -174,34 +220,5 @@ inline constexpr float injected_sampling_s = 3.0f / adc_Hz;
 static_assert(injected_conversion_s < 1e-6f);
 static_assert(injected_latency_s + injected_sampling_s < time_to_next_edge_s(duty_limit),
               "at the largest duty the sampling would end after the next edge");
-
-// ---- memory (RM0090, memory map) -----------------------------------------------------------------------
-
-inline constexpr std::uint32_t flash_bytes = 1024 * 1024;
-inline constexpr std::uint32_t image_bytes_maximum = 64 * 1024;
-inline constexpr std::uint32_t servo_cycles = processor_Hz / servo_rate_Hz;
-static_assert(servo_cycles == 8400);
-
-namespace detail {
-constexpr bool pins_are_distinct() {
-  // clang-format off
-  const Pin pins[] = {
-      encoders[0].a.pin, encoders[0].b.pin, encoders[1].a.pin, encoders[1].b.pin, encoders[2].a.pin,
-      encoders[2].b.pin, bridges[0].leg_a.pin, bridges[0].leg_b.pin, bridges[1].leg_a.pin, bridges[1].leg_b.pin,
-      bridges[2].leg_a.pin, bridges[2].leg_b.pin, bridge_enable, bridge_fault_tim1.pin, bridge_fault_tim8.pin,
-      motor_current[0].pin, motor_current[1].pin, motor_current[2].pin, gimbal[0].pin, gimbal[1].pin,
-      gimbal[2].pin, supply.pin, button_1, button_2, inkwell_switch, status_led, usb_minus.pin, usb_plus.pin,
-      console_transmit.pin, console_receive.pin, debug_data, debug_clock};
-  // clang-format on
-  for (const auto& a : pins)
-    for (const auto& b : pins)
-      if (&a != &b && a == b) return false;
-  // The LQFP64 part has ports A, B and C whole, D only pin 2 and H only pins 0 and 1.
-  for (const auto& pin : pins)
-    if (pin.port < 'A' || pin.port > 'C' || pin.number > 15) return false;
-  return true;
-}
-}  // namespace detail
-static_assert(detail::pins_are_distinct(), "two uses of one pin, or a pin that the LQFP64 part does not have");
 
 }  // namespace inkwell::board

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <doctest/doctest.h>
+#include <arm/defaults.hpp>
 #include <board/omni_driver.hpp>
 
 namespace {
@@ -15,7 +16,8 @@ using virtual_board::MotorDrive;
 using virtual_board::Ticks;
 using virtual_board::ticks;
 
-constexpr double resistance_ohm = 2.20, inductance_H = 0.238e-3, bus_V = 18.0;
+constexpr double resistance_ohm = 2.20, bus_V = board::supply_nominal_V;
+constexpr double inductance_H = arm_defaults::motor::inductance_H;
 
 Imperfections ideal() {
   Imperfections i;
@@ -96,7 +98,7 @@ TEST_CASE("the ripple is that of unipolar switching, and its mean stands at the 
   const auto ripple = switch_bridge(motor, 0.5, 1000, now);
   CHECK(ripple.mean_A == doctest::Approx(0.5 * bus_V / resistance_ohm).epsilon(1e-3));
   CHECK(ripple.highest_A - ripple.lowest_A ==
-        doctest::Approx(static_cast<double>(board::current_ripple_A)).epsilon(0.01));
+        doctest::Approx(static_cast<double>(board::current_ripple_A(arm_defaults::motor::inductance_H))).epsilon(0.01));
   CHECK(ripple.at_turning_point_A == doctest::Approx(ripple.mean_A).epsilon(1e-3));
   const auto none = switch_bridge(motor, 0.0, 1000, now);
   CHECK(none.highest_A - none.lowest_A < 1e-6);

@@ -1,0 +1,67 @@
+// The board's scales in numbers of their own. Firmware and simulation are both made from the board's facts, so a wrong
+// fact would not show between them: these numbers come from the parts and wires that README.md names.
+#include <board/omni_driver.hpp>
+
+#include <doctest/doctest.h>
+#include <boards/virtual/plant/bench.hpp>
+
+namespace {
+
+using namespace inkwell;
+using doctest::Approx;
+
+TEST_CASE("clocks: 8 MHz crystal, 168 MHz processor, 48 MHz USB") {
+  CHECK(board::crystal_Hz == 8'000'000);
+  CHECK(board::processor_Hz == 168'000'000);
+  CHECK(board::usb_Hz == 48'000'000);
+  CHECK(board::timer_apb2_Hz == 168'000'000);
+  CHECK(board::apb1_Hz == 42'000'000);
+  CHECK(board::adc_Hz == 21'000'000);
+  CHECK(board::injected_conversion_s == Approx(0.714286e-6));
+}
+
+TEST_CASE("PWM: 60 kHz centre-aligned in 1400 steps, three periods to a control period of 50 us") {
+  CHECK(board::pwm_Hz == 60'000);
+  CHECK(board::pwm_top == 1400);
+  CHECK(board::pwm_repetition == 5);
+  CHECK(board::servo_cycles == 8400);
+  CHECK(board::duty_limit == 0.95f);
+  CHECK(board::bridge_dead_time_s == 0.2e-6f);
+  CHECK(board::current_ripple_A(0.238e-3f) == Approx(0.157563));
+}
+
+TEST_CASE("motor current: 20 mohm and a gain of 20 are 0.4 V/A around 1.65 V, 496.5 counts an ampere") {
+  CHECK(1.0 / board::current_step_A == Approx(496.485));
+  CHECK(board::shunt_amplifier_offset_V == Approx(1.65));
+  CHECK(board::current_range_A == Approx(4.125));
+  CHECK(board::shunt_ohm == 0.02f);
+}
+
+TEST_CASE("supply: 100 k over 10 k, 18 V are 2031 counts; 12 V to 24 V are allowed") {
+  CHECK(18.0 / board::supply_step_V == Approx(2031.07));
+  CHECK(board::supply_minimum_V == 12.0f);
+  CHECK(board::supply_nominal_V == 18.0f);
+  CHECK(board::supply_maximum_V == 24.0f);
+}
+
+TEST_CASE("what stands at the pins for one ampere, for the supply and for a potentiometer") {
+  test::Bench bench(test::omni());
+  CHECK(bench.read_V(board::supply) == Approx(18.0 / 11.0).epsilon(0.01));
+  for (const auto& wiper : board::gimbal) CHECK(bench.read_V(wiper) == Approx(1.65).epsilon(0.01));  // in the middle
+  bench.enable(true);
+  bench.run(0.003, {0.2, -0.2, 0.0});
+  const auto truth = bench.plant.truth(bench.now);
+  REQUIRE(truth.current_A[0] > 0.8);
+  REQUIRE(truth.current_A[1] < -0.8);
+  for (const int motor : {0, 1})
+    CHECK(bench.read_V(board::motor_current[motor]) == Approx(1.65 + 0.4 * truth.current_A[motor]).epsilon(0.02));
+}
+
+TEST_CASE("encoder: 360 lines are 1440 counts in a turn of the motor, 13.3 turns in a turn of the waist") {
+  test::Bench bench(test::omni());
+  bench.plant.place({0.5, 0.25, 0.1}, {0.0, 0.0, 0.0});
+  bench.idle(0.00005);
+  CHECK(std::abs(static_cast<double>(bench.pins.counts[0] - bench.counts_at_start[0]) - 0.5 * 3048.08) <= 1.0);
+}
+
+}  // namespace
