@@ -67,12 +67,6 @@ Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N) {
   return {dot(jacobian.column[0], force_N), dot(jacobian.column[1], force_N), dot(jacobian.column[2], force_N)};
 }
 
-Triple paper_torques(const LinkEnds& ends, const Vector3& force_N) {
-  const Vector3 link_2_m = ends.elbow_m - ends.shoulder_m;
-  const Vector3 link_3_m = ends.probe_m - ends.elbow_m;
-  return {cross(link_2_m + link_3_m, force_N).z, cross(link_2_m + link_3_m, force_N).x, cross(link_3_m, force_N).x};
-}
-
 float elbow_rad(const Triple& joint_rad, Transmission transmission) {
   return transmission == Transmission::serial ? joint_rad[2] : joint_rad[2] - joint_rad[1];
 }

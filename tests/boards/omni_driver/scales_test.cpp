@@ -3,7 +3,7 @@
 #include <board/omni_driver.hpp>
 
 #include <doctest/doctest.h>
-#include <boards/virtual/plant/bench.hpp>
+#include <boards/virtual/plant/driven_plant.hpp>
 
 namespace {
 
@@ -45,23 +45,23 @@ TEST_CASE("supply: 100 k over 10 k, 18 V are 2031 counts; 12 V to 24 V are allow
 }
 
 TEST_CASE("what stands at the pins for one ampere, for the supply and for a potentiometer") {
-  test::Bench bench(test::omni());
-  CHECK(bench.read_V(board::supply) == Approx(18.0 / 11.0).epsilon(0.01));
-  for (const auto& wiper : board::gimbal) CHECK(bench.read_V(wiper) == Approx(1.65).epsilon(0.01));  // in the middle
-  bench.enable(true);
-  bench.run(0.003, {0.2, -0.2, 0.0});
-  const auto truth = bench.plant.truth(bench.now);
+  test::DrivenPlant driven(test::omni());
+  CHECK(driven.read_V(board::supply) == Approx(18.0 / 11.0).epsilon(0.01));
+  for (const auto& wiper : board::gimbal) CHECK(driven.read_V(wiper) == Approx(1.65).epsilon(0.01));  // in the middle
+  driven.enable(true);
+  driven.run(0.003, {0.2, -0.2, 0.0});
+  const auto truth = driven.plant.truth(driven.now);
   REQUIRE(truth.current_A[0] > 0.8);
   REQUIRE(truth.current_A[1] < -0.8);
   for (const int motor : {0, 1})
-    CHECK(bench.read_V(board::motor_current[motor]) == Approx(1.65 + 0.4 * truth.current_A[motor]).epsilon(0.02));
+    CHECK(driven.read_V(board::motor_current[motor]) == Approx(1.65 + 0.4 * truth.current_A[motor]).epsilon(0.02));
 }
 
 TEST_CASE("encoder: 360 lines are 1440 counts in a turn of the motor, 13.3 turns in a turn of the waist") {
-  test::Bench bench(test::omni());
-  bench.plant.place({0.5, 0.25, 0.1}, {0.0, 0.0, 0.0});
-  bench.idle(0.00005);
-  CHECK(std::abs(static_cast<double>(bench.pins.counts[0] - bench.counts_at_start[0]) - 0.5 * 3048.08) <= 1.0);
+  test::DrivenPlant driven(test::omni());
+  driven.plant.place({0.5, 0.25, 0.1}, {0.0, 0.0, 0.0});
+  driven.idle(0.00005);
+  CHECK(std::abs(static_cast<double>(driven.inputs.counts[0] - driven.counts_at_start[0]) - 0.5 * 3048.08) <= 1.0);
 }
 
 }  // namespace

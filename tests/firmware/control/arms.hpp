@@ -1,60 +1,42 @@
-// The two kinds of arm that the tests run on, and a repeatable source of random numbers.
+// The arms that the tests run on, and a repeatable source of random numbers.
 #pragma once
 
 #include <cstdint>
+#include <string_view>
+#include <vector>
 
+#include <arm_files.hpp>
 #include <control/settings.hpp>
 #include <protocol/parameters.hpp>
 
 namespace inkwell::tests {
 
-/// As boards/arms/omni.toml: a parallelogram in the Omni's frame.
-inline protocol::ParameterSet omni_parameters() {
-  using enum protocol::Parameter;
-  protocol::ParameterSet set = protocol::default_parameters();
-  set[transmission] = 1.0f;
-  set[frame] = 1.0f;
-  set[link_2_m] = 0.13335f;
-  set[link_3_m] = 0.13335f;
-  set[elbow_offset_rad] = -1.5707963f;
-  set[origin_x_m] = 0.0f;
-  set[origin_y_m] = 0.02335f;
-  set[origin_z_m] = -0.16835f;
-  set[joint_1_minimum_rad] = -0.98f;
-  set[joint_1_maximum_rad] = 0.98f;
-  set[joint_2_minimum_rad] = 0.0f;
-  set[joint_2_maximum_rad] = 1.75f;
-  set[elbow_minimum_rad] = -0.81f;
-  set[elbow_maximum_rad] = 1.25f;
-  set[inkwell_joint_1_rad] = 0.0f;
-  set[inkwell_joint_2_rad] = 0.25f;
-  set[inkwell_joint_3_rad] = 0.1f;
-  return set;
+struct Arm {
+  std::string_view name;
+  protocol::ParameterSet parameters;
+};
+
+/// Every arm in boards/arms/, as its description sets the table.
+inline std::vector<Arm> all_arms() {
+  std::vector<Arm> arms;
+  for (const ArmFile& file : arm_files) {
+    Arm arm{file.name, protocol::default_parameters()};
+    for (const ArmRow& row : file.rows) arm.parameters[row.parameter] = row.value;
+    arms.push_back(arm);
+  }
+  return arms;
 }
 
-/// As boards/arms/paper.toml: the serial Denavit-Hartenberg arm of the paper's Table 1.
-inline protocol::ParameterSet paper_parameters() {
-  using enum protocol::Parameter;
-  protocol::ParameterSet set = protocol::default_parameters();
-  set[transmission] = 0.0f;
-  set[frame] = 0.0f;
-  set[link_2_m] = 0.14f;
-  set[link_3_m] = 0.14f;
-  set[elbow_offset_rad] = 0.0f;
-  set[origin_x_m] = 0.0f;
-  set[origin_y_m] = 0.0f;
-  set[origin_z_m] = 0.0f;
-  set[joint_1_minimum_rad] = -1.0f;
-  set[joint_1_maximum_rad] = 2.2f;
-  set[joint_2_minimum_rad] = 0.0f;
-  set[joint_2_maximum_rad] = 1.75f;
-  set[elbow_minimum_rad] = -2.4f;
-  set[elbow_maximum_rad] = -0.3f;
-  set[inkwell_joint_1_rad] = 0.0f;
-  set[inkwell_joint_2_rad] = 0.9f;
-  set[inkwell_joint_3_rad] = -2.0f;
-  return set;
+inline protocol::ParameterSet parameters_of(std::string_view name) {
+  for (const Arm& arm : all_arms())
+    if (arm.name == name) return arm.parameters;
+  return {};
 }
+
+/// A parallelogram in the Omni's frame.
+inline protocol::ParameterSet omni_parameters() { return parameters_of("omni"); }
+/// The serial Denavit-Hartenberg arm of the paper's Table 1.
+inline protocol::ParameterSet paper_parameters() { return parameters_of("paper"); }
 
 /// Uniform numbers, the same on every machine (a 32-bit linear congruential generator, upper bits).
 class Random {

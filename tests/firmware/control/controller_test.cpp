@@ -122,7 +122,8 @@ TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, an
   CHECK(signals[Signal::velocity_x_m_s] == 0.0f);
   // No current flows in this rig, so the loops push with all the voltage that they may, in the reference's direction.
   CHECK(signals[Signal::duty_2] * signals[Signal::current_reference_2_A] > 0.0f);
-  CHECK(std::abs(signals[Signal::duty_2]) == doctest::Approx(16.0f / 18.0f).epsilon(1e-3));
+  CHECK(std::abs(signals[Signal::duty_2]) ==
+        doctest::Approx(settings.current_loop.voltage_limit_V / board::supply_nominal_V).epsilon(1e-3));
   CHECK(signals[Signal::duty_1] == doctest::Approx(0.0f));
 }
 
@@ -286,7 +287,7 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
   Controller controller = tests::ready_controller(settings);
   Samples samples = tests::samples_at_rest();
   samples.current_A[2] = -0.4f;
-  controller.carry_out(pulse(Command::test_voltage, 3, -1.8f, 0.005f));
+  controller.carry_out(pulse(Command::test_voltage, 3, -0.1f * board::supply_nominal_V, 0.005f));
   Drive drive = tests::run(controller, samples, settings, 100);
   CHECK(drive.duty[2] == doctest::Approx(-0.1f).epsilon(1e-4));
   drive = tests::run(controller, samples, settings, 100);
@@ -294,7 +295,8 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
   CHECK(drive.duty[2] == 0.0f);
   controller.carry_out(pulse(Command::test_voltage, 1, 1000.0f, 0.005f));
   drive = tests::run(controller, samples, settings, 1);
-  CHECK(drive.duty[0] == doctest::Approx(16.0f / 18.0f).epsilon(1e-4));
+  CHECK(drive.duty[0] ==
+        doctest::Approx(settings.current_loop.voltage_limit_V / board::supply_nominal_V).epsilon(1e-4));
 }
 
 /// What the sensor of a motor shows: its amplifier follows the current to 0.2 V below its rails, here 3.6 A.
@@ -378,7 +380,7 @@ TEST_CASE("every signal of the table is written, stage times of this period and 
   CHECK(signals[Signal::stage_sample_cycles] == 7.0f);
   CHECK(signals[Signal::stage_current_cycles] == 11.0f);
   CHECK(signals[Signal::stage_report_cycles] == 6.0f);
-  CHECK(signals[Signal::supply_V] == doctest::Approx(18.0f));
+  CHECK(signals[Signal::supply_V] == doctest::Approx(board::supply_nominal_V));
   for (std::size_t i = 0; i < 3; ++i) {
     const control::GimbalCurve& curve = settings.gimbal[i];
     const float r = samples.gimbal_ratio[i];

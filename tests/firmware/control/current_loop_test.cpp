@@ -1,5 +1,4 @@
-// The current loop with the default gains on a motor with resistance, inductance and back EMF: the values of
-// the Maxon RE25 118743 that the gains are designed for.
+// The current loop with the arm's gains on the arm's motor: resistance, inductance and back EMF.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -16,8 +15,8 @@ using namespace inkwell;
 using control::CurrentLoop;
 using control::CurrentLoopGains;
 
-constexpr double resistance_ohm = 2.18;
-constexpr double inductance_H = 0.238e-3;
+constexpr double resistance_ohm = arm_defaults::motor::resistance_ohm;
+constexpr double inductance_H = arm_defaults::motor::inductance_H;
 
 struct Motor {
   double current_A = 0;

@@ -1,6 +1,7 @@
 // What several tests of the controller need: a clock, samples, and a controller brought into a state.
 #pragma once
 
+#include <board/omni_driver.hpp>
 #include <control/controller.hpp>
 
 namespace inkwell::tests {
@@ -11,14 +12,16 @@ struct FakeClock {
   std::uint32_t lap() { return ++laps; }
 };
 
-inline constexpr control::BoardLimits board_limits{
-    .supply_minimum_V = 12.0f, .supply_maximum_V = 24.0f, .duty_limit = 0.92f, .current_measurable_A = 3.44f};
+inline constexpr control::BoardLimits board_limits{.supply_minimum_V = board::supply_minimum_V,
+                                                   .supply_maximum_V = board::supply_maximum_V,
+                                                   .duty_limit = board::duty_limit,
+                                                    .current_measurable_A = board::current_measurable_A};
 
 inline control::Samples samples_at_rest() {
   return {.encoder_counts = {},
           .current_A = {},
           .gimbal_ratio = {0.5f, 0.5f, 0.5f},
-          .supply_V = 18.0f,
+          .supply_V = board::supply_nominal_V,
           .switches = 0,
           .bridge_fault = false,
           .slow_age_periods = 0};

@@ -47,7 +47,8 @@ class SimulatedArm {
 
  private:
   void advance(const control::Drive& drive, float step_s) {
-    constexpr float resistance_ohm = 2.18f, inductance_H = 0.238e-3f, supply_V = 18.0f;  // RE25, as in the arm files
+    using namespace arm_defaults::motor;
+    constexpr float supply_V = board::supply_nominal_V;
     constexpr Triple inertia_kg_m2{1.1e-3f, 1.1e-3f, 0.6e-3f};
     constexpr float coulomb_Nm = 0.01f, viscous_Nms_per_rad = 0.0005f;
     constexpr float hand_N_per_m = 300.0f, hand_Ns_per_m = 3.0f;
@@ -131,7 +132,8 @@ Push push_against_wall(protocol::ParameterSet parameters) {
 }
 
 TEST_CASE("a push against a wall: the law holds, the current follows, and a steady hand rests within two counts") {
-  for (const auto& parameters : {tests::omni_parameters(), tests::paper_parameters()}) {
+  for (const auto& [name, parameters] : tests::all_arms()) {
+    CAPTURE(name);
     const Push push = push_against_wall(parameters);
     // Two counts of joint 1 at the probe's reach of at most 0.27 m.
     const float two_counts_m = 2.0f * 0.27f * 0.33e-3f;

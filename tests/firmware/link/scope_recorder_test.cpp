@@ -286,4 +286,24 @@ TEST_CASE("the scope is off until signals are selected, and after none are") {
   CHECK(scope.oldest_frame().empty());
 }
 
+TEST_CASE("a frame of changes keeps within its room, however many values change at its end") {
+  const SignalSelection selection = select(32);
+  link::ScopeRecorder& scope = test::fresh_link().scope;
+  scope.select(selection, 1);
+  SignalValues signals{};
+  std::uint32_t random = 1;
+  std::uint32_t samples = 0;
+  for (std::uint32_t period = 0; period < 20'000; ++period) {
+    random = random * 1664525u + 1013904223u;
+    const std::size_t changing = random >> 16 & 1u ? 32 : random >> 24 & 15u;
+    for (std::size_t k = 0; k < changing; ++k) signals.values[selection.signals[k]] += 0.01f;
+    scope.record(signals, period);
+    for (auto frame = scope.oldest_frame(); !frame.empty(); frame = scope.oldest_frame()) {
+      decode(frame, selection, [&](std::uint32_t, const std::vector<float>&) { ++samples; });
+      scope.release();
+    }
+  }
+  CHECK(samples > 19'000);
+}
+
 }  // namespace inkwell

@@ -57,7 +57,7 @@ struct LinkEnds {
 /// Position of the probe and Jacobian for joint angles of a few turns at most.
 Pose forward_kinematics(const Triple& joint_rad, const Arm& arm);
 
-/// Where the links begin and end, for drawing and for the paper's form of the torques.
+/// Where the links begin and end, for drawing.
 LinkEnds link_ends(const Triple& joint_rad, const Arm& arm);
 
 /// Velocity of the probe: J times the joints' speeds.
@@ -65,11 +65,6 @@ Vector3 probe_velocity(const Jacobian& jacobian, const Triple& joint_speed_rad_p
 
 /// Joint torques that put `force_N` on the hand: tau = J^T F, from tau . dq = F . dx.
 Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N);
-
-/// The paper's Eq. 10 to 15 word for word: z, x and x component of (L1 + L2 + L3) x F, (L2 + L3) x F and
-/// L3 x F, with L1 = 0. For a serial arm in the paper's frame it is exact for joint 1 everywhere, and for
-/// joints 2 and 3 at q1 = pi/2 only; joint_torques() is the general law.
-Triple paper_torques(const LinkEnds& ends, const Vector3& force_N);
 
 /// Angle between link 3 and link 2 as the stops of the elbow know it: joint 3 less joint 2 on a parallelogram.
 float elbow_rad(const Triple& joint_rad, Transmission transmission);

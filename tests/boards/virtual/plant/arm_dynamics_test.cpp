@@ -27,7 +27,7 @@ Pose random_pose(std::mt19937& random) {
 template <class Check>
 void for_poses_of_both_arms(Check&& check) {
   std::mt19937 random(7);
-  for (const auto& arm : {test::omni(), test::paper()}) {
+  for (const auto& arm : test::all_arms()) {
     CAPTURE(arm.name);
     const ArmDynamics dynamics(arm);
     for (int i = 0; i < 200; ++i) check(dynamics, random_pose(random));
@@ -85,8 +85,8 @@ TEST_CASE("gravity is the gradient of the potential energy") {
 
 TEST_CASE("gravity pulls down, along each workspace's own axis") {
   // The probe's weight alone, moved by hand: dV = m g dh.
-  for (const auto& [arm, up] : {std::pair{test::omni(), 1}, std::pair{test::paper(), 2}}) {
-    auto light = arm;
+  for (auto light : test::all_arms()) {
+    const int up = light.parameters[protocol::Parameter::frame] == 0.0f ? 2 : 1;
     light.simulation.link_2_mass_kg = light.simulation.link_3_mass_kg = 0.0;
     const ArmDynamics dynamics(light);
     const Vector3 low(0.2, 0.3, -0.5), high(0.2, 0.8, -0.1);
@@ -103,7 +103,7 @@ TEST_CASE("the mass matrix is symmetric, positive, and holds a point mass's ener
     CHECK((mass - mass.transpose()).norm() == 0.0);
     CHECK(Eigen::LLT<Matrix3>(mass).info() == Eigen::Success);
   });
-  for (auto arm : {test::omni(), test::paper()}) {
+  for (auto arm : test::all_arms()) {
     const ArmDynamics with(arm);
     arm.simulation.probe_mass_kg = 0.0;
     const ArmDynamics without(arm);

@@ -42,7 +42,7 @@ Vector3 position_m(const ArmMotion& arm) { return arm.dynamics().position_m(arm.
 }  // namespace
 
 TEST_CASE("without friction a falling, turning arm keeps its energy") {
-  for (const auto& description : {test::omni(), test::paper()}) {
+  for (const auto& description : test::all_arms()) {
     CAPTURE(description.name);
     ArmMotion arm(unbounded(test::frictionless(description)), {0.0, 1.0, -0.5});
     arm.place({0.0, 1.0, -0.5}, {6.0, -3.0, 2.0});
@@ -117,7 +117,7 @@ TEST_CASE("a stiff, undamped hand does not blow up") {
 }
 
 TEST_CASE("the stops bear the falling arm, the elbow's one between the links") {
-  for (const auto& description : {test::omni(), test::paper()}) {
+  for (const auto& description : test::all_arms()) {
     CAPTURE(description.name);
     using protocol::Parameter;
     const auto& p = description.parameters;

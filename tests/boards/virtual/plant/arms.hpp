@@ -1,19 +1,40 @@
-// The two arms of the repository, for tests of what is simulated.
+// The arms of the repository, for tests of what is simulated.
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include <arms/description.hpp>
+#include <board/omni_driver.hpp>
+#include <plant/imperfections.hpp>
 
 namespace inkwell::test {
 
-inline arms::Description arm(const char* name) {
-  const auto directory = std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards" / "arms";
-  return arms::read(directory / name);
+inline std::filesystem::path arms_directory() {
+  return std::filesystem::path(INKWELL_SOURCE_DIRECTORY) / "boards" / "arms";
 }
 
-inline arms::Description omni() { return arm("omni.toml"); }
-inline arms::Description paper() { return arm("paper.toml"); }
+inline std::vector<arms::Description> all_arms() {
+  std::vector<arms::Description> all;
+  for (const auto& file : std::filesystem::directory_iterator(arms_directory()))
+    if (file.path().extension() == ".toml") all.push_back(arms::read(file.path()));
+  return all;
+}
+inline arms::Description omni() { return arms::read(arms_directory() / "omni.toml"); }
+inline arms::Description paper() { return arms::read(arms_directory() / "paper.toml"); }
+
+/// Gear times torque constant of motor 0, 1 or 2, both counted positive.
+inline double torque_Nm_per_A(const arms::Description& arm, unsigned motor) {
+  const auto& p = arm.parameters;
+  return static_cast<double>(p[of_axis(protocol::Parameter::gear_ratio_1, motor)]) *
+         static_cast<double>(p[of_axis(protocol::Parameter::torque_constant_1_Nm_per_A, motor)]);
+}
+
+/// All that a motor's current flows through: winding, shunt and the switches of both legs.
+inline double circuit_ohm(const arms::Description& arm) {
+  return arm.motor.resistance_ohm + static_cast<double>(board::shunt_ohm) +
+         2.0 * virtual_board::Imperfections{}.leg_resistance_ohm;
+}
 
 /// The arm without friction.
 inline arms::Description frictionless(arms::Description description) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <doctest/doctest.h>
@@ -14,7 +15,8 @@ using namespace inkwell;
 using namespace inkwell::test;
 
 TEST_CASE("the arm starts docked, at rest and with its switch closed") {
-  for (const auto& arm : {test::omni(), test::paper()}) {
+  for (const auto& arm : test::all_arms()) {
+    CAPTURE(arm.name);
     DrivenPlant driven(arm);
     driven.idle(0.5);
     const Truth t = driven.plant.truth(driven.now);
@@ -23,7 +25,7 @@ TEST_CASE("the arm starts docked, at rest and with its switch closed") {
     CHECK(driven.inputs.at(board::inkwell_switch) == PinLevel::low);
     CHECK((t.position_m - driven.plant.inkwell().position_m()).norm() < 30e-6);
     CHECK(t.velocity_m_s.norm() < 1e-9);
-    CHECK(t.supply_V == doctest::Approx(18.0).epsilon(0.01));
+    CHECK(t.supply_V == doctest::Approx(board::supply_nominal_V).epsilon(0.01));
     CHECK(driven.inputs.at(board::bridge_fault_tim1.pin) == PinLevel::high);
   }
 }
@@ -35,8 +37,8 @@ TEST_CASE("a current turns its joint forward and the encoder up, by gear and tor
       auto arm = test::omni();
       arm.simulation.gravity_m_per_s2 = 0.0;
       for (unsigned j = 0; j < 3; ++j) {
-        arm.parameters[static_cast<Parameter>(static_cast<unsigned>(Parameter::motor_1_reversed) + j)] = reversed;
-        arm.parameters[static_cast<Parameter>(static_cast<unsigned>(Parameter::encoder_1_reversed) + j)] = reversed;
+        arm.parameters[of_axis(Parameter::motor_1_reversed, j)] = reversed;
+        arm.parameters[of_axis(Parameter::encoder_1_reversed, j)] = reversed;
       }
       DrivenPlant driven(arm);
       driven.plant.place(free_joints(arm), Vector3::Zero());
@@ -51,11 +53,14 @@ TEST_CASE("a current turns its joint forward and the encoder up, by gear and tor
       CAPTURE(i);
       const double turned_rad = t.joints_rad[i] - before[i];
       CHECK((reversed ? -1 : 1) * turned_rad > 0.02);
-      const double counts_per_rad = (i == 0 ? 13.3 : 11.2) * 1440.0 / (2.0 * 3.14159265358979);
+      const double counts_per_rad =
+          static_cast<double>(arm.parameters[of_axis(Parameter::gear_ratio_1, i)]) *
+          static_cast<double>(arm.parameters[of_axis(Parameter::encoder_1_counts_per_turn, i)]) /
+          (2.0 * std::numbers::pi);
       CHECK(std::abs((reversed ? -1 : 1) * turned_rad * counts_per_rad -
                      static_cast<double>(driven.inputs.counts[i] - counts[i])) <= 1.0);
       CHECK(driven.inputs.jumps == 0);
-      CHECK(t.torque_Nm[i] == doctest::Approx((reversed ? -1 : 1) * (i == 0 ? 13.3 : 11.2) * 0.0234 * t.current_A[i]));
+      CHECK(t.torque_Nm[i] == doctest::Approx((reversed ? -1 : 1) * test::torque_Nm_per_A(arm, i) * t.current_A[i]));
     }
 }
 
@@ -75,7 +80,8 @@ TEST_CASE("encoders count through fast motion without a lost edge") {
 }
 
 TEST_CASE("shunt amplifiers read the current within their imperfections") {
-  DrivenPlant driven(test::omni());
+  const auto arm = test::omni();
+  DrivenPlant driven(arm);
   driven.enable(true);
   driven.run(0.005, {0.2, -0.3, 0.0});
   const Truth t = driven.plant.truth(driven.now);
@@ -91,8 +97,8 @@ TEST_CASE("shunt amplifiers read the current within their imperfections") {
     }
     const double mean_A = sum_A / 1000.0;
     // Between the pulses the current falls with R / L, and the amplifier is late by its time constant.
-    const double late_A =
-        t.current_A[i] * (2.26 / 0.238e-3) / (2.0 * 3.14159265358979 * imperfections.amplifier_bandwidth_Hz);
+    const double late_A = t.current_A[i] * (test::circuit_ohm(arm) / arm.motor.inductance_H) /
+                          (2.0 * 3.14159265358979 * imperfections.amplifier_bandwidth_Hz);
     const double expected_A = (t.current_A[i] + late_A) * (1.0 + imperfections.amplifier_gain_error[i]) +
                               imperfections.amplifier_offset_V[i] / 0.4;
     CHECK(std::abs(mean_A - expected_A) < 0.001);
@@ -114,7 +120,8 @@ TEST_CASE("the amplifier clips at its rails") {
 TEST_CASE("the enable pin and the bridges' fault take the current away at once, floating pins brake") {
   for (const int how : {0, 1, 2}) {
     CAPTURE(how);
-    DrivenPlant driven(test::omni());
+    const auto arm = test::omni();
+    DrivenPlant driven(arm);
     driven.enable(true);
     driven.run(0.003, {0.3, 0.3, -0.3});
     CHECK(std::abs(driven.plant.truth(driven.now).current_A[2]) > 1.0);
@@ -124,8 +131,8 @@ TEST_CASE("the enable pin and the bridges' fault take the current away at once, 
     driven.idle(0.0005);
     const Truth t = driven.plant.truth(driven.now);
     if (how == 1) {  // low through their pull-downs: each motor is shorted and its back-EMF drives what is left
-      const double back_emf_V = 11.2 * 0.0234 * t.joint_speeds_rad_s[2];
-      CHECK(std::abs(t.current_A[2] + back_emf_V / 2.26) < 0.03);
+      const double back_emf_V = test::torque_Nm_per_A(arm, 2) * t.joint_speeds_rad_s[2];
+      CHECK(std::abs(t.current_A[2] + back_emf_V / test::circuit_ohm(arm)) < 0.03);
     } else {
       CHECK(t.current_A.norm() == 0.0);
     }
@@ -185,10 +192,9 @@ TEST_CASE("potentiometers invert the gimbal's characteristic, with wiper noise")
       lowest = std::min(lowest, read);
       highest = std::max(highest, read);
     }
-    const auto first = static_cast<unsigned>(Parameter::gimbal_1_square_rad) + 3 * i;
-    const double square = arm.parameters[static_cast<Parameter>(first)];
-    const double slope = arm.parameters[static_cast<Parameter>(first + 1)];
-    const double offset = arm.parameters[static_cast<Parameter>(first + 2)];
+    const double square = arm.parameters[of_axis(Parameter::gimbal_1_square_rad, i)];
+    const double slope = arm.parameters[of_axis(Parameter::gimbal_1_slope_rad, i)];
+    const double offset = arm.parameters[of_axis(Parameter::gimbal_1_offset_rad, i)];
     CHECK(std::abs(square * ratio * ratio + slope * ratio + offset - angles[i]) < 0.002);
     CHECK(highest - lowest > 0.0005);
     CHECK(highest - lowest < 0.01);

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Writes every arm description's rows of the parameter table as a header, for tests that run where no file can be read.
+
+usage: generate_arms.py OUTPUT.hpp ARM.toml...
+"""
+import pathlib
+import sys
+import tomllib
+
+
+def main() -> None:
+    output, *sources = map(pathlib.Path, sys.argv[1:])
+    lines = [
+        "// Made by the build from boards/arms/*.toml.",
+        "#pragma once",
+        "",
+        "#include <span>",
+        "",
+        "#include <protocol/parameters.hpp>",
+        "",
+        "namespace inkwell::tests {",
+        "",
+        "struct ArmRow {",
+        "  protocol::Parameter parameter;",
+        "  float value;",
+        "};",
+        "",
+        "struct ArmFile {",
+        "  const char* name;",
+        "  std::span<const ArmRow> rows;",
+        "};",
+        "",
+    ]
+    for index, source in enumerate(sources):
+        lines.append(f"inline constexpr ArmRow arm_rows_{index}[] = {{")
+        for key, value in tomllib.loads(source.read_text())["parameters"].items():
+            lines.append(f"    {{protocol::Parameter::{key}, {float(value)!r}f}},")
+        lines.append("};")
+    lines.append("inline constexpr ArmFile arm_files[] = {")
+    lines += [f'    {{"{source.stem}", arm_rows_{index}}},' for index, source in enumerate(sources)]
+    lines += ["};", "", "}  // namespace inkwell::tests", ""]
+    output.parent.mkdir(parents=True, exist_ok=True)
+    output.write_text("\n".join(lines))
+
+
+main()
