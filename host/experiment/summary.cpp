@@ -19,8 +19,7 @@ constexpr double tolerance_N = 0.005, tolerance_relative = 0.01;
 constexpr double hold_duration_s = 0.5;
 
 /// The columns of a vector's three components.
-std::array<const std::vector<float>*, 3> vector_columns(const Recording& recording,
-                                                         protocol::EachAxis<Signal> rows) {
+std::array<const std::vector<float>*, 3> vector_columns(const Recording& recording, protocol::EachAxis<Signal> rows) {
   return {&recording.column(rows[0]), &recording.column(rows[1]), &recording.column(rows[2])};
 }
 

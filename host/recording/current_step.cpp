@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::recording {

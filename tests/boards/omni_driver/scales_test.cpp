@@ -25,7 +25,7 @@ TEST_CASE("PWM: 60 kHz centre-aligned in 1400 steps, three periods to a control 
   CHECK(board::pwm_top == 1400);
   CHECK(board::pwm_repetition == 5);
   CHECK(board::servo_cycles == 8400);
-  CHECK(board::duty_limit == 0.95f);
+  CHECK(board::duty_limit == 0.92f);
   CHECK(board::bridge_dead_time_s == 0.2e-6f);
   CHECK(board::current_ripple_A(0.238e-3f) == Approx(0.157563));
 }

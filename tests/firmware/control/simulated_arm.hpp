@@ -15,7 +15,7 @@ struct FakeClock {
 inline constexpr control::BoardLimits board_limits{.supply_minimum_V = board::supply_minimum_V,
                                                    .supply_maximum_V = board::supply_maximum_V,
                                                    .duty_limit = board::duty_limit,
-                                                    .current_measurable_A = board::current_measurable_A};
+                                                   .current_measurable_A = board::current_measurable_A};
 
 inline control::Samples samples_at_rest() {
   return {.encoder_counts = {},

@@ -5,7 +5,7 @@
 #include <deque>
 #include <memory>
 
-#include <device/link.hpp>
+#include <device/transport.hpp>
 #include <experiment/paced_device.hpp>
 #include <protocol/reports.hpp>
 
@@ -17,9 +17,9 @@ namespace {
 
 /// A device that carries its commands out `latency` poses after they came. Between two of its poses 10 ms pass, so the
 /// host has a sign of life to send each time.
-class SlowLink final : public device::Link {
+class SlowTransport final : public device::Transport {
  public:
-  SlowLink(int latency, std::deque<protocol::CommandReport>& received) : latency_(latency), received_(received) {}
+  SlowTransport(int latency, std::deque<protocol::CommandReport>& received) : latency_(latency), received_(received) {}
 
   std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) override {
     if (timeout.count() == 0) return 0;  // one pose a slice
@@ -40,6 +40,7 @@ class SlowLink final : public device::Link {
   }
   std::size_t get_feature(std::span<std::byte>) override { return 0; }
   void set_feature(std::span<const std::byte>) override {}
+  void claim_scope() override {}
   std::size_t read_bulk(std::span<std::byte>, std::chrono::milliseconds) override { return 0; }
   const device::Endpoint& endpoint() const override { return endpoint_; }
 
@@ -59,7 +60,7 @@ class SlowLink final : public device::Link {
 
 TEST_CASE("a sign of life that overtakes a command's answer does not hide it") {
   std::deque<protocol::CommandReport> received;
-  device::Device device(std::make_unique<SlowLink>(4, received));
+  device::Device device(std::make_unique<SlowTransport>(4, received));
   PacedDevice paced(device, nullptr);
   std::size_t enabled = 0;
   // More commands than there are tokens, so that they begin anew on the way.
@@ -71,7 +72,7 @@ TEST_CASE("a sign of life that overtakes a command's answer does not hide it") {
 
 TEST_CASE("a device that carries nothing out is noticed") {
   std::deque<protocol::CommandReport> received;
-  device::Device device(std::make_unique<SlowLink>(0, received));
+  device::Device device(std::make_unique<SlowTransport>(0, received));
   PacedDevice paced(device, nullptr);
   try {
     paced.command(Command::enable_force);

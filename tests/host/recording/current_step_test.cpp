@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include <device/link.hpp>
+#include <device/error.hpp>
 #include <protocol/reports.hpp>
 #include <recording/current_step.hpp>
 

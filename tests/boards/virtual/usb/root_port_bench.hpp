@@ -26,7 +26,8 @@ struct Outcome {
 
 class RootPortBench final : public RootPort::Client {
  public:
-  RootPortBench() : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler), port(scheduler, core, *this) {}
+  RootPortBench()
+      : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler), port(scheduler, core, *this) {}
 
   void run_for(double time_s) {
     const Ticks end = scheduler.now() + ticks(time_s);
