@@ -57,7 +57,6 @@ class Nvic final : public InterruptController {
     changed_ = true;
   }
   bool enabled(unsigned exception) const { return test(enabled_, exception); }
-  bool any_active() const { return (active_[0] | active_[1]) != 0; }
   unsigned active_count() const;
 
   std::uint8_t priority(unsigned exception) const { return priority_[exception]; }

@@ -50,7 +50,6 @@ class SystemControl {
   /// Records a fault's cause. Bits of CFSR, HFSR; addresses where the bits say that they are valid.
   void record_fault(std::uint32_t configurable_bits, std::uint32_t hard_fault_bits);
   void record_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
-  std::uint32_t configurable_faults() const { return configurable_faults_; }
 
  private:
   std::uint32_t read_word(std::uint32_t address);
