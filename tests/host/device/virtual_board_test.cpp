@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <signal.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include <device/virtual_board.hpp>
 
 #include "fake_usbip_server.hpp"
+#include "temporary_directory.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -23,13 +23,9 @@ namespace {
 class Script {
  public:
   explicit Script(const std::string& lines) {
-    char name[] = "/tmp/inkwell-test-XXXXXX";
-    REQUIRE(mkdtemp(name) != nullptr);
-    folder_ = name;
-    std::ofstream(program()) << "#!/bin/sh\ncd " << folder_.string() << "\n" << lines;
+    std::ofstream(program()) << "#!/bin/sh\ncd '" << folder_.path() << "'\n" << lines;
     std::filesystem::permissions(program(), std::filesystem::perms::owner_all);
   }
-  ~Script() { std::filesystem::remove_all(folder_); }
   std::filesystem::path program() const { return folder_ / "board"; }
   device::VirtualBoardOptions options() const { return {.program = program(), .elf = program()}; }
   /// What the script wrote into the file of this name; empty if it did not.
@@ -40,7 +36,7 @@ class Script {
   }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryDirectory folder_;
 };
 
 constexpr char run_until_told[] = "echo $$ > process\necho ready usbip=7 control=8\nwhile :; do sleep 0.01; done\n";
