@@ -15,6 +15,8 @@ using namespace std::chrono_literals;
 using device::Endpoint;
 
 constexpr auto virtual_start_limit = 15s;
+constexpr double virtual_start_limit_s = 2.0;  // of board time; the firmware shows itself after 0.1
+constexpr double start_step_s = 0.01;
 
 std::pair<std::string, std::uint16_t> split_address(const std::string& address) {
   const auto colon = address.rfind(':');
@@ -68,8 +70,7 @@ void DeviceOptions::add_to(CLI::App& app) {
   app.add_flag("--json", json, "Write JSON for programs instead of text for people");
 }
 
-device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode default_mode,
-                                                         bool real_time_by_default) const {
+device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode default_mode, BoardTime time) const {
   device::VirtualBoardOptions board;
   board.elf = elf;
   board.arm = arm;
@@ -77,7 +78,8 @@ device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode 
                : mode == "exact" ? device::SimulationMode::exact
                                  : device::SimulationMode::fast;
   board.seed = seed;
-  board.real_time = real_time || real_time_by_default;
+  board.real_time = real_time || time == BoardTime::paced;
+  board.paused = time == BoardTime::as_asked;
   board.strict = is_strict;
   return board;
 }
@@ -132,7 +134,29 @@ std::vector<device::ParameterChange> arm_parameters(const std::filesystem::path&
   return changes;
 }
 
-Connection connect(const DeviceOptions& options, bool real_time_by_default, device::SimulationMode default_mode) {
+namespace {
+
+/// Waits by the clock on the wall, or by the board's if its time passes as asked.
+Endpoint wait_for_endpoint(const device::VirtualBoard& board, device::ControlClient* control) {
+  const auto give_up_at = std::chrono::steady_clock::now() + virtual_start_limit;
+  const auto too_late = [&] {
+    return control != nullptr ? control->status().board_time_s > virtual_start_limit_s
+                              : std::chrono::steady_clock::now() > give_up_at;
+  };
+  for (;;) {
+    if (const auto endpoint = board.find()) return *endpoint;
+    if (too_late())
+      throw device::Error("The virtual board shows no USB device. Check that --elf names Inkwell's firmware.");
+    if (control != nullptr)
+      control->run(start_step_s);
+    else
+      std::this_thread::sleep_for(20ms);
+  }
+}
+
+}  // namespace
+
+Connection connect(const DeviceOptions& options, BoardTime time, device::SimulationMode default_mode) {
   Connection connection;
   if (!options.is_virtual) {
     const auto endpoint = find_one(options);
@@ -142,16 +166,14 @@ Connection connect(const DeviceOptions& options, bool real_time_by_default, devi
   }
   std::vector<device::ParameterChange> arm;
   if (!options.arm.empty()) arm = arm_parameters(options.arm);
-  connection.board = std::make_unique<device::VirtualBoard>(options.virtual_board(default_mode, real_time_by_default));
-  const auto give_up_at = std::chrono::steady_clock::now() + virtual_start_limit;
-  std::optional<Endpoint> endpoint;
-  while (!(endpoint = connection.board->find())) {
-    if (std::chrono::steady_clock::now() > give_up_at)
-      throw device::Error("The virtual board shows no USB device. Check that --elf names Inkwell's firmware.");
-    std::this_thread::sleep_for(20ms);
+  connection.board = std::make_unique<device::VirtualBoard>(options.virtual_board(default_mode, time));
+  if (time == BoardTime::as_asked) {
+    connection.control.emplace(connection.board->control());
+    connection.control->stand_by();
   }
-  connection.device = device::Device::open(*endpoint);
-  connection.is_simulation = endpoint->is_virtual;
+  const auto endpoint = wait_for_endpoint(*connection.board, connection.control ? &*connection.control : nullptr);
+  connection.device = device::Device::open(endpoint);
+  connection.is_simulation = endpoint.is_virtual;
   if (!arm.empty()) connection.device->set_parameters(arm);
   return connection;
 }

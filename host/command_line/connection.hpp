@@ -21,6 +21,13 @@ class UsageError : public device::Error {
   using Error::Error;
 };
 
+/// How a virtual board's time passes, unless --real-time was given.
+enum class BoardTime : std::uint8_t {
+  as_it_can,
+  paced,     ///< to the clock on the wall
+  as_asked,  ///< stands still from its first instruction on, but while Connection::control lets it pass
+};
+
 struct DeviceOptions {
   bool is_virtual = false;
   std::filesystem::path elf;
@@ -34,7 +41,7 @@ struct DeviceOptions {
   bool is_strict = false;  ///< a virtual board ends when the firmware does what silicon would not bear
 
   void add_to(CLI::App& app);
-  device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, bool real_time_by_default) const;
+  device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardTime time) const;
 };
 
 /// What was found where the options point, without waiting.
@@ -43,12 +50,13 @@ std::vector<device::Endpoint> list_devices(const DeviceOptions& options, const d
 /// An open device and, with --virtual, the board that it is on.
 struct Connection {
   std::unique_ptr<device::VirtualBoard> board;
+  std::optional<device::ControlClient> control;  ///< of a board whose time passes as asked
   std::unique_ptr<device::Device> device;
   bool is_simulation = false;
 };
 
 /// Opens the device that the options name. With --arm, a virtual board's firmware gets that arm's parameters.
-Connection connect(const DeviceOptions& options, bool real_time_by_default = false,
+Connection connect(const DeviceOptions& options, BoardTime time = BoardTime::as_it_can,
                    device::SimulationMode default_mode = device::SimulationMode::fast);
 
 /// The endpoint of a real device, or of one at --usbip. Throws device::Error if there is none.

@@ -47,15 +47,15 @@ int run_wall(DeviceOptions options, const WallCommandOptions& command) {
   experiment::WallOptions wall{.output_directory = command.output, .arm = arm_name(options)};
   if (!command.wall.empty()) wall.wall = experiment::parse_wall(command.wall);
   constexpr auto mode = device::SimulationMode::exact;
+  constexpr auto time = BoardTime::as_asked;
   if (options.is_virtual) {
     progress("The virtual board starts.", 0.0);
-    wall.virtual_board = options.virtual_board(mode, false);
+    wall.virtual_board = options.virtual_board(mode, time);
   }
-  const auto connection = connect(options, false, mode);
+  auto connection = connect(options, time, mode);
   wall.simulation = connection.is_simulation;
-  std::optional<device::ControlClient> hand;
-  if (connection.board) hand.emplace(connection.board->control());
-  const auto summary = experiment::run_wall_experiment(*connection.device, hand ? &*hand : nullptr, wall, progress);
+  const auto summary = experiment::run_wall_experiment(
+      *connection.device, connection.control ? &*connection.control : nullptr, wall, progress);
   if (options.json)
     fmt::print("{}\n", summary.dump(2));
   else

@@ -144,7 +144,7 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   } catch (const device::Error& error) {
     throw UsageError(error.what());
   }
-  const auto connection = connect(device_options, true);
+  const auto connection = connect(device_options, BoardTime::paced);
   auto& device = *connection.device;
   const auto information = recording::describe(device.information(), device.parameters(), signals,
                                                arm_name(device_options), connection.is_simulation);

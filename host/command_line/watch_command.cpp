@@ -59,7 +59,7 @@ void print_line(const PoseReport& pose, std::uint64_t lost) {
 }
 
 int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
-  const auto connection = connect(options, true);
+  const auto connection = connect(options, BoardTime::paced);
   if (!options.json) print_head();
   std::optional<std::uint32_t> first_period, sequence;
   std::uint32_t next_shown = 0;

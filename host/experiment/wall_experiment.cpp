@@ -174,14 +174,6 @@ Push push_by_simulated_hand(PacedDevice& device, device::ControlClient& control,
   return {std::move(recording), Interval{offset_s + pushed_s + settling_s, offset_s + held_s - 0.01}};
 }
 
-/// Board time runs freely until the host is connected. From a whole second on it stands still whenever the host
-/// works, so that the same seed gives the same experiment however fast this computer is.
-void stop_at_whole_second(device::ControlClient& control) {
-  control.pause();
-  const double now_s = control.status().board_time_s;
-  control.run(std::ceil(now_s + 0.5) - now_s);
-}
-
 // ---- with a real device ---------------------------------------------------------------------------------
 
 bool is_clear(const protocol::PoseReport& pose, const ParameterSet& parameters) {
@@ -242,7 +234,6 @@ nlohmann::ordered_json run_wall_experiment(device::Device& device, device::Contr
   about = recording::describe(device.information(), device.parameters(), recording::signal_path(), options.arm,
                               options.simulation);
   const Wall wall = circumstances.wall = options.wall.value_or(forward_wall(about.parameters));
-  if (hand != nullptr) stop_at_whole_second(*hand);
 
   PacedDevice paced(device, hand);
   progress("Waiting for the stylus to rest in the inkwell.", 0.1);

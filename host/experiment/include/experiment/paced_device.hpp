@@ -46,6 +46,7 @@ class PacedDevice {
   device::Device& device_;
   device::ControlClient* control_;
   std::chrono::nanoseconds passed_{};  ///< board time since the beginning
+  unsigned slices_ = 0;
   std::optional<protocol::PoseReport> pose_;
   std::uint64_t poses_received_ = 0;
   std::uint64_t poses_lost_ = 0;

@@ -28,10 +28,10 @@ struct WallOptions {
 /// Told about every step: what happens now, for the user to read, and how much of the whole is done (0..1).
 using Progress = std::function<void(std::string_view step, double done)>;
 
-/// `hand`: of the virtual board that the device is on, whose simulated hand pushes and whose time stands still whenever
-/// the host works; null leaves the push to the user. Writes recording.csv, current-step.csv, figure-11.png to
-/// figure-14.png and summary.json, and returns the summary. Throws device::Error; nothing is called a result that has
-/// gaps.
+/// `hand`: of the virtual board that the device is on, whose simulated hand pushes and whose time stands by, passing
+/// only as the experiment asks; null leaves the push to the user. Writes recording.csv, current-step.csv, figure-11.png
+/// to figure-14.png and summary.json, and returns the summary. Throws device::Error; nothing is called a result that
+/// has gaps.
 nlohmann::ordered_json run_wall_experiment(device::Device& device, device::ControlClient* hand,
                                            const WallOptions& options, const Progress& progress);
 
