@@ -60,6 +60,8 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
                                      "--seed",
                                      std::to_string(options.seed)};
   if (!options.arm.empty()) arguments.insert(arguments.end(), {"--arm", options.arm.string()});
+  if (options.host_clock_ppm != 0.0)
+    arguments.insert(arguments.end(), {"--host-clock-ppm", std::to_string(options.host_clock_ppm)});
   if (options.real_time) arguments.push_back("--real-time");
   if (options.paused) arguments.push_back("--paused");
   if (options.strict) arguments.push_back("--strict");

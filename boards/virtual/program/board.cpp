@@ -46,7 +46,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request)
   chip_.load_elf(elf_);
   symbols_ = Symbols(elf_);
   try {
-    usb_.emplace(chip_.connections(), options.usbip_port, std::move(on_usb_request));
+    usb_.emplace(chip_.connections(), options.usbip_port, options.host_clock_ppm, std::move(on_usb_request));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{} (--usbip gives it)", error.what()));
   }

@@ -66,6 +66,12 @@ CommandLine read_command_line(int argc, char** argv) {
       ->check(CLI::Range(4'000'000, 26'000'000).description(""))
       ->type_name("HZ")
       ->capture_default_str();
+  app.add_option("--host-clock-ppm", options.host_clock_ppm,
+                 "the USB host's clock is faster than board time by so many parts in a million: its start of frame\n"
+                 "comes at its own millisecond; negative: slower (USB 2.0, section 7.1.11, bears 500)")
+      ->check(CLI::Range(-500.0, 500.0).description(""))
+      ->type_name("N")
+      ->capture_default_str();
   app.add_flag("--real-time", options.real_time, "keep board time from running ahead of the clock on the wall");
   app.add_option("--seed", options.seed,
                  "of all noise and of the serial number; the same seed and commands give the same run")

@@ -18,6 +18,7 @@ struct Options {
   Mode mode = Mode::fast;
   Pricing pricing = Pricing::likely;
   std::uint32_t crystal_Hz = 8'000'000;
+  double host_clock_ppm = 0.0;  ///< the USB host's clock is faster than board time by so many parts in a million
   bool real_time = false;
   std::uint64_t seed = 1;         ///< of all noise and of the serial number
   std::optional<double> seconds;  ///< of board time, after which the program ends

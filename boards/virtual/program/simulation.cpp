@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Ticks slice = ticks_per_s / 1000;  // a USB frame
+constexpr Ticks slice = ticks_per_s / 1000;  // about a USB frame
 constexpr auto attention = 50ms;             // how soon a paused board notices a signal
 constexpr double debt_maximum_s = 0.1;
 constexpr int exit_code_of_lock_up = 3;

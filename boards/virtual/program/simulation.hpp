@@ -1,6 +1,6 @@
 // Lets board time pass: free, paced to the clock on the wall, or as far as a client asks.
 //
-// It passes in slices that end with a USB frame. Between two slices, and only there, what programs of this computer ask
+// It passes in slices of a millisecond. Between two slices, and only there, what programs of this computer ask
 // for takes effect: transfers on USB and commands of the control socket. How long a slice takes makes no difference
 // then: a program that waits for each answer before it asks again finds the same board each time.
 #pragma once

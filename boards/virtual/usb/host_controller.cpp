@@ -5,7 +5,7 @@
 namespace inkwell::virtual_board {
 
 namespace {
-constexpr Ticks frame_ticks = ticks_per_s / 1000;
+constexpr double nominal_frame_s = 0.001;
 constexpr Ticks byte_ticks = ticks_per_s / 1'500'000;  // 12 Mbit/s
 // Bytes of bus time beside the payload (USB 2.0, tables 5-8 to 5-10): token, handshake, synchronisation,
 // turn-around. 19 bulk packets of 64 bytes fit a frame.
@@ -15,7 +15,7 @@ constexpr Ticks start_of_frame_bytes = 6;
 // An endpoint that is not ready is asked again, ever less often: controllers differ here, and asking an idle
 // endpoint 180 times a frame tells nobody anything.
 constexpr Ticks retry_first = refused_in_bytes * byte_ticks;
-constexpr Ticks retry_maximum = frame_ticks / 4;
+constexpr Ticks retry_maximum = ticks(nominal_frame_s / 4);
 constexpr unsigned frames_until_suspend = 3;
 constexpr unsigned errors_allowed = 3;  // USB 2.0, section 10.2.6
 
@@ -23,10 +23,14 @@ constexpr unsigned pipe_index(unsigned endpoint, bool in) { return endpoint == 0
 constexpr unsigned endpoint_of(unsigned pipe) { return pipe & 15; }
 }  // namespace
 
-HostController::HostController(Scheduler& scheduler, BusDevice& device, Client& client)
-    : scheduler_(scheduler), device_(device), client_(client), frame_begin_(scheduler.now()) {
+HostController::HostController(Scheduler& scheduler, BusDevice& device, Client& client, double clock_ppm)
+    : scheduler_(scheduler),
+      device_(device),
+      client_(client),
+      frame_ticks_(ticks(nominal_frame_s / (1.0 + clock_ppm * 1e-6))),
+      frame_begin_(scheduler.now()) {
   address_device(0, 8);
-  event_ = scheduler_.at(frame_begin_ + frame_ticks, [this] { step(); });
+  event_ = scheduler_.at(frame_begin_ + frame_ticks_, [this] { step(); });
 }
 
 HostController::~HostController() { scheduler_.cancel(event_); }
@@ -125,8 +129,8 @@ void HostController::step() {
   const Ticks now = scheduler_.now();
   if (transaction_) finish_transaction();
   client_.between_transactions();
-  if (now >= frame_begin_ + frame_ticks) begin_frame();
-  Ticks next = frame_begin_ + frame_ticks;
+  if (now >= frame_begin_ + frame_ticks_) begin_frame();
+  Ticks next = frame_begin_ + frame_ticks_;
   if (frames_run_ && !transaction_ && busy_pipes_ != 0) {
     if (scheduler_.now() >= bus_free_at_) start_next_transaction();
     if (bus_free_at_ > now) {
@@ -140,7 +144,7 @@ void HostController::step() {
 }
 
 void HostController::begin_frame() {
-  frame_begin_ += frame_ticks;
+  frame_begin_ += frame_ticks_;
   client_.frame();
   if (frames_run_) {
     ++frame_;
@@ -190,7 +194,7 @@ bool HostController::start(unsigned index) {
   const Token token = next_token(urb, pipe.type);
   const Ticks payload = token == Token::in ? pipe.packet_maximum : next_out_length(pipe, urb, token);
   const Ticks now = scheduler_.now();
-  if (now + (transaction_bytes + payload) * byte_ticks > frame_begin_ + frame_ticks) return false;
+  if (now + (transaction_bytes + payload) * byte_ticks > frame_begin_ + frame_ticks_) return false;
 
   Ticks bytes = transaction_bytes + payload;
   Transaction transaction{index, token, {}};
@@ -322,7 +326,7 @@ void HostController::complete(unsigned index, std::int32_t status) {
   pipe.errors = 0;
   pipe.retry_after = 0;
   // A driver hears of the end of a control transfer at the end of the frame, and sends the next one then.
-  pipe.retry_at = pipe.type == TransferType::control ? frame_begin_ + frame_ticks : 0;
+  pipe.retry_at = pipe.type == TransferType::control ? frame_begin_ + frame_ticks_ : 0;
   client_.completed(std::move(urb), status);
 }
 

@@ -27,8 +27,8 @@ constexpr std::uint8_t device = 1, configuration = 2;
 std::uint8_t setup_byte(const Urb& urb, std::size_t index) { return std::to_integer<std::uint8_t>(urb.setup[index]); }
 }  // namespace
 
-RootPort::RootPort(Scheduler& scheduler, BusDevice& device, Client& client)
-    : device_(device), client_(client), controller_(scheduler, device, *this) {}
+RootPort::RootPort(Scheduler& scheduler, BusDevice& device, Client& client, double host_clock_ppm)
+    : device_(device), client_(client), controller_(scheduler, device, *this, host_clock_ppm) {}
 
 void RootPort::plug(bool in) {
   if (in == plugged_) return;

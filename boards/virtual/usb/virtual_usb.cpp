@@ -12,8 +12,9 @@
 namespace inkwell::virtual_board {
 
 struct VirtualUsb::Implementation final : RootPort::Client {
-  Implementation(const ChipConnections& chip, std::uint16_t tcp_port, std::function<void()> on_request)
-      : core(chip), root_port(chip.scheduler, core, *this), server(tcp_port, std::move(on_request)) {}
+  Implementation(const ChipConnections& chip, std::uint16_t tcp_port, double host_clock_ppm,
+                 std::function<void()> on_request)
+      : core(chip), root_port(chip.scheduler, core, *this, host_clock_ppm), server(tcp_port, std::move(on_request)) {}
 
   void between_transactions() override { wait_while(&HostPace::is_starved); }
 
@@ -78,8 +79,9 @@ struct VirtualUsb::Implementation final : RootPort::Client {
   UsbIpServer server;
 };
 
-VirtualUsb::VirtualUsb(const ChipConnections& chip, std::uint16_t port, std::function<void()> on_request)
-    : implementation_(std::make_unique<Implementation>(chip, port, std::move(on_request))) {
+VirtualUsb::VirtualUsb(const ChipConnections& chip, std::uint16_t port, double host_clock_ppm,
+                       std::function<void()> on_request)
+    : implementation_(std::make_unique<Implementation>(chip, port, host_clock_ppm, std::move(on_request))) {
   connect();
 }
 VirtualUsb::~VirtualUsb() = default;

@@ -22,10 +22,11 @@ struct VirtualBoardOptions {
   std::filesystem::path elf;      ///< empty: ../board/inkwell.elf from this executable's directory
   std::filesystem::path arm;      ///< empty: the Omni
   SimulationMode mode = SimulationMode::fast;
-  std::uint64_t seed = 1;  ///< of its noise and of its serial number
-  bool real_time = true;   ///< paces board time to the wall clock
-  bool paused = false;     ///< starts with board time standing still
-  bool strict = false;     ///< the board ends when the firmware does what silicon would not bear
+  std::uint64_t seed = 1;       ///< of its noise and of its serial number
+  double host_clock_ppm = 0.0;  ///< how much faster than board time the clock of its USB host is
+  bool real_time = true;        ///< paces board time to the wall clock
+  bool paused = false;          ///< starts with board time standing still
+  bool strict = false;          ///< the board ends when the firmware does what silicon would not bear
 };
 
 /// Make it in a thread that lives as long as the board shall: Linux ends the board when that thread ends.

@@ -26,8 +26,10 @@ struct Outcome {
 
 class RootPortBench final : public RootPort::Client {
  public:
-  RootPortBench()
-      : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler), port(scheduler, core, *this) {}
+  explicit RootPortBench(double host_clock_ppm = 0.0)
+      : core({scheduler, interrupts, log, log, state}),
+        firmware(core, scheduler),
+        port(scheduler, core, *this, host_clock_ppm) {}
 
   void run_for(double time_s) {
     const Ticks end = scheduler.now() + ticks(time_s);

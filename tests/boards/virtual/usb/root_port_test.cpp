@@ -70,6 +70,17 @@ TEST_CASE("an import resets, addresses and runs frames of one millisecond") {
   CHECK(bench.firmware.suspends == suspends + 1);
 }
 
+TEST_CASE("frames come by the host's own clock") {
+  for (const int clock_ppm : {500, -500}) {
+    CAPTURE(clock_ppm);
+    RootPortBench bench(clock_ppm);
+    bench.use();
+    const unsigned frames = bench.firmware.frames;
+    bench.run_for(4.0);
+    CHECK(static_cast<int>(bench.firmware.frames - frames) == 4000 + 4 * clock_ppm / 1000);
+  }
+}
+
 TEST_CASE("control transfers of every awkward length") {
   RootPortBench bench;
   bench.use();

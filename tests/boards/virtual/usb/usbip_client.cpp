@@ -12,7 +12,7 @@
 
 namespace inkwell::virtual_usb_test {
 
-LiveBoard::LiveBoard() : usb({scheduler, interrupts, log, log, state}, 0, [] {}), firmware(usb.core(), scheduler) {
+LiveBoard::LiveBoard() : usb({scheduler, interrupts, log, log, state}, 0, 0.0, [] {}), firmware(usb.core(), scheduler) {
   firmware.start();
   thread_ = std::thread([this] { run(); });
 }

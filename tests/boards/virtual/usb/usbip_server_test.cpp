@@ -324,7 +324,7 @@ TEST_CASE("a busy port is reported in a sentence") {
   FakeChipState state;
   std::string message;
   try {
-    virtual_board::VirtualUsb second({scheduler, interrupts, log, log, state}, board.usb.port(), [] {});
+    virtual_board::VirtualUsb second({scheduler, interrupts, log, log, state}, board.usb.port(), 0.0, [] {});
   } catch (const std::runtime_error& error) {
     message = error.what();
   }

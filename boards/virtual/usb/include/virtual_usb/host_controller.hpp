@@ -1,6 +1,6 @@
 // A full-speed host controller with one device on its bus: frames, transactions, transfers.
 //
-// Each frame of 1 ms of board time has the order of USB 2.0, section 5: start of frame, interrupt endpoints
+// Each frame of 1 ms, by the host's own clock, has the order of USB 2.0, section 5: start of frame, interrupt endpoints
 // that are due, then control, then bulk in turn, one transaction after the other at the times they take on a
 // 12 Mbit/s bus. A transaction that no longer fits waits for the next frame.
 #pragma once
@@ -27,12 +27,13 @@ class HostController {
     virtual ~Client() = default;
     /// Between transactions, after each completion: the moment to submit and to unlink.
     virtual void between_transactions() = 0;
-    /// Every millisecond, before the start of frame.
+    /// Every millisecond of the host, before the start of frame.
     virtual void frame() = 0;
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
   };
 
-  HostController(Scheduler& scheduler, BusDevice& device, Client& client);
+  /// The host's clock is `clock_ppm` parts in a million faster than board time.
+  HostController(Scheduler& scheduler, BusDevice& device, Client& client, double clock_ppm = 0.0);
   ~HostController();
   HostController(const HostController&) = delete;
   HostController& operator=(const HostController&) = delete;
@@ -92,6 +93,7 @@ class HostController {
   Scheduler& scheduler_;
   BusDevice& device_;
   Client& client_;
+  const Ticks frame_ticks_;
   Scheduler::Id event_ = 0;
   std::array<Pipe, pipe_count> pipes_{};
   std::uint32_t busy_pipes_ = 0;  ///< bit i: pipe i has transfers

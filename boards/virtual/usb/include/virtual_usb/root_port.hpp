@@ -28,7 +28,8 @@ class RootPort final : private HostController::Client {
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
   };
 
-  RootPort(Scheduler& scheduler, BusDevice& device, Client& client);
+  /// `host_clock_ppm`: see HostController.
+  RootPort(Scheduler& scheduler, BusDevice& device, Client& client, double host_clock_ppm = 0.0);
 
   void plug(bool in);
   bool plugged() const { return plugged_; }
