@@ -54,6 +54,12 @@ class Bus {
     uc_cb_mmio_write_t write;
   };
   static const Window windows[6];
+  /// One of the windows holds the address.
+  static bool answers(std::uint32_t address) {
+    for (const Window& window : windows)
+      if (address - window.base < window.bytes) return true;
+    return false;
+  }
 
   std::uint32_t read(std::uint32_t address, unsigned size);
   void write(std::uint32_t address, std::uint32_t value, unsigned size);

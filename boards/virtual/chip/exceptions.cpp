@@ -1,5 +1,6 @@
 // Exception entry and return of the processor, and who has spent how many instructions.
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "processor.hpp"
@@ -9,6 +10,7 @@ namespace {
 
 constexpr std::uint32_t basic_frame_bytes = 0x20, extended_frame_bytes = 0x68;
 constexpr std::uint32_t control_spsel = 2, control_fpca = 4;
+constexpr std::uint32_t xpsr_if_then = 0x0600FC00;
 constexpr std::uint32_t xpsr_thumb = 1u << 24, xpsr_align = 1u << 9, xpsr_exception = 0x1FF;
 // EXC_RETURN (ARMv7-M, table B1-8): bit 4 clear is an extended frame, bit 3 thread mode, bit 2 process stack.
 constexpr std::uint32_t exc_return_handler = 0xFFFFFFF1, exc_return_basic = 1u << 4, exc_return_thread = 1u << 3,
@@ -45,6 +47,8 @@ bool Processor::start_handler(unsigned exception, std::uint32_t exception_return
   const std::uint32_t vector = machine_.memory.word(vector_table + 4 * exception);
   write(UC_ARM_REG_LR, exception_return);
   write(UC_ARM_REG_IPSR, exception);
+  write(UC_ARM_REG_EPSR, xpsr_thumb);  // no if-then block is under way
+  resumed_bytes_ = 0;
   write(UC_ARM_REG_APSR_NZCV, 0);  // makes Unicorn notice the change of mode; flags are free at entry
   program_counter_ = vector;
   timing_.redirect();
@@ -105,6 +109,16 @@ bool Processor::enter_exception(unsigned exception, bool align_stack, bool float
   return started;
 }
 
+void Processor::resume_if_then_block(std::uint32_t xpsr) {
+  resumed_bytes_ = 0;
+  if ((xpsr & xpsr_if_then) == 0) return;
+  // ITSTATE's low half: the lowest bit that is set ends the block (ARMv7-M, B1.4.2).
+  const std::uint32_t state = (xpsr >> 25 & 3) | (xpsr >> 8 & 0xFC);
+  resumed_at_ = program_counter_ & ~1u;
+  for (int left = 4 - std::countr_zero(state); left > 0; --left)
+    resumed_bytes_ += is_wide(machine_.memory.half_word(resumed_at_ + resumed_bytes_)) ? 4 : 2;
+}
+
 bool Processor::return_from_exception(std::uint32_t vector_table) {
   const std::uint32_t exception_return = fault_address_;
   const bool to_thread = (exception_return & exc_return_thread) != 0;
@@ -152,9 +166,10 @@ bool Processor::return_from_exception(std::uint32_t vector_table) {
   void* places[6];
   for (int i = 0; i < 6; ++i) places[i] = &words[i];
   uc_reg_write_batch(engine_, frame_registers, places, 6);
-  write(UC_ARM_REG_XPSR_NZCVQG, (xpsr & 0xF80F0000) | xpsr_thumb | exception);
+  write(UC_ARM_REG_XPSR_NZCVQG, (xpsr & (0xF80F0000 | xpsr_if_then)) | xpsr_thumb | exception);
   write(UC_ARM_REG_APSR_NZCV, xpsr & 0xF0000000);  // last: it rebuilds Unicorn's own copies of the flags
   program_counter_ = words[6];
+  resume_if_then_block(xpsr);
   timing_.redirect();
   if (extended) {
     // What was never stacked needs no unstacking.

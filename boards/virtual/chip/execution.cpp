@@ -285,6 +285,15 @@ void Execution::handle(Outcome outcome) {
       raise_fault(exception_bus_fault, scb.cfsr.preciserr.mask() | scb.cfsr.bfarvalid.mask(),
                   at("nothing answers on the bus at", address, program_counter));
       break;
+    case Outcome::protected_data:
+      system_control_.record_memory_fault_address(address);
+      raise_fault(exception_memory_fault, scb.cfsr.daccviol.mask() | scb.cfsr.mmarvalid.mask(),
+                  at("the memory protection unit refuses", address, program_counter));
+      break;
+    case Outcome::misaligned:
+      raise_fault(exception_usage_fault, scb.cfsr.unaligned.mask(),
+                  at("an access that is not aligned to", address, program_counter));
+      break;
     case Outcome::instruction_fault:
       raise_fault(exception_bus_fault, scb.cfsr.ibuserr.mask(), at("no instructions at", address, program_counter));
       break;

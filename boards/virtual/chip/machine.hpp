@@ -10,6 +10,7 @@
 #include "debugging.hpp"
 #include "log.hpp"
 #include "memory.hpp"
+#include "memory_protection.hpp"
 #include "nvic.hpp"
 #include "timeline.hpp"
 #include "violations.hpp"
@@ -53,6 +54,7 @@ struct Machine {
   Violations violations{*this};
   Timeline timeline;
   Memory memory;
+  MemoryProtection memory_protection;
   Nvic nvic;
   ClockTree clocks;
   Debugging debugging;

@@ -1,4 +1,4 @@
-// Registers of the memory protection unit (ARMv7-M, B3.5): regions are kept, accesses are not checked.
+// The memory protection unit (ARMv7-M, B3.5): eight regions, and who may do what in them.
 #pragma once
 
 #include <array>
@@ -39,14 +39,11 @@ class MemoryProtection {
     if (offset == mpu.rnr) return region_;
     return is_base(offset) ? bases_[region_] | mpu.rbar.region.with(region_) : attributes_[region_];
   }
-  /// True if the unit is on after a write to its control register.
-  bool write(std::uint32_t offset, std::uint32_t value) {
-    if (offset == mpu.typer) return false;
+  void write(std::uint32_t offset, std::uint32_t value) {
+    if (offset == mpu.typer) return;
     if (offset == mpu.ctrl) {
       control_ = value & writable(mpu.ctrl);
-      return mpu.ctrl.enable.in(control_);
-    }
-    if (offset == mpu.rnr) {
+    } else if (offset == mpu.rnr) {
       region_ = mpu.rnr.region.of(value) % regions;
     } else if (is_base(offset)) {
       if (mpu.rbar.valid.in(value)) region_ = mpu.rbar.region.of(value) % regions;
@@ -54,11 +51,51 @@ class MemoryProtection {
     } else {
       attributes_[region_] = value & writable(mpu.rasr);
     }
+  }
+  /// Accesses are checked; `at_fault` is while HardFault or NMI runs.
+  bool is_on(bool at_fault) const {
+    return mpu.ctrl.enable.in(control_) && (!at_fault || mpu.ctrl.hfnmiena.in(control_));
+  }
+  bool allows(std::uint32_t address, bool write, bool fetch, bool privileged) const {
+    for (unsigned i = regions; i-- > 0;)  // the region of the highest number decides
+      if (covers(i, address)) return region_allows(attributes_[i], write, fetch, privileged);
+    return privileged && mpu.ctrl.privdefena.in(control_);
+  }
+  /// Some of a page of `bytes` may lie in a region of which another part does not.
+  bool divides(std::uint32_t page, std::uint32_t bytes) const {
+    for (unsigned i = 0; i < regions; ++i) {
+      if (!mpu.rasr.enable.in(attributes_[i])) continue;
+      const std::uint64_t size = region_bytes(i), first = bases_[i] & ~(size - 1);
+      const std::uint64_t grain = mpu.rasr.srd.in(attributes_[i]) ? size / subregions : size;
+      const bool touches = first < std::uint64_t{page} + bytes && page < first + size;
+      if (touches && grain < bytes) return true;
+    }
     return false;
   }
 
  private:
-  static constexpr unsigned regions = 8;
+  static constexpr unsigned regions = 8, subregions = 8;
+  std::uint64_t region_bytes(unsigned i) const { return std::uint64_t{2} << mpu.rasr.size.of(attributes_[i]); }
+  bool covers(unsigned i, std::uint32_t address) const {
+    constexpr std::uint64_t smallest_with_subregions = 256;
+    const std::uint64_t size = region_bytes(i), first = bases_[i] & ~(size - 1);
+    if (!mpu.rasr.enable.in(attributes_[i]) || address < first || address - first >= size) return false;
+    const auto subregion = static_cast<unsigned>((address - first) * subregions / size);
+    return size < smallest_with_subregions || (mpu.rasr.srd.of(attributes_[i]) >> subregion & 1) == 0;
+  }
+  /// ARMv7-M, table B3-15.
+  static bool region_allows(std::uint32_t attributes, bool write, bool fetch, bool privileged) {
+    if (fetch && mpu.rasr.xn.in(attributes)) return false;
+    switch (mpu.rasr.ap.of(attributes)) {
+      case 1: return privileged;
+      case 2: return privileged || !write;
+      case 3: return true;
+      case 5: return privileged && !write;
+      case 6:
+      case 7: return !write;
+      default: return false;
+    }
+  }
   static bool is_base(std::uint32_t offset) { return (offset - mpu.rbar) % 8 == 0; }
   std::uint32_t control_ = 0, region_ = 0;
   std::array<std::uint32_t, regions> bases_{}, attributes_{};

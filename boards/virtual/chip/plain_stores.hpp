@@ -4,6 +4,7 @@
 #include <bitset>
 #include <cstdint>
 
+#include "engine_calls.hpp"
 #include "memory.hpp"
 
 namespace inkwell::virtual_board {
@@ -11,33 +12,29 @@ namespace inkwell::virtual_board {
 /// Unicorn 2.0.1 takes every store to RAM for one that might overwrite instructions, and looks for translated
 /// code to forget, which costs tens of times what a load costs. Only pages that instructions ran from need
 /// that: of all others the engine is told, when it takes a page into its address cache, that stores are plain.
-///
-/// The engine reaches its function that fills the address cache through the procedure linkage table, so a
-/// definition in the program takes its place. With a version that lacks one of the functions all stores keep
-/// their search: slower, never wrong.
 class PlainStores {
  public:
   /// Instructions are about to run from here: stores to these pages may overwrite them from now on.
-  void code_runs_at(std::uint32_t address, std::uint32_t bytes);
+  void code_runs_at(std::uint32_t address, std::uint32_t bytes, EngineCalls& engine) {
+    const std::uint32_t end = address + bytes;
+    for (std::uint32_t page = address - address % page_bytes; page < end; page += page_bytes) {
+      const std::uint32_t offset = page - sram_base;
+      if (offset >= sram_bytes || holds_code_[offset / page_bytes]) continue;
+      holds_code_.set(offset / page_bytes);
+      for (std::uint32_t part = 0; part < page_bytes; part += smallest_page_bytes) engine.forget_page(page + part);
+    }
+  }
   /// Whether the page of `address` is RAM that no instructions ran from.
-  bool plain(std::uint32_t address) const;
-
-  /// While it lives, the engine that runs on this thread asks these.
-  class Use {
-   public:
-    explicit Use(PlainStores& stores);
-    ~Use();
-    Use(const Use&) = delete;
-    Use& operator=(const Use&) = delete;
-  };
-  /// The engine tells which processor, in its own terms, has a page in its address cache.
-  void remember_processor(void* processor) { processor_ = processor; }
+  bool plain(std::uint32_t address) const {
+    if (address - ccm_base < ccm_bytes) return true;  // not on the instruction bus
+    const std::uint32_t offset = address - sram_base;
+    return offset < sram_bytes && !holds_code_[offset / page_bytes];
+  }
 
  private:
   /// The engine's pages for ARM have 1 or 4 kB.
   static constexpr std::uint32_t smallest_page_bytes = 1024, page_bytes = 4096;
   std::bitset<sram_bytes / page_bytes> holds_code_;
-  void* processor_ = nullptr;
 };
 
 }  // namespace inkwell::virtual_board

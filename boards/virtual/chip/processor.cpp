@@ -59,7 +59,7 @@ Processor::Processor(Machine& machine, Bus& bus)
   if (machine.options.mode == Mode::exact) check(add_hook(engine_, UC_HOOK_CODE, code_hook, this), "be watched");
   check(add_hook(engine_, UC_HOOK_INTR, interrupt_hook, this), "report exceptions");
   check(add_hook(engine_, UC_HOOK_INSN_INVALID, invalid_hook, this), "report instructions");
-  check(add_hook(engine_, UC_HOOK_MEM_INVALID, memory_hook, this), "report faults");
+  check(add_hook(engine_, UC_HOOK_MEM_WRITE_PROT, flash_store_hook, this), "report stores into the flash");
 }
 
 Processor::~Processor() {
@@ -73,12 +73,35 @@ void Processor::map_memories(Bus& bus) {
   };
   // Unicorn searches its regions in the order of mapping, at each access that is no plain load: the busiest first.
   map(sram_base, sram_bytes, UC_PROT_ALL, memory.sram());
-  map(ccm_base, ccm_bytes, UC_PROT_READ | UC_PROT_WRITE, memory.ccm());  // not on the instruction bus
+  map(ccm_base, ccm_bytes, UC_PROT_ALL, memory.ccm());
   for (const auto& window : Bus::windows)
     check(uc_mmio_map(engine_, window.base, window.bytes, window.read, &bus, window.write, &bus), "map the registers");
   map(flash_base, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
   map(0, flash_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.flash());
-  map(system_base, system_bytes, UC_PROT_READ | UC_PROT_EXEC, memory.system());
+  map(system_base, system_bytes, UC_PROT_ALL, memory.system());
+  map_holes();
+}
+
+// What the engine has nothing for, it refuses before anyone is asked, and by then has lost which instruction it was.
+void Processor::map_holes() {
+  uc_mem_region* regions = nullptr;
+  std::uint32_t count = 0;
+  check(uc_mem_regions(engine_, &regions, &count), "tell its memories");
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> taken;  // first byte, end
+  for (std::uint32_t i = 0; i < count; ++i) taken.emplace_back(regions[i].begin, regions[i].end + 1);
+  uc_free(regions);
+  constexpr std::uint64_t end_of_addresses = 0x1'0000'0000;
+  taken.emplace_back(end_of_addresses, end_of_addresses);
+  std::sort(taken.begin(), taken.end());
+  std::uint64_t at = 0;
+  for (const auto& [first, end] : taken) {
+    if (first > at)
+      check(uc_mmio_map(
+                engine_, at, first - at, [](uc_engine*, std::uint64_t, unsigned, void*) { return std::uint64_t{0}; },
+                nullptr, [](uc_engine*, std::uint64_t, unsigned, std::uint64_t, void*) {}, nullptr),
+            "map where nothing is");
+    at = end;
+  }
 }
 
 void Processor::reset(std::uint32_t vector_table) {
@@ -135,7 +158,7 @@ Masks Processor::masks() const {
 Outcome Processor::run(std::uint64_t cycles) {
   stop_cycle_ = cycles_ + cycles;
   if (guard_bytes_ != 0) guard_float_instructions();
-  if (core_coupled_on_ != core_coupled_mapped_) switch_core_coupled_memory();
+  take_new_rights();
   stopped_ = false;
   block_ = nullptr;
   instruction_end_ = cycles_;
@@ -143,7 +166,7 @@ Outcome Processor::run(std::uint64_t cycles) {
   if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
   uc_err error;
   {
-    const PlainStores::Use use(plain_stores_);
+    const Use use(*this);
     error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
   }
   program_counter_ = read(UC_ARM_REG_PC) & ~1u;
@@ -152,11 +175,7 @@ Outcome Processor::run(std::uint64_t cycles) {
   if (!new_divides_.empty()) ask_about_new_divides();
   if (outcome_ != Outcome::slice_over) return outcome_;
   if (error == UC_ERR_INSN_INVALID) return Outcome::undefined_instruction;
-  if (error == UC_ERR_FETCH_UNMAPPED || error == UC_ERR_FETCH_PROT) {
-    fault_address_ = program_counter_;
-    return Outcome::instruction_fault;
-  }
-  if (error != UC_ERR_OK) return Outcome::data_fault;
+  check(error, "run");
   return stopped_ ? Outcome::slice_over : Outcome::wait_for_interrupt;
 }
 
@@ -189,12 +208,6 @@ void Processor::float_hook(uc_engine*, std::uint64_t address, std::uint32_t, voi
   self.stop();
 }
 
-void Processor::switch_core_coupled_memory() {
-  core_coupled_mapped_ = core_coupled_on_;
-  check(uc_mem_protect(engine_, ccm_base, ccm_bytes, core_coupled_on_ ? UC_PROT_READ | UC_PROT_WRITE : UC_PROT_NONE),
-        "switch a memory");
-}
-
 void Processor::finish_flash_stores() {
   for (const auto& store : flash_stores_) {
     std::memcpy(machine_.memory.at(store.address, store.size), &store.content, store.size);
@@ -204,7 +217,7 @@ void Processor::finish_flash_stores() {
 }
 
 const BlockPrice& Processor::enter_block(std::uint32_t address, std::uint32_t bytes) {
-  if (address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes);
+  if (address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes, *this);
   const auto& block = timing_.block(address, {machine_.memory.at(address, bytes), bytes});
   cycles_ += timing_.enter(block, cycles_);
   return block;
@@ -303,11 +316,13 @@ bool Processor::if_then_block_covers(std::uint32_t if_then, std::uint32_t addres
 }
 
 bool Processor::in_if_then_block(std::uint32_t address) const {
+  if (in_resumed_if_then_block(address)) return true;
   return std::any_of(recent_addresses_.begin(), recent_addresses_.end(),
                      [&](std::uint32_t recent) { return if_then_block_covers(recent, address); });
 }
 
 bool Processor::begins_in_if_then_block(std::uint32_t address) const {
+  if (in_resumed_if_then_block(address)) return true;
   const std::uint32_t end = last_code_address_ + last_code_bytes_;
   for (std::uint32_t at = last_code_address_; at < end; at += is_wide(machine_.memory.half_word(at)) ? 4 : 2)
     if (if_then_block_covers(at, address)) return true;
@@ -326,10 +341,7 @@ void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* po
     case no_coprocessor: self.outcome_ = Outcome::no_coprocessor; break;
     case invalid_state: self.outcome_ = Outcome::invalid_state; break;
     case prefetch_abort:
-      self.outcome_ = Outcome::execute_never;
-      self.fault_address_ = self.read(UC_ARM_REG_PC);
-      break;
-    case data_abort: self.outcome_ = Outcome::data_fault; break;
+    case data_abort: self.outcome_ = self.refusal_.value_or(Outcome::undefined_instruction); break;
     case undefined:
     default: self.outcome_ = Outcome::undefined_instruction; break;
   }
@@ -361,28 +373,19 @@ bool Processor::invalid_hook(uc_engine* engine, void* pointer) {
   return false;
 }
 
-bool Processor::memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value,
-                            void* pointer) {
+// The flash takes writes while it is being programmed (RM0090, "Flash programming").
+bool Processor::flash_store_hook(uc_engine*, uc_mem_type, std::uint64_t address, int size, std::int64_t value,
+                                 void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  self.fault_address_ = static_cast<std::uint32_t>(address);
-  if (!self.core_coupled_on_ && self.fault_address_ - ccm_base < ccm_bytes)
-    self.machine_.violations.violate(Rule::ccm_clock_off);
-  switch (type) {
-    case UC_MEM_WRITE_PROT:
-      // The flash takes writes while it is being programmed (RM0090, "Flash programming").
-      if (const auto content = self.machine_.flash->program(self.fault_address_, static_cast<std::uint32_t>(value),
-                                                            static_cast<unsigned>(size))) {
-        self.flash_stores_.push_back({self.fault_address_, *content, static_cast<unsigned>(size)});
-        self.end_slice();
-        return true;
-      }
-      self.outcome_ = Outcome::data_fault;
-      break;
-    case UC_MEM_FETCH_UNMAPPED: self.outcome_ = Outcome::instruction_fault; break;
-    case UC_MEM_FETCH_PROT: self.outcome_ = Outcome::instruction_fault; break;
-    default: self.outcome_ = Outcome::data_fault; break;
+  const auto place = static_cast<std::uint32_t>(address);
+  const bool privileged = self.current_exception_ != exception_none || (self.read(UC_ARM_REG_CONTROL) & 1) == 0;
+  if (self.refusal_of(place, Access::store, privileged)) return true;  // the fault follows
+  const auto bytes = static_cast<unsigned>(size);
+  if (const auto content = self.machine_.flash->program(place, static_cast<std::uint32_t>(value), bytes)) {
+    self.flash_stores_.push_back({place, *content, bytes});
+    self.end_slice();
   }
-  return false;
+  return true;
 }
 
 }  // namespace inkwell::virtual_board

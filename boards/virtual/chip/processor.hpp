@@ -6,12 +6,14 @@
 #include <array>
 #include <chip/chip.hpp>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <timing/cycle_counter.hpp>
 #include <timing/peripheral_bus.hpp>
 #include <vector>
 
+#include "engine_calls.hpp"
 #include "machine.hpp"
 #include "plain_stores.hpp"
 
@@ -33,12 +35,14 @@ enum class Outcome : std::uint8_t {
   no_coprocessor,
   division_by_zero,
   data_fault,         ///< nothing answers at fault_address()
+  misaligned,         ///< fault_address() is not aligned as the instruction needs it
+  protected_data,     ///< the memory protection unit does not allow the access to fault_address()
   instruction_fault,  ///< nothing to execute at fault_address()
   debugger,           ///< a breakpoint, a watch point, the end of a step
   execute_never,      ///< fault_address() is in a region without instructions
 };
 
-class Processor final : public ClockUser {
+class Processor final : public ClockUser, private EngineCalls {
  public:
   Processor(Machine& machine, Bus& bus);
   ~Processor() override;
@@ -60,6 +64,16 @@ class Processor final : public ClockUser {
   /// CCM has its clock (RCC_AHB1ENR.CCMDATARAMEN). It takes effect from the next slice on, which begins at once.
   void set_core_coupled_memory(bool on) {
     core_coupled_on_ = on;
+    rights_changed();
+  }
+  /// CCR.UNALIGN_TRP; as above.
+  void trap_misaligned(bool on) {
+    traps_misaligned_ = on;
+    end_slice();
+  }
+  /// The memory protection unit was set anew; as above.
+  void rights_changed() {
+    rights_changed_ = true;
     end_slice();
   }
   /// After instructions in memory changed.
@@ -134,8 +148,8 @@ class Processor final : public ClockUser {
   static void block_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   static void code_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   static void interrupt_hook(uc_engine*, std::uint32_t number, void* self);
-  static bool memory_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value,
-                          void* self);
+  static bool flash_store_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value,
+                               void* self);
   static bool invalid_hook(uc_engine*, void* self);
   static void watch_hook(uc_engine*, uc_mem_type type, std::uint64_t address, int size, std::int64_t value, void* self);
   bool stop_for_debugger(std::uint32_t address);
@@ -151,12 +165,22 @@ class Processor final : public ClockUser {
   bool in_if_then_block(std::uint32_t address) const;
   /// As that, for a block of instructions of Unicorn's, which ends at a page of memory wherever that may be.
   bool begins_in_if_then_block(std::uint32_t address) const;
+  bool in_resumed_if_then_block(std::uint32_t address) const { return address - resumed_at_ < resumed_bytes_; }
+  /// A return into the middle of an if-then block, as the fault of one of its instructions makes it.
+  void resume_if_then_block(std::uint32_t xpsr);
   bool if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const;
   void finish_flash_stores();
   static void float_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
   bool has_unguarded_float(std::uint32_t address, std::uint32_t bytes);
   void guard_float_instructions();
-  void switch_core_coupled_memory();
+  // access.cpp
+  bool refuses(std::uint32_t address, unsigned bytes, Access access, bool privileged) override;
+  int rights_in_page(std::uint32_t page, std::uint32_t bytes, bool privileged) override;
+  bool takes_plain_stores(std::uint32_t page) const override { return plain_stores_.plain(page); }
+  void misaligned(std::uint32_t address) override;
+  bool must_be_aligned(std::uint16_t first, std::uint16_t second) const override;
+  std::optional<Outcome> refusal_of(std::uint32_t address, Access access, bool privileged) const;
+  void take_new_rights();
   const BlockPrice& enter_block(std::uint32_t address, std::uint32_t bytes);
   /// R0 to R14 by number.
   auto register_reader() const {
@@ -167,6 +191,7 @@ class Processor final : public ClockUser {
   /// Of a divide with the operands that the registers hold now, beyond its shortest.
   unsigned divide_wait(const BlockPrice::Divide& divide) const;
   void map_memories(Bus& bus);
+  void map_holes();
   void stop() {
     stopped_ = true;
     uc_emu_stop(engine_);
@@ -202,7 +227,11 @@ class Processor final : public ClockUser {
   std::vector<FlashStore> flash_stores_;
   std::set<std::uint32_t> divides_asked_about_;
   std::vector<std::uint32_t> new_divides_;
-  bool float_unit_on_ = false, core_coupled_on_ = true, core_coupled_mapped_ = true;
+  bool float_unit_on_ = false, core_coupled_on_ = true, rights_changed_ = false;
+  bool traps_misaligned_ = false, translates_aligned_ = false;
+  bool protects_ = false;                              ///< the memory protection unit checks what runs now
+  std::optional<Outcome> refusal_;                     ///< of the access that faults
+  std::uint32_t resumed_at_ = 0, resumed_bytes_ = 0;   ///< rest of an if-then block that a return went on with
   std::set<std::uint32_t> float_guards_;               ///< instructions of the FPU that are stopped at while it is off
   std::uint32_t guard_address_ = 0, guard_bytes_ = 0;  ///< a block with such instructions to be guarded; 0 bytes: none
   std::vector<Running> running_;

@@ -55,7 +55,9 @@ void SystemControl::reset() {
   vector_table_ = sleep_control_ = reset_control_ = 0;
   configuration_ = scb.ccr.reset_value;
   machine_.traps_zero_division = false;
-  memory_protection_.reset();
+  machine_.memory_protection.reset();
+  machine_.processor->rights_changed();
+  machine_.processor->trap_misaligned(false);
   configurable_faults_ = hard_faults_ = debug_faults_ = 0;
   memory_fault_address_ = bus_fault_address_ = auxiliary_faults_ = 0;
   coprocessor_access_ = auxiliary_control_ = 0;
@@ -170,7 +172,7 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
   }
   if (address - stk_base < stk_bytes) return systick_.read(address - stk_base);
   if (address - nvic_base < nvic_bytes) return machine_.nvic.read(address - nvic_base);
-  if (address - mpu_base < mpu_bytes) return memory_protection_.read(address - mpu_base);
+  if (address - mpu_base < mpu_bytes) return machine_.memory_protection.read(address - mpu_base);
   machine_.log.note("private peripheral bus 0xE0000000", address & 0xFFFFF, false, 0);
   return 0;
 }
@@ -218,8 +220,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case scb_base + scb.ccr:
       configuration_ = value & writable(scb.ccr);
       machine_.traps_zero_division = scb.ccr.div_0_trp.in(value);
-      if (scb.ccr.unalign_trp.in(value))
-        machine_.log.say_once("CCR.UNALIGN_TRP is not modelled: accesses that are not aligned succeed");
+      machine_.processor->trap_misaligned(scb.ccr.unalign_trp.in(value));
       return;
     case scb_base + scb.shcsr: write_handler_control_state(value); return;
     case scb_base + scb.cfsr: configurable_faults_ &= ~value; return;
@@ -249,9 +250,8 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
   }
   if (address - stk_base < stk_bytes) return systick_.write(address - stk_base, value);
   if (address - mpu_base < mpu_bytes) {
-    if (memory_protection_.write(address - mpu_base, value))
-      machine_.log.say_once("MPU_CTRL.ENABLE: the regions of the MPU are kept, but accesses are not checked");
-    return;
+    machine_.memory_protection.write(address - mpu_base, value);
+    return machine_.processor->rights_changed();
   }
   machine_.log.note("private peripheral bus 0xE0000000", address & 0xFFFFF, true, value);
 }

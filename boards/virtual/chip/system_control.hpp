@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "machine.hpp"
-#include "memory_protection.hpp"
 #include "system_map.hpp"
 
 namespace inkwell::virtual_board {
@@ -50,6 +49,7 @@ class SystemControl {
   /// Records a fault's cause. Bits of CFSR, HFSR; addresses where the bits say that they are valid.
   void record_fault(std::uint32_t configurable_bits, std::uint32_t hard_fault_bits);
   void record_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
+  void record_memory_fault_address(std::uint32_t address) { memory_fault_address_ = address; }
 
  private:
   std::uint32_t read_word(std::uint32_t address);
@@ -63,7 +63,6 @@ class SystemControl {
 
   Machine& machine_;
   SysTick systick_;
-  MemoryProtection memory_protection_;
   std::uint32_t vector_table_ = 0, sleep_control_ = 0, configuration_ = scb.ccr.reset_value, reset_control_ = 0;
   std::uint32_t configurable_faults_ = 0, hard_faults_ = 0, debug_faults_ = 0;
   std::uint32_t memory_fault_address_ = 0, bus_fault_address_ = 0, auxiliary_faults_ = 0;

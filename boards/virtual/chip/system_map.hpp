@@ -85,11 +85,13 @@ struct SystemControlRegisters {
         busfaultena{"BUSFAULTENA", 17}, usgfaultena{"USGFAULTENA", 18};
   } shcsr{{"SHCSR", 0x24}};
   struct : Register {
-    Field iaccviol{"IACCVIOL", 0, 1, Access::rc_w1}, ibuserr{"IBUSERR", 8, 1, Access::rc_w1},
-        preciserr{"PRECISERR", 9, 1, Access::rc_w1}, stkerr{"STKERR", 12, 1, Access::rc_w1},
-        bfarvalid{"BFARVALID", 15, 1, Access::rc_w1}, undefinstr{"UNDEFINSTR", 16, 1, Access::rc_w1},
-        invstate{"INVSTATE", 17, 1, Access::rc_w1}, invpc{"INVPC", 18, 1, Access::rc_w1},
-        nocp{"NOCP", 19, 1, Access::rc_w1}, divbyzero{"DIVBYZERO", 25, 1, Access::rc_w1};
+    Field iaccviol{"IACCVIOL", 0, 1, Access::rc_w1}, daccviol{"DACCVIOL", 1, 1, Access::rc_w1},
+        mstkerr{"MSTKERR", 4, 1, Access::rc_w1}, mmarvalid{"MMARVALID", 7, 1, Access::rc_w1},
+        ibuserr{"IBUSERR", 8, 1, Access::rc_w1}, preciserr{"PRECISERR", 9, 1, Access::rc_w1},
+        stkerr{"STKERR", 12, 1, Access::rc_w1}, bfarvalid{"BFARVALID", 15, 1, Access::rc_w1},
+        undefinstr{"UNDEFINSTR", 16, 1, Access::rc_w1}, invstate{"INVSTATE", 17, 1, Access::rc_w1},
+        invpc{"INVPC", 18, 1, Access::rc_w1}, nocp{"NOCP", 19, 1, Access::rc_w1},
+        unaligned{"UNALIGNED", 24, 1, Access::rc_w1}, divbyzero{"DIVBYZERO", 25, 1, Access::rc_w1};
   } cfsr{{"CFSR", 0x28}};
   struct : Register {
     Field vecttbl{"VECTTBL", 1, 1, Access::rc_w1}, forced{"FORCED", 30, 1, Access::rc_w1},

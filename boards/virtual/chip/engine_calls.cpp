@@ -1,0 +1,145 @@
+#include "engine_calls.hpp"
+
+#include <dlfcn.h>
+
+#include <timing/instruction.hpp>
+
+// As the engine declares them, but for its types: what they point to stays the engine's.
+extern "C" {
+void tlb_set_page_with_attrs_arm(void* processor, std::uint32_t address, std::uint64_t physical,
+                                 std::uint64_t attributes, int rights, int index, std::uint32_t bytes);
+bool arm_cpu_tlb_fill_arm(void* processor, std::uint64_t address, int bytes, int access, int index, bool probe,
+                          std::uintptr_t return_address);
+void arm_cpu_do_unaligned_access_arm(void* processor, std::uint64_t address, int access, int index,
+                                     std::uintptr_t return_address);
+std::uint32_t cpu_lduw_code_arm(void* state, std::uint32_t address);
+void tcg_gen_qemu_ld_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation);
+void tcg_gen_qemu_st_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation);
+}
+
+namespace inkwell::virtual_board {
+namespace {
+
+thread_local EngineCalls* in_use = nullptr;
+
+/// Functions of the engine, null if this version has none of the name.
+struct Engine {
+  using PageFunction = void(void* processor, std::uint32_t address);
+  using Function = void(void* processor);
+  template <class Type>
+  static Type* find(const char* name) {
+    return reinterpret_cast<Type*>(dlsym(RTLD_NEXT, name));
+  }
+  decltype(&tlb_set_page_with_attrs_arm) set_page =
+      find<decltype(tlb_set_page_with_attrs_arm)>("tlb_set_page_with_attrs_arm");
+  decltype(&arm_cpu_tlb_fill_arm) fill = find<decltype(arm_cpu_tlb_fill_arm)>("arm_cpu_tlb_fill_arm");
+  decltype(&arm_cpu_do_unaligned_access_arm) fault =
+      find<decltype(arm_cpu_do_unaligned_access_arm)>("arm_cpu_do_unaligned_access_arm");
+  decltype(&cpu_lduw_code_arm) fetch = find<decltype(cpu_lduw_code_arm)>("cpu_lduw_code_arm");
+  decltype(&tcg_gen_qemu_ld_i32_arm) load = find<decltype(tcg_gen_qemu_ld_i32_arm)>("tcg_gen_qemu_ld_i32_arm");
+  decltype(&tcg_gen_qemu_st_i32_arm) store = find<decltype(tcg_gen_qemu_st_i32_arm)>("tcg_gen_qemu_st_i32_arm");
+  PageFunction* mark_plain = find<PageFunction>("tlb_set_dirty_arm");
+  PageFunction* forget_page = find<PageFunction>("tlb_flush_page_arm");
+  Function* forget_pages = find<Function>("tlb_flush_arm");
+};
+
+const Engine& engine() {
+  static const Engine functions;
+  return functions;
+}
+
+/// The instruction that the engine translates on this thread.
+struct Translated {
+  std::uint32_t address = 0;
+  std::uint16_t first = 0, second = 0;
+  bool whole = true;
+  void fetched(std::uint32_t at, std::uint16_t half_word) {
+    if (!whole && at == address + 2) {
+      second = half_word;
+      whole = true;
+    } else {
+      *this = {at, half_word, 0, !is_wide(half_word)};
+    }
+  }
+};
+thread_local Translated translated;
+
+/// Bit 0 of the engine's index of a translation regime is privilege (of an M-profile processor).
+bool is_privileged(int index) { return (index & 1) != 0; }
+
+int aligned_if_needed(int operation) {
+  constexpr int aligned = 0x70;  // MO_ALIGN
+  return in_use != nullptr && in_use->must_be_aligned(translated.first, translated.second) ? operation | aligned
+                                                                                           : operation;
+}
+
+}  // namespace
+
+EngineCalls::Use::Use(EngineCalls& calls) { in_use = &calls; }
+EngineCalls::Use::~Use() { in_use = nullptr; }
+
+void EngineCalls::forget_page(std::uint32_t address) {
+  if (processor_ != nullptr && engine().forget_page != nullptr) engine().forget_page(processor_, address);
+}
+
+void EngineCalls::forget_pages() {
+  if (processor_ != nullptr && engine().forget_pages != nullptr) engine().forget_pages(processor_);
+}
+
+}  // namespace inkwell::virtual_board
+
+using inkwell::virtual_board::EngineCalls;
+
+// The attributes of an access are a structure that fits one register.
+void tlb_set_page_with_attrs_arm(void* processor, std::uint32_t address, std::uint64_t physical,
+                                 std::uint64_t attributes, int rights, int index, std::uint32_t bytes) {
+  using namespace inkwell::virtual_board;
+  constexpr std::uint32_t page_bytes = 4096, not_the_whole_page = 32;
+  if (in_use == nullptr) return engine().set_page(processor, address, physical, attributes, rights, index, bytes);
+  in_use->remember_processor(processor);
+  const std::uint32_t page = address & ~(page_bytes - 1);
+  const int allowed = in_use->rights_in_page(page, page_bytes, is_privileged(index));
+  // Of a page that is not marked as whole the engine asks again at each access.
+  if (allowed < 0)
+    return engine().set_page(processor, address, physical, attributes, rights, index, not_the_whole_page);
+  engine().set_page(processor, address, physical, attributes, rights & allowed, index, bytes);
+  if (engine().mark_plain != nullptr && in_use->takes_plain_stores(page)) engine().mark_plain(processor, address);
+}
+
+bool arm_cpu_tlb_fill_arm(void* processor, std::uint64_t address, int bytes, int access, int index, bool probe,
+                          std::uintptr_t return_address) {
+  using namespace inkwell::virtual_board;
+  if (in_use != nullptr) {
+    in_use->remember_processor(processor);
+    if (in_use->refuses(static_cast<std::uint32_t>(address), static_cast<unsigned>(bytes > 0 ? bytes : 1),
+                        static_cast<EngineCalls::Access>(access), is_privileged(index))) {
+      if (probe) return false;
+      engine().fault(processor, address, access, index, return_address);  // does not come back
+    }
+  }
+  return engine().fill(processor, address, bytes, access, index, probe, return_address);
+}
+
+void arm_cpu_do_unaligned_access_arm(void* processor, std::uint64_t address, int access, int index,
+                                     std::uintptr_t return_address) {
+  using namespace inkwell::virtual_board;
+  if (in_use != nullptr) in_use->misaligned(static_cast<std::uint32_t>(address));
+  engine().fault(processor, address, access, index, return_address);
+}
+
+std::uint32_t cpu_lduw_code_arm(void* state, std::uint32_t address) {
+  using namespace inkwell::virtual_board;
+  const std::uint32_t half_word = engine().fetch(state, address);
+  translated.fetched(address, static_cast<std::uint16_t>(half_word));
+  return half_word;
+}
+
+void tcg_gen_qemu_ld_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation) {
+  using namespace inkwell::virtual_board;
+  engine().load(context, value, address, index, aligned_if_needed(operation));
+}
+
+void tcg_gen_qemu_st_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation) {
+  using namespace inkwell::virtual_board;
+  engine().store(context, value, address, index, aligned_if_needed(operation));
+}

@@ -1,0 +1,94 @@
+// Accesses that fault for their alignment or for the memory protection unit, and one that faults in the middle of an
+// if-then block. Each leaves a record from results[4] on: CFSR, the address register that CFSR calls valid, the stacked
+// program counter's distance from the instruction, the stacked if-then bits.
+#include "support.hpp"
+
+namespace {
+
+constexpr std::uint32_t ccr = 0xE000ED14, shcsr = 0xE000ED24, cfsr = 0xE000ED28, mmfar = 0xE000ED34, bfar = 0xE000ED38,
+                        mpu_control = 0xE000ED94, mpu_base = mpu_control + 8, mpu_attributes = mpu_control + 12;
+std::uint32_t records = 0, resume_at = 0, expected = 0;
+volatile std::uint32_t words[8] = {0x33221100, 0x77665544, 0xBBAA9988, 0xFFEEDDCC};
+
+extern "C" void note_access(std::uint32_t* frame) {
+  const std::uint32_t bits = word(cfsr), place = 4 + 4 * records++;
+  results[place] = bits;
+  results[place + 1] = (bits & 0x80) != 0 ? word(mmfar) : (bits & 0x8000) != 0 ? word(bfar) : 0;
+  results[place + 2] = frame[6] - expected;
+  results[place + 3] = frame[7] & 0x0600FC00;
+  word(cfsr) = bits;
+  if (resume_at != 0) frame[6] = resume_at, frame[7] &= ~0x0600FC00u;
+}
+// If the if-then state of what faulted were left over, the first of these would not run.
+[[gnu::naked]] void fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl note_access\n pop {r4, pc}"); }
+
+// Notes where the instruction is and where to go on, then runs it.
+#define FAULTING(instruction, input)                                                                      \
+  asm volatile("adr r3, 1f\n str r3, [%0]\n adr r3, 2f\n str r3, [%1]\n b 1f\n .align 2\n1: " instruction \
+               "\n nop\n .align 2\n2:" ::"r"(&expected),                                                  \
+               "r"(&resume_at), "r"(input)                                                                \
+               : "r3", "r4", "s0", "memory")
+
+/// The block's third instruction reads where nothing is; its handler lets it read the first word of the flash instead.
+[[gnu::naked, gnu::noinline]] std::uint32_t fault_in_block(std::uint32_t*) {
+  asm volatile(
+      "adr r3, 1f\n str r3, [r0]\n movs r1, #0\n mov r0, #0x60000000\n cmp r1, #0\n b 2f\n .balign 4\n"
+      "2: itete eq\n addeq r1, #1\n addne.w r1, r1, #64\n"
+      "1: ldreq.w r3, [r0]\n addne r1, #128\n it eq\n addeq r1, r1, r3\n"
+      "mov r0, r1\n bx lr");
+}
+extern "C" void mend_source(std::uint32_t* frame) {
+  resume_at = 0;
+  note_access(frame);
+  frame[0] = 0;
+}
+[[gnu::naked]] void mended_fault() { asm volatile("mov r0, sp\n push {r4, lr}\n bl mend_source\n pop {r4, pc}"); }
+
+}  // namespace
+
+void run() {
+  for (unsigned exception = 3; exception <= 6; ++exception) set_handler(exception, fault);
+  word(shcsr) = 7 << 16;
+  const auto odd = reinterpret_cast<std::uint32_t>(words) + 2;
+  results[1] = word(odd);               // one word may lie anywhere
+  FAULTING("ldmia %2, {r3, r4}", odd);  // records 0 to 6: several may not, nor what belongs to the FPU
+  FAULTING("ldrd r3, r4, [%2]", odd);
+  FAULTING("strd r3, r4, [%2]", odd);
+  FAULTING("ldrex r3, [%2]", odd);
+  FAULTING("vldr s0, [%2]", odd);
+  FAULTING("vstr s0, [%2]", odd);
+  FAULTING("stmia %2, {r3, r4}", odd);
+  word(ccr) |= 1 << 3;
+  asm volatile("dsb\n isb" ::: "memory");
+  FAULTING("ldr r3, [%2]", odd);  // 7, 8
+  FAULTING("strh r3, [%2]", odd - 1);
+  results[2] = half(odd);
+  word(ccr) &= ~(1u << 3);
+  asm volatile("dsb\n isb" ::: "memory");
+  results[3] = word(odd);
+  FAULTING("ldr r3, [%2]", 0x60000000);  // 9: nothing there, found in the middle of a block of instructions
+
+  // Region 1: 32 bytes in the middle of `guarded` read only; the default map for the rest.
+  alignas(64) static volatile std::uint32_t guarded[16];
+  word(mpu_base) = (reinterpret_cast<std::uint32_t>(guarded) + 32) | 1 << 4 | 1;
+  word(mpu_attributes) = 5u << 24 | 4 << 1 | 1;
+  word(mpu_control) = 1 | 1 << 2;
+  asm volatile("dsb\n isb" ::: "memory");
+  guarded[7] = 7;
+  results[60] = guarded[8] + guarded[7];
+  FAULTING("str r3, [%2]", &guarded[8]);  // 10
+  // Region 2: instructions at the end of SRAM may not run.
+  word(mpu_base) = 0x20010000 | 1 << 4 | 2;
+  word(mpu_attributes) = 1u << 28 | 3u << 24 | 14 << 1 | 1;
+  half(0x20010000) = 0x4770;  // BX LR
+  asm volatile("dsb\n isb" ::: "memory");
+  FAULTING("mov r4, lr\n bx %2", 0x20010001);  // 11
+  word(mpu_control) = 0;
+  asm volatile("dsb\n isb" ::: "memory");
+  guarded[8] = 8;
+  results[61] = guarded[8];
+
+  set_handler(5, mended_fault);
+  results[62] = fault_in_block(&expected) - word(0);  // 12
+  results[0] = finished;
+}
