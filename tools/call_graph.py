@@ -24,6 +24,7 @@ class Function:
     moves_stack: bool = False  # by an amount that is not a constant
     divides: list[str] = dataclasses.field(default_factory=list)  # addresses of divisions and square roots
     instructions: list[tuple[int, str]] = dataclasses.field(default_factory=list)  # address and text, in order
+    words: list[int] = dataclasses.field(default_factory=list)  # constants that stand between its instructions
 
 
 @dataclasses.dataclass
@@ -93,6 +94,9 @@ INSTRUCTION = re.compile(r"^ *([0-9a-f]+):\t(.*?)(?:\s+@.*)?$")
 BRANCH = re.compile(r"(?:bl?|b[a-z]{2})(?:\.[nw])?\t[0-9a-f]+ <([^>+]+)(\+0x[0-9a-f]+)?>|cbn?z\t\w+, [0-9a-f]+ <([^>+]+)")
 INDIRECT = re.compile(r"(?:blx|bx)\t(r\d+|ip|fp|sl|sb)|mov\tpc, (\w+)")
 LOAD = re.compile(r"ldr(?:\.w)?\t(\w+), \[(\w+)(?:, #(\d+))?\]")
+WORD = re.compile(r"\.word\t0x([0-9a-f]{8})")
+# What the linker puts where a call goes too far for the instruction: a function of its own that loads its target.
+VENEER = re.compile(r"__.+_veneer")
 DIVIDE = re.compile(r"(?:v?sqrt|vdiv|vsqrt|[su]div)\b")
 
 
@@ -108,7 +112,10 @@ def read_functions(elf: str) -> dict[str, Function]:
             loads = {}
             continue
         instruction = INSTRUCTION.match(line)
-        if function is None or instruction is None or instruction[2].startswith(".word"):
+        if function is None or instruction is None:
+            continue
+        if word := WORD.match(instruction[2]):
+            function.words.append(int(word[1], 16))
             continue
         text = instruction[2]
         function.instructions.append((int(instruction[1], 16), text))
@@ -129,7 +136,16 @@ def read_functions(elf: str) -> dict[str, Function]:
                 function.virtual_slots.add(loads[register])
             else:
                 function.calls_any_pointer = True
-    return functions
+    return without_veneers(functions, aliases)
+
+
+def without_veneers(functions: dict[str, Function], by_address: dict[int, Function]) -> dict[str, Function]:
+    """The same with every call through a veneer as a call of the veneer's target."""
+    targets = {name: by_address[function.words[0] & ~1].name
+               for name, function in functions.items() if VENEER.fullmatch(name)}
+    for function in functions.values():
+        function.calls = {targets.get(name, name) for name in function.calls}
+    return {name: function for name, function in functions.items() if name not in targets}
 
 
 def read_words(elf: str, address: int, count: int) -> list[int]:

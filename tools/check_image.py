@@ -53,7 +53,7 @@ def main() -> int:
         print(f"cannot read {arguments.elf} as the firmware's image: {error}", file=sys.stderr)
         return 2
 
-    in_flash = sum(sections.get(name, (0, 0))[0] for name in (".vectors", ".interrupt_text", ".text", ".data", ".data.ccm"))
+    in_flash = sum(sections.get(name, (0, 0))[0] for name in (".vectors", ".interrupt_text", ".interrupt_tables", ".text", ".data", ".data.ccm"))
     core_coupled = sum(size for size, address in sections.values() if address >> 16 == 0x1000)
     ram = sum(size for size, address in sections.values() if address >> 24 == 0x20)
     print(f"image: {in_flash} bytes; core-coupled memory {core_coupled}, main memory {ram}")

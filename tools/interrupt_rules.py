@@ -1,12 +1,15 @@
 """What holds for code that runs in an interrupt, checked in the linked image.
 
 Everything that a handler can reach lies in the section .interrupt_text, and nothing else does, so that the image itself
-tells what runs in interrupts. Nothing of it waits, divides, or calls through a pointer.
+tells what runs in interrupts. Nothing of it waits, divides, calls through a pointer, or reads the flash: the section is
+copied to RAM, so that an erase of the flash, for which every access to it waits, holds no interrupt up.
 """
 
 import re
 
 from call_graph import INDIRECT, Function, Image
+
+FLASH = range(0x08000000, 0x08100000)
 
 # What the compiler calls behind one's back, by whole symbol names.
 LIBRARY = {
@@ -141,9 +144,23 @@ def leaves(image: Image, name: str, section: range) -> list[str]:
     return problems
 
 
+# MOVT gives a register the upper half of an address.
+UPPER_HALF = re.compile(r"movt\t\w+, #(\d+)")
+
+
+def reads_flash(function: Function) -> bool:
+    """Whether a function holds an address in the flash: as a word, or as the two halves of one."""
+    upper_halves = [int(upper[1]) for _, text in function.instructions if (upper := UPPER_HALF.match(text))]
+    return any(address in FLASH for address in (*function.words, *(half << 16 for half in upper_halves)))
+
+
 def broken_interrupt_rules(image: Image, section: range) -> list[str]:
     reached = set().union(*map(image.reachable, image.interrupts))
     problems = [
+        f"{name} lies in the flash, which interrupts must not need"
+        for name in ("interrupt_vectors", "interrupt_text_begin", "interrupt_tables_begin")
+        if image.symbols[name] in FLASH
+    ] + [
         f"{name} handles an interrupt but lies outside .interrupt_text: mark it INKWELL_INTERRUPT"
         for name in image.interrupts
         if image.functions[name].address not in section
@@ -156,6 +173,8 @@ def broken_interrupt_rules(image: Image, section: range) -> list[str]:
     for name in sorted(reached):
         function = image.functions[name]
         problems += leaves(image, name, section)
+        if function.address in section and reads_flash(function):
+            problems.append(f"{name} runs in an interrupt and reads the flash: its tables belong into .interrupt_tables")
         problems += [f"division in an interrupt, in {name} at {place}" for place in function.divides]
         problems += [f"{name} runs in an interrupt and waits at {place}" for place in waits(function)]
     return problems

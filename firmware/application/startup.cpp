@@ -1,5 +1,6 @@
 // From reset to main(): floating-point unit, memory, constructors.
 #include <algorithm>
+#include <cstring>
 
 #include <registers/clock.hpp>
 #include <registers/processor.hpp>
@@ -43,10 +44,16 @@ extern "C" [[noreturn, gnu::used]] void start() {
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(&vectors));
   asm volatile("dsb\n isb" ::: "memory");
 
+  copy(interrupt_text_image, interrupt_text_begin, interrupt_text_end);
+  copy(interrupt_tables_image, interrupt_tables_begin, interrupt_tables_end);
   copy(data_image, data_begin, data_end);
   copy(core_coupled_data_image, core_coupled_data_begin, core_coupled_data_end);
   std::fill(zero_begin, zero_end, 0u);
   std::fill(core_coupled_zero_begin, core_coupled_zero_end, 0u);
+  // From now on the processor finds the handlers without the flash.
+  std::memcpy(interrupt_vectors, &vectors, sizeof vectors);
+  SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
+  asm volatile("dsb\n isb" ::: "memory");
   for (auto constructor = constructors_begin; constructor != constructors_end; ++constructor) (*constructor)();
 
   asm volatile("bl main");  // C++ does not let itself call main()

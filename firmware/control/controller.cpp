@@ -68,7 +68,7 @@ void Controller::raise(Fault fault) {
 
 void Controller::condition_samples(const Samples& samples, const Settings& settings) {
   if (periods_ == 0)
-    for (std::size_t i = 0; i < 3; ++i) speeds_[i] = start_speed_estimate(samples.encoder_counts[i], periods_);
+    for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
   // The bridges are off until the offsets are known, so what the sensors read is their offset.
   if (!offsets_.measured()) measure_offsets(offsets_, samples.current_A);
   debounce(switches_, samples.switches);
@@ -159,7 +159,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   requests_ = {};
 
   // Counts were lost, so the reference is void: only the inkwell can tell again where the arm is.
-  if (supervisor_.fault == Fault::encoder_implausible && before.fault != supervisor_.fault) reference_ = {};
+  if (supervisor_.fault == Fault::encoder_implausible && before.fault != supervisor_.fault) forget(reference_);
   if (supervisor_.state != State::ready) test_ = {};
   if (test_.runs()) --test_.remaining_periods;
   // A change of state switches off in the period in which it is decided, not one later.

@@ -74,13 +74,6 @@ void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
 
 }  // namespace
 
-SpeedEstimate start_speed_estimate(std::int32_t counts, std::uint32_t period) {
-  SpeedEstimate estimate;
-  estimate.counts = counts;
-  estimate.head.period = period;
-  return estimate;
-}
-
 void update(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period, bool may_fit) {
   const std::int32_t before = estimate.counts;
   if (counts == before) {

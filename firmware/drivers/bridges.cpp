@@ -42,6 +42,14 @@ void set_up() {
   Timer::EGR::write(typename Timer::EGR::UG(1));
 }
 
+/// The bridge is a template argument, so that no table of channels is read.
+template <std::size_t bridge>
+void write_legs(const LegCompares& legs) {
+  constexpr unsigned place = board::bridges[bridge].channel - 1u;
+  TIM1::CCR::write(place, legs.leg_a);
+  TIM8::CCR::write(place, legs.leg_b);
+}
+
 /// Starts both counters together: TIM8 waits for the trigger output of TIM1, which is its internal trigger 0
 /// (RM0090, "TIMx internal trigger connection"). It comes some two cycles late, 12 ns, by which the legs of a
 /// bridge stay apart; the bridge's own dead time is 17 times that.
@@ -90,18 +98,15 @@ void Bridges::start() {
 }
 
 INKWELL_INTERRUPT void Bridges::write_neutral() {
-  for (const auto& bridge : board::bridges) {
-    TIM1::CCR::write(bridge.channel - 1u, neutral_legs.leg_a);
-    TIM8::CCR::write(bridge.channel - 1u, neutral_legs.leg_b);
-  }
+  write_legs<0>(neutral_legs);
+  write_legs<1>(neutral_legs);
+  write_legs<2>(neutral_legs);
 }
 
 INKWELL_INTERRUPT void Bridges::write(const std::array<float, 3>& duty) {
-  for (std::size_t i = 0; i < duty.size(); ++i) {
-    const LegCompares legs = leg_compares(duty[i]);
-    TIM1::CCR::write(board::bridges[i].channel - 1u, legs.leg_a);
-    TIM8::CCR::write(board::bridges[i].channel - 1u, legs.leg_b);
-  }
+  write_legs<0>(leg_compares(duty[0]));
+  write_legs<1>(leg_compares(duty[1]));
+  write_legs<2>(leg_compares(duty[2]));
 }
 
 INKWELL_INTERRUPT void Bridges::enable() {

@@ -73,8 +73,6 @@ INKWELL_INTERRUPT const protocol::CommandReport* CommandQueue::take() {
   if (host_gone_.load()) {
     host_gone_.store(false);
     taken_.store(forgotten_.load());
-    disable_force_ = {};
-    disable_force_.command = Command::disable_force;
     disable_force_.token = last_token_;  // the host asked for nothing, so nothing new is acknowledged
     return &disable_force_;
   }

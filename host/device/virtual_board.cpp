@@ -57,6 +57,8 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
                                      elf.string(),
                                      "--mode",
                                      options.mode == SimulationMode::exact ? "exact" : "fast",
+                                     "--pricing",
+                                     options.pricing == CyclePricing::conservative ? "conservative" : "likely",
                                      "--seed",
                                      std::to_string(options.seed)};
   if (!options.arm.empty()) arguments.insert(arguments.end(), {"--arm", options.arm.string()});

@@ -12,10 +12,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-device::VirtualBoardOptions options(device::SimulationMode mode, std::uint64_t seed) {
+device::VirtualBoardOptions options(device::SimulationMode mode, std::uint64_t seed, device::CyclePricing pricing) {
   device::VirtualBoardOptions options;
   options.mode = mode;
   options.seed = seed;
+  options.pricing = pricing;
   options.real_time = false;
   options.paused = true;
   options.strict = true;
@@ -27,8 +28,8 @@ constexpr double sign_of_life_s = 0.5;
 
 }  // namespace
 
-BoardRig::BoardRig(device::SimulationMode mode, std::uint64_t seed)
-    : board(options(mode, seed)), control(board.control()) {
+BoardRig::BoardRig(device::SimulationMode mode, std::uint64_t seed, device::CyclePricing pricing)
+    : board(options(mode, seed, pricing)), control(board.control()) {
   control.stand_by();
   connect();
   run(0.05);

@@ -18,7 +18,8 @@ namespace inkwell::tests {
 class BoardRig {
  public:
   /// Starts the board, docked in its inkwell, and opens the device.
-  explicit BoardRig(device::SimulationMode mode = device::SimulationMode::fast, std::uint64_t seed = 1);
+  explicit BoardRig(device::SimulationMode mode = device::SimulationMode::fast, std::uint64_t seed = 1,
+                    device::CyclePricing pricing = device::CyclePricing::likely);
 
   /// Lets board time pass in slices of 10 ms, collects every pose report, keeps the host's sign of life.
   void run(double time_s);

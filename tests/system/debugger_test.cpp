@@ -39,7 +39,7 @@ TEST_CASE("GDB stops in the control interrupt, looks, steps, watches a variable 
           {"monitor reset", "maintenance flush register-cache", "info symbol $pc", "break control_interrupt",
            "continue", "print $xpsr & 0x1ff", "monitor time", "shell sleep 0.3", "monitor time", "set $before = $pc",
            "stepi", "print $pc - $before", "delete", "watch *(unsigned*)&inkwell::application::completed_periods",
-           "continue", "detach"});
+           "continue", "print *(unsigned*)0xe000ed08 == (unsigned)&interrupt_vectors", "detach"});
   CAPTURE(said);
   CHECK(said.find("reset_handler in section") != std::string::npos);
   CHECK(said.find("Breakpoint 1, inkwell::application::control_interrupt") != std::string::npos);
@@ -49,6 +49,7 @@ TEST_CASE("GDB stops in the control interrupt, looks, steps, watches a variable 
   CHECK(said.find("New value = 1") != std::string::npos);
   const auto moved = word_after(said, "$2 = ");
   CHECK((moved == "2" || moved == "4"));
+  CHECK(said.find("$3 = true\n") != std::string::npos);  // VTOR: the processor finds the handlers without the flash
   // Board time stands still while GDB looks.
   constexpr const char* unit = " s of board time";
   const auto first = said.find(unit), second = said.find(unit, first + 1);

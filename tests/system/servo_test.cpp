@@ -28,22 +28,26 @@ double mean_square(const device::Trace& trace, const std::string& column) {
 
 }  // namespace
 
-TEST_CASE("the longest control interrupt leaves a fifth of its period, in contact and with a full scope") {
-  BoardRig rig;
+TEST_CASE(
+    "the longest control interrupt leaves three tenths of its period, pressed into three walls and with a full scope") {
+  BoardRig rig(device::SimulationMode::fast, 1, device::CyclePricing::conservative);
   rig.make_active();
   std::vector<Signal> signals;
   for (std::uint8_t id = 0; id < 31; ++id) signals.push_back(static_cast<Signal>(id));
   rig.device->select_signals(signals);
   rig.take_to(free_point_m);
-  // Inside two walls, and moving through them.
-  rig.set({{Parameter::box_minimum_z_m, -0.02f}, {Parameter::box_maximum_x_m, 0.0f}});
-  rig.take_to({0.02, 0.0, -0.045}, 0.3);
+  // Inside three walls, and moving through them.
+  rig.set(
+      {{Parameter::box_minimum_z_m, -0.02f}, {Parameter::box_maximum_x_m, 0.0f}, {Parameter::box_maximum_y_m, 0.0f}});
+  rig.take_to({0.02, 0.02, -0.045}, 0.3);
+  const auto& forces = rig.pose().force_N;
+  CHECK((forces[0] < 0.0f && forces[1] < 0.0f && forces[2] > 0.0f));
   rig.take_to(free_point_m, 0.3);
   const auto report = rig.device->information().report;
   MESSAGE("simulation: longest control interrupt ", report.servo_cycles_longest, " of ", board::servo_cycles,
           " cycles");
   CHECK(report.servo_cycles_longest > 500);  // it did run and was measured
-  CHECK(report.servo_cycles_longest < board::servo_cycles * 4 / 5);
+  CHECK(report.servo_cycles_longest < board::servo_cycles * 7 / 10);
   CHECK(report.servo_overruns == 0);
 }
 

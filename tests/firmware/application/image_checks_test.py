@@ -79,6 +79,16 @@ class ImageChecks(unittest.TestCase):
         check_image, _ = self.check("[[gnu::noipa]] void other() { sink = 1; }\nvoid work() { sink = 2; other(); }")
         self.assert_refused(check_image, "which lies outside .interrupt_text")  # a jump at the end is a call as well
 
+    def test_what_reads_the_flash_in_an_interrupt_is_found(self):
+        reads = "work runs in an interrupt and reads the flash: its tables belong into .interrupt_tables"
+        check_image, _ = self.check("const int table[16] = {7, 1, 8};\nvoid work() { sink = table[sink & 15]; }")
+        self.assert_refused(check_image, reads)
+        check_image, _ = self.check(
+            'extern "C" const int table[16];\nconst int table[16] = {7, 1, 8};\n'
+            'void work() { int place; asm("movw %0, #:lower16:table\\n movt %0, #:upper16:table" : "=r"(place)); '
+            "sink = place; }\n[[gnu::used]] const int* volatile keep = table;")
+        self.assert_refused(check_image, reads)
+
     def test_an_unmarked_handler_is_found(self):
         check_image, _ = self.check("void usb_interrupt() { sink = 1; }\nvoid work() { sink = 2; }\n"
                                     "[[gnu::section(\".vectors\"), gnu::used]] void (*const more)() = usb_interrupt;")

@@ -30,7 +30,7 @@ Quality follow_sine(double amplitude_counts, double frequency_Hz) {
   const double omega = 2 * pi * frequency_Hz;
   const auto turn = static_cast<std::uint32_t>(rate_Hz / frequency_Hz);
   const std::uint32_t turns = turn < 20'000 ? 4 : 2;
-  SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+  SpeedEstimate estimate;
   double square = 0, raw_square = 0, in_phase = 0, quadrature = 0;
   std::int32_t before = 0;
   for (std::uint32_t period = 1; period <= turns * turn; ++period) {
@@ -79,7 +79,7 @@ TEST_CASE("constant speeds from 0.5 mm/s to 3 m/s") {
   for (const double counts_per_s : {10.0, 37.0, 200.0, 1'234.0, 9'000.0, 20'000.0, 33'333.0, 60'000.0}) {
     CAPTURE(counts_per_s);
     for (const double sign : {1.0, -1.0}) {
-      SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+      SpeedEstimate estimate;
       const auto periods = static_cast<std::uint32_t>(std::max(4'000.0, 40 * rate_Hz / counts_per_s));
       double worst = 0;
       for (std::uint32_t period = 1; period <= periods; ++period) {
@@ -97,7 +97,7 @@ TEST_CASE("constant speeds from 0.5 mm/s to 3 m/s") {
 TEST_CASE("joints that take turns lag by a tenth of a millisecond more and are as exact") {
   for (const double counts_per_s : {200.0, 9'000.0, 33'333.0}) {
     CAPTURE(counts_per_s);
-    SpeedEstimate every = control::start_speed_estimate(0, 0), third = every;
+    SpeedEstimate every, third;
     double worst = 0;
     for (std::uint32_t period = 1; period <= 8'000; ++period) {
       const std::int32_t counts = counts_at(counts_per_s * period / rate_Hz);
@@ -112,7 +112,8 @@ TEST_CASE("joints that take turns lag by a tenth of a millisecond more and are a
 }
 
 TEST_CASE("at rest it is exactly zero, also after motion and while a count dithers") {
-  SpeedEstimate estimate = control::start_speed_estimate(1'000, 0);
+  SpeedEstimate estimate;
+  control::start(estimate, 1'000, 0);
   std::uint32_t period = 1;
   for (; period < 100; ++period) control::update(estimate, 1'000, period);
   CHECK(estimate.counts_per_period == 0.0f);
@@ -127,7 +128,7 @@ TEST_CASE("at rest it is exactly zero, also after motion and while a count dithe
 }
 
 TEST_CASE("after a sudden stop the speed is bounded by one count in the time of silence") {
-  SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+  SpeedEstimate estimate;
   std::uint32_t period = 0;
   for (std::int32_t counts = 1; counts < 200; ++counts) control::update(estimate, counts, period += 4);
   CHECK(estimate.counts_per_period == doctest::Approx(0.25f));
@@ -140,7 +141,7 @@ TEST_CASE("after a sudden stop the speed is bounded by one count in the time of 
 }
 
 TEST_CASE("between edges the value rests: it changes in few of the periods") {
-  SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+  SpeedEstimate estimate;
   int changes = 0;
   float before = 0.0f;
   constexpr std::uint32_t periods = 20'000;
@@ -156,7 +157,8 @@ TEST_CASE("between edges the value rests: it changes in few of the periods") {
 }
 
 TEST_CASE("the period counter may wrap") {
-  SpeedEstimate estimate = control::start_speed_estimate(0, 0xFFFFFF00u);
+  SpeedEstimate estimate;
+  control::start(estimate, 0, 0xFFFFFF00u);
   std::uint32_t period = 0xFFFFFF00u;
   for (std::int32_t counts = 1; counts < 100; ++counts) {
     control::update(estimate, counts, period += 5);
@@ -165,7 +167,7 @@ TEST_CASE("the period counter may wrap") {
 }
 
 TEST_CASE("lost or garbled counts give numbers, not nonsense") {
-  SpeedEstimate estimate = control::start_speed_estimate(0, 0);
+  SpeedEstimate estimate;
   std::int32_t counts = 0;
   for (std::uint32_t period = 1; period < 2'000; ++period) {
     counts += period % 97 == 0 ? 30'000 : 1;

@@ -76,6 +76,13 @@ struct InkwellReference {
   bool valid = false;
 };
 
+/// The stylus has to be put in once more.
+constexpr void forget(InkwellReference& reference) {
+  reference.counts = {};
+  reference.rested_periods = 0;
+  reference.valid = false;
+}
+
 /// Takes the present counts as those of the inkwell once the switch has been closed and the arm still for
 /// 0.1 s; once for each time that the stylus is put in. Returns true in the period in which that happens.
 bool update_reference(InkwellReference& reference, const std::array<std::int32_t, 3>& encoder_counts,

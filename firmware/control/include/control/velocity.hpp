@@ -50,8 +50,11 @@ struct SpeedEstimate {
   float counts_per_period = 0.0f;
 };
 
-/// Starts at rest at these counts.
-SpeedEstimate start_speed_estimate(std::int32_t counts, std::uint32_t period);
+/// Lets a new estimate start at rest at these counts.
+constexpr void start(SpeedEstimate& estimate, std::int32_t counts, std::uint32_t period) {
+  estimate.counts = counts;
+  estimate.head.period = period;
+}
 
 /// Takes in the counts of one control period. Where `may_fit` is false a new edge is kept and fitted in the
 /// next period that may, so that joints can take turns and only one pays for a fit in any period: at most

@@ -58,7 +58,7 @@ class CommandQueue {
   Shared<bool> host_gone_{false};
   Shared<bool> sign_of_life_{false};
   std::uint8_t last_token_ = 0;
-  protocol::CommandReport disable_force_{};
+  protocol::CommandReport disable_force_{.command = protocol::Command::disable_force};  ///< for a host that is gone
 };
 
 }  // namespace inkwell::link

@@ -17,11 +17,18 @@ enum class SimulationMode : std::uint8_t {
   fast,
 };
 
+/// What instructions cost where the sources leave a choice (docs/cycles.md).
+enum class CyclePricing : std::uint8_t {
+  likely,
+  conservative,  ///< by which deadlines are judged
+};
+
 struct VirtualBoardOptions {
   std::filesystem::path program;  ///< empty: `virtual-board` beside this executable
   std::filesystem::path elf;      ///< empty: ../board/inkwell.elf from this executable's directory
   std::filesystem::path arm;      ///< empty: the Omni
   SimulationMode mode = SimulationMode::fast;
+  CyclePricing pricing = CyclePricing::likely;
   std::uint64_t seed = 1;       ///< of its noise and of its serial number
   double host_clock_ppm = 0.0;  ///< how much faster than board time the clock of its USB host is
   bool real_time = true;        ///< paces board time to the wall clock
