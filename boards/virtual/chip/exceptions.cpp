@@ -9,7 +9,7 @@ namespace inkwell::virtual_board {
 namespace {
 
 constexpr std::uint32_t basic_frame_bytes = 0x20, extended_frame_bytes = 0x68;
-constexpr std::uint32_t control_spsel = 2, control_fpca = 4;
+constexpr std::uint32_t control_unprivileged = 1, control_spsel = 2, control_fpca = 4;
 constexpr std::uint32_t xpsr_if_then = 0x0600FC00;
 constexpr std::uint32_t xpsr_thumb = 1u << 24, xpsr_align = 1u << 9, xpsr_exception = 0x1FF;
 // EXC_RETURN (ARMv7-M, table B1-8): bit 4 clear is an extended frame, bit 3 thread mode, bit 2 process stack.
@@ -58,8 +58,8 @@ bool Processor::start_handler(unsigned exception, std::uint32_t exception_return
   return (vector & 1) != 0;
 }
 
-bool Processor::enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
-                                std::uint32_t vector_table) {
+Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
+                                            std::uint32_t vector_table, bool stacks) {
   std::uint32_t values[9];
   void* places[9];
   for (int i = 0; i < 9; ++i) places[i] = &values[i];
@@ -68,9 +68,16 @@ bool Processor::enter_exception(unsigned exception, bool align_stack, bool float
   const bool extended = float_context && (control & control_fpca) != 0;
   const bool aligned = (align_stack || extended) && (stack_pointer & 4) != 0;
   const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
-  const std::uint32_t frame = (stack_pointer - bytes) & ~(aligned ? 4u : 0u);
+  const std::uint32_t frame = stacks ? (stack_pointer - bytes) & ~(aligned ? 4u : 0u) : stack_pointer;
   std::uint8_t* place = machine_.memory.ram_at(frame, bytes);
-  if (place == nullptr) return false;
+  if (stacks) {
+    const bool privileged = current_exception_ != exception_none || (control & control_unprivileged) == 0;
+    const auto refusal = place == nullptr ? Outcome::data_fault : refusal_of(frame, Access::store, privileged);
+    if (refusal) {
+      write(UC_ARM_REG_SP, frame);
+      return refusal == Outcome::protected_data ? Entry::protected_stack : Entry::no_stack;
+    }
+  }
 
   std::uint32_t words[extended_frame_bytes / 4] = {
       values[0],
@@ -88,7 +95,7 @@ bool Processor::enter_exception(unsigned exception, bool align_stack, bool float
     uc_reg_read_batch(engine_, float_registers, float_places, 8);
     words[24] = read(UC_ARM_REG_FPSCR);
   }
-  std::memcpy(place, words, bytes);
+  if (stacks) std::memcpy(place, words, bytes);
 
   std::uint32_t exception_return = exc_return_handler & ~(extended ? exc_return_basic : 0u);
   if (current_exception_ == exception_none) {
@@ -106,7 +113,7 @@ bool Processor::enter_exception(unsigned exception, bool align_stack, bool float
     timing_.stack_lazily(lazily);
     if (!lazily) wait(costs[Cost::lazy_stacking] - 1);
   }
-  return started;
+  return started ? Entry::started : Entry::no_handler;
 }
 
 void Processor::resume_if_then_block(std::uint32_t xpsr) {

@@ -163,27 +163,42 @@ void Execution::sleep_until(Ticks when) {
   }
 }
 
-void Execution::enter(unsigned exception) {
+void Execution::enter(unsigned exception, bool stacks) {
   const std::uint32_t place = system_control_.vector_table() + 4 * exception;
   const std::uint32_t vector = machine_.memory.word(place);
   const bool has_handler = (vector & 1) != 0;
-  if (has_handler &&
-      processor_.enter_exception(exception, system_control_.aligns_stack(), system_control_.preserves_float_context(),
-                                 system_control_.stacks_lazily(), system_control_.vector_table()))
-    return;
-  const std::uint32_t stack = processor_.read(UC_ARM_REG_SP);
-  if (has_handler || machine_.memory.ram_at(stack - 4, 4) == nullptr) {
-    const std::string what = "the stack is not in RAM when " + name_of(exception) +
-                             " comes:" + at(" stack pointer", stack, processor_.program_counter());
-    note_fault(what);
-    system_control_.record_fault(scb.cfsr.stkerr.mask(), scb.hfsr.forced.mask());
-    return lock_up(what);
+  if (has_handler) {
+    const auto entry =
+        processor_.enter_exception(exception, system_control_.aligns_stack(), system_control_.preserves_float_context(),
+                                   system_control_.stacks_lazily(), system_control_.vector_table(), stacks);
+    if (entry == Processor::Entry::started) return;
+    return enter_for_lost_stack(exception, entry == Processor::Entry::protected_stack);
   }
   const std::string what = "the vector table has no handler for " + name_of(exception) + ": it holds " +
                            hexadecimal(vector) + at(" at", place, processor_.program_counter());
   note_fault(what);
   system_control_.record_fault(0, scb.hfsr.vecttbl.mask());
   exception == exception_hard_fault ? lock_up(what) : enter(exception_hard_fault);
+}
+
+// What could not be stacked is lost; the fault of it starts on what the stack pointer has become (ARMv7-M, B1.5.9). An
+// exception that is less urgent waits behind it.
+void Execution::enter_for_lost_stack(unsigned exception, bool is_protected) {
+  const std::string what =
+      std::string(is_protected ? "the memory protection unit refuses the stack" : "the stack is not in RAM") +
+      " when " + name_of(exception) +
+      " comes:" + at(" stack pointer", processor_.read(UC_ARM_REG_SP), processor_.program_counter());
+  note_fault(what);
+  auto& nvic = machine_.nvic;
+  const unsigned fault = is_protected ? exception_memory_fault : exception_bus_fault;
+  system_control_.record_fault(is_protected ? scb.cfsr.mstkerr.mask() : scb.cfsr.stkerr.mask(), 0);
+  if (exception == exception_hard_fault || exception == exception_nmi) return lock_up(what);
+  if (exception != fault) nvic.pend(exception);
+  if (exception != fault && nvic.enabled(fault) && nvic.group_priority(fault) <= nvic.group_priority(exception))
+    return enter(fault, false);
+  system_control_.record_fault(0, scb.hfsr.forced.mask());
+  machine_.log.say_once("HardFault: " + what);
+  enter(exception_hard_fault, false);
 }
 
 // A fault inside the handler of another one only hides what went wrong.

@@ -48,7 +48,8 @@ class Execution {
   void handle_breakpoint();
   void handle_return();
   void raise_fault(unsigned exception, std::uint32_t configurable_bits, const std::string& what);
-  void enter(unsigned exception);
+  void enter(unsigned exception, bool stacks = true);
+  void enter_for_lost_stack(unsigned exception, bool is_protected);
   void note_fault(const std::string& what);
   void lock_up(const std::string& what);
 

@@ -43,7 +43,10 @@ void FlashController::reset() {
 void FlashController::check_wait_states() {
   // One wait state for each 30 MHz at 2.7 V to 3.6 V (RM0090, table "Number of wait states").
   const std::uint32_t hclk_Hz = machine_.clocks.frequencies.hclk_Hz;
-  if (hclk_Hz > 30'000'000 * (map.acr.latency.of(access_) + 1))
+  const bool was_misread = machine_.flash_is_misread;
+  machine_.flash_is_misread = hclk_Hz > 30'000'000 * (map.acr.latency.of(access_) + 1);
+  if (machine_.flash_is_misread != was_misread) machine_.processor->end_slice();
+  if (machine_.flash_is_misread)
     machine_.violations.violate(Rule::flash_wait_states,
                                 std::to_string(map.acr.latency.of(access_)) + " at " + std::to_string(hclk_Hz) + " Hz");
 }

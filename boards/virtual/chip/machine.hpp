@@ -69,6 +69,7 @@ struct Machine {
   Rcc* rcc = nullptr;
   Timers* timers = nullptr;
 
+  bool flash_is_misread = false;     ///< too few wait states for HCLK
   bool traps_zero_division = false;  ///< CCR.DIV_0_TRP
   bool sleep_counts_cycles = false;  ///< DBGMCU_CR.DBG_SLEEP keeps HCLK on in sleep
   /// A reset that is due at the next chance, by cause.

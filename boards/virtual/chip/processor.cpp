@@ -164,6 +164,8 @@ Outcome Processor::run(std::uint64_t cycles) {
   instruction_end_ = cycles_;
   outcome_ = Outcome::slice_over;
   if ((program_counter_ & 1) == 0 && program_counter_ != 0) program_counter_ |= 1;
+  // Silicon may go on for a while; it is not to be relied on.
+  if (machine_.flash_is_misread && program_counter_ - flash_base < flash_bytes) return Outcome::undefined_instruction;
   uc_err error;
   {
     const Use use(*this);

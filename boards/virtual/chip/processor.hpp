@@ -131,9 +131,15 @@ class Processor final : public ClockUser, private EngineCalls {
   void set_event_register() { event_register_ = true; }
 
   // exceptions.cpp
-  /// Stacks the context and starts the handler. False: the stack or the vector can not be used.
-  bool enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
-                       std::uint32_t vector_table);
+  enum class Entry : std::uint8_t {
+    started,
+    no_stack,         ///< the stack is not in RAM; the stack pointer has moved all the same
+    protected_stack,  ///< the memory protection unit refuses it; likewise
+    no_handler,
+  };
+  /// Stacks the context, unless `stacks` is false, and starts the handler.
+  Entry enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
+                        std::uint32_t vector_table, bool stacks);
   /// Ends the handler that runs. False: what it returns to is not valid.
   bool return_from_exception(std::uint32_t vector_table);
   bool returned_to_thread() const { return current_exception_ == exception_none; }

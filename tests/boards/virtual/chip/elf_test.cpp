@@ -93,7 +93,8 @@ TEST_SUITE("virtual chip: ELF") {
     CHECK(contains(test.log[0], "0x20030000"));
     CHECK(contains(test.log[0], "another chip"));
     CHECK(test.chip.run_until(test.chip.now() + ticks(0.001)) == Stop::locked_up);
-    CHECK(contains(test.chip.lockup_reason(), "the stack is not in RAM"));
+    REQUIRE(test.chip.first_fault());
+    CHECK(contains(test.chip.first_fault()->what, "0x2002F"));
     CHECK(test.has_broken(Rule::stack_outside_memory));
   }
 

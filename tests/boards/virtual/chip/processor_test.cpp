@@ -134,6 +134,21 @@ TEST_SUITE("virtual chip: processor") {
     }
   }
 
+  TEST_CASE("a stack that cannot hold a frame is a fault, whose handler runs without one") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("stacks", mode);
+      test.run_for(0.001);
+      REQUIRE(test.result(0) == finished);
+      CHECK(test.result(1) == 1u << 12);          // STKERR, on BusFault
+      CHECK(test.result(2) == 0x2002'0000 + 96);  // the frame's place
+      CHECK(test.result(3) == 0);
+      CHECK(test.result(4) == 1u << 4);  // MSTKERR, on HardFault: MemManage is off
+      CHECK(test.result(5) == 1u << 30);
+      CHECK(test.result(6) == 7);  // SVC itself came behind the fault of its stack
+    }
+  }
+
   TEST_CASE("a fault whose handler is missing locks up, and the missing handler is named") {
     ChipUnderTest test("no_handler");
     REQUIRE(test.chip.run_until(ticks(0.001)) == Stop::locked_up);

@@ -125,6 +125,13 @@ TEST_SUITE("virtual chip: rules of silicon") {
       CHECK((faulty.test.result(5) & 0xFF00) != 0);
       CHECK(faulty.test.result(0) != finished);
     }
+    SUBCASE("too few wait states: what is read from the flash is no instruction") {
+      for (const Mode mode : {Mode::exact, Mode::fast}) {
+        Planted faulty(16, mode);
+        CHECK(faulty.test.result(0) != finished);
+        CHECK(faulty.test.chip.run_until(faulty.test.chip.now()) == Stop::locked_up);
+      }
+    }
     SUBCASE("a converter without its clock reads 0, the others work") {
       const Planted faulty(11);
       CHECK(faulty.converted(0) == one_volt);

@@ -20,7 +20,7 @@ namespace inkwell::virtual_board {
   RULE(stack_outside_memory, "MSP", "RM0090, Memory map", "The stack does not lie in SRAM or CCM",                     \
        "the first push is a BusFault", "let it begin at or below 0x20020000 (SRAM) or 0x10010000 (CCM)")               \
   RULE(flash_wait_states, "FLASH_ACR", "RM0090, Relation between CPU clock frequency and Flash memory read time",      \
-       "LATENCY is too small for HCLK", "the flash is misread",                                                        \
+       "LATENCY is too small for HCLK", "the flash is misread; here the next instruction from it is an undefined one", \
        "set a wait state for each 30 MHz begun, at 3.3 V, before the clock is switched")                               \
   RULE(voltage_scale, "PWR_CR", "RM0090, PWR power control register", "HCLK is above 144 MHz at voltage scale 2",      \
        "the core fails", "set VOS before the clock is switched")                                                       \
