@@ -26,6 +26,10 @@ using namespace std::chrono_literals;
 using nlohmann::ordered_json;
 using recording::RecorderStatus;
 
+constexpr auto read_timeout = 20ms;
+/// Counted by reads that waited in vain, not by the clock: time for which the computer stopped this program is none.
+constexpr auto silence_limit = 2s;
+
 struct RecordOptions {
   std::string file;
   std::string signals;
@@ -57,7 +61,7 @@ class RecordingThread {
   void read() {
     try {
       while (!stopping_ && !is_done_)
-        if (auto samples = device_.read_scope(20ms)) take(*samples);
+        if (auto samples = device_.read_scope(read_timeout)) take(*samples);
     } catch (const device::Error&) {
       // The thread that reads the poses meets the same error and tells it.
     }
@@ -108,12 +112,13 @@ void run(device::Device& device, recording::Recorder& recorder, const RecordOpti
     progress(progress_text(status),
              std::min(1.0, (status.duration_s + 1.0 / protocol::servo_rate_Hz) / options.seconds));
   };
-  auto last_pose = std::chrono::steady_clock::now(), next_shown = last_pose;
+  auto next_shown = std::chrono::steady_clock::now();
+  int silent_reads = 0;
   while (!scope.is_done() && !interrupt.was_asked_to_end() && recorder.status().running) {
     const auto now = std::chrono::steady_clock::now();
     device.keep_alive();
-    if (device.read_pose(20ms)) last_pose = now;
-    if (now - last_pose > 2s)
+    silent_reads = device.read_pose(read_timeout) ? 0 : silent_reads + 1;
+    if (silent_reads * read_timeout > silence_limit)
       throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
     while (keys) {
       const auto text = keys->next();
