@@ -118,9 +118,7 @@ std::uint32_t UsbipConnection::submit_out(std::uint8_t endpoint, std::span<const
 void UsbipConnection::unlink(std::uint32_t sequence) {
   const std::lock_guard lock(mutex_);
   if (closed_ || pending_.find(sequence) == pending_.end()) return;
-  // The server may have sent the answer already; its data must still be read off the stream, so the transfer stays
-  // pending until the server has answered the unlink.
-  pending_.at(sequence).on_completion = [](Completion) {};
+  // The server may have sent the answer already, so the transfer stays pending until the unlink is answered.
   usbip::Unlink message{.unlinked_sequence = sequence};
   message.header.sequence = ++sequence_;
   unlinks_.emplace(sequence_, sequence);
@@ -184,8 +182,14 @@ void UsbipConnection::receive_answer() {
   const auto answer = receive<usbip::ReturnSubmit>(socket_);
   const std::uint32_t sequence = answer.header.sequence;
   if (answer.header.command == usbip::Command::return_unlink) {
-    const std::lock_guard lock(mutex_);
-    if (const auto unlinked = unlinks_.extract(sequence)) pending_.erase(unlinked.mapped());
+    OnCompletion on_completion;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto unlinked = unlinks_.extract(sequence);
+      const auto taken_back = unlinked ? pending_.extract(unlinked.mapped()) : decltype(pending_)::node_type{};
+      if (taken_back) on_completion = std::move(taken_back.mapped().on_completion);
+    }
+    if (on_completion) on_completion({-ECONNRESET, 0, {}});
     return;
   }
   if (answer.header.command != usbip::Command::return_submit)

@@ -54,7 +54,7 @@ class UsbipConnection {
   std::vector<std::byte> control_in(const Setup& setup);
   void control_out(const Setup& setup, std::span<const std::byte> data);
 
-  /// Takes the transfer back; its completion is not called any more.
+  /// Takes the transfer back. Its completion then comes with -ECONNRESET, or with its answer if that was sooner.
   void unlink(std::uint32_t sequence);
 
   /// Ends the connection and the receiving thread; open transfers are forgotten.

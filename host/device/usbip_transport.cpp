@@ -1,6 +1,7 @@
 #include "transports.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <condition_variable>
 #include <utility>
 
@@ -22,7 +23,7 @@ constexpr char unplugged[] = "The device was unplugged. Connect it again.";
 constexpr int report_transfers = 32;
 constexpr int bulk_transfers = 64;          // 128 KiB are more than 100 ms of a full-speed bus
 constexpr std::size_t reports_kept = 1024;  // a second; then the oldest go, and the sequence shows it
-constexpr std::size_t bulk_kept = 2048;     // 4 MiB; then the device has to wait, and it counts what it drops
+constexpr std::size_t bulk_kept = 2048;     // 4 MiB; then no more is asked for, and the device counts what it drops
 constexpr std::size_t writes_under_way = 16;
 
 class UsbipTransport : public Transport {
@@ -76,6 +77,7 @@ class UsbipTransport : public Transport {
 
   void claim_scope() override {  // the import has made all of the device ours
     if (std::exchange(scope_claimed_, true)) return;
+    const std::lock_guard lock(bulk_mutex_);
     for (int i = 0; i < bulk_transfers; ++i) ask_for_bulk();
   }
 
@@ -114,16 +116,18 @@ class UsbipTransport : public Transport {
   }
 
   void ask_for_bulk() {
-    connection_.submit_in(layout_.scope_in_endpoint, protocol::scope_frame_maximum,
-                          [this](UsbipConnection::Completion done) {
-                            if (done.status != 0) return lose(unplugged);
-                            if (!done.data.empty()) bulk_.push(std::move(done.data));
-                            const std::lock_guard lock(bulk_mutex_);
-                            if (bulk_.size() < bulk_kept)
-                              ask_again([this] { ask_for_bulk(); });
-                            else
-                              ++bulk_owed_;
-                          });
+    newest_bulk_ = connection_.submit_in(layout_.scope_in_endpoint, protocol::scope_frame_maximum,
+                                         [this](UsbipConnection::Completion done) { take_bulk(std::move(done)); });
+  }
+
+  void take_bulk(UsbipConnection::Completion done) {
+    if (done.status != 0 && done.status != -ECONNRESET) return lose(unplugged);
+    if (!done.data.empty()) bulk_.push(std::move(done.data));
+    const std::lock_guard lock(bulk_mutex_);
+    if (bulk_.size() < bulk_kept) return ask_again([this] { ask_for_bulk(); });
+    // A virtual board takes the silence of a streaming host for that of a busy computer, and waits, but not for one
+    // that takes a request back.
+    if (bulk_owed_++ == 0) ask_again([this] { connection_.unlink(newest_bulk_); });
   }
 
   /// Submitting from the receiving thread fails when the connection just broke; `lose` is called for that anyway.
@@ -160,8 +164,9 @@ class UsbipTransport : public Transport {
   UsbLayout layout_;
   TransferQueue reports_, bulk_;
   bool scope_claimed_ = false;
-  std::mutex bulk_mutex_;
-  int bulk_owed_ = 0;  ///< transfers not under way because the reader is behind
+  std::mutex bulk_mutex_;          ///< guards the next two
+  int bulk_owed_ = 0;              ///< transfers not under way because the reader is behind
+  std::uint32_t newest_bulk_ = 0;  ///< sequence of the transfer that was asked for last
   std::mutex writes_mutex_;
   std::condition_variable writes_changed_;
   std::size_t writes_ = 0;

@@ -32,7 +32,7 @@ std::array<std::uint32_t, 3> unique_id_of(std::uint64_t seed) {
 
 }  // namespace
 
-Board::Board(const Options& options, std::function<void()> on_usb_request)
+Board::Board(const Options& options, std::function<void()> on_usb_request, std::function<bool()> is_ending)
     : elf_(options.elf),
       plant_(arms::read(options.arm), {.seed = options.seed}),
       chip_(plant_, {.mode = options.mode,
@@ -46,7 +46,8 @@ Board::Board(const Options& options, std::function<void()> on_usb_request)
   chip_.load_elf(elf_);
   symbols_ = Symbols(elf_);
   try {
-    usb_.emplace(chip_.connections(), options.usbip_port, options.host_clock_ppm, std::move(on_usb_request));
+    usb_.emplace(chip_.connections(), options.usbip_port, options.host_clock_ppm, std::move(on_usb_request),
+                 std::move(is_ending));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{} (--usbip gives it)", error.what()));
   }

@@ -18,8 +18,8 @@ class Board {
  public:
   /// Reads the arm, programs the flash and switches the power on.
   /// @throws std::runtime_error with a sentence if the arm, the ELF or the USB/IP port is refused.
-  /// `on_usb_request`: see VirtualUsb.
-  Board(const Options& options, std::function<void()> on_usb_request);
+  /// `on_usb_request` and `is_ending`: see VirtualUsb.
+  Board(const Options& options, std::function<void()> on_usb_request, std::function<bool()> is_ending);
 
   /// Runs until board time `when`, or until the firmware ends or locks up.
   Stop run_until(Ticks when);

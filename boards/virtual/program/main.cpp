@@ -37,7 +37,8 @@ int main(int argc, char** argv) {
 
   try {
     ControlServer server(options.control_port);
-    Board board(options, [&server] { server.wake(); });
+    Board board(
+        options, [&server] { server.wake(); }, [] { return end_requested.load(); });
     std::optional<GdbServer> gdb;
     if (options.gdb_port) gdb.emplace(*options.gdb_port, [&server] { server.wake(); });
     fmt::print("ready usbip={} control={}", board.usb().port(), server.port());

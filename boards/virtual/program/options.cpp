@@ -84,7 +84,7 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
   app.add_flag(
       "--strict", options.strict,
-      "end, with exit code 3, when the firmware first does what silicon would not bear; without it such things\n"
+      "end, with exit code 4, when the firmware first does what silicon would not bear; without it such things\n"
       "are logged and listed at the end");
   app.footer(
       "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options, 3 the processor was\n"
@@ -92,8 +92,8 @@ CommandLine read_command_line(int argc, char** argv) {
       "own\n"
       "exit code on.\n"
       "\n"
-      "Board time waits for the program that uses the device on USB: for up to 3 s of the clock on the wall, when it\n"
-      "owes the next request at an endpoint where it asked before. So a busy computer loses no data.\n"
+      "Board time waits for the program that uses the device on USB when it owes the next request of a stream, until\n"
+      "it asks for more or is gone. So a busy computer, or a debugger that stops that program, loses no data.\n"
       "\n"
       "Control socket: one JSON object a line each way, such as {\"command\":\"run\",\"for_s\":0.5}. The commands "
       "with\n"

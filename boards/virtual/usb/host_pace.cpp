@@ -9,6 +9,7 @@ void HostPace::submitted(const Urb& urb) {
   if (urb.endpoint == 0 || !urb.in) return;
   Endpoint& endpoint = in_endpoints_[urb.endpoint];
   ++endpoint.requests;
+  endpoint.newest_sequence = urb.sequence;
   endpoint.asked = std::min(endpoint.asked + 1, 2u);
   endpoint.most = std::max(endpoint.most, endpoint.requests);
 }
@@ -16,6 +17,11 @@ void HostPace::submitted(const Urb& urb) {
 void HostPace::completed(const Urb& urb, std::int32_t status) { end(urb, status != transfer_status::success); }
 
 void HostPace::unlinked(const Urb& urb) { end(urb, true); }
+
+void HostPace::unlinked_too_late(std::uint32_t sequence) {
+  for (Endpoint& one : in_endpoints_)
+    if (one.newest_sequence == sequence) one.asked = one.most = 0;
+}
 
 void HostPace::end(const Urb& urb, bool is_dropped) {
   if (urb.endpoint == 0 && control_transfers_ > 0) --control_transfers_;
@@ -34,6 +40,12 @@ bool HostPace::is_starved() const {
 bool HostPace::is_owed() const {
   return std::ranges::any_of(in_endpoints_,
                              [](const Endpoint& one) { return one.is_kept() && one.requests < one.most; });
+}
+
+bool HostPace::is_waited_for_without_limit() const {
+  return !is_asked() && std::ranges::none_of(in_endpoints_, [](const Endpoint& one) {
+    return one.is_kept() && one.requests < one.most && one.most == 1;
+  });
 }
 
 void HostPace::lose_patience() {

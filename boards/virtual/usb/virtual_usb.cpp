@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,10 +12,18 @@
 
 namespace inkwell::virtual_board {
 
+namespace {
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds attention{50};  // how soon a board that waits for its host notices its end
+}  // namespace
+
 struct VirtualUsb::Implementation final : RootPort::Client {
   Implementation(const ChipConnections& chip, std::uint16_t tcp_port, double host_clock_ppm,
-                 std::function<void()> on_request)
-      : core(chip), root_port(chip.scheduler, core, *this, host_clock_ppm), server(tcp_port, std::move(on_request)) {}
+                 std::function<void()> on_request, std::function<bool()> ends)
+      : core(chip),
+        root_port(chip.scheduler, core, *this, host_clock_ppm),
+        is_ending(std::move(ends)),
+        server(tcp_port, std::move(on_request)) {}
 
   void between_transactions() override { wait_while(&HostPace::is_starved); }
 
@@ -25,13 +34,23 @@ struct VirtualUsb::Implementation final : RootPort::Client {
   }
 
   void wait_while(bool (HostPace::*condition)() const) {
-    const auto give_up_at = std::chrono::steady_clock::now() + HostPace::patience;
-    while ((pace.*condition)()) {
-      if (!server.wait_for_order(give_up_at)) {
+    if (!(pace.*condition)()) return;
+    bool has_told = false;
+    std::optional<bool> was_limited;
+    Clock::time_point late_at;
+    while ((pace.*condition)() && !is_ending()) {
+      const bool is_limited = !pace.is_waited_for_without_limit();
+      if (was_limited != is_limited) late_at = Clock::now() + HostPace::patience;
+      was_limited = is_limited;
+      if (server.wait_for_order(Clock::now() + attention)) {
+        serve();
+      } else if (Clock::now() >= late_at && is_limited) {
         std::cerr << "USB/IP: the client does not ask for more; board time no longer waits for it.\n";
         pace.lose_patience();
+      } else if (Clock::now() >= late_at && !has_told) {
+        std::cerr << "USB/IP: the client has stopped; board time waits until it goes on or is gone.\n";
+        has_told = true;
       }
-      serve();
     }
   }
 
@@ -53,7 +72,10 @@ struct VirtualUsb::Implementation final : RootPort::Client {
         break;
       case Kind::unlink: {
         const auto found = root_port.unlink(order.unlink_sequence);
-        if (found) pace.unlinked(*found);
+        if (found)
+          pace.unlinked(*found);
+        else
+          pace.unlinked_too_late(order.unlink_sequence);
         server.answer({UsbIpServer::Result::Kind::unlinked, session, std::move(order.urb),
                        found ? transfer_status::unlinked : transfer_status::success, order.unlink_sequence});
         break;
@@ -74,14 +96,16 @@ struct VirtualUsb::Implementation final : RootPort::Client {
   OtgFsDevice core;
   RootPort root_port;
   HostPace pace;
+  std::function<bool()> is_ending;
   std::uint32_t session = 0;
   std::vector<UsbIpServer::Order> orders;
   UsbIpServer server;
 };
 
 VirtualUsb::VirtualUsb(const ChipConnections& chip, std::uint16_t port, double host_clock_ppm,
-                       std::function<void()> on_request)
-    : implementation_(std::make_unique<Implementation>(chip, port, host_clock_ppm, std::move(on_request))) {
+                       std::function<void()> on_request, std::function<bool()> is_ending)
+    : implementation_(
+          std::make_unique<Implementation>(chip, port, host_clock_ppm, std::move(on_request), std::move(is_ending))) {
   connect();
 }
 VirtualUsb::~VirtualUsb() = default;

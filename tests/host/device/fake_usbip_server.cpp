@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -157,8 +158,13 @@ void FakeUsbipServer::serve(int client) {
 
 void FakeUsbipServer::serve_transfers(int client) {
   while (const auto submit = receive<usbip::Submit>(client)) {
-    if (submit->header.command != usbip::Command::submit) return;
     const std::uint32_t sequence = submit->header.sequence;
+    if (submit->header.command == usbip::Command::unlink) {
+      const std::lock_guard lock(mutex_);
+      take_back(client, sequence, std::bit_cast<usbip::Unlink>(*submit).unlinked_sequence);
+      continue;
+    }
+    if (submit->header.command != usbip::Command::submit) return;
     const auto endpoint = static_cast<std::uint8_t>(submit->header.endpoint);
     const bool is_in = submit->header.direction == usbip::Direction::in;
     const std::uint32_t length = submit->length;
@@ -188,6 +194,16 @@ void FakeUsbipServer::serve_transfers(int client) {
       answer(client, sequence, 0, {}, static_cast<std::uint32_t>(data.size()));
     }
   }
+}
+
+void FakeUsbipServer::take_back(int client, std::uint32_t sequence, std::uint32_t unlinked_sequence) {
+  usbip::ReturnUnlink reply{.status = 0};
+  for (auto& [endpoint, waiting] : waiting_)
+    if (std::erase(waiting, unlinked_sequence) > 0) reply.status = -ECONNRESET;
+  reply.header.sequence = sequence;
+  ++taken_back_;
+  const auto bytes = usbip::bytes_of(reply);
+  ::send(client, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
 void FakeUsbipServer::match(std::uint8_t endpoint) {
@@ -282,6 +298,11 @@ std::size_t FakeUsbipServer::waiting_transfers(std::uint8_t endpoint) {
   return waiting_[endpoint].size();
 }
 
+std::size_t FakeUsbipServer::transfers_taken_back() {
+  const std::lock_guard lock(mutex_);
+  return taken_back_;
+}
+
 std::size_t FakeUsbipServer::transactions() {
   const std::lock_guard lock(mutex_);
   return transaction_.transactions;
@@ -293,7 +314,7 @@ std::size_t FakeUsbipServer::imports() {
 }
 
 bool eventually(const std::function<bool()>& condition) {
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 60'000; ++i) {
     if (condition()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

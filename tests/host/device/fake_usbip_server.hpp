@@ -58,6 +58,8 @@ class FakeUsbipServer {
 
   std::vector<protocol::CommandReport> commands();
   std::size_t waiting_transfers(std::uint8_t endpoint);
+  /// How often the client took a transfer back.
+  std::size_t transfers_taken_back();
   std::size_t transactions();
   std::size_t imports();
 
@@ -65,6 +67,7 @@ class FakeUsbipServer {
   void accept_clients();
   void serve(int client);
   void serve_transfers(int client);
+  void take_back(int client, std::uint32_t sequence, std::uint32_t unlinked_sequence);
   void match(std::uint8_t endpoint);
   void answer(int client, std::uint32_t sequence, std::int32_t status, const Bytes& data, std::uint32_t length);
   std::optional<Bytes> answer_control(const std::uint8_t (&setup)[8], const Bytes& data);
@@ -79,10 +82,11 @@ class FakeUsbipServer {
   std::map<std::uint8_t, std::deque<Bytes>> ready_;
   std::vector<protocol::CommandReport> commands_;
   protocol::TransactionReport transaction_{};
+  std::size_t taken_back_ = 0;
   std::size_t imports_ = 0;
 };
 
-/// Waits, at most five seconds, until the condition holds.
+/// Waits, at most a minute, until the condition holds.
 bool eventually(const std::function<bool()>& condition);
 
 }  // namespace inkwell::tests

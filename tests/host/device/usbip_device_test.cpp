@@ -225,6 +225,25 @@ TEST_CASE("scope frames arrive decoded; empty transfers between them are nothing
   CHECK_FALSE(arm->read_scope(1ms));
 }
 
+TEST_CASE("a reader who stops reading the scope says so by taking a transfer back, and is served when he goes on") {
+  FakeUsbipServer server;
+  const auto transport = device::open_transport(server.endpoint());
+  transport->claim_scope();
+  constexpr std::size_t kept = 2048, under_way = 64;
+  REQUIRE(eventually([&] { return server.waiting_transfers(2) == under_way; }));
+  for (std::size_t i = 0; i + 1 < kept; ++i) server.send(2, Bytes(4));
+  REQUIRE(eventually([&] { return server.waiting_transfers(2) == under_way; }));
+  CHECK(server.transfers_taken_back() == 0);
+  server.send(2, Bytes(4));
+  REQUIRE(eventually([&] { return server.waiting_transfers(2) == under_way - 2; }));
+  CHECK(server.transfers_taken_back() == 1);
+  for (std::size_t i = 0; i < under_way - 2; ++i) server.send(2, Bytes(4));  // those still count
+  Bytes transfer(64);
+  for (std::size_t i = 0; i < kept + under_way - 2; ++i) REQUIRE(transport->read_bulk(transfer, 60s) == 4);
+  CHECK(eventually([&] { return server.waiting_transfers(2) == under_way; }));
+  CHECK(server.transfers_taken_back() == 1);
+}
+
 TEST_CASE("a connection that breaks is told as Disconnected, in every call") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());

@@ -10,8 +10,9 @@ using virtual_board::HostPace;
 using virtual_board::Urb;
 namespace transfer_status = virtual_board::transfer_status;
 
-Urb in(std::uint8_t endpoint) {
+Urb in(std::uint8_t endpoint, std::uint32_t sequence = 1) {
   Urb urb;
+  urb.sequence = sequence;
   urb.endpoint = endpoint;
   urb.in = true;
   return urb;
@@ -76,6 +77,12 @@ TEST_CASE("a host that takes a request back, gets an error, is too late or is an
   submit(pace, 2, 2);
   answer(pace, 1, 1);
   SUBCASE("takes back") { pace.unlinked(in(1)); }
+  SUBCASE("takes the last one back, too late") {
+    pace.submitted(in(1, 2));
+    answer(pace, 1, 2);
+    CHECK(pace.is_starved());
+    pace.unlinked_too_late(2);
+  }
   SUBCASE("error") { pace.completed(in(1), transfer_status::stalled); }
   SUBCASE("too late") {
     answer(pace, 1, 1);
@@ -96,6 +103,25 @@ TEST_CASE("a host that takes a request back, gets an error, is too late or is an
   submit(pace, 1, 1);  // the second time, anew
   answer(pace, 1, 1);
   CHECK(pace.is_starved());
+}
+
+TEST_CASE("a host that streams is waited for without a limit, but not while it waits itself or asks one by one") {
+  HostPace pace;
+  submit(pace, 1, 2);
+  answer(pace, 1, 2);
+  REQUIRE(pace.is_starved());
+  CHECK(pace.is_waited_for_without_limit());
+  pace.submitted(in(0));
+  CHECK_FALSE(pace.is_waited_for_without_limit());
+  pace.completed(in(0), transfer_status::success);
+  CHECK(pace.is_waited_for_without_limit());
+  for (int i = 0; i < 2; ++i) {
+    submit(pace, 2, 1);
+    answer(pace, 2, 1);
+  }
+  CHECK_FALSE(pace.is_waited_for_without_limit());
+  submit(pace, 2, 1);  // it owes nothing there
+  CHECK(pace.is_waited_for_without_limit());
 }
 
 TEST_CASE("a transfer without an answer is one that the host waits for, until it takes it back") {

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -12,7 +13,10 @@
 
 namespace inkwell::virtual_usb_test {
 
-LiveBoard::LiveBoard() : usb({scheduler, interrupts, log, log, state}, 0, 0.0, [] {}), firmware(usb.core(), scheduler) {
+LiveBoard::LiveBoard()
+    : usb(
+          {scheduler, interrupts, log, log, state}, 0, 0.0, [] {}, [this] { return is_ending.load(); }),
+      firmware(usb.core(), scheduler) {
   firmware.start();
   thread_ = std::thread([this] { run(); });
 }
@@ -69,8 +73,10 @@ UsbIpClient::UsbIpClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_ST
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const timeval limit{5, 0};
+  const timeval limit{60, 0};
   ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  const int yes = 1;
+  ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // what is sent is there for settle() at once
   if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     throw std::runtime_error("the server does not listen");
 }

@@ -31,6 +31,7 @@ class LiveBoard {
   /// False if the device was not enumerated within a generous time.
   bool wait_until_enumerated();
 
+  std::atomic<bool> is_ending = false;  ///< what the board is told
   FakeScheduler scheduler;
   FakeInterrupts interrupts;
   FakeLog log;
@@ -57,7 +58,7 @@ class UsbIpClient {
   ~UsbIpClient();
 
   void send(std::span<const std::byte> bytes);
-  /// Fewer bytes than asked for if the server closed the connection or nothing came for 5 s.
+  /// Fewer bytes than asked for if the server closed the connection or nothing came for a minute.
   Bytes receive(std::size_t length);
   template <class Message>
   Message receive() {

@@ -157,6 +157,29 @@ TEST_CASE("64 bulk transfers deep, nothing lost") {
   }
 }
 
+TEST_CASE(
+    "a host that stops in the middle of a stream does not hold up the board's end, nor if it takes a request back") {
+  LiveBoard board;
+  board.firmware.stream(true);
+  REQUIRE(board.wait_until_enumerated());
+  UsbIpClient client(board.usb.port());
+  REQUIRE(client.import() == OperationStatus::success);
+  configure(client);
+  board.pause(true);
+  for (const std::uint32_t sequence : {30u, 31u}) client.submit(sequence, 2, true, 64);
+  board.call([&] { board.usb.settle(); });  // both are there before the first is answered
+  board.pause(false);
+  for (int i = 0; i < 2; ++i) REQUIRE(client.receive(client.read_reply().actual_length).size() == 64);
+  SUBCASE("it takes the last one back, too late") {
+    client.unlink(32, 31);
+    CHECK(client.receive<usbip::ReturnUnlink>().header.sequence == 32);
+  }
+  SUBCASE("the board ends") { board.is_ending = true; }
+  const auto before = board.scheduler.now();
+  for (int i = 0; i < 2; ++i) board.call([] {});  // not before the board's thread is free again
+  CHECK(board.scheduler.now() > before);
+}
+
 TEST_CASE("an unlinked transfer is answered once, by the unlink") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
@@ -324,7 +347,8 @@ TEST_CASE("a busy port is reported in a sentence") {
   FakeChipState state;
   std::string message;
   try {
-    virtual_board::VirtualUsb second({scheduler, interrupts, log, log, state}, board.usb.port(), 0.0, [] {});
+    virtual_board::VirtualUsb second(
+        {scheduler, interrupts, log, log, state}, board.usb.port(), 0.0, [] {}, [] { return false; });
   } catch (const std::runtime_error& error) {
     message = error.what();
   }

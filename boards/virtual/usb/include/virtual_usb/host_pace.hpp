@@ -8,14 +8,18 @@
 //   - When a kept endpoint has no request left, board time stands still, in the middle of the frame, until the next.
 //   - Before a command of the control socket is carried out and before a `run` is answered, the host has to have
 //     asked again for every answer: then it knows all that happened, and what it does next is the same each time.
+//   - A host that has several requests under way at a time streams. It is waited for until it asks again, takes a
+//     request back or is gone: a program that the computer or a debugger stops, for however long, loses nothing.
+//   - One that asks one by one may have read all that it wanted, and one that waits for a control transfer may do so
+//     before it asks again. These are waited for no longer than `patience` of the clock on the wall.
 //   - It is not waited for at endpoints that it never kept, at which it took a request back or got an error, or after
-//     it kept board time waiting for `patience` of the clock on the wall; there it starts anew as at an import. So a
-//     host that hangs stops the board for this long, once, and then the firmware misses it, in board time.
+//     it was waited for too long; there it starts anew as at an import.
 //   - Control and OUT transfers are never waited for: a host that says nothing is silent, also for the firmware.
 #pragma once
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 
 #include <virtual_usb/urb.hpp>
 
@@ -28,6 +32,8 @@ class HostPace {
   void submitted(const Urb& urb);
   void completed(const Urb& urb, std::int32_t status);
   void unlinked(const Urb& urb);
+  /// The host took the transfer of this sequence back, which was answered already.
+  void unlinked_too_late(std::uint32_t sequence);
   /// The host is another one, or gone.
   void start_anew();
 
@@ -35,6 +41,8 @@ class HostPace {
   bool is_starved() const;
   /// A kept endpoint has fewer requests than the host had there before.
   bool is_owed() const;
+  /// The host streams wherever it owes a request, and nothing hinders it to ask: it is waited for without a limit.
+  bool is_waited_for_without_limit() const;
   /// The host was waited for long enough: endpoints at which it owes a request are no longer kept.
   void lose_patience();
   /// A control transfer is under way: the host waits for its answer.
@@ -45,6 +53,7 @@ class HostPace {
     unsigned requests = 0;  ///< under way
     unsigned asked = 0;     ///< how often, since the host was last not waited for; counts to 2
     unsigned most = 0;      ///< requests under way at a time, since then
+    std::uint32_t newest_sequence = 0;
     bool is_kept() const { return asked >= 2; }
   };
   void end(const Urb& urb, bool is_dropped);

@@ -15,8 +15,10 @@ class VirtualUsb {
  public:
   /// Listens on 127.0.0.1:`port` (0: any free port); throws std::runtime_error with a sentence if it is
   /// taken. The cable is plugged in. What `chip` refers to must outlive this object. `on_request` is called from
-  /// another thread when there is something to `serve`. `host_clock_ppm`: see HostController.
-  VirtualUsb(const ChipConnections& chip, std::uint16_t port, double host_clock_ppm, std::function<void()> on_request);
+  /// another thread when there is something to `serve`. Board time waits for no host once `is_ending` says so.
+  /// `host_clock_ppm`: see HostController.
+  VirtualUsb(const ChipConnections& chip, std::uint16_t port, double host_clock_ppm, std::function<void()> on_request,
+             std::function<bool()> is_ending);
   ~VirtualUsb();
 
   /// The peripheral to map at OtgFsDevice::base.
