@@ -102,9 +102,11 @@ TEST_CASE("a virtual board gets its options") {
   auto options = script.options();
   options.arm = "arm.toml";
   options.mode = device::SimulationMode::exact;
+  options.pricing = device::CyclePricing::conservative;
   options.seed = 42;
   options.paused = true;
   const device::VirtualBoard board(options);
   CHECK(script.file("arguments") ==
-        "--elf " + options.elf.string() + " --mode exact --seed 42 --arm arm.toml --real-time --paused");
+        "--elf " + options.elf.string() +
+            " --mode exact --pricing conservative --seed 42 --arm arm.toml --real-time --paused");
 }
