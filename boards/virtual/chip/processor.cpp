@@ -251,8 +251,7 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   if (exact) {
     self.cycles_ = self.instruction_end_;  // the code hook decides whether to stop
   } else {
-    const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
-    if (due && !self.begins_in_if_then_block(start)) return self.stop();
+    if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) return self.stop();
   }
   if (!self.float_unit_on_ && self.has_unguarded_float(start, size)) {
     self.guard_address_ = start;
@@ -266,10 +265,8 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
     self.next_request_ = 0;
     return;
   }
-  if (self.machine_.traps_zero_division && self.has_new_divides(block) && !self.begins_in_if_then_block(start))
-    return self.stop();
+  if (self.machine_.traps_zero_division && self.has_new_divides(block)) return self.stop();
   self.last_code_address_ = start;
-  self.last_code_bytes_ = size;
   self.cycles_ += self.timing_.wait_for_flash(block, self.cycles_, self.register_reader()) + block.cycles;
   self.instructions_ += block.instructions;
   // Operands that the block itself computes are not known yet.
@@ -321,14 +318,6 @@ bool Processor::in_if_then_block(std::uint32_t address) const {
   if (in_resumed_if_then_block(address)) return true;
   return std::any_of(recent_addresses_.begin(), recent_addresses_.end(),
                      [&](std::uint32_t recent) { return if_then_block_covers(recent, address); });
-}
-
-bool Processor::begins_in_if_then_block(std::uint32_t address) const {
-  if (in_resumed_if_then_block(address)) return true;
-  const std::uint32_t end = last_code_address_ + last_code_bytes_;
-  for (std::uint32_t at = last_code_address_; at < end; at += is_wide(machine_.memory.half_word(at)) ? 4 : 2)
-    if (if_then_block_covers(at, address)) return true;
-  return false;
 }
 
 void Processor::interrupt_hook(uc_engine* engine, std::uint32_t number, void* pointer) {

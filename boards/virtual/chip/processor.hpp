@@ -169,8 +169,6 @@ class Processor final : public ClockUser, private EngineCalls {
   bool masks_open();
   /// Unicorn loses the conditions of an if-then block in which it is stopped.
   bool in_if_then_block(std::uint32_t address) const;
-  /// As that, for a block of instructions of Unicorn's, which ends at a page of memory wherever that may be.
-  bool begins_in_if_then_block(std::uint32_t address) const;
   bool in_resumed_if_then_block(std::uint32_t address) const { return address - resumed_at_ < resumed_bytes_; }
   /// A return into the middle of an if-then block, as the fault of one of its instructions makes it.
   void resume_if_then_block(std::uint32_t xpsr);
@@ -213,7 +211,7 @@ class Processor final : public ClockUser, private EngineCalls {
   std::uint64_t anchor_cycles_ = 0;
   std::uint32_t program_counter_ = 0;
   unsigned current_exception_ = 0;
-  std::uint32_t last_code_address_ = 0, last_code_bytes_ = 0;
+  std::uint32_t last_code_address_ = 0;
   std::array<std::uint32_t, 4> recent_addresses_{};  ///< of the newest instructions; an if-then block holds up to four
   std::uint32_t fault_address_ = 0;
   Outcome outcome_ = Outcome::slice_over;

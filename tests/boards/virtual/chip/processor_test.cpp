@@ -173,7 +173,7 @@ TEST_SUITE("virtual chip: processor") {
     }
   }
 
-  TEST_CASE("an if-then block that a page divides is not interrupted where it is divided") {
+  TEST_CASE("an if-then block that a page divides goes on as it began") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("conditional_across_pages", mode);
