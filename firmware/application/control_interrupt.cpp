@@ -56,13 +56,15 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
 
   write_bridges(controller.step(samples, settings, clock));
 
-  host_link.poses.record(controller.signals(), {.state = controller.state(),
-                                                .fault = controller.fault(),
-                                                .switches = controller.switches(),
-                                                .command_token = host_link.commands.last_token(),
-                                                .periods = period,
-                                                .servo_cycles = controller.servo_cycles()});
-  host_link.scope.record(controller.signals(), period);
+  protocol::SignalValues& signals = host_link.scope.next();
+  controller.write_signals(signals);
+  host_link.poses.record(signals, {.state = controller.state(),
+                                   .fault = controller.fault(),
+                                   .switches = controller.switches(),
+                                   .command_token = host_link.commands.last_token(),
+                                   .periods = period,
+                                   .servo_cycles = controller.servo_cycles()});
+  host_link.scope.record(period);
   controller.finish(clock);
 
   const bool overrun = bridges.period_is_over();

@@ -103,6 +103,7 @@ int main() {
   watchdog.start();
 
   for (;;) {
+    host_link.scope.pack();
     usb_device.poll();
     feed_watchdog();
     status_led.show(led_pattern(host_link.status.state()), completed_periods.load());

@@ -6,6 +6,8 @@
 
 namespace inkwell::application {
 
+extern link::ScopeFrames scope_frames;
+
 /// The loops overshoot by a twentieth at most (the current loop's tests), and the amplifiers' offsets come on top.
 constexpr bool can_be_supervised(protocol::Parameter current_limit) {
   return info(current_limit).maximum * 1.05f + control::CurrentOffsets::plausible_A < board::current_measurable_A;
@@ -23,10 +25,11 @@ INKWELL_CORE_COUPLED Part<drivers::Encoders> encoders;
 INKWELL_CORE_COUPLED Part<drivers::Switches> switches;
 INKWELL_CORE_COUPLED control::Controller controller{
     {board::supply_minimum_V, board::supply_maximum_V, board::duty_limit, board::current_measurable_A}};
+INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames};
 
 // In main memory: one is written by the DMA controller, the other is large.
 Part<drivers::AnalogInputs> analog_inputs;
-link::Link host_link{board::servo_cycles};
+link::ScopeFrames scope_frames;
 
 Part<drivers::StatusLed> status_led;
 Part<drivers::Console> console;

@@ -166,29 +166,29 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   if (supervisor_.state != before.state) drive_ = {};
 }
 
-void Controller::write_signals() {
+void Controller::write_signals(protocol::SignalValues& signals) const {
   const auto& counts = counts_since_inkwell_;
-  put(signals_, Signal::encoder_1_counts,
+  put(signals, Signal::encoder_1_counts,
       Triple{static_cast<float>(counts[0]), static_cast<float>(counts[1]), static_cast<float>(counts[2])});
-  put(signals_, Signal::joint_1_rad, joint_rad_);
-  put(signals_, Signal::position_x_m, pose_.position_m);
-  put(signals_, Signal::velocity_x_m_s, velocity_m_per_s_);
-  put(signals_, Signal::penetration_x_m, contact_.penetration_m);
-  put(signals_, Signal::force_x_N, force_.force_N);
-  signals_[Signal::force_N] = force_.magnitude_N;
-  put(signals_, Signal::torque_1_Nm, torque_Nm_);
-  put(signals_, Signal::current_reference_1_A, reference_A_);
-  put(signals_, Signal::current_1_A, current_A_);
-  put(signals_, Signal::duty_1, drive_.duty);
-  put(signals_, Signal::gimbal_1_rad, gimbal_rad_);
-  put(signals_, Signal::joint_speed_1_rad_s, joint_speed_rad_per_s_);
-  put(signals_, Signal::motor_heat_1, heat_.heat);
-  signals_[Signal::supply_V] = supply_.supply_V;
-  signals_[Signal::servo_cycles] = static_cast<float>(servo_cycles_);
+  put(signals, Signal::joint_1_rad, joint_rad_);
+  put(signals, Signal::position_x_m, pose_.position_m);
+  put(signals, Signal::velocity_x_m_s, velocity_m_per_s_);
+  put(signals, Signal::penetration_x_m, contact_.penetration_m);
+  put(signals, Signal::force_x_N, force_.force_N);
+  signals[Signal::force_N] = force_.magnitude_N;
+  put(signals, Signal::torque_1_Nm, torque_Nm_);
+  put(signals, Signal::current_reference_1_A, reference_A_);
+  put(signals, Signal::current_1_A, current_A_);
+  put(signals, Signal::duty_1, drive_.duty);
+  put(signals, Signal::gimbal_1_rad, gimbal_rad_);
+  put(signals, Signal::joint_speed_1_rad_s, joint_speed_rad_per_s_);
+  put(signals, Signal::motor_heat_1, heat_.heat);
+  signals[Signal::supply_V] = supply_.supply_V;
+  signals[Signal::servo_cycles] = static_cast<float>(servo_cycles_);
   static constexpr Signal cycles_of_stage[stage_count] = {Signal::stage_sample_cycles,  Signal::stage_pose_cycles,
                                                           Signal::stage_contact_cycles, Signal::stage_torque_cycles,
                                                           Signal::stage_current_cycles, Signal::stage_report_cycles};
-  for (std::size_t i = 0; i < stage_count; ++i) signals_[cycles_of_stage[i]] = static_cast<float>(cycles_[i]);
+  for (std::size_t i = 0; i < stage_count; ++i) signals[cycles_of_stage[i]] = static_cast<float>(cycles_[i]);
 }
 
 }  // namespace inkwell::control

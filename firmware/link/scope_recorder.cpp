@@ -1,7 +1,5 @@
 #include <link/scope_recorder.hpp>
 
-#include <placement/interrupt.hpp>
-
 #include <cmath>
 #include <cstring>
 
@@ -36,70 +34,93 @@ template <class Value>
 
 }  // namespace
 
-ScopeRecorder::ScopeRecorder() {
-  for (std::uint32_t i = 1; i < frame_count; ++i) free_[free_count_++] = static_cast<std::uint8_t>(i);
+ScopeRecorder::ScopeRecorder(ScopeFrames& frames) : frames_(frames.frames) {
+  for (std::uint8_t i = 1; i < ScopeFrames::count; ++i) free_[free_count_++] = i;
   open_frame(0);
 }
 
 void ScopeRecorder::select(const protocol::SignalSelection& selection, std::uint8_t token) {
-  plan_offered_.store(false);  // from here on the interrupt does not swap, so the spare plan is ours
-  plans_[active_plan_ ^ 1u] = prepare(selection, token);
-  plan_offered_.store(true);
+  while (packed_ != recorded_.load()) pack();
+  if (sample_count_ != 0) finish_frame();
+  plan_ = prepare(selection, token);
+  if (plan_.count == 0) return;
+  // Nobody waits for the samples of the selection before.
+  while (finished_count_ != 0) free_[free_count_++] = take_finished();
+  sequence_ = 0;
 }
 
-std::span<const std::byte> ScopeRecorder::oldest_frame() const {
-  const std::uint32_t released = released_.load();
-  if (handed_over_.load() == released) return {};
-  const Frame& frame = frames_[handed_[released % hand_over_places]];
+void ScopeRecorder::pack() {
+  for (std::uint32_t i = 0; i < samples_per_pack; ++i) {
+    const std::uint32_t recorded = recorded_.load();
+    if (plan_.count == 0) packed_ = recorded;
+    if (packed_ == recorded) return;
+    if (recorded - packed_ > readable) skip_overwritten(recorded);
+    pack_oldest();
+  }
+}
+
+std::span<const std::byte> ScopeRecorder::oldest_frame() {
+  if (!shown_) {
+    if (finished_count_ == 0) return {};
+    shown_ = take_finished();
+  }
+  const ScopeFrames::Frame& frame = frames_[*shown_];
   protocol::ScopeFrameHeader header;
   std::memcpy(&header, frame.data(), sizeof header);
   return {frame.data(), header.length};
 }
 
-void ScopeRecorder::release() { released_.store(released_.load() + 1); }
+void ScopeRecorder::release() {
+  if (shown_) free_[free_count_++] = *shown_;
+  shown_.reset();
+}
 
-INKWELL_INTERRUPT void ScopeRecorder::record(const protocol::SignalValues& signals, std::uint32_t periods) {
-  if (plan_offered_.load()) change_plan();
-  const ScopePlan& plan = plans_[active_plan_];
-  if (plan.count != 0) {
-    if (sample_count_ == 0) first_period_ = periods;
-    if (plan.encoding == protocol::ScopeEncoding::full)
-      write_full(plan, signals);
-    else
-      write_changes(plan, signals);
-    ++sample_count_;
-    if (cursor_ + plan.sample_size_maximum > frame_end_) finish_frame();
-  }
-  hand_over();
+/// The periods of a frame follow on each other, so what was skipped ends the one that was begun.
+void ScopeRecorder::skip_overwritten(std::uint32_t recorded) {
+  if (sample_count_ != 0) finish_frame();
+  samples_dropped_ += recorded - readable - packed_;
+  packed_ = recorded - readable;
+}
+
+void ScopeRecorder::pack_oldest() {
+  const Sample& sample = samples_[packed_ % capacity];
+  if (sample_count_ == 0) first_period_ = sample.period;
+  if (plan_.encoding == protocol::ScopeEncoding::full)
+    write_full(sample.signals);
+  else
+    write_changes(sample.signals);
+  ++packed_;
+  ++sample_count_;
+  if (cursor_ + plan_.sample_size_maximum > frame_end_) finish_frame();
 }
 
 // Both go through the plan run by run, so that the loop over floats, where most of the time of recording
 // goes, has nothing to decide but what it writes.
 
-INKWELL_INTERRUPT void ScopeRecorder::write_full(const ScopePlan& plan, const protocol::SignalValues& signals) {
+void ScopeRecorder::write_full(const protocol::SignalValues& signals) {
   std::byte* cursor = cursor_;
-  const std::uint8_t* const items = plan.items.data();
-  const std::uint8_t* const end = items + plan.count;
-  const std::uint8_t* run = plan.run_ends.data();
+  const std::uint8_t* const items = plan_.items.data();
+  const std::uint8_t* const end = items + plan_.count;
+  const std::uint8_t* run = plan_.run_ends.data();
   for (const std::uint8_t* item = items; item != end;) {
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item)
       append(cursor, bits_of(signals.values[*item]));
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item)
-      append(cursor, to_steps(signals.values[*item], plan.steps_per_unit[static_cast<std::size_t>(item - items)]));
+      append(cursor, to_steps(signals.values[*item], plan_.steps_per_unit[static_cast<std::size_t>(item - items)]));
   }
   cursor_ = cursor;
 }
 
-INKWELL_INTERRUPT void ScopeRecorder::write_changes(const ScopePlan& plan, const protocol::SignalValues& signals) {
+void ScopeRecorder::write_changes(const protocol::SignalValues& signals) {
   std::byte* const mask_place = cursor_;
   std::byte* cursor = mask_place + sizeof(std::uint32_t);
   if (sample_count_ == 0) previous_.fill(bits_of_no_value);
   std::uint32_t mask = 0;
   std::uint32_t bit = 1;
   std::uint32_t* previous = previous_.data();
-  const std::uint8_t* const items = plan.items.data();
-  const std::uint8_t* const end = items + plan.count;
-  const std::uint8_t* run = plan.run_ends.data();
+  const std::uint8_t* const items = plan_.items.data();
+  const std::uint8_t* const end = items + plan_.count;
+  const std::uint8_t* run = plan_.run_ends.data();
   for (const std::uint8_t* item = items; item != end;) {
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item, ++previous, bit <<= 1) {
       const std::uint32_t bits = bits_of(signals.values[*item]);
@@ -110,7 +131,7 @@ INKWELL_INTERRUPT void ScopeRecorder::write_changes(const ScopePlan& plan, const
     }
     for (const std::uint8_t* const run_end = items + *run++; item < run_end; ++item, ++previous, bit <<= 1) {
       const std::int16_t steps =
-          to_steps(signals.values[*item], plan.steps_per_unit[static_cast<std::size_t>(item - items)]);
+          to_steps(signals.values[*item], plan_.steps_per_unit[static_cast<std::size_t>(item - items)]);
       const auto bits = static_cast<std::uint32_t>(steps);
       if (bits == *previous) continue;
       *previous = bits;
@@ -122,69 +143,45 @@ INKWELL_INTERRUPT void ScopeRecorder::write_changes(const ScopePlan& plan, const
   cursor_ = cursor;
 }
 
-INKWELL_INTERRUPT void ScopeRecorder::change_plan() {
-  if (sample_count_ != 0) finish_frame();
-  active_plan_ ^= 1u;
-  plan_offered_.store(false);
-  if (plans_[active_plan_].count == 0) return;
-  // Nobody waits for the samples of the selection before.
-  while (backlog_count_ != 0) free_[free_count_++] = pop_backlog();
-  sequence_ = 0;
-}
-
-INKWELL_INTERRUPT void ScopeRecorder::open_frame(std::uint32_t frame) {
+void ScopeRecorder::open_frame(std::uint8_t frame) {
   writing_ = frame;
   cursor_ = frames_[frame].data() + sizeof(protocol::ScopeFrameHeader);
-  frame_end_ = frames_[frame].data() + sizeof(Frame);
+  frame_end_ = frames_[frame].data() + frames_[frame].size();
   sample_count_ = 0;
 }
 
-INKWELL_INTERRUPT std::uint8_t ScopeRecorder::pop_backlog() {
-  const std::uint8_t frame = backlog_[backlog_first_ % frame_count];
-  ++backlog_first_;
-  --backlog_count_;
-  return frame;
-}
-
-INKWELL_INTERRUPT void ScopeRecorder::finish_frame() {
-  const ScopePlan& plan = plans_[active_plan_];
+void ScopeRecorder::finish_frame() {
   std::byte* const start = frames_[writing_].data();
   protocol::ScopeFrameHeader header;
   header.sequence = sequence_++;
   header.first_period = first_period_;
-  header.samples_dropped = samples_dropped_.load();
+  header.samples_dropped = samples_dropped_;
   header.length = static_cast<std::uint16_t>(cursor_ - start);
   header.sample_count = static_cast<std::uint16_t>(sample_count_);
-  header.encoding = plan.encoding;
-  header.signal_count = static_cast<std::uint8_t>(plan.count);
-  header.selection_token = plan.token;
+  header.encoding = plan_.encoding;
+  header.signal_count = static_cast<std::uint8_t>(plan_.count);
+  header.selection_token = plan_.token;
   std::memcpy(start, &header, sizeof header);
 
-  backlog_[(backlog_first_ + backlog_count_) % frame_count] = static_cast<std::uint8_t>(writing_);
-  ++backlog_count_;
+  finished_[(finished_first_ + finished_count_) % ScopeFrames::count] = writing_;
+  ++finished_count_;
   open_frame(free_count_ != 0 ? free_[--free_count_] : drop_oldest());
 }
 
-INKWELL_INTERRUPT std::uint8_t ScopeRecorder::drop_oldest() {
-  // The backlog can not be empty here: only one frame is written and at most two are handed over.
-  const std::uint8_t frame = pop_backlog();
-  protocol::ScopeFrameHeader header;
-  std::memcpy(&header, frames_[frame].data(), sizeof header);
-  samples_dropped_.store(samples_dropped_.load() + header.sample_count);
+std::uint8_t ScopeRecorder::take_finished() {
+  const std::uint8_t frame = finished_[finished_first_ % ScopeFrames::count];
+  ++finished_first_;
+  --finished_count_;
   return frame;
 }
 
-INKWELL_INTERRUPT void ScopeRecorder::hand_over() {
-  // One frame each way a period is far more than the bus can carry.
-  if (reclaimed_ != released_.load()) {
-    free_[free_count_++] = handed_[reclaimed_ % hand_over_places];
-    ++reclaimed_;
-  }
-  const std::uint32_t handed_over = handed_over_.load();
-  if (backlog_count_ != 0 && handed_over - reclaimed_ < hand_over_places) {
-    handed_[handed_over % hand_over_places] = pop_backlog();
-    handed_over_.store(handed_over + 1);
-  }
+std::uint8_t ScopeRecorder::drop_oldest() {
+  // There is one: of all frames only one is written and one is shown.
+  const std::uint8_t frame = take_finished();
+  protocol::ScopeFrameHeader header;
+  std::memcpy(&header, frames_[frame].data(), sizeof header);
+  samples_dropped_ += header.sample_count;
+  return frame;
 }
 
 }  // namespace inkwell::link

@@ -112,12 +112,12 @@ void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, 
   };
   const std::uint32_t end = 500 + periods;
   for (std::uint32_t period = 500; period < end; ++period) {
-    scope.record(signals_at(period), period);
+    test::record(scope, signals_at(period), period);
     read_frames();
   }
   scope.select({}, 10);  // finishes the frame that was begun
   for (int i = 0; i < 3; ++i) {
-    scope.record(signals_at(0), end);
+    test::record(scope, signals_at(0), end);
     read_frames();
   }
   CHECK(wrong == 0);
@@ -175,10 +175,10 @@ TEST_CASE("a narrow value beyond its range saturates") {
   for (const float value : {100.0f, -100.0f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
     SignalValues signals{};
     signals[Signal::current_1_A] = value;
-    scope.record(signals, 0);
+    test::record(scope, signals, 0);
   }
   scope.select({}, 2);
-  scope.record({}, 5);
+  test::record(scope, {}, 5);
   std::vector<float> seen;
   const auto keep = [&](std::uint32_t, const std::vector<float>& values) { seen.push_back(values[0]); };
   decode(scope.oldest_frame(), selection, keep);
@@ -198,27 +198,29 @@ TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but nev
   scope.select(selection, 3);
   constexpr std::uint32_t frames_recorded = 100;
   std::uint32_t period = 0;
-  for (; period < frames_recorded * samples_per_frame; ++period) scope.record(signals_at(period), period);
+  for (; period < samples_per_frame; ++period) test::record(scope, signals_at(period), period);
+  REQUIRE(!scope.oldest_frame().empty());  // on its way from now on
+  for (; period < frames_recorded * samples_per_frame; ++period) test::record(scope, signals_at(period), period);
 
   const auto first = [&] {
     return decode(scope.oldest_frame(), selection, [](std::uint32_t at, const std::vector<float>& values) {
       if (values[0] != signals_at(at).values[0]) FAIL_CHECK("a sample was overwritten");
     });
   };
-  // The two in the hand-over are the very first; behind them are the newest that fit.
-  const std::uint32_t kept = link::ScopeRecorder::frame_count - 1;
+  // Behind the one that is being sent are the newest that fit.
+  const std::uint32_t kept = link::ScopeFrames::count - 1;
   const std::uint32_t dropped = (frames_recorded - kept) * samples_per_frame;
   CHECK(scope.samples_dropped() == dropped);
   std::uint32_t samples_seen = 0, frames_seen = 0, next_sequence = 0;
   while (!scope.oldest_frame().empty()) {
     const ScopeFrameHeader header = first();
-    if (frames_seen == 2) next_sequence = frames_recorded - kept + 2;
+    if (frames_seen == 1) next_sequence = frames_recorded - kept + 1;
     CHECK(header.sequence == next_sequence++);
     CHECK(header.first_period == header.sequence * samples_per_frame);
     samples_seen += header.sample_count;
     ++frames_seen;
     scope.release();
-    scope.record(signals_at(period), period);
+    test::record(scope, signals_at(period), period);
     ++period;
   }
   CHECK(frames_seen == kept);
@@ -230,12 +232,12 @@ TEST_CASE("a frame that is being sent stays as it is, whatever is recorded meanw
   link::ScopeRecorder& scope = test::fresh_link().scope;
   scope.select(select(31), 4);
   std::uint32_t period = 0;
-  while (scope.oldest_frame().empty()) scope.record(signals_at(period), period), ++period;
+  while (scope.oldest_frame().empty()) test::record(scope, signals_at(period), period), ++period;
   const auto frame = scope.oldest_frame();
   const std::vector<std::byte> copy(frame.begin(), frame.end());
-  for (int i = 0; i < 3000; ++i) scope.record(signals_at(period), period), ++period;
+  for (int i = 0; i < 3000; ++i) test::record(scope, signals_at(period), period), ++period;
   scope.select(select(5), 5);
-  for (int i = 0; i < 3000; ++i) scope.record(signals_at(period), period), ++period;
+  for (int i = 0; i < 3000; ++i) test::record(scope, signals_at(period), period), ++period;
   CHECK(scope.oldest_frame().data() == frame.data());
   CHECK(std::memcmp(frame.data(), copy.data(), copy.size()) == 0);
 }
@@ -244,13 +246,14 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
   link::ScopeRecorder& scope = test::fresh_link().scope;
   scope.select(select(14), 1);
   std::uint32_t period = 0;
-  for (int i = 0; i < 500; ++i) scope.record(signals_at(period), period), ++period;
+  for (int i = 0; i < 500; ++i) test::record(scope, signals_at(period), period), ++period;
   const SignalSelection second = select(3, 6);
-  scope.select(select(20), 2);  // overtaken before the interrupt saw it
+  REQUIRE(!scope.oldest_frame().empty());  // on its way from now on
+  scope.select(select(20), 2);             // overtaken before a sample came
   scope.select(second, 3);
   const std::uint32_t start = period;
-  for (int i = 0; i < 1000; ++i) scope.record(signals_at(period), period), ++period;
-  // What was in the hand-over still comes, and says which selection it belongs to.
+  for (int i = 0; i < 1000; ++i) test::record(scope, signals_at(period), period), ++period;
+  // What was on its way still comes, and says which selection it belongs to.
   std::uint32_t old_frames = 0;
   for (;; ++old_frames) {
     ScopeFrameHeader header;
@@ -259,30 +262,76 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
     if (header.selection_token == 3) break;
     CHECK(header.selection_token == 1);
     scope.release();
-    scope.record(signals_at(period), period);
+    test::record(scope, signals_at(period), period);
     ++period;
   }
-  CHECK(old_frames == link::ScopeRecorder::hand_over_places);
+  CHECK(old_frames == 1);
   const ScopeFrameHeader header = decode(scope.oldest_frame(), second, [](std::uint32_t, const std::vector<float>&) {});
   CHECK(header.sequence == 0);
   CHECK(header.first_period == start);
   CHECK(scope.samples_dropped() == 0);
 }
 
+TEST_CASE("a main loop that comes late loses nothing up to the ring's length, beyond it the oldest samples, counted") {
+  const SignalSelection selection = select(14);
+  for (const std::uint32_t late_periods : {link::ScopeRecorder::readable - 1, link::ScopeRecorder::readable + 25}) {
+    link::ScopeRecorder& scope = test::fresh_link().scope;
+    scope.select(selection, 1);
+    constexpr std::uint32_t before = 10;
+    std::uint32_t period = 0;
+    for (; period < before; ++period) test::record(scope, signals_at(period), period);
+    for (; period < before + late_periods; ++period) {
+      scope.next() = signals_at(period);
+      scope.record(period);
+    }
+    for (std::uint32_t i = 0; i < 100; ++i, ++period) test::record(scope, signals_at(period), period);
+    scope.select({}, 2);
+    // One more came before the main loop was there again.
+    const std::uint32_t lost = late_periods + 1 - link::ScopeRecorder::readable;
+    CHECK(scope.samples_dropped() == lost);
+    std::uint32_t next = 0;
+    int wrong = 0;
+    for (auto frame = scope.oldest_frame(); !frame.empty(); scope.release(), frame = scope.oldest_frame())
+      decode(frame, selection, [&](std::uint32_t at, const std::vector<float>& values) {
+        if (next == before) next += lost;
+        wrong += at != next++ || values[0] != signals_at(at).values[0];
+      });
+    CHECK(wrong == 0);
+    CHECK(next == period);
+  }
+}
+
+TEST_CASE("the main loop packs a few samples each time that it comes round") {
+  link::ScopeRecorder& scope = test::fresh_link().scope;
+  scope.select(select(14), 1);
+  constexpr std::uint32_t samples_per_frame = (2048 - 24) / 56, before = 10;
+  std::uint32_t period = 0;
+  for (; period < before; ++period) test::record(scope, signals_at(period), period);
+  for (; period < before + link::ScopeRecorder::readable; ++period) {
+    scope.next() = signals_at(period);
+    scope.record(period);
+  }
+  constexpr std::uint32_t left = samples_per_frame - before, rounds = left / link::ScopeRecorder::samples_per_pack;
+  for (std::uint32_t i = 0; i < rounds; ++i) scope.pack();
+  CHECK(scope.oldest_frame().empty());
+  scope.pack();
+  CHECK_FALSE(scope.oldest_frame().empty());
+}
+
 TEST_CASE("the scope is off until signals are selected, and after none are") {
   link::ScopeRecorder& scope = test::fresh_link().scope;
-  for (std::uint32_t period = 0; period < 5000; ++period) scope.record(signals_at(period), period);
+  for (std::uint32_t period = 0; period < 5000; ++period) test::record(scope, signals_at(period), period);
   CHECK(scope.oldest_frame().empty());
   scope.select(select(2), 1);
-  scope.record(signals_at(0), 0);
+  test::record(scope, signals_at(0), 0);
   scope.select({}, 2);
-  scope.record(signals_at(1), 1);
+  test::record(scope, signals_at(1), 1);
   REQUIRE(!scope.oldest_frame().empty());
   const auto ignore = [](std::uint32_t, const std::vector<float>&) {};
   const ScopeFrameHeader header = decode(scope.oldest_frame(), select(2), ignore);
   CHECK(header.sample_count == 1);
   scope.release();
-  for (std::uint32_t period = 0; period < 5000; ++period) scope.record(signals_at(period), period);
+  for (std::uint32_t period = 0; period < 5000; ++period) test::record(scope, signals_at(period), period);
   CHECK(scope.oldest_frame().empty());
 }
 
@@ -297,7 +346,7 @@ TEST_CASE("a frame of changes keeps within its room, however many values change 
     random = random * 1664525u + 1013904223u;
     const std::size_t changing = random >> 16 & 1u ? 32 : random >> 24 & 15u;
     for (std::size_t k = 0; k < changing; ++k) signals.values[selection.signals[k]] += 0.01f;
-    scope.record(signals, period);
+    test::record(scope, signals, period);
     for (auto frame = scope.oldest_frame(); !frame.empty(); frame = scope.oldest_frame()) {
       decode(frame, selection, [&](std::uint32_t, const std::vector<float>&) { ++samples; });
       scope.release();

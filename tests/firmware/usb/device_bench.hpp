@@ -127,7 +127,7 @@ struct DeviceBench {
       protocol::SignalValues signals{};
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
       link.poses.record(signals, {state, protocol::Fault::none, 0, link.commands.last_token(), periods, 100});
-      link.scope.record(signals, periods++);
+      record(link.scope, signals, periods++);
       link.status.record(state, {}, 100, false);
     }
   }

@@ -36,13 +36,11 @@ class Controller {
     regulate_currents(settings);
     cycles_[current] = clock.lap();
     supervise(samples, settings);
-    write_signals();
     ++periods_;
     return drive_;
   }
 
-  /// Ends the period's measure of time: call it last, when the bridges are written and the records are made. The
-  /// last stage and the sum of all stages are shown in the next period's signals.
+  /// Ends the period's measure of time: call it last, when the bridges are written and the records are made.
   template <class StageClock>
   void finish(StageClock& clock) {
     cycles_[report] = clock.lap();
@@ -57,7 +55,14 @@ class Controller {
   /// Reports a fault found outside the signal path; it switches the bridges off in the next step.
   void raise(protocol::Fault fault);
 
-  const protocol::SignalValues& signals() const { return signals_; }
+  /// The signals of the last step. Before finish(), the cycles of the last stage and of all stages are those of the
+  /// period before.
+  void write_signals(protocol::SignalValues& signals) const;
+  protocol::SignalValues signals() const {
+    protocol::SignalValues signals;
+    write_signals(signals);
+    return signals;
+  }
   protocol::State state() const { return supervisor_.state; }
   protocol::Fault fault() const { return supervisor_.fault; }
   std::uint8_t switches() const { return switches_.closed; }    ///< bits of protocol::Switch, debounced
@@ -75,7 +80,6 @@ class Controller {
   void find_current_references(const Settings& settings);
   void regulate_currents(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
-  void write_signals();
 
   BoardLimits board_;
 
@@ -112,7 +116,6 @@ class Controller {
 
   std::array<std::uint32_t, stage_count> cycles_{};
   std::uint32_t servo_cycles_ = 0;
-  protocol::SignalValues signals_{};
 };
 
 }  // namespace inkwell::control

@@ -6,10 +6,12 @@
 //   if (link.commands.take_sign_of_life()) controller.host_alive()
 //   if (command = link.commands.take()) controller.carry_out(*command)
 //   controller.step(...)
-//   link.poses.record(controller.signals(), {...}); link.scope.record(controller.signals(), periods)
+//   controller.write_signals(link.scope.next())
+//   link.poses.record(link.scope.next(), {...}); link.scope.record(periods)
 //   link.status.record(controller.state(), motor_heat, cycles, overrun)
 //
-// About 68 KB, most of it scope frames: it lives in main memory, not in the core-coupled one.
+// About 10 KB, most of it the last samples of the scope: it lives in the core-coupled memory. The scope's frames are
+// the main loop's and lie elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +26,7 @@ namespace inkwell::link {
 
 struct Link {
   /// `cycles_per_period`: processor cycles of one control period.
-  explicit Link(std::uint32_t cycles_per_period) : poses(cycles_per_period) {}
+  Link(std::uint32_t cycles_per_period, ScopeFrames& frames) : poses(cycles_per_period), scope(frames) {}
 
   ParameterStore parameters;
   CommandQueue commands;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <link/scope_plan.hpp>
@@ -12,74 +13,94 @@
 
 namespace inkwell::link {
 
-/// The interrupt writes samples into frames and keeps the finished ones in a backlog; from there it puts
-/// the oldest into a hand-over of two places, from which the main loop sends. What is in the hand-over
-/// belongs to the main loop until release(). When no frame is free, the oldest of the backlog is dropped
-/// and its samples are counted: the interrupt never waits, and the newest data is kept.
+/// Room for frames: large, and touched by the main loop only.
+struct ScopeFrames {
+  static constexpr std::uint32_t count = 32;
+  using Frame = std::array<std::byte, protocol::scope_frame_maximum>;
+  alignas(4) std::array<Frame, count> frames;
+};
+
+/// The interrupt writes every signal of a period straight into a ring of samples, whatever is selected; that is all
+/// that recording costs there. The main loop follows, picks the selected signals and packs them into frames. When no
+/// frame is free, the oldest that is not being sent is dropped and its samples are counted, and so are samples that
+/// the main loop was too late for: the interrupt never waits, and the newest data is kept.
 class ScopeRecorder {
  public:
-  static constexpr std::uint32_t frame_count = 32;
-  /// Two, so that the next frame is at hand in the instant in which one has been sent.
-  static constexpr std::uint32_t hand_over_places = 2;
+  /// Samples in the ring: 1.6 ms, against the fraction of one for which the main loop is busy at most.
+  static constexpr std::uint32_t capacity = 32;
+  /// Two places stay unread, for the samples that the interrupt may write while one is packed.
+  static constexpr std::uint32_t readable = capacity - 2;
+  /// So that the main loop comes round also when it has been late; it comes once a period.
+  static constexpr std::uint32_t samples_per_pack = 4;
 
-  ScopeRecorder();
+  /// `frames` are the recorder's from now on.
+  explicit ScopeRecorder(ScopeFrames& frames);
+
+  // ---- control interrupt ----
+
+  /// Where the signals of this period go; they count once record() has been called.
+  protocol::SignalValues& next() { return samples_[recorded_.load() % capacity].signals; }
+
+  /// Records what was written to next(). Called once every control period.
+  void record(std::uint32_t period) {
+    const std::uint32_t recorded = recorded_.load();
+    samples_[recorded % capacity].period = period;
+    recorded_.store(recorded + 1);
+  }
 
   // ---- main loop ----
 
   /// Records these signals from the next period on; none stops, and finishes the frame that was begun.
-  /// A new selection forgets the backlog of the one before.
+  /// A new selection forgets the finished frames of the one before.
   void select(const protocol::SignalSelection& selection, std::uint8_t token);
 
+  /// Packs the oldest samples that wait, `samples_per_pack` at most. Call it every time that the main loop comes round.
+  void pack();
+
   /// The oldest finished frame, empty if there is none. Stays as it is until release().
-  std::span<const std::byte> oldest_frame() const;
+  std::span<const std::byte> oldest_frame();
 
   /// Gives back the frame that oldest_frame() showed.
   void release();
 
-  /// Samples dropped since the start because the host did not read.
-  std::uint32_t samples_dropped() const { return samples_dropped_.load(); }
-
-  // ---- control interrupt ----
-
-  /// Records one sample. Called once every control period.
-  void record(const protocol::SignalValues& signals, std::uint32_t periods);
+  /// Samples dropped since the start because the host did not read, or the main loop was late.
+  std::uint32_t samples_dropped() const { return samples_dropped_; }
 
  private:
-  using Frame = std::array<std::byte, protocol::scope_frame_maximum>;
+  struct Sample {
+    protocol::SignalValues signals;
+    std::uint32_t period;
+  };
 
-  void change_plan();
-  void open_frame(std::uint32_t frame);
+  void skip_overwritten(std::uint32_t recorded);
+  void pack_oldest();
+  void open_frame(std::uint8_t frame);
   void finish_frame();
-  std::uint8_t pop_backlog();
+  std::uint8_t take_finished();
   std::uint8_t drop_oldest();
-  void hand_over();
-  void write_full(const ScopePlan& plan, const protocol::SignalValues& signals);
-  void write_changes(const ScopePlan& plan, const protocol::SignalValues& signals);
+  void write_full(const protocol::SignalValues& signals);
+  void write_changes(const protocol::SignalValues& signals);
 
-  alignas(4) std::array<Frame, frame_count> frames_;
+  std::array<Sample, capacity> samples_{};  ///< ring
+  Shared<std::uint32_t> recorded_{0};       ///< written by the interrupt
 
-  // Between the two sides.
-  std::array<ScopePlan, 2> plans_{};
-  Shared<bool> plan_offered_{false};
-  std::array<std::uint8_t, hand_over_places> handed_{};  ///< frame numbers
-  Shared<std::uint32_t> handed_over_{0};                 ///< written by the interrupt
-  Shared<std::uint32_t> released_{0};                    ///< written by the main loop
-  Shared<std::uint32_t> samples_dropped_{0};             ///< written by the interrupt
-
-  // The interrupt's own.
-  std::array<std::uint8_t, frame_count> free_{};  ///< stack of free frames
+  // The main loop's own.
+  std::uint32_t packed_ = 0;
+  ScopePlan plan_{};
+  std::array<ScopeFrames::Frame, ScopeFrames::count>& frames_;
+  std::array<std::uint8_t, ScopeFrames::count> free_{};  ///< stack of free frames
   std::uint32_t free_count_ = 0;
-  std::array<std::uint8_t, frame_count> backlog_{};  ///< ring of finished frames
-  std::uint32_t backlog_first_ = 0;
-  std::uint32_t backlog_count_ = 0;
-  std::uint32_t reclaimed_ = 0;  ///< frames taken back from the hand-over
-  std::uint32_t active_plan_ = 0;
-  std::uint32_t writing_ = 0;    ///< frame that is written
-  std::byte* cursor_ = nullptr;  ///< next byte of it
+  std::array<std::uint8_t, ScopeFrames::count> finished_{};  ///< ring
+  std::uint32_t finished_first_ = 0;
+  std::uint32_t finished_count_ = 0;
+  std::optional<std::uint8_t> shown_;  ///< by oldest_frame()
+  std::uint8_t writing_ = 0;           ///< frame that is written
+  std::byte* cursor_ = nullptr;        ///< next byte of it
   const std::byte* frame_end_ = nullptr;
   std::uint32_t sample_count_ = 0;  ///< in it
   std::uint32_t first_period_ = 0;
   std::uint32_t sequence_ = 0;
+  std::uint32_t samples_dropped_ = 0;
   std::array<std::uint32_t, protocol::scope_signals_maximum> previous_{};  ///< bits last written
 };
 

@@ -89,7 +89,7 @@ class Device final : private ControlRequests {
   bool suspended_ = false;
   std::array<Endpoint, 3> endpoints_;
   std::optional<protocol::CommandReport> held_command_;  ///< found the queue full
-  bool scope_frame_open_ = false;                        ///< the hand-over's oldest frame is being sent
+  bool scope_frame_open_ = false;                        ///< the scope's oldest frame is being sent
   bool scope_wants_end_ = false;  ///< the frame's length is a multiple of 64: an empty packet ends it
   alignas(4) protocol::PoseReport pose_{};
 };
