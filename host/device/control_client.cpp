@@ -75,6 +75,11 @@ void ControlClient::buttons(bool first, bool second) { call({{"command", "button
 void ControlClient::supply(double voltage_V) { call({{"command", "supply"}, {"voltage_V", voltage_V}}); }
 void ControlClient::bridge_fault(bool fault) { call({{"command", "bridge_fault"}, {"fault", fault}}); }
 void ControlClient::jump(std::uint32_t address) { call({{"command", "jump"}, {"address", address}}); }
+void ControlClient::stall(double for_s) { call({{"command", "stall"}, {"for_s", for_s}}); }
+void ControlClient::lose_exception(int exception, bool lost) {
+  call({{"command", "lose_exception"}, {"exception", exception}, {"lost", lost}});
+}
+void ControlClient::crystal(bool swings) { call({{"command", "crystal"}, {"swings", swings}}); }
 void ControlClient::gimbal(const Vector3& angles_rad) { call({{"command", "gimbal"}, {"angles_rad", angles_rad}}); }
 void ControlClient::dock(bool docked) { call({{"command", "dock"}, {"docked", docked}}); }
 

@@ -1,102 +1,16 @@
 // What keeps a hand safe: no force before the reference, none without a host, bridges off on a fault.
 #include <doctest/doctest.h>
 
-#include <elf.h>
-
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <string_view>
 
 #include <board/omni_driver.hpp>
-#include <device/fault_text.hpp>
 
-#include "board_rig.hpp"
-#include "program.hpp"
+#include "hazards.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
 using protocol::Parameter;
 using protocol::State;
-
-namespace {
-
-/// After a restart of the board: waits until its USB is back and opens the device again.
-void reconnect(BoardRig& rig) {
-  rig.device.reset();
-  rig.control.run(0.02);  // long enough for the bus to see that the device is gone
-  rig.connect();
-}
-
-constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
-
-bool any_leg_high(device::ControlClient& control) {
-  const auto truth = control.truth();
-  bool high = false;
-  for (const auto& legs : truth.at("bridge_legs"))
-    for (const auto& level : legs) high |= level == "high";
-  return high;
-}
-
-/// Looks at the inputs of the bridges at 20 instants over a time; says whether any of them was high at any of them.
-bool any_leg_high_within(device::ControlClient& control, double time_s) {
-  bool high = false;
-  for (int i = 0; i < 20; ++i) {
-    control.run(time_s / 20);
-    high |= any_leg_high(control);
-  }
-  return high;
-}
-
-bool bridges_enabled(device::ControlClient& control) { return control.truth().at("bridges_enabled").get<bool>(); }
-
-/// The sphere pressed into a wall by the hand: all three bridges switch, and at least one motor has current.
-void press_into_wall(BoardRig& rig) {
-  rig.make_active();
-  rig.take_to(free_point_m);
-  rig.set({{Parameter::box_minimum_z_m, -0.015f}});
-  rig.run(0.1);
-  REQUIRE(rig.pose().state == State::active);
-  REQUIRE(largest_current_A(rig.control) > 0.1);
-  REQUIRE(bridges_enabled(rig.control));
-  REQUIRE(any_leg_high_within(rig.control, control_period_s));
-}
-
-/// What `inkwell info` tells a user about the device of this rig.
-std::string told_by_info(BoardRig& rig) {
-  rig.device.reset();
-  const auto result =
-      run_program("inkwell", {"info", "--usbip", "127.0.0.1:" + std::to_string(rig.board.usbip_port())});
-  CHECK(result.exit_code == 0);
-  return result.out;
-}
-
-void check_tells(const std::string& text, protocol::Fault fault) {
-  INFO("inkwell info: ", text);
-  CHECK(text.find(device::fault_line(fault)) != std::string::npos);
-}
-
-/// Where the firmware waits for the reset that it has asked for: "dsb", and a branch back to it.
-std::uint32_t endless_loop_address() {
-  constexpr std::string_view loop = "\xBF\xF3\x4F\x8F\xFC\xE7";
-  std::ifstream file(build_directory() + "/../board/inkwell.elf", std::ios::binary);
-  const std::string image{std::istreambuf_iterator<char>(file), {}};
-  Elf32_Ehdr header;
-  REQUIRE(image.size() > sizeof header);
-  std::memcpy(&header, image.data(), sizeof header);
-  for (unsigned i = 0; i < header.e_phnum; ++i) {
-    Elf32_Phdr segment;
-    std::memcpy(&segment, image.data() + header.e_phoff + i * sizeof segment, sizeof segment);
-    if (segment.p_type != PT_LOAD || (segment.p_flags & PF_X) == 0) continue;
-    for (std::uint32_t offset = 0; offset + loop.size() <= segment.p_filesz; offset += 2)
-      if (image.compare(segment.p_offset + offset, loop.size(), loop) == 0) return segment.p_paddr + offset;
-  }
-  FAIL("the firmware holds no endless loop to jump to");
-  return 0;
-}
-
-}  // namespace
 
 TEST_CASE("an arm that has not been in the inkwell gets no force") {
   BoardRig rig;
@@ -189,17 +103,16 @@ TEST_CASE("a processor fault with the bridges on switches them off first, and is
   press_into_wall(rig);
   constexpr std::uint32_t nothing_there = 0x60000000;
   rig.control.jump(nothing_there);
-  const auto restarts = [&] { return rig.control.status().all.at("resets").get<int>(); };
   constexpr double step_s = 50e-9;
   for (int step = 0; step < 20 && bridges_enabled(rig.control); ++step) rig.control.run(step_s);
   rig.control.run(5 * step_s);  // the writes that switch both timers' outputs off cross to APB2
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK_FALSE(any_leg_high(rig.control));
-  CHECK(restarts() == 0);  // so it was the handler that switched them off, not the reset
+  CHECK(restarts(rig.control) == 0);  // so it was the handler that switched them off, not the reset
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
   CHECK_FALSE(any_leg_high_within(rig.control, 0.02));
   CHECK(largest_current_A(rig.control) < 0.02);
-  CHECK(restarts() == 1);
+  CHECK(restarts(rig.control) == 1);
   CHECK(rig.control.status().all.at("watchdog_resets") == 0);
 
   reconnect(rig);

@@ -53,6 +53,10 @@ void Chip::reset(ResetCause cause) {
 
 Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
 void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
+void Chip::stall(Ticks duration) { parts_->execution.stall(duration); }
+void Chip::lose_exception(unsigned exception, bool lost) { parts_->machine.nvic.lose(exception, lost); }
+void Chip::let_crystal_swing(bool swings) { parts_->rcc.let_crystal_swing(swings); }
+unsigned Chip::current_exception() const { return parts_->processor.current_exception(); }
 void Chip::request_stop() { parts_->execution.request_stop(); }
 
 DebugPort& Chip::debug_port() { return parts_->debug_port; }

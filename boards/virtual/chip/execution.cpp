@@ -50,6 +50,7 @@ void Execution::reset(ResetCause cause) {
   machine_.sleep_counts_cycles = false;
   processor_.reset(system_control_.vector_table());
   processor_.anchor(machine_.timeline.now());
+  machine_.core_stalls_until = 0;
   state_ = State::runs;
   lockup_reason_.clear();
   first_fault_.reset();
@@ -104,6 +105,10 @@ Stop Execution::run_slices(Ticks when) {
     if (state_ == State::locked_up && timeline.now() >= when) return Stop::locked_up;
     if (timeline.now() >= when) return Stop::time_reached;
 
+    if (core_stands()) {
+      stand_until(when);
+      continue;
+    }
     if (state_ != State::runs) {
       if (wakes()) {
         state_ = State::runs;
@@ -144,6 +149,20 @@ bool Execution::wakes() const {
   Masks masks = processor_.masks();
   masks.primask = false;
   return machine_.nvic.next(masks) != exception_none;
+}
+
+// Everything but the core goes on. Its own counter of cycles too, as long as it has a clock.
+void Execution::stand_until(Ticks when) {
+  auto& timeline = machine_.timeline;
+  const Ticks from = timeline.now();
+  Ticks to = std::min(when, machine_.last_advance + Machine::advance_period);
+  if (!machine_.clock_is_lost) to = std::min(to, machine_.core_stalls_until);
+  if (const Ticks wake = timeline.next_wake(); wake > from) to = std::min(to, wake);
+  to = std::max(from, to);
+  timeline.catch_up(to);
+  if (state_ != State::runs) return;
+  if (!machine_.clock_is_lost) processor_.wait(static_cast<unsigned>(machine_.clocks.hclk.cycles_in(to - from)));
+  processor_.anchor(timeline.now());
 }
 
 void Execution::sleep_until(Ticks when) {

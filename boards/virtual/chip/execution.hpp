@@ -23,6 +23,7 @@ class Execution {
   Stop run_until(Ticks when);
   void reset(ResetCause cause);
   void jump(std::uint32_t address);
+  void stall(Ticks duration) { machine_.core_stalls_until = machine_.timeline.now() + duration; }
   void request_stop() {
     stop_requested_ = true;
     if (running_) processor_.end_slice();
@@ -43,6 +44,8 @@ class Execution {
   void reset_if_requested();
   void take_exception();
   void sleep_until(Ticks when);
+  bool core_stands() const { return machine_.clock_is_lost || machine_.core_stalls_until > machine_.timeline.now(); }
+  void stand_until(Ticks when);
   bool wakes() const;
   void handle(Outcome outcome);
   void handle_breakpoint();

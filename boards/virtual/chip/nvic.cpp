@@ -17,6 +17,7 @@ void Nvic::reset() {
   for (const unsigned always :
        {exception_nmi, exception_hard_fault, exception_svcall, exception_pendsv, exception_systick})
     assign(enabled_, always, true);
+  non_maskable_ = false;
   changed_ = true;
   newly_pending_ = false;
 }
@@ -46,6 +47,7 @@ void Nvic::enter(unsigned exception) {
 void Nvic::leave(unsigned exception) {
   assign(active_, exception, false);
   if (exception >= exception_interrupt_0 && level_[exception - exception_interrupt_0] != 0) pend(exception);
+  if (exception == exception_nmi && non_maskable_) pend(exception);
   changed_ = true;
 }
 
@@ -76,7 +78,7 @@ unsigned Nvic::most_urgent() const {
   unsigned best = exception_none;
   int best_group = priority_lowest, best_full = priority_lowest;
   for (unsigned half = 0; half < 2; ++half)
-    for (std::uint64_t bits = pending_[half] & enabled_[half]; bits != 0; bits &= bits - 1) {
+    for (std::uint64_t bits = pending_[half] & enabled_[half] & ~lost_[half]; bits != 0; bits &= bits - 1) {
       const unsigned exception = half * 64 + static_cast<unsigned>(std::countr_zero(bits));
       const int group = group_priority(exception);
       const int full = group < 0 ? group : priority_[exception];

@@ -44,6 +44,17 @@ class Nvic final : public InterruptController {
   void set_source(unsigned position, unsigned source, bool asserted);
   void set_level(unsigned position, bool asserted) override { set_source(position, outside_source, asserted); }
 
+  /// The line behind NMI.
+  void set_non_maskable(bool asserted) {
+    non_maskable_ = asserted;
+    if (asserted) pend(exception_nmi);
+  }
+  /// An interrupt that never reaches the core, or does again.
+  void lose(unsigned exception, bool lost) {
+    assign(lost_, exception, lost);
+    changed_ = true;
+  }
+
   std::uint32_t read(std::uint32_t offset) const;  ///< offset from its first register, ISER0
   void write(std::uint32_t offset, std::uint32_t value, unsigned size);
 
@@ -98,6 +109,8 @@ class Nvic final : public InterruptController {
   std::uint32_t word_of(const Bits& bits, unsigned index) const;
 
   Bits pending_{}, active_{}, enabled_{};
+  Bits lost_{};  ///< not by a reset
+  bool non_maskable_ = false;
   std::array<std::uint8_t, exception_numbers> priority_{};
   std::array<std::uint32_t, positions> level_{};
   unsigned group_ = 0;

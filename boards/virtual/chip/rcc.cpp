@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "processor.hpp"
+#include "timers.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -44,7 +45,9 @@ void Rcc::reset() {
   ready_at_.fill(never);
   ready_at_[hsi] = 0;
   system_clock_ = 0;
+  machine_.clock_is_lost = false;
   voltage_scale_1_ = true;
+  crystal_failed_ = false;
   machine_.timeline.set(slot_, never, never);
   update_tree();
 }
@@ -62,7 +65,44 @@ bool Rcc::is_on(unsigned oscillator) const {
 }
 
 bool Rcc::is_ready(unsigned oscillator) const {
+  const bool needs_crystal = oscillator == hse || (oscillator == pll && map.pllcfgr.pllsrc.in(words_[map.pllcfgr / 4]));
+  if (needs_crystal && !crystal_swings_) return false;
   return is_on(oscillator) && ready_at_[oscillator] <= machine_.timeline.now();
+}
+
+bool Rcc::runs_from_crystal() const {
+  return system_clock_ == 1 || (system_clock_ == 2 && map.pllcfgr.pllsrc.in(words_[map.pllcfgr / 4]));
+}
+
+void Rcc::let_crystal_swing(bool swings) {
+  if (swings == crystal_swings_) return;
+  crystal_swings_ = swings;
+  ready_at_[hse] = never;
+  if (!swings) return lose_crystal();
+  machine_.clock_is_lost = false;
+  start_oscillators();
+  update_tree();
+}
+
+void Rcc::lose_crystal() {
+  auto& control = words_[map.cr / 4];
+  if (!map.cr.csson.in(control) || !map.cr.hseon.in(control)) {
+    machine_.clock_is_lost = runs_from_crystal();
+    return update_tree();
+  }
+  control &= ~map.cr.hseon.mask();
+  if (runs_from_crystal()) {
+    if (system_clock_ == 2) control &= ~map.cr.pllon.mask();
+    control |= map.cr.hsion.mask();
+    auto& configuration = words_[map.cfgr / 4];
+    configuration &= ~map.cfgr.sw.mask();
+    system_clock_ = 0;
+  }
+  start_oscillators();
+  update_tree();
+  crystal_failed_ = true;
+  machine_.nvic.set_non_maskable(true);
+  machine_.timers->clock_failed();
 }
 
 std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
@@ -147,7 +187,7 @@ void Rcc::update_tree() {
   f.pclk2_Hz = f.hclk_Hz / divider2;
   f.timer1_Hz = f.pclk1_Hz * (divider1 == 1 ? 1 : 2);
   f.timer2_Hz = f.pclk2_Hz * (divider2 == 1 ? 1 : 2);
-  f.usb_Hz = is_ready(pll) ? pll_output_Hz(PllOutput::usb) : 0;
+  f.usb_Hz = is_ready(pll) && !machine_.clock_is_lost ? pll_output_Hz(PllOutput::usb) : 0;
   if (f.hclk_Hz == 0) return;  // the PLL's dividers make no sense: stay as it was
   check_limits(f);
 
@@ -159,6 +199,7 @@ void Rcc::update_tree() {
                  Clock::of(f.usb_Hz),
                  Clock::of(low_speed_internal_Hz),
                  f};
+  if (machine_.clock_is_lost) tree.timer1 = tree.timer2 = Clock{};
   if (tree == machine_.clocks) {
     machine_.clocks.frequencies = f;
     return;
@@ -178,6 +219,7 @@ std::uint32_t Rcc::read_word(std::uint32_t offset) {
     if (oscillator_bits[i].offset == offset && is_ready(i)) value |= oscillator_bits[i].ready.mask();
   if (offset == map.cfgr) value = (value & ~map.cfgr.sws.mask()) | map.cfgr.sws.with(system_clock_);
   if (offset == map.csr) value |= reset_flags_;
+  if (offset == map.cir) value |= map.cir.cssf.with(crystal_failed_);
   return value;
 }
 
@@ -204,6 +246,10 @@ void Rcc::write_word(std::uint32_t offset, std::uint32_t value) {
       switch_system_clock();
       return;
     case map.cir:
+      if (map.cir.cssc.in(value)) {
+        crystal_failed_ = false;
+        machine_.nvic.set_non_maskable(false);
+      }
       if ((value & writable(map.cir)) != 0) machine_.log.note("RCC interrupts, RCC", offset, true, value);
       return;
     case map.csr:

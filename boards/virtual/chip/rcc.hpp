@@ -30,6 +30,10 @@ class Rcc final : public RegisterBlock, public TimedPart {
     return cycle < fresh_until_ && enable == &words_[fresh_offset_ / 4] && (fresh_mask_ & mask) != 0;
   }
   void step(Ticks now) override;
+  /// A crystal that stops, as with a broken joint, or swings again. With the clock security system on (RM0090, "Clock
+  /// security system") the chip goes on with HSI, NMI comes and the timers break; without it what runs from the crystal
+  /// stands still.
+  void let_crystal_swing(bool swings);
   /// PWR_CR.VOS: scale 1 is for the highest clocks.
   void set_voltage_scale(bool scale_1);
 
@@ -53,6 +57,9 @@ class Rcc final : public RegisterBlock, public TimedPart {
   void start_oscillators();
   void switch_system_clock();
   void note_enabled(std::uint32_t offset, std::uint32_t risen);
+  /// The system clock comes from the crystal, through the PLL or not.
+  bool runs_from_crystal() const;
+  void lose_crystal();
   void check_limits(const Clocks& clocks) const;
   void update_tree();
 
@@ -63,7 +70,8 @@ class Rcc final : public RegisterBlock, public TimedPart {
   unsigned system_clock_ = 0;  ///< CFGR.SWS
   std::uint32_t reset_flags_ = 0;
   bool voltage_scale_1_ = true;
-  std::uint64_t fresh_until_ = 0;  ///< cycle of the core
+  bool crystal_swings_ = true, crystal_failed_ = false;  ///< the latter: CIR.CSSF
+  std::uint64_t fresh_until_ = 0;                        ///< cycle of the core
   std::uint32_t fresh_offset_ = 0, fresh_mask_ = 0;
   std::vector<ResetLine> resets_;
 };

@@ -22,7 +22,8 @@ struct RccRegisters {
   } cfgr{{"CFGR", 0x08}};
   struct : Register {
     Field lsirdyie{"LSIRDYIE", 8}, lserdyie{"LSERDYIE", 9}, hsirdyie{"HSIRDYIE", 10}, hserdyie{"HSERDYIE", 11},
-        pllrdyie{"PLLRDYIE", 12}, plli2srdyie{"PLLI2SRDYIE", 13};
+        pllrdyie{"PLLRDYIE", 12}, plli2srdyie{"PLLI2SRDYIE", 13}, cssf{"CSSF", 7, 1, Access::r},
+        cssc{"CSSC", 23, 1, Access::w};
   } cir{{"CIR", 0x0C}};
   /// Each bit resets what the bit at the same place of the enable register, 0x20 behind it, clocks.
   Register ahb1rstr{"AHB1RSTR", 0x10}, ahb2rstr{"AHB2RSTR", 0x14}, ahb3rstr{"AHB3RSTR", 0x18},

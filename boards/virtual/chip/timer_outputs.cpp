@@ -86,9 +86,18 @@ void Timer::configure_outputs() {
 void Timer::check_break() {
   if (!traits_.breaks || !tim.bdtr.bke.in(bdtr_)) return;
   const bool active = break_input_ == tim.bdtr.bkp.in(bdtr_);
-  if (!active) return;
+  if (active) break_now();
+}
+
+void Timer::break_now() {
   bdtr_ &= ~tim.bdtr.moe.mask();
   raise(tim.sr.bif.mask());
+}
+
+void Timer::clock_failed() {
+  if (!traits_.breaks || !tim.bdtr.bke.in(bdtr_)) return;
+  break_now();
+  configure_outputs();
 }
 
 void Timer::capture(unsigned i) {

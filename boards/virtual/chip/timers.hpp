@@ -2,7 +2,7 @@
 //
 // The counter is not stepped: it runs in ramps (up to the next overflow or underflow) and its value follows
 // from the time. Steps happen only at compare matches that somebody needs and at the ends of ramps.
-// Not modelled: input filters and prescalers, dead time, break of the clock security system, DMA bursts.
+// Not modelled: input filters and prescalers, dead time, DMA bursts.
 #pragma once
 
 #include <array>
@@ -53,6 +53,8 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   void input_changed(unsigned line, bool high);
   /// A pin is connected to this timer; its level so far is no edge.
   void connect_input(unsigned line, bool high);
+  /// The clock security system breaks as the break input does (RM0090, "Using the break function").
+  void clock_failed();
   /// The trigger output of timer `master` rose or, for a level, changed.
   void internal_trigger(unsigned master, bool level, bool is_pulse);
   /// Somebody's interest in this timer's events changed.
@@ -117,6 +119,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   void configure_outputs();
   void configure_channel(unsigned channel);
   void check_break();
+  void break_now();
   void capture(unsigned channel);
   void count_encoder_edge(unsigned changed_channel);
   void trigger_in(bool level, bool is_pulse);
@@ -159,6 +162,9 @@ class Timers {
   bool has_slave(unsigned master) const { return slaves_[master] != 0; }
   void set_slave(unsigned slave, unsigned master, bool listens);
   void plan_again();
+  void clock_failed() {
+    for (auto& timer : timers_) timer.clock_failed();
+  }
 
  private:
   std::deque<Timer> timers_;

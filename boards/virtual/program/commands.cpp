@@ -104,6 +104,7 @@ json status(const json&, Simulation& simulation) {
       {"instructions", counters.instructions},
       {"cycles", counters.cycles},
       {"sleep_share", counters.sleep_share()},
+      {"exception", chip.current_exception()},
       {"processor_clock_Hz", chip.clocks().hclk_Hz},
       {"resets", resets},
       {"watchdog_resets", of(ResetCause::independent_watchdog) + of(ResetCause::window_watchdog)},
@@ -218,6 +219,22 @@ json jump(const json& request, Simulation& simulation) {
   return {};
 }
 
+json stall(const json& request, Simulation& simulation) {
+  simulation.board().chip().stall(ticks(number(request, "for_s", 0.0, 1e3)));
+  return {};
+}
+
+json lose_exception(const json& request, Simulation& simulation) {
+  const double exception = number(request, "exception", 2, exception_numbers - 1);
+  simulation.board().chip().lose_exception(static_cast<unsigned>(exception), truth_value(request, "lost"));
+  return {};
+}
+
+json crystal(const json& request, Simulation& simulation) {
+  simulation.board().chip().let_crystal_swing(truth_value(request, "swings"));
+  return {};
+}
+
 std::string_view name_of(PinLevel level) {
   switch (level) {
     case PinLevel::low: return "low";
@@ -300,6 +317,12 @@ const std::vector<Command>& commands() {
       {"supply", {"voltage_V"}, "of the bridges", supply},
       {"bridge_fault", {"fault"}, "a bridge pulls the fault wire", bridge_fault},
       {"jump", {"address"}, "throw the program counter there, as a flipped bit would", jump},
+      {"stall", {"for_s"}, "the core stands still while all else goes on, as on a bus that does not answer", stall},
+      {"lose_exception",
+       {"exception", "lost"},
+       "it never reaches the core, or does again; 16 is interrupt 0",
+       lose_exception},
+      {"crystal", {"swings"}, "the crystal stops, or swings again", crystal},
       {"hand", {"holds", "target_m", "stiffness_N_per_m", "damping_Ns_per_m"}, "it pulls the probe, or lets go", hand},
       {"hand_path", {"points"}, "minimum jerk between [{\"after_s\":0.5,\"target_m\":[x,y,z]},...]", hand_path},
       {"gimbal", {"angles_rad"}, "turn the stylus: yaw, pitch, roll", gimbal},

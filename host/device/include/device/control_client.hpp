@@ -73,6 +73,9 @@ class ControlClient {
   void supply(double voltage_V);
   void bridge_fault(bool fault);     ///< a bridge pulls the fault wire low, and lets go of it
   void jump(std::uint32_t address);  ///< throws the processor's program counter somewhere, as a flipped bit would
+  void stall(double for_s);          ///< the core stands still, all else goes on
+  void lose_exception(int exception, bool lost);  ///< it never reaches the core, or does again
+  void crystal(bool swings);                      ///< the crystal stops, or swings again
   void hand(const Hand& hand);
   void hand_path(const std::vector<HandWaypoint>& path);  ///< minimum jerk between the waypoints
   void gimbal(const Vector3& angles_rad);                 ///< turns the stylus: yaw, pitch, roll

@@ -115,6 +115,16 @@ class Chip {
   /// Sets the program counter, as a debugger does between two instructions, or a particle that flips a bit of it.
   /// Not from inside run_until().
   void jump(std::uint32_t address);
+  // Faults that are put into it, not from inside run_until(). A reset ends a stall; the others last.
+  /// The core does nothing for this long, as when the bus keeps it waiting; all else goes on.
+  void stall(Ticks duration);
+  /// An exception by number that never reaches the core, or does again.
+  void lose_exception(unsigned exception, bool lost);
+  /// The crystal stops, or swings again.
+  void let_crystal_swing(bool swings);
+  /// The exception that runs; 0 in thread mode.
+  unsigned current_exception() const;
+
   /// From inside a callback: run_until() returns as soon as it can.
   void request_stop();
 

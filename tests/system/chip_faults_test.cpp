@@ -1,0 +1,156 @@
+// What the flashed image does when a part of the chip fails with the bridges on.
+#include <doctest/doctest.h>
+
+#include <string_view>
+
+#include "hazards.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using protocol::Fault;
+using protocol::Parameter;
+using protocol::State;
+
+namespace {
+
+/// Its number as an exception: position 18 of RM0090's vector table.
+constexpr int control_interrupt = 16 + 18;
+
+/// Whether a motor got voltage at any of 60 instants of a control period, three of the bridges' own.
+bool any_motor_driven(device::ControlClient& control) {
+  bool driven = false;
+  for (int i = 0; i < 60; ++i) {
+    control.run(control_period_s / 60);
+    const auto truth = control.truth();
+    for (const auto& legs : truth.at("bridge_legs")) driven |= legs.at(0) != legs.at(1);
+  }
+  return driven;
+}
+
+/// Stops board time while the control interrupt runs, behind its first stores.
+void run_into_control_interrupt(BoardRig& rig) {
+  const auto exception = [&] { return rig.control.status().all.at("exception").get<int>(); };
+  while (exception() == control_interrupt) rig.control.run(1e-6);
+  while (exception() != control_interrupt) rig.control.run(1e-6);
+  rig.control.run(2e-6);
+  REQUIRE(exception() == control_interrupt);
+}
+
+void check_fault_after_restart(BoardRig& rig, Fault fault) {
+  reconnect(rig);
+  rig.run(0.3);
+  CHECK(rig.pose().state == State::fault);
+  CHECK(rig.pose().fault == fault);
+}
+
+void check_bridges_off(BoardRig& rig) {
+  CHECK_FALSE(bridges_enabled(rig.control));
+  CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
+}
+
+}  // namespace
+
+TEST_CASE("a control interrupt that never ends leaves the motors without voltage until the watchdog bites") {
+  BoardRig rig(device::SimulationMode::exact);
+  press_into_wall(rig);
+  REQUIRE(any_motor_driven(rig.control));
+  run_into_control_interrupt(rig);
+  rig.control.jump(endless_loop_address());
+  rig.control.run(control_period_s);  // the duties that it wrote first become active
+  CHECK(restarts(rig.control) == 0);
+  CHECK_FALSE(any_motor_driven(rig.control));
+  rig.control.run(0.04);
+  CHECK(rig.control.status().all.at("watchdog_resets") == 1);
+  check_bridges_off(rig);
+  check_fault_after_restart(rig, Fault::watchdog);
+}
+
+TEST_CASE("a control interrupt that does not finish within its period is a fault") {
+  BoardRig rig;
+  press_into_wall(rig);
+  run_into_control_interrupt(rig);
+  rig.control.stall(1.2 * control_period_s);
+  rig.control.run(3 * control_period_s);
+  check_bridges_off(rig);
+  rig.run(0.02);
+  CHECK(rig.pose().state == State::fault);
+  CHECK(rig.pose().fault == Fault::servo_overrun);
+  CHECK(restarts(rig.control) == 0);
+}
+
+TEST_CASE("a processor that stands still for a moment while no interrupt runs is no fault") {
+  BoardRig rig;
+  press_into_wall(rig);
+  run_into_control_interrupt(rig);
+  while (rig.control.status().all.at("exception") == control_interrupt) rig.control.run(1e-6);
+  rig.control.stall(2e-6);
+  rig.run(0.02);
+  CHECK(rig.pose().state == State::active);
+}
+
+TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of the firmware lives") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.lose_exception(control_interrupt, true);
+  rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
+  CHECK(rig.control.status().all.at("watchdog_resets") == 1);
+  check_bridges_off(rig);
+  rig.control.lose_exception(control_interrupt, false);
+  rig.control.run(0.04);  // the restart may have met the dead interrupt too
+  check_fault_after_restart(rig, Fault::watchdog);
+}
+
+TEST_CASE("a crystal that stops switches the bridges off at once, and the board does not start without it") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.crystal(false);
+  rig.control.run(2e-6);
+  check_bridges_off(rig);
+  rig.control.run(0.05);
+  CHECK(restarts(rig.control) == 1);  // by the fault handler; without a crystal nothing feeds or starts a watchdog
+  check_bridges_off(rig);
+  CHECK_FALSE(rig.board.find());
+
+  rig.control.crystal(true);
+  rig.control.reset();
+  reconnect(rig);
+  rig.run_until([](const auto& pose) { return pose.state == State::ready || pose.state == State::unreferenced; });
+}
+
+TEST_CASE("a host that gives signs of life keeps the force, and loses it without them") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.set({{Parameter::host_timeout_s, 0.05f}});
+  for (int i = 0; i < 20; ++i) {
+    rig.command(protocol::Command::heartbeat);
+    rig.run_silent(0.02);
+  }
+  CHECK(rig.pose().state == State::active);
+  rig.run_silent(0.1);
+  CHECK(rig.pose().state == State::fault);
+  CHECK(rig.pose().fault == Fault::host_silent);
+  check_bridges_off(rig);
+}
+
+TEST_CASE("force that is switched off leaves no leg of a bridge on") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.command(protocol::Command::disable_force);
+  rig.run(0.02);
+  CHECK(rig.pose().state == State::ready);
+  check_bridges_off(rig);
+}
+
+TEST_CASE("after a bridge's fault is cleared the force comes on again and stays") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.bridge_fault(true);
+  rig.run(0.02);
+  rig.control.bridge_fault(false);
+  rig.command(protocol::Command::clear_fault);
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  rig.command(protocol::Command::enable_force);
+  rig.run(0.3);
+  CHECK(rig.pose().state == State::active);
+  CHECK(any_motor_driven(rig.control));
+}
