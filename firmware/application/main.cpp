@@ -8,7 +8,9 @@
 #include <usb/device.hpp>
 
 #include "handlers.hpp"
+#include "main_loop.hpp"
 #include "parts.hpp"
+#include "start_report.hpp"
 
 namespace inkwell::application {
 namespace {
@@ -19,46 +21,6 @@ namespace {
     status_led.set(on);
     drivers::wait(processor_Hz / 20);
   }
-}
-
-void report_start(const drivers::ResetCause& cause, const std::optional<drivers::CrashRecord>& crash) {
-  console.start();
-  console.write("inkwell " INKWELL_VERSION ", reset cause ");
-  console.write_hexadecimal(cause.flags >> 24);
-  if (crash) {
-    console.write(", exception ");
-    console.write_hexadecimal(crash->exception);
-    console.write(" at ");
-    console.write_hexadecimal(crash->program_counter);
-    console.write(" from ");
-    console.write_hexadecimal(crash->link_register);
-    console.write(" status ");
-    console.write_hexadecimal(crash->configurable_fault_status);
-    console.write(" ");
-    console.write_hexadecimal(crash->hard_fault_status);
-    console.write(" address ");
-    console.write_hexadecimal(crash->fault_address);
-  }
-  console.write("\r\n");
-}
-
-drivers::LedPattern led_pattern(protocol::State state) {
-  switch (state) {
-    case protocol::State::starting:
-    case protocol::State::unreferenced: return drivers::LedPattern::slow_blink;
-    case protocol::State::ready:
-    case protocol::State::active: return drivers::LedPattern::steady;
-    case protocol::State::fault: break;
-  }
-  return drivers::LedPattern::fast_blink;
-}
-
-/// The watchdog is fed by the main loop, and only if the control interrupt ran: it bites when either hangs.
-void feed_watchdog() {
-  static std::uint32_t fed_at_periods = 0;
-  const std::uint32_t periods = completed_periods.load();
-  if (periods != fed_at_periods) watchdog.feed();
-  fed_at_periods = periods;
 }
 
 }  // namespace
@@ -103,10 +65,10 @@ int main() {
   watchdog.start();
 
   for (;;) {
-    host_link.scope.pack();
     usb_device.poll();
+    host_link.scope.pack();
     feed_watchdog();
-    status_led.show(led_pattern(host_link.status.state()), completed_periods.load());
+    show_state();
     drivers::wait_for_interrupt();
   }
 }

@@ -1,0 +1,12 @@
+// What the main loop does each time that it comes round, beside the USB.
+#pragma once
+
+namespace inkwell::application {
+
+/// The watchdog is fed by the main loop, and only if the control interrupt ran: it bites when either hangs.
+void feed_watchdog();
+
+/// By the status LED.
+void show_state();
+
+}  // namespace inkwell::application

@@ -1,0 +1,13 @@
+// What the console says first.
+#pragma once
+
+#include <drivers/crash_record.hpp>
+#include <drivers/system.hpp>
+#include <optional>
+
+namespace inkwell::application {
+
+/// Starts the console and writes version, cause of the reset, and, if there was one, where the crash was.
+void report_start(const drivers::ResetCause& cause, const std::optional<drivers::CrashRecord>& crash);
+
+}  // namespace inkwell::application
