@@ -84,6 +84,7 @@ def known_differences() -> list[Known]:
         Known("SCB", "VTOR", "TBLOFF", None, "the SVD has bits 9 to 29; ARMv7-M has 7 to 31, with 1 to 3 kept at 0"),
         Known("SCB", "SCR", "SEVONPEND", "SEVEONPEND", "a misspelling in the SVD"),
         Known("SCB", "CCR", "UNALIGN_TRP", "UNALIGN__TRP", "a misspelling in the SVD"),
+        Known("SCB", "CFSR", "DACCVIOL", "IACCVIOL", "the SVD calls it IACCVIOL; ARMv7-M, B3.2.15: DACCVIOL"),
         Known("SCB", "CFSR", "IACCVIOL", None, "the SVD has it at bit 1; ARMv7-M, B3.2.15: bit 0"),
         Known("SCB", "HFSR", "DEBUGEVT", "DEBUG_VT", "ARMv7-M calls it DEBUGEVT"),
         Known("SCB", "DFSR", None, None, "not in the SVD; ARMv7-M: 0xE000ED30"),

@@ -37,6 +37,11 @@ constexpr Request usart_requests[] = {
     {6, 0, 2, 1, 5}, {6, 0, 2, 2, 5}, {6, 1, 2, 6, 5}, {6, 1, 2, 7, 5},
 };
 
+constexpr Request spi_requests[] = {
+    {1, 0, 2, 0, 3}, {1, 0, 2, 2, 3}, {1, 1, 2, 3, 3}, {1, 1, 2, 5, 3}, {2, 0, 1, 3, 0},
+    {2, 1, 1, 4, 0}, {3, 0, 1, 0, 0}, {3, 0, 1, 2, 0}, {3, 1, 1, 5, 0}, {3, 1, 1, 7, 0},
+};
+
 constexpr unsigned position_of(unsigned number, unsigned stream) {
   constexpr unsigned positions[2][8] = {{11, 12, 13, 14, 15, 16, 17, 47}, {56, 57, 58, 59, 60, 68, 69, 70}};
   return positions[number - 1][stream];
@@ -201,6 +206,7 @@ Dma::Dma(Machine& machine, Bus& bus) : first_(machine, bus, 1), second_(machine,
 
 bool Dma::adc_request(unsigned index) { return ask(*this, adc_requests, index, 0); }
 bool Dma::timer_request(unsigned timer, unsigned source) { return ask(*this, timer_requests, timer, source); }
+bool Dma::spi_request(unsigned number, bool transmit) { return ask(*this, spi_requests, number, transmit ? 1 : 0); }
 bool Dma::usart_request(unsigned number, bool transmit) { return ask(*this, usart_requests, number, transmit ? 1 : 0); }
 
 }  // namespace inkwell::virtual_board

@@ -53,6 +53,7 @@ class Dma {
   /// `source` 0 is the update, 1..4 the channels.
   bool timer_request(unsigned timer, unsigned source);
   bool usart_request(unsigned number, bool transmit);
+  bool spi_request(unsigned number, bool transmit);
 
  private:
   DmaController first_, second_;

@@ -41,6 +41,13 @@ void Exti::pin_changed(unsigned port, unsigned pin, bool high) {
   if (((high ? rising_ : falling_) >> pin & 1) != 0 && syscfg_.port_of(pin) == port) edge(pin);
 }
 
+void Exti::internal_line(unsigned line, bool high) {
+  const std::uint32_t bit = 1u << line;
+  if (((internal_ & bit) != 0) == high) return;
+  internal_ ^= bit;
+  if (((high ? rising_ : falling_) & bit) != 0) edge(line);
+}
+
 std::uint32_t Exti::stored(std::uint32_t offset) const {
   switch (offset) {
     case map.imr: return interrupt_mask_;

@@ -50,6 +50,8 @@ class Exti final : public RegisterBlock {
   explicit Exti(Machine& machine) : machine_(machine), syscfg_(*this) { machine.exti = this; }
   void reset() override;
   void pin_changed(unsigned port, unsigned pin, bool high);
+  /// A line that comes from inside of the chip, 16 to 22.
+  void internal_line(unsigned line, bool high);
   Peripheral& syscfg() { return syscfg_; }
 
  protected:
@@ -85,6 +87,7 @@ class Exti final : public RegisterBlock {
   Machine& machine_;
   Syscfg syscfg_;
   std::uint32_t interrupt_mask_ = 0, event_mask_ = 0, rising_ = 0, falling_ = 0, software_ = 0, pending_ = 0;
+  std::uint32_t internal_ = 0;  ///< levels of the internal lines
 };
 
 }  // namespace inkwell::virtual_board

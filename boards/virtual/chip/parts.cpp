@@ -3,9 +3,13 @@
 #include <cstdio>
 #include <cstring>
 
+#include "can.hpp"
 #include "crc.hpp"
+#include "dac.hpp"
+#include "i2c.hpp"
 #include "power.hpp"
 #include "random_numbers.hpp"
+#include "rtc.hpp"
 #include "watchdogs.hpp"
 
 namespace inkwell::virtual_board {
@@ -49,14 +53,22 @@ constexpr UsartPlace usart_places[6] = {
     {"UART5", {0x4000'5000, gate(map.apb1enr, map.apb1enr.uart5en)}, 53},
     {"USART6", {0x4001'1400, gate(map.apb2enr, map.apb2enr.usart6en)}, 71},
 };
+struct InterruptPlace {
+  Place place;
+  unsigned position;  ///< in the vector table, of the first interrupt
+};
+constexpr InterruptPlace spi_places[3] = {{{0x4001'3000, gate(map.apb2enr, map.apb2enr.spi1en)}, 35},
+                                          {{0x4000'3800, gate(map.apb1enr, map.apb1enr.spi2en)}, 36},
+                                          {{0x4000'3C00, gate(map.apb1enr, map.apb1enr.spi3en)}, 51}};
+constexpr InterruptPlace i2c_places[3] = {{{0x4000'5400, gate(map.apb1enr, map.apb1enr.i2cen, 0)}, 31},
+                                          {{0x4000'5800, gate(map.apb1enr, map.apb1enr.i2cen, 1)}, 33},
+                                          {{0x4000'5C00, gate(map.apb1enr, map.apb1enr.i2cen, 2)}, 72}};
+constexpr InterruptPlace can_places[2] = {{{0x4000'6400, gate(map.apb1enr, map.apb1enr.canen, 0)}, 19},
+                                          {{0x4000'6800, gate(map.apb1enr, map.apb1enr.canen, 1)}, 63}};
 /// Clocks of blocks that come from outside of this library.
 constexpr Place outside_places[] = {
-    {0x5000'0000, gate(map.ahb2enr, map.ahb2enr.otgfsen)},  {0x5005'0000, gate(map.ahb2enr, map.ahb2enr.dcmien)},
-    {0x4000'3800, gate(map.apb1enr, map.apb1enr.spi2en)},   {0x4000'3C00, gate(map.apb1enr, map.apb1enr.spi3en)},
-    {0x4001'3000, gate(map.apb2enr, map.apb2enr.spi1en)},   {0x4000'5400, gate(map.apb1enr, map.apb1enr.i2cen, 0)},
-    {0x4000'5800, gate(map.apb1enr, map.apb1enr.i2cen, 1)}, {0x4000'5C00, gate(map.apb1enr, map.apb1enr.i2cen, 2)},
-    {0x4000'6400, gate(map.apb1enr, map.apb1enr.canen, 0)}, {0x4000'6800, gate(map.apb1enr, map.apb1enr.canen, 1)},
-    {0x4000'7400, gate(map.apb1enr, map.apb1enr.dacen)},
+    {0x5000'0000, gate(map.ahb2enr, map.ahb2enr.otgfsen)},
+    {0x5005'0000, gate(map.ahb2enr, map.ahb2enr.dcmien)},
 };
 
 }  // namespace
@@ -84,9 +96,13 @@ ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(cir
   for (unsigned i = 0; i < std::size(usart_places); ++i)
     usarts.emplace_back(machine, i + 1, usart_places[i].position,
                         usart_places[i].place.clock.enable_register == map.apb2enr);
+  for (unsigned i = 0; i < std::size(spi_places); ++i)
+    spis.emplace_back(machine, events, i + 1, spi_places[i].position,
+                      spi_places[i].place.clock.enable_register == map.apb2enr);
   for (unsigned number : {1u, 2u})
     dma.controller(number).on_enabled = [this] {
       for (auto& usart : usarts) usart.serve_dma();
+      for (auto& one : spis) one.serve_dma();
     };
   put_peripherals();
 
@@ -118,6 +134,16 @@ void ChipParts::put_peripherals() {
   put(0x4002'6400, "DMA2", dma.controller(2), gate(map.ahb1enr, map.ahb1enr.dmaen, 1));
   for (unsigned i = 0; i < std::size(usart_places); ++i)
     put(usart_places[i].place.base, usart_places[i].name, usarts[i], usart_places[i].place.clock);
+  for (unsigned i = 0; i < std::size(spi_places); ++i)
+    put(spi_places[i].place.base, "SPI" + std::to_string(i + 1), spis[i], spi_places[i].place.clock);
+  for (unsigned i = 0; i < std::size(i2c_places); ++i)
+    put(i2c_places[i].place.base, "I2C" + std::to_string(i + 1),
+        make<I2c>(machine, events, i + 1, i2c_places[i].position), i2c_places[i].place.clock);
+  for (unsigned i = 0; i < std::size(can_places); ++i)
+    put(can_places[i].place.base, "CAN" + std::to_string(i + 1),
+        make<Can>(machine, events, i + 1, can_places[i].position), can_places[i].place.clock);
+  put(0x4000'7400, "DAC", make<Dac>(machine), gate(map.apb1enr, map.apb1enr.dacen));
+  put(0x4000'2800, "RTC", make<RealTimeClock>(machine, events));
   for (unsigned i = 0; i < Pins::ports; ++i)
     put(0x4002'0000 + 0x400 * i, "GPIO" + std::string(1, static_cast<char>('A' + i)), pins.port(i),
         gate(map.ahb1enr, map.ahb1enr.gpioen, i));

@@ -17,6 +17,7 @@
 #include "pins.hpp"
 #include "processor.hpp"
 #include "rcc.hpp"
+#include "spi.hpp"
 #include "system_control.hpp"
 #include "timers.hpp"
 #include "usart.hpp"
@@ -50,6 +51,7 @@ struct ChipParts : ChipState {
   Timers timers{machine};
   Pins pins{machine};
   std::deque<Usart> usarts;  ///< by number - 1
+  std::deque<Spi> spis;      ///< by number - 1
   Processor processor{machine, bus};
   Execution execution{machine, processor, bus, system_control, rcc};
   ChipDebugPort debug_port{machine, processor, execution, bus, system_control};

@@ -120,6 +120,21 @@ std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
   return divider < 2 ? 0 : static_cast<std::uint32_t>(oscillator_Hz / divider);
 }
 
+std::uint32_t Rcc::real_time_clock_Hz() const {
+  const std::uint32_t domain = words_[map.bdcr / 4];
+  if (!map.bdcr.rtcen.in(domain)) return 0;
+  constexpr std::uint32_t low_speed_external_Hz = 32'768;
+  switch (map.bdcr.rtcsel.of(domain)) {
+    case 1: return is_ready(lse) ? low_speed_external_Hz : 0;
+    case 2: return is_ready(lsi) ? low_speed_internal_Hz : 0;
+    case 3: {
+      const std::uint32_t divider = map.cfgr.rtcpre.of(words_[map.cfgr / 4]);
+      return is_ready(hse) && divider >= 2 ? machine_.options.crystal_Hz / divider : 0;
+    }
+    default: return 0;
+  }
+}
+
 void Rcc::start_oscillators() {
   const Ticks now = machine_.timeline.now();
   Ticks next = never;

@@ -17,6 +17,8 @@ class Rcc final : public RegisterBlock, public TimedPart {
 
   void reset() override;
   /// Flags of RCC_CSR, after reset().
+  /// What RCC_BDCR gives the real-time clock, once its oscillator is ready; otherwise 0.
+  std::uint32_t real_time_clock_Hz() const;
   void record_reset(ResetCause cause);
   /// To be looked at by the bus: a peripheral without its clock does not answer.
   const std::uint32_t* enable_register(std::uint32_t offset) const { return &words_[offset / 4]; }

@@ -226,4 +226,39 @@ TEST_SUITE("virtual chip: peripherals") {
     test.run_for(0.001);
     CHECK(test.result(8) == ('o' << 8 | 'k'));
   }
+
+  TEST_CASE("with nothing connected, what drivers wait for comes, or their errors do") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("unconnected", mode);
+      test.run_for(0.1);
+      REQUIRE(test.result(0) == finished);
+      CHECK(test.result(1) == 1);  // SPI: the frame ends, and nothing but ones came
+      CHECK(test.result(2) == 0xFF);
+      CHECK(test.result(3) == 1);
+      CHECK(test.result(4) >= 5 * 8 * 8);  // five frames of eight bits at PCLK / 8
+      CHECK(test.result(4) < 5 * 8 * 8 + 200);
+      CHECK(test.result(5) == 2 * 0xFF);
+      CHECK(test.result(6) == 1);  // I2C: the start comes about, the address is not acknowledged
+      CHECK(test.result(7) == 1);
+      CHECK(test.result(8) == 1u << 10);
+      CHECK(test.result(9) == 1);
+      CHECK(test.result(10) == 1);  // CAN: both modes, then errors up to error passive
+      CHECK(test.result(11) == 1);
+      CHECK(test.result(12) == 1);
+      CHECK(test.result(13) == (128u << 16 | 3u << 4 | 3));
+      CHECK(test.result(14) == 1);
+      CHECK(test.result(15) == 0x123);  // DAC: at once, or when triggered
+      CHECK(test.result(16) == 0);
+      CHECK(test.result(17) == 0xABC);
+      CHECK(test.result(20) == 1);  // RTC: alarm at midnight before a leap day, a Thursday
+      CHECK(test.result(21) == 1);
+      CHECK(test.result(22) == 0);
+      CHECK(test.result(23) == 0x24'8229);
+      CHECK(test.result(24) / 2 == 3);  // the wake-up timer, every 16 ms
+      CHECK(test.result(25) == 0xB0);
+      CHECK(test.result(26) == 31);  // protected again
+      CHECK(test.log.empty());
+    }
+  }
 }

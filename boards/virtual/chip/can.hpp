@@ -1,0 +1,177 @@
+// CAN1 and CAN2 at a transceiver without a bus (RM0090, "Controller area network"): the controller enters and leaves
+// its modes; what it sends nobody acknowledges, so the errors count up to error passive. Filters are kept, nothing
+// comes in; loop-back is not modelled.
+#pragma once
+
+#include <utility>
+
+#include "bus.hpp"
+
+namespace inkwell::virtual_board {
+
+struct CanRegisters {
+  struct : Register {
+    Field inrq{"INRQ", 0}, sleep{"SLEEP", 1}, txfp{"TXFP", 2}, rflm{"RFLM", 3}, nart{"NART", 4}, awum{"AWUM", 5},
+        abom{"ABOM", 6}, ttcm{"TTCM", 7}, reset{"RESET", 15, 1, Access::rs}, dbf{"DBF", 16};
+  } mcr{{"MCR", 0x00, 0x0001'0002}};
+  struct : Register {
+    Field inak{"INAK", 0, 1, Access::r}, slak{"SLAK", 1, 1, Access::r}, erri{"ERRI", 2, 1, Access::rc_w1},
+        wkui{"WKUI", 3, 1, Access::rc_w1}, slaki{"SLAKI", 4, 1, Access::rc_w1}, txm{"TXM", 8, 1, Access::r},
+        rxm{"RXM", 9, 1, Access::r}, samp{"SAMP", 10, 1, Access::r}, rx{"RX", 11, 1, Access::r};
+  } msr{{"MSR", 0x04, 0x0000'0C02}};
+  struct : Register {
+    Field rqcp{"RQCP#", 0, 1, Access::rc_w1, {3, 8, 0}}, txok{"TXOK#", 1, 1, Access::rc_w1, {3, 8, 0}},
+        alst{"ALST#", 2, 1, Access::rc_w1, {3, 8, 0}}, terr{"TERR#", 3, 1, Access::rc_w1, {3, 8, 0}},
+        abrq{"ABRQ#", 7, 1, Access::rs, {3, 8, 0}}, code{"CODE", 24, 2, Access::r},
+        tme{"TME#", 26, 1, Access::r, {3, 1, 0}}, low{"LOW#", 29, 1, Access::r, {3, 1, 0}};
+  } tsr{{"TSR", 0x08, 0x1C00'0000}};
+  Register rfr{"RF#R", 0x0C, 0, {2, 4, 0}};
+  struct : Register {
+    Field tmeie{"TMEIE", 0}, fmpie0{"FMPIE0", 1}, ffie0{"FFIE0", 2}, fovie0{"FOVIE0", 3}, fmpie1{"FMPIE1", 4},
+        ffie1{"FFIE1", 5}, fovie1{"FOVIE1", 6}, ewgie{"EWGIE", 8}, epvie{"EPVIE", 9}, bofie{"BOFIE", 10},
+        lecie{"LECIE", 11}, errie{"ERRIE", 15}, wkuie{"WKUIE", 16}, slkie{"SLKIE", 17};
+  } ier{{"IER", 0x14}};
+  struct : Register {
+    Field ewgf{"EWGF", 0, 1, Access::r}, epvf{"EPVF", 1, 1, Access::r}, boff{"BOFF", 2, 1, Access::r}, lec{"LEC", 4, 3},
+        tec{"TEC", 16, 8, Access::r}, rec{"REC", 24, 8, Access::r};
+  } esr{{"ESR", 0x18}};
+  struct : Register {
+    Field brp{"BRP", 0, 10}, ts1{"TS1", 16, 4}, ts2{"TS2", 20, 3}, sjw{"SJW", 24, 2}, lbkm{"LBKM", 30},
+        silm{"SILM", 31};
+  } btr{{"BTR", 0x1C}};
+  struct : Register {
+    Field txrq{"TXRQ", 0}, rtr{"RTR", 1}, ide{"IDE", 2}, exid{"EXID", 3, 18}, stid{"STID", 21, 11};
+  } tir{{"TI#R", 0x180, 0, {3, 0x10, 0}}};
+  Register tdtr{"TDT#R", 0x184, 0, {3, 0x10, 0}}, tdlr{"TDL#R", 0x188, 0, {3, 0x10, 0}},
+      tdhr{"TDH#R", 0x18C, 0, {3, 0x10, 0}};
+  Register fmr{"FMR", 0x200, 0x2A1C'0E01}, fm1r{"FM1R", 0x204}, fs1r{"FS1R", 0x20C}, ffa1r{"FFA1R", 0x214},
+      fa1r{"FA1R", 0x21C};
+  Register first_filter{"F#R1", 0x240, 0, {28, 8, 0}}, second_filter{"F#R2", 0x244, 0, {28, 8, 0}};
+};
+inline constexpr CanRegisters can;
+
+class Can final : public RegisterBlock {
+ public:
+  /// Interrupts stand at four positions in a row: transmission, both FIFOs, errors and modes.
+  Can(Machine& machine, Scheduler& events, unsigned number, unsigned first_position)
+      : machine_(machine), events_(events), number_(number), first_position_(first_position) {}
+  void reset() override {
+    words_ = {};
+    for (const auto& one : {Register{can.mcr}, Register{can.msr}, Register{can.tsr}, Register{can.fmr}})
+      word(one) = one.reset_value;
+    if (changing_ != 0) events_.cancel(std::exchange(changing_, 0));
+    if (sending_ != 0) events_.cancel(std::exchange(sending_, 0));
+    update();
+  }
+
+ protected:
+  std::uint32_t read_word(std::uint32_t offset) override { return stored(offset); }
+  void write_word(std::uint32_t offset, std::uint32_t value) override {
+    if (offset >= bytes) return machine_.log.note("CAN" + std::to_string(number_), offset, true, value);
+    if (can.tir.covers(offset)) {
+      word(offset) = value & writable(can.tir);
+      if (can.tir.txrq.in(value)) word(can.tsr) &= ~can.tsr.tme.mask(can.tir.index(offset));
+      send();
+    } else if (offset == can.mcr) {
+      if (can.mcr.reset.in(value)) return reset();
+      word(can.mcr) = value & writable(can.mcr);
+      change_mode();
+    } else if (offset == can.msr) {
+      word(can.msr) &= ~(value & bits_of(can.msr, Access::rc_w1));
+    } else if (offset == can.tsr) {
+      write_transmit_status(value);
+    } else if (offset == can.esr) {
+      word(can.esr) = (word(can.esr) & ~can.esr.lec.mask()) | (value & can.esr.lec.mask());
+    } else if (!can.rfr.covers(offset)) {
+      word(offset) = value;
+      if (offset == can.btr && can.btr.lbkm.in(value))
+        machine_.log.say_once("CAN" + std::to_string(number_) + "_BTR.LBKM: loop-back is not modelled");
+    }
+    update();
+  }
+  std::uint32_t stored(std::uint32_t offset) const override { return offset < bytes ? words_[offset / 4] : 0; }
+  std::span<const MapEntry> registers() const override { return shown<can>(); }
+
+ private:
+  static constexpr std::uint32_t bytes = 0x320;
+  std::uint32_t& word(std::uint32_t offset) { return words_[offset / 4]; }
+  Ticks bits(unsigned count) {
+    const std::uint32_t timing = word(can.btr);
+    const std::uint64_t quanta = 3 + can.btr.ts1.of(timing) + can.btr.ts2.of(timing);
+    return machine_.clocks.pclk1.duration(count * quanta * (can.btr.brp.of(timing) + 1));
+  }
+  // A mode is entered when the bus, which is always recessive, has been so for eleven bits.
+  void change_mode() {
+    if (changing_ != 0) events_.cancel(changing_);
+    changing_ = events_.at(machine_.timeline.now() + bits(11), [this] {
+      changing_ = 0;
+      const std::uint32_t mode = word(can.mcr);
+      const bool sleeps = can.mcr.sleep.in(mode);
+      word(can.msr) &= ~(can.msr.inak.mask() | can.msr.slak.mask());
+      word(can.msr) |= can.msr.slak.with(sleeps) | can.msr.inak.with(!sleeps && can.mcr.inrq.in(mode));
+      send();
+      update();
+    });
+  }
+  void write_transmit_status(std::uint32_t value) {
+    word(can.tsr) &= ~(value & bits_of(can.tsr, Access::rc_w1));
+    for (unsigned i = 0; i < 3; ++i) {
+      // A completed request takes its result along; an abort ends what nobody acknowledges.
+      if (can.tsr.rqcp.in(value, i))
+        word(can.tsr) &= ~(can.tsr.txok.mask(i) | can.tsr.alst.mask(i) | can.tsr.terr.mask(i));
+      if (can.tsr.abrq.in(value, i)) give_up(i);
+    }
+  }
+  void give_up(unsigned mailbox) {
+    if (can.tsr.tme.in(word(can.tsr), mailbox)) return;
+    word(can.tsr) |= can.tsr.tme.mask(mailbox) | can.tsr.rqcp.mask(mailbox);
+    word(can.tir + mailbox * can.tir.stride) &= ~can.tir.txrq.mask();
+  }
+  void send() {
+    const bool waits = (word(can.tsr) & can.tsr.tme.masks()) != can.tsr.tme.masks();
+    const bool on_bus = (word(can.msr) & (can.msr.inak.mask() | can.msr.slak.mask())) == 0;
+    if (!waits || !on_bus || sending_ != 0) return;
+    constexpr unsigned shortest_frame_bits = 47;
+    sending_ = events_.at(machine_.timeline.now() + bits(shortest_frame_bits), [this] {
+      sending_ = 0;
+      miss_acknowledgement();
+      send();
+      update();
+    });
+  }
+  // Each such error counts 8, until the controller is error passive: then it counts no more (ISO 11898-1).
+  void miss_acknowledgement() {
+    constexpr std::uint32_t no_acknowledgement = 3, warning = 96, passive = 128;
+    std::uint32_t& errors = word(can.esr);
+    const std::uint32_t count = can.esr.tec.of(errors) + (can.esr.epvf.in(errors) ? 0 : 8);
+    errors = can.esr.lec.with(no_acknowledgement) | can.esr.tec.with(count) | can.esr.ewgf.with(count >= warning) |
+             can.esr.epvf.with(count >= passive);
+    const std::uint32_t enables = word(can.ier);
+    const bool told = can.ier.lecie.in(enables) || (can.ier.ewgie.in(enables) && count == warning) ||
+                      (can.ier.epvie.in(enables) && count == passive);
+    if (told && can.ier.errie.in(enables)) word(can.msr) |= can.msr.erri.mask();
+    if (!can.mcr.nart.in(word(can.mcr))) return;
+    for (unsigned i = 0; i < 3; ++i)
+      if (!can.tsr.tme.in(word(can.tsr), i)) {
+        give_up(i);
+        word(can.tsr) |= can.tsr.terr.mask(i);
+        return;
+      }
+  }
+  void update() {
+    const std::uint32_t enables = word(can.ier), status = word(can.msr);
+    machine_.nvic.set_source(first_position_, 0,
+                             can.ier.tmeie.in(enables) && (word(can.tsr) & can.tsr.rqcp.masks()) != 0);
+    machine_.nvic.set_source(first_position_ + 3, 0,
+                             can.msr.erri.in(status) || (can.ier.wkuie.in(enables) && can.msr.wkui.in(status)) ||
+                                 (can.ier.slkie.in(enables) && can.msr.slaki.in(status)));
+  }
+
+  Machine& machine_;
+  Scheduler& events_;
+  unsigned number_, first_position_;
+  std::array<std::uint32_t, bytes / 4> words_{};
+  Scheduler::Id changing_ = 0, sending_ = 0;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,232 @@
+#include "rtc.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "exti.hpp"
+#include "rcc.hpp"
+
+namespace inkwell::virtual_board {
+namespace {
+
+constexpr unsigned alarm_line = 17, wake_up_line = 22;
+constexpr std::int64_t seconds_per_day = 86'400;
+constexpr unsigned unlocked = 2;
+
+constexpr std::uint32_t decimal(unsigned number) { return number / 10 << 4 | number % 10; }
+constexpr unsigned number_of(std::uint32_t decimals) { return (decimals >> 4) * 10 + (decimals & 15); }
+constexpr auto year_2000 = std::chrono::sys_days(std::chrono::year(2000) / 1 / 1);
+
+}  // namespace
+
+void RealTimeClock::reset() {
+  control_ = unlock_step_ = 0;
+  status_ = 0;
+  prescaler_ = rtc.prer.reset_value;
+  reload_ = rtc.wutr.reset_value;
+  written_time_ = rtc.tr.reset_value;
+  written_date_ = rtc.dr.reset_value;
+  alarms_ = {};
+  backup_ = {};
+  set_to_s_ = 0;
+  set_at_ = synchronised_at_ = initialised_at_ = machine_.timeline.now();
+  for (auto* planned : {&wake_up_, &second_})
+    if (*planned != 0) events_.cancel(std::exchange(*planned, 0));
+  update();
+}
+
+Clock RealTimeClock::clock() const { return Clock::of(machine_.rcc->real_time_clock_Hz()); }
+
+std::uint64_t RealTimeClock::cycles_per_second() const {
+  return std::uint64_t{rtc.prer.prediv_a.of(prescaler_) + 1} * (rtc.prer.prediv_s.of(prescaler_) + 1);
+}
+
+std::uint64_t RealTimeClock::cycles() const {
+  return rtc.isr.init.in(status_) ? 0 : clock().cycles_in(machine_.timeline.now() - set_at_);
+}
+
+std::uint32_t RealTimeClock::time_register() const {
+  const std::int64_t now_s = set_to_s_ + static_cast<std::int64_t>(cycles() / cycles_per_second());
+  const auto of_day = static_cast<unsigned>(now_s % seconds_per_day);
+  unsigned hour = of_day / 3600;
+  const bool twelve = rtc.cr.fmt.in(control_), afternoon = hour >= 12;
+  if (twelve) hour = (hour + 11) % 12 + 1;
+  return decimal(hour) << 16 | decimal(of_day / 60 % 60) << 8 | decimal(of_day % 60) |
+         rtc.tr.pm.with(twelve && afternoon);
+}
+
+std::uint32_t RealTimeClock::date_register() const {
+  const std::int64_t now_s = set_to_s_ + static_cast<std::int64_t>(cycles() / cycles_per_second());
+  const auto day = year_2000 + std::chrono::days(now_s / seconds_per_day);
+  const std::chrono::year_month_day date(day);
+  return decimal(static_cast<unsigned>(static_cast<int>(date.year()) % 100)) << 16 |
+         rtc.dr.wdu.with(std::chrono::weekday(day).iso_encoding()) | decimal(static_cast<unsigned>(date.month())) << 8 |
+         decimal(static_cast<unsigned>(date.day()));
+}
+
+// The day of the week follows from the date; one that was set otherwise is not kept.
+void RealTimeClock::set_calendar() {
+  using namespace std::chrono;
+  const auto date = year(2000 + static_cast<int>(number_of(written_date_ >> 16 & 0xFF))) /
+                    static_cast<int>(number_of(written_date_ >> 8 & 0x1F)) /
+                    static_cast<int>(number_of(written_date_ & 0x3F));
+  unsigned hour = number_of(written_time_ >> 16 & 0x3F);
+  if (rtc.cr.fmt.in(control_)) hour = hour % 12 + (rtc.tr.pm.in(written_time_) ? 12 : 0);
+  set_to_s_ = date.ok() ? (sys_days(date) - year_2000).count() * seconds_per_day : 0;
+  set_to_s_ += hour * 3600 + number_of(written_time_ >> 8 & 0x7F) * 60 + number_of(written_time_ & 0x7F);
+  set_at_ = machine_.timeline.now();
+}
+
+std::uint32_t RealTimeClock::stored(std::uint32_t offset) const {
+  if (rtc.bkpr.covers(offset)) return backup_[rtc.bkpr.index(offset)];
+  switch (offset) {
+    case rtc.cr: return control_;
+    case rtc.prer: return prescaler_;
+    case rtc.wutr: return reload_;
+    case rtc.alrmar: return alarms_[0];
+    case rtc.alrmbr: return alarms_[1];
+    default: return 0;
+  }
+}
+
+std::uint32_t RealTimeClock::read_word(std::uint32_t offset) {
+  const bool initialising = rtc.isr.init.in(status_);
+  const Ticks now = machine_.timeline.now(), two_cycles = clock().duration(2);
+  switch (offset) {
+    case rtc.tr: return initialising ? written_time_ : time_register();
+    case rtc.dr: return initialising ? written_date_ : date_register();
+    case rtc.ssr: {
+      const std::uint64_t part = cycles() % cycles_per_second() / (rtc.prer.prediv_a.of(prescaler_) + 1);
+      return rtc.prer.prediv_s.of(prescaler_) - static_cast<std::uint32_t>(part);
+    }
+    case rtc.isr: {
+      std::uint32_t value = status_;
+      if (!rtc.cr.alrae.in(control_)) value |= rtc.isr.alrawf.mask();
+      if (!rtc.cr.alrbe.in(control_)) value |= rtc.isr.alrbwf.mask();
+      if (!rtc.cr.wute.in(control_)) value |= rtc.isr.wutwf.mask();
+      if (number_of(written_date_ >> 16 & 0xFF) != 0) value |= rtc.isr.inits.mask();
+      if (!clock().runs()) return value;
+      if (initialising && now >= initialised_at_ + two_cycles) value |= rtc.isr.initf.mask();
+      if (!initialising && now >= synchronised_at_ + two_cycles) value |= rtc.isr.rsf.mask();
+      return value;
+    }
+    default: break;
+  }
+  if (offset > rtc.ssr && !rtc.bkpr.covers(offset)) machine_.log.note("RTC", offset, false, 0);
+  return stored(offset);
+}
+
+void RealTimeClock::write_status(std::uint32_t value) {
+  const Ticks now = machine_.timeline.now();
+  const bool was_initialising = rtc.isr.init.in(status_), initialises = rtc.isr.init.in(value);
+  if (!rtc.isr.rsf.in(value)) synchronised_at_ = now;
+  status_ &= value | ~bits_of(rtc.isr, Access::rc_w0);
+  if (!was_initialising && initialises) {
+    written_time_ = time_register();
+    written_date_ = date_register();
+    initialised_at_ = now;
+  }
+  status_ = (status_ & ~rtc.isr.init.mask()) | rtc.isr.init.with(initialises);
+  if (was_initialising && !initialises) {
+    set_calendar();
+    synchronised_at_ = now;
+    plan_second();
+  }
+}
+
+void RealTimeClock::write_word(std::uint32_t offset, std::uint32_t value) {
+  if (rtc.bkpr.covers(offset)) {
+    backup_[rtc.bkpr.index(offset)] = value;
+    return;
+  }
+  if (offset == rtc.wpr) {
+    constexpr std::uint32_t keys[] = {0xCA, 0x53};
+    unlock_step_ = unlock_step_ < unlocked && value == keys[unlock_step_] ? unlock_step_ + 1 : 0;
+    return;
+  }
+  // Flags, but for INIT, can be cleared at any time (RM0090, "RTC register write protection").
+  if (unlock_step_ != unlocked && offset != rtc.isr) return;
+  const bool initialising = rtc.isr.init.in(status_);
+  switch (offset) {
+    case rtc.tr:
+      if (initialising) written_time_ = value & writable(rtc.tr);
+      break;
+    case rtc.dr:
+      if (initialising) written_date_ = value & writable(rtc.dr);
+      break;
+    case rtc.prer:
+      if (initialising) prescaler_ = value & writable(rtc.prer);
+      break;
+    case rtc.isr:
+      write_status(unlock_step_ == unlocked ? value : (value & ~rtc.isr.init.mask()) | (status_ & rtc.isr.init.mask()));
+      break;
+    case rtc.cr:
+      control_ = value & writable(rtc.cr);
+      plan_wake_up();
+      plan_second();
+      break;
+    case rtc.wutr:
+      if (!rtc.cr.wute.in(control_)) reload_ = value & writable(rtc.wutr);
+      break;
+    case rtc.alrmar:
+      if (!rtc.cr.alrae.in(control_)) alarms_[0] = value;
+      break;
+    case rtc.alrmbr:
+      if (!rtc.cr.alrbe.in(control_)) alarms_[1] = value;
+      break;
+    default: machine_.log.note("RTC", offset, true, value);
+  }
+  update();
+}
+
+void RealTimeClock::plan_wake_up() {
+  if (wake_up_ != 0) events_.cancel(std::exchange(wake_up_, 0));
+  if (!rtc.cr.wute.in(control_) || !clock().runs()) return;
+  // RTCCLK over 16, 8, 4 or 2, or the seconds, without or with 65536 more of them.
+  const std::uint32_t selected = rtc.cr.wcksel.of(control_);
+  const std::uint64_t unit = selected < 4 ? 16u >> selected : cycles_per_second();
+  const std::uint64_t counts = std::uint64_t{reload_} + 1 + (selected >= 6 ? 0x1'0000 : 0);
+  wake_up_ = events_.at(machine_.timeline.now() + clock().duration(unit * counts), [this] {
+    wake_up_ = 0;
+    status_ |= rtc.isr.wutf.mask();
+    plan_wake_up();
+    update();
+  });
+}
+
+bool RealTimeClock::alarm_matches(std::uint32_t alarm) const {
+  const std::uint32_t time = time_register(), date = date_register();
+  const auto& map = rtc.alrmar;
+  const std::uint32_t day = map.wdsel.in(alarm) ? rtc.dr.wdu.of(date) : date & 0x3F;
+  return (map.msk1.in(alarm) || (alarm & 0x7F) == (time & 0x7F)) &&
+         (map.msk2.in(alarm) || (alarm >> 8 & 0x7F) == (time >> 8 & 0x7F)) &&
+         (map.msk3.in(alarm) || (alarm >> 16 & 0x7F) == (time >> 16 & 0x7F)) &&
+         (map.msk4.in(alarm) || (alarm >> 24 & 0x3F) == day);
+}
+
+void RealTimeClock::plan_second() {
+  if (second_ != 0) events_.cancel(std::exchange(second_, 0));
+  const bool awaited = rtc.cr.alrae.in(control_) || rtc.cr.alrbe.in(control_);
+  if (!awaited || !clock().runs() || rtc.isr.init.in(status_)) return;
+  const std::uint64_t next = (cycles() / cycles_per_second() + 1) * cycles_per_second();
+  second_ = events_.at(set_at_ + clock().duration(next), [this] {
+    second_ = 0;
+    second_over();
+  });
+}
+
+void RealTimeClock::second_over() {
+  if (rtc.cr.alrae.in(control_) && alarm_matches(alarms_[0])) status_ |= rtc.isr.alraf.mask();
+  if (rtc.cr.alrbe.in(control_) && alarm_matches(alarms_[1])) status_ |= rtc.isr.alrbf.mask();
+  plan_second();
+  update();
+}
+
+// The interrupts come by the edge detectors of EXTI.
+void RealTimeClock::update() {
+  machine_.exti->internal_line(alarm_line, (rtc.cr.alraie.in(control_) && rtc.isr.alraf.in(status_)) ||
+                                               (rtc.cr.alrbie.in(control_) && rtc.isr.alrbf.in(status_)));
+  machine_.exti->internal_line(wake_up_line, rtc.cr.wutie.in(control_) && rtc.isr.wutf.in(status_));
+}
+
+}  // namespace inkwell::virtual_board
