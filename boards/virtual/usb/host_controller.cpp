@@ -92,7 +92,7 @@ void HostController::reset_toggle(std::uint8_t endpoint_address) {
 void HostController::submit(Urb&& urb) {
   const unsigned index = pipe_index(urb.endpoint, urb.in);
   Pipe& pipe = pipes_[index];
-  if (!pipe.open) {
+  if (!pipe.open || !urb.packets.empty()) {
     client_.completed(std::move(urb), transfer_status::invalid);
     return;
   }

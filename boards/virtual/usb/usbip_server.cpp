@@ -306,12 +306,19 @@ bool UsbIpServer::handle_command(Connection& connection, std::span<const std::by
     give({Order::Kind::unlink, session, std::move(urb), unlink.unlinked_sequence});
     return true;
   }
-  Urb urb = transfer_of(usbip::read<usbip::Submit>(bytes));
+  const auto submit = usbip::read<usbip::Submit>(bytes);
+  Urb urb = transfer_of(submit);
   const auto rest = bytes.subspan(sizeof(usbip::Submit));
   const std::size_t length = urb.in ? 0 : urb.length;
-  if (rest.size() < length) return false;
-  connection.consumed += sizeof(usbip::Submit) + length;
+  const std::size_t packets = packet_count_of(submit);
+  if (rest.size() < length + packets * sizeof(usbip::IsochronousPacket)) return false;
+  connection.consumed += sizeof submit + length + packets * sizeof(usbip::IsochronousPacket);
   connection.import->add(urb);
+  for (std::size_t i = 0; i < packets; ++i) {
+    const auto packet =
+        usbip::read<usbip::IsochronousPacket>(rest.subspan(length + i * sizeof(usbip::IsochronousPacket)));
+    urb.packets.push_back({packet.offset, packet.length});
+  }
   urb.data.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(length));
   give({Order::Kind::submit, session, std::move(urb)});
   return true;

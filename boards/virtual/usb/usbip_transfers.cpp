@@ -45,6 +45,14 @@ void check_transfer(const usbip::TransferHeader& header) {
   if (header.endpoint > 15) throw std::runtime_error("an endpoint number is above 15");
 }
 
+std::size_t packet_count_of(const usbip::Submit& submit) {
+  constexpr std::uint32_t packets_maximum = 1024;
+  if (submit.packet_count == usbip::not_isochronous) return 0;
+  if (submit.packet_count > packets_maximum)
+    throw std::runtime_error("an isochronous transfer has more than 1024 packets");
+  return submit.packet_count;
+}
+
 Urb transfer_of(const usbip::Submit& submit) {
   Urb urb;
   urb.sequence = submit.header.sequence;
@@ -54,8 +62,6 @@ Urb transfer_of(const usbip::Submit& submit) {
   urb.length = submit.length;
   urb.setup = submit.setup;
   if (urb.length > transfer_maximum) throw std::runtime_error("a transfer is longer than 16 MiB");
-  if (submit.packet_count != 0 && submit.packet_count != usbip::not_isochronous)
-    throw std::runtime_error("it submits an isochronous transfer, which is not modelled");
   // The direction of a control transfer is what its request says; the two must not differ.
   const bool request_in = (urb.setup[0] & std::byte{0x80}) != std::byte{0};
   if (urb.endpoint == 0 && urb.length > 0 && request_in != urb.in)
@@ -85,8 +91,13 @@ void append_imported(std::vector<std::byte>& out, const DeviceDescription& devic
 void append_submitted(std::vector<std::byte>& out, const Urb& urb, std::int32_t status) {
   usbip::ReturnSubmit answer{.status = status, .actual_length = urb.actual_length()};
   answer.header.sequence = urb.sequence;
+  const auto packets = static_cast<std::uint32_t>(urb.packets.size());
+  answer.packet_count = packets;
+  answer.error_count = packets;
   append(out, answer);
   if (urb.in) out.insert(out.end(), urb.data.begin(), urb.data.end());
+  for (const auto& packet : urb.packets)
+    append(out, usbip::IsochronousPacket{.offset = packet.offset, .length = packet.length, .status = status});
 }
 
 void append_unlinked(std::vector<std::byte>& out, std::uint32_t sequence, std::int32_t status) {

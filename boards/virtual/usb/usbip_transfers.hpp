@@ -19,7 +19,10 @@ inline constexpr std::uint32_t transfer_maximum = 16u << 20;
 
 /// Throws std::runtime_error with what is wrong if the header makes no sense for the exported device.
 void check_transfer(const usbip::TransferHeader& header);
-/// The transfer that is asked for, without its data. Throws std::runtime_error if it cannot be carried out.
+/// Packets that an isochronous transfer announces; they follow its data. Throws std::runtime_error if there are more
+/// than Linux would send.
+std::size_t packet_count_of(const usbip::Submit& submit);
+/// The transfer that is asked for, without its data and packets. Throws std::runtime_error if it cannot be carried out.
 Urb transfer_of(const usbip::Submit& submit);
 
 void append_device_list(std::vector<std::byte>& out, const DeviceDescription* device);

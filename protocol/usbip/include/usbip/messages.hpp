@@ -141,7 +141,8 @@ constexpr std::uint32_t device_of(std::uint32_t bus_number, std::uint32_t device
 /// `packet_count` of what is no isochronous transfer. Linux itself sends 0.
 inline constexpr std::uint32_t not_isochronous = 0xFFFF'FFFF;
 
-/// `length` bytes of data follow if the direction is OUT.
+/// `length` bytes of data follow if the direction is OUT, and behind them as many IsochronousPacket as `packet_count`
+/// says.
 struct Submit {
   TransferHeader header{.command = Command::submit};
   Big32 transfer_flags;  ///< Linux' URB_ flags
@@ -152,7 +153,8 @@ struct Submit {
   std::array<std::byte, 8> setup{};  ///< of a control transfer, little-endian as on USB
 };
 
-/// `actual_length` bytes of data follow if the direction of the transfer was IN.
+/// `actual_length` bytes of data follow if the direction of the transfer was IN, and behind them the packets of an
+/// isochronous transfer.
 struct ReturnSubmit {
   TransferHeader header{.command = Command::return_submit};
   BigEndian<std::int32_t> status;  ///< 0, or a negated errno of Linux
@@ -161,6 +163,13 @@ struct ReturnSubmit {
   Big32 packet_count;
   Big32 error_count;
   std::array<std::byte, 8> padding{};
+};
+
+struct IsochronousPacket {
+  Big32 offset;  ///< in the transfer's data, in bytes
+  Big32 length;
+  Big32 actual_length;
+  BigEndian<std::int32_t> status;  ///< as of a transfer
 };
 
 struct Unlink {
@@ -188,6 +197,7 @@ static_assert(sizeof(Interface) == 4 && lies_as_on_the_wire<Interface>);
 static_assert(sizeof(TransferHeader) == 20 && lies_as_on_the_wire<TransferHeader>);
 static_assert(sizeof(Submit) == 48 && lies_as_on_the_wire<Submit>);
 static_assert(sizeof(ReturnSubmit) == 48 && lies_as_on_the_wire<ReturnSubmit>);
+static_assert(sizeof(IsochronousPacket) == 16 && lies_as_on_the_wire<IsochronousPacket>);
 static_assert(sizeof(Unlink) == 48 && lies_as_on_the_wire<Unlink>);
 static_assert(sizeof(ReturnUnlink) == 48 && lies_as_on_the_wire<ReturnUnlink>);
 

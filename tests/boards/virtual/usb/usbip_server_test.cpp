@@ -246,6 +246,42 @@ TEST_CASE("while the simulation is paused, lists and imports are answered and tr
   CHECK(client.read_reply().header.sequence == 40);
 }
 
+TEST_CASE("isochronous transfers, which are not modelled, come back as errors and cost nobody the connection") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  UsbIpClient client(board.usb.port());
+  REQUIRE(client.import() == OperationStatus::success);
+  configure(client);
+  std::uint32_t sequence = 10;
+  for (const bool in : {false, true}) {
+    constexpr std::uint32_t packets = 3, packet_bytes = 192;
+    usbip::Submit submit{.length = packets * packet_bytes, .packet_count = packets};
+    submit.header.sequence = ++sequence;
+    submit.header.device = exported_device;
+    submit.header.direction = in ? usbip::Direction::in : usbip::Direction::out;
+    submit.header.endpoint = 4;
+    client.send(usbip::bytes_of(submit));
+    if (!in) client.send(Bytes(packets * packet_bytes));
+    for (std::uint32_t i = 0; i < packets; ++i)
+      client.send(usbip::bytes_of(usbip::IsochronousPacket{.offset = i * packet_bytes, .length = packet_bytes}));
+    const auto reply = client.read_reply();
+    CHECK(reply.header.sequence == sequence);
+    CHECK(reply.status == -22);
+    CHECK(reply.actual_length == 0);
+    CHECK(reply.packet_count == packets);
+    CHECK(reply.error_count == packets);
+    for (std::uint32_t i = 0; i < packets; ++i) {
+      const auto packet = client.receive<usbip::IsochronousPacket>();
+      CHECK(packet.offset == i * packet_bytes);
+      CHECK(packet.length == packet_bytes);
+      CHECK(packet.actual_length == 0);
+      CHECK(packet.status == -22);
+    }
+  }
+  client.submit(20, 0, true, 18, {}, get_device_descriptor);
+  CHECK(client.read_reply().status == 0);
+}
+
 TEST_CASE("nonsense closes the connection, not the server") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
@@ -275,7 +311,7 @@ TEST_CASE("nonsense closes the connection, not the server") {
         submit.header.direction = usbip::Direction::out;
         submit.length = 0x7FFF'FFFF;
       },
-      [](usbip::Submit& submit) { submit.packet_count = 4; },                           // isochronous
+      [](usbip::Submit& submit) { submit.packet_count = 1025; },                        // too many
       [](usbip::Submit& submit) { submit.header.direction = usbip::Direction::out; }};  // but the request says IN
   for (const auto& make : mistakes) {
     REQUIRE(board.wait_until_enumerated());

@@ -26,6 +26,11 @@ struct Urb {
   std::uint32_t flags = 0;
   std::uint32_t length = 0;  ///< bytes to send, or room for bytes to receive
   std::array<std::byte, 8> setup{};
+  /// Of an isochronous transfer, which the host controller does not carry out: offset and length of each.
+  struct Packet {
+    std::uint32_t offset, length;
+  };
+  std::vector<Packet> packets;
   std::vector<std::byte> data;  ///< OUT: `length` bytes; IN: what has been received so far
 
   // Progress.
