@@ -63,6 +63,36 @@ DebugPort& Chip::debug_port() { return parts_->debug_port; }
 Scheduler& Chip::scheduler() { return parts_->events; }
 InterruptController& Chip::interrupts() { return parts_->machine.nvic; }
 InputPins& Chip::input_pins() { return parts_->pins; }
+PinLevel Chip::pin_level(char port, unsigned pin) const {
+  return parts_->pins.level(static_cast<unsigned>(port - 'A'), pin);
+}
+PinLevel Chip::pin_output(char port, unsigned pin) const {
+  return parts_->pins.output(static_cast<unsigned>(port - 'A'), pin);
+}
+
+void Chip::watch_pins(std::function<void(char, unsigned, PinLevel, Ticks)> changed) {
+  auto& p = *parts_;
+  if (!changed) {
+    p.pins.on_level = {};
+    return;
+  }
+  p.pins.on_level = [&p, changed = std::move(changed)](unsigned port, unsigned pin, PinLevel level) {
+    changed(static_cast<char>('A' + port), pin, level, p.machine.timeline.now());
+  };
+  for (unsigned port = 0; port < Pins::ports; ++port)
+    for (unsigned pin = 0; pin < 16; ++pin) p.pins.update(port, pin);
+}
+
+void Chip::watch_exceptions(std::function<void(unsigned, Ticks)> changed) {
+  auto& p = *parts_;
+  if (!changed) {
+    p.processor.on_exception = {};
+    return;
+  }
+  p.processor.on_exception = [&p, changed = std::move(changed)](unsigned exception) {
+    changed(exception, p.processor.now());
+  };
+}
 ChipConnections Chip::connections() {
   auto& machine = parts_->machine;
   return {parts_->events, machine.nvic, machine.log, machine.violations, *parts_};

@@ -55,6 +55,7 @@ bool Processor::start_handler(unsigned exception, std::uint32_t exception_return
   current_exception_ = exception;
   machine_.nvic.enter(exception);
   begin_counting(exception);
+  if (on_exception) on_exception(exception);
   return (vector & 1) != 0;
 }
 
@@ -184,6 +185,7 @@ bool Processor::return_from_exception(std::uint32_t vector_table) {
     timing_.stack_lazily(false);
   }
   current_exception_ = exception;
+  if (on_exception) on_exception(exception);
   return true;
 }
 

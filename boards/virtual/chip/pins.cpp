@@ -134,6 +134,17 @@ PinLevel Pins::output_of(unsigned port, unsigned pin) const {
   return level == PinLevel::high && pins.open_drain(pin) ? PinLevel::floating : level;
 }
 
+PinLevel Pins::level(unsigned port, unsigned pin) const {
+  const State& s = states_[port * 16 + pin];
+  if (s.output != PinLevel::floating) return s.output;
+  if (s.driven != PinLevel::floating) return s.driven;
+  switch (ports_[port].pull(pin)) {
+    case 1: return PinLevel::high;
+    case 2: return PinLevel::low;
+    default: return PinLevel::floating;
+  }
+}
+
 void Pins::update(unsigned port, unsigned pin) {
   State& s = state(port, pin);
   const PinLevel output = output_of(port, pin);
@@ -141,6 +152,11 @@ void Pins::update(unsigned port, unsigned pin) {
     s.output = output;
     machine_.circuit.output_changed(static_cast<char>('A' + port), pin, output, machine_.timeline.now());
   }
+  if (on_level)
+    if (const PinLevel now = level(port, pin); now != s.level) {
+      s.level = now;
+      on_level(port, pin, now);
+    }
   GpioPort& pins = ports_[port];
   bool input = false;
   if (pins.mode(pin) != GpioPort::Mode::analog) {

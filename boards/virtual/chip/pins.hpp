@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "alternate_functions.hpp"
@@ -55,6 +56,11 @@ class Pins final : public InputPins {
   }
   bool is_analog(unsigned port, unsigned pin) const { return ports_[port].mode(pin) == GpioPort::Mode::analog; }
   void drive(char port, unsigned pin, PinLevel level) override;
+  /// What a meter would show at the pin.
+  PinLevel level(unsigned port, unsigned pin) const;
+  PinLevel output(unsigned port, unsigned pin) const { return states_[port * 16 + pin].output; }
+  /// Called at each change of a pin's level; none by default.
+  std::function<void(unsigned port, unsigned pin, PinLevel level)> on_level;
 
   /// A timer's output changes. Called in the order of time, hundreds of thousands of times a second.
   void timer_output(unsigned timer, unsigned line, PinLevel level) {
@@ -78,6 +84,7 @@ class Pins final : public InputPins {
   struct State {
     PinLevel driven = PinLevel::floating;  ///< by the circuit
     PinLevel output = PinLevel::floating;  ///< by the chip, as the circuit was told
+    PinLevel level = PinLevel::floating;   ///< as on_level was told
     bool input = false;
     std::uint8_t routes = 0;
     std::array<std::uint8_t, 2> route{};  ///< indices into timer_pins

@@ -6,6 +6,7 @@
 #include <array>
 #include <chip/chip.hpp>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -144,6 +145,8 @@ class Processor final : public ClockUser, private EngineCalls {
   bool return_from_exception(std::uint32_t vector_table);
   bool returned_to_thread() const { return current_exception_ == exception_none; }
   Counters& counters() { return counters_; }
+  /// Called when another exception begins to run, or the thread again (0); none by default.
+  std::function<void(unsigned exception)> on_exception;
   void clear_counters();
 
  private:

@@ -58,6 +58,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
   chip_.on_console = [this](std::uint8_t byte) { console(byte); };
   plant_.connect(chip_.input_pins());
   chip_.reset(ResetCause::power_on);
+  if (!options.waveform.empty()) waveform_.emplace(options.waveform, options.waveform_pins, chip_);
   chip_.clear_counters();  // resets are counted from here on
   chip_.on_reset = [this](ResetCause cause) {
     locked_up_ = false;

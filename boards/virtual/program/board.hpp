@@ -7,6 +7,7 @@
 
 #include <chip/chip.hpp>
 #include <debugger/symbols.hpp>
+#include <debugger/waveform.hpp>
 #include <plant/plant.hpp>
 #include <virtual_usb/virtual_usb.hpp>
 
@@ -42,6 +43,7 @@ class Board {
   Symbols symbols_;
   Plant plant_;
   Chip chip_;
+  std::optional<Waveform> waveform_;
   std::optional<VirtualUsb> usb_;  ///< there from construction to destruction
   Trace trace_;
   std::string console_line_;

@@ -213,6 +213,35 @@ json hand_path(const json& request, Simulation& simulation) {
   return {};
 }
 
+std::string_view name_of(PinLevel level) {
+  switch (level) {
+    case PinLevel::low: return "low";
+    case PinLevel::high: return "high";
+    default: return "floating";
+  }
+}
+
+json pin(const json& request, Simulation& simulation) {
+  const json& name = at(request, "pin", "a pin, such as \"PA5\"");
+  if (!name.is_string()) throw Refused("\"pin\" must be a pin, such as \"PA5\"");
+  Chip& chip = simulation.board().chip();
+  try {
+    const PinName place = PinName::of(name.get<std::string>());
+    if (const auto level = request.find("drive"); level != request.end()) {
+      if (*level != "high" && *level != "low" && *level != "floating")
+        throw Refused("\"drive\" must be \"high\", \"low\" or \"floating\"");
+      chip.input_pins().drive(place.port, place.pin,
+                              *level == "high"  ? PinLevel::high
+                              : *level == "low" ? PinLevel::low
+                                                : PinLevel::floating);
+    }
+    return {{"level", name_of(chip.pin_level(place.port, place.pin))},
+            {"chip_drives", name_of(chip.pin_output(place.port, place.pin))}};
+  } catch (const std::invalid_argument& error) {
+    throw Refused(error.what());
+  }
+}
+
 json jump(const json& request, Simulation& simulation) {
   if (simulation.board().locked_up()) throw Refused("the processor is locked up; reset it first");
   simulation.board().chip().jump(static_cast<std::uint32_t>(number(request, "address", 0.0, 4294967295.0)));
@@ -233,14 +262,6 @@ json lose_exception(const json& request, Simulation& simulation) {
 json crystal(const json& request, Simulation& simulation) {
   simulation.board().chip().let_crystal_swing(truth_value(request, "swings"));
   return {};
-}
-
-std::string_view name_of(PinLevel level) {
-  switch (level) {
-    case PinLevel::low: return "low";
-    case PinLevel::high: return "high";
-    default: return "floating";
-  }
 }
 
 json gimbal(const json& request, Simulation& simulation) {
@@ -316,6 +337,7 @@ const std::vector<Command>& commands() {
       {"buttons", {"pressed"}, "of the stylus: [true,false]", buttons},
       {"supply", {"voltage_V"}, "of the bridges", supply},
       {"bridge_fault", {"fault"}, "a bridge pulls the fault wire", bridge_fault},
+      {"pin", {"pin", "drive"}, "level at a pin, such as PA5; drives it high, low or floating from outside first", pin},
       {"jump", {"address"}, "throw the program counter there, as a flipped bit would", jump},
       {"stall", {"for_s"}, "the core stands still while all else goes on, as on a bus that does not answer", stall},
       {"lose_exception",

@@ -81,6 +81,12 @@ CommandLine read_command_line(int argc, char** argv) {
   auto* seconds_option = app.add_option("--seconds", seconds, "end after this much board time")
                              ->check(CLI::PositiveNumber.description(""))
                              ->type_name("T");
+  app.add_option("--vcd", options.waveform, "write levels of pins and the running exception to this file, for GTKWave")
+      ->type_name("FILE");
+  std::vector<std::string> pins;
+  app.add_option("--vcd-pins", pins, "only these pins, such as PA8,PC6 (default: all)")
+      ->delimiter(',')
+      ->type_name("PINS");
   app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
   app.add_flag(
       "--strict", options.strict,
@@ -111,6 +117,12 @@ CommandLine read_command_line(int argc, char** argv) {
     }
     options.gdb_port = gdb_port;
     mode = "exact";
+  }
+  try {
+    for (const std::string& name : pins) options.waveform_pins.push_back(PinName::of(name));
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "virtual-board: --vcd-pins: " << error.what() << "\n";
+    return {std::nullopt, 2};
   }
   options.mode = mode == "exact" ? Mode::exact : Mode::fast;
   options.pricing = pricing == "conservative" ? Pricing::conservative : Pricing::likely;

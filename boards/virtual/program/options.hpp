@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include <chip/chip.hpp>
+#include <debugger/waveform.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -15,6 +17,8 @@ struct Options {
   std::uint16_t usbip_port = 0;  ///< 0 is any free port
   std::uint16_t control_port = 0;
   std::optional<std::uint16_t> gdb_port;
+  std::filesystem::path waveform;      ///< empty: none is written
+  std::vector<PinName> waveform_pins;  ///< empty: all
   Mode mode = Mode::fast;
   Pricing pricing = Pricing::likely;
   std::uint32_t crystal_Hz = 8'000'000;

@@ -132,6 +132,9 @@ class Chip {
   DebugPort& debug_port();
   InterruptController& interrupts();
   InputPins& input_pins();
+  /// What a meter would show at a pin ('A' to 'I', 0 to 15), and what the chip itself puts out there.
+  PinLevel pin_level(char port, unsigned pin) const;
+  PinLevel pin_output(char port, unsigned pin) const;
   ChipConnections connections();
 
   /// Puts a peripheral on the bus; `base` is a multiple of 1024 in 0x40000000..0x400803FF or
@@ -145,6 +148,10 @@ class Chip {
   std::function<void(std::uint8_t byte)> on_console;
   /// A character that USART `number` (1..6) has sent, at the end of its stop bit.
   std::function<void(unsigned number, std::uint8_t byte)> on_usart;
+  /// Called at each change of a pin's level. Once it is set, each pin that has one is told. Nothing ends it.
+  void watch_pins(std::function<void(char port, unsigned pin, PinLevel level, Ticks when)> changed);
+  /// Called when an exception begins to run, and with 0 when the thread goes on. Nothing ends it.
+  void watch_exceptions(std::function<void(unsigned exception, Ticks when)> changed);
   /// Called when the firmware breaks a rule, once for each place.
   std::function<void(const Violation& violation)> on_violation;
   /// Called after each reset that the firmware or a watchdog causes (and those by reset()).

@@ -1,0 +1,43 @@
+// Levels of pins and the running exception over board time, as a value change dump (IEEE 1364-2005, clause 18): the
+// file that GTKWave and its like show.
+#pragma once
+
+#include <array>
+#include <chip/chip.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace inkwell::virtual_board {
+
+struct PinName {
+  char port;  ///< 'A' to 'I'
+  unsigned pin;
+  /// Of a name such as PA8. Throws std::invalid_argument with a sentence.
+  static PinName of(const std::string& name);
+  std::string text() const { return std::string("P") + port + std::to_string(pin); }
+};
+
+class Waveform {
+ public:
+  /// Throws std::runtime_error with a sentence if the file cannot be written. No pins is all of them. Watches the
+  /// chip's pins and exceptions, and must live as long as the chip runs.
+  Waveform(const std::filesystem::path& path, std::vector<PinName> pins, Chip& chip);
+  ~Waveform();
+  Waveform(const Waveform&) = delete;
+  Waveform& operator=(const Waveform&) = delete;
+
+ private:
+  static constexpr unsigned places = 9 * 16;
+  void set_time(Ticks when);
+  void note_exception(unsigned exception);
+  Chip& chip_;
+  std::ofstream file_;
+  std::array<std::string, places> codes_{};  ///< of the pins that are written, by port and pin
+  Ticks written_until_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,86 @@
+#include <debugger/waveform.hpp>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace inkwell::virtual_board {
+namespace {
+
+constexpr char exception_code[] = "e";
+constexpr unsigned exception_bits = 7;
+
+unsigned place_of(char port, unsigned pin) { return static_cast<unsigned>(port - 'A') * 16 + pin; }
+
+char value_of(PinLevel level) { return level == PinLevel::high ? '1' : level == PinLevel::low ? '0' : 'z'; }
+
+}  // namespace
+
+PinName PinName::of(const std::string& name) {
+  const auto wrong = [&] {
+    return std::invalid_argument(fmt::format("\"{}\" is not a pin; pins are PA0 to PI15.", name));
+  };
+  if (name.size() < 3 || name.size() > 4 || name[0] != 'P' || name[1] < 'A' || name[1] > 'I') throw wrong();
+  unsigned pin = 0;
+  for (const char digit : name.substr(2)) {
+    if (digit < '0' || digit > '9') throw wrong();
+    pin = 10 * pin + static_cast<unsigned>(digit - '0');
+  }
+  if (pin > 15) throw wrong();
+  return {name[1], pin};
+}
+
+Waveform::Waveform(const std::filesystem::path& path, std::vector<PinName> pins, Chip& chip)
+    : chip_(chip), file_(path) {
+  if (!file_)
+    throw std::runtime_error(
+        fmt::format("{} cannot be written; give --vcd a file in a folder that exists and is yours.", path.string()));
+  if (pins.empty())
+    for (unsigned place = 0; place < places; ++place) pins.push_back({static_cast<char>('A' + place / 16), place % 16});
+  file_ << "$comment Inkwell virtual board: simulation $end\n$timescale 1 ps $end\n$scope module chip $end\n";
+  for (const PinName& pin : pins) {
+    auto& code = codes_[place_of(pin.port, pin.pin)];
+    code = pin.text();  // a code may be any text without spaces
+    file_ << fmt::format("$var wire 1 {} {} $end\n", code, code);
+  }
+  file_ << fmt::format("$var reg {} {} exception $end\n$upscope $end\n$enddefinitions $end\n", exception_bits,
+                       exception_code);
+  set_time(chip.now());
+  file_ << "$dumpvars\n";
+  for (const PinName& pin : pins) file_ << value_of(chip.pin_level(pin.port, pin.pin)) << pin.text() << '\n';
+  note_exception(chip.current_exception());
+  file_ << "$end\n";
+  chip.watch_pins([this](char port, unsigned pin, PinLevel level, Ticks when) {
+    const std::string& code = codes_[place_of(port, pin)];
+    if (code.empty()) return;
+    set_time(when);
+    file_ << value_of(level) << code << '\n';
+  });
+  chip.watch_exceptions([this](unsigned exception, Ticks when) {
+    set_time(when);
+    note_exception(exception);
+  });
+}
+
+Waveform::~Waveform() {
+  chip_.watch_pins({});
+  chip_.watch_exceptions({});
+  set_time(chip_.now());
+}
+
+// The processor may be ahead of the pins by the rest of what it runs in one go; time in the file never goes back.
+void Waveform::set_time(Ticks when) {
+  if (begun_ && when <= written_until_) return;
+  begun_ = true;
+  written_until_ = when;
+  constexpr Ticks some_ticks = 42, their_ps = 5000;
+  static_assert(ticks_per_s / some_ticks * their_ps == 1'000'000'000'000);
+  file_ << '#' << when / some_ticks * their_ps + when % some_ticks * their_ps / some_ticks << '\n';
+}
+
+void Waveform::note_exception(unsigned exception) {
+  file_ << 'b';
+  for (unsigned bit = exception_bits; bit-- > 0;) file_ << (exception >> bit & 1);
+  file_ << ' ' << exception_code << '\n';
+}
+
+}  // namespace inkwell::virtual_board
