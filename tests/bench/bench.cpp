@@ -9,6 +9,8 @@
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
 
+#include "interrupt_stages.hpp"
+
 namespace {
 
 using namespace inkwell;
@@ -27,8 +29,7 @@ class BusyBoard {
       while (!stop_) device_->read_pose(10ms);
     });
     scope_reader_ = std::thread([this] {
-      while (!stop_)
-        if (const auto samples = device_->read_scope(10ms)) keep_longest(*samples);
+      while (!stop_) device_->read_scope(10ms);
     });
   }
   ~BusyBoard() {
@@ -38,11 +39,6 @@ class BusyBoard {
   }
 
   void run(double time_s) { control_.run(time_s); }
-  float longest_cycles(std::size_t signal) const { return longest_[signal]; }
-  std::uint32_t longest_interrupt_cycles() {
-    control_.resume();
-    return device_->information().report.servo_cycles_longest;
-  }
 
   // clang-format off
   static constexpr std::array signals{
@@ -69,17 +65,9 @@ class BusyBoard {
     control.pause();
     return device;
   }
-  void keep_longest(const device::ScopeSamples& samples) {
-    for (std::size_t i = 0; i < samples.values.size(); ++i) {
-      auto& longest = longest_[i % signals.size()];
-      longest = std::max(longest, samples.values[i]);
-    }
-  }
-
   device::VirtualBoard board_;
   device::ControlClient control_;
   std::unique_ptr<device::Device> device_;
-  std::array<float, signals.size()> longest_{};
   std::atomic<bool> stop_ = false;
   std::thread pose_reader_, scope_reader_;
 };
@@ -103,25 +91,11 @@ BENCHMARK_CAPTURE(virtual_board, exact, device::SimulationMode::exact)
     ->UseRealTime()
     ->Iterations(5);
 
-void print_stages() {
-  BusyBoard board(device::SimulationMode::exact);
-  board.run(1.0);
-  std::printf("Control interrupt on the virtual board (simulation), longest of 20000, in cycles:\n");
-  for (std::size_t i = 1; i < BusyBoard::signals.size(); ++i) {
-    const auto& row = protocol::info(BusyBoard::signals[i]);
-    if (row.unit == "cycles")
-      std::printf("  %-22s %6.0f\n", row.name.data(), static_cast<double>(board.longest_cycles(i)));
-  }
-  std::printf("  %-22s %6.0f\n", "all stages", static_cast<double>(board.longest_cycles(0)));
-  std::printf("  since the start        %6u of %u\n\n", board.longest_interrupt_cycles(), board::servo_cycles);
-  std::fflush(stdout);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  print_stages();
+  inkwell::bench::print_interrupt_stages();
   benchmark::RunSpecifiedBenchmarks();
 }
