@@ -77,7 +77,9 @@ void connect_analog() {
 template <class Driver, board::Pin pin>
 struct DigitalInput {
   static void start(Pull pull) { detail::configure<Driver, pin>(detail::Mode::input, pull, Speed::low); }
-  static bool is_high() { return (detail::Registers<pin>::IDR::read() >> pin.number & 1u) != 0; }
+  /// A bit for each pin of this one's port.
+  static std::uint32_t read_port() { return detail::Registers<pin>::IDR::read(); }
+  static bool is_high() { return (read_port() >> pin.number & 1u) != 0; }
 };
 
 template <class Driver, board::Pin pin>

@@ -22,9 +22,12 @@ class Switches {
     DigitalInput<Switches, board::inkwell_switch>::start(Pull::up);
   }
 
+  /// All at one instant, in one access to their port.
   SwitchContacts read() const {
-    return {!DigitalInput<Switches, board::button_1>::is_high(), !DigitalInput<Switches, board::button_2>::is_high(),
-            !DigitalInput<Switches, board::inkwell_switch>::is_high()};
+    static_assert(board::button_1.port == board::button_2.port && board::button_1.port == board::inkwell_switch.port);
+    const std::uint32_t port = DigitalInput<Switches, board::button_1>::read_port();
+    const auto closed = [port](board::Pin pin) { return (port >> pin.number & 1u) == 0; };
+    return {closed(board::button_1), closed(board::button_2), closed(board::inkwell_switch)};
   }
 };
 
