@@ -10,10 +10,10 @@
 
 #include "board.hpp"
 #include "control_server.hpp"
-#include "gdb_server.hpp"
 #include "log.hpp"
 #include "options.hpp"
 #include "simulation.hpp"
+#include "stream_server.hpp"
 
 namespace {
 
@@ -39,13 +39,14 @@ int main(int argc, char** argv) {
     ControlServer server(options.control_port);
     Board board(
         options, [&server] { server.wake(); }, [] { return end_requested.load(); });
-    std::optional<GdbServer> gdb;
-    if (options.gdb_port) gdb.emplace(*options.gdb_port, [&server] { server.wake(); });
+    std::optional<StreamServer> gdb;
+    if (options.gdb_port) gdb.emplace(*options.gdb_port, "--gdb", [&server] { server.wake(); });
+    UartLinks uarts(options.uarts, board.chip(), [&server] { server.wake(); });
     fmt::print("ready usbip={} control={}", board.usb().port(), server.port());
     if (gdb) fmt::print(" gdb={}", gdb->port());
-    fmt::print("\n");
+    fmt::print("{}\n", uarts.announcement());
     std::fflush(stdout);
-    return Simulation(options, board, server, gdb ? &*gdb : nullptr).run(end_requested);
+    return Simulation(options, board, server, gdb ? &*gdb : nullptr, uarts).run(end_requested);
   } catch (const std::exception& error) {
     log_line(error.what());
     return 1;

@@ -29,7 +29,8 @@ CommandLine read_command_line(int argc, char** argv) {
       "hand. Its USB device is exported by the USB/IP protocol; a control socket moves the hand, presses buttons, "
       "runs\n"
       "and stops the time, and tells what no real board could. Both listen on 127.0.0.1 only.\n"
-      "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT if asked for. Its log goes to "
+      "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT and uartN=PORT if asked for. "
+      "Its log goes to "
       "stderr."};
   app.name("virtual-board");
   app.get_formatter()->column_width(30);
@@ -81,6 +82,13 @@ CommandLine read_command_line(int argc, char** argv) {
   auto* seconds_option = app.add_option("--seconds", seconds, "end after this much board time")
                              ->check(CLI::PositiveNumber.description(""))
                              ->type_name("T");
+  std::vector<std::string> uarts;
+  app.add_option("--uart", uarts,
+                 "where a UART leads, both ways: usart1=stdio is this terminal, usart1=PORT a TCP port (0 is any free "
+                 "one),\n"
+                 "usart1=PATH a terminal of its own under that name; usart1 to usart3, uart4, uart5, usart6")
+      ->type_name("UART=PLACE")
+      ->allow_extra_args(false);
   app.add_option("--vcd", options.waveform, "write levels of pins and the running exception to this file, for GTKWave")
       ->type_name("FILE");
   std::vector<std::string> pins;
@@ -122,6 +130,12 @@ CommandLine read_command_line(int argc, char** argv) {
     for (const std::string& name : pins) options.waveform_pins.push_back(PinName::of(name));
   } catch (const std::invalid_argument& error) {
     std::cerr << "virtual-board: --vcd-pins: " << error.what() << "\n";
+    return {std::nullopt, 2};
+  }
+  try {
+    for (const std::string& text : uarts) options.uarts.push_back(UartOption::of(text));
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "virtual-board: --uart: " << error.what() << "\n";
     return {std::nullopt, 2};
   }
   options.mode = mode == "exact" ? Mode::exact : Mode::fast;

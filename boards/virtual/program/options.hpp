@@ -9,6 +9,8 @@
 #include <chip/chip.hpp>
 #include <debugger/waveform.hpp>
 
+#include "uart_links.hpp"
+
 namespace inkwell::virtual_board {
 
 struct Options {
@@ -17,6 +19,7 @@ struct Options {
   std::uint16_t usbip_port = 0;  ///< 0 is any free port
   std::uint16_t control_port = 0;
   std::optional<std::uint16_t> gdb_port;
+  std::vector<UartOption> uarts;
   std::filesystem::path waveform;      ///< empty: none is written
   std::vector<PinName> waveform_pins;  ///< empty: all
   Mode mode = Mode::fast;

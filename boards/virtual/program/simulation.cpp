@@ -22,11 +22,13 @@ constexpr int exit_code_of_violation = 4;
 
 }  // namespace
 
-Simulation::Simulation(const Options& options, Board& board, ControlServer& server, GdbServer* gdb_server)
+Simulation::Simulation(const Options& options, Board& board, ControlServer& server, StreamServer* gdb_server,
+                       UartLinks& uarts)
     : options_(options),
       board_(board),
       server_(server),
       gdb_server_(gdb_server),
+      uarts_(uarts),
       gdb_(board.chip()),
       passing_(options.paused ? Passing::not_at_all : Passing::freely) {
   start_pacing();
@@ -36,6 +38,7 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
   const Ticks end = options_.seconds ? ticks(*options_.seconds) : std::numeric_limits<Ticks>::max();
   while (!quit_ && !end_requested && !firmware_exit_code_ && !ends_by_violation() && board_.chip().now() < end) {
     if (gdb_server_ != nullptr) serve_debugger();
+    uarts_.serve();
     if (auto request = server_.take(time_passes() ? Clock::time_point::min() : Clock::now() + attention)) {
       serve(std::move(*request));
       continue;
@@ -43,6 +46,7 @@ int Simulation::run(const std::atomic<bool>& end_requested) {
     board_.usb().serve();
     if (time_passes()) advance();
   }
+  uarts_.serve();  // the last of what was sent
   if (ends_by_violation()) {
     end_run(fmt::format("the firmware broke a rule of the chip: {}", sentence(board_.chip().violations().front())));
     list_violations();

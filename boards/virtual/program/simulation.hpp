@@ -15,15 +15,16 @@
 
 #include "board.hpp"
 #include "control_server.hpp"
-#include "gdb_server.hpp"
 #include "options.hpp"
+#include "stream_server.hpp"
+#include "uart_links.hpp"
 
 namespace inkwell::virtual_board {
 
 class Simulation {
  public:
   /// `gdb_server` may be null.
-  Simulation(const Options& options, Board& board, ControlServer& server, GdbServer* gdb_server);
+  Simulation(const Options& options, Board& board, ControlServer& server, StreamServer* gdb_server, UartLinks& uarts);
 
   /// Runs until a client quits, `end_requested` is set, the time of --seconds is over or the firmware ends.
   /// Without --seconds a locked-up board stands still, for somebody to look at it or reset it.
@@ -68,7 +69,8 @@ class Simulation {
   const Options& options_;
   Board& board_;
   ControlServer& server_;
-  GdbServer* gdb_server_;
+  StreamServer* gdb_server_;
+  UartLinks& uarts_;
   GdbSession gdb_;
   Passing passing_;
   bool quit_ = false;

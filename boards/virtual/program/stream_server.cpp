@@ -1,4 +1,4 @@
-#include "gdb_server.hpp"
+#include "stream_server.hpp"
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -14,12 +14,12 @@
 
 namespace inkwell::virtual_board {
 
-GdbServer::GdbServer(std::uint16_t port, std::function<void()> on_arrival)
-    : port_(port), listener_(listen_on_loopback(port_, "--gdb")), on_arrival_(std::move(on_arrival)) {
+StreamServer::StreamServer(std::uint16_t port, std::string_view option, std::function<void()> on_arrival)
+    : port_(port), listener_(listen_on_loopback(port_, option)), on_arrival_(std::move(on_arrival)) {
   thread_ = std::thread([this] { serve(); });
 }
 
-GdbServer::~GdbServer() {
+StreamServer::~StreamServer() {
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
@@ -30,7 +30,7 @@ GdbServer::~GdbServer() {
   ::close(listener_);
 }
 
-void GdbServer::serve() {
+void StreamServer::serve() {
   for (;;) {
     const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
     {
@@ -50,7 +50,7 @@ void GdbServer::serve() {
     }
     const int on = 1;
     ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    const timeval patience{2, 0};  // a GDB that does not read must not hold up the board
+    const timeval patience{2, 0};  // a client that does not read must not hold up the board
     ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
     on_arrival_();
     std::array<char, 4096> chunk;
@@ -73,12 +73,12 @@ void GdbServer::serve() {
   }
 }
 
-GdbServer::Arrived GdbServer::take() {
+StreamServer::Arrived StreamServer::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(arrived_, {});
 }
 
-void GdbServer::send(std::string_view bytes) {
+void StreamServer::send(std::string_view bytes) {
   const std::lock_guard lock(mutex_);
   if (client_ >= 0 && !bytes.empty() && !send_all(client_, bytes)) ::shutdown(client_, SHUT_RDWR);
 }

@@ -1,0 +1,21 @@
+// Bytes both ways between the board and a program of this computer; what comes in waits for the simulation's thread.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace inkwell::virtual_board {
+
+class ByteStream {
+ public:
+  struct Arrived {
+    bool connected = false, gone = false;  ///< since the last call; who came and went is both
+    std::string bytes;
+  };
+  virtual ~ByteStream() = default;
+  virtual Arrived take() = 0;
+  /// What nobody reads is lost.
+  virtual void send(std::string_view bytes) = 0;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,40 @@
+// The terminal that the program was started in, or one of its own for picocom and its like.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "byte_stream.hpp"
+
+namespace inkwell::virtual_board {
+
+class TerminalStream final : public ByteStream {
+ public:
+  /// Standard input and output. `on_arrival` as for StreamServer.
+  explicit TerminalStream(std::function<void()> on_arrival);
+  /// A pseudo-terminal, to which `path` becomes a link for as long as this lives.
+  /// @throws std::runtime_error with a sentence if there can be none.
+  TerminalStream(const std::filesystem::path& path, std::function<void()> on_arrival);
+  ~TerminalStream() override;
+  TerminalStream(const TerminalStream&) = delete;
+  TerminalStream& operator=(const TerminalStream&) = delete;
+
+  Arrived take() override;
+  void send(std::string_view bytes) override;
+
+ private:
+  void start();
+  void read();
+
+  std::function<void()> on_arrival_;
+  std::filesystem::path link_;  ///< empty: standard input and output
+  int input_, output_, other_side_ = -1, ending_ = -1;
+  std::mutex mutex_;
+  std::string arrived_;
+  std::thread thread_;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,47 @@
+// UARTs of the chip on terminals and sockets.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <chip/chip.hpp>
+
+#include "byte_stream.hpp"
+
+namespace inkwell::virtual_board {
+
+/// Where a UART leads.
+struct UartOption {
+  unsigned number = 0;  ///< 1 to 6
+  enum class Kind : std::uint8_t { terminal, port, path } kind = Kind::terminal;
+  std::uint16_t port = 0;
+  std::filesystem::path path;
+  /// Of a text such as usart1=stdio, uart4=5000, usart3=/tmp/tty. Throws std::invalid_argument with a sentence.
+  static UartOption of(const std::string& text);
+};
+
+class UartLinks {
+ public:
+  /// Throws std::runtime_error with a sentence if one cannot be had. `on_arrival` as for StreamServer.
+  UartLinks(const std::vector<UartOption>& options, Chip& chip, const std::function<void()>& on_arrival);
+  /// What the program says of them when it is ready: " uart1=PORT" for each that listens.
+  const std::string& announcement() const { return announcement_; }
+  /// Between two slices of board time: hands over what came, and sends what the chip has sent.
+  void serve();
+
+ private:
+  struct Link {
+    unsigned number;
+    std::unique_ptr<ByteStream> stream;
+    std::string to_send;
+  };
+  Chip& chip_;
+  std::vector<Link> links_;
+  std::string announcement_;
+};
+
+}  // namespace inkwell::virtual_board
