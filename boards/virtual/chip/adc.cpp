@@ -96,7 +96,7 @@ void Adc::begin_conversion(Ticks now) {
   if (group_ == Group::injected) {
     if (adc.cr1.jeocie.in(cr1_) && rank_ + 1 >= injected_length()) wake = done;
   } else {
-    if (adc.cr2.dma.in(cr2_)) wake = done + machine_.transfer_lag();
+    if (adc.cr2.dma.in(cr2_) || adcs_.shares_dma()) wake = done + machine_.transfer_lag();
     const bool ends = adc.cr2.eocs.in(cr2_) || regular_rank_ + 1 >= regular_length();
     if (adc.cr1.eocie.in(cr1_) && ends) wake = done;
   }
@@ -185,7 +185,10 @@ void Adc::finish_regular(Ticks now) {
   const bool pause = adc.cr1.discen.in(cr1_) && regular_rank_ % part == 0;
   if (over) regular_rank_ = 0;
   idle();
-  if (adc.cr2.dma.in(cr2_) && machine_.dma->adc_request(index_)) sr_ &= ~end_of_conversion;
+  if (adcs_.shares_dma())
+    adcs_.share(data_);
+  else if (adc.cr2.dma.in(cr2_) && machine_.dma->adc_request(index_))
+    sr_ &= ~end_of_conversion;
   update_interrupt();
   if (over && adc.cr1.jauto.in(cr1_)) {
     automatic_injected_ = true;
@@ -224,11 +227,13 @@ std::uint32_t Adc::stored(std::uint32_t offset) const {
   return 0;
 }
 
+void Adc::result_taken() {
+  sr_ &= ~end_of_conversion;
+  update_interrupt();
+}
+
 std::uint32_t Adc::read(std::uint32_t offset) {
-  if (offset == adc.dr) {
-    sr_ &= ~end_of_conversion;
-    update_interrupt();
-  }
+  if (offset == adc.dr) result_taken();
   if (offset > adc.dr) machine_.log.note("ADC" + std::to_string(index_ + 1), offset, false, 0);
   return stored(offset);
 }

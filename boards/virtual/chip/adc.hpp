@@ -1,5 +1,5 @@
 // ADC1 to ADC3 (RM0090, "Analog-to-digital converter"): regular and injected groups, simultaneous modes.
-// Not modelled: interleaved and alternate-trigger modes, DMA through the common data register.
+// Not modelled: interleaved and alternate-trigger modes.
 #pragma once
 
 #include <array>
@@ -24,6 +24,8 @@ class Adc final : public TimedPart {
   void write(std::uint32_t offset, std::uint32_t value);
   std::uint32_t stored(std::uint32_t offset) const;
 
+  /// Firmware or DMA has read the result.
+  void result_taken();
   bool is_on() const { return adc.cr2.adon.in(cr2_); }
   /// External trigger selections, or -1 while triggers are off.
   int injected_trigger() const { return adc.cr2.jexten.in(cr2_) ? static_cast<int>(adc.cr2.jextsel.of(cr2_)) : -1; }
@@ -90,6 +92,10 @@ class Adcs final : public RegisterBlock {
   unsigned prescaler() const { return 2 * (adc_common.ccr.adcpre.of(ccr_) + 1); }
   bool temperature_on() const { return adc_common.ccr.tsvrefe.in(ccr_); }
   bool battery_on() const { return adc_common.ccr.vbate.in(ccr_); }
+  /// Results of regular groups go through the common data register (CCR.DMA).
+  bool shares_dma() const { return adc_common.ccr.dma.in(ccr_) && regular_simultaneous(); }
+  /// One more of them.
+  void share(std::uint32_t result);
   void note_injected_sequence(Ticks now);
   void start_injected(unsigned index, Ticks now);
   void start_regular(unsigned index, Ticks now);
@@ -114,6 +120,8 @@ class Adcs final : public RegisterBlock {
   std::deque<Adc> adcs_;
   const std::uint32_t* enable_register_ = nullptr;
   std::uint32_t ccr_ = 0;
+  std::deque<std::uint32_t> shared_;  ///< results that wait to go through the common data register
+  std::uint32_t common_data_ = 0;
   std::uint64_t injected_sequences_ = 0;
   Ticks last_injected_ = never;
   std::array<std::uint8_t, 15> connected_{}, awaited_{};

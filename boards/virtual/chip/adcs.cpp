@@ -1,5 +1,6 @@
 // The three converters together: triggers, simultaneous modes, common registers.
 #include "adc.hpp"
+#include "dma.hpp"
 #include "rcc_map.hpp"
 #include "timers.hpp"
 
@@ -25,7 +26,8 @@ Adcs::Adcs(Machine& machine) : machine_(machine) {
 }
 
 void Adcs::reset() {
-  ccr_ = 0;
+  ccr_ = common_data_ = 0;
+  shared_.clear();
   injected_sequences_ = 0;
   last_injected_ = never;
   for (auto& converter : adcs_) converter.reset();
@@ -55,6 +57,21 @@ unsigned Adcs::group_size() const {
 
 bool Adcs::is_slave(unsigned index, bool injected) const {
   return index != 0 && index < group_size() && (injected ? injected_simultaneous() : regular_simultaneous());
+}
+
+// RM0090, "Multi ADC mode": mode 1 moves each result by itself, modes 2 and 3 two of them, as half words and as bytes.
+void Adcs::share(std::uint32_t result) {
+  shared_.push_back(result);
+  const std::uint32_t mode = adc_common.ccr.dma.of(ccr_);
+  const std::size_t together = mode == 1 ? 1 : 2;
+  while (shared_.size() >= together) {
+    common_data_ = shared_[0];
+    if (mode == 2) common_data_ |= shared_[1] << 16;
+    if (mode == 3) common_data_ = (shared_[0] & 0xFF) | (shared_[1] & 0xFF) << 8;
+    shared_.erase(shared_.begin(), shared_.begin() + static_cast<std::ptrdiff_t>(together));
+    if (!machine_.dma->adc_request(0)) continue;
+    for (unsigned i = 0; i < group_size(); ++i) adcs_[i].result_taken();
+  }
 }
 
 void Adcs::note_injected_sequence(Ticks now) {
@@ -139,6 +156,7 @@ std::uint32_t Adcs::read_word(std::uint32_t offset) {
     }
     case common + adc_common.ccr: return ccr_;
     case common + adc_common.cdr:
+      if (shares_dma()) return common_data_;
       return adc_common.cdr.data.with(adcs_[0].data(), 0) | adc_common.cdr.data.with(adcs_[1].data(), 1);
     default: machine_.log.note("ADC common", offset, false, 0); return 0;
   }
@@ -152,9 +170,9 @@ void Adcs::write_word(std::uint32_t offset, std::uint32_t value) {
   }
   if (offset != common + adc_common.ccr) return machine_.log.note("ADC common", offset, true, value);
   ccr_ = value & writable(adc_common.ccr);
-  const unsigned mode = adc_common.ccr.multi.of(ccr_);
-  if ((mode != 0 && !injected_simultaneous() && !regular_simultaneous()) || adc_common.ccr.dma.in(ccr_))
-    machine_.log.note("ADC interleaved, alternate or common DMA mode,", offset, true, value);
+  shared_.clear();
+  if (adc_common.ccr.multi.of(ccr_) != 0 && !injected_simultaneous() && !regular_simultaneous())
+    machine_.log.note("ADC interleaved or alternate mode,", offset, true, value);
 }
 
 }  // namespace inkwell::virtual_board

@@ -227,6 +227,29 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(8) == ('o' << 8 | 'k'));
   }
 
+  TEST_CASE("three converters share a DMA stream through the common data register") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("triple_conversion", mode);
+      test.circuit.voltages = {{{'C', 0}, 0.5}, {{'C', 1}, 1.0}, {{'C', 2}, 1.5}};
+      test.run_for(0.01);
+      REQUIRE(test.result(0) == finished);
+      constexpr std::uint32_t first = 620, second = 1241, third = 1861;  // of 4096 at 3.3 V
+      CHECK(test.result(1) == (second << 16 | first));                   // six half words, one at a time
+      CHECK(test.result(2) == (first << 16 | third));
+      CHECK(test.result(3) == (third << 16 | second));
+      CHECK(test.result(4) == (second << 16 | first));  // three words
+      CHECK(test.result(5) == (first << 16 | third));
+      CHECK(test.result(6) == (third << 16 | second));
+      const auto low = [](std::uint32_t value) { return value & 0xFF; };
+      CHECK((test.result(7) & 0xFFFF) == (low(second) << 8 | low(first)));  // three half words of two bytes
+      CHECK((test.result(7) >> 16) == (low(first) << 8 | low(third)));
+      CHECK((test.result(8) & 0xFFFF) == (low(third) << 8 | low(second)));
+      CHECK(test.result(9) == 0);
+      CHECK(test.log.empty());
+    }
+  }
+
   TEST_CASE("with nothing connected, what drivers wait for comes, or their errors do") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
