@@ -155,8 +155,9 @@ std::uint8_t Device::send(Command command) {
 
 void Device::keep_alive() {
   const auto& self = *implementation_;
-  if (Clock::now() - self.last_command_at >= heartbeat_interval ||
-      self.newest_period - self.last_command_period >= heartbeat_periods)
+  const std::uint32_t passed = self.newest_period - self.last_command_period;
+  if (passed == 0) return;  // its time stands still: heartbeats would pile up before the next command
+  if (passed >= heartbeat_periods || Clock::now() - self.last_command_at >= heartbeat_interval)
     send(Command::heartbeat);
 }
 

@@ -17,7 +17,9 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto search_interval = 200ms;
-constexpr auto refresh_interval = 1s;  // another program may have changed the parameters
+/// Another program may have changed the parameters. A second of the device's time: while that stands still, nothing
+/// shall pile up before a change that the user makes.
+constexpr std::uint32_t refresh_periods = protocol::servo_rate_Hz;
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
 
@@ -114,13 +116,17 @@ struct Session::Implementation {
 
   void serve(const std::shared_ptr<Device>& served) {
     std::optional<std::uint32_t> sequence;
-    auto window_start = Clock::now(), last_check = window_start, last_pose = window_start;
+    std::optional<std::uint32_t> refreshed_at_periods;
+    auto window_start = Clock::now(), last_pose = window_start;
     std::uint64_t poses_in_window = 0;
+    std::uint32_t newest_periods = 0;
     while (!stopping) {
       if (const auto pose = served->read_pose(1ms)) {
         last_pose = Clock::now();
         ++poses_in_window;
         take_pose(*pose, sequence);
+        newest_periods = pose->time_periods;
+        if (!refreshed_at_periods) refreshed_at_periods = newest_periods;
       }
       if (lost) throw Disconnected("The device was unplugged. Connect it again.");
       send_requests(*served);
@@ -136,10 +142,10 @@ struct Session::Implementation {
         window_start = now;
         poses_in_window = 0;
       }
-      if (now - last_check >= refresh_interval && now - last_pose < silence_limit) {
+      if (refreshed_at_periods && newest_periods - *refreshed_at_periods >= refresh_periods) {
         refresh_parameters(*served);
         refresh_information(*served);
-        last_check = now;
+        refreshed_at_periods = newest_periods;
         const std::lock_guard lock(mutex);
         if (scope_denied) requests.select = true;  // the other program may be done
       }

@@ -37,13 +37,15 @@ TEST_CASE("a session connects, shows pose and parameters, and gives its sign of 
   REQUIRE(eventually([&] { return is_connected(session); }));
   CHECK(session.status().information->serial_number == "0123456789ABCDEF01234567");
   CHECK(session.parameters() == server.parameters);
-  CHECK(eventually([&] { return count_of(server, protocol::Command::heartbeat) >= 3; }));
 
   protocol::PoseReport pose{};
   pose.report_id = protocol::ReportId::pose;
   for (std::uint32_t sequence : {10u, 11u, 15u}) {
     pose.sequence = sequence;
+    pose.time_periods = sequence * 200;
+    const auto heartbeats = count_of(server, protocol::Command::heartbeat);
     server.send(1, bytes_of(pose));
+    CHECK(eventually([&] { return count_of(server, protocol::Command::heartbeat) > heartbeats; }));
   }
   REQUIRE(eventually([&] { return session.status().poses_received == 3; }));
   CHECK(session.newest_pose()->sequence == 15);

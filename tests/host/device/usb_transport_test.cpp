@@ -136,6 +136,7 @@ TEST_CASE("a session goes on without the scope while another program has it, say
       REQUIRE(sequence < 5000);
       protocol::PoseReport pose{.report_id = protocol::ReportId::pose};
       pose.sequence = sequence;
+      pose.time_periods = sequence * protocol::servo_rate_Hz / 1000;
       usb.send_report(arm, bytes_of(pose));
       std::this_thread::sleep_for(1ms);
     }

@@ -54,7 +54,8 @@ class Device {
   /// Sends a command and returns its token, which comes back in PoseReport::command_token.
   std::uint8_t send(protocol::Command command);
   /// Sends a heartbeat unless a command went out in the last 10 ms of wall time and, as far as the poses read
-  /// tell, of board time (a virtual board may run faster than the clock). Belongs in the loop that reads poses.
+  /// tell, of board time (a virtual board may run faster than the clock); none while board time stands still.
+  /// Belongs in the loop that reads poses.
   void keep_alive();
   std::uint8_t send(protocol::Command command, const protocol::TestPulse& pulse);
   /// None stops the scope. Throws InUse if another program has it.
