@@ -67,6 +67,7 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   if (options.real_time) arguments.push_back("--real-time");
   if (options.paused) arguments.push_back("--paused");
   if (options.strict) arguments.push_back("--strict");
+  if (!options.profile.empty()) arguments.insert(arguments.end(), {"--profile", options.profile.string()});
   return arguments;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -26,7 +27,9 @@ constexpr std::size_t stage_count = static_cast<std::size_t>(Signal::stage_repor
 /// A board that is pushed around by a hand. Board time passes only in run() and while the device answers.
 class PressedBoard {
  public:
-  explicit PressedBoard(device::CyclePricing pricing) : board_(options(pricing)), control_(board_.control()) {
+  /// `profile`: see VirtualBoardOptions.
+  explicit PressedBoard(device::CyclePricing pricing, const std::filesystem::path& profile = {})
+      : board_(options(pricing, profile)), control_(board_.control()) {
     control_.stand_by();
     std::optional<device::Endpoint> endpoint;
     while (!(endpoint = board_.find())) control_.run(slice_s);
@@ -56,10 +59,11 @@ class PressedBoard {
  private:
   static constexpr double slice_s = 0.01;
 
-  static device::VirtualBoardOptions options(device::CyclePricing pricing) {
+  static device::VirtualBoardOptions options(device::CyclePricing pricing, const std::filesystem::path& profile) {
     device::VirtualBoardOptions options;
     options.mode = device::SimulationMode::exact;
     options.pricing = pricing;
+    options.profile = profile;
     options.real_time = false;
     options.paused = true;
     return options;
@@ -103,7 +107,8 @@ class PressedBoard {
 }  // namespace
 
 void print_interrupt_stages() {
-  PressedBoard likely(device::CyclePricing::likely), conservative(device::CyclePricing::conservative);
+  PressedBoard likely(device::CyclePricing::likely);
+  PressedBoard conservative(device::CyclePricing::conservative, device::executable_directory() / "interrupt.profile");
   const auto likely_cycles = likely.press(), conservative_cycles = conservative.press();
   std::printf("Control interrupt on the virtual board (simulation), pressed into three walls, %zu signals:\n",
               selected);

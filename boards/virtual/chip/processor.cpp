@@ -288,6 +288,8 @@ void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes
     self.outcome_ = Outcome::division_by_zero;
     return self.stop();
   }
+  if (self.machine_.options.on_instruction)
+    self.machine_.options.on_instruction(static_cast<std::uint32_t>(address), self.cycles_);
   const std::size_t next = half_word + bytes / 2;
   self.instruction_end_ = self.block_start_ + (next < starts.size() ? starts[next] : self.block_->cycles);
   const auto& requests = self.block_->requests;

@@ -41,7 +41,8 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
                      .unique_id = unique_id_of(options.seed),
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); },
-                     .name_of_code = [this](std::uint32_t address) { return symbols_.name(address); }}) {
+                     .name_of_code = [this](std::uint32_t address) { return symbols_.name(address); },
+                     .on_instruction = observer(options)}) {
   if (options.strict) chip_.on_violation = [this](const Violation&) { chip_.request_stop(); };
   chip_.load_elf(elf_);
   symbols_ = Symbols(elf_);
@@ -64,6 +65,13 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
     locked_up_ = false;
     if (trace_.is_running()) trace_.start();  // control periods count from 0 again
     log_line(chip_.now(), fmt::format("the chip was reset by {}", name_of(cause)));
+  };
+}
+
+std::function<void(std::uint32_t, std::uint64_t)> Board::observer(const Options& options) {
+  if (!options.profile) return {};
+  return [this](std::uint32_t address, std::uint64_t cycles) {
+    profile_.instruction(chip_.current_exception(), address, cycles);
   };
 }
 

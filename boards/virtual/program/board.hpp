@@ -12,6 +12,7 @@
 #include <virtual_usb/virtual_usb.hpp>
 
 #include "options.hpp"
+#include "profile.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -31,6 +32,7 @@ class Board {
   Plant& plant() { return plant_; }
   VirtualUsb& usb() { return *usb_; }
   Trace& trace() { return trace_; }
+  const Profile& profile() const { return profile_; }
   /// The function that holds `address`; empty if the ELF does not say.
   std::string name_of_code(std::uint32_t address) const { return symbols_.name(address); }
   Truth truth() { return plant_.truth(chip_.now()); }
@@ -38,6 +40,7 @@ class Board {
 
  private:
   void console(std::uint8_t byte);
+  std::function<void(std::uint32_t address, std::uint64_t cycles)> observer(const Options& options);
 
   const std::filesystem::path elf_;
   Symbols symbols_;
@@ -46,6 +49,7 @@ class Board {
   std::optional<Waveform> waveform_;
   std::optional<VirtualUsb> usb_;  ///< there from construction to destruction
   Trace trace_;
+  Profile profile_;
   std::string console_line_;
   bool locked_up_ = false;
 };

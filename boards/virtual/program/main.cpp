@@ -46,7 +46,9 @@ int main(int argc, char** argv) {
     if (gdb) fmt::print(" gdb={}", gdb->port());
     fmt::print("{}\n", uarts.announcement());
     std::fflush(stdout);
-    return Simulation(options, board, server, gdb ? &*gdb : nullptr, uarts).run(end_requested);
+    const int exit_code = Simulation(options, board, server, gdb ? &*gdb : nullptr, uarts).run(end_requested);
+    if (options.profile) board.profile().write(*options.profile);
+    return exit_code;
   } catch (const std::exception& error) {
     log_line(error.what());
     return 1;

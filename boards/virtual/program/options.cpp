@@ -95,6 +95,11 @@ CommandLine read_command_line(int argc, char** argv) {
   app.add_option("--vcd-pins", pins, "only these pins, such as PA8,PC6 (default: all)")
       ->delimiter(',')
       ->type_name("PINS");
+  std::string profile;
+  auto* profile_option = app.add_option("--profile", profile,
+                                        "at the end, write the instructions of the longest interrupt and their cycles "
+                                        "to this file\n(tools/flame-graph draws it); --mode is exact")
+                             ->type_name("FILE");
   app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
   app.add_flag(
       "--strict", options.strict,
@@ -118,14 +123,15 @@ CommandLine read_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
   }
-  if (*gdb_option) {
+  if (*gdb_option || *profile_option) {
     if (*mode_option && mode != "exact") {
-      std::cerr << "virtual-board: --gdb stops at any instruction; leave --mode fast out.\n";
+      std::cerr << "virtual-board: --gdb and --profile look at every instruction; leave --mode fast out.\n";
       return {std::nullopt, 2};
     }
-    options.gdb_port = gdb_port;
     mode = "exact";
   }
+  if (*gdb_option) options.gdb_port = gdb_port;
+  if (*profile_option) options.profile = profile;
   try {
     for (const std::string& name : pins) options.waveform_pins.push_back(PinName::of(name));
   } catch (const std::invalid_argument& error) {

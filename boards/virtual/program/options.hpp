@@ -30,7 +30,8 @@ struct Options {
   std::uint64_t seed = 1;         ///< of all noise and of the serial number
   std::optional<double> seconds;  ///< of board time, after which the program ends
   bool paused = false;
-  bool strict = false;  ///< the first broken rule of the chip ends the program
+  std::optional<std::filesystem::path> profile;  ///< file for the longest interrupt, instruction by instruction
+  bool strict = false;                           ///< the first broken rule of the chip ends the program
 };
 
 /// The options, or the exit code if the program is to end now: 0 after --help, 2 after a wrong option, which

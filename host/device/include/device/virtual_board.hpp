@@ -27,6 +27,7 @@ struct VirtualBoardOptions {
   std::filesystem::path program;  ///< empty: `virtual-board` beside this executable
   std::filesystem::path elf;      ///< empty: ../board/inkwell.elf from this executable's directory
   std::filesystem::path arm;      ///< empty: the Omni
+  std::filesystem::path profile;  ///< file for the longest interrupt, written at the board's end; empty: none
   SimulationMode mode = SimulationMode::fast;
   CyclePricing pricing = CyclePricing::likely;
   std::uint64_t seed = 1;       ///< of its noise and of its serial number

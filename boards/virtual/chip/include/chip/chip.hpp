@@ -43,6 +43,8 @@ struct ChipOptions {
   std::function<void(const std::string&)> log;
   /// The function at an address, for lines of the log; may give nothing. By default there are no names.
   std::function<std::string(std::uint32_t address)> name_of_code;
+  /// Called in exact mode before each instruction with the cycles that the processor has run.
+  std::function<void(std::uint32_t address, std::uint64_t cycles)> on_instruction;
 };
 
 /// RCC_CSR's reset flags, in the order of its bits 26..31.
