@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -98,6 +99,8 @@ void FakeUsbipServer::accept_clients() {
   for (;;) {
     const int client = accept(listener_, nullptr, nullptr);
     if (client < 0) return;
+    const int yes = 1;
+    setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // a pose follows an answer at once
     {
       const std::lock_guard lock(mutex_);
       client_ = client;
