@@ -91,7 +91,8 @@ void ScopeRecorder::pack_oldest() {
     write_changes(sample.signals);
   ++packed_;
   ++sample_count_;
-  if (cursor_ + plan_.sample_size_maximum > frame_end_) finish_frame();
+  if (sample_count_ == protocol::scope_frame_samples_maximum || cursor_ + plan_.sample_size_maximum > frame_end_)
+    finish_frame();
 }
 
 // Both go through the plan run by run, so that the loop over floats, where most of the time of recording

@@ -23,8 +23,10 @@ namespace {
 
 namespace identity = protocol::usb;
 
-constexpr int bulk_transfers = 64;       // 128 KiB are more than 100 ms of a full-speed bus
-constexpr std::size_t bulk_kept = 2048;  // 4 MiB; then the oldest go, and the sequence of the frames shows it
+/// 128 KiB are more than 100 ms of a full-speed bus.
+constexpr int bulk_transfers = 128 * 1024 / protocol::scope_frame_maximum;
+/// Then the oldest go, and the sequence of the frames shows it.
+constexpr std::size_t bulk_kept = 4 * 1024 * 1024 / protocol::scope_frame_maximum;
 constexpr char unplugged[] = "The device was unplugged. Connect it again.";
 
 std::string narrow(const wchar_t* text) {

@@ -1,8 +1,10 @@
 // Scope frames: what goes over the vendor bulk interface.
 //
 // A frame is one bulk transfer: a header and the samples of consecutive control periods, at most
-// scope_frame_maximum bytes, ended by a short packet (or an empty one where the length is a multiple of
-// 64). A gap in `sequence` is a lost frame; the next frame's `first_period` then tells how many samples.
+// scope_frame_maximum bytes and scope_frame_samples_maximum samples, ended by a short packet (or an empty one where the
+// length is a multiple of 64). Between two transfers the bus stands idle until the device has loaded the next one, so
+// they are long: 14 floats leave room for two packets there, 36 samples would leave less than half of one. A gap in
+// `sequence` is a lost frame; the next frame's `first_period` then tells how many samples.
 //
 //   full     every sample holds the value of every selected signal, in the order of the selection
 //   changes  every sample is a 32-bit mask, bit i standing for the i-th selected signal, followed by
@@ -23,7 +25,9 @@ namespace inkwell::protocol {
 enum class ScopeEncoding : std::uint8_t { full = 0, changes = 1 };
 
 inline constexpr std::uint32_t scope_magic = 0x43535749;  // "IWSC" as it lies in memory
-inline constexpr std::size_t scope_frame_maximum = 2048;
+inline constexpr std::size_t scope_frame_maximum = 6144;
+/// 5.5 ms: what a reader waits for, however few signals there are.
+inline constexpr std::uint32_t scope_frame_samples_maximum = 109;
 inline constexpr std::size_t scope_full_sample_maximum = 56;
 
 #pragma pack(push, 1)

@@ -194,7 +194,7 @@ TEST_CASE("a narrow value beyond its range saturates") {
 TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but never one that is being sent") {
   link::ScopeRecorder& scope = test::fresh_link().scope;
   const SignalSelection selection = select(14);
-  constexpr std::uint32_t samples_per_frame = (2048 - 24) / 56;
+  constexpr std::uint32_t samples_per_frame = protocol::scope_frame_samples_maximum;
   scope.select(selection, 3);
   constexpr std::uint32_t frames_recorded = 100;
   std::uint32_t period = 0;
@@ -252,7 +252,7 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
   scope.select(select(20), 2);             // overtaken before a sample came
   scope.select(second, 3);
   const std::uint32_t start = period;
-  for (int i = 0; i < 1000; ++i) test::record(scope, signals_at(period), period), ++period;
+  for (int i = 0; i < 800; ++i) test::record(scope, signals_at(period), period), ++period;
   // What was on its way still comes, and says which selection it belongs to.
   std::uint32_t old_frames = 0;
   for (;; ++old_frames) {
@@ -304,7 +304,7 @@ TEST_CASE("a main loop that comes late loses nothing up to the ring's length, be
 TEST_CASE("the main loop packs a few samples each time that it comes round") {
   link::ScopeRecorder& scope = test::fresh_link().scope;
   scope.select(select(14), 1);
-  constexpr std::uint32_t samples_per_frame = (2048 - 24) / 56, before = 10;
+  constexpr std::uint32_t samples_per_frame = protocol::scope_frame_samples_maximum, before = samples_per_frame - 26;
   std::uint32_t period = 0;
   for (; period < before; ++period) test::record(scope, signals_at(period), period);
   for (; period < before + link::ScopeRecorder::readable; ++period) {

@@ -77,7 +77,7 @@ class FakePort final : public usb::Port {
     if (endpoint_address == 0x80) CHECK(data.size() <= usb::packet_size_maximum);
     endpoint.running = true;
     endpoint.data = data;
-    endpoint.data_at_start = to_bytes(data);
+    endpoint.data_at_start.assign(data.begin(), data.end());
     endpoint.offset = 0;
   }
 
@@ -123,7 +123,7 @@ class FakePort final : public usb::Port {
     Endpoint& endpoint = at(static_cast<std::uint8_t>(0x80 | number));
     if (endpoint.stalled) return {Handshake::stall};
     if (!endpoint.open || !endpoint.running) return {Handshake::nak};
-    CHECK_MESSAGE(to_bytes(endpoint.data) == endpoint.data_at_start, "what is being sent must not change");
+    CHECK_MESSAGE(std::ranges::equal(endpoint.data, endpoint.data_at_start), "what is being sent must not change");
     const std::size_t size = std::min(endpoint.data.size() - endpoint.offset, usb::packet_size_maximum);
     InPacket packet{Handshake::ack, to_bytes(endpoint.data.subspan(endpoint.offset, size))};
     endpoint.offset += size;

@@ -83,7 +83,7 @@ TEST_CASE("the scope is read from the arm with this serial number, where its des
     transport->claim_scope();
     transport->claim_scope();  // once is enough
     CHECK(arm.claimed == std::set<int>{0});
-    CHECK(usb.endpoints_under_way(arm) == std::vector<std::uint8_t>(64, 0x83));
+    CHECK(usb.endpoints_under_way(arm) == std::vector<std::uint8_t>(21, 0x83));
     for (int i = 0; i < 100; ++i) usb.send_bulk(arm, bulk_number(i));
     for (int i = 0; i < 100; ++i) {
       REQUIRE(transport->read_bulk(buffer, 5s) == 100);
@@ -199,7 +199,7 @@ TEST_CASE("a reader who stops reading the scope loses the oldest, and what is ke
   auto& arm = usb.add_arm("A");
   const auto transport = device::open_transport(arm.endpoint());
   transport->claim_scope();
-  constexpr int kept = 2048;
+  constexpr int kept = 682;
   for (int i = 0; i < kept + 3; ++i) usb.send_bulk(arm, bulk_number(i % 100));
   REQUIRE(eventually([&] { return usb.bulk_left(arm) == 0; }));
   std::array<std::byte, 200> buffer{};

@@ -15,7 +15,7 @@ namespace inkwell::link {
 
 /// Room for frames: large, and touched by the main loop only.
 struct ScopeFrames {
-  static constexpr std::uint32_t count = 32;
+  static constexpr std::uint32_t count = 10;
   using Frame = std::array<std::byte, protocol::scope_frame_maximum>;
   alignas(4) std::array<Frame, count> frames;
 };
