@@ -144,19 +144,34 @@ TEST_CASE("a change of an id, a name, a unit or a wire changes the tables' hash"
 }
 
 TEST_CASE("a parameter table with a default out of range, ids that do not rise or a scattered group is refused") {
-  CHECK(detail::is_sound(parameter_table));
-  const auto refused = [](auto change) {
+  const auto changed = [](auto change) -> const auto& {
     auto& table = fresh_table();
     change(table);
-    return !detail::is_sound(table);
+    return table;
   };
-  CHECK(refused([](auto& table) { table[7].default_value = table[7].maximum + 1.0f; }));
-  CHECK(refused([](auto& table) { table[7].default_value = table[7].minimum - 1.0f; }));
-  CHECK(refused([](auto& table) { table[7].group = table[0].group; }));
-  CHECK(refused([](auto& table) { table[7].id = table[6].id; }));
-  CHECK(refused([](auto& table) { table[7].id = table[8].id; }));
-  CHECK_FALSE(refused([](auto& table) { table[7].default_value = table[7].minimum; }));
-  CHECK_FALSE(refused([](auto& table) { table[7].default_value = table[7].maximum; }));
+  const auto range_holds = [&](auto change) { return detail::default_is_in_range(changed(change), 7); };
+  CHECK_FALSE(range_holds([](auto& rows) { rows[7].default_value = rows[7].maximum + 1.0f; }));
+  CHECK_FALSE(range_holds([](auto& rows) { rows[7].default_value = rows[7].minimum - 1.0f; }));
+  CHECK(range_holds([](auto& rows) { rows[7].default_value = rows[7].minimum; }));
+  CHECK(range_holds([](auto& rows) { rows[7].default_value = rows[7].maximum; }));
+  const auto id_rises = [&](auto change, std::size_t row) { return detail::id_rises(changed(change), row); };
+  CHECK(id_rises([](auto&) {}, 7));
+  CHECK(id_rises([](auto& rows) { rows[0].id = 0; }, 0));
+  CHECK_FALSE(id_rises([](auto& rows) { rows[7].id = rows[6].id; }, 7));
+  CHECK_FALSE(id_rises([](auto& rows) { rows[7].id = rows[8].id; }, 8));
+  const auto stands = [&](auto change, std::size_t row) { return detail::stands_with_its_group(changed(change), row); };
+  REQUIRE(parameter_table[0].group != parameter_table[7].group);
+  CHECK(stands([](auto&) {}, 0));
+  CHECK(stands([](auto& rows) { rows[7].group = "of its own"; }, 7));
+  CHECK_FALSE(stands([](auto& rows) { rows[7].group = rows[0].group; }, 7));
+  CHECK_FALSE(stands([](auto& rows) { rows[7].group = "of its own"; }, 8));
+}
+
+TEST_CASE("a signal is found at the place that its id says") {
+  CHECK(detail::id_is_place(0, signal_table[0].name));
+  CHECK(detail::id_is_place(signal_count - 1, signal_table.back().name));
+  CHECK_FALSE(detail::id_is_place(1, signal_table[0].name));
+  CHECK_FALSE(detail::id_is_place(signal_count, "beyond"));
 }
 
 TEST_CASE("the rows for three axes are found by their names") {
@@ -188,7 +203,10 @@ TEST_CASE("a table in which the rows for three axes differ, or one lacks, is ref
   const auto refused = [](auto change) {
     auto& table = fresh_table();
     change(table[static_cast<std::size_t>(Parameter::current_limit_2_A)]);
-    return !detail::neighbours_are_alike(table);
+    const bool first = detail::neighbours_are_alike(table, static_cast<std::size_t>(Parameter::current_limit_1_A));
+    const bool third = detail::neighbours_are_alike(table, static_cast<std::size_t>(Parameter::current_limit_3_A));
+    CHECK(first == third);
+    return !first;
   };
   CHECK(refused([](auto& row) { row.name = "current_limit_two_A"; }));
   CHECK(refused([](auto& row) { row.unit = "mA"; }));
@@ -201,7 +219,9 @@ TEST_CASE("a table in which the rows for three axes differ, or one lacks, is ref
 
   static auto signals = signal_table;
   signals[static_cast<std::size_t>(Signal::duty_3)].wire = SignalWire::float32;
-  CHECK_FALSE(detail::neighbours_are_alike(signals));
+  CHECK_FALSE(detail::neighbours_are_alike(signals, static_cast<std::size_t>(Signal::duty_3)));
+  CHECK(detail::neighbours_are_alike(signals, static_cast<std::size_t>(Signal::duty_1)));
+  CHECK(detail::neighbours_are_alike(signals, static_cast<std::size_t>(Signal::supply_V)));
 }
 
 TEST_CASE("the numbers of the protocol, which both ends of another version count on") {

@@ -29,19 +29,16 @@ constexpr bool is_named_after(std::string_view name, std::string_view other, int
          name.substr(place + 1) == other.substr(place + 1);
 }
 
-/// Whether every row 1, 3, x or z has its neighbour 2 or y, alike() in all that must agree.
+/// Whether the row, if it is a 1, 3, x or z, has its neighbour 2 or y, alike() in all that must agree.
 template <class Table>
-constexpr bool neighbours_are_alike(const Table& table) {
-  for (const auto& row : table) {
-    const std::size_t place = axis_place(row.name);
-    if (place == std::string_view::npos || row.name[place] == '2' || row.name[place] == 'y') continue;
-    const int distance = row.name[place] == '1' || row.name[place] == 'x' ? 1 : -1;
-    bool found = false;
-    for (const auto& other : table)
-      found = found || (is_named_after(other.name, row.name, distance) && alike(other, row));
-    if (!found) return false;
-  }
-  return true;
+constexpr bool neighbours_are_alike(const Table& table, std::size_t index) {
+  const auto& row = table[index];
+  const std::size_t place = axis_place(row.name);
+  if (place == std::string_view::npos || row.name[place] == '2' || row.name[place] == 'y') return true;
+  const int distance = row.name[place] == '1' || row.name[place] == 'x' ? 1 : -1;
+  for (const auto& other : table)
+    if (is_named_after(other.name, row.name, distance) && alike(other, row)) return true;
+  return false;
 }
 
 // Not constexpr: a call ends the compilation, and the compiler's message shows the name.

@@ -208,25 +208,33 @@ constexpr std::optional<Parameter> find_parameter(std::string_view name) {
 
 namespace detail {
 template <class Table>
-constexpr bool is_sound(const Table& table) {
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    const auto& row = table[i];
-    if (!(row.minimum <= row.default_value && row.default_value <= row.maximum)) return false;
-    if (i > 0 && table[i - 1].id >= row.id) return false;
-    if (i > 0 && table[i - 1].group != row.group)
-      for (std::size_t earlier = 0; earlier < i; ++earlier)
-        if (table[earlier].group == row.group) return false;
-  }
+constexpr bool id_rises(const Table& table, std::size_t row) {
+  return row == 0 || table[row - 1].id < table[row].id;
+}
+template <class Table>
+constexpr bool default_is_in_range(const Table& table, std::size_t row) {
+  return table[row].minimum <= table[row].default_value && table[row].default_value <= table[row].maximum;
+}
+template <class Table>
+constexpr bool stands_with_its_group(const Table& table, std::size_t row) {
+  if (row == 0 || table[row - 1].group == table[row].group) return true;
+  for (std::size_t earlier = 0; earlier < row; ++earlier)
+    if (table[earlier].group == table[row].group) return false;
   return true;
 }
 }  // namespace detail
-static_assert(detail::is_sound(parameter_table),
-              "ids must rise, each default must lie in its range, and a group must stand together");
 #define X(id, name, kind, unit, minimum, maximum, default_value, group, help)                                       \
+  static_assert(detail::id_rises(parameter_table, static_cast<std::size_t>(Parameter::name)),                       \
+                #name ": its id is not above that of the row before; ids rise from row to row");                    \
+  static_assert(detail::default_is_in_range(parameter_table, static_cast<std::size_t>(Parameter::name)),            \
+                #name ": its default is outside of its range");                                                     \
+  static_assert(detail::stands_with_its_group(parameter_table, static_cast<std::size_t>(Parameter::name)),          \
+                #name ": its group stands further up; put it there, with an id of that group");                     \
   static_assert(!detail::is_from_arm(#default_value) || #default_value == std::string_view{"arm_defaults::" #name}, \
-                #name " takes another row's default");
+                #name ": it takes another row's default");                                                          \
+  static_assert(detail::neighbours_are_alike(parameter_table, static_cast<std::size_t>(Parameter::name)),           \
+                #name ": rows 1 to 3, or x to z, must all be there and agree in kind, unit, range and group");
 INKWELL_PARAMETERS(X)
 #undef X
-static_assert(detail::neighbours_are_alike(parameter_table), "rows 1 to 3, or x to z, must agree in unit and range");
 
 }  // namespace inkwell::protocol

@@ -125,13 +125,16 @@ constexpr std::optional<Signal> find_signal(std::string_view name) {
 }
 
 namespace detail {
-constexpr bool signal_ids_are_indices() {
-  for (std::size_t i = 0; i < signal_count; ++i)
-    if (signal_table[i].id != i) return false;
-  return true;
+constexpr bool id_is_place(std::size_t id, std::string_view name) {
+  return id < signal_count && signal_table[id].name == name;
 }
 }  // namespace detail
-static_assert(detail::signal_ids_are_indices(), "a signal's id is its place in the table");
-static_assert(detail::neighbours_are_alike(signal_table), "rows 1 to 3, or x to z, must agree in unit and wire");
+#define X(id, name, unit, wire, help)                                                                            \
+  static_assert(detail::id_is_place(id, #name),                                                                  \
+                #name ": its id is not its place in the table; a new signal is the last row, with the next id"); \
+  static_assert(detail::neighbours_are_alike(signal_table, static_cast<std::size_t>(Signal::name)),              \
+                #name ": rows 1 to 3, or x to z, must all be there and agree in unit and wire");
+INKWELL_SIGNALS(X)
+#undef X
 
 }  // namespace inkwell::protocol
