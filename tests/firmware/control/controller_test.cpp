@@ -127,6 +127,16 @@ TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, an
   CHECK(signals[Signal::duty_1] == doctest::Approx(0.0f));
 }
 
+TEST_CASE("every signal of the table is written") {
+  constexpr float unwritten = -12345.0f;
+  protocol::SignalValues signals;
+  signals.values.fill(unwritten);
+  Controller{tests::board_limits}.write_signals(signals);
+  for (std::size_t i = 0; i < protocol::signal_count; ++i)
+    CHECK_MESSAGE(signals.values[i] != unwritten,
+                  protocol::signal_table[i].name << " has no line in Controller::write_signals()");
+}
+
 TEST_CASE("the force ramps in over force_ramp_s and goes off at once") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::ready_controller(settings);
