@@ -12,13 +12,15 @@ function(inkwell_add_precompiled_headers name)
   target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
 endfunction()
 
-# Lets every compiled target of a directory and of those below it use the precompiled headers of `name`.
+# Lets every compiled target of a directory and of those below it use the precompiled headers of `name`, if it links to
+# fmt: without fmt's definitions the compiler refuses them.
 function(inkwell_use_precompiled_headers name directory)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type ${target} TYPE)
     get_target_property(own ${target} PRECOMPILE_HEADERS_REUSE_FROM)
-    if(type MATCHES "STATIC_LIBRARY|EXECUTABLE" AND NOT own)
+    get_target_property(libraries ${target} LINK_LIBRARIES)
+    if(type MATCHES "STATIC_LIBRARY|EXECUTABLE" AND NOT own AND "fmt::fmt" IN_LIST libraries)
       target_precompile_headers(${target} REUSE_FROM ${name})
     endif()
   endforeach()
