@@ -100,8 +100,8 @@ void Companion::follow_device(double now_s) {
   follow_parameters(desk_.refresh(), now_s);
   const auto samples = desk_.take_scope();
   column_.follow({editor_, samples, now_s});
-  const PaneStream stream = column_.stream();
-  desk_.select_signals(stream.signals.empty() ? scope_pane_.signals() : stream.signals);
+  const PaneStream stream = column_.stream(scope_pane_.signals());
+  desk_.select_signals(stream.signals);
   if (!stream.feeds_scope || replay_bar_.is_open()) return;
   for (const device::ScopeSamples& each : samples) scope_pane_.receive(each);
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include <frame/widgets.hpp>
+#include <panes/pane_stream.hpp>
 
 #include "registry.hpp"
 
@@ -21,6 +23,11 @@ std::string name_of(const Pane& pane) {
   std::string name{pane.title()};
   std::ranges::transform(name, name.begin(), [](unsigned char letter) { return std::tolower(letter); });
   return name;
+}
+
+float title_width(const Pane& pane) {
+  const std::string_view title = pane.title();
+  return ImGui::CalcTextSize(title.data(), title.data() + title.size()).x;
 }
 
 }  // namespace
@@ -38,10 +45,10 @@ void PaneColumn::cancel() {
   for (const auto& pane : panes_) pane->cancel();
 }
 
-PaneStream PaneColumn::stream() const {
+PaneStream PaneColumn::stream(const std::vector<protocol::Signal>& scope_signals) const {
   for (const auto& pane : panes_)
     if (PaneStream stream = pane->stream(); !stream.signals.empty()) return stream;
-  return {};
+  return {joined(scope_signals, panes_[shown_]->shown_signals())};
 }
 
 bool PaneColumn::is_moving() const {
@@ -53,20 +60,22 @@ float PaneColumn::draw_tabs(ImVec2 place, float width, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(6)});
   begin_pane("tabs", place, {width, height}, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
+  // Each as wide as its title, and the room that is left over for all alike: a further pane leaves the long ones
+  // legible.
   const auto count = static_cast<float>(panes_.size());
-  const float gaps = (count - 1.0f) * ImGui::GetStyle().ItemSpacing.x;
-  const float tab_width = (ImGui::GetContentRegionAvail().x - gaps) / count;
+  float spare = ImGui::GetContentRegionAvail().x - (count - 1.0f) * ImGui::GetStyle().ItemSpacing.x;
+  for (const auto& pane : panes_) spare -= title_width(*pane);
   for (std::size_t i = 0; i < panes_.size(); ++i) {
     if (i > 0) ImGui::SameLine();
     const std::string label = fmt::format("{}##tab", panes_[i]->title());
-    if (toggle_button(label.c_str(), i == shown_, style, {tab_width, 0})) shown_ = i;
+    if (toggle_button(label.c_str(), i == shown_, style, {title_width(*panes_[i]) + spare / count, 0})) shown_ = i;
   }
   end_pane();
   return height;
 }
 
 void PaneColumn::draw(ImVec2 place, ImVec2 size, PaneFrame frame) {
-  frame.scope_is_free = stream().feeds_scope;
+  frame.scope_is_free = stream(frame.scope_signals).feeds_scope;
   const float tabs = draw_tabs(place, size.x, frame.style);
   Pane& pane = *panes_[shown_];
   begin_pane(name_of(pane).c_str(), {place.x, place.y + tabs}, {size.x, size.y - tabs});

@@ -1,6 +1,5 @@
 // The pane that records: what, where to, start, stop and marks, with progress, size, free space and errors; and that
 // opens a recording to be replayed.
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -114,10 +113,7 @@ void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
   signals_ = choice_ == Choice::standard ? recording::standard_signals()
              : choice_ == Choice::path   ? recording::signal_path()
                                          : std::vector<protocol::Signal>{};
-  for (const auto signal : scope_signals)
-    if (std::find(signals_.begin(), signals_.end(), signal) == signals_.end() &&
-        signals_.size() < protocol::scope_signals_maximum)
-      signals_.push_back(signal);
+  signals_ = joined(std::move(signals_), scope_signals);
   written_file_ = file_.empty() ? name_from_time() : typed_path(std::filesystem::current_path(), file_).string();
   if (!std::filesystem::path(written_file_).has_extension()) written_file_ += ".h5";
   try {

@@ -13,6 +13,7 @@
 #include <device_desk/device_desk.hpp>
 #include <device_desk/parameter_editor.hpp>
 #include <frame/style.hpp>
+#include <panes/pane_stream.hpp>
 
 namespace inkwell::window {
 
@@ -33,8 +34,8 @@ struct PaneSurroundings {
 
 /// What has come since the last frame.
 struct PaneNews {
-  ParameterEditor& editor;  ///< of the device's parameters
-  const std::vector<device::ScopeSamples>& samples;
+  ParameterEditor& editor;                           ///< of the device's parameters
+  const std::vector<device::ScopeSamples>& samples;  ///< of the device, also while a recording is replayed
   double now_s;
 };
 
@@ -46,12 +47,6 @@ struct PaneFrame {
   const std::vector<protocol::Signal>& scope_signals;  ///< what the scope shows
   double now_s;
   bool scope_is_free = true;  ///< no pane has taken the stream of samples from it
-};
-
-/// What has to be streamed for a pane in place of the scope's signals.
-struct PaneStream {
-  std::vector<protocol::Signal> signals;  ///< none: the scope's will do
-  bool feeds_scope = true;                ///< the scope's signals are among them, so that it goes on
 };
 
 class Pane {
@@ -70,6 +65,10 @@ class Pane {
   /// What it has the device do ends here: the user stops everything, or goes to another device.
   virtual void cancel() {}
 
+  /// Streamed beside the scope's signals while the pane is shown and no pane takes the stream. Their samples come with
+  /// the others in PaneNews.
+  virtual std::vector<protocol::Signal> shown_signals() const { return {}; }
+  /// For a pane that takes the stream for a while, as a guide or a recording does.
   virtual PaneStream stream() const { return {}; }
   /// Its picture changes by itself.
   virtual bool is_moving() const { return false; }

@@ -16,8 +16,9 @@ class PaneColumn {
   void draw(ImVec2 place, ImVec2 size, PaneFrame frame);
   void cancel();
 
-  /// Of the first pane that wants one.
-  PaneStream stream() const;
+  /// Of the first pane that takes it; else the scope's signals and then what the shown pane shows, as far as a
+  /// selection has room.
+  PaneStream stream(const std::vector<protocol::Signal>& scope_signals) const;
   bool is_moving() const;
 
  private:
