@@ -27,6 +27,7 @@ struct Place {
   X(info)                   \
   X(watch)                  \
   X(parameters)             \
+  X(signals)                \
   X(experiment)             \
   X(calibrate)              \
   X(tune)                   \

@@ -183,10 +183,11 @@ void add_record_command(const Place& place) {
       ->add_option("FILE", record_options->file,
                    "Its ending chooses the format: .h5 (HDF5) or .csv. It must not exist yet")
       ->required();
-  auto* signals = command
-                      ->add_option("--signals", record_options->signals,
-                                   "Names with commas between them; what replay and plots need unless given")
-                      ->type_name("NAMES");
+  auto* signals =
+      command
+          ->add_option("--signals", record_options->signals,
+                       "Names as in `inkwell signals`, with commas; what replay and plots need unless given")
+          ->type_name("NAMES");
   command
       ->add_flag("--all", record_options->all,
                  "The whole signal path, from the encoders to the duties; not with --signals")

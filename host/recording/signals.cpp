@@ -53,8 +53,8 @@ std::vector<Signal> parse_signals(std::string_view names) {
   for (const auto name : split(names)) {
     const auto signal = protocol::find_signal(name);
     if (!signal)
-      throw device::Error(fmt::format("There is no signal `{}`. Did you mean {}?", name,
-                                      device::nearest_name(protocol::signal_table, name)));
+      throw device::Error(fmt::format("There is no signal `{}`. Did you mean {}? `inkwell signals` lists them all.",
+                                      name, device::nearest_name(protocol::signal_table, name)));
     add_once(signals, *signal);
   }
   if (signals.size() > protocol::scope_signals_maximum)

@@ -174,7 +174,8 @@ TEST_CASE("every command explains itself") {
   const std::vector<std::string> commands{
       "info", "watch", "parameters", "parameters get", "parameters set", "parameters defaults", "parameters load",
       "parameters save", "parameters diff", "parameters arm", "experiment", "experiment wall", "calibrate", "tune",
-      "tune current-loop", "check", "check connection", "check directions", "record", "replay", "plot"};
+      "tune current-loop", "check", "check connection", "check directions", "record", "replay", "plot",
+      "signals"};
   // clang-format on
   const auto help_of = [](const std::string& command) {
     std::vector<std::string> words;

@@ -106,6 +106,18 @@ TEST_CASE("the whole signal path goes into a CSV without loss") {
   CHECK(recording.information.signals == recording::signal_path());
 }
 
+TEST_CASE("every signal that can be recorded is listed, and no device is needed for it") {
+  const auto run = run_program("inkwell", {"signals"});
+  CHECK(run.exit_code == 0);
+  const auto listed = json::parse(run_program("inkwell", {"signals", "--json"}).out);
+  REQUIRE(listed.size() == protocol::signal_count);
+  for (const auto& row : protocol::signal_table) {
+    CAPTURE(row.name);
+    CHECK(("\n" + run.out).find("\n" + std::string(row.name) + " ") != std::string::npos);
+    CHECK(listed[row.id] == json{{"name", row.name}, {"unit", row.unit}, {"help", row.help}});
+  }
+}
+
 TEST_CASE("mistakes in a recording's command are found before a board is started") {
   const TemporaryDirectory directory;
   const auto misspelt = run_program("inkwell", {"--virtual", "record", directory.file("a.h5"), "--signals", "forse_N"});
