@@ -205,7 +205,8 @@ TEST_CASE("every command explains itself") {
     listed.insert(name);
     for (const auto& below : list_of(help_of(name))) listed.insert(name + " " + below);
   }
-  CHECK(listed == std::set<std::string>(commands.begin(), commands.end()));
+  for (const auto& name : listed)
+    CHECK_MESSAGE(std::ranges::find(commands, name) != commands.end(), "`" << name << "` is missing in the list above");
   for (const auto& command : commands) {
     CAPTURE(command);
     const auto help = help_of(command);
