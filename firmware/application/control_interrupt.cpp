@@ -44,7 +44,7 @@ INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
 }  // namespace
 
 extern "C" INKWELL_INTERRUPT void control_interrupt() {
-  clock.begin();
+  const std::uint32_t begin_cycles = clock.begin();
   bridges.begin_period();
   bridges.write_neutral();  // an interrupt that does not finish in time leaves the motors without voltage
 
@@ -63,6 +63,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
                                    .switches = controller.switches(),
                                    .command_token = host_link.commands.last_token(),
                                    .periods = period,
+                                   .begin_cycles = begin_cycles,
                                    .servo_cycles = controller.servo_cycles()});
   host_link.scope.record(period);
   controller.finish(clock);

@@ -1,5 +1,7 @@
 #include <link/pose_recorder.hpp>
 
+#include <algorithm>
+
 #include <placement/interrupt.hpp>
 
 namespace inkwell::link {
@@ -15,61 +17,69 @@ std::uint8_t saturate_to_byte(float value) {
 
 }  // namespace
 
-INKWELL_INTERRUPT void PoseRecorder::write(const protocol::SignalValues& signals, const PeriodSummary& summary) {
+INKWELL_INTERRUPT void PoseRecorder::record(const protocol::SignalValues& signals, const PeriodSummary& summary) {
+  if (longest_was_taken_.load()) {
+    longest_was_taken_.store(false);
+    longest_cycles_ = 0;
+  }
+  if (summary.servo_cycles > longest_cycles_) longest_cycles_ = summary.servo_cycles;
   const std::uint32_t written = written_.load();
-  protocol::PoseReport& report = reports_[written % capacity];
-  report.report_id = protocol::ReportId::pose;
-  report.state = summary.state;
-  report.fault = summary.fault;
-  report.sequence = written;
-  report.time_periods = summary.periods;
-  const auto copy_three = [&signals](float* target, protocol::EachAxis<Signal> rows) {
+  Period& period = periods_[written % 2];
+  const auto copy_three = [&signals](std::array<float, 3>& target, protocol::EachAxis<Signal> rows) {
     for (std::size_t i = 0; i < 3; ++i) target[i] = signals[rows[i]];
   };
-  copy_three(report.position_m, Signal::position_x_m);
-  copy_three(report.gimbal_rad, Signal::gimbal_1_rad);
-  copy_three(report.force_N, Signal::force_x_N);
-  copy_three(report.joint_rad, Signal::joint_1_rad);
-  report.switches = summary.switches;
-  report.servo_load = saturate_to_byte(static_cast<float>(longest_cycles_) * load_per_cycle_);
-  report.command_token = summary.command_token;
-  report.supply_dV = saturate_to_byte(signals[Signal::supply_V] * 10.0f + 0.5f);
-
-  countdown_ = periods_per_report;
-  longest_cycles_ = 0;
+  copy_three(period.position_m, Signal::position_x_m);
+  copy_three(period.gimbal_rad, Signal::gimbal_1_rad);
+  copy_three(period.force_N, Signal::force_x_N);
+  copy_three(period.joint_rad, Signal::joint_1_rad);
+  period.supply_V = signals[Signal::supply_V];
+  period.longest_cycles = longest_cycles_;
+  period.summary = summary;
   written_.store(written + 1);
 }
 
-bool PoseRecorder::take(protocol::PoseReport& report) {
-  const std::uint32_t written = written_.load();
-  if (written == taken_) return false;
-  // One place stays unread, for the report that the interrupt may write while this one is copied; a copy
-  // takes far less than the millisecond between two reports.
-  constexpr std::uint32_t readable = capacity - 1;
-  const std::uint32_t waiting = written - taken_;
-  behind_ = waiting > 1 ? behind_ + 1 : 0;
-  if (behind_ > patience) {
-    skip_to(written - 1);
-    behind_ = 0;
-  } else if (waiting > readable) {
-    skip_to(written - readable);
+// A copy takes a microsecond and may be interrupted; only if it took two whole control periods is it torn.
+PoseRecorder::Period PoseRecorder::newest() const {
+  for (;;) {
+    const std::uint32_t written = written_.load();
+    const Period period = periods_[(written - 1) % 2];
+    if (written_.load() - written < 2) return period;
   }
-  report = reports_[taken_ % capacity];
-  ++taken_;
+}
+
+bool PoseRecorder::read(protocol::PoseReport& report) const {
+  if (written_.load() == 0) return false;
+  const Period period = newest();
+  report.report_id = protocol::ReportId::pose;
+  report.state = period.summary.state;
+  report.fault = period.summary.fault;
+  report.sequence = 0;
+  report.time_periods = period.summary.periods;
+  std::copy(period.position_m.begin(), period.position_m.end(), report.position_m);
+  std::copy(period.gimbal_rad.begin(), period.gimbal_rad.end(), report.gimbal_rad);
+  std::copy(period.force_N.begin(), period.force_N.end(), report.force_N);
+  std::copy(period.joint_rad.begin(), period.joint_rad.end(), report.joint_rad);
+  report.switches = period.summary.switches;
+  report.servo_load = saturate_to_byte(static_cast<float>(period.longest_cycles) * load_per_cycle_);
+  report.command_token = period.summary.command_token;
+  report.supply_dV = saturate_to_byte(period.supply_V * 10.0f + 0.5f);
   return true;
 }
 
-void PoseRecorder::skip_to(std::uint32_t sequence) {
-  dropped_ += sequence - taken_;
-  taken_ = sequence;
+bool PoseRecorder::take(protocol::PoseReport& report) {
+  if (!read(report)) return false;
+  longest_was_taken_.store(true);
+  return true;
 }
 
-bool PoseRecorder::newest(protocol::PoseReport& report) const {
-  const std::uint32_t written = written_.load();
-  if (written == 0) return false;
-  // Safe without a second look: the interrupt comes round to this place after capacity - 1 milliseconds.
-  report = reports_[(written - 1) % capacity];
-  return true;
+BoardTime PoseRecorder::time_of(std::uint32_t cycles) const {
+  const PeriodSummary latest = newest().summary;
+  const std::uint32_t since = cycles - latest.begin_cycles;
+  if (static_cast<std::int32_t>(since) >= 0)
+    return {latest.periods + since / cycles_per_period_, since % cycles_per_period_};
+  const std::uint32_t before = -since;
+  const std::uint32_t whole = (before + cycles_per_period_ - 1) / cycles_per_period_;
+  return {latest.periods - whole, whole * cycles_per_period_ - before};
 }
 
 }  // namespace inkwell::link

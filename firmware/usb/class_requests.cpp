@@ -58,9 +58,15 @@ Answer Device::get_report(const SetupPacket& setup) {
   switch (setup.value) {
     case report_value(input_report, ReportId::pose): {
       protocol::PoseReport pose;
-      return link_.poses.newest(pose) ? send(pose) : Answer::stall();
+      if (!link_.poses.read(pose)) return Answer::stall();
+      pose.sequence = pose_sequence_;
+      return send(pose);
     }
     case report_value(feature_report, ReportId::information): return send(information());
+    case report_value(feature_report, ReportId::frame): {
+      const auto report = frame_report();
+      return report ? send(*report) : Answer::stall();
+    }
     case report_value(feature_report, ReportId::transaction): return send(link_.parameters.result());
     case report_value(feature_report, ReportId::parameters): {
       static_assert(alignof(protocol::ParametersReport) == 1);
@@ -93,10 +99,22 @@ protocol::InformationReport Device::information() const {
   report.processor_clock_Hz = identity_.processor_clock_Hz;
   report.servo_cycles_longest = link_.status.longest_cycles();
   report.scope_samples_dropped = link_.scope.samples_dropped();
-  report.pose_reports_dropped = link_.poses.dropped();
+  report.pose_reports_dropped = poses_dropped_;
   report.servo_overruns = link_.status.overruns();
   report.reset_cause = identity_.reset_cause;
   for (std::size_t i = 0; i < 3; ++i) report.motor_heat[i] = link_.status.motor_heat(i);
+  return report;
+}
+
+std::optional<protocol::FrameReport> Device::frame_report() {
+  const std::optional<Frame> frame = port_.frame();
+  if (!frame) return std::nullopt;
+  const auto time = link_.poses.time_of(frame->begin_cycles);
+  protocol::FrameReport report{};
+  report.frame_number = frame->number;
+  report.sequence = frame->count;
+  report.time_periods = time.periods;
+  report.time_cycles = time.cycles;
   return report;
 }
 

@@ -75,6 +75,7 @@ constexpr auto report_descriptor =
          report(ReportId::information, 4, feature_item, sizeof(protocol::InformationReport)),
          report(ReportId::parameters, 5, feature_item, sizeof(protocol::ParametersReport)),
          report(ReportId::transaction, 6, feature_item, sizeof(protocol::TransactionReport)),
+         report(ReportId::frame, 7, feature_item, sizeof(protocol::FrameReport)),
          bytes(0xC0));  // end of the collection
 
 // ---- device and configuration (USB 2.0, section 9.6) -----------------------------------------------

@@ -15,12 +15,21 @@ constexpr int events_per_poll = 8;
 
 constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2;  // places in endpoints_
 
+/// How long before the next start of frame a report is made ready: a control period, because the main loop gets to see
+/// a new pose once in that time; and what it takes then, while it also fills the scope's FIFO, to load the report.
+constexpr float pose_loading_s = 12e-6f;
+constexpr float pose_lead_s = protocol::servo_period_s + pose_loading_s;
+
+/// A host that left so many reports in a row did not listen, so it lost none: 0.1 s.
+constexpr std::uint32_t replaced_unheard = protocol::pose_rate_Hz / 10;
+
 }  // namespace
 
 Device::Device(Port& port, link::Link& link, const Identity& identity)
     : port_(port),
       link_(link),
       identity_(identity),
+      pose_lead_cycles_(static_cast<std::uint32_t>(pose_lead_s * static_cast<float>(identity.processor_clock_Hz))),
       control_(port, *this),
       endpoints_{{{identity::hid_in_endpoint, EndpointType::interrupt},
                   {identity::hid_out_endpoint, EndpointType::interrupt},
@@ -42,12 +51,10 @@ void Device::handle(const Event& event) {
     case Event::Kind::reset: bus_reset(); break;
     case Event::Kind::suspend:
       suspended_ = true;
+      forget_pose();
       host_gone();
       break;
-    case Event::Kind::resume:
-      suspended_ = false;
-      link_.poses.discard();  // nobody could have read what was recorded meanwhile
-      break;
+    case Event::Kind::resume: suspended_ = false; break;
     case Event::Kind::setup: control_.setup(data); break;
     case Event::Kind::received:
       if (event.endpoint == 0) {
@@ -62,6 +69,7 @@ void Device::handle(const Event& event) {
         control_.sent();
       } else if (Endpoint* endpoint = find_endpoint(0x80u | event.endpoint)) {
         endpoint->busy = false;
+        if (endpoint == &endpoints_[hid_in]) note_pose_taken();
       }
       break;
   }
@@ -87,7 +95,7 @@ void Device::host_gone() {
 }
 
 void Device::start_endpoints() {
-  link_.poses.discard();
+  poses_replaced_ = 0;
   for (Endpoint& endpoint : endpoints_) {
     endpoint.busy = endpoint.halted = false;
     port_.open(endpoint.address, endpoint.type);
@@ -125,11 +133,34 @@ void Device::restart(Endpoint& endpoint) {
   }
 }
 
+// The host may ask right after each start of frame. So the report is made ready once in a frame, near its end, from the
+// newest control period of which it is sure that a newer one would come too late.
 void Device::send_pose() {
+  const std::optional<Frame> frame = port_.frame();
   Endpoint& endpoint = endpoints_[hid_in];
-  if (endpoint.busy || endpoint.halted || !link_.poses.take(pose_)) return;
+  if (!frame || endpoint.halted || pose_sequence_ == frame->count + 1) return;
+  if (frame->age_cycles + pose_lead_cycles_ < frame->length_cycles) return;
+  if (endpoint.busy) {
+    port_.cancel(endpoint.address);
+    endpoint.busy = false;
+    ++poses_replaced_;
+  }
+  if (!link_.poses.take(pose_)) return;
+  pose_.sequence = pose_sequence_ = frame->count + 1;
   endpoint.busy = true;
   port_.send(endpoint.address, std::as_bytes(std::span(&pose_, 1)));
+}
+
+void Device::note_pose_taken() {
+  if (poses_replaced_ < replaced_unheard) poses_dropped_ += poses_replaced_;
+  poses_replaced_ = 0;
+}
+
+void Device::forget_pose() {
+  Endpoint& endpoint = endpoints_[hid_in];
+  if (!endpoint.busy) return;
+  port_.cancel(endpoint.address);
+  endpoint.busy = false;
 }
 
 void Device::send_scope() {

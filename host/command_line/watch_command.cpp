@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <device/bus_clock.hpp>
 #include <protocol/reports.hpp>
 
 #include "help.hpp"
@@ -26,9 +27,10 @@ bool is_pressed(const PoseReport& pose, protocol::Switch which) {
   return (pose.switches & static_cast<std::uint8_t>(which)) != 0;
 }
 
-nlohmann::ordered_json to_json(const PoseReport& pose, std::uint64_t lost) {
+nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::uint64_t lost) {
   return {{"sequence", pose.sequence},
           {"time_s", static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz},
+          {"host_time_s", host_time_s},
           {"state", info(pose.state).name},
           {"fault", info(pose.fault).name},
           {"position_m", {pose.position_m[0], pose.position_m[1], pose.position_m[2]}},
@@ -61,7 +63,9 @@ void print_line(const PoseReport& pose, std::uint64_t lost) {
 int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
   const auto connection = connect(options, BoardTime::paced);
   if (!options.json) print_head();
-  std::optional<std::uint32_t> first_period, sequence;
+  const auto information = connection.device->information().report;
+  device::BusClock clock(static_cast<double>(information.processor_clock_Hz) / information.servo_rate_Hz);
+  std::optional<std::uint32_t> first_period, sequence, clock_read_at;
   std::uint32_t next_shown = 0;
   std::uint64_t lost = 0;
   const auto periods_shown = static_cast<std::uint32_t>(protocol::servo_rate_Hz / watch_options.rate_Hz);
@@ -73,10 +77,14 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
     if (!first_period) first_period = pose->time_periods;
     const std::uint32_t passed = pose->time_periods - *first_period;
     if (watch_options.seconds > 0 && passed >= watch_options.seconds * protocol::servo_rate_Hz) return 0;
+    if (!clock_read_at || pose->time_periods - *clock_read_at >= protocol::servo_rate_Hz) {
+      clock.note(connection.device->frame());
+      clock_read_at = pose->time_periods;
+    }
     if (passed < next_shown) continue;
     next_shown += periods_shown;
     if (options.json)
-      fmt::print("{}\n", to_json(*pose, lost).dump());
+      fmt::print("{}\n", to_json(*pose, *clock.host_time_s(pose->time_periods), lost).dump());
     else
       print_line(*pose, lost);
     std::fflush(stdout);

@@ -122,6 +122,13 @@ Device::Device(std::unique_ptr<Transport> transport) : implementation_(std::make
 }
 Device::~Device() = default;
 
+protocol::FrameReport Device::frame() {
+  protocol::FrameReport report{};
+  report.report_id = ReportId::frame;
+  implementation_->get(report, "frame");
+  return report;
+}
+
 Information Device::information() {
   Information information{};
   information.report.report_id = ReportId::information;

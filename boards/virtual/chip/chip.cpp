@@ -95,7 +95,7 @@ void Chip::watch_exceptions(std::function<void(unsigned, Ticks)> changed) {
 }
 ChipConnections Chip::connections() {
   auto& machine = parts_->machine;
-  return {parts_->events, machine.nvic, machine.log, machine.violations, *parts_};
+  return {parts_->events, machine.nvic, machine.log, machine.violations, *parts_, parts_->timers};
 }
 
 void Chip::add_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name, Peripheral& peripheral) {

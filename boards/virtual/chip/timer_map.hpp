@@ -71,6 +71,11 @@ struct TimerRegisters {
   Register option{"OR", 0x50};  ///< of TIM2, TIM5 and TIM11, each with a field of its own
 };
 inline constexpr TimerRegisters tim;
+/// TIM2_OR: what is behind ITR1.
+inline constexpr Field itr1_remap{"ITR1_RMP", 10, 2};
+inline constexpr std::uint32_t itr1_is_otg_fs_sof = 2;
+/// CCMRx.CCxS: a capture by the internal trigger that SMCR.TS selects.
+inline constexpr std::uint32_t capture_by_trigger = 3;
 
 /// CCMRx.OCxM
 enum OutputMode : std::uint32_t {

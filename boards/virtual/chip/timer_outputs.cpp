@@ -169,7 +169,15 @@ void Timer::connect_input(unsigned line, bool high) {
 void Timer::internal_trigger(unsigned master, bool level, bool is_pulse) {
   const unsigned source = trigger_source();
   if (!traits_.slave || source > 3 || traits_.internal_triggers[source] != master) return;
+  if (traits_.number == 2 && source == 1 && itr1_remap.in(or_)) return;  // not TIM8 then
   trigger_in(level, is_pulse);
+}
+
+void Timer::usb_start_of_frame() {
+  if (itr1_remap.of(or_) != itr1_is_otg_fs_sof || trigger_source() != 1) return;
+  for (unsigned i = 0; i < traits_.channels; ++i)
+    if (selection(i) == capture_by_trigger && tim.ccer.cce.in(ccer_, i)) capture(i);
+  trigger_in(true, true);
 }
 
 void Timer::trigger_in(bool level, bool is_pulse) {

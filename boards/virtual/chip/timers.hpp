@@ -2,7 +2,8 @@
 //
 // The counter is not stepped: it runs in ramps (up to the next overflow or underflow) and its value follows
 // from the time. Steps happen only at compare matches that somebody needs and at the ends of ramps.
-// Not modelled: input filters and prescalers, dead time, DMA bursts.
+// Not modelled: input filters and prescalers, dead time, DMA bursts, captures by an internal trigger other than USB's
+// start of frame.
 #pragma once
 
 #include <array>
@@ -57,6 +58,8 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   void clock_failed();
   /// The trigger output of timer `master` rose or, for a level, changed.
   void internal_trigger(unsigned master, bool level, bool is_pulse);
+  /// Start of frame of OTG_FS, which TIM2 can have behind its ITR1.
+  void usb_start_of_frame();
   /// Somebody's interest in this timer's events changed.
   void plan_again();
   const TimerTraits& traits() const { return traits_; }
@@ -152,7 +155,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   std::uint64_t ramp_length_ = 0, accounted_ = 0, next_tick_ = 0;
 };
 
-class Timers {
+class Timers final : public TriggerLines {
  public:
   explicit Timers(Machine& machine);
   Timer& timer(unsigned number) { return timers_[number - 1]; }
@@ -165,6 +168,7 @@ class Timers {
   void clock_failed() {
     for (auto& timer : timers_) timer.clock_failed();
   }
+  void usb_start_of_frame() override { timer(2).usb_start_of_frame(); }
 
  private:
   std::deque<Timer> timers_;

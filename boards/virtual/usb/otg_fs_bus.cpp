@@ -53,6 +53,7 @@ void OtgFsDevice::start_of_frame(std::uint16_t frame_number) {
   suspended_ = false;
   frame_number_ = frame_number;
   latched_interrupts_ |= gint::sof;
+  triggers_.usb_start_of_frame();
   if ((interrupt_mask_ & gint::eopf) != 0) {
     const Ticks length = frame_ticks * dcfg::periodic_frame_per_mille(device_configuration_) / 1000;
     end_of_periodic_frame_ = scheduler_.at(scheduler_.now() + length, [this] {

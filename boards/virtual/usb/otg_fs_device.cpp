@@ -32,7 +32,12 @@ unsigned turnaround_needed(std::uint32_t hclk_Hz) {
 }  // namespace
 
 OtgFsDevice::OtgFsDevice(const ChipConnections& chip)
-    : scheduler_(chip.scheduler), interrupts_(chip.interrupts), log_(chip.log), rules_(chip.rules), chip_(chip.state) {
+    : scheduler_(chip.scheduler),
+      interrupts_(chip.interrupts),
+      log_(chip.log),
+      rules_(chip.rules),
+      chip_(chip.state),
+      triggers_(chip.triggers) {
   reset();
 }
 

@@ -91,6 +91,7 @@ void OtgFs::bus_reset() {
   fifo_memory::flush_receive();
   control_receive_waits_ = control_stall_waits_ = false;
   suspended_ = false;
+  frame_clock_.forget();
   set_address(0);
   write_control_out_size();
 }
@@ -161,6 +162,7 @@ bool OtgFs::next_suspend_or_resume(Event& event, std::uint32_t interrupts) {
   if (Status::USBSUSP::from(interrupts)) {
     Status::write(Status::USBSUSP(1), Status::SOF(1), Status::WKUPINT(1));
     suspended_ = true;
+    frame_clock_.forget();
     event.kind = Event::Kind::suspend;
     return true;
   }

@@ -34,7 +34,8 @@ bool reset_core() {
 bool OtgFs::start() {
   connect<OtgFs, board::usb_minus>(Pull::none, Speed::high);
   connect<OtgFs, board::usb_plus>(Pull::none, Speed::high);
-  start_clocks_of<OtgFs, Core>();
+  start_clocks_of<OtgFs, Core, registers::TIM2>();
+  frame_clock_.start();
 
   Core::GAHBCFG::modify(Core::GAHBCFG::GINT(0));
   Core::GUSBCFG::modify(Core::GUSBCFG::PHYSEL(1));

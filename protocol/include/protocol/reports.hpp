@@ -1,8 +1,9 @@
 // What goes over the HID interface. All structures are packed and little-endian, as both ends are.
 //
-//   device -> host   input report    PoseReport, every millisecond
+//   device -> host   input report    PoseReport, one for each frame of the bus, a millisecond by the host's clock
 //   host -> device   output report   CommandReport; any of them counts as a sign of life
-//   host <- device   feature report  InformationReport, ParametersReport (get), TransactionReport
+//   host <- device   feature report  InformationReport, ParametersReport (get), TransactionReport,
+//                                    FrameReport
 //   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all
 #pragma once
 
@@ -20,11 +21,12 @@ namespace inkwell::protocol {
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 2;
+inline constexpr std::uint16_t protocol_version = 3;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
 inline constexpr float servo_period_s = 1.0f / servo_rate_Hz;
+/// Frames of the bus in a second of the host.
 inline constexpr std::uint32_t pose_rate_Hz = 1'000;
 
 enum class ReportId : std::uint8_t {
@@ -33,6 +35,7 @@ enum class ReportId : std::uint8_t {
   information = 0x10,  ///< feature, get
   parameters = 0x11,   ///< feature, get and set
   transaction = 0x12,  ///< feature, get
+  frame = 0x13,        ///< feature, get
 };
 
 /// Bits of PoseReport::switches.
@@ -40,19 +43,20 @@ enum class Switch : std::uint8_t { button_1 = 1, button_2 = 2, inkwell = 4 };
 
 #pragma pack(push, 1)
 
-/// Input report, one a millisecond. A gap in `sequence` is a lost report.
+/// Input report, the newest pose that there is just before the host asks: taken from the last control period that ends
+/// before the start of the frame. What the host did not fetch is replaced, never sent late.
 struct PoseReport {
   ReportId report_id = ReportId::pose;
   State state;
   Fault fault;
-  std::uint32_t sequence;
+  std::uint32_t sequence;      ///< frames of the bus since it runs; a gap is a frame without a report
   std::uint32_t time_periods;  ///< control periods since the board started; wraps after 59 hours
   float position_m[3];
   float gimbal_rad[3];
   float force_N[3];
   float joint_rad[3];
   std::uint8_t switches;       ///< bits of Switch, 1 is pressed
-  std::uint8_t servo_load;     ///< longest control interrupt of this millisecond, 255 is the whole period
+  std::uint8_t servo_load;     ///< longest control interrupt since the last report, 255 is the whole period
   std::uint8_t command_token;  ///< token of the last command carried out
   std::uint8_t supply_dV;      ///< supply of the bridges in tenths of a volt
 };
@@ -106,7 +110,7 @@ struct InformationReport {
   std::uint32_t processor_clock_Hz;
   std::uint32_t servo_cycles_longest;   ///< longest control interrupt since the start
   std::uint32_t scope_samples_dropped;  ///< because the host did not read
-  std::uint32_t pose_reports_dropped;   ///< because the host did not poll
+  std::uint32_t pose_reports_dropped;   ///< frames in which a host that otherwise polled did not
   std::uint32_t servo_overruns;
   std::uint32_t reset_cause;  ///< RCC_CSR bits 31..24 as found at start-up
   float motor_heat[3];        ///< now; 1 is what the continuous current leads to
@@ -147,6 +151,17 @@ struct TransactionReport {
   std::uint32_t applied_at_periods;  ///< control period at which the last accepted one took effect
 };
 
+/// Feature report: when the newest frame of the bus began, by the board's clock. Two of them tell how fast the host's
+/// milliseconds and the board's control periods run against each other.
+struct FrameReport {
+  ReportId report_id = ReportId::frame;
+  std::uint8_t reserved = 0;
+  std::uint16_t frame_number;  ///< 0..2047, as it came with the start of frame
+  std::uint32_t sequence;      ///< PoseReport::sequence of the report that was meant for this frame
+  std::uint32_t time_periods;  ///< the control period in which the frame began
+  std::uint32_t time_cycles;   ///< processor cycles from the begin of that period to the begin of the frame
+};
+
 #pragma pack(pop)
 
 constexpr std::size_t parameters_report_size(std::size_t count) {
@@ -160,6 +175,7 @@ static_assert(sizeof(InformationReport) == 56);
 static_assert(sizeof(ParameterEntry) == 8);
 static_assert(sizeof(ParametersReport) == 8 + 8 * parameter_entries_maximum);
 static_assert(sizeof(TransactionReport) == 16);
+static_assert(sizeof(FrameReport) == 16);
 static_assert(std::is_trivially_copyable_v<PoseReport> && std::is_trivially_copyable_v<ParametersReport>);
 
 namespace detail {

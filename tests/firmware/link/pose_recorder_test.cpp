@@ -1,3 +1,4 @@
+// The newest pose on its way from the control interrupt to the main loop.
 #include <doctest/doctest.h>
 
 #include <link/pose_recorder.hpp>
@@ -10,33 +11,31 @@ using protocol::Signal;
 
 namespace {
 
-protocol::SignalValues some_signals() {
+constexpr std::uint32_t cycles_per_period = 8400;
+
+protocol::SignalValues some_signals(float offset = 0.25f) {
   protocol::SignalValues signals{};
-  for (std::size_t i = 0; i < protocol::signal_count; ++i) signals.values[i] = static_cast<float>(i) + 0.25f;
+  for (std::size_t i = 0; i < protocol::signal_count; ++i) signals.values[i] = static_cast<float>(i) + offset;
   signals[Signal::supply_V] = 18.04f;
   return signals;
 }
 
-void run(PoseRecorder& recorder, std::uint32_t& periods, std::uint32_t reports) {
-  const protocol::SignalValues signals = some_signals();
-  for (std::uint32_t i = 0; i < reports * PoseRecorder::periods_per_report; ++i)
-    recorder.record(signals, {protocol::State::ready, protocol::Fault::none, 5, 42, periods++, 100});
+link::PeriodSummary summary_of(std::uint32_t period, std::uint32_t servo_cycles = 100) {
+  return {protocol::State::ready, protocol::Fault::none, 5, 42, period, period * cycles_per_period, servo_cycles};
 }
 
 }  // namespace
 
-TEST_CASE("a report comes every millisecond and shows the signals of its period") {
-  PoseRecorder recorder(8400);
+TEST_CASE("a report shows the newest period and its signals") {
+  PoseRecorder recorder(cycles_per_period);
   PoseReport report;
   CHECK_FALSE(recorder.take(report));
-  CHECK_FALSE(recorder.newest(report));
-  std::uint32_t periods = 1000;
-  run(recorder, periods, 1);
+  CHECK_FALSE(recorder.read(report));
+  for (std::uint32_t period = 1000; period < 1019; ++period) recorder.record(some_signals(0.5f), summary_of(period));
+  recorder.record(some_signals(), summary_of(1019));
   REQUIRE(recorder.take(report));
-  CHECK_FALSE(recorder.take(report));
   CHECK(report.report_id == protocol::ReportId::pose);
   CHECK(report.state == protocol::State::ready);
-  CHECK(report.sequence == 0);
   CHECK(report.time_periods == 1019);
   const auto equal = [](const float* values, Signal first) {
     for (int i = 0; i < 3; ++i) {
@@ -52,15 +51,23 @@ TEST_CASE("a report comes every millisecond and shows the signals of its period"
   CHECK(report.command_token == 42);
   CHECK(report.supply_dV == 180);
   CHECK(report.servo_load == 3);  // 100 of 8400 cycles
+
+  recorder.record(some_signals(0.5f), summary_of(1020));
+  REQUIRE(recorder.take(report));
+  CHECK(report.time_periods == 1020);
+  const float position_m = report.position_m[0];
+  CHECK(position_m == static_cast<float>(Signal::position_x_m) + 0.5f);
 }
 
-TEST_CASE("the load is the longest interrupt of the millisecond, and saturates") {
-  PoseRecorder recorder(8400);
+TEST_CASE("the load is the longest interrupt since the last report that was taken, and saturates") {
+  PoseRecorder recorder(cycles_per_period);
   const protocol::SignalValues signals = some_signals();
   PoseReport report;
   const auto millisecond = [&](std::uint32_t longest) {
-    for (std::uint32_t i = 0; i < PoseRecorder::periods_per_report; ++i)
-      recorder.record(signals, {protocol::State::ready, protocol::Fault::none, 0, 0, i, i == 7 ? longest : 84u});
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      recorder.record(signals, summary_of(i, i == 7 ? longest : 84u));
+      REQUIRE(recorder.read(report));  // which changes nothing
+    }
     REQUIRE(recorder.take(report));
     return int{report.servo_load};
   };
@@ -70,72 +77,18 @@ TEST_CASE("the load is the longest interrupt of the millisecond, and saturates")
   CHECK(millisecond(100000) == 255);
 }
 
-TEST_CASE("reports are taken in order, and what was too late is counted") {
-  PoseRecorder recorder(8400);
-  std::uint32_t periods = 0;
-  PoseReport report;
-  run(recorder, periods, 7);
-  for (std::uint32_t i = 0; i < 7; ++i) {
-    REQUIRE(recorder.take(report));
-    CHECK(report.sequence == i);
+TEST_CASE("a moment of the cycle counter has a board time") {
+  PoseRecorder recorder(cycles_per_period);
+  constexpr std::uint32_t period = 600'000;  // the counter has wrapped
+  recorder.record(some_signals(), summary_of(period));
+  for (const std::int32_t cycles : {0, 1, 8399, 8400, 20'000, -1, -8399, -8400, -8401, -168'000}) {
+    CAPTURE(cycles);
+    const auto time = recorder.time_of(period * cycles_per_period + static_cast<std::uint32_t>(cycles));
+    CHECK(time.cycles < cycles_per_period);
+    const auto periods_since = static_cast<std::int32_t>(time.periods - period);
+    CHECK(periods_since * static_cast<std::int32_t>(cycles_per_period) + static_cast<std::int32_t>(time.cycles) ==
+          cycles);
   }
-  CHECK(recorder.dropped() == 0);
-
-  run(recorder, periods, 20);  // 7..26
-  for (std::uint32_t i = 20; i < 27; ++i) {
-    REQUIRE(recorder.take(report));
-    CHECK(report.sequence == i);
-  }
-  CHECK_FALSE(recorder.take(report));
-  CHECK(recorder.dropped() == 13);
-  REQUIRE(recorder.newest(report));
-  CHECK(report.sequence == 26);
-}
-
-TEST_CASE("a host that missed polls once is not late for ever") {
-  PoseRecorder recorder(8400);
-  std::uint32_t periods = 0;
-  PoseReport report;
-  run(recorder, periods, 5);  // the hiccup: four too many
-  std::uint32_t last = 0;
-  for (std::uint32_t i = 0; i < PoseRecorder::patience; ++i) {
-    REQUIRE(recorder.take(report));
-    CHECK(report.sequence == i);  // for a while everything, in order
-    run(recorder, periods, 1);
-  }
-  for (std::uint32_t i = 0; i < 100; ++i) {
-    REQUIRE(recorder.take(report));
-    CHECK_FALSE(recorder.take(report));  // nothing newer waits
-    CHECK(report.sequence > last);
-    last = report.sequence;
-    run(recorder, periods, 1);
-  }
-  CHECK(recorder.dropped() == 4);
-}
-
-TEST_CASE("two reports that wait now and then are no lateness") {
-  PoseRecorder recorder(8400);
-  std::uint32_t periods = 0;
-  PoseReport report;
-  for (std::uint32_t i = 0; i < 200; ++i) {
-    run(recorder, periods, 2);
-    REQUIRE(recorder.take(report));
-    REQUIRE(recorder.take(report));
-  }
-  CHECK(recorder.dropped() == 0);
-}
-
-TEST_CASE("what waited before a host came is forgotten and not counted") {
-  PoseRecorder recorder(8400);
-  std::uint32_t periods = 0;
-  PoseReport report;
-  run(recorder, periods, 50);
-  recorder.discard();
-  CHECK_FALSE(recorder.take(report));
-  run(recorder, periods, 1);
-  REQUIRE(recorder.take(report));
-  CHECK(report.sequence == 50);
-  CHECK(recorder.dropped() == 0);
 }
 
 }  // namespace inkwell

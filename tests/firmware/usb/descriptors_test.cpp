@@ -42,12 +42,12 @@ TEST_CASE("device and configuration, byte for byte") {
   CHECK(bench.get_descriptor(0x0200, 512).data ==
         bytes({9, 2,    57,   0,    2,  1,    0,    0xC0, 0,  // takes nothing from the bus
                9, 4,    0,    0,    2,  0x03, 0,    0,    4,  // HID
-               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 60,   0,  //
+               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 69,   0,  //
                7, 5,    0x81, 3,    64, 0,    1,              //
                7, 5,    0x01, 3,    64, 0,    1,              //
                9, 4,    1,    0,    1,  0xFF, 0,    0,    5,  // scope
                7, 5,    0x82, 2,    64, 0,    0}));
-  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 60, 0}));
+  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 69, 0}));
 }
 
 TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes") {
@@ -56,7 +56,8 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
   const auto high = [](std::size_t size) { return static_cast<unsigned>(size - 1) >> 8; };
   using namespace protocol;
   const std::size_t pose = sizeof(PoseReport), command = sizeof(CommandReport), information = sizeof(InformationReport),
-                    parameters = sizeof(ParametersReport), transaction = sizeof(TransactionReport);
+                    parameters = sizeof(ParametersReport), transaction = sizeof(TransactionReport),
+                    frame = sizeof(FrameReport);
   CHECK(bench.get_descriptor(0x2200, 4096, 1).data == bytes({0x06,
                                                              0x00,
                                                              0xFF,
@@ -114,6 +115,15 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
                                                              0x96,
                                                              low(transaction),
                                                              high(transaction),
+                                                             0xB1,
+                                                             0x02,  //
+                                                             0x85,
+                                                             0x13,
+                                                             0x09,
+                                                             7,
+                                                             0x96,
+                                                             low(frame),
+                                                             high(frame),
                                                              0xB1,
                                                              0x02,  //
                                                              0xC0}));

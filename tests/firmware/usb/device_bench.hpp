@@ -126,7 +126,9 @@ struct DeviceBench {
       if (const protocol::CommandReport* command = link.commands.take()) last_command = *command;
       protocol::SignalValues signals{};
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
-      link.poses.record(signals, {state, protocol::Fault::none, 0, link.commands.last_token(), periods, 100});
+      link.poses.record(signals,
+                        {state, protocol::Fault::none, 0, link.commands.last_token(), periods, periods * 8400, 100});
+      port.pass_period();
       record(link.scope, signals, periods++);
       link.status.record(state, {}, 100, false);
     }

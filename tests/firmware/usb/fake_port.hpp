@@ -90,7 +90,22 @@ class FakePort final : public usb::Port {
     at(endpoint_address).armed = true;
   }
 
+  std::optional<usb::Frame> frame() override { return frames_run ? std::optional(frame_) : std::nullopt; }
+
   // ---- the host's side ----
+
+  /// Time passes. A frame has twenty control periods, and after a whole number of frames the next is one period away.
+  void pass_period() {
+    constexpr std::uint32_t period_cycles = 8400, frame_cycles = 20 * period_cycles;
+    frame_.length_cycles = frame_cycles;
+    frame_.age_cycles += period_cycles;
+    if (frame_.age_cycles < frame_cycles) return;
+    frame_.age_cycles = 0;
+    frame_.begin_cycles += frame_cycles;
+    ++frame_.count;
+    frame_.number = frame_.count % 2048;
+  }
+  bool frames_run = true;
 
   void reset() {
     for (Endpoint& endpoint : endpoints_) endpoint = {};
@@ -184,6 +199,7 @@ class FakePort final : public usb::Port {
 
   std::array<Endpoint, 8> endpoints_{};
   std::deque<usb::Event> events_;
+  usb::Frame frame_{.age_cycles = 19 * 8400, .length_cycles = 20 * 8400};
   std::uint8_t address_ = 0;
 };
 

@@ -139,6 +139,7 @@ inline constexpr std::uint32_t usb_Hz = pll_vco_Hz / pll_q;
 inline constexpr std::uint32_t apb1_divider = 4, apb2_divider = 2;
 inline constexpr std::uint32_t apb1_Hz = processor_Hz / apb1_divider;
 inline constexpr std::uint32_t apb2_Hz = processor_Hz / apb2_divider;
+inline constexpr std::uint32_t timer_apb1_Hz = 2 * apb1_Hz;  ///< TIM2 to TIM5
 inline constexpr std::uint32_t timer_apb2_Hz = 2 * apb2_Hz;  ///< TIM1, TIM8
 inline constexpr std::uint32_t adc_divider = 4;
 inline constexpr std::uint32_t adc_Hz = apb2_Hz / adc_divider;

@@ -20,8 +20,8 @@ class CycleCounter {
 
   static std::uint32_t now() { return registers::DWT::CYCCNT::read(); }
 
-  /// Begins the first lap of a control period.
-  void begin() { last_ = now(); }
+  /// Begins the first lap of a control period; the count at that moment.
+  std::uint32_t begin() { return last_ = now(); }
 
   /// Cycles since the last lap, right over a wrap of the counter.
   std::uint32_t lap() {

@@ -21,6 +21,7 @@ struct ClockOf;
 // clang-format off
 template <> struct ClockOf<registers::TIM1> { using Enable = RCC::APB2ENR::TIM1EN; };
 template <> struct ClockOf<registers::TIM8> { using Enable = RCC::APB2ENR::TIM8EN; };
+template <> struct ClockOf<registers::TIM2> { using Enable = RCC::APB1ENR::TIM2EN; };
 template <> struct ClockOf<registers::TIM3> { using Enable = RCC::APB1ENR::TIM3EN; };
 template <> struct ClockOf<registers::TIM4> { using Enable = RCC::APB1ENR::TIM4EN; };
 template <> struct ClockOf<registers::TIM5> { using Enable = RCC::APB1ENR::TIM5EN; };

@@ -40,6 +40,7 @@ struct ResetAndClockControl {
     using OTGFSEN = Field<AHB2ENR, 7, 1>;
   };
   struct APB1ENR : Register<base + 0x40> {
+    using TIM2EN = Field<APB1ENR, 0, 1>;
     using TIM3EN = Field<APB1ENR, 1, 1>;
     using TIM4EN = Field<APB1ENR, 2, 1>;
     using TIM5EN = Field<APB1ENR, 3, 1>;

@@ -70,6 +70,9 @@ struct UsbDevice {
     using SDIS = Field<DCTL, 1, 1>;
     using CGINAK = Field<DCTL, 8, 1>;
   };
+  struct DSTS : Register<base + 0x08> {
+    using FNSOF = Field<DSTS, 8, 14>;
+  };
   struct DIEPMSK : Register<base + 0x10> {
     using XFRCM = Field<DIEPMSK, 0, 1>;
   };

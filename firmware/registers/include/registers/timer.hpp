@@ -83,4 +83,31 @@ using TIM3 = EncoderTimer<0x40000400>;
 using TIM4 = EncoderTimer<0x40000800>;
 using TIM5 = EncoderTimer<0x40000C00>;
 
+/// A timer that captures its count at a trigger.
+template <std::uint32_t base>
+struct CaptureTimer {
+  struct CR1 : Register<base + 0x00> {
+    using CEN = Field<CR1, 0, 1>;
+  };
+  struct SMCR : Register<base + 0x08> {
+    using TS = Field<SMCR, 4, 3>;
+  };
+  struct SR : Register<base + 0x10> {
+    using CC1IF = Field<SR, 1, 1>;
+  };
+  struct CCMR1 : Register<base + 0x18> {
+    using CC1S = Field<CCMR1, 0, 2>;
+  };
+  struct CCER : Register<base + 0x20> {
+    using CC1E = Field<CCER, 0, 1>;
+  };
+  struct CNT : Register<base + 0x24> {};
+  struct ARR : Register<base + 0x2C> {};
+  struct CCR1 : Register<base + 0x34> {};
+  struct OR : Register<base + 0x50> {
+    using ITR1_RMP = Field<OR, 10, 2>;
+  };
+};
+using TIM2 = CaptureTimer<0x40000000>;
+
 }  // namespace inkwell::registers

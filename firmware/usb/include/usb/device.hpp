@@ -65,8 +65,13 @@ class Device final : private ControlRequests {
   /// the host is told to wait (NAK), and nothing is lost.
   void pass_on_held_command();
   void send_pose();
+  void note_pose_taken();
   void send_scope();
   protocol::InformationReport information() const;
+  /// None while the bus is silent.
+  std::optional<protocol::FrameReport> frame_report();
+  /// What the host was to fetch is out of date.
+  void forget_pose();
 
   /// One of the endpoints beside endpoint 0.
   struct Endpoint {
@@ -83,6 +88,7 @@ class Device final : private ControlRequests {
   Port& port_;
   link::Link& link_;
   const Identity& identity_;
+  const std::uint32_t pose_lead_cycles_;
   ControlEndpoint control_;
   std::uint8_t configuration_ = 0;
   std::uint8_t idle_rate_ = 0;
@@ -90,7 +96,10 @@ class Device final : private ControlRequests {
   std::array<Endpoint, 3> endpoints_;
   std::optional<protocol::CommandReport> held_command_;  ///< found the queue full
   bool scope_frame_open_ = false;                        ///< the scope's oldest frame is being sent
-  bool scope_wants_end_ = false;  ///< the frame's length is a multiple of 64: an empty packet ends it
+  bool scope_wants_end_ = false;      ///< the frame's length is a multiple of 64: an empty packet ends it
+  std::uint32_t pose_sequence_ = 0;   ///< of the newest report given to the port
+  std::uint32_t poses_replaced_ = 0;  ///< since the host took one
+  std::uint32_t poses_dropped_ = 0;
   alignas(4) protocol::PoseReport pose_{};
 };
 

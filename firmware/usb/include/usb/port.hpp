@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace inkwell::usb {
@@ -27,6 +28,15 @@ struct Event {
   std::uint8_t endpoint = 0;  ///< number, without the direction bit
   std::uint8_t length = 0;    ///< bytes of `data` that are used
   alignas(4) std::array<std::byte, packet_size_maximum> data{};
+};
+
+/// A frame of the bus: what the host does in one of its milliseconds. Cycles are those of the processor's counter.
+struct Frame {
+  std::uint16_t number = 0;         ///< 0..2047, as it came with the start of frame
+  std::uint32_t count = 0;          ///< of frames since the port started
+  std::uint32_t begin_cycles = 0;   ///< the counter at the start of frame
+  std::uint32_t age_cycles = 0;     ///< since then
+  std::uint32_t length_cycles = 0;  ///< from one start of frame to the next, as measured
 };
 
 /// Endpoint hardware. Endpoints go by their address, bit 7 set for IN. Every call returns at once or
@@ -64,6 +74,9 @@ class Port {
 
   /// Lets the endpoint take one OUT packet.
   virtual void receive(std::uint8_t endpoint_address) = 0;
+
+  /// The frame that runs; none while the bus is silent.
+  virtual std::optional<Frame> frame() = 0;
 
  protected:
   ~Port() = default;

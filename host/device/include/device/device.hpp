@@ -47,6 +47,8 @@ class Device {
   ~Device();
 
   Information information();
+  /// When the newest frame of the bus began. Throws Stalled while the bus is silent.
+  protocol::FrameReport frame();
 
   /// Waits for the next pose report; none on time-out.
   std::optional<protocol::PoseReport> read_pose(std::chrono::milliseconds timeout);

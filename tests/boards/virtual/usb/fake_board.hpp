@@ -85,4 +85,10 @@ class FakeChipState final : public virtual_board::ChipState {
   bool connected = true;
 };
 
+class FakeTriggers final : public virtual_board::TriggerLines {
+ public:
+  void usb_start_of_frame() override { ++starts_of_frame; }
+  unsigned starts_of_frame = 0;
+};
+
 }  // namespace inkwell::virtual_usb_test

@@ -21,7 +21,7 @@ constexpr std::uint32_t epena = 1u << 31, epdis = 1u << 30, snak = 1u << 27, cna
 constexpr std::array<std::byte, 8> some_request{};
 
 struct CoreBench {
-  CoreBench() : core({scheduler, interrupts, log, log, state}), firmware(core, scheduler) {
+  CoreBench() : core({scheduler, interrupts, log, log, state, triggers}), firmware(core, scheduler) {
     firmware.start();
     core.set_bus_power(true);
     core.begin_reset();
@@ -45,6 +45,7 @@ struct CoreBench {
   FakeInterrupts interrupts;
   FakeLog log;
   FakeChipState state;
+  FakeTriggers triggers;
   OtgFsDevice core;
   FakeFirmware firmware;
   std::array<std::byte, virtual_board::full_speed_packet_maximum> packet{};
@@ -55,7 +56,8 @@ TEST_CASE("reset values") {
   FakeInterrupts interrupts;
   FakeLog log;
   FakeChipState state;
-  OtgFsDevice core({scheduler, interrupts, log, log, state});
+  FakeTriggers triggers;
+  OtgFsDevice core({scheduler, interrupts, log, log, state, triggers});
   const std::array<std::pair<std::uint32_t, std::uint32_t>, 16> expected{{{0x008, 0},
                                                                           {0x00C, 0x0A00},
                                                                           {0x010, 0x8000'0000},
@@ -86,7 +88,8 @@ TEST_CASE("the pull-up needs power, a session and no soft disconnect") {
   FakeInterrupts interrupts;
   FakeLog log;
   FakeChipState state;
-  OtgFsDevice core({scheduler, interrupts, log, log, state});
+  FakeTriggers triggers;
+  OtgFsDevice core({scheduler, interrupts, log, log, state, triggers});
   CHECK(core.attachment() == 0);
   core.write(gccfg, 1u << 16, 4);
   CHECK(core.attachment() == 0);  // VBUS is not sensed

@@ -27,7 +27,7 @@ struct Outcome {
 class RootPortBench final : public RootPort::Client {
  public:
   explicit RootPortBench(double host_clock_ppm = 0.0)
-      : core({scheduler, interrupts, log, log, state}),
+      : core({scheduler, interrupts, log, log, state, triggers}),
         firmware(core, scheduler),
         port(scheduler, core, *this, host_clock_ppm) {}
 
@@ -102,6 +102,7 @@ class RootPortBench final : public RootPort::Client {
   FakeInterrupts interrupts;
   FakeLog log;
   FakeChipState state;
+  FakeTriggers triggers;
   OtgFsDevice core;
   FakeFirmware firmware;
   RootPort port;

@@ -36,6 +36,7 @@ class LiveBoard {
   FakeInterrupts interrupts;
   FakeLog log;
   FakeChipState state;
+  FakeTriggers triggers;
   virtual_board::VirtualUsb usb;
   FakeFirmware firmware;
 

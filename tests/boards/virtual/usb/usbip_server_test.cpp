@@ -381,10 +381,11 @@ TEST_CASE("a busy port is reported in a sentence") {
   FakeInterrupts interrupts;
   FakeLog log;
   FakeChipState state;
+  FakeTriggers triggers;
   std::string message;
   try {
     virtual_board::VirtualUsb second(
-        {scheduler, interrupts, log, log, state}, board.usb.port(), 0.0, [] {}, [] { return false; });
+        {scheduler, interrupts, log, log, state, triggers}, board.usb.port(), 0.0, [] {}, [] { return false; });
   } catch (const std::runtime_error& error) {
     message = error.what();
   }

@@ -63,6 +63,14 @@ class ChipState {
   virtual bool has_function(char port, unsigned pin, unsigned alternate_function) const = 0;
 };
 
+/// Signals that lead from a peripheral to the trigger inputs of the timers.
+class TriggerLines {
+ public:
+  virtual ~TriggerLines() = default;
+  /// The USB core OTG_FS has received a start of frame.
+  virtual void usb_start_of_frame() = 0;
+};
+
 enum class PinLevel : std::uint8_t { low, high, floating };
 
 /// What is soldered to the chip. Times of calls never run backward.

@@ -189,6 +189,7 @@ struct ChipConnections {
   UnmodelledLog& log;
   RuleKeeper& rules;
   const ChipState& state;
+  TriggerLines& triggers;
 };
 
 }  // namespace inkwell::virtual_board

@@ -125,6 +125,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   UnmodelledLog& log_;
   RuleKeeper& rules_;
   const ChipState& chip_;
+  TriggerLines& triggers_;
 
   // Registers, by the names of RM0090 in words.
   std::uint32_t otg_interrupts_ = 0;                           // GOTGINT

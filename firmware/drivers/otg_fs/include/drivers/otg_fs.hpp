@@ -13,18 +13,21 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <drivers/claims.hpp>
+#include <drivers/frame_clock.hpp>
 #include <registers/otg_fs.hpp>
+#include <registers/timer.hpp>
 #include <usb/port.hpp>
 
 namespace inkwell::drivers {
 
 class OtgFs final : public usb::Port {
  public:
-  static constexpr std::array claims{peripheral<registers::OTG_FS_GLOBAL>(), pin(board::usb_minus),
-                                     pin(board::usb_plus), interrupt(Interrupt::usb)};
+  static constexpr std::array claims{peripheral<registers::OTG_FS_GLOBAL>(), peripheral<registers::TIM2>(),
+                                     pin(board::usb_minus), pin(board::usb_plus), interrupt(Interrupt::usb)};
 
   /// Sets pins, clock and core up and connects the pull-up of D+. Takes 25 ms. The 48 MHz clock runs already
   /// (clocks.hpp). False if the core does not answer.
@@ -43,6 +46,7 @@ class OtgFs final : public usb::Port {
   void send(std::uint8_t endpoint_address, std::span<const std::byte> data) override;
   void cancel(std::uint8_t endpoint_address) override;
   void receive(std::uint8_t endpoint_address) override;
+  std::optional<usb::Frame> frame() override { return frame_clock_.newest(); }
 
  private:
   static constexpr unsigned in_endpoints = 3;   ///< 0 control, 1 HID, 2 scope
@@ -68,6 +72,7 @@ class OtgFs final : public usb::Port {
   void fill(unsigned endpoint);
   void stop_in(unsigned endpoint);
 
+  FrameClock frame_clock_;
   std::array<InTransfer, in_endpoints> in_{};
   std::array<OutPacket, out_endpoints> out_{};
   std::array<std::byte, 8> setup_{};

@@ -1,0 +1,68 @@
+#include <drivers/frame_clock.hpp>
+
+#include <board/omni_driver.hpp>
+#include <drivers/cycle_counter.hpp>
+#include <registers/otg_fs.hpp>
+#include <registers/timer.hpp>
+
+namespace inkwell::drivers {
+
+namespace {
+
+using registers::TIM2;
+
+constexpr std::uint32_t cycles_per_count = board::processor_Hz / board::timer_apb1_Hz;
+static_assert(cycles_per_count * board::timer_apb1_Hz == board::processor_Hz);
+
+constexpr std::uint32_t nominal_length = board::timer_apb1_Hz / 1000;
+/// Ten times what host and board may be apart (USB 2.0, section 7.1.11; the crystal is better still).
+constexpr std::uint32_t length_tolerance = nominal_length / 1000 * 5;
+/// A bus without a start of frame for so long is about to be suspended, at 3 ms.
+constexpr std::uint32_t silence = 3 * nominal_length;
+
+}  // namespace
+
+void FrameClock::start() {
+  constexpr std::uint32_t usb_start_of_frame = 2, internal_trigger_1 = 1, capture_at_trigger = 3;
+  TIM2::OR::write(TIM2::OR::ITR1_RMP(usb_start_of_frame));
+  TIM2::SMCR::write(TIM2::SMCR::TS(internal_trigger_1));
+  TIM2::CCMR1::write(TIM2::CCMR1::CC1S(capture_at_trigger));
+  TIM2::CCER::write(TIM2::CCER::CC1E(1));
+  TIM2::ARR::write(~0u);
+  TIM2::CR1::write(TIM2::CR1::CEN(1));
+  length_ = nominal_length;
+}
+
+void FrameClock::note_capture() {
+  const std::uint32_t captured = TIM2::CCR1::read();  // which clears the flag
+  const std::uint32_t passed = captured - captured_;
+  // A start of frame that was damaged, or that this came too late for, leaves a gap of some lengths.
+  count_ += is_known_ ? (passed + nominal_length / 2) / nominal_length : 1;
+  if (is_known_ && passed - (nominal_length - length_tolerance) <= 2 * length_tolerance) length_ = passed;
+  captured_ = captured;
+  number_ = static_cast<std::uint16_t>(registers::OTG_FS_DEVICE::DSTS::FNSOF::read());
+  is_known_ = true;
+}
+
+std::optional<usb::Frame> FrameClock::newest() {
+  if (TIM2::SR::CC1IF::is_set()) note_capture();
+  if (!is_known_) return std::nullopt;
+  constexpr std::uint32_t both_reads_cycles = 60;  // more, and an interrupt came in between
+  std::uint32_t cycles, count;
+  do {
+    cycles = CycleCounter::now();
+    count = TIM2::CNT::read();
+  } while (CycleCounter::now() - cycles > both_reads_cycles);
+  const std::uint32_t age = count - captured_;
+  if (age > silence) {
+    is_known_ = false;
+    return std::nullopt;
+  }
+  return usb::Frame{.number = number_,
+                    .count = count_,
+                    .begin_cycles = cycles - age * cycles_per_count,
+                    .age_cycles = age * cycles_per_count,
+                    .length_cycles = length_ * cycles_per_count};
+}
+
+}  // namespace inkwell::drivers

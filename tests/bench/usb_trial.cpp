@@ -1,0 +1,54 @@
+// usb-trial: the flashed firmware against a USB host, for as long as one likes. The tests do the same for seconds.
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <board/omni_driver.hpp>
+
+#include "boards/virtual/usb/firmware_on_bus.hpp"
+#include "boards/virtual/usb/pose_timing.hpp"
+
+namespace {
+
+using namespace inkwell;
+using namespace inkwell::virtual_usb_test;
+
+int poses(const std::filesystem::path& image, double host_clock_ppm, double time_s) {
+  const PoseTiming timing = measure_poses(image, host_clock_ppm, time_s);
+  const auto microseconds = [](std::uint64_t cycles) {
+    return 1e6 * static_cast<double>(cycles) / board::processor_Hz;
+  };
+  fmt::print("host clock {:+} ppm, {} s of board time: {} frames, {} without a new pose, {} reports missing\n",
+             host_clock_ppm, time_s, timing.frames, timing.empty_frames, timing.gaps);
+  fmt::print(
+      "{} encoder edges: at most {:.1f} us to the host's token, {:.1f} us to the end of the packet; "
+      "{} periods between two reports\n",
+      timing.edges, microseconds(timing.longest_edge_to_token), microseconds(timing.longest_edge_to_packet),
+      timing.longest_pause_periods);
+  return timing.empty_frames == 0 && timing.gaps == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "The firmware that would be flashed, on the virtual chip, against a USB host. Everything is simulation."};
+  std::filesystem::path image = flashed_image(std::filesystem::read_symlink("/proc/self/exe").parent_path());
+  app.add_option("--elf", image, "firmware to run")->type_name("FILE");
+  app.require_subcommand(1);
+  double host_clock_ppm = 0.0, time_s = 10.0;
+  auto* poses_command = app.add_subcommand("poses", "Are poses lost, and how old are they when the host gets them?");
+  poses_command->add_option("--host-clock-ppm", host_clock_ppm, "how much faster than board time the host's clock is");
+  poses_command->add_option("--seconds", time_s, "of board time")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return poses(image, host_clock_ppm, time_s);
+  } catch (const std::exception& error) {
+    std::cerr << "usb-trial: " << error.what() << '\n';
+    return EXIT_FAILURE;
+  }
+}

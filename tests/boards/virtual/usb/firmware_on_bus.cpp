@@ -1,0 +1,83 @@
+#include "firmware_on_bus.hpp"
+
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+namespace inkwell::virtual_usb_test {
+
+using namespace virtual_board;
+
+std::filesystem::path flashed_image(const std::filesystem::path& build_directory) {
+  return build_directory / ".." / "board" / "inkwell.elf";
+}
+
+FirmwareOnBus::FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm)
+    : chip(circuit, {.log = [](const std::string&) {}}),
+      core(chip.connections()),
+      cable(core),
+      port(chip.connections().scheduler, cable, *this, host_clock_ppm) {
+  chip.load_elf(image);
+  chip.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", core);
+  chip.reset(ResetCause::power_on);
+  for (const auto& [letter, number] : {std::pair{'B', 12u}, {'A', 6u}, {'B', 13u}, {'B', 14u}, {'B', 15u}})
+    chip.input_pins().drive(letter, number, PinLevel::high);
+  port.plug(true);
+}
+
+void FirmwareOnBus::connect() {
+  for (int i = 0; i < 1000 && !port.enumerated(); ++i) run_for(0.001);
+  if (!port.enumerated()) throw std::runtime_error("the device does not enumerate");
+  port.import();
+  constexpr std::uint8_t set_configuration = 9;
+  if (control(0x00, set_configuration, 1, 0, 0).status != 0) throw std::runtime_error("the device is not configured");
+}
+
+FirmwareOnBus::Answer FirmwareOnBus::control(std::uint8_t type, std::uint8_t request, std::uint16_t value,
+                                             std::uint16_t index, std::uint16_t length, std::vector<std::byte> data) {
+  const auto low = [](std::uint16_t word) { return std::byte(word & 0xFF); };
+  const auto high = [](std::uint16_t word) { return std::byte(word >> 8); };
+  Urb urb;
+  urb.sequence = ++sequence_;
+  urb.in = (type & 0x80) != 0;
+  urb.length = length;
+  urb.data = std::move(data);
+  urb.setup = {std::byte{type}, std::byte{request}, low(value),  high(value),
+               low(index),      high(index),        low(length), high(length)};
+  const std::uint32_t wanted = urb.sequence;
+  port.submit(std::move(urb));
+  for (int i = 0; i < 1000 && !answers_.contains(wanted); ++i) run_for(0.001);
+  const auto found = answers_.extract(wanted);
+  if (found.empty()) throw std::runtime_error("a control transfer does not end");
+  return found.mapped();
+}
+
+void FirmwareOnBus::keep_asking_for_poses() {
+  asks_for_poses_ = true;
+  constexpr int requests_under_way = 3;
+  for (int i = 0; i < requests_under_way; ++i) ask_for_pose();
+}
+
+void FirmwareOnBus::ask_for_pose() {
+  Urb urb;
+  urb.sequence = ++sequence_;
+  urb.endpoint = 1;
+  urb.in = true;
+  urb.length = sizeof(protocol::PoseReport);
+  port.submit(std::move(urb));
+}
+
+void FirmwareOnBus::completed(Urb&& urb, std::int32_t status) {
+  if (urb.endpoint == 0)
+    answers_[urb.sequence] = {status, std::move(urb.data)};
+  else if (asks_for_poses_ && status == 0)
+    ask_for_pose();
+}
+
+std::vector<std::string> FirmwareOnBus::violations() const {
+  std::vector<std::string> sentences;
+  for (const Violation& violation : chip.violations()) sentences.push_back(sentence(violation));
+  return sentences;
+}
+
+}  // namespace inkwell::virtual_usb_test

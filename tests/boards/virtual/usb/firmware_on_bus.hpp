@@ -1,0 +1,115 @@
+// The firmware that would be flashed on the virtual chip, and a host at the other end of its USB cable whose every
+// transaction can be looked at. All of it in one program: what it measures is board time, to the tick.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <chip/chip.hpp>
+#include <protocol/reports.hpp>
+#include <virtual_usb/otg_fs_device.hpp>
+#include <virtual_usb/root_port.hpp>
+
+namespace inkwell::virtual_usb_test {
+
+using virtual_board::Chip;
+using virtual_board::Ticks;
+using virtual_board::ticks;
+using virtual_board::Urb;
+
+/// What is soldered to the chip holds still: supply and sensors read as on a board at rest.
+class RestingCircuit final : public virtual_board::Circuit {
+ public:
+  void output_changed(char, unsigned, virtual_board::PinLevel, Ticks) override {}
+  double analog_V(char, unsigned, Ticks) override { return 1.65; }
+  void advance(Ticks) override {}
+};
+
+/// The cable: passes everything on and tells what went over it.
+class Cable : public virtual_board::BusDevice {
+ public:
+  explicit Cable(virtual_board::BusDevice& device) : device_(device) {}
+  std::uint32_t attachment() const override { return device_.attachment(); }
+  void set_bus_power(bool present) override { device_.set_bus_power(present); }
+  void begin_reset() override { device_.begin_reset(); }
+  void end_reset() override { device_.end_reset(); }
+  void start_of_frame(std::uint16_t frame_number) override {
+    device_.start_of_frame(frame_number);
+    if (on_start_of_frame) on_start_of_frame(frame_number);
+  }
+  void suspend() override { device_.suspend(); }
+  void resume() override { device_.resume(); }
+  virtual_board::Handshake setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) override {
+    return device_.setup(address, endpoint, request);
+  }
+  virtual_board::Handshake out(unsigned address, unsigned endpoint, bool data1,
+                               std::span<const std::byte> data) override {
+    return device_.out(address, endpoint, data1, data);
+  }
+  virtual_board::InReply in(unsigned address, unsigned endpoint,
+                            std::span<std::byte, virtual_board::full_speed_packet_maximum> data) override {
+    const auto reply = device_.in(address, endpoint, data);
+    if (on_in) on_in(endpoint, reply, std::span<const std::byte>(data).first(reply.length));
+    return reply;
+  }
+  bool finish_in(unsigned endpoint) override {
+    const bool done = device_.finish_in(endpoint);
+    if (on_finished_in) on_finished_in(endpoint, done);
+    return done;
+  }
+
+  std::function<void(std::uint16_t frame_number)> on_start_of_frame;
+  std::function<void(unsigned endpoint, const virtual_board::InReply&, std::span<const std::byte>)> on_in;
+  std::function<void(unsigned endpoint, bool done)> on_finished_in;
+
+ private:
+  virtual_board::BusDevice& device_;
+};
+
+/// build/board/inkwell.elf, beside the build folder of this program.
+std::filesystem::path flashed_image(const std::filesystem::path& build_directory);
+
+/// Chip, cable and a host that enumerates and configures the device.
+class FirmwareOnBus final : private virtual_board::RootPort::Client {
+ public:
+  explicit FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm = 0.0);
+
+  /// Enumerates and configures the device; throws std::runtime_error if it does not come within a second.
+  void connect();
+  void run_for(double time_s) { chip.run_until(chip.now() + ticks(time_s)); }
+  /// A control transfer; its status, and what came in. Throws std::runtime_error if it does not end within a second.
+  struct Answer {
+    std::int32_t status;
+    std::vector<std::byte> data;
+  };
+  Answer control(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index,
+                 std::uint16_t length, std::vector<std::byte> data = {});
+  /// From now on there is always a request for the next pose.
+  void keep_asking_for_poses();
+  void stop_asking_for_poses() { asks_for_poses_ = false; }
+  /// Rules of the chip that the firmware broke, as sentences.
+  std::vector<std::string> violations() const;
+
+  RestingCircuit circuit;
+  Chip chip;
+  virtual_board::OtgFsDevice core;
+  Cable cable;
+  virtual_board::RootPort port;
+
+ private:
+  void between_transactions() override {}
+  void enumerated(const virtual_board::DeviceDescription&) override {}
+  void detached() override {}
+  void completed(Urb&& urb, std::int32_t status) override;
+  void ask_for_pose();
+
+  std::uint32_t sequence_ = 0;
+  bool asks_for_poses_ = false;
+  std::map<std::uint32_t, Answer> answers_;
+};
+
+}  // namespace inkwell::virtual_usb_test

@@ -1,0 +1,105 @@
+#include "pose_timing.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <random>
+#include <stdexcept>
+
+#include <board/omni_driver.hpp>
+
+#include "firmware_on_bus.hpp"
+
+namespace inkwell::virtual_usb_test {
+namespace {
+
+using namespace virtual_board;
+
+constexpr Ticks ticks_per_cycle = ticks_per_s / board::processor_Hz;
+
+struct Measurement {
+  explicit Measurement(FirmwareOnBus& the_bus) : bus(the_bus) {}
+
+  void start_of_frame() {
+    if (counting && asked) {
+      ++timing.frames;
+      if (!got_new) ++timing.empty_frames;
+    }
+    asked = got_new = false;
+  }
+
+  void in(unsigned endpoint, const InReply& reply, std::span<const std::byte> data) {
+    if (endpoint != 1) return;
+    asked = true;
+    token_at = bus.chip.now();
+    is_pose = reply.handshake == Handshake::ack && data.size() == sizeof pose;
+    if (is_pose) std::memcpy(&pose, data.data(), sizeof pose);
+  }
+
+  void finished(unsigned endpoint, bool done) {
+    if (endpoint != 1 || !done || !is_pose) return;
+    if (last && counting) {
+      timing.gaps += pose.sequence - last->sequence - 1;
+      timing.longest_pause_periods =
+          std::max<std::uint64_t>(timing.longest_pause_periods, pose.time_periods - last->time_periods);
+    }
+    got_new = !last || pose.time_periods != last->time_periods;
+    if (edge_at && last && pose.joint_rad[0] != last->joint_rad[0]) {
+      const auto cycles_since = [this](Ticks when) { return (when - *edge_at) / ticks_per_cycle; };
+      if (token_at < *edge_at) throw std::runtime_error("a pose shows an edge of the encoder that is still to come");
+      ++timing.edges;
+      timing.longest_edge_to_token = std::max(timing.longest_edge_to_token, cycles_since(token_at));
+      timing.longest_edge_to_packet = std::max(timing.longest_edge_to_packet, cycles_since(bus.chip.now()));
+      edge_at.reset();
+    }
+    last = pose;
+  }
+
+  /// The first encoder moves by one edge to and fro, at any phase of frames and control periods; the next edge
+  /// comes when the host has seen this one.
+  void plan_edge() {
+    const Ticks pause = std::uniform_int_distribution<Ticks>(ticks_per_s / 10'000, ticks_per_s / 500)(random);
+    bus.chip.connections().scheduler.at(bus.chip.now() + pause, [this] {
+      if (!edge_at) {
+        is_high = !is_high;
+        bus.chip.input_pins().drive(board::encoders[0].a.pin.port, board::encoders[0].a.pin.number,
+                                    is_high ? PinLevel::high : PinLevel::low);
+        edge_at = bus.chip.now();
+      }
+      plan_edge();
+    });
+  }
+
+  FirmwareOnBus& bus;
+  PoseTiming timing;
+  bool counting = false, asked = false, got_new = false, is_pose = false, is_high = false;
+  Ticks token_at = 0;
+  std::optional<Ticks> edge_at;
+  protocol::PoseReport pose{};
+  std::optional<protocol::PoseReport> last;
+  std::mt19937_64 random{1};
+};
+
+}  // namespace
+
+PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_ppm, double time_s) {
+  FirmwareOnBus bus(image, host_clock_ppm);
+  Measurement measurement(bus);
+  bus.chip.input_pins().drive(board::encoders[0].a.pin.port, board::encoders[0].a.pin.number, PinLevel::low);
+  bus.chip.input_pins().drive(board::encoders[0].b.pin.port, board::encoders[0].b.pin.number, PinLevel::low);
+  bus.connect();
+  bus.cable.on_start_of_frame = [&](std::uint16_t) { measurement.start_of_frame(); };
+  bus.cable.on_in = [&](unsigned endpoint, const InReply& reply, std::span<const std::byte> data) {
+    measurement.in(endpoint, reply, data);
+  };
+  bus.cable.on_finished_in = [&](unsigned endpoint, bool done) { measurement.finished(endpoint, done); };
+  bus.keep_asking_for_poses();
+  bus.run_for(0.1);  // the encoder's state settles
+  measurement.plan_edge();
+  measurement.counting = true;
+  bus.run_for(time_s);
+  if (const auto broken = bus.violations(); !broken.empty()) throw std::runtime_error(broken.front());
+  return measurement.timing;
+}
+
+}  // namespace inkwell::virtual_usb_test
