@@ -65,10 +65,11 @@ int main() {
   watchdog.start();
 
   for (;;) {
+    const std::uint32_t periods = completed_periods.load();
     usb_device.poll();
     host_link.scope.pack();
     feed_watchdog();
     show_state();
-    drivers::wait_for_interrupt();
+    drivers::sleep_unless([periods] { return usb_port.is_awake() || completed_periods.load() != periods; });
   }
 }

@@ -69,6 +69,8 @@ bool OtgFs::start() {
 
 INKWELL_INTERRUPT void OtgFs::wake() { Line::disable(); }
 
+bool OtgFs::is_awake() { return !Line::is_enabled(); }
+
 namespace fifo_memory {
 
 void lay_out() {

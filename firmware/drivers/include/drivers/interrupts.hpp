@@ -24,6 +24,7 @@ struct InterruptLine {
     require_claim<Driver, interrupt(line)>();
     registers::NVIC::ICER::write(position / 32, 1u << position % 32);
   }
+  static bool is_enabled() { return (registers::NVIC::ISER::read(position / 32) >> position % 32 & 1u) != 0; }
 
  private:
   static constexpr unsigned position = static_cast<unsigned>(line);

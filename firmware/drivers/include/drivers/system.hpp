@@ -37,7 +37,14 @@ inline std::array<char, 24> unique_identifier() {
   return digits;
 }
 
-/// Sleeps until an interrupt has been served.
-inline void wait_for_interrupt() { asm volatile("wfi" ::: "memory"); }
+/// Sleeps until an interrupt has been served, unless there is something to do already. The interrupts wait while that
+/// is asked, and one that waits ends the sleep at once: none comes between the question and the sleep and is slept
+/// over.
+template <class Question>
+void sleep_unless(Question is_something_to_do) {
+  asm volatile("cpsid i" ::: "memory");
+  if (!is_something_to_do()) asm volatile("wfi" ::: "memory");
+  asm volatile("cpsie i" ::: "memory");
+}
 
 }  // namespace inkwell::drivers

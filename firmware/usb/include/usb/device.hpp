@@ -2,7 +2,7 @@
 // for the scope. Composed in main():
 //
 //   usb::Device device{port, link, identity};
-//   for (;;) { device.poll(); wait_for_interrupt(); }
+//   for (;;) { device.poll(); sleep until an interrupt; }
 #pragma once
 
 #include <array>

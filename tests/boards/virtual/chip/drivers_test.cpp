@@ -51,3 +51,13 @@ TEST_CASE("supply and gimbal are measured again after an overrun and after an er
   CHECK(test.result(3) == 0);
   test.check_shown(21.0, 0.75);
 }
+
+TEST_CASE("an interrupt between the question and the sleep ends the sleep at once") {
+  for (const Mode mode : {Mode::exact, Mode::fast}) {
+    CAPTURE(static_cast<int>(mode));
+    ChipUnderTest test("sleep", mode);
+    test.run_for(0.0005);
+    CHECK(test.result(0) == finished);
+    CHECK(test.result(1) == 1);
+  }
+}

@@ -3,7 +3,7 @@
 //   drivers::OtgFs port;
 //   usb::Device device{port, link, identity};
 //   port.start();                                             // the host sees the device from here on
-//   for (;;) { device.poll(); wait_for_interrupt(); }
+//   for (;;) { device.poll(); sleep_unless([] { return OtgFs::is_awake(); }); }
 //   extern "C" void OTG_FS_IRQHandler() { drivers::OtgFs::wake(); }
 //
 // Everything happens in poll(). The core's interrupt comes only when a transfer of the scope is complete,
@@ -36,6 +36,8 @@ class OtgFs final : public usb::Port {
   /// To be called by the interrupt OTG_FS: switches the interrupt off until the main loop has polled. Touches
   /// no register of the core, because it may come in the middle of a packet that is written into a FIFO.
   static void wake();
+  /// The interrupt came, and not all of what it came for has been polled yet.
+  static bool is_awake();
 
   bool next_event(usb::Event& event) override;
   void set_address(std::uint8_t address) override;
