@@ -90,6 +90,7 @@ void OtgFs::bus_reset() {
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);
   fifo_memory::flush_receive();
   control_receive_waits_ = control_stall_waits_ = false;
+  setup_done_is_in_doubt_ = setup_done_may_follow_ = false;
   suspended_ = false;
   frame_clock_.forget();
   set_address(0);
@@ -126,16 +127,20 @@ bool OtgFs::take_received_word(Event& event) {
   const std::size_t size = Core::GRXSTSP::BCNT::from(status);
   event.endpoint = static_cast<std::uint8_t>(endpoint);
   switch (Core::GRXSTSP::PKTSTS::from(status)) {
-    case setup_data: read_packet(setup_, size); return false;
+    case setup_data:
+      read_packet(setup_, size);
+      setup_done_may_follow_ = setup_done_is_in_doubt_;
+      if (!setup_done_is_in_doubt_) return false;
+      setup_done_is_in_doubt_ = false;
+      pass_on_setup(event);
+      return true;
     case setup_done:
       // Only now is it known that no other SETUP follows, and only now may NAK be cleared again.
-      Device::DOEPINT::write(0, ~0u);
-      write_control_out_size();
-      control_receive_waits_ = control_stall_waits_ = false;
-      event.kind = Event::Kind::setup;
-      event.endpoint = 0;
-      event.length = static_cast<std::uint8_t>(setup_.size());
-      std::copy(setup_.begin(), setup_.end(), event.data.begin());
+      if (setup_done_may_follow_) {
+        setup_done_may_follow_ = false;
+        return false;
+      }
+      pass_on_setup(event);
       return true;
     case out_data:
       if (endpoint >= out_endpoints) {  // the core has been seen to name endpoints that it does not have
@@ -154,6 +159,16 @@ bool OtgFs::take_received_word(Event& event) {
       return true;
     default: return false;
   }
+}
+
+void OtgFs::pass_on_setup(Event& event) {
+  Device::DOEPINT::write(0, ~0u);
+  write_control_out_size();
+  control_receive_waits_ = control_stall_waits_ = false;
+  event.kind = Event::Kind::setup;
+  event.endpoint = 0;
+  event.length = static_cast<std::uint8_t>(setup_.size());
+  std::copy(setup_.begin(), setup_.end(), event.data.begin());
 }
 
 bool OtgFs::next_suspend_or_resume(Event& event, std::uint32_t interrupts) {
@@ -191,6 +206,7 @@ void OtgFs::send(std::uint8_t endpoint_address, std::span<const std::byte> data)
     answer_control();
   } else {
     begin_send(endpoint);
+    fill(endpoint);
   }
 }
 
@@ -207,8 +223,26 @@ void OtgFs::receive(std::uint8_t endpoint_address) {
 // Endpoint 0 is not touched while something waits in the receive FIFO: it may be a SETUP packet, which makes
 // this answer stale, and clearing NAK before its setup-done word is popped loses that word.
 void OtgFs::answer_control() {
-  const bool waits = control_send_waits_ || control_receive_waits_ || control_stall_waits_;
-  if (!waits || Core::GINTSTS::RXFLVL::is_set()) return;
+  const bool sends = control_send_waits_, receives = control_receive_waits_;
+  if (!sends && !receives && !control_stall_waits_) return;
+  switch (arm_control()) {
+    case Armed::not_yet: break;
+    case Armed::yes:
+      if (sends) fill(0);
+      break;
+    case Armed::too_late:
+      setup_done_is_in_doubt_ = receives;
+      stop_in(0);
+      break;
+  }
+}
+
+// A SETUP may come between the look at the receive FIFO and the write that clears NAK, which then opens the endpoint
+// for the data stage of a request that this does not answer. No interrupt makes that gap longer, and a second look
+// finds what came in it. The host's next token ends 4 us after the SETUP at the earliest: NAK stands again before.
+OtgFs::Armed OtgFs::arm_control() {
+  const InterruptsHeld held;
+  if (Core::GINTSTS::RXFLVL::is_set()) return Armed::not_yet;
   if (control_receive_waits_) begin_receive(0);
   if (control_send_waits_) begin_send(0);
   if (control_stall_waits_) {
@@ -216,6 +250,13 @@ void OtgFs::answer_control() {
     Device::DOEPCTL::modify(0, Device::DOEPCTL::STALL(1));
   }
   control_receive_waits_ = control_send_waits_ = control_stall_waits_ = false;
+  using Waiting = Core::GRXSTSR;
+  if (!Core::GINTSTS::RXFLVL::is_set()) return Armed::yes;
+  const std::uint32_t waiting = Waiting::read();
+  if (Waiting::PKTSTS::from(waiting) != setup_data || Waiting::EPNUM::from(waiting) != 0) return Armed::yes;
+  Device::DIEPCTL::modify(0, Device::DIEPCTL::SNAK(1));
+  Device::DOEPCTL::modify(0, Device::DOEPCTL::SNAK(1));
+  return Armed::too_late;
 }
 
 void OtgFs::begin_send(unsigned endpoint) {
@@ -224,7 +265,6 @@ void OtgFs::begin_send(unsigned endpoint) {
   const std::uint32_t packets = size == 0 ? 1 : (size + packet_size_maximum - 1) / packet_size_maximum;
   Size::write(endpoint, Size::PKTCNT(packets), Size::XFRSIZ(size));
   Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::EPENA(1), Device::DIEPCTL::CNAK(1));
-  fill(endpoint);
 }
 
 void OtgFs::fill(unsigned endpoint) {

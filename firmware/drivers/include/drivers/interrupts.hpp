@@ -9,6 +9,15 @@ namespace inkwell::drivers {
 /// `first` interrupts whatever runs: it is the control interrupt's alone.
 enum class Priority : std::uint8_t { first = 0x00, last = 0xF0 };
 
+/// No interrupt comes while it lives, which may be a microsecond.
+class InterruptsHeld {
+ public:
+  InterruptsHeld() { asm volatile("cpsid i" ::: "memory"); }
+  ~InterruptsHeld() { asm volatile("cpsie i" ::: "memory"); }
+  InterruptsHeld(const InterruptsHeld&) = delete;
+  InterruptsHeld& operator=(const InterruptsHeld&) = delete;
+};
+
 /// A line as its driver has it.
 template <class Driver, Interrupt line>
 struct InterruptLine {

@@ -33,6 +33,10 @@ struct UsbGlobal {
   struct GINTMSK : Register<base + 0x18> {
     using IEPINT = Field<GINTMSK, 18, 1>;
   };
+  struct GRXSTSR : Register<base + 0x1C> {
+    using EPNUM = Field<GRXSTSR, 0, 4>;
+    using PKTSTS = Field<GRXSTSR, 17, 4>;
+  };
   struct GRXSTSP : Register<base + 0x20> {
     using EPNUM = Field<GRXSTSP, 0, 4>;
     using BCNT = Field<GRXSTSP, 4, 11>;
