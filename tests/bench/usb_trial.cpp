@@ -10,6 +10,7 @@
 #include <board/omni_driver.hpp>
 
 #include "boards/virtual/usb/firmware_on_bus.hpp"
+#include "boards/virtual/usb/hostile_host.hpp"
 #include "boards/virtual/usb/pose_timing.hpp"
 
 namespace {
@@ -32,6 +33,17 @@ int poses(const std::filesystem::path& image, double host_clock_ppm, double time
   return timing.empty_frames == 0 && timing.gaps == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
+int hostile(const std::filesystem::path& image, std::uint64_t cases, std::uint64_t seed) {
+  const HostileOutcome outcome = be_hostile(image, cases, seed);
+  fmt::print(
+      "{} cases; a SETUP upon another was answered {} times, {} of them with the other's answer, and {} times "
+      "not at all\n",
+      outcome.cases, outcome.answers, outcome.wrong_answers, outcome.missing_answers);
+  for (const auto& failure : outcome.failures) fmt::print("{}\n", failure);
+  return outcome.failures.empty() && outcome.wrong_answers == 0 && outcome.missing_answers == 0 ? EXIT_SUCCESS
+                                                                                                : EXIT_FAILURE;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -44,8 +56,13 @@ int main(int argc, char** argv) {
   auto* poses_command = app.add_subcommand("poses", "Are poses lost, and how old are they when the host gets them?");
   poses_command->add_option("--host-clock-ppm", host_clock_ppm, "how much faster than board time the host's clock is");
   poses_command->add_option("--seconds", time_s, "of board time")->capture_default_str();
+  std::uint64_t cases = 10'000, seed = 1;
+  auto* hostile_command = app.add_subcommand("hostile", "Does the device survive a host that keeps to no rule?");
+  hostile_command->add_option("--cases", cases, "single cases")->capture_default_str();
+  hostile_command->add_option("--seed", seed, "of the cases")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
+    if (*hostile_command) return hostile(image, cases, seed);
     return poses(image, host_clock_ppm, time_s);
   } catch (const std::exception& error) {
     std::cerr << "usb-trial: " << error.what() << '\n';

@@ -328,6 +328,8 @@ std::uint32_t OtgFsDevice::interrupt_status() const {
          ((endpoints & 0xFFFF) != 0 ? gint::iepint : 0) | ((endpoints >> 16) != 0 ? gint::oepint : 0);
 }
 
+bool OtgFsDevice::reset_is_unseen() const { return (latched_interrupts_ & gint::usbrst) != 0; }
+
 void OtgFsDevice::update_interrupt() {
   const bool asserted = (bus_configuration_ & gahbcfg::gint) != 0 && (interrupt_status() & interrupt_mask_) != 0;
   if (asserted == interrupt_asserted_) return;

@@ -83,7 +83,7 @@ void OtgFsDevice::check_in_transfer(unsigned number) {
   const unsigned maximum = in_packet_maximum(number);
   if (endpoint.packets == 0) rules_.violate(Rule::usb_no_packets, "IN " + std::to_string(number));
   if (endpoint.bytes_to_send > endpoint.packets * maximum) rules_.violate(Rule::usb_bytes_beyond_packets);
-  if ((endpoint.control & epctl::usbaep) == 0)
+  if ((endpoint.control & epctl::usbaep) == 0 && !reset_is_unseen())
     rules_.violate(Rule::usb_inactive_endpoint, "IN " + std::to_string(number));
   if (epctl::type(endpoint.control) == epctl::isochronous && number != 0)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
@@ -269,7 +269,7 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
   if (number == 0) return;
   const std::uint32_t maximum = endpoint.control & epctl::mpsiz;
   if (maximum == 0 || endpoint.bytes == 0 || endpoint.bytes % maximum != 0) rules_.violate(Rule::usb_out_size);
-  if ((endpoint.control & epctl::usbaep) == 0)
+  if ((endpoint.control & epctl::usbaep) == 0 && !reset_is_unseen())
     rules_.violate(Rule::usb_inactive_endpoint, "OUT " + std::to_string(number));
   if (epctl::type(endpoint.control) == epctl::isochronous)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);

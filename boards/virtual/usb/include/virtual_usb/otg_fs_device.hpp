@@ -116,6 +116,8 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void write_usb_configuration(std::uint32_t value);
   bool pins_connected() const;
   bool clock_is_exact() const;
+  /// A bus reset that firmware has not acknowledged yet: it may still do what was right before.
+  bool reset_is_unseen() const;
   void check_connection();
   void check_core();
   void note(const char* sentence, std::uint32_t offset, bool is_write, std::uint32_t value);

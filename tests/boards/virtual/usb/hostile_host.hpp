@@ -1,0 +1,23 @@
+// A host that keeps to no rule: single transactions in any order, handshakes that get lost, SETUP upon SETUP, resets
+// anywhere. After each batch the device must enumerate and stream as if nothing had been.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace inkwell::virtual_usb_test {
+
+struct HostileOutcome {
+  std::uint64_t cases = 0;
+  std::uint64_t answers = 0;        ///< to a SETUP that came upon another one
+  std::uint64_t wrong_answers = 0;  ///< those that answer the other one
+  std::uint64_t missing_answers = 0;
+  std::vector<std::string> failures;  ///< batches after which the device was not well, and rules of the chip it broke
+};
+
+/// `cases` cases in batches, chosen by `seed`. Ends at the first failure.
+HostileOutcome be_hostile(const std::filesystem::path& image, std::uint64_t cases, std::uint64_t seed);
+
+}  // namespace inkwell::virtual_usb_test
