@@ -18,8 +18,8 @@ namespace {
 using namespace inkwell;
 using namespace inkwell::virtual_usb_test;
 
-int poses(const std::filesystem::path& image, double host_clock_ppm, double time_s) {
-  const PoseTiming timing = measure_poses(image, host_clock_ppm, time_s);
+int poses(const std::filesystem::path& image, double host_clock_ppm, double time_s, std::uint8_t scope_signals) {
+  const PoseTiming timing = measure_poses(image, host_clock_ppm, time_s, scope_signals);
   const auto microseconds = [](std::uint64_t cycles) {
     return 1e6 * static_cast<double>(cycles) / board::processor_Hz;
   };
@@ -56,6 +56,10 @@ int main(int argc, char** argv) {
   auto* poses_command = app.add_subcommand("poses", "Are poses lost, and how old are they when the host gets them?");
   poses_command->add_option("--host-clock-ppm", host_clock_ppm, "how much faster than board time the host's clock is");
   poses_command->add_option("--seconds", time_s, "of board time")->capture_default_str();
+  std::uint8_t scope_signals = 0;
+  poses_command->add_option("--scope-signals", scope_signals, "signals of the scope that the host reads too")
+      ->check(CLI::Range(0, 32).description(""))
+      ->capture_default_str();
   std::uint64_t cases = 10'000, seed = 1;
   auto* hostile_command = app.add_subcommand("hostile", "Does the device survive a host that keeps to no rule?");
   hostile_command->add_option("--cases", cases, "single cases")->capture_default_str();
@@ -63,7 +67,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (*hostile_command) return hostile(image, cases, seed);
-    return poses(image, host_clock_ppm, time_s);
+    return poses(image, host_clock_ppm, time_s, scope_signals);
   } catch (const std::exception& error) {
     std::cerr << "usb-trial: " << error.what() << '\n';
     return EXIT_FAILURE;

@@ -1,12 +1,19 @@
 #include "firmware_on_bus.hpp"
 
 #include <array>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
+
+#include <protocol/scope.hpp>
 
 namespace inkwell::virtual_usb_test {
 
 using namespace virtual_board;
+
+namespace {
+constexpr std::uint8_t pose_endpoint = 1, scope_endpoint = 2;
+}  // namespace
 
 std::filesystem::path flashed_image(const std::filesystem::path& build_directory) {
   return build_directory / ".." / "board" / "inkwell.elf";
@@ -55,23 +62,40 @@ FirmwareOnBus::Answer FirmwareOnBus::control(std::uint8_t type, std::uint8_t req
 void FirmwareOnBus::keep_asking_for_poses() {
   asks_for_poses_ = true;
   constexpr int requests_under_way = 3;
-  for (int i = 0; i < requests_under_way; ++i) ask_for_pose();
+  for (int i = 0; i < requests_under_way; ++i) ask(pose_endpoint, sizeof(protocol::PoseReport));
 }
 
-void FirmwareOnBus::ask_for_pose() {
+void FirmwareOnBus::stream_scope(std::uint8_t signals) {
+  protocol::CommandReport report{};
+  report.command = protocol::Command::select_signals;
+  report.token = 1;
+  report.selection.count = signals;
+  for (std::uint8_t i = 0; i < signals; ++i) report.selection.signals[i] = i;
   Urb urb;
   urb.sequence = ++sequence_;
   urb.endpoint = 1;
+  urb.length = sizeof report;
+  urb.data.resize(sizeof report);
+  std::memcpy(urb.data.data(), &report, sizeof report);
+  port.submit(std::move(urb));
+  constexpr int requests_under_way = 8;
+  for (int i = 0; i < requests_under_way; ++i) ask(scope_endpoint, protocol::scope_frame_maximum);
+}
+
+void FirmwareOnBus::ask(std::uint8_t endpoint, std::uint32_t length) {
+  Urb urb;
+  urb.sequence = ++sequence_;
+  urb.endpoint = endpoint;
   urb.in = true;
-  urb.length = sizeof(protocol::PoseReport);
+  urb.length = length;
   port.submit(std::move(urb));
 }
 
 void FirmwareOnBus::completed(Urb&& urb, std::int32_t status) {
   if (urb.endpoint == 0)
     answers_[urb.sequence] = {status, std::move(urb.data)};
-  else if (asks_for_poses_ && status == 0)
-    ask_for_pose();
+  else if (status == 0 && urb.in && (urb.endpoint == scope_endpoint || asks_for_poses_))
+    ask(urb.endpoint, urb.length);
 }
 
 std::vector<std::string> FirmwareOnBus::violations() const {

@@ -90,6 +90,8 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
                  std::uint16_t length, std::vector<std::byte> data = {});
   /// From now on there is always a request for the next pose.
   void keep_asking_for_poses();
+  /// Selects signals for the scope and reads it from now on.
+  void stream_scope(std::uint8_t signals);
   void stop_asking_for_poses() { asks_for_poses_ = false; }
   /// Rules of the chip that the firmware broke, as sentences.
   std::vector<std::string> violations() const;
@@ -105,7 +107,7 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   void enumerated(const virtual_board::DeviceDescription&) override {}
   void detached() override {}
   void completed(Urb&& urb, std::int32_t status) override;
-  void ask_for_pose();
+  void ask(std::uint8_t endpoint, std::uint32_t length);
 
   std::uint32_t sequence_ = 0;
   bool asks_for_poses_ = false;

@@ -82,7 +82,8 @@ struct Measurement {
 
 }  // namespace
 
-PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_ppm, double time_s) {
+PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_ppm, double time_s,
+                         std::uint8_t scope_signals) {
   FirmwareOnBus bus(image, host_clock_ppm);
   Measurement measurement(bus);
   bus.chip.input_pins().drive(board::encoders[0].a.pin.port, board::encoders[0].a.pin.number, PinLevel::low);
@@ -94,6 +95,7 @@ PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_p
   };
   bus.cable.on_finished_in = [&](unsigned endpoint, bool done) { measurement.finished(endpoint, done); };
   bus.keep_asking_for_poses();
+  if (scope_signals != 0) bus.stream_scope(scope_signals);
   bus.run_for(0.1);  // the encoder's state settles
   measurement.plan_edge();
   measurement.counting = true;

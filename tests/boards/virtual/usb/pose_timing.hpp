@@ -17,7 +17,9 @@ struct PoseTiming {
   std::uint64_t longest_pause_periods = 0;   ///< between the control periods of two reports
 };
 
-/// Lets the firmware run for `time_s` of board time against a host whose clock is so much faster than board time.
-PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_ppm, double time_s);
+/// Lets the firmware run for `time_s` of board time against a host whose clock is so much faster than board time, and
+/// which also reads so many signals of the scope.
+PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_ppm, double time_s,
+                         std::uint8_t scope_signals);
 
 }  // namespace inkwell::virtual_usb_test

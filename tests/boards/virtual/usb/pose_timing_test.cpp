@@ -15,7 +15,7 @@ TEST_CASE("every frame of a fast and of a slow host brings a new pose, and none 
   // Half a millisecond and more goes by between the clocks: control periods and frames meet at every phase.
   for (const double host_clock_ppm : {500.0, -500.0}) {
     CAPTURE(host_clock_ppm);
-    const PoseTiming timing = measure_poses(flashed_image(INKWELL_BUILD_DIRECTORY), host_clock_ppm, 1.5);
+    const PoseTiming timing = measure_poses(flashed_image(INKWELL_BUILD_DIRECTORY), host_clock_ppm, 1.5, 14);
     CHECK(timing.frames >= 1498);
     CHECK(timing.empty_frames == 0);
     CHECK(timing.gaps == 0);
