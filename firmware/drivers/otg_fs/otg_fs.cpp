@@ -305,8 +305,11 @@ void OtgFs::stop_in(unsigned endpoint) {
   if (Control::EPENA::from(Control::read(endpoint))) {
     Control::modify(endpoint, Control::SNAK(1));
     static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::INEPNE::from(Flags::read(endpoint)) != 0; }));
-    Control::modify(endpoint, Control::SNAK(1), Control::EPDIS(1));
-    static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::EPDISD::from(Flags::read(endpoint)) != 0; }));
+    // A packet that was on its way may have ended the transfer meanwhile: what is off already never says that it is.
+    if (Control::EPENA::from(Control::read(endpoint))) {
+      Control::modify(endpoint, Control::SNAK(1), Control::EPDIS(1));
+      static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::EPDISD::from(Flags::read(endpoint)) != 0; }));
+    }
   }
   fifo_memory::flush_transmit(endpoint);
   Flags::write(endpoint, Flags::XFRC(1), Flags::EPDISD(1), Flags::INEPNE(1));
