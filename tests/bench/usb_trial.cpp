@@ -36,9 +36,9 @@ int poses(const std::filesystem::path& image, double host_clock_ppm, double time
 int hostile(const std::filesystem::path& image, std::uint64_t cases, std::uint64_t seed) {
   const HostileOutcome outcome = be_hostile(image, cases, seed);
   fmt::print(
-      "{} cases; a SETUP upon another was answered {} times, {} of them with the other's answer, and {} times "
-      "not at all\n",
-      outcome.cases, outcome.answers, outcome.wrong_answers, outcome.missing_answers);
+      "{} cases; a SETUP upon another was answered {} times, {} of them with the other's answer, {} times refused as "
+      "the other and {} times not answered at all\n",
+      outcome.cases, outcome.answers, outcome.wrong_answers, outcome.stalled_answers, outcome.missing_answers);
   for (const auto& failure : outcome.failures) fmt::print("{}\n", failure);
   return outcome.failures.empty() && outcome.wrong_answers == 0 && outcome.missing_answers == 0 ? EXIT_SUCCESS
                                                                                                 : EXIT_FAILURE;

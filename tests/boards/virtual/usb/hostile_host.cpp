@@ -148,7 +148,9 @@ class HostileHost {
     if (setup(descriptor_request(wanted)) != Handshake::ack) return;
     const auto answer = read_packet();
     if (!answer) {
-      ++outcome.missing_answers;
+      std::array<std::byte, full_speed_packet_maximum> data;
+      const bool stalled = bus_.cable.in(address_, 0, data).handshake == Handshake::stall;
+      ++(stalled ? outcome.stalled_answers : outcome.missing_answers);
       return;
     }
     ++outcome.answers;

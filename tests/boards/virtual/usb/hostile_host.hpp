@@ -14,6 +14,10 @@ struct HostileOutcome {
   std::uint64_t answers = 0;        ///< to a SETUP that came upon another one
   std::uint64_t wrong_answers = 0;  ///< those that answer the other one
   std::uint64_t missing_answers = 0;
+  /// The other one was refused in the very moment in which this one came: the core lets firmware set STALL on endpoint
+  /// 0 and never clear it (RM0090, OTG_FS_DIEPCTL0), so no firmware can close these few cycles. The next SETUP is
+  /// answered.
+  std::uint64_t stalled_answers = 0;
   std::vector<std::string> failures;  ///< batches after which the device was not well, and rules of the chip it broke
 };
 

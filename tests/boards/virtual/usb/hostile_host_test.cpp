@@ -1,0 +1,19 @@
+// The flashed firmware against a host that keeps to no rule; more cases by `build/pc/usb-trial hostile --cases N`.
+#include <doctest/doctest.h>
+
+#include "firmware_on_bus.hpp"
+#include "hostile_host.hpp"
+
+namespace inkwell::virtual_usb_test {
+
+TEST_CASE("ten thousand cases of a hostile host leave the device well, and no request gets another one's answer") {
+  const HostileOutcome outcome = be_hostile(flashed_image(INKWELL_BUILD_DIRECTORY), 10'000, 3);
+  for (const auto& failure : outcome.failures) FAIL_CHECK(failure);
+  CHECK(outcome.cases == 10'000);
+  CHECK(outcome.answers > 3'000);
+  CHECK(outcome.wrong_answers == 0);
+  CHECK(outcome.missing_answers == 0);
+  CHECK(outcome.stalled_answers < outcome.answers / 1'000);
+}
+
+}  // namespace inkwell::virtual_usb_test
