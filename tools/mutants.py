@@ -1,0 +1,130 @@
+"""Mutants of C++ sources: copies with one thing less or one thing else.
+
+Register mutants take away a write to a register, or one field or one flag of it. Sampled mutants take away a statement,
+or turn a condition round, anywhere else.
+"""
+
+import random
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+# "RCC::CR::modify(", "Timer::CCR::write(", "Line::enable(", "connect<Bridges, ...>(": what reaches a register.
+REGISTER_WRITE = re.compile(
+    r"(?<![\w:.>])(?:\w+::)+(?:write|modify|set_priority|enable|set_high|set_low|start)\("
+    r"|(?<![\w:.>])(?:connect|connect_analog|start_clocks_of|start_clock_of_stream|set_up\w*)(?:<[^;(]*>)?\(")
+# A field's value among the arguments, and no number of an endpoint or a channel: "CR::PLLON(1)".
+FIELD = re.compile(r"(?:typename )?(?:\w+::)+\w+\(")
+# A store of the handlers that are written in assembly.
+ASSEMBLY_STORE = re.compile(r'^\s*"(?:str|cpsid|dsb)\b[^"]*"', re.MULTILINE)
+FUNCTION_HEAD = re.compile(r"\)\s*(?:const\s*)?(?:noexcept\s*)?[{:]|\)\s*(?:const\s*)?override")
+NOTHING = "static_cast<void>(0)"
+
+
+@dataclass(frozen=True)
+class Mutant:
+    path: str  # from the top of the tree
+    line: int  # of the change, from 1
+    what: str  # was taken away or turned round; with the path it names the mutant, whatever lines move
+    begin: int  # characters of the file that are replaced
+    end: int
+    text: str
+
+    def applied_to(self, source: str) -> str:
+        return source[: self.begin] + self.text + source[self.end :]
+
+
+def matching(source: str, opening: int) -> int:
+    """Place behind the bracket that closes the one at `opening`."""
+    depth = 0
+    for i in range(opening, len(source)):
+        depth += source[i] in "([{"
+        depth -= source[i] in ")]}"
+        if depth == 0:
+            return i + 1
+    raise ValueError("brackets do not match")
+
+
+def split(source: str, begin: int, end: int, separator: str) -> list[tuple[int, int]]:
+    """Parts between separators that stand outside of brackets, without white space around them."""
+    parts, depth, start = [], 0, begin
+    for i in range(begin, end):
+        depth += source[i] in "([{"
+        depth -= source[i] in ")]}"
+        if depth == 0 and source[i] == separator:
+            parts.append((start, i))
+            start = i + 1
+    parts.append((start, end))
+    stripped = []
+    for first, last in parts:
+        text = source[first:last]
+        stripped.append((first + len(text) - len(text.lstrip()), last - (len(text) - len(text.rstrip()))))
+    return [part for part in stripped if part[0] < part[1]]
+
+
+def in_one_line(text: str) -> str:
+    return re.sub(r"\s+", " ", text).strip()
+
+
+def register_mutants(path: str, source: str) -> list[Mutant]:
+    """Of one file, in the order of its lines."""
+    mutants = []
+
+    def add(what: str, begin: int, end: int, text: str) -> None:
+        mutants.append(Mutant(path, source.count("\n", 0, begin) + 1, in_one_line(what), begin, end, text))
+
+    for found in REGISTER_WRITE.finditer(source):
+        line_begin = source.rfind("\n", 0, found.start()) + 1
+        if source[line_begin : found.start()].lstrip().startswith(("//", "#", "template", "using", "void ", "bool ")):
+            continue
+        end = matching(source, found.end() - 1)
+        if not source[end:].lstrip().startswith(";") or FUNCTION_HEAD.match(source[end - 1 :]):
+            continue  # a declaration, or part of an expression
+        statement = source[found.start() : end]
+        add(f"without {statement}", found.start(), end, NOTHING)
+        if not re.search(r"(?:write|modify)\($", found.group()):
+            continue
+        arguments = split(source, found.end(), end - 1, ",")
+        for i, (first, last) in enumerate(arguments):
+            if len(arguments) > 1 and FIELD.match(source, first, last):
+                others = ", ".join(source[a:b] for k, (a, b) in enumerate(arguments) if k != i)
+                add(f"{found.group()}...) without {source[first:last]}", found.end(), end - 1, others)
+            flags = split(source, first, last, "|")
+            for k, (a, b) in enumerate(flags):
+                if len(flags) > 1:
+                    others = " | ".join(source[c:d] for m, (c, d) in enumerate(flags) if m != k)
+                    add(f"{found.group()}...) without {source[a:b]}", first, last, others)
+    for found in ASSEMBLY_STORE.finditer(source):
+        begin = found.start() + len(found.group()) - len(found.group().lstrip())
+        add(f"without {source[begin:found.end()]}", begin, found.end(), '"nop \\n"')
+    return mutants
+
+
+STATEMENT = re.compile(r"^[ ]{2,}(?!return\b|using\b|case\b|else\b|static_assert|for\b|throw\b|break\b|const\b|constexpr\b|auto\b)"
+                       r"(?:[\w:.\->\[\]]+(?:\([^;{}]*\))? (?:[-+*/|&^]?=) [^;{}]+|[\w:.\->]+\([^;{}]*\));$", re.MULTILINE)
+CONDITION = re.compile(r"\bif \(")
+
+
+def other_mutants(path: str, source: str) -> list[Mutant]:
+    mutants = []
+    for found in STATEMENT.finditer(source):
+        begin = found.start() + len(found.group()) - len(found.group().lstrip())
+        line = source.count("\n", 0, begin) + 1
+        mutants.append(Mutant(path, line, in_one_line(f"without {source[begin:found.end()]}"), begin, found.end() - 1, NOTHING))
+    for found in CONDITION.finditer(source):
+        end = matching(source, found.end() - 1)
+        condition = source[found.end() : end - 1]
+        if ";" in condition or source[: found.start()].endswith("constexpr "):
+            continue
+        line = source.count("\n", 0, found.start()) + 1
+        mutants.append(Mutant(path, line, in_one_line(f"if (not ({condition}))"), found.end(), end - 1, f"!({condition})"))
+    return mutants
+
+
+def sample(mutants: list[Mutant], count: int, seed: int) -> list[Mutant]:
+    chosen = random.Random(seed).sample(mutants, min(count, len(mutants)))
+    return sorted(chosen, key=lambda mutant: (mutant.path, mutant.begin))
+
+
+def sources(top: Path, folders: list[str]) -> list[Path]:
+    return sorted(path for folder in folders for path in (top / folder).rglob("*.[ch]pp"))
