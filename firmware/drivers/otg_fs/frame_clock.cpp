@@ -47,12 +47,15 @@ void FrameClock::note_capture() {
 std::optional<usb::Frame> FrameClock::newest() {
   if (TIM2::SR::CC1IF::is_set()) note_capture();
   if (!is_known_) return std::nullopt;
-  constexpr std::uint32_t both_reads_cycles = 60;  // more, and an interrupt came in between
-  std::uint32_t cycles, count;
-  do {
+  // An interrupt between the two reads would part them; the control interrupt does not come twice in a row.
+  constexpr std::uint32_t both_reads_cycles = 60;
+  constexpr int tries = 4;
+  std::uint32_t cycles = 0, count = 0;
+  for (int i = 0; i < tries; ++i) {
     cycles = CycleCounter::now();
     count = TIM2::CNT::read();
-  } while (CycleCounter::now() - cycles > both_reads_cycles);
+    if (CycleCounter::now() - cycles <= both_reads_cycles) break;
+  }
   const std::uint32_t age = count - captured_;
   if (age > silence) {
     is_known_ = false;
