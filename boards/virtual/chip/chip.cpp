@@ -106,6 +106,10 @@ void Chip::usart_receive(unsigned number, std::uint8_t byte) {
   if (number >= 1 && number <= parts_->usarts.size()) parts_->usarts[number - 1].receive(byte);
 }
 
+bool Chip::usart_listens(unsigned number) const {
+  return number >= 1 && number <= parts_->usarts.size() && parts_->usarts[number - 1].listens();
+}
+
 Ticks Chip::now() const { return parts_->machine.timeline.now(); }
 Mode Chip::mode() const { return parts_->machine.options.mode; }
 Clocks Chip::clocks() const { return parts_->machine.clocks.frequencies; }

@@ -80,13 +80,15 @@ void Usart::receive(std::uint8_t byte) {
   update();
 }
 
+bool Usart::listens() const { return map.cr1.ue.in(control1_) && map.cr1.re.in(control1_); }
+
 void Usart::take_received() {
   received_at_ = never;
   if (line_.empty()) {
     status_ |= idle_line;
     return;
   }
-  if (map.cr1.ue.in(control1_) && map.cr1.re.in(control1_)) {
+  if (listens()) {
     if ((status_ & receive_full) != 0) {
       status_ |= overrun;
     } else {

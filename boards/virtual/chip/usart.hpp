@@ -47,6 +47,7 @@ class Usart final : public RegisterBlock, public TimedPart {
   void reset() override;
   void step(Ticks now) override;
   void receive(std::uint8_t byte);
+  bool listens() const;
   /// A DMA stream has been enabled: requests that wait can be served.
   void serve_dma();
   std::function<void(unsigned number, std::uint8_t byte)> on_sent;

@@ -39,7 +39,7 @@ UartOption UartOption::of(const std::string& text) {
 UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, const std::function<void()>& on_arrival)
     : chip_(chip) {
   for (const UartOption& option : options) {
-    Link link{option.number, nullptr, {}};
+    Link link{option.number, nullptr, {}, {}};
     if (option.kind == UartOption::Kind::terminal) {
       link.stream = std::make_unique<TerminalStream>(on_arrival);
     } else if (option.kind == UartOption::Kind::path) {
@@ -60,7 +60,11 @@ UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, const s
 
 void UartLinks::serve() {
   for (Link& link : links_) {
-    for (const char byte : link.stream->take().bytes) chip_.usart_receive(link.number, static_cast<std::uint8_t>(byte));
+    link.arrived += link.stream->take().bytes;
+    // A program on the other end cannot know when the firmware has switched its receiver on, so it need not.
+    if (chip_.usart_listens(link.number))
+      for (const char byte : std::exchange(link.arrived, {}))
+        chip_.usart_receive(link.number, static_cast<std::uint8_t>(byte));
     if (!link.to_send.empty()) link.stream->send(std::exchange(link.to_send, {}));
   }
 }

@@ -38,6 +38,7 @@ class UartLinks {
     unsigned number;
     std::unique_ptr<ByteStream> stream;
     std::string to_send;
+    std::string arrived;  ///< before the receiver was on
   };
   Chip& chip_;
   std::vector<Link> links_;

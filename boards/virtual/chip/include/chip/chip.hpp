@@ -161,6 +161,8 @@ class Chip {
 
   /// A character for the receiver of USART `number` (1..6); they follow each other at the baud rate.
   void usart_receive(unsigned number, std::uint8_t byte);
+  /// Its receiver is on; what arrives before is lost.
+  bool usart_listens(unsigned number) const;
 
   Ticks now() const;
   Mode mode() const;
