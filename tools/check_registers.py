@@ -58,8 +58,9 @@ class Known:
 FS_PREFIX = "the SVD puts FS_ before most names of this core"
 VIEWS = "the SVD has one view of it for output and one for input"
 IN_CPP = "a field cannot have its register's name in C++"
-ENDPOINT_0 = "endpoint 0 has a narrower field (packet size as a code, few packets); the driver writes no more to it"
-NOT_ON_0 = "endpoint 0 has no data toggle to set; the driver does not set it there"
+ENDPOINT_0 = "endpoint 0 has a narrower field (packet size as a code, few packets); no more of it is used"
+NOT_ON_0 = "endpoint 0 has no data toggle to set or read; it is not used there"
+BOTH_MEANINGS = "the SVD has both its meanings, for isochronous endpoints and the others"
 
 
 def known_differences() -> list[Known]:
@@ -92,10 +93,11 @@ def known_differences() -> list[Known]:
         Known("FPU", "MVFR[01]", None, None, "not in the SVD; ARMv7-M: 0xE000EF40 and 0xE000EF44"),
         Known("SCB", "CFSR", None, "CFSR_UFSR_BFSR_MMFSR", "the SVD spells out the three status registers in it"),
         Known("NVIC", "IPR20", None, None, "the SVD ends with interrupt 79; RM0090's vector table with 81"),
-        Known("OTG_FS_GLOBAL", "G(?!RXSTSP).*|DIEPTXF[12]", None, "FS_{}", FS_PREFIX),
+        Known("OTG_FS_GLOBAL", "GRXSTSR", None, "FS_GRXSTSR_Device", "the SVD has two views of it"),
+        Known("OTG_FS_GLOBAL", "G(?!RXSTSP).*|CID|DIEPTXF[1-3]", None, "FS_{}", FS_PREFIX),
         Known("OTG_FS_GLOBAL", "GRXSTSP", None, None, "the SVD has only GRXSTSR, which does not pop; RM0090: 0x50000020"),
         Known("OTG_FS_GLOBAL", "DIEPTXF0", None, "FS_GNPTXFSIZ_Device", "the SVD has its name in host mode"),
-        Known("OTG_FS_DEVICE", "DCFG|DCTL|DIEPMSK|DAINTMSK|DIEPCTL0", None, "FS_{}", FS_PREFIX),
+        Known("OTG_FS_DEVICE", "DCFG|DCTL|DSTS|D[IO]EPMSK|DAINT|DAINTMSK|DIEPCTL0", None, "FS_{}", FS_PREFIX),
         Known("OTG_FS_PWRCLK", "PCGCCTL", None, "FS_{}", FS_PREFIX),
         Known("RCC", "CSR", "IWDGRSTF", "WDGRSTF", "RM0090 calls the independent watchdog's flag IWDGRSTF"),
         Known("DBG", "DBGMCU_APB1_FZ", "DBG_IWDG_STOP", "DBG_IWDEG_STOP", "a misspelling in the SVD"),
@@ -105,9 +107,12 @@ def known_differences() -> list[Known]:
         Known("SCB", "AIRCR", "VECTKEY", "VECTKEYSTAT", "the SVD has the name for reading"),
         Known("OTG_FS_GLOBAL", "GCCFG", "NOVBUSSENS", None, "not in the SVD; RM0090, OTG_FS_GCCFG: bit 21"),
         Known("OTG_FS_DEVICE", "DIEPCTL[1-3]|DOEPCTL[0-3]", "STALL", "Stall", "the SVD has it in small letters"),
-        Known("OTG_FS_DEVICE", "D[IO]EPCTL[1-3]", "SD0PID", "SD0PID_SEVNFRM", "the SVD has both its meanings"),
-        Known("OTG_FS_DEVICE", "DOEPTSIZ[1-3]", "STUPCNT", "RXDPID_STUPCNT", "the SVD has both its meanings"),
-        Known("OTG_FS_DEVICE", "D[IO]EPCTL0", "SD0PID", None, NOT_ON_0),
+        Known("OTG_FS_DEVICE", "D[IO]EPCTL[1-3]", "SD0PID", "SD0PID_SEVNFRM", BOTH_MEANINGS),
+        Known("OTG_FS_DEVICE", "DIEPCTL1", "SD1PID", "SODDFRM_SD1PID", BOTH_MEANINGS),
+        Known("OTG_FS_DEVICE", "DIEPCTL[23]|DOEPCTL[1-3]", "SD1PID", "SODDFRM", "the SVD has its other meaning"),
+        Known("OTG_FS_DEVICE", "D[IO]EPCTL[1-3]", "DPID", "EONUM_DPID", BOTH_MEANINGS),
+        Known("OTG_FS_DEVICE", "DOEPTSIZ[1-3]", "STUPCNT", "RXDPID_STUPCNT", BOTH_MEANINGS),
+        Known("OTG_FS_DEVICE", "D[IO]EPCTL0", "SD[01]PID|DPID", None, NOT_ON_0),
         Known("OTG_FS_DEVICE", "D[IO]EPCTL0", "MPSIZ", None, ENDPOINT_0),
         Known("OTG_FS_DEVICE", "D[IO]EPTSIZ0", "XFRSIZ|PKTCNT", None, ENDPOINT_0),
     ]

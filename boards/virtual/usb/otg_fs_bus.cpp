@@ -4,23 +4,27 @@
 
 #include <virtual_usb/otg_fs_device.hpp>
 
-#include "otg_fs_registers.hpp"
+#include "otg_fs_map.hpp"
 
 namespace inkwell::virtual_board {
-
-using namespace otg;
 
 namespace {
 /// Words of the receive FIFO that data packets never take: ten for SETUP packets, one for the global OUT
 /// NAK (RM0090, "Peripheral FIFO architecture").
 constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
+
+/// End of the periodic part of a frame, in thousandths of it (DCFG.PFIVL).
+unsigned periodic_frame_per_mille(std::uint32_t device_configuration) {
+  return 800 + 50 * otg.dcfg.pfivl.of(device_configuration);
+}
 }  // namespace
 
 void OtgFsDevice::set_bus_power(bool present) {
-  const bool sensed = (core_configuration_ & (gccfg::vbusbsen | gccfg::novbussens)) == gccfg::vbusbsen;
-  if (sensed && bus_power_ && !present) otg_interrupts_ |= gotgint::sedet;
-  if (sensed && !bus_power_ && present) latched_interrupts_ |= gint::srqint;
+  const bool sensed =
+      (core_configuration_ & (otg.gccfg.vbusbsen.mask() | otg.gccfg.novbussens.mask())) == otg.gccfg.vbusbsen.mask();
+  if (sensed && bus_power_ && !present) otg_interrupts_ |= otg.gotgint.sedet.mask();
+  if (sensed && !bus_power_ && present) latched_interrupts_ |= otg.gintsts.srqint.mask();
   bus_power_ = present;
   update_pull_up();
   update_interrupt();
@@ -28,11 +32,12 @@ void OtgFsDevice::set_bus_power(bool present) {
 
 void OtgFsDevice::begin_reset() {
   suspended_ = false;
-  latched_interrupts_ |= gint::usbrst;
+  latched_interrupts_ |= otg.gintsts.usbrst.mask();
   for (unsigned i = 0; i < endpoint_count; ++i) {
-    const std::uint32_t cleared = epctl::epena | epctl::stall | (i == 0 ? 0 : epctl::usbaep);
-    in_[i].control = (in_[i].control & ~cleared) | epctl::naksts;
-    out_[i].control = (out_[i].control & ~cleared) | epctl::naksts;
+    const std::uint32_t cleared =
+        otg.diepctl.epena.mask() | otg.diepctl.stall.mask() | (i == 0 ? 0 : otg.diepctl.usbaep.mask());
+    in_[i].control = (in_[i].control & ~cleared) | otg.diepctl.naksts.mask();
+    out_[i].control = (out_[i].control & ~cleared) | otg.doepctl.naksts.mask();
     out_[i].disable_pending = false;
     in_[i].bytes_on_wire.reset();
   }
@@ -45,36 +50,36 @@ void OtgFsDevice::begin_reset() {
 
 void OtgFsDevice::end_reset() {
   check_core();
-  latched_interrupts_ |= gint::enumdne;
+  latched_interrupts_ |= otg.gintsts.enumdne.mask();
   update_interrupt();
 }
 
 void OtgFsDevice::start_of_frame(std::uint16_t frame_number) {
   suspended_ = false;
   frame_number_ = frame_number;
-  latched_interrupts_ |= gint::sof;
+  latched_interrupts_ |= otg.gintsts.sof.mask();
   triggers_.usb_start_of_frame();
-  if ((interrupt_mask_ & gint::eopf) != 0) {
-    const Ticks length = frame_ticks * dcfg::periodic_frame_per_mille(device_configuration_) / 1000;
+  if (otg.gintmsk.eopfm.in(interrupt_mask_)) {
+    const Ticks length = frame_ticks * periodic_frame_per_mille(device_configuration_) / 1000;
     end_of_periodic_frame_ = scheduler_.at(scheduler_.now() + length, [this] {
-      latched_interrupts_ |= gint::eopf;
+      latched_interrupts_ |= otg.gintsts.eopf.mask();
       update_interrupt();
     });
   } else {
-    latched_interrupts_ |= gint::eopf;  // nobody waits for its moment
+    latched_interrupts_ |= otg.gintsts.eopf.mask();  // nobody waits for its moment
   }
   update_interrupt();
 }
 
 void OtgFsDevice::suspend() {
   suspended_ = true;
-  latched_interrupts_ |= gint::esusp | gint::usbsusp;
+  latched_interrupts_ |= otg.gintsts.esusp.mask() | otg.gintsts.usbsusp.mask();
   update_interrupt();
 }
 
 void OtgFsDevice::resume() {
   suspended_ = false;
-  latched_interrupts_ |= gint::wkupint;
+  latched_interrupts_ |= otg.gintsts.wkupint.mask();
   update_interrupt();
 }
 
@@ -90,8 +95,10 @@ std::size_t OtgFsDevice::receive_words_free() const {
 }
 
 void OtgFsDevice::push_status(unsigned endpoint, unsigned packet_status, std::size_t bytes, bool data1) {
-  receive_.push(endpoint | static_cast<std::uint32_t>(bytes) << 4 | (data1 ? 2u : 0u) << 15 | packet_status << 17 |
-                (frame_number_ & 0xFu) << 21);
+  const auto& status = otg.grxstsp;
+  receive_.push(status.epnum.with(endpoint) | status.bcnt.with(static_cast<std::uint32_t>(bytes)) |
+                status.dpid.with(data1 ? 2 : 0) | status.pktsts.with(packet_status) |
+                status.frmnum.with(frame_number_));
 }
 
 void OtgFsDevice::push_data(std::span<const std::byte> data) {
@@ -112,7 +119,7 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
   }
   if (control_transfer_open_) address_ = address;
   control_transfer_open_ = true;
-  push_status(0, pktsts::setup_data, request.size(), false);
+  push_status(0, PacketStatus::setup_data, request.size(), false);
   push_data(request);
   setup_stage_open_ = true;
   setup_done_unpopped_ = true;
@@ -120,9 +127,9 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
   if (setup_packets_allowed_ > 0)
     --setup_packets_allowed_;
   else
-    out_[0].interrupts |= epint::b2bstup;
-  in_[0].control = (in_[0].control & ~epctl::stall) | epctl::naksts;
-  out_[0].control = (out_[0].control & ~epctl::stall) | epctl::naksts;
+    out_[0].interrupts |= otg.doepint.b2bstup.mask();
+  in_[0].control = (in_[0].control & ~otg.diepctl.stall.mask()) | otg.diepctl.naksts.mask();
+  out_[0].control = (out_[0].control & ~otg.doepctl.stall.mask()) | otg.doepctl.naksts.mask();
   in_[0].data1 = out_[0].data1 = true;
   in_[0].bytes_on_wire.reset();
   update_interrupt();
@@ -133,44 +140,44 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
 void OtgFsDevice::end_setup_stage() {
   if (!setup_stage_open_) return;
   setup_stage_open_ = false;
-  out_[0].control &= ~epctl::epena;
+  out_[0].control &= ~otg.doepctl.epena.mask();
   if (setup_done_lost_)
     setup_done_lost_ = setup_done_unpopped_ = false;
   else
-    push_status(0, pktsts::setup_done, 0, false);
+    push_status(0, PacketStatus::setup_done, 0, false);
   update_interrupt();
 }
 
 Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::span<const std::byte> data) {
   if (!answers(address, number)) return Handshake::nothing;
   OutEndpoint& endpoint = out_[number];
-  if ((endpoint.control & epctl::usbaep) == 0) return Handshake::nothing;
+  if (!otg.doepctl.usbaep.in(endpoint.control)) return Handshake::nothing;
   if (number == 0) end_setup_stage();
-  if ((endpoint.control & epctl::stall) != 0) return Handshake::stall;
-  const bool enabled = (endpoint.control & epctl::epena) != 0;
+  if (otg.doepctl.stall.in(endpoint.control)) return Handshake::stall;
+  const bool enabled = otg.doepctl.epena.in(endpoint.control);
   if (!enabled && number == 0) {
-    endpoint.interrupts |= epint::otepdis;
+    endpoint.interrupts |= otg.doepint.otepdis.mask();
     update_interrupt();
   }
   // The empty packet of a status stage needs no packet count.
   const bool is_expected = endpoint.packets != 0 || (number == 0 && data.empty());
-  if (!enabled || (endpoint.control & epctl::naksts) != 0 || !is_expected || global_out_nak_asked_)
+  if (!enabled || otg.doepctl.naksts.in(endpoint.control) || !is_expected || global_out_nak_asked_)
     return Handshake::nak;
   const std::size_t words = 1 + words_for(data.size()) + 1;  // status, data, and a transfer-complete status
   if (receive_words_free() < words + reserved_receive_words) return Handshake::nak;
   if (data1 != endpoint.data1) return Handshake::ack;  // a repetition: our acknowledgement was lost
 
-  const std::size_t maximum = number == 0 ? in_packet_maximum(0) : endpoint.control & epctl::mpsiz;
+  const std::size_t maximum = number == 0 ? in_packet_maximum(0) : otg.doepctl.mpsiz.of(endpoint.control);
   if (data.size() > maximum) return Handshake::nothing;
   if (data.size() > endpoint.bytes) rules_.violate(Rule::usb_out_overrun);
-  push_status(number, pktsts::out_data, data.size(), endpoint.data1);
+  push_status(number, PacketStatus::out_data, data.size(), endpoint.data1);
   push_data(data);
   endpoint.data1 = !endpoint.data1;
   if (endpoint.packets != 0) --endpoint.packets;
   endpoint.bytes -= static_cast<std::uint32_t>(std::min<std::size_t>(endpoint.bytes, data.size()));
   if (endpoint.packets == 0 || data.size() < maximum) {
-    endpoint.control = (endpoint.control & ~epctl::epena) | epctl::naksts;
-    push_status(number, pktsts::out_done, 0, false);
+    endpoint.control = (endpoint.control & ~otg.doepctl.epena.mask()) | otg.doepctl.naksts.mask();
+    push_status(number, PacketStatus::out_done, 0, false);
   }
   update_interrupt();
   return Handshake::ack;
@@ -179,17 +186,17 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
 InReply OtgFsDevice::in(unsigned address, unsigned number, std::span<std::byte, full_speed_packet_maximum> data) {
   if (!answers(address, number)) return {};
   InEndpoint& endpoint = in_[number];
-  if ((endpoint.control & epctl::usbaep) == 0) return {};
+  if (!otg.diepctl.usbaep.in(endpoint.control)) return {};
   if (number == 0) end_setup_stage();
-  if ((endpoint.control & epctl::stall) != 0) return {Handshake::stall};
+  if (otg.diepctl.stall.in(endpoint.control)) return {Handshake::stall};
 
   const WordFifo& fifo = transmit_[transmit_fifo_of(number)];
   const std::uint32_t bytes = std::min<std::uint32_t>(endpoint.bytes_to_send, in_packet_maximum(number));
-  const bool enabled = (endpoint.control & epctl::epena) != 0 && endpoint.packets != 0;
-  const bool held = (endpoint.control & epctl::naksts) != 0 || global_in_nak_;
+  const bool enabled = otg.diepctl.epena.in(endpoint.control) && endpoint.packets != 0;
+  const bool held = otg.diepctl.naksts.in(endpoint.control) || global_in_nak_;
   if (!enabled || held || fifo.count() < words_for(bytes)) {
     if (fifo.empty() && (!enabled || bytes != 0)) {
-      endpoint.interrupts |= epint::ittxfe;
+      endpoint.interrupts |= otg.diepint.ittxfe.mask();
       update_interrupt();
     }
     return {Handshake::nak};
@@ -214,8 +221,8 @@ bool OtgFsDevice::finish_in(unsigned number) {
   --endpoint.packets;
   endpoint.data1 = !endpoint.data1;
   if (endpoint.packets == 0) {
-    endpoint.control &= ~epctl::epena;
-    endpoint.interrupts |= epint::xfrc;
+    endpoint.control &= ~otg.diepctl.epena.mask();
+    endpoint.interrupts |= otg.diepint.xfrc.mask();
   }
   if (number == 0 && bytes == 0) {  // the status stage of a request without data to the host
     control_transfer_open_ = false;

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <string>
 
-#include "otg_fs_registers.hpp"
+#include "otg_fs_map.hpp"
 
 namespace inkwell::virtual_board {
-
-using namespace otg;
 
 namespace {
 
@@ -29,6 +27,10 @@ unsigned turnaround_needed(std::uint32_t hclk_Hz) {
   return clocks;
 }
 
+bool is_fifo(std::uint32_t offset) {
+  return offset >= otg_fifo_base && offset < otg_fifo_base + OtgFsDevice::endpoint_count * otg_fifo_window_bytes;
+}
+
 }  // namespace
 
 OtgFsDevice::OtgFsDevice(const ChipConnections& chip)
@@ -42,11 +44,11 @@ OtgFsDevice::OtgFsDevice(const ChipConnections& chip)
 }
 
 void OtgFsDevice::reset() {
-  usb_configuration_ = reset_value::gusbcfg;
+  usb_configuration_ = otg.gusbcfg.reset_value;
   core_configuration_ = 0;
   reset_since_selection_ = false;
-  core_id_ = reset_value::cid;
-  device_configuration_ = reset_value::dcfg;
+  core_id_ = otg.cid.reset_value;
+  device_configuration_ = otg.dcfg.reset_value;
   power_control_ = 0;
   otg_interrupts_ = 0;
   suspended_ = false;
@@ -57,17 +59,18 @@ void OtgFsDevice::reset() {
 void OtgFsDevice::reset_core() {
   scheduler_.cancel(end_of_periodic_frame_);
   bus_configuration_ = latched_interrupts_ = interrupt_mask_ = 0;
-  receive_size_ = reset_value::grxfsiz;
-  transmit_size_[0] = reset_value::dieptxf0;
+  receive_size_ = otg.grxfsiz.reset_value;
+  transmit_size_[0] = otg.dieptxf0.reset_value;
   for (unsigned i = 1; i < endpoint_count; ++i)
-    transmit_size_[i] = reset_value::dieptxf_first + (i - 1) * (reset_value::dieptxf_first >> 16);
-  device_configuration_ = (device_configuration_ & dcfg::dspd) | (reset_value::dcfg & ~dcfg::dspd);
+    transmit_size_[i] = otg.dieptxf.reset_value + (i - 1) * otg.dieptxf.ineptxfd.of(otg.dieptxf.reset_value);
+  device_configuration_ =
+      otg.dcfg.dspd.with(otg.dcfg.dspd.of(device_configuration_)) | (otg.dcfg.reset_value & ~otg.dcfg.dspd.mask());
   device_control_ = in_mask_ = out_mask_ = endpoint_mask_ = in_empty_mask_ = 0;
-  bus_discharge_ = reset_value::dvbusdis;
-  bus_pulse_ = reset_value::dvbuspulse;
+  bus_discharge_ = otg.dvbusdis.reset_value;
+  bus_pulse_ = otg.dvbuspulse.reset_value;
   in_ = {};
   out_ = {};
-  in_[0].control = out_[0].control = epctl::usbaep;
+  in_[0].control = out_[0].control = otg.doepctl.usbaep.mask();
   receive_.clear();
   for (WordFifo& fifo : transmit_) fifo.clear();
   receive_data_words_ = 0;
@@ -85,11 +88,7 @@ std::uint32_t OtgFsDevice::read(std::uint32_t offset, unsigned size_bytes) {
   writing_endpoint_.reset();
   const std::uint32_t aligned = offset & ~3u;
   if (size_bytes != 4) rules_.violate(Rule::usb_narrow_access);
-  std::uint32_t value = 0;
-  if (aligned >= offset::fifos && aligned < offset::fifos + endpoint_count * offset::fifo_window_bytes)
-    value = pop_receive_data();
-  else
-    value = read_register(aligned);
+  const std::uint32_t value = is_fifo(aligned) ? pop_receive_data() : read_register(aligned);
   return size_bytes == 4 ? value : (value >> (8 * (offset & 3))) & ((1u << (8 * size_bytes)) - 1);
 }
 
@@ -97,130 +96,159 @@ void OtgFsDevice::write(std::uint32_t offset, std::uint32_t value, unsigned size
   const std::uint32_t aligned = offset & ~3u;
   if (size_bytes != 4) rules_.violate(Rule::usb_narrow_access);
   value <<= 8 * (offset & 3);
-  if (aligned >= offset::fifos && aligned < offset::fifos + endpoint_count * offset::fifo_window_bytes) {
-    push_transmit_data((aligned - offset::fifos) / offset::fifo_window_bytes, value);
+  if (is_fifo(aligned)) {
+    push_transmit_data((aligned - otg_fifo_base) / otg_fifo_window_bytes, value);
     return;
   }
   writing_endpoint_.reset();
-  const bool of_device = aligned >= offset::dcfg && aligned < offset::pcgcctl;
-  if (of_device && (usb_configuration_ & gusbcfg::fdmod) != 0 &&
+  const bool of_device = aligned >= otg_device_base && aligned < otg_power_base;
+  if (of_device && otg.gusbcfg.fdmod.in(usb_configuration_) &&
       scheduler_.now() - device_forced_at_ < mode_change_duration)
     rules_.violate(Rule::usb_mode_wait);
   write_register(aligned, value);
   update_interrupt();
 }
 
+std::vector<RegisterMap> OtgFsDevice::register_maps(const std::string& name, std::uint32_t at) const {
+  return {{name + "_GLOBAL", at, shown<otg_global>()},
+          {name + "_DEVICE", at + otg_device_base, shown<otg_device>()},
+          {name + "_PWRCLK", at + otg_power_base, shown<otg_power>()}};
+}
+
 std::uint32_t OtgFsDevice::read_register(std::uint32_t offset) {
-  if (offset >= offset::in_endpoints && offset < offset::in_endpoints + endpoint_count * offset::endpoint_bytes)
-    return read_in_endpoint(offset - offset::in_endpoints);
-  if (offset >= offset::out_endpoints && offset < offset::out_endpoints + endpoint_count * offset::endpoint_bytes)
-    return read_out_endpoint(offset - offset::out_endpoints);
-  if (offset >= offset::dieptxf1 && offset <= offset::dieptxf3)
-    return transmit_size_[1 + (offset - offset::dieptxf1) / 4];
+  if (offset < otg_device_base) return read_global(offset);
+  if (offset < otg_power_base) return read_device(offset - otg_device_base);
+  if (offset == otg_power_base + otg.pcgcctl) return power_control_;
+  return not_modelled(offset, false, 0);
+}
+
+std::uint32_t OtgFsDevice::read_global(std::uint32_t offset) {
+  if (otg.dieptxf.covers(offset)) return transmit_size_[1 + otg.dieptxf.index(offset)];
   switch (offset) {
-    case offset::gotgctl: {
-      const bool session = (core_configuration_ & gccfg::novbussens) != 0 ||
-                           (bus_power_ && (core_configuration_ & gccfg::vbusbsen) != 0);
-      return gotgctl::cidsts | (session ? gotgctl::bsvld : 0);
-    }
-    case offset::gotgint: return otg_interrupts_;
-    case offset::gahbcfg: return bus_configuration_;
-    case offset::gusbcfg: return usb_configuration_;
-    case offset::grstctl: return grstctl::ahbidl;
-    case offset::gintsts: return interrupt_status();
-    case offset::gintmsk: return interrupt_mask_;
-    case offset::grxstsr: return receive_.empty() ? 0 : receive_.front();
-    case offset::grxstsp: return pop_receive_status();
-    case offset::grxfsiz: return receive_size_;
-    case offset::dieptxf0: return transmit_size_[0];
-    case offset::gccfg: return core_configuration_;
-    case offset::cid: return core_id_;
-    case offset::gsnpsid: return reset_value::gsnpsid;
-    case offset::ghwcfg1: return 0;
-    case offset::ghwcfg2: return reset_value::ghwcfg2;
-    case offset::ghwcfg3: return reset_value::ghwcfg3;
-    case offset::ghwcfg4: return reset_value::ghwcfg4;
-    case offset::dcfg: return device_configuration_;
-    case offset::dctl:
-      return device_control_ | (global_in_nak_ ? dctl::ginsts : 0) | (global_out_nak_effective_ ? dctl::gonsts : 0);
-    case offset::dsts: return (suspended_ ? dsts::suspsts : 0) | dsts::full_speed | (std::uint32_t{frame_number_} << 8);
-    case offset::diepmsk: return in_mask_;
-    case offset::doepmsk: return out_mask_;
-    case offset::daint: return endpoint_interrupts();
-    case offset::daintmsk: return endpoint_mask_;
-    case offset::dvbusdis: return bus_discharge_;
-    case offset::dvbuspulse: return bus_pulse_;
-    case offset::diepempmsk: return in_empty_mask_;
-    case offset::pcgcctl: return power_control_;
-    default: log_.note("OTG_FS", offset, false, 0); return 0;
+    case otg.gotgctl: return otg.gotgctl.cidsts.mask() | (has_session() ? otg.gotgctl.bsvld.mask() : 0);
+    case otg.gotgint: return otg_interrupts_;
+    case otg.gahbcfg: return bus_configuration_;
+    case otg.gusbcfg: return usb_configuration_;
+    case otg.grstctl: return otg.grstctl.ahbidl.mask();
+    case otg.gintsts: return interrupt_status();
+    case otg.gintmsk: return interrupt_mask_;
+    case otg.grxstsr: return receive_.empty() ? 0 : receive_.front();
+    case otg.grxstsp: return pop_receive_status();
+    case otg.grxfsiz: return receive_size_;
+    case otg.dieptxf0: return transmit_size_[0];
+    case otg.gccfg: return core_configuration_;
+    case otg.cid: return core_id_;
+    case otg_synthesis.gsnpsid: return otg_synthesis.gsnpsid.reset_value;
+    case otg_synthesis.ghwcfg1: return otg_synthesis.ghwcfg1.reset_value;
+    case otg_synthesis.ghwcfg2: return otg_synthesis.ghwcfg2.reset_value;
+    case otg_synthesis.ghwcfg3: return otg_synthesis.ghwcfg3.reset_value;
+    case otg_synthesis.ghwcfg4: return otg_synthesis.ghwcfg4.reset_value;
+    default: return not_modelled(offset, false, 0);
+  }
+}
+
+std::uint32_t OtgFsDevice::read_device(std::uint32_t offset) {
+  if (offset >= otg.doepctl) return read_out_endpoint(offset);
+  if (offset >= otg.diepctl) return read_in_endpoint(offset);
+  switch (offset) {
+    case otg.dcfg: return device_configuration_;
+    case otg.dctl:
+      return device_control_ | otg.dctl.ginsts.with(global_in_nak_) | otg.dctl.gonsts.with(global_out_nak_effective_);
+    case otg.dsts:
+      return otg.dsts.suspsts.with(suspended_) | otg.dsts.enumspd.with(otg_full_speed) |
+             otg.dsts.fnsof.with(frame_number_);
+    case otg.diepmsk: return in_mask_;
+    case otg.doepmsk: return out_mask_;
+    case otg.daint: return endpoint_interrupts();
+    case otg.daintmsk: return endpoint_mask_;
+    case otg.dvbusdis: return bus_discharge_;
+    case otg.dvbuspulse: return bus_pulse_;
+    case otg.diepempmsk: return in_empty_mask_;
+    default: return not_modelled(otg_device_base + offset, false, 0);
   }
 }
 
 void OtgFsDevice::write_register(std::uint32_t offset, std::uint32_t value) {
-  if (offset >= offset::in_endpoints && offset < offset::in_endpoints + endpoint_count * offset::endpoint_bytes) {
-    write_in_endpoint(offset - offset::in_endpoints, value);
-    return;
-  }
-  if (offset >= offset::out_endpoints && offset < offset::out_endpoints + endpoint_count * offset::endpoint_bytes) {
-    write_out_endpoint(offset - offset::out_endpoints, value);
-    return;
-  }
-  if (offset >= offset::dieptxf1 && offset <= offset::dieptxf3) {
-    transmit_size_[1 + (offset - offset::dieptxf1) / 4] = value;
+  if (offset < otg_device_base)
+    write_global(offset, value);
+  else if (offset < otg_power_base)
+    write_device(offset - otg_device_base, value);
+  else if (offset == otg_power_base + otg.pcgcctl)
+    power_control_ = value & writable(otg.pcgcctl);
+  else
+    not_modelled(offset, true, value);
+}
+
+void OtgFsDevice::write_global(std::uint32_t offset, std::uint32_t value) {
+  if (otg.dieptxf.covers(offset)) {
+    transmit_size_[1 + otg.dieptxf.index(offset)] = value;
     layout_changed_ = true;
     return;
   }
   switch (offset) {
-    case offset::gotgctl: break;  // session request and host negotiation: the device is always the B side
-    case offset::gotgint: otg_interrupts_ &= ~(value & gotgint::writable); break;
-    case offset::gahbcfg: bus_configuration_ = value & gahbcfg::writable; break;
-    case offset::gusbcfg:
-      if ((value & gusbcfg::fhmod) != 0) note("host mode is not modelled", offset, true, value);
+    case otg.gotgctl: break;  // session request and host negotiation: the device is always the B side
+    case otg.gotgint: otg_interrupts_ &= ~(value & bits_of(otg.gotgint, Access::rc_w1)); break;
+    case otg.gahbcfg: bus_configuration_ = value & writable(otg.gahbcfg); break;
+    case otg.gusbcfg:
+      if (otg.gusbcfg.fhmod.in(value)) note("host mode is not modelled", offset, true, value);
       write_usb_configuration(value);
       break;
-    case offset::grstctl: write_reset_control(value); break;
-    case offset::gintsts: latched_interrupts_ &= ~(value & gint::cleared_by_one); break;
-    case offset::gintmsk: interrupt_mask_ = value; break;
-    case offset::grxfsiz:
-      receive_size_ = value & 0xFFFF;
+    case otg.grstctl: write_reset_control(value); break;
+    case otg.gintsts: latched_interrupts_ &= ~(value & bits_of(otg.gintsts, Access::rc_w1)); break;
+    case otg.gintmsk: interrupt_mask_ = value; break;
+    case otg.grxfsiz:
+      receive_size_ = value & writable(otg.grxfsiz);
       layout_changed_ = true;
       break;
-    case offset::dieptxf0:
+    case otg.dieptxf0:
       transmit_size_[0] = value;
       layout_changed_ = true;
       break;
-    case offset::gccfg:
-      core_configuration_ = value & gccfg::writable;
+    case otg.gccfg:
+      core_configuration_ = value & writable(otg.gccfg);
       update_pull_up();
       break;
-    case offset::cid: core_id_ = value; break;
-    case offset::dcfg: write_device_configuration(value); break;
-    case offset::dctl: write_device_control(value); break;
-    case offset::diepmsk: in_mask_ = value; break;
-    case offset::doepmsk: out_mask_ = value; break;
-    case offset::daintmsk: endpoint_mask_ = value; break;
-    case offset::dvbusdis: bus_discharge_ = value & 0xFFFF; break;
-    case offset::dvbuspulse: bus_pulse_ = value & 0xFFF; break;
-    case offset::diepempmsk: in_empty_mask_ = value & 0xFFFF; break;
-    case offset::pcgcctl: power_control_ = value & 0x13; break;
-    default: log_.note("OTG_FS", offset, true, value); break;
+    case otg.cid: core_id_ = value; break;
+    default: not_modelled(offset, true, value); break;
+  }
+}
+
+void OtgFsDevice::write_device(std::uint32_t offset, std::uint32_t value) {
+  if (offset >= otg.doepctl) {
+    write_out_endpoint(offset, value);
+    return;
+  }
+  if (offset >= otg.diepctl) {
+    write_in_endpoint(offset, value);
+    return;
+  }
+  switch (offset) {
+    case otg.dcfg: write_device_configuration(value); break;
+    case otg.dctl: write_device_control(value); break;
+    case otg.diepmsk: in_mask_ = value; break;
+    case otg.doepmsk: out_mask_ = value; break;
+    case otg.daintmsk: endpoint_mask_ = value; break;
+    case otg.dvbusdis: bus_discharge_ = value & writable(otg.dvbusdis); break;
+    case otg.dvbuspulse: bus_pulse_ = value & writable(otg.dvbuspulse); break;
+    case otg.diepempmsk: in_empty_mask_ = value & writable(otg.diepempmsk); break;
+    default: not_modelled(otg_device_base + offset, true, value); break;
   }
 }
 
 void OtgFsDevice::write_reset_control(std::uint32_t value) {
-  if ((value & grstctl::csrst) != 0) {
-    reset_since_selection_ = (usb_configuration_ & gusbcfg::physel) != 0;
+  if (otg.grstctl.csrst.in(value)) {
+    reset_since_selection_ = otg.gusbcfg.physel.in(usb_configuration_);
     reset_core();
     return;
   }
-  if ((value & grstctl::rxfflsh) != 0) {
+  if (otg.grstctl.rxfflsh.in(value)) {
     receive_.clear();
     receive_data_words_ = 0;
     setup_stage_open_ = setup_done_unpopped_ = setup_done_lost_ = false;
   }
-  if ((value & grstctl::txfflsh) != 0) {
-    const unsigned number = grstctl::txfnum(value);
-    if (number == grstctl::all_fifos)
+  if (otg.grstctl.txfflsh.in(value)) {
+    const unsigned number = otg.grstctl.txfnum.of(value);
+    if (number == all_transmit_fifos)
       for (unsigned i = 0; i < endpoint_count; ++i) flush_transmit(i);
     else if (number < endpoint_count)
       flush_transmit(number);
@@ -232,31 +260,33 @@ void OtgFsDevice::write_reset_control(std::uint32_t value) {
 // A new address is for the transactions after the status stage of the request that brought it: the manual
 // has firmware write it before that stage.
 void OtgFsDevice::write_device_configuration(std::uint32_t value) {
-  device_configuration_ = (device_configuration_ & ~dcfg::writable) | (value & dcfg::writable);
+  device_configuration_ = (device_configuration_ & ~writable(otg.dcfg)) | (value & writable(otg.dcfg));
   if (!control_transfer_open_) address_ = programmed_address();
 }
 
 void OtgFsDevice::write_device_control(std::uint32_t value) {
-  if ((value & dctl::rwusig) != 0)  // the bus sleeps only while nobody uses the device, so nobody could wake
-    note("remote wake-up is not modelled", offset::dctl, true, value);
-  device_control_ = value & dctl::writable;
-  if ((value & dctl::cginak) != 0) global_in_nak_ = false;
-  if ((value & dctl::sginak) != 0) global_in_nak_ = true;
-  if ((value & dctl::cgonak) != 0) global_out_nak_asked_ = global_out_nak_effective_ = false;
-  if ((value & dctl::sgonak) != 0 && !global_out_nak_asked_) {
+  if (otg.dctl.rwusig.in(value))  // the bus sleeps only while nobody uses the device, so nobody could wake
+    note("remote wake-up is not modelled", otg_device_base + otg.dctl, true, value);
+  device_control_ = value & writable(otg.dctl);
+  if (otg.dctl.cginak.in(value)) global_in_nak_ = false;
+  if (otg.dctl.sginak.in(value)) global_in_nak_ = true;
+  if (otg.dctl.cgonak.in(value)) global_out_nak_asked_ = global_out_nak_effective_ = false;
+  if (otg.dctl.sgonak.in(value) && !global_out_nak_asked_) {
     global_out_nak_asked_ = true;
-    push_status(0, pktsts::global_out_nak, 0, false);
+    push_status(0, PacketStatus::global_out_nak, 0, false);
   }
   update_pull_up();
 }
 
-unsigned OtgFsDevice::programmed_address() const { return dcfg::dad(device_configuration_); }
+unsigned OtgFsDevice::programmed_address() const { return otg.dcfg.dad.of(device_configuration_); }
+
+bool OtgFsDevice::has_session() const {
+  return otg.gccfg.novbussens.in(core_configuration_) || (bus_power_ && otg.gccfg.vbusbsen.in(core_configuration_));
+}
 
 void OtgFsDevice::update_pull_up() {
-  const bool session =
-      (core_configuration_ & gccfg::novbussens) != 0 || (bus_power_ && (core_configuration_ & gccfg::vbusbsen) != 0);
-  const bool pulled_up = (core_configuration_ & gccfg::pwrdwn) != 0 && session && (device_control_ & dctl::sdis) == 0 &&
-                         (usb_configuration_ & gusbcfg::fhmod) == 0;
+  const bool pulled_up = otg.gccfg.pwrdwn.in(core_configuration_) && has_session() &&
+                         !otg.dctl.sdis.in(device_control_) && !otg.gusbcfg.fhmod.in(usb_configuration_);
   if (pulled_up && !pulled_up_) {
     ++attachments_;
     scheduler_.cancel(connection_check_);
@@ -268,8 +298,8 @@ void OtgFsDevice::update_pull_up() {
 void OtgFsDevice::write_usb_configuration(std::uint32_t value) {
   const std::uint32_t risen = value & ~usb_configuration_;
   usb_configuration_ = value;
-  if ((risen & gusbcfg::physel) != 0) reset_since_selection_ = false;
-  if ((risen & gusbcfg::fdmod) != 0) device_forced_at_ = scheduler_.now();
+  if (otg.gusbcfg.physel.in(risen)) reset_since_selection_ = false;
+  if (otg.gusbcfg.fdmod.in(risen)) device_forced_at_ = scheduler_.now();
   update_pull_up();
 }
 
@@ -289,22 +319,22 @@ void OtgFsDevice::check_connection() {
   if (!pins_connected()) rules_.violate(Rule::usb_pins);
   if (!clock_is_exact()) rules_.violate(Rule::usb_clock, std::to_string(chip_.usb_Hz()) + " Hz");
   constexpr unsigned otg_fs = 10;
-  if ((usb_configuration_ & gusbcfg::fdmod) == 0 && !chip_.has_function('A', 10, otg_fs))
-    rules_.violate(Rule::usb_mode);
+  if (!otg.gusbcfg.fdmod.in(usb_configuration_) && !chip_.has_function('A', 10, otg_fs)) rules_.violate(Rule::usb_mode);
 }
 
 // What must be in place when the host has reset the bus and transfers may begin.
 void OtgFsDevice::check_core() {
-  if ((usb_configuration_ & gusbcfg::physel) == 0)
+  if (!otg.gusbcfg.physel.in(usb_configuration_))
     rules_.violate(Rule::usb_transceiver);
   else if (!reset_since_selection_)
     rules_.violate(Rule::usb_core_reset);
-  if ((device_configuration_ & dcfg::dspd) != dcfg::full_speed) rules_.violate(Rule::usb_speed);
-  if (gusbcfg::trdt(usb_configuration_) < turnaround_needed(chip_.hclk_Hz())) rules_.violate(Rule::usb_turnaround);
+  if (otg.dcfg.dspd.of(device_configuration_) != otg_full_speed) rules_.violate(Rule::usb_speed);
+  if (otg.gusbcfg.trdt.of(usb_configuration_) < turnaround_needed(chip_.hclk_Hz()))
+    rules_.violate(Rule::usb_turnaround);
 }
 
 std::uint32_t OtgFsDevice::in_interrupts(unsigned endpoint) const {
-  return in_[endpoint].interrupts | (transmit_empty_level(endpoint) ? epint::txfe : 0);
+  return in_[endpoint].interrupts | otg.diepint.txfe.with(transmit_empty_level(endpoint));
 }
 
 // DAINT: TXFE has its own mask, one bit for each endpoint.
@@ -312,29 +342,35 @@ std::uint32_t OtgFsDevice::endpoint_interrupts() const {
   std::uint32_t active = 0;
   for (unsigned i = 0; i < endpoint_count; ++i) {
     const bool empty_wanted = (in_empty_mask_ & (1u << i)) != 0;
-    if ((in_[i].interrupts & in_mask_ & ~epint::txfe) != 0 || (empty_wanted && transmit_empty_level(i)))
+    if ((in_[i].interrupts & in_mask_ & ~otg.diepint.txfe.mask()) != 0 || (empty_wanted && transmit_empty_level(i)))
       active |= 1u << i;
-    if ((out_[i].interrupts & out_mask_) != 0) active |= 1u << (16 + i);
+    if ((out_[i].interrupts & out_mask_) != 0) active |= otg.daint.oepint.with(1u << i);
   }
   return active;
 }
 
 std::uint32_t OtgFsDevice::interrupt_status() const {
-  constexpr std::uint32_t host_transmit_fifo_empty = 1u << 26;  // idle in device mode: reads as after reset
+  const auto& flags = otg.gintsts;
   const std::uint32_t endpoints = endpoint_interrupts() & endpoint_mask_;
-  return latched_interrupts_ | host_transmit_fifo_empty | (otg_interrupts_ != 0 ? gint::otgint : 0) |
-         (receive_.empty() ? 0 : gint::rxflvl) | (transmit_empty_level(0) ? gint::nptxfe : 0) |
-         (global_in_nak_ ? gint::ginakeff : 0) | (global_out_nak_effective_ ? gint::gonakeff : 0) |
-         ((endpoints & 0xFFFF) != 0 ? gint::iepint : 0) | ((endpoints >> 16) != 0 ? gint::oepint : 0);
+  const std::uint32_t host_side = flags.ptxfe.mask();  // idle in device mode: reads as after reset
+  return latched_interrupts_ | host_side | flags.otgint.with(otg_interrupts_ != 0) |
+         flags.rxflvl.with(!receive_.empty()) | flags.nptxfe.with(transmit_empty_level(0)) |
+         flags.ginakeff.with(global_in_nak_) | flags.goutnakeff.with(global_out_nak_effective_) |
+         flags.iepint.with(otg.daint.iepint.in(endpoints)) | flags.oepint.with(otg.daint.oepint.in(endpoints));
 }
 
-bool OtgFsDevice::reset_is_unseen() const { return (latched_interrupts_ & gint::usbrst) != 0; }
+bool OtgFsDevice::reset_is_unseen() const { return otg.gintsts.usbrst.in(latched_interrupts_); }
 
 void OtgFsDevice::update_interrupt() {
-  const bool asserted = (bus_configuration_ & gahbcfg::gint) != 0 && (interrupt_status() & interrupt_mask_) != 0;
+  const bool asserted = otg.gahbcfg.gint.in(bus_configuration_) && (interrupt_status() & interrupt_mask_) != 0;
   if (asserted == interrupt_asserted_) return;
   interrupt_asserted_ = asserted;
   interrupts_.set_level(interrupt_position, asserted);
+}
+
+std::uint32_t OtgFsDevice::not_modelled(std::uint32_t offset, bool is_write, std::uint32_t value) {
+  log_.note("OTG_FS", offset, is_write, value);
+  return 0;
 }
 
 void OtgFsDevice::note(const char* sentence, std::uint32_t offset, bool is_write, std::uint32_t value) {

@@ -3,89 +3,111 @@
 
 #include <virtual_usb/otg_fs_device.hpp>
 
-#include "otg_fs_registers.hpp"
+#include "otg_fs_map.hpp"
 
 namespace inkwell::virtual_board {
 
-using namespace otg;
-
 namespace {
-constexpr std::uint32_t stored_bits(bool is_in, unsigned endpoint) {
-  const std::uint32_t common = epctl::mpsiz | (is_in ? epctl::txfnum : epctl::snpm);
-  return endpoint == 0 ? common : common | epctl::usbaep | epctl::type_bits;
+
+constexpr std::uint32_t stored_in_bits(unsigned endpoint) {
+  const auto& control = otg.diepctl;
+  const std::uint32_t common = control.mpsiz.mask() | control.txfnum.mask();
+  return endpoint == 0 ? common : common | control.usbaep.mask() | control.eptyp.mask();
 }
+
+constexpr std::uint32_t stored_out_bits(unsigned endpoint) {
+  const auto& control = otg.doepctl;
+  const std::uint32_t common = control.mpsiz.mask() | control.snpm.mask();
+  return endpoint == 0 ? common : common | control.usbaep.mask() | control.eptyp.mask();
+}
+
+// Endpoint 0 transfers few bytes in few packets.
+constexpr std::uint32_t transfer_bytes(std::uint32_t size, unsigned endpoint) {
+  return otg.dieptsiz.xfrsiz.of(size) & (endpoint == 0 ? 0x7F : otg.dieptsiz.xfrsiz.maximum());
+}
+constexpr std::uint32_t in_packets(std::uint32_t size, unsigned endpoint) {
+  return otg.dieptsiz.pktcnt.of(size) & (endpoint == 0 ? 3 : otg.dieptsiz.pktcnt.maximum());
+}
+constexpr std::uint32_t out_packets(std::uint32_t size, unsigned endpoint) {
+  return otg.doeptsiz.pktcnt.of(size) & (endpoint == 0 ? 1 : otg.doeptsiz.pktcnt.maximum());
+}
+
 }  // namespace
 
 // --- IN: towards the host ---------------------------------------------------------------------------------
 
 std::uint32_t OtgFsDevice::read_in_endpoint(std::uint32_t offset) {
-  const unsigned number = offset / offset::endpoint_bytes;
-  const InEndpoint& endpoint = in_[number];
-  switch (offset % offset::endpoint_bytes) {
-    case offset::control: return endpoint.control | (number != 0 && endpoint.data1 ? epctl::dpid : 0);
-    case offset::interrupts: return in_interrupts(number);
-    case offset::transfer_size: return (endpoint.packets << 19) | endpoint.bytes_to_load;
-    case offset::fifo_status: return static_cast<std::uint32_t>(transmit_words_free(number));
-    default: log_.note("OTG_FS", offset::in_endpoints + offset, false, 0); return 0;
+  if (otg.diepctl.covers(offset)) {
+    const unsigned number = otg.diepctl.index(offset);
+    return in_[number].control | otg.diepctl.dpid.with(number != 0 && in_[number].data1);
   }
+  if (otg.diepint.covers(offset)) return in_interrupts(otg.diepint.index(offset));
+  if (otg.dieptsiz.covers(offset)) {
+    const InEndpoint& endpoint = in_[otg.dieptsiz.index(offset)];
+    return otg.dieptsiz.pktcnt.with(endpoint.packets) | otg.dieptsiz.xfrsiz.with(endpoint.bytes_to_load);
+  }
+  if (otg.dtxfsts.covers(offset))
+    return otg.dtxfsts.ineptfsav.with(static_cast<std::uint32_t>(transmit_words_free(otg.dtxfsts.index(offset))));
+  return not_modelled(otg_device_base + offset, false, 0);
 }
 
 void OtgFsDevice::write_in_endpoint(std::uint32_t offset, std::uint32_t value) {
-  const unsigned number = offset / offset::endpoint_bytes;
-  InEndpoint& endpoint = in_[number];
-  switch (offset % offset::endpoint_bytes) {
-    case offset::control: write_in_control(number, value); break;
-    case offset::interrupts: endpoint.interrupts &= ~value; break;
-    case offset::transfer_size:
-      if ((endpoint.control & epctl::epena) != 0 && (endpoint.control & epctl::naksts) == 0)
-        rules_.violate(Rule::usb_size_while_enabled);
-      endpoint.packets = tsiz::packets(value, number == 0);
-      endpoint.bytes_to_load = endpoint.bytes_to_send = value & (number == 0 ? 0x7F : 0x7FFFF);
-      endpoint.packet_words_to_load = 0;
-      endpoint.bytes_on_wire.reset();
-      break;
-    default: log_.note("OTG_FS", offset::in_endpoints + offset, true, value); break;
+  if (otg.diepctl.covers(offset)) {
+    write_in_control(otg.diepctl.index(offset), value);
+  } else if (otg.diepint.covers(offset)) {
+    in_[otg.diepint.index(offset)].interrupts &= ~value;
+  } else if (otg.dieptsiz.covers(offset)) {
+    const unsigned number = otg.dieptsiz.index(offset);
+    InEndpoint& endpoint = in_[number];
+    if (otg.diepctl.epena.in(endpoint.control) && !otg.diepctl.naksts.in(endpoint.control))
+      rules_.violate(Rule::usb_size_while_enabled);
+    endpoint.packets = in_packets(value, number);
+    endpoint.bytes_to_load = endpoint.bytes_to_send = transfer_bytes(value, number);
+    endpoint.packet_words_to_load = 0;
+    endpoint.bytes_on_wire.reset();
+  } else {
+    not_modelled(otg_device_base + offset, true, value);
   }
 }
 
 void OtgFsDevice::write_in_control(unsigned number, std::uint32_t value) {
   InEndpoint& endpoint = in_[number];
-  const std::uint32_t stored = stored_bits(true, number);
+  const std::uint32_t stored = stored_in_bits(number);
   endpoint.control = (endpoint.control & ~stored) | (value & stored);
   if (number == 0)
-    endpoint.control |= value & epctl::stall;  // firmware can only set it: a SETUP packet clears it
+    endpoint.control |= value & otg.diepctl.stall.mask();  // firmware can only set it: a SETUP packet clears it
   else
-    endpoint.control = (endpoint.control & ~epctl::stall) | (value & epctl::stall);
-  if ((value & epctl::cnak) != 0) endpoint.control &= ~epctl::naksts;
-  if ((value & epctl::snak) != 0) {
-    endpoint.control |= epctl::naksts;
-    endpoint.interrupts |= epint::inepne;
+    endpoint.control = (endpoint.control & ~otg.diepctl.stall.mask()) | (value & otg.diepctl.stall.mask());
+  if (otg.diepctl.cnak.in(value)) endpoint.control &= ~otg.diepctl.naksts.mask();
+  if (otg.diepctl.snak.in(value)) {
+    endpoint.control |= otg.diepctl.naksts.mask();
+    endpoint.interrupts |= otg.diepint.inepne.mask();
   }
-  if (number != 0 && (value & epctl::sd0pid) != 0) endpoint.data1 = false;
-  if (number != 0 && (value & epctl::sd1pid) != 0) endpoint.data1 = true;
-  if ((value & epctl::epdis) != 0) {
-    if ((endpoint.control & epctl::epena) != 0) {
-      endpoint.control &= ~epctl::epena;
-      endpoint.interrupts |= epint::epdisd;
+  if (number != 0 && otg.diepctl.sd0pid.in(value)) endpoint.data1 = false;
+  if (number != 0 && otg.diepctl.sd1pid.in(value)) endpoint.data1 = true;
+  if (otg.diepctl.epdis.in(value)) {
+    if (otg.diepctl.epena.in(endpoint.control)) {
+      endpoint.control &= ~otg.diepctl.epena.mask();
+      endpoint.interrupts |= otg.diepint.epdisd.mask();
       endpoint.bytes_on_wire.reset();
     } else {
       rules_.violate(Rule::usb_disable_without_enable);
     }
-  } else if ((value & epctl::epena) != 0 && (endpoint.control & epctl::epena) == 0) {
-    endpoint.control |= epctl::epena;
+  } else if (otg.diepctl.epena.in(value) && !otg.diepctl.epena.in(endpoint.control)) {
+    endpoint.control |= otg.diepctl.epena.mask();
     check_in_transfer(number);
   }
 }
 
 void OtgFsDevice::check_in_transfer(unsigned number) {
   const InEndpoint& endpoint = in_[number];
-  const std::uint32_t where = offset::in_endpoints + number * offset::endpoint_bytes;
+  const std::uint32_t where = otg_device_base + otg.diepctl + number * otg.diepctl.stride;
   const unsigned maximum = in_packet_maximum(number);
   if (endpoint.packets == 0) rules_.violate(Rule::usb_no_packets, "IN " + std::to_string(number));
   if (endpoint.bytes_to_send > endpoint.packets * maximum) rules_.violate(Rule::usb_bytes_beyond_packets);
-  if ((endpoint.control & epctl::usbaep) == 0 && !reset_is_unseen())
+  if (!otg.diepctl.usbaep.in(endpoint.control) && !reset_is_unseen())
     rules_.violate(Rule::usb_inactive_endpoint, "IN " + std::to_string(number));
-  if (epctl::type(endpoint.control) == epctl::isochronous && number != 0)
+  if (otg.diepctl.eptyp.of(endpoint.control) == isochronous && number != 0)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
   if (!transmit_[transmit_fifo_of(number)].empty()) rules_.violate(Rule::usb_stale_words);
   if (transmit_depth(transmit_fifo_of(number)) * 4 < std::min<std::size_t>(endpoint.bytes_to_send, maximum))
@@ -108,7 +130,7 @@ void OtgFsDevice::push_transmit_data(unsigned number, std::uint32_t word) {
     rules_.violate(Rule::usb_fifo_full);
     return;
   }
-  if ((endpoint.control & epctl::epena) == 0) rules_.violate(Rule::usb_fifo_before_enable);
+  if (!otg.diepctl.epena.in(endpoint.control)) rules_.violate(Rule::usb_fifo_before_enable);
 
   const bool level_before = transmit_empty_level(number);
   fifo.push(word);
@@ -144,17 +166,17 @@ void OtgFsDevice::flush_transmit(unsigned number) {
 }
 
 unsigned OtgFsDevice::in_packet_maximum(unsigned endpoint) const {
-  const std::uint32_t field = in_[endpoint].control & epctl::mpsiz;
+  const std::uint32_t field = otg.diepctl.mpsiz.of(in_[endpoint].control);
   return endpoint == 0 ? 64u >> (field & 3) : field;
 }
 
 unsigned OtgFsDevice::transmit_fifo_of(unsigned endpoint) const {
-  const unsigned number = (in_[endpoint].control & epctl::txfnum) >> 22;
+  const unsigned number = otg.diepctl.txfnum.of(in_[endpoint].control);
   return endpoint == 0 || number >= endpoint_count ? 0 : number;
 }
 
 std::size_t OtgFsDevice::transmit_depth(unsigned number) const {
-  return std::min<std::size_t>(transmit_size_[number] >> 16, packet_memory_words);
+  return std::min<std::size_t>(otg.dieptxf.ineptxfd.of(transmit_size_[number]), packet_memory_words);
 }
 
 std::size_t OtgFsDevice::transmit_words_free(unsigned endpoint) const {
@@ -165,7 +187,7 @@ std::size_t OtgFsDevice::transmit_words_free(unsigned endpoint) const {
 
 bool OtgFsDevice::transmit_empty_level(unsigned endpoint) const {
   const unsigned fifo = transmit_fifo_of(endpoint);
-  const std::size_t level = (bus_configuration_ & gahbcfg::txfelvl) != 0 ? 0 : transmit_depth(fifo) / 2;
+  const std::size_t level = otg.gahbcfg.txfelvl.in(bus_configuration_) ? 0 : transmit_depth(fifo) / 2;
   return transmit_[fifo].count() <= level;
 }
 
@@ -180,10 +202,10 @@ void OtgFsDevice::note_memory_layout() {
   std::array<Region, endpoint_count + 1> regions{};
   regions[0].end = receive_size_;
   for (unsigned i = 0; i < endpoint_count; ++i) {
-    if (i != 0 && (in_[i].control & epctl::usbaep) == 0) continue;
+    if (i != 0 && !otg.diepctl.usbaep.in(in_[i].control)) continue;
     const std::uint32_t size_register = transmit_size_[transmit_fifo_of(i)];
-    const std::size_t begin = size_register & 0xFFFF;
-    regions[i + 1] = {begin, begin + (size_register >> 16)};
+    const std::size_t begin = otg.dieptxf.ineptxsa.of(size_register);
+    regions[i + 1] = {begin, begin + otg.dieptxf.ineptxfd.of(size_register)};
   }
   for (std::size_t i = 0; i < regions.size(); ++i) {
     if (regions[i].end > packet_memory_words) rules_.violate(Rule::usb_memory_exceeded);
@@ -196,51 +218,52 @@ void OtgFsDevice::note_memory_layout() {
 // --- OUT: from the host -----------------------------------------------------------------------------------
 
 std::uint32_t OtgFsDevice::read_out_endpoint(std::uint32_t offset) {
-  const unsigned number = offset / offset::endpoint_bytes;
-  const OutEndpoint& endpoint = out_[number];
-  switch (offset % offset::endpoint_bytes) {
-    case offset::control:
-      if (number == 0) return endpoint.control | (in_[0].control & 3);  // one packet size for both directions
-      return endpoint.control | (endpoint.data1 ? epctl::dpid : 0);
-    case offset::interrupts: return endpoint.interrupts;
-    case offset::transfer_size:
-      return (endpoint.packets << 19) | endpoint.bytes | (number == 0 ? setup_packets_allowed_ << 29 : 0);
-    default: log_.note("OTG_FS", offset::out_endpoints + offset, false, 0); return 0;
+  if (otg.doepctl.covers(offset)) {
+    const unsigned number = otg.doepctl.index(offset);
+    if (number == 0) return out_[0].control | (in_[0].control & 3);  // one packet size for both directions
+    return out_[number].control | otg.doepctl.dpid.with(out_[number].data1);
   }
+  if (otg.doepint.covers(offset)) return out_[otg.doepint.index(offset)].interrupts;
+  if (otg.doeptsiz.covers(offset)) {
+    const unsigned number = otg.doeptsiz.index(offset);
+    return otg.doeptsiz.pktcnt.with(out_[number].packets) | otg.doeptsiz.xfrsiz.with(out_[number].bytes) |
+           otg.doeptsiz.stupcnt.with(number == 0 ? setup_packets_allowed_ : 0);
+  }
+  return not_modelled(otg_device_base + offset, false, 0);
 }
 
 void OtgFsDevice::write_out_endpoint(std::uint32_t offset, std::uint32_t value) {
-  const unsigned number = offset / offset::endpoint_bytes;
-  OutEndpoint& endpoint = out_[number];
-  switch (offset % offset::endpoint_bytes) {
-    case offset::control: write_out_control(number, value); break;
-    case offset::interrupts: endpoint.interrupts &= ~value; break;
-    case offset::transfer_size:
-      endpoint.packets = number == 0 ? (value >> 19) & 1 : tsiz::packets(value, false);
-      endpoint.bytes = value & (number == 0 ? 0x7F : 0x7FFFF);
-      if (number == 0) setup_packets_allowed_ = (value >> 29) & 3;
-      break;
-    default: log_.note("OTG_FS", offset::out_endpoints + offset, true, value); break;
+  if (otg.doepctl.covers(offset)) {
+    write_out_control(otg.doepctl.index(offset), value);
+  } else if (otg.doepint.covers(offset)) {
+    out_[otg.doepint.index(offset)].interrupts &= ~value;
+  } else if (otg.doeptsiz.covers(offset)) {
+    const unsigned number = otg.doeptsiz.index(offset);
+    out_[number].packets = out_packets(value, number);
+    out_[number].bytes = transfer_bytes(value, number);
+    if (number == 0) setup_packets_allowed_ = otg.doeptsiz.stupcnt.of(value);
+  } else {
+    not_modelled(otg_device_base + offset, true, value);
   }
 }
 
 void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
   OutEndpoint& endpoint = out_[number];
-  const std::uint32_t stored = stored_bits(false, number);
+  const std::uint32_t stored = stored_out_bits(number);
   endpoint.control = (endpoint.control & ~stored) | (value & stored);
   if (number == 0)
-    endpoint.control |= value & epctl::stall;
+    endpoint.control |= value & otg.doepctl.stall.mask();
   else
-    endpoint.control = (endpoint.control & ~epctl::stall) | (value & epctl::stall);
-  if ((value & epctl::cnak) != 0) {
+    endpoint.control = (endpoint.control & ~otg.doepctl.stall.mask()) | (value & otg.doepctl.stall.mask());
+  if (otg.doepctl.cnak.in(value)) {
     if (number == 0) lose_setup_done_word();
-    endpoint.control &= ~epctl::naksts;
+    endpoint.control &= ~otg.doepctl.naksts.mask();
   }
-  if ((value & epctl::snak) != 0) endpoint.control |= epctl::naksts;
-  if (number != 0 && (value & epctl::sd0pid) != 0) endpoint.data1 = false;
-  if (number != 0 && (value & epctl::sd1pid) != 0) endpoint.data1 = true;
-  if ((value & epctl::epdis) != 0) {
-    if (number == 0 || (endpoint.control & epctl::epena) == 0) {
+  if (otg.doepctl.snak.in(value)) endpoint.control |= otg.doepctl.naksts.mask();
+  if (number != 0 && otg.doepctl.sd0pid.in(value)) endpoint.data1 = false;
+  if (number != 0 && otg.doepctl.sd1pid.in(value)) endpoint.data1 = true;
+  if (otg.doepctl.epdis.in(value)) {
+    if (number == 0 || !otg.doepctl.epena.in(endpoint.control)) {
       rules_.violate(Rule::usb_out_disable);
     } else if (global_out_nak_effective_) {
       disable_out(endpoint);
@@ -248,8 +271,8 @@ void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
       rules_.violate(Rule::usb_out_disable_early);
       endpoint.disable_pending = true;
     }
-  } else if (((value & epctl::epena) != 0 || armed_by_cnak(number, value)) && (endpoint.control & epctl::epena) == 0) {
-    endpoint.control |= epctl::epena;
+  } else if ((otg.doepctl.epena.in(value) || armed_by_cnak(number, value)) && !otg.doepctl.epena.in(endpoint.control)) {
+    endpoint.control |= otg.doepctl.epena.mask();
     check_out_transfer(number);
   }
 }
@@ -258,27 +281,28 @@ void OtgFsDevice::write_out_control(unsigned number, std::uint32_t value) {
 // with CNAK alone, and silicon takes its packets.
 bool OtgFsDevice::armed_by_cnak(unsigned number, std::uint32_t control_written) const {
   const OutEndpoint& endpoint = out_[number];
-  const bool clears_nak = (control_written & (epctl::cnak | epctl::snak)) == epctl::cnak;
-  return clears_nak && (number == 0 || ((endpoint.control & epctl::usbaep) != 0 && endpoint.packets != 0));
+  const bool clears_nak =
+      (control_written & (otg.doepctl.cnak.mask() | otg.doepctl.snak.mask())) == otg.doepctl.cnak.mask();
+  return clears_nak && (number == 0 || (otg.doepctl.usbaep.in(endpoint.control) && endpoint.packets != 0));
 }
 
 void OtgFsDevice::check_out_transfer(unsigned number) {
   const OutEndpoint& endpoint = out_[number];
-  const std::uint32_t where = offset::out_endpoints + number * offset::endpoint_bytes;
+  const std::uint32_t where = otg_device_base + otg.doepctl + number * otg.doepctl.stride;
   if (endpoint.packets == 0 && number != 0) rules_.violate(Rule::usb_no_packets, "OUT " + std::to_string(number));
   if (number == 0) return;
-  const std::uint32_t maximum = endpoint.control & epctl::mpsiz;
+  const std::uint32_t maximum = otg.doepctl.mpsiz.of(endpoint.control);
   if (maximum == 0 || endpoint.bytes == 0 || endpoint.bytes % maximum != 0) rules_.violate(Rule::usb_out_size);
-  if ((endpoint.control & epctl::usbaep) == 0 && !reset_is_unseen())
+  if (!otg.doepctl.usbaep.in(endpoint.control) && !reset_is_unseen())
     rules_.violate(Rule::usb_inactive_endpoint, "OUT " + std::to_string(number));
-  if (epctl::type(endpoint.control) == epctl::isochronous)
+  if (otg.doepctl.eptyp.of(endpoint.control) == isochronous)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
 }
 
 void OtgFsDevice::disable_out(OutEndpoint& endpoint) {
   endpoint.disable_pending = false;
-  endpoint.control &= ~epctl::epena;
-  endpoint.interrupts |= epint::epdisd;
+  endpoint.control &= ~otg.doepctl.epena.mask();
+  endpoint.interrupts |= otg.doepint.epdisd.mask();
 }
 
 // Seen on silicon: clearing NAK on endpoint 0 between a SETUP packet and the pop of its setup-done word
@@ -302,25 +326,25 @@ std::uint32_t OtgFsDevice::pop_receive_status() {
     return word;
   }
   const std::uint32_t word = receive_.pop();
-  const unsigned number = pktsts::endpoint(word);
-  switch (pktsts::of(word)) {
-    case pktsts::global_out_nak:
+  const unsigned number = otg.grxstsp.epnum.of(word);
+  switch (otg.grxstsp.pktsts.of(word)) {
+    case PacketStatus::global_out_nak:
       global_out_nak_effective_ = global_out_nak_asked_;
       if (global_out_nak_effective_)
         for (OutEndpoint& endpoint : out_)
           if (endpoint.disable_pending) disable_out(endpoint);
       break;
-    case pktsts::out_data:
-    case pktsts::setup_data: receive_data_words_ = words_for(pktsts::bytes(word)); break;
-    case pktsts::out_done: out_[number].interrupts |= epint::xfrc; break;
-    case pktsts::setup_done:
+    case PacketStatus::out_data:
+    case PacketStatus::setup_data: receive_data_words_ = words_for(otg.grxstsp.bcnt.of(word)); break;
+    case PacketStatus::out_done: out_[number].interrupts |= otg.doepint.xfrc.mask(); break;
+    case PacketStatus::setup_done:
       setup_done_unpopped_ = false;
       if (setup_done_lost_) {
         setup_done_lost_ = false;
         update_interrupt();
         return receive_.empty() ? 0 : pop_receive_status();
       }
-      out_[0].interrupts |= epint::stup;
+      out_[0].interrupts |= otg.doepint.stup.mask();
       break;
     default: break;
   }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <virtual_usb/otg_fs_device.hpp>
 
 namespace {
 
@@ -53,7 +54,9 @@ nlohmann::json registers_of(std::span<const MapEntry> entries) {
 
 int main() {
   NoCircuit circuit;
-  const Chip chip(circuit);
+  Chip chip(circuit);
+  OtgFsDevice usb(chip.connections());
+  chip.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb);
   nlohmann::json peripherals = nlohmann::json::array();
   for (const RegisterMap& map : chip.register_maps())
     peripherals.push_back({{"name", map.name}, {"base", map.base}, {"registers", registers_of(map.entries)}});

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <chip/violations.hpp>
 #include <virtual_usb/bus.hpp>
@@ -30,6 +31,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::uint32_t read(std::uint32_t offset, unsigned size_bytes) override;
   void write(std::uint32_t offset, std::uint32_t value, unsigned size_bytes) override;
   void reset() override;
+  std::vector<RegisterMap> register_maps(const std::string& name, std::uint32_t at) const override;
 
   // BusDevice
   std::uint32_t attachment() const override { return pulled_up_ && pins_connected() ? attachments_ : 0; }
@@ -71,6 +73,10 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
 
   std::uint32_t read_register(std::uint32_t offset);
   void write_register(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t read_global(std::uint32_t offset);
+  void write_global(std::uint32_t offset, std::uint32_t value);
+  std::uint32_t read_device(std::uint32_t offset);
+  void write_device(std::uint32_t offset, std::uint32_t value);
   std::uint32_t read_in_endpoint(std::uint32_t offset);
   std::uint32_t read_out_endpoint(std::uint32_t offset);
   void write_in_endpoint(std::uint32_t offset, std::uint32_t value);
@@ -112,6 +118,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::uint32_t in_interrupts(unsigned endpoint) const;
   std::uint32_t endpoint_interrupts() const;
   void update_interrupt();
+  bool has_session() const;
   void update_pull_up();
   void write_usb_configuration(std::uint32_t value);
   bool pins_connected() const;
@@ -120,6 +127,8 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   bool reset_is_unseen() const;
   void check_connection();
   void check_core();
+  /// Notes the access; 0, as the register reads.
+  std::uint32_t not_modelled(std::uint32_t offset, bool is_write, std::uint32_t value);
   void note(const char* sentence, std::uint32_t offset, bool is_write, std::uint32_t value);
 
   Scheduler& scheduler_;

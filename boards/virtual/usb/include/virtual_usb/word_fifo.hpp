@@ -8,6 +8,8 @@
 
 namespace inkwell::virtual_board {
 
+constexpr std::uint32_t words_for(std::size_t bytes) { return static_cast<std::uint32_t>((bytes + 3) / 4); }
+
 class WordFifo {
  public:
   /// No core of this family has more words of packet memory.
