@@ -30,15 +30,16 @@ void OtgFsDevice::set_bus_power(bool present) {
   update_interrupt();
 }
 
+// Of the endpoints' bits only USBAEP is the core's to clear: enables, stalls and FIFOs stay as they are until firmware
+// clears them.
 void OtgFsDevice::begin_reset() {
   suspended_ = false;
   latched_interrupts_ |= otg.gintsts.usbrst.mask();
   for (unsigned i = 0; i < endpoint_count; ++i) {
-    const std::uint32_t cleared =
-        otg.diepctl.epena.mask() | otg.diepctl.stall.mask() | (i == 0 ? 0 : otg.diepctl.usbaep.mask());
-    in_[i].control = (in_[i].control & ~cleared) | otg.diepctl.naksts.mask();
-    out_[i].control = (out_[i].control & ~cleared) | otg.doepctl.naksts.mask();
-    out_[i].disable_pending = false;
+    if (i != 0) {
+      in_[i].control &= ~otg.diepctl.usbaep.mask();
+      out_[i].control &= ~otg.doepctl.usbaep.mask();
+    }
     in_[i].bytes_on_wire.reset();
   }
   setup_stage_open_ = false;
@@ -140,11 +141,12 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
 void OtgFsDevice::end_setup_stage() {
   if (!setup_stage_open_) return;
   setup_stage_open_ = false;
-  out_[0].control &= ~otg.doepctl.epena.mask();
-  if (setup_done_lost_)
+  if (setup_done_lost_) {
     setup_done_lost_ = setup_done_unpopped_ = false;
-  else
+    out_[0].control &= ~otg.doepctl.epena.mask();
+  } else {
     push_status(0, PacketStatus::setup_done, 0, false);
+  }
   update_interrupt();
 }
 
@@ -176,7 +178,7 @@ Handshake OtgFsDevice::out(unsigned address, unsigned number, bool data1, std::s
   if (endpoint.packets != 0) --endpoint.packets;
   endpoint.bytes -= static_cast<std::uint32_t>(std::min<std::size_t>(endpoint.bytes, data.size()));
   if (endpoint.packets == 0 || data.size() < maximum) {
-    endpoint.control = (endpoint.control & ~otg.doepctl.epena.mask()) | otg.doepctl.naksts.mask();
+    endpoint.control |= otg.doepctl.naksts.mask();  // EPENA falls when firmware pops the word
     push_status(number, PacketStatus::out_done, 0, false);
   }
   update_interrupt();

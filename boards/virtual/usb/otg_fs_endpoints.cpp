@@ -239,6 +239,9 @@ void OtgFsDevice::write_out_endpoint(std::uint32_t offset, std::uint32_t value) 
     out_[otg.doepint.index(offset)].interrupts &= ~value;
   } else if (otg.doeptsiz.covers(offset)) {
     const unsigned number = otg.doeptsiz.index(offset);
+    // Endpoint 0 has its count of SETUP packets here too, which is written while the endpoint is enabled.
+    if (number != 0 && otg.doepctl.epena.in(out_[number].control))
+      rules_.violate(Rule::usb_out_size_while_enabled, "OUT " + std::to_string(number));
     out_[number].packets = out_packets(value, number);
     out_[number].bytes = transfer_bytes(value, number);
     if (number == 0) setup_packets_allowed_ = otg.doeptsiz.stupcnt.of(value);
@@ -336,7 +339,10 @@ std::uint32_t OtgFsDevice::pop_receive_status() {
       break;
     case PacketStatus::out_data:
     case PacketStatus::setup_data: receive_data_words_ = words_for(otg.grxstsp.bcnt.of(word)); break;
-    case PacketStatus::out_done: out_[number].interrupts |= otg.doepint.xfrc.mask(); break;
+    case PacketStatus::out_done:
+      out_[number].control &= ~otg.doepctl.epena.mask();
+      out_[number].interrupts |= otg.doepint.xfrc.mask();
+      break;
     case PacketStatus::setup_done:
       setup_done_unpopped_ = false;
       if (setup_done_lost_) {
@@ -344,6 +350,7 @@ std::uint32_t OtgFsDevice::pop_receive_status() {
         update_interrupt();
         return receive_.empty() ? 0 : pop_receive_status();
       }
+      out_[0].control &= ~otg.doepctl.epena.mask();
       out_[0].interrupts |= otg.doepint.stup.mask();
       break;
     default: break;

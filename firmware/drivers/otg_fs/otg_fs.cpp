@@ -81,14 +81,15 @@ bool OtgFs::next_event(Event& event) {
   return false;
 }
 
+// The core itself only deactivates the endpoints: what was enabled still is, and packets of before may stand in the
+// receive FIFO.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
   for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) Device::DOEPCTL::modify(i, Device::DOEPCTL::SNAK(1));
   for (unsigned i = 0; i < in_endpoints; ++i) stop_in(i);
-  for (unsigned i = 1; i < in_endpoints; ++i) Device::DIEPCTL::modify(i, Device::DIEPCTL::USBAEP(0));
+  stop_out();
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);
-  fifo_memory::flush_receive();
   control_receive_waits_ = control_stall_waits_ = false;
   setup_done_is_in_doubt_ = setup_done_may_follow_ = false;
   suspended_ = false;
@@ -280,18 +281,37 @@ void OtgFs::fill(unsigned endpoint) {
 void OtgFs::begin_receive(unsigned endpoint) {
   using Control = Device::DOEPCTL;
   using Size = Device::DOEPTSIZ;
-  // An endpoint that was stalled or reopened may still be enabled, and while it counts a packet its size stands. It
-  // counts none if a bus reset came when the packet was in the FIFO already.
-  if (!Control::EPENA::from(Control::read(endpoint)) || Size::PKTCNT::from(Size::read(endpoint)) == 0) {
-    if (endpoint == 0)
-      write_control_out_size();
-    else
-      Size::write(endpoint, Size::PKTCNT(1), Size::XFRSIZ(packet_size_maximum));
-  }
+  if (endpoint == 0) {
+    write_control_out_size();
+  } else if (!Control::EPENA::from(Control::read(endpoint))) {
+    Size::write(endpoint, Size::PKTCNT(1), Size::XFRSIZ(packet_size_maximum));
+  } else if (Size::PKTCNT::from(Size::read(endpoint)) == 0) {
+    return;  // its packet waits in the receive FIFO, and who takes it receives again
+  }          // else it was stalled or reopened, and its size stands
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }
 
 void OtgFs::cancel(std::uint8_t endpoint_address) { stop_in(number_of(endpoint_address)); }
+
+// RM0090, "Disabling an OUT endpoint": not before the global OUT NAK, which is in effect when its word is taken from
+// the receive FIFO. The words before it end transfers, and their packets are lost with them.
+void OtgFs::stop_out() {
+  using Control = Device::DOEPCTL;
+  using Flags = Device::DOEPINT;
+  Device::DCTL::modify(Device::DCTL::SGONAK(1));
+  static_cast<void>(wait_for(core_answer_cycles, [] {
+    if (Core::GINTSTS::RXFLVL::is_set()) read_packet({}, Core::GRXSTSP::BCNT::read());
+    return Core::GINTSTS::GOUTNAKEFF::is_set();
+  }));
+  for (unsigned i = 1; i < out_endpoints; ++i) {
+    if (Control::EPENA::from(Control::read(i))) {
+      Control::modify(i, Control::SNAK(1), Control::EPDIS(1));
+      static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::EPDISD::from(Flags::read(i)) != 0; }));
+    }
+    Flags::write(i, ~0u);
+  }
+  Device::DCTL::modify(Device::DCTL::CGONAK(1));
+}
 
 void OtgFs::stop_in(unsigned endpoint) {
   using Control = Device::DIEPCTL;

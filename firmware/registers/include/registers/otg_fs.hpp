@@ -25,6 +25,7 @@ struct UsbGlobal {
   struct GINTSTS : Register<base + 0x14> {
     using SOF = Field<GINTSTS, 3, 1>;
     using RXFLVL = Field<GINTSTS, 4, 1>;
+    using GOUTNAKEFF = Field<GINTSTS, 7, 1>;
     using USBSUSP = Field<GINTSTS, 11, 1>;
     using USBRST = Field<GINTSTS, 12, 1>;
     using ENUMDNE = Field<GINTSTS, 13, 1>;
@@ -73,6 +74,8 @@ struct UsbDevice {
   struct DCTL : Register<base + 0x04> {
     using SDIS = Field<DCTL, 1, 1>;
     using CGINAK = Field<DCTL, 8, 1>;
+    using SGONAK = Field<DCTL, 9, 1>;
+    using CGONAK = Field<DCTL, 10, 1>;
   };
   struct DSTS : Register<base + 0x08> {
     using FNSOF = Field<DSTS, 8, 14>;
@@ -115,9 +118,12 @@ struct UsbDevice {
     using CNAK = Field<DOEPCTL, 26, 1>;
     using SNAK = Field<DOEPCTL, 27, 1>;
     using SD0PID = Field<DOEPCTL, 28, 1>;
+    using EPDIS = Field<DOEPCTL, 30, 1>;
     using EPENA = Field<DOEPCTL, 31, 1>;
   };
-  struct DOEPINT : RegisterArray<base + 0x308, 0x20, 4> {};
+  struct DOEPINT : RegisterArray<base + 0x308, 0x20, 4> {
+    using EPDISD = Field<DOEPINT, 1, 1>;
+  };
   struct DOEPTSIZ : RegisterArray<base + 0x310, 0x20, 4> {
     using XFRSIZ = Field<DOEPTSIZ, 0, 19>;
     using PKTCNT = Field<DOEPTSIZ, 19, 10>;

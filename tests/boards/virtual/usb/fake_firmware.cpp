@@ -20,8 +20,8 @@ constexpr std::uint32_t doepint(unsigned n) { return 0xB08 + 0x20 * n; }
 constexpr std::uint32_t doeptsiz(unsigned n) { return 0xB10 + 0x20 * n; }
 constexpr std::uint32_t fifo(unsigned n) { return 0x1000 * (n + 1); }
 
-constexpr std::uint32_t epena = 1u << 31, sd0pid = 1u << 28, snak = 1u << 27, cnak = 1u << 26, stall = 1u << 21,
-                        usbaep = 1u << 15;
+constexpr std::uint32_t epena = 1u << 31, epdis = 1u << 30, sd0pid = 1u << 28, snak = 1u << 27, cnak = 1u << 26,
+                        stall = 1u << 21, usbaep = 1u << 15;
 constexpr std::uint32_t type_bulk = 2u << 18, type_interrupt = 3u << 18;
 
 constexpr std::array<std::uint8_t, 18> device_descriptor{18,   1,    0x00, 0x02, 0,    0, 0, 64, 0x09,
@@ -117,7 +117,8 @@ void FakeFirmware::bus_reset() {
   control_out_expected_ = 0;
   stream_running_ = false;
   for (unsigned n = 0; n < 4; ++n) write(doepctl(n), snak);
-  set(grstctl, 0x10u << 6 | 1u << 5 | 1u << 4);
+  stop_everything();
+  write(grstctl, 0x10u << 6 | 1u << 5);
   write(diepempmsk, 0);
   write(daintmsk, 0x0001'0001);
   write(doepmsk, 1u << 3 | 1);
@@ -129,6 +130,24 @@ void FakeFirmware::bus_reset() {
   write(dcfg, read(dcfg) & ~(0x7Fu << 4));
   address = 0;
   write(doeptsiz(0), 3u << 29 | 1u << 19 | 64);
+}
+
+// The core keeps endpoints enabled over a bus reset, and packets in the receive FIFO.
+void FakeFirmware::stop_everything() {
+  for (unsigned n = 0; n < 4; ++n)
+    if ((read(diepctl(n)) & epena) != 0) set(diepctl(n), epdis | snak);
+  write(dctl, read(dctl) | 1u << 9);
+  while ((read(gintsts) & 1u << 7) == 0) {
+    const std::uint32_t status = read(grxstsp);
+    for (std::size_t i = 0; i < (status >> 4 & 0x7FF); i += 4) read(fifo(0));
+  }
+  for (unsigned n = 1; n < 4; ++n)
+    if ((read(doepctl(n)) & epena) != 0) set(doepctl(n), epdis | snak);
+  for (unsigned n = 0; n < 4; ++n) {
+    write(diepint(n), ~0u);
+    write(doepint(n), ~0u);
+  }
+  write(dctl, read(dctl) | 1u << 10);
 }
 
 void FakeFirmware::receive_word() {

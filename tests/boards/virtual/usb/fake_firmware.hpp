@@ -54,6 +54,7 @@ class FakeFirmware {
 
  private:
   void bus_reset();
+  void stop_everything();
   void receive_word();
   void handle_setup();
   void answer(std::span<const std::byte> data, std::uint16_t length_asked);

@@ -58,7 +58,9 @@ class HostileHost {
 
   /// A sentence on what is wrong; none if the device is well.
   std::optional<std::string> recover() {
+    leave_packets_behind();
     reset();
+    if (any_endpoint_enabled()) return "an endpoint is still enabled after a bus reset";
     address_ = 0;
     if (!control_without_data(request(0x00, 5, own_address, 0, 0))) return "SET_ADDRESS is not answered";
     address_ = own_address;
@@ -74,6 +76,8 @@ class HostileHost {
       pause_s(0.001);
       poses += in(1).has_value() ? 1 : 0;
     }
+    const Packet nothing_to_do(64);
+    if (!write_packet(1, false, nothing_to_do) || !write_packet(1, true, nothing_to_do)) return "reports are not taken";
     if (poses < 18) return fmt::format("{} poses came in 20 ms", poses);
     if (const auto broken = bus_.violations(); !broken.empty()) return broken.front();
     return std::nullopt;
@@ -119,6 +123,23 @@ class HostileHost {
     if (setup(packet) != Handshake::ack) return false;
     const auto status = read_packet();
     return status && status->empty();
+  }
+
+  /// What the firmware finds in the receive FIFO together with the reset: reports, and a request to move elsewhere.
+  void leave_packets_behind() {
+    constexpr unsigned elsewhere = 77;
+    for (const bool data1 : {false, true}) bus_.cable.out(address_, 1, data1, Packet(64));
+    bus_.cable.setup(address_, 0, request(0x00, 5, elsewhere, 0, 0));
+    std::array<std::byte, full_speed_packet_maximum> data;
+    bus_.cable.in(address_, 0, data);
+  }
+  /// None may be before the device is configured, but for endpoint 0, on which the core itself decides.
+  bool any_endpoint_enabled() {
+    constexpr std::uint32_t in_control = 0x900, out_control = 0xB00, epena = 1u << 31;
+    bool any = (bus_.core.read(in_control, 4) & epena) != 0;
+    for (std::uint32_t i = 1; i < OtgFsDevice::endpoint_count; ++i)
+      any |= ((bus_.core.read(in_control + 0x20 * i, 4) | bus_.core.read(out_control + 0x20 * i, 4)) & epena) != 0;
+    return any;
   }
 
   void reset() {

@@ -219,6 +219,33 @@ TEST_CASE("a flush or a disable spoils the packet on the wire") {
   CHECK(bench.read(0x958) == 128);
 }
 
+TEST_CASE("a bus reset deactivates endpoints and leaves them enabled, what they hold stays, an OUT packet too") {
+  CoreBench bench;
+  bench.activate();
+  bench.write(0x950, 1u << 19 | 4);
+  bench.write(0x940, bench.read(0x940) | epena | cnak);
+  bench.write(0x3000, 1);
+  bench.write(0xB70, 1u << 19 | 64);
+  bench.write(0xB60, bench.read(0xB60) | epena | cnak | stall);
+  bench.write(0xB60, bench.read(0xB60) & ~stall);
+  CHECK(bench.out(3, false, 8) == Handshake::ack);
+  bench.write(0xB60, bench.read(0xB60) | stall);
+  const std::uint32_t usbaep = 1u << 15;
+  bench.core.begin_reset();
+  bench.core.end_reset();
+  CHECK((bench.read(0x940) & (epena | usbaep | naksts)) == epena);
+  CHECK((bench.read(0xB60) & (epena | usbaep | stall)) == (epena | stall));
+  CHECK(bench.read(0x958) == 127);
+  CHECK((bench.read(grxstsp) >> 17 & 15) == 2);
+  bench.read(0x1000);
+  bench.read(0x1000);
+  CHECK((bench.read(0xB60) & epena) != 0);
+  CHECK((bench.read(grxstsp) >> 17 & 15) == 3);
+  CHECK((bench.read(0xB60) & epena) == 0);
+  CHECK(bench.in(2).handshake == Handshake::nothing);  // not active
+  CHECK(bench.log.sentences.empty());
+}
+
 TEST_CASE("OUT: the receive FIFO keeps room for SETUP packets and answers NAK when full") {
   CoreBench bench;
   bench.activate();
@@ -341,6 +368,12 @@ TEST_CASE("what the manual forbids is said and has its consequence") {
     bench.write(0xB60, bench.read(0xB60) | epdis | snak);
     CHECK(bench.log.has("global OUT NAK"));
     CHECK((bench.read(0xB68) & 1u << 1) == 0);
+  }
+  SUBCASE("the size of an OUT transfer that is under way") {
+    bench.write(0xB70, 1u << 19 | 64);
+    bench.write(0xB60, bench.read(0xB60) | epena | cnak);
+    bench.write(0xB70, 1u << 19 | 64);
+    CHECK(bench.log.has("while its OUT endpoint is enabled"));
   }
   SUBCASE("data left in the receive FIFO") {
     bench.core.setup(0, 0, std::array<std::byte, 8>{std::byte{0x80}, std::byte{6}});

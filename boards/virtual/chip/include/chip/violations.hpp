@@ -87,6 +87,9 @@ namespace inkwell::virtual_board {
   RULE(usb_size_while_enabled, "OTG_FS_DIEPTSIZx", "RM0090, OTG device IN endpoint x transfer size register",          \
        "the size of a transfer changes while its IN endpoint is enabled", "the transfer is garbled",                   \
        "wait for XFRC, or disable the endpoint first")                                                                 \
+  RULE(usb_out_size_while_enabled, "OTG_FS_DOEPTSIZx", "RM0090, OTG device OUT endpoint x transfer size register",     \
+       "the size of a transfer changes while its OUT endpoint is enabled", "the transfer is garbled",                  \
+       "wait for XFRC, or disable the endpoint first")                                                                 \
   RULE(usb_disable_without_enable, "OTG_FS_DIEPCTLx", "RM0090, IN endpoint disable",                                   \
        "EPDIS has no effect on an endpoint that is not enabled", "EPDISD does not come", "look at EPENA first")        \
   RULE(usb_no_packets, "OTG_FS_DxEPTSIZx", "RM0090, OTG_FS device programming model",                                  \

@@ -77,6 +77,7 @@ class OtgFs final : public usb::Port {
   void begin_receive(unsigned endpoint);
   void fill(unsigned endpoint);
   void stop_in(unsigned endpoint);
+  void stop_out();
 
   FrameClock frame_clock_;
   std::array<InTransfer, in_endpoints> in_{};
