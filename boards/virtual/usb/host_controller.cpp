@@ -2,13 +2,16 @@
 
 #include <algorithm>
 
+#include <virtual_usb/bit_stuffing.hpp>
+
 namespace inkwell::virtual_board {
 
 namespace {
 constexpr double nominal_frame_s = 0.001;
-constexpr Ticks byte_ticks = ticks_per_s / 1'500'000;  // 12 Mbit/s
+constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
+constexpr Ticks byte_ticks = 8 * bit_ticks;
 // Bytes of bus time beside the payload (USB 2.0, tables 5-8 to 5-10): token, handshake, synchronisation,
-// turn-around. 19 bulk packets of 64 bytes fit a frame.
+// turn-around. 19 bulk packets of 64 bytes fit a frame. The bits that are stuffed into data come on top.
 constexpr Ticks transaction_bytes = 13;
 constexpr Ticks refused_in_bytes = 8;
 constexpr Ticks start_of_frame_bytes = 6;
@@ -186,6 +189,12 @@ std::uint32_t HostController::next_out_length(const Pipe& pipe, const Urb& urb, 
   return std::min<std::uint32_t>(urb.length - urb.sent, pipe.packet_maximum);
 }
 
+std::span<const std::byte> HostController::next_out_data(const Pipe& pipe, const Urb& urb, Token token) {
+  if (token == Token::setup) return urb.setup;
+  const std::uint32_t length = next_out_length(pipe, urb, token);
+  return length == 0 ? std::span<const std::byte>{} : std::span<const std::byte>(urb.data).subspan(urb.sent, length);
+}
+
 // False if it does not fit the rest of the frame. An OUT or SETUP reaches the device at its end, an IN token
 // at its begin.
 bool HostController::start(unsigned index) {
@@ -194,16 +203,23 @@ bool HostController::start(unsigned index) {
   const Token token = next_token(urb, pipe.type);
   const Ticks payload = token == Token::in ? pipe.packet_maximum : next_out_length(pipe, urb, token);
   const Ticks now = scheduler_.now();
-  if (now + (transaction_bytes + payload) * byte_ticks > frame_begin_ + frame_ticks_) return false;
+  const Ticks longest = (transaction_bytes + payload) * byte_ticks + stuffed_bits_maximum(payload) * bit_ticks;
+  if (now + longest > frame_begin_ + frame_ticks_) return false;
 
-  Ticks bytes = transaction_bytes + payload;
+  Ticks duration = (transaction_bytes + payload) * byte_ticks;
   Transaction transaction{index, token, {}};
   if (token == Token::in) {
     transaction.reply = device_.in(address_, endpoint_of(index), packet_);
     const bool sent = transaction.reply.handshake == Handshake::ack;
-    bytes = sent ? transaction_bytes + transaction.reply.length : refused_in_bytes;
+    const auto data = std::span<const std::byte>(packet_).first(sent ? transaction.reply.length : 0);
+    duration =
+        sent ? (transaction_bytes + data.size()) * byte_ticks + stuffed_bits(transaction.reply.data1, data) * bit_ticks
+             : refused_in_bytes * byte_ticks;
+  } else {
+    const bool data1 = token == Token::out && pipe.data1;
+    duration += stuffed_bits(data1, next_out_data(pipe, urb, token)) * bit_ticks;
   }
-  bus_free_at_ = now + bytes * byte_ticks;
+  bus_free_at_ = now + duration;
   transaction_ = transaction;
   return true;
 }
@@ -230,10 +246,7 @@ void HostController::finish_transaction() {
   if (transaction.token == Token::setup) {
     handshake = device_.setup(address_, endpoint_of(index), urb.setup);
   } else {
-    const std::uint32_t length = next_out_length(pipe, urb, transaction.token);
-    const std::span<const std::byte> data =
-        length == 0 ? std::span<const std::byte>{} : std::span<const std::byte>(urb.data).subspan(urb.sent, length);
-    handshake = device_.out(address_, endpoint_of(index), pipe.data1, data);
+    handshake = device_.out(address_, endpoint_of(index), pipe.data1, next_out_data(pipe, urb, transaction.token));
   }
   if (handshake == Handshake::ack)
     handle_out(index, urb, transaction.token);

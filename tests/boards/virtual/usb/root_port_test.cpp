@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include <virtual_usb/bit_stuffing.hpp>
 #include "root_port_bench.hpp"
 
 namespace inkwell::virtual_usb_test {
@@ -135,6 +136,30 @@ TEST_CASE("bulk IN fills the frame: 19 packets of 64 bytes, in order") {
   CHECK(received <= 19u * 64 * 100);
   CHECK(received >= 18u * 64 * 100);
   CHECK(bench.log.sentences.empty());
+}
+
+TEST_CASE("a zero is stuffed after six ones of a data packet") {
+  using virtual_board::stuffed_bits;
+  CHECK(stuffed_bits(false, {}) == 0);
+  CHECK(stuffed_bits(false, Bytes(64)) == 1);  // in the checksum
+  // The identifier's last two bits are ones too.
+  CHECK(stuffed_bits(false, Bytes(64, std::byte{0xFF})) == 512 / 6 + 1);
+  CHECK(stuffed_bits(false, Bytes{std::byte{0xF8}, std::byte{0x01}}) == 1);
+  CHECK(stuffed_bits(false, Bytes{std::byte{0xF0}, std::byte{0x01}}) == 0);
+}
+
+TEST_CASE("bits that are stuffed take bus time") {
+  RootPortBench bench;
+  bench.use();
+  const auto duration = [&](std::byte content) {
+    const std::uint32_t first = bench.submit_out(3, Bytes(64, content));
+    const std::uint32_t last = bench.submit_out(3, Bytes(64 * 12, content));
+    return bench.wait_for(last).when - bench.wait_for(first).when;
+  };
+  const Ticks zeros = duration(std::byte{0}), ones = duration(std::byte{0xFF});
+  constexpr double bit_s = 1.0 / 12e6;
+  const double added_bits = (virtual_board::seconds(ones) - virtual_board::seconds(zeros)) / bit_s;
+  CHECK(added_bits == doctest::Approx(12 * (86 - 1)).epsilon(0.001));
 }
 
 TEST_CASE("interrupt IN keeps its millisecond beside a full bulk stream") {

@@ -2,7 +2,8 @@
 //
 // Each frame of 1 ms, by the host's own clock, has the order of USB 2.0, section 5: start of frame, interrupt endpoints
 // that are due, then control, then bulk in turn, one transaction after the other at the times they take on a
-// 12 Mbit/s bus. A transaction that no longer fits waits for the next frame.
+// 12 Mbit/s bus, with the bits that are stuffed into their data. A transaction that no longer fits waits for the next
+// frame.
 #pragma once
 
 #include <array>
@@ -10,6 +11,7 @@
 #include <deque>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include <chip/interfaces.hpp>
 #include <virtual_usb/bus.hpp>
@@ -89,6 +91,7 @@ class HostController {
   void open(const EndpointDescription& endpoint);
   static Token next_token(const Urb& urb, TransferType type);
   static std::uint32_t next_out_length(const Pipe& pipe, const Urb& urb, Token token);
+  static std::span<const std::byte> next_out_data(const Pipe& pipe, const Urb& urb, Token token);
 
   Scheduler& scheduler_;
   BusDevice& device_;
