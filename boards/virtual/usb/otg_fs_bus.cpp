@@ -13,6 +13,9 @@ namespace {
 /// NAK (RM0090, "Peripheral FIFO architecture").
 constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
+constexpr Ticks byte_ticks = ticks_per_s / 1'500'000;
+/// From an IN token to the end of the handshake, without the data and the bits that are stuffed into it.
+constexpr Ticks in_transaction_bytes = 13;
 
 /// End of the periodic part of a frame, in thousandths of it (DCFG.PFIVL).
 unsigned periodic_frame_per_mille(std::uint32_t device_configuration) {
@@ -41,6 +44,7 @@ void OtgFsDevice::begin_reset() {
       out_[i].control &= ~otg.doepctl.usbaep.mask();
     }
     in_[i].bytes_on_wire.reset();
+    in_[i].wire_until = 0;
   }
   setup_stage_open_ = false;
   setup_done_unpopped_ = setup_done_lost_ = false;
@@ -195,7 +199,7 @@ InReply OtgFsDevice::in(unsigned address, unsigned number, std::span<std::byte, 
   const WordFifo& fifo = transmit_[transmit_fifo_of(number)];
   const std::uint32_t bytes = std::min<std::uint32_t>(endpoint.bytes_to_send, in_packet_maximum(number));
   const bool enabled = otg.diepctl.epena.in(endpoint.control) && endpoint.packets != 0;
-  const bool held = otg.diepctl.naksts.in(endpoint.control) || global_in_nak_;
+  const bool held = otg.diepctl.naksts.in(endpoint.control) || global_in_nak_ || endpoint.disabling;
   if (!enabled || held || fifo.count() < words_for(bytes)) {
     if (fifo.empty() && (!enabled || bytes != 0)) {
       endpoint.interrupts |= otg.diepint.ittxfe.mask();
@@ -209,6 +213,7 @@ InReply OtgFsDevice::in(unsigned address, unsigned number, std::span<std::byte, 
     std::memcpy(data.data() + i, &word, std::min<std::uint32_t>(4, bytes - i));
   }
   endpoint.bytes_on_wire = bytes;
+  endpoint.wire_until = scheduler_.now() + (in_transaction_bytes + bytes) * byte_ticks;
   return {Handshake::ack, endpoint.data1, bytes};
 }
 
@@ -217,6 +222,7 @@ bool OtgFsDevice::finish_in(unsigned number) {
   if (!endpoint.bytes_on_wire) return false;
   const std::uint32_t bytes = *endpoint.bytes_on_wire;
   endpoint.bytes_on_wire.reset();
+  endpoint.wire_until = 0;
   transmit_[transmit_fifo_of(number)].drop(words_for(bytes));
   endpoint.bytes_to_send -= bytes;
   if (bytes != 0 && endpoint.packets_in_fifo != 0) --endpoint.packets_in_fifo;

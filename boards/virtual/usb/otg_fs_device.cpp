@@ -58,6 +58,7 @@ void OtgFsDevice::reset() {
 // CSRST. What describes the wiring (GUSBCFG, GCCFG, the speed in DCFG, PCGCCTL) survives it.
 void OtgFsDevice::reset_core() {
   scheduler_.cancel(end_of_periodic_frame_);
+  cancel_commands();
   bus_configuration_ = latched_interrupts_ = interrupt_mask_ = 0;
   receive_size_ = otg.grxfsiz.reset_value;
   transmit_size_[0] = otg.dieptxf0.reset_value;
@@ -96,6 +97,7 @@ void OtgFsDevice::write(std::uint32_t offset, std::uint32_t value, unsigned size
   const std::uint32_t aligned = offset & ~3u;
   if (size_bytes != 4) rules_.violate(Rule::usb_narrow_access);
   value <<= 8 * (offset & 3);
+  if (!store_may_come(aligned, value)) return;
   if (is_fifo(aligned)) {
     push_transmit_data((aligned - otg_fifo_base) / otg_fifo_window_bytes, value);
     return;
@@ -129,7 +131,7 @@ std::uint32_t OtgFsDevice::read_global(std::uint32_t offset) {
     case otg.gotgint: return otg_interrupts_;
     case otg.gahbcfg: return bus_configuration_;
     case otg.gusbcfg: return usb_configuration_;
-    case otg.grstctl: return otg.grstctl.ahbidl.mask();
+    case otg.grstctl: return reset_control();
     case otg.gintsts: return interrupt_status();
     case otg.gintmsk: return interrupt_mask_;
     case otg.grxstsr: return receive_.empty() ? 0 : receive_.front();
@@ -232,28 +234,6 @@ void OtgFsDevice::write_device(std::uint32_t offset, std::uint32_t value) {
     case otg.dvbuspulse: bus_pulse_ = value & writable(otg.dvbuspulse); break;
     case otg.diepempmsk: in_empty_mask_ = value & writable(otg.diepempmsk); break;
     default: not_modelled(otg_device_base + offset, true, value); break;
-  }
-}
-
-void OtgFsDevice::write_reset_control(std::uint32_t value) {
-  if (otg.grstctl.csrst.in(value)) {
-    reset_since_selection_ = otg.gusbcfg.physel.in(usb_configuration_);
-    reset_core();
-    return;
-  }
-  if (otg.grstctl.rxfflsh.in(value)) {
-    receive_.clear();
-    receive_data_words_ = 0;
-    setup_stage_open_ = setup_done_unpopped_ = setup_done_lost_ = false;
-  }
-  if (otg.grstctl.txfflsh.in(value)) {
-    const unsigned number = otg.grstctl.txfnum.of(value);
-    if (number == all_transmit_fifos)
-      for (unsigned i = 0; i < endpoint_count; ++i) flush_transmit(i);
-    else if (number < endpoint_count)
-      flush_transmit(number);
-    else
-      rules_.violate(Rule::usb_no_such_fifo);
   }
 }
 

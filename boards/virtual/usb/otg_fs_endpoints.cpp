@@ -78,21 +78,22 @@ void OtgFsDevice::write_in_control(unsigned number, std::uint32_t value) {
     endpoint.control |= value & otg.diepctl.stall.mask();  // firmware can only set it: a SETUP packet clears it
   else
     endpoint.control = (endpoint.control & ~otg.diepctl.stall.mask()) | (value & otg.diepctl.stall.mask());
-  if (otg.diepctl.cnak.in(value)) endpoint.control &= ~otg.diepctl.naksts.mask();
+  if (otg.diepctl.cnak.in(value)) {
+    endpoint.control &= ~otg.diepctl.naksts.mask();
+    endpoint.interrupts &= ~otg.diepint.inepne.mask();
+    scheduler_.cancel(endpoint.nak_event);
+  }
   if (otg.diepctl.snak.in(value)) {
     endpoint.control |= otg.diepctl.naksts.mask();
-    endpoint.interrupts |= otg.diepint.inepne.mask();
+    let_nak_take_effect(endpoint);
   }
   if (number != 0 && otg.diepctl.sd0pid.in(value)) endpoint.data1 = false;
   if (number != 0 && otg.diepctl.sd1pid.in(value)) endpoint.data1 = true;
   if (otg.diepctl.epdis.in(value)) {
-    if (otg.diepctl.epena.in(endpoint.control)) {
-      endpoint.control &= ~otg.diepctl.epena.mask();
-      endpoint.interrupts |= otg.diepint.epdisd.mask();
-      endpoint.bytes_on_wire.reset();
-    } else {
+    if (otg.diepctl.epena.in(endpoint.control))
+      disable_in(endpoint);
+    else
       rules_.violate(Rule::usb_disable_without_enable);
-    }
   } else if (otg.diepctl.epena.in(value) && !otg.diepctl.epena.in(endpoint.control)) {
     endpoint.control |= otg.diepctl.epena.mask();
     check_in_transfer(number);
@@ -152,17 +153,6 @@ void OtgFsDevice::push_transmit_data(unsigned number, std::uint32_t word) {
     }
   }
   if (level_before != transmit_empty_level(number)) update_interrupt();
-}
-
-void OtgFsDevice::flush_transmit(unsigned number) {
-  transmit_[number].clear();
-  for (unsigned i = 0; i < endpoint_count; ++i) {
-    if (transmit_fifo_of(i) != number) continue;
-    in_[i].packet_words_to_load = 0;
-    in_[i].packets_in_fifo = 0;
-    in_[i].damaged = false;
-    in_[i].bytes_on_wire.reset();
-  }
 }
 
 unsigned OtgFsDevice::in_packet_maximum(unsigned endpoint) const {
@@ -300,12 +290,6 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
     rules_.violate(Rule::usb_inactive_endpoint, "OUT " + std::to_string(number));
   if (otg.doepctl.eptyp.of(endpoint.control) == isochronous)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
-}
-
-void OtgFsDevice::disable_out(OutEndpoint& endpoint) {
-  endpoint.disable_pending = false;
-  endpoint.control &= ~otg.doepctl.epena.mask();
-  endpoint.interrupts |= otg.doepint.epdisd.mask();
 }
 
 // Seen on silicon: clearing NAK on endpoint 0 between a SETUP packet and the pop of its setup-done word

@@ -37,6 +37,7 @@ constexpr Case cases[] = {
     {20, Rule::ccm_clock_off},
     {21, Rule::timer_locked},
     {22, Rule::watchdog_busy},
+    {23, Rule::usb_disturbed},
 };
 
 /// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.

@@ -1,6 +1,7 @@
 // What stands around the USB core in these tests: time, the interrupt line, the log.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -29,11 +30,16 @@ class FakeScheduler final : public virtual_board::Scheduler {
   bool run_one(Ticks end) {
     if (events_.empty() || events_.begin()->first.first > end) return false;
     auto node = events_.extract(events_.begin());
-    now_ = node.key().first;
+    now_ = std::max(now_, node.key().first);
     node.mapped()();
     return true;
   }
-  void pass_until(Ticks end) { now_ = end; }
+  void run_until(Ticks end) {
+    while (run_one(end)) {
+    }
+    pass_until(end);
+  }
+  void pass_until(Ticks end) { now_ = std::max(now_, end); }
 
  private:
   Ticks now_ = 0;

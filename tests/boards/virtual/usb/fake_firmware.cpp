@@ -38,11 +38,9 @@ constexpr std::array<std::uint8_t, 55> configuration_descriptor{
 
 void FakeFirmware::start() {
   set(gusbcfg, 1u << 6);
-  while ((read(grstctl) & 1u << 31) == 0) {
-  }
   set(grstctl, 1);
-  while ((read(grstctl) & 1) != 0) {
-  }
+  wait_until_clear(grstctl, 1);
+  scheduler_.run_until(scheduler_.now() + virtual_board::ticks(1e-6));
   write(gusbcfg, 1u << 30 | 6u << 10 | 1u << 6);
   scheduler_.pass_until(scheduler_.now() + virtual_board::ticks(0.025));
   write(gccfg, 1u << 21 | 1u << 16);
@@ -118,7 +116,7 @@ void FakeFirmware::bus_reset() {
   stream_running_ = false;
   for (unsigned n = 0; n < 4; ++n) write(doepctl(n), snak);
   stop_everything();
-  write(grstctl, 0x10u << 6 | 1u << 5);
+  flush_transmit(0x10);
   write(diepempmsk, 0);
   write(daintmsk, 0x0001'0001);
   write(doepmsk, 1u << 3 | 1);
@@ -134,20 +132,37 @@ void FakeFirmware::bus_reset() {
 
 // The core keeps endpoints enabled over a bus reset, and packets in the receive FIFO.
 void FakeFirmware::stop_everything() {
-  for (unsigned n = 0; n < 4; ++n)
-    if ((read(diepctl(n)) & epena) != 0) set(diepctl(n), epdis | snak);
+  for (unsigned n = 0; n < 4; ++n) stop_in(n);
   write(dctl, read(dctl) | 1u << 9);
   while ((read(gintsts) & 1u << 7) == 0) {
     const std::uint32_t status = read(grxstsp);
     for (std::size_t i = 0; i < (status >> 4 & 0x7FF); i += 4) read(fifo(0));
   }
   for (unsigned n = 1; n < 4; ++n)
-    if ((read(doepctl(n)) & epena) != 0) set(doepctl(n), epdis | snak);
+    if ((read(doepctl(n)) & epena) != 0) {
+      set(doepctl(n), epdis | snak);
+      wait_until_clear(doepctl(n), epena);
+    }
   for (unsigned n = 0; n < 4; ++n) {
     write(diepint(n), ~0u);
     write(doepint(n), ~0u);
   }
   write(dctl, read(dctl) | 1u << 10);
+}
+
+void FakeFirmware::stop_in(unsigned endpoint) {
+  if ((read(diepctl(endpoint)) & epena) == 0) return;
+  set(diepctl(endpoint), epdis | snak);
+  wait_until_clear(diepctl(endpoint), epena);
+}
+
+void FakeFirmware::flush_transmit(unsigned fifo) {
+  write(grstctl, fifo << 6 | 1u << 5);
+  wait_until_clear(grstctl, 1u << 5);
+}
+
+void FakeFirmware::wait_until_clear(std::uint32_t offset, std::uint32_t bits) {
+  while ((read(offset) & bits) != 0) scheduler_.run_until(scheduler_.now() + virtual_board::ticks(50e-9));
 }
 
 void FakeFirmware::receive_word() {
@@ -180,8 +195,8 @@ void FakeFirmware::handle_setup() {
   control_in_active_ = false;
   control_out_expected_ = 0;
   if ((read(diepctl(0)) & epena) != 0) {  // an earlier request was given up by the host
-    set(diepctl(0), 1u << 30 | snak);
-    write(grstctl, 1u << 5);
+    stop_in(0);
+    flush_transmit(0);
   }
   if (type == 0x80 && request == 6 && value >> 8 == 1) {
     answer(std::as_bytes(std::span(device_descriptor)), length);

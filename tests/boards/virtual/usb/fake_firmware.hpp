@@ -55,6 +55,10 @@ class FakeFirmware {
  private:
   void bus_reset();
   void stop_everything();
+  void stop_in(unsigned endpoint);
+  void flush_transmit(unsigned fifo);
+  /// Lets time pass meanwhile.
+  void wait_until_clear(std::uint32_t offset, std::uint32_t bits);
   void receive_word();
   void handle_setup();
   void answer(std::span<const std::byte> data, std::uint16_t length_asked);

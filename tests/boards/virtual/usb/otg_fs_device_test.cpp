@@ -31,6 +31,7 @@ struct CoreBench {
   }
   std::uint32_t read(std::uint32_t offset) { return core.read(offset, 4); }
   void write(std::uint32_t offset, std::uint32_t value) { core.write(offset, value, 4); }
+  void wait_us(double time_us) { scheduler.run_until(scheduler.now() + virtual_board::ticks(time_us * 1e-6)); }
   InReply in(unsigned endpoint) { return core.in(0, endpoint, packet); }
   /// Bulk endpoints 0x82 and 0x03, as after SET_CONFIGURATION.
   void activate() {
@@ -204,19 +205,132 @@ TEST_CASE("IN: NAK until the whole packet is loaded, then data with alternating 
   CHECK(bench.log.sentences.empty());
 }
 
-TEST_CASE("a flush or a disable spoils the packet on the wire") {
+TEST_CASE("NAK and a disable wait for the packet on the wire, a flush spoils it") {
   CoreBench bench;
   bench.activate();
-  bench.write(0x950, 1u << 19 | 4);
+  bench.write(0x950, 2u << 19 | 68);
   bench.write(0x940, bench.read(0x940) | epena | cnak);
-  bench.write(0x3000, 1);
+  for (int i = 0; i < 17; ++i) bench.core.write(0x3000, 1, 4);
+  constexpr std::uint32_t epdisd = 1u << 1, inepne = 1u << 6;
+  const auto flags = [&] { return bench.read(0x948) & (epdisd | inepne); };
   CHECK(bench.in(2).handshake == Handshake::ack);
-  bench.write(0x940, bench.read(0x940) | epdis | snak);
-  bench.write(grstctl, 2u << 6 | 1u << 5);
-  CHECK_FALSE(bench.core.finish_in(2));
-  CHECK((bench.read(0x948) & 1u << 1) != 0);
-  CHECK((bench.read(0x948) & 1u << 6) != 0);
-  CHECK(bench.read(0x958) == 128);
+  bench.write(0x940, bench.read(0x940) | snak);
+  bench.wait_us(40);  // of 51
+  CHECK(flags() == 0);
+  SUBCASE("acknowledged") {
+    bench.write(0x940, bench.read(0x940) | epdis | snak);
+    CHECK(bench.core.finish_in(2));
+    bench.wait_us(12);
+    CHECK(flags() == (epdisd | inepne));
+    CHECK((bench.read(0x940) & epena) == 0);
+    CHECK(bench.read(0x958) == 127);
+    CHECK(bench.log.sentences.empty());
+  }
+  SUBCASE("not acknowledged") {
+    bench.write(0x940, bench.read(0x940) | epdis | snak);
+    CHECK(bench.in(2).handshake == Handshake::nak);
+    bench.wait_us(12);
+    CHECK(flags() == (epdisd | inepne));
+    CHECK(bench.read(0x958) == 111);
+    CHECK_FALSE(bench.core.finish_in(2));
+    CHECK(bench.log.sentences.empty());
+  }
+  SUBCASE("flushed under the packet") {
+    bench.write(grstctl, 2u << 6 | 1u << 5);
+    CHECK_FALSE(bench.core.finish_in(2));
+    CHECK(bench.log.has("flushed while the core may be using it"));
+  }
+}
+
+TEST_CASE("reset, flush and disable of an idle endpoint take their time, and stores that concern them are seen") {
+  CoreBench bench;
+  bench.activate();
+  constexpr std::uint32_t csrst = 1, rxfflsh = 1u << 4, txfflsh = 1u << 5, ahbidl = 1u << 31;
+  SUBCASE("flush of a transmit FIFO") {
+    bench.write(grstctl, 2u << 6 | txfflsh);
+    CHECK((bench.read(grstctl) & txfflsh) != 0);
+    bench.wait_us(0.1);
+    CHECK((bench.read(grstctl) & txfflsh) != 0);
+    SUBCASE("waited for") {
+      bench.wait_us(0.1);
+      CHECK((bench.read(grstctl) & txfflsh) == 0);
+      bench.write(grstctl, txfflsh);
+      CHECK(bench.log.sentences.empty());
+    }
+    SUBCASE("another flush") {
+      bench.write(grstctl, txfflsh);
+      CHECK(bench.log.has("busy with"));
+    }
+    SUBCASE("the endpoint of the FIFO") {
+      bench.write(0x950, 1u << 19);
+      CHECK(bench.log.sentences.empty());
+      bench.write(0x940, bench.read(0x940) | epena | cnak);
+      CHECK(bench.log.has("busy with"));
+    }
+  }
+  SUBCASE("flush of a FIFO whose endpoint may send") {
+    bench.write(0x950, 1u << 19 | 4);
+    bench.write(0x940, bench.read(0x940) | epena | cnak);
+    bench.write(grstctl, 2u << 6 | txfflsh);
+    CHECK(bench.log.has("flushed while the core may be using it"));
+  }
+  SUBCASE("flush of the receive FIFO needs the global OUT NAK") {
+    bench.write(grstctl, rxfflsh);
+    CHECK(bench.log.has("flushed while the core may be using it"));
+  }
+  SUBCASE("flush of the receive FIFO") {
+    bench.write(dctl, 1u << 9);
+    bench.read(grxstsp);
+    bench.write(grstctl, rxfflsh);
+    CHECK((bench.read(grstctl) & rxfflsh) != 0);
+    bench.wait_us(0.2);
+    CHECK((bench.read(grstctl) & rxfflsh) == 0);
+    CHECK(bench.log.sentences.empty());
+  }
+  SUBCASE("disable") {
+    bench.write(0x950, 1u << 19 | 4);
+    bench.write(0x940, bench.read(0x940) | epena | cnak);
+    bench.write(0x940, bench.read(0x940) | epdis | snak);
+    CHECK((bench.read(0x948) & 1u << 1) == 0);
+    CHECK((bench.read(0x940) & epena) != 0);
+    SUBCASE("waited for") {
+      bench.wait_us(0.2);
+      CHECK((bench.read(0x948) & 1u << 1) != 0);
+      CHECK((bench.read(0x940) & epena) == 0);
+      bench.write(grstctl, 2u << 6 | txfflsh);
+      CHECK(bench.log.sentences.empty());
+    }
+    SUBCASE("flush meanwhile") {
+      bench.write(grstctl, 2u << 6 | txfflsh);
+      CHECK(bench.log.has("busy with"));
+    }
+    SUBCASE("its size meanwhile") {
+      bench.write(0x950, 1u << 19);
+      CHECK(bench.log.has("busy with"));
+    }
+  }
+  SUBCASE("core reset") {
+    bench.write(grstctl, csrst);
+    CHECK((bench.read(grstctl) & (csrst | ahbidl)) == csrst);
+    SUBCASE("a store meanwhile is lost") {
+      bench.write(gahbcfg, 1);
+      CHECK(bench.log.has("busy with"));
+      bench.wait_us(2);
+      CHECK(bench.read(gahbcfg) == 0);
+    }
+    SUBCASE("waited for, but not for the transceiver's clocks") {
+      bench.wait_us(1.01);
+      CHECK((bench.read(grstctl) & (csrst | ahbidl)) == ahbidl);
+      bench.write(gahbcfg, 1);
+      CHECK(bench.log.has("busy with"));
+      CHECK(bench.read(gahbcfg) == 1);
+    }
+    SUBCASE("waited for") {
+      bench.wait_us(1.1);
+      bench.write(gahbcfg, 1);
+      CHECK(bench.log.sentences.empty());
+    }
+  }
 }
 
 TEST_CASE("a bus reset deactivates endpoints and leaves them enabled, what they hold stays, an OUT packet too") {
@@ -307,6 +421,8 @@ TEST_CASE("global NAKs") {
   CHECK((bench.read(grxstsp) >> 17 & 15) == 1);
   CHECK((bench.read(gintsts) & gonakeff) != 0);
   bench.write(0xB60, bench.read(0xB60) | epdis | snak);
+  CHECK((bench.read(0xB68) & 1u << 1) == 0);
+  bench.wait_us(0.2);
   CHECK((bench.read(0xB68) & 1u << 1) != 0);
   CHECK((bench.read(0xB60) & epena) == 0);
   bench.write(dctl, 1u << 10);

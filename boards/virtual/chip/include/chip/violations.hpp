@@ -90,6 +90,12 @@ namespace inkwell::virtual_board {
   RULE(usb_out_size_while_enabled, "OTG_FS_DOEPTSIZx", "RM0090, OTG device OUT endpoint x transfer size register",     \
        "the size of a transfer changes while its OUT endpoint is enabled", "the transfer is garbled",                  \
        "wait for XFRC, or disable the endpoint first")                                                                 \
+  RULE(usb_flush_in_use, "OTG_FS_GRSTCTL", "RM0090, OTG_FS reset register",                                            \
+       "a FIFO is flushed while the core may be using it", "packets of it are garbled",                                \
+       "let NAK take effect first, of the endpoint or of all")                                                         \
+  RULE(usb_disturbed, "OTG_FS_GRSTCTL", "RM0090, OTG_FS reset register; IN endpoint disable",                          \
+       "the USB core gets a store that concerns what it is busy with", "neither has a defined end",                    \
+       "wait until CSRST, RXFFLSH or TXFFLSH is 0 or EPDISD is 1, and 3 clocks of the PHY after CSRST")                \
   RULE(usb_disable_without_enable, "OTG_FS_DIEPCTLx", "RM0090, IN endpoint disable",                                   \
        "EPDIS has no effect on an endpoint that is not enabled", "EPDISD does not come", "look at EPENA first")        \
   RULE(usb_no_packets, "OTG_FS_DxEPTSIZx", "RM0090, OTG_FS device programming model",                                  \

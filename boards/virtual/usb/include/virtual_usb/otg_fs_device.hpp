@@ -57,9 +57,12 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
     std::uint32_t packet_words_to_load = 0;  ///< rest of the packet that firmware is writing; 0 between packets
     std::uint32_t packet_bytes_loading = 0;
     std::optional<std::uint32_t> bytes_on_wire;
+    Ticks wire_until = 0;  ///< the packet, and the time in which its handshake may come
     unsigned packets_in_fifo = 0;
     bool data1 = false;
-    bool damaged = false;  ///< FIFO content has a bad CRC until it is flushed
+    bool damaged = false;    ///< FIFO content has a bad CRC until it is flushed
+    bool disabling = false;  ///< from EPDIS to EPDISD
+    Scheduler::Id nak_event = 0, disable_event = 0;
   };
   /// The side of an endpoint that receives from the host.
   struct OutEndpoint {
@@ -69,6 +72,8 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
     std::uint32_t bytes = 0;    ///< XFRSIZ
     bool data1 = false;
     bool disable_pending = false;  ///< EPDIS waits for the global OUT NAK
+    bool disabling = false;        ///< from there to EPDISD
+    Scheduler::Id disable_event = 0;
   };
 
   std::uint32_t read_register(std::uint32_t offset);
@@ -88,7 +93,18 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void write_device_control(std::uint32_t value);
   void write_in_control(unsigned endpoint, std::uint32_t value);
   void write_out_control(unsigned endpoint, std::uint32_t value);
+  void disable_in(InEndpoint& endpoint);
   void disable_out(OutEndpoint& endpoint);
+  void let_nak_take_effect(InEndpoint& endpoint);
+  Ticks free_of_packet(const InEndpoint& endpoint) const;
+  std::uint32_t reset_control() const;
+  void check_flush(std::uint32_t reset_control_written);
+  /// False if the store is lost.
+  bool store_may_come(std::uint32_t offset, std::uint32_t value);
+  void check_flushed_fifo(std::uint32_t offset, std::uint32_t value);
+  void check_disabled_endpoints(std::uint32_t offset, std::uint32_t value);
+  bool is_flushed(unsigned fifo) const;
+  void cancel_commands();
   void check_in_transfer(unsigned endpoint);
   void check_out_transfer(unsigned endpoint);
   bool armed_by_cnak(unsigned endpoint, std::uint32_t control_written) const;
@@ -183,6 +199,10 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::uint16_t frame_number_ = 0;
   Scheduler::Id end_of_periodic_frame_ = 0;
   bool interrupt_asserted_ = false;
+  Ticks core_reset_until_ = 0;
+  Ticks receive_flush_until_ = 0;
+  Ticks transmit_flush_until_ = 0;
+  unsigned fifo_flushed_ = 0;           ///< TXFNUM of the flush
   bool reset_since_selection_ = false;  ///< CSRST after PHYSEL
   Ticks device_forced_at_ = 0;          ///< FDMOD rose
   Scheduler::Id connection_check_ = 0;

@@ -29,6 +29,7 @@ enum Fault : std::uint32_t {
   ccm_clock_off,
   timer_locked,
   watchdog_busy,
+  usb_disturbed,
 };
 
 std::uint32_t fault;
@@ -113,6 +114,11 @@ void start_usb() {
   }
   if (fault != usb_transceiver) word(gusbcfg) |= 1u << 6;
   if (fault != usb_core_reset) word(grstctl) |= 1;
+  if (fault != usb_disturbed) {
+    while ((word(grstctl) & 1) != 0) {
+    }
+    wait_us(1);
+  }
   word(core + 0x38) = 1u << 16 | 1u << 21;
   word(gusbcfg) =
       (word(gusbcfg) & ~(0xFu << 10)) | (fault == usb_mode ? 0 : 1u << 30) | (fault == usb_turnaround ? 0 : 6u << 10);
