@@ -227,6 +227,7 @@ void Plant::show_inputs() {
   show(board::inkwell_switch.port, board::inkwell_switch.number, contact(inkwell_closed), shown_[2]);
   show(board::bridge_fault_tim1.pin.port, board::bridge_fault_tim1.pin.number, fault_wire(bridge_fault_), shown_[3]);
   show(board::bridge_fault_tim8.pin.port, board::bridge_fault_tim8.pin.number, fault_wire(bridge_fault_), shown_[4]);
+  show(board::usb_supply.port, board::usb_supply.number, level_of(usb_supply_), shown_[5]);
 }
 
 // ---- what a person does ----------------------------------------------------------------------------------
@@ -240,6 +241,11 @@ void Plant::set_bridge_fault(bool fault) {
   bridge_fault_ = fault;
   inputs_stale_ = true;
   for (unsigned i = 0; i < 3; ++i) update_legs(i, now_);
+}
+
+void Plant::set_usb_supply(bool present) {
+  usb_supply_ = present;
+  inputs_stale_ = true;
 }
 
 void Plant::hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m) {

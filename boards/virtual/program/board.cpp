@@ -58,6 +58,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
   };
   chip_.on_console = [this](std::uint8_t byte) { console(byte); };
   plant_.connect(chip_.input_pins());
+  plug(true);
   chip_.reset(ResetCause::power_on);
   if (!options.waveform.empty()) waveform_.emplace(options.waveform, options.waveform_pins, chip_);
   chip_.clear_counters();  // resets are counted from here on
@@ -82,6 +83,14 @@ Stop Board::run_until(Ticks when) {
     for (const auto& line : explain_fault(chip_, symbols_, elf_)) log_line(line);
   }
   return stop;
+}
+
+void Board::plug(bool in) {
+  if (in)
+    usb_->connect();
+  else
+    usb_->disconnect();
+  plant_.set_usb_supply(in);
 }
 
 void Board::reset() { chip_.reset(ResetCause::pin); }

@@ -25,6 +25,8 @@ class Board {
 
   /// Runs until board time `when`, or until the firmware ends or locks up.
   Stop run_until(Ticks when);
+  /// The USB cable: with it comes VBUS, for the core and for the pin that senses it.
+  void plug(bool in);
   /// Presses the board's reset button.
   void reset();
 

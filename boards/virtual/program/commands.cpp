@@ -159,10 +159,7 @@ json quit(const json&, Simulation& simulation) {
 }
 
 json usb(const json& request, Simulation& simulation) {
-  if (truth_value(request, "connected"))
-    simulation.board().usb().connect();
-  else
-    simulation.board().usb().disconnect();
+  simulation.board().plug(truth_value(request, "connected"));
   return {};
 }
 
@@ -333,7 +330,7 @@ const std::vector<Command>& commands() {
       {"resume", {}, "it passes freely", resume},
       {"reset", {}, "the reset pin", reset},
       {"quit", {}, "the end of this program", quit},
-      {"usb", {"connected"}, "plug or pull the cable", usb},
+      {"usb", {"connected"}, "plug or pull the cable, and with it VBUS", usb},
       {"buttons", {"pressed"}, "of the stylus: [true,false]", buttons},
       {"supply", {"voltage_V"}, "of the bridges", supply},
       {"bridge_fault", {"fault"}, "a bridge pulls the fault wire", bridge_fault},

@@ -13,6 +13,8 @@ namespace {
 /// NAK (RM0090, "Peripheral FIFO architecture").
 constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
+/// So long a device may take to see that VBUS has gone (USB 2.0, section 7.1.5).
+constexpr Ticks pull_up_release = 10 * ticks_per_s;
 constexpr Ticks byte_ticks = ticks_per_s / 1'500'000;
 /// From an IN token to the end of the handshake, without the data and the bits that are stuffed into it.
 constexpr Ticks in_transaction_bytes = 13;
@@ -29,8 +31,14 @@ void OtgFsDevice::set_bus_power(bool present) {
   if (sensed && bus_power_ && !present) otg_interrupts_ |= otg.gotgint.sedet.mask();
   if (sensed && !bus_power_ && present) latched_interrupts_ |= otg.gintsts.srqint.mask();
   bus_power_ = present;
+  scheduler_.cancel(pull_up_check_);
+  if (!present) pull_up_check_ = scheduler_.at(scheduler_.now() + pull_up_release, [this] { check_bus_power(); });
   update_pull_up();
   update_interrupt();
+}
+
+void OtgFsDevice::check_bus_power() {
+  if (pulled_up_ && !bus_power_) rules_.violate(Rule::usb_pull_up_unpowered);
 }
 
 // Of the endpoints' bits only USBAEP is the core's to clear: enables, stalls and FIFOs stay as they are until firmware

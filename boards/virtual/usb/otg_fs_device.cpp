@@ -267,12 +267,14 @@ bool OtgFsDevice::has_session() const {
 void OtgFsDevice::update_pull_up() {
   const bool pulled_up = otg.gccfg.pwrdwn.in(core_configuration_) && has_session() &&
                          !otg.dctl.sdis.in(device_control_) && !otg.gusbcfg.fhmod.in(usb_configuration_);
-  if (pulled_up && !pulled_up_) {
+  const bool rises = pulled_up && !pulled_up_;
+  pulled_up_ = pulled_up;
+  if (rises) {
     ++attachments_;
+    check_bus_power();
     scheduler_.cancel(connection_check_);
     connection_check_ = scheduler_.at(scheduler_.now() + connection_settles, [this] { check_connection(); });
   }
-  pulled_up_ = pulled_up;
 }
 
 void OtgFsDevice::write_usb_configuration(std::uint32_t value) {

@@ -6,6 +6,7 @@
 #include <board/omni_driver.hpp>
 #include <drivers/interrupts.hpp>
 #include <drivers/otg_fs.hpp>
+#include <drivers/pins.hpp>
 #include <registers/otg_fs.hpp>
 
 namespace inkwell::drivers {
@@ -13,6 +14,7 @@ namespace inkwell::drivers {
 using Core = registers::OTG_FS_GLOBAL;
 using Device = registers::OTG_FS_DEVICE;
 using Line = InterruptLine<OtgFs, Interrupt::usb>;
+using UsbSupply = DigitalInput<OtgFs, board::usb_supply>;
 
 /// The core answers within a packet's time of 50 us or never.
 inline constexpr std::uint32_t core_answer_cycles = board::processor_Hz / 1'000'000 * 60;

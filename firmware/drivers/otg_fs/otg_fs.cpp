@@ -62,6 +62,7 @@ void write_control_out_size() {
 // ---- events ------------------------------------------------------------------------------------------
 
 bool OtgFs::next_event(Event& event) {
+  if (follow_cable(event)) return true;
   const std::uint32_t interrupts = Core::GINTSTS::read();
   if (Core::GINTSTS::USBRST::from(interrupts)) {
     bus_reset();
@@ -79,6 +80,21 @@ bool OtgFs::next_event(Event& event) {
   answer_control();
   Line::enable();
   return false;
+}
+
+// A device that lives from its own supply pulls D+ up only while VBUS is there (USB 2.0, section 7.1.5). A cable that
+// is pulled is a bus that has fallen silent.
+bool OtgFs::follow_cable(Event& event) {
+  const bool plugged = UsbSupply::is_high();
+  if (plugged == pulled_up_) return false;
+  pulled_up_ = plugged;
+  Device::DCTL::modify(Device::DCTL::SDIS(plugged ? 0 : 1));
+  if (plugged || suspended_) return false;
+  suspended_ = true;
+  frame_clock_.forget();
+  event.kind = Event::Kind::suspend;
+  event.length = 0;
+  return true;
 }
 
 // The core itself only deactivates the endpoints: what was enabled still is, and packets of before may stand in the

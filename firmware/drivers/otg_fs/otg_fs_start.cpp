@@ -34,6 +34,7 @@ bool reset_core() {
 bool OtgFs::start() {
   connect<OtgFs, board::usb_minus>(Pull::none, Speed::high);
   connect<OtgFs, board::usb_plus>(Pull::none, Speed::high);
+  UsbSupply::start(Pull::none);
   start_clocks_of<OtgFs, Core, registers::TIM2>();
   frame_clock_.start();
 
@@ -44,8 +45,8 @@ bool OtgFs::start() {
   Core::GUSBCFG::modify(Core::GUSBCFG::FDMOD(1), Core::GUSBCFG::TRDT(turnaround_clocks));
   wait(mode_change_cycles);
 
-  // PA9 drives a bridge, so the core may not sense VBUS there and takes it to be present: D+ would rise, so the soft
-  // disconnection comes first.
+  // PA9 drives a bridge, so the core may not sense VBUS there and takes it to be present. D+ would rise, so the soft
+  // disconnection comes first, and follow_cable() ends it.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
   registers::OTG_FS_PWRCLK::PCGCCTL::write(0);  // the PHY's clock is never stopped
@@ -62,8 +63,6 @@ bool OtgFs::start() {
   Core::GAHBCFG::modify(Core::GAHBCFG::GINT(1));
   Line::set_priority(Priority::last);
   Line::enable();
-
-  Device::DCTL::modify(Device::DCTL::SDIS(0));
   return true;
 }
 

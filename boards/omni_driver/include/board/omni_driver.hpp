@@ -75,6 +75,8 @@ inline constexpr Pin inkwell_switch{'B', 15};
 inline constexpr Pin status_led{'C', 10};
 inline constexpr PeripheralPin usb_minus{{'A', 11}, 10};
 inline constexpr PeripheralPin usb_plus{{'A', 12}, 10};
+/// High while the cable brings VBUS: PA9, where the core would sense it, drives a bridge.
+inline constexpr Pin usb_supply{'C', 12};
 inline constexpr PeripheralPin console_transmit{{'A', 2}, 7};  ///< USART2, 115200 8N1
 inline constexpr PeripheralPin console_receive{{'A', 3}, 7};
 inline constexpr Pin debug_data{'A', 13};   ///< SWDIO
@@ -106,8 +108,8 @@ inline constexpr PinUse pin_uses[] = {
     INKWELL_USE(gimbal[0]),        INKWELL_USE(gimbal[1]),         INKWELL_USE(gimbal[2]),
     INKWELL_USE(supply),           INKWELL_USE(button_1),          INKWELL_USE(button_2),
     INKWELL_USE(inkwell_switch),   INKWELL_USE(status_led),        INKWELL_USE(usb_minus),
-    INKWELL_USE(usb_plus),         INKWELL_USE(console_transmit),  INKWELL_USE(console_receive),
-    INKWELL_USE(debug_data),       INKWELL_USE(debug_clock),
+    INKWELL_USE(usb_plus),         INKWELL_USE(usb_supply),        INKWELL_USE(console_transmit),
+    INKWELL_USE(console_receive),  INKWELL_USE(debug_data),        INKWELL_USE(debug_clock),
 };
 #undef INKWELL_USE
 

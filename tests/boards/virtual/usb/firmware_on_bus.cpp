@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include <board/omni_driver.hpp>
 #include <protocol/scope.hpp>
 
 namespace inkwell::virtual_usb_test {
@@ -29,7 +30,12 @@ FirmwareOnBus::FirmwareOnBus(const std::filesystem::path& image, double host_clo
   chip.reset(ResetCause::power_on);
   for (const auto& [letter, number] : {std::pair{'B', 12u}, {'A', 6u}, {'B', 13u}, {'B', 14u}, {'B', 15u}})
     chip.input_pins().drive(letter, number, PinLevel::high);
-  port.plug(true);
+  plug(true);
+}
+
+void FirmwareOnBus::plug(bool in) {
+  port.plug(in);
+  chip.input_pins().drive(board::usb_supply.port, board::usb_supply.number, in ? PinLevel::high : PinLevel::low);
 }
 
 void FirmwareOnBus::connect() {

@@ -22,8 +22,8 @@ constexpr std::array<std::byte, 8> some_request{};
 
 struct CoreBench {
   CoreBench() : core({scheduler, interrupts, log, log, state, triggers}), firmware(core, scheduler) {
-    firmware.start();
     core.set_bus_power(true);
+    firmware.start();
     core.begin_reset();
     core.end_reset();
     firmware.handle_interrupt();
@@ -108,6 +108,29 @@ TEST_CASE("the pull-up needs power, a session and no soft disconnect") {
   CHECK(core.attachment() == 0);
   core.write(dctl, 0, 4);
   CHECK(core.attachment() != first);
+}
+
+TEST_CASE("a pull-up without VBUS is seen: at once when it rises, after ten seconds when VBUS goes") {
+  CoreBench bench;
+  bench.core.set_bus_power(false);
+  bench.wait_us(9.9e6);
+  CHECK(bench.log.sentences.empty());
+  SUBCASE("it stays") {
+    bench.wait_us(0.2e6);
+    CHECK(bench.log.has("brings no VBUS"));
+  }
+  SUBCASE("it goes in time") {
+    bench.write(dctl, 2);
+    bench.wait_us(0.2e6);
+    CHECK(bench.log.sentences.empty());
+    bench.write(dctl, 0);
+    CHECK(bench.log.has("brings no VBUS"));
+  }
+  SUBCASE("VBUS comes back") {
+    bench.core.set_bus_power(true);
+    bench.wait_us(0.2e6);
+    CHECK(bench.log.sentences.empty());
+  }
 }
 
 TEST_CASE("the interrupt line follows status, mask and the global switch") {

@@ -38,8 +38,8 @@ class RootPortBench final : public RootPort::Client {
     scheduler.pass_until(end);
   }
   void enumerate() {
-    firmware.start();
     port.plug(true);
+    firmware.start();
     run_for(0.5);
     REQUIRE(port.enumerated());
   }

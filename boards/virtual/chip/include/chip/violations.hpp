@@ -63,6 +63,8 @@ namespace inkwell::virtual_board {
   RULE(usb_pins, "GPIOA_AFRH", "RM0090, I/O pin alternate function multiplexer",                                       \
        "The USB core is attached while PA11 or PA12 is not in alternate function 10", "the host sees no device",       \
        "connect both pins")                                                                                            \
+  RULE(usb_pull_up_unpowered, "OTG_FS_DCTL", "USB 2.0, 7.1.5", "D+ is pulled up while the cable brings no VBUS",       \
+       "the device feeds current into a bus that is off", "sense VBUS, and set SDIS while it is not there")            \
   RULE(usb_transceiver, "OTG_FS_GUSBCFG", "RM0090, OTG_FS core initialization",                                        \
        "The USB core is attached without PHYSEL", "which transceiver it drives is left open", "set PHYSEL first")      \
   RULE(usb_core_reset, "OTG_FS_GRSTCTL", "RM0090, OTG_FS reset register",                                              \

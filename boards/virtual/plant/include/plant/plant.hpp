@@ -44,6 +44,8 @@ class Plant final : public Circuit {
   void press_buttons(bool first, bool second);
   void set_supply_V(double volts) { supply_.set_source_V(volts); }
   void set_bridge_fault(bool fault);
+  /// The USB cable brings VBUS.
+  void set_usb_supply(bool present);
   /// Turns the gimbal, as the hand does with the stylus: yaw, pitch, roll.
   void turn_gimbal(const Vector3& gimbal_rad) { gimbal_rad_ = gimbal_rad; }
   void hold(const Vector3& target_m, double stiffness_N_per_m, double damping_Ns_per_m);
@@ -100,7 +102,8 @@ class Plant final : public Circuit {
   std::array<QuadratureEncoder, 3> encoders_;
   std::array<QuadratureEncoder::Levels, 3> encoder_levels_{};
   std::array<bool, 2> buttons_{};
-  std::array<PinLevel, 5> shown_{};  ///< buttons, inkwell switch, two pins of the fault wire
+  bool usb_supply_ = false;
+  std::array<PinLevel, 6> shown_{};  ///< buttons, inkwell switch, two pins of the fault wire, USB supply
 
   // Gimbal: joint angles and the inverse of the potentiometers' characteristic
   std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope, offset of each

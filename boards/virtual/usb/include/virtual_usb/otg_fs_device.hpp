@@ -142,6 +142,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   /// A bus reset that firmware has not acknowledged yet: it may still do what was right before.
   bool reset_is_unseen() const;
   void check_connection();
+  void check_bus_power();
   void check_core();
   /// Notes the access; 0, as the register reads.
   std::uint32_t not_modelled(std::uint32_t offset, bool is_write, std::uint32_t value);
@@ -206,6 +207,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   bool reset_since_selection_ = false;  ///< CSRST after PHYSEL
   Ticks device_forced_at_ = 0;          ///< FDMOD rose
   Scheduler::Id connection_check_ = 0;
+  Scheduler::Id pull_up_check_ = 0;
 };
 
 }  // namespace inkwell::virtual_board

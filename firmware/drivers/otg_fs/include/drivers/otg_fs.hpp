@@ -2,7 +2,7 @@
 //
 //   drivers::OtgFs port;
 //   usb::Device device{port, link, identity};
-//   port.start();                                             // the host sees the device from here on
+//   port.start();
 //   for (;;) { device.poll(); sleep_unless([] { return OtgFs::is_awake(); }); }
 //   extern "C" void OTG_FS_IRQHandler() { drivers::OtgFs::wake(); }
 //
@@ -26,11 +26,15 @@ namespace inkwell::drivers {
 
 class OtgFs final : public usb::Port {
  public:
-  static constexpr std::array claims{peripheral<registers::OTG_FS_GLOBAL>(), peripheral<registers::TIM2>(),
-                                     pin(board::usb_minus), pin(board::usb_plus), interrupt(Interrupt::usb)};
+  static constexpr std::array claims{peripheral<registers::OTG_FS_GLOBAL>(),
+                                     peripheral<registers::TIM2>(),
+                                     pin(board::usb_minus),
+                                     pin(board::usb_plus),
+                                     pin(board::usb_supply),
+                                     interrupt(Interrupt::usb)};
 
-  /// Sets pins, clock and core up and connects the pull-up of D+. Takes 25 ms. The 48 MHz clock runs already
-  /// (clocks.hpp). False if the core does not answer.
+  /// Sets pins, clock and core up; next_event() connects the pull-up of D+ while the cable brings VBUS. Takes 26 ms.
+  /// The 48 MHz clock runs already (clocks.hpp). False if the core does not answer.
   [[nodiscard]] bool start();
 
   /// To be called by the interrupt OTG_FS: switches the interrupt off until the main loop has polled. Touches
@@ -63,6 +67,7 @@ class OtgFs final : public usb::Port {
     std::uint8_t length = 0;
   };
 
+  bool follow_cable(usb::Event& event);
   void bus_reset();
   bool next_sent(usb::Event& event);
   bool next_received(usb::Event& event);
@@ -88,6 +93,7 @@ class OtgFs final : public usb::Port {
   bool control_stall_waits_ = false;
   bool setup_done_is_in_doubt_ = false;  ///< NAK was cleared when a SETUP had just come, so its end may not be told
   bool setup_done_may_follow_ = false;   ///< of a SETUP that was passed on without waiting for it
+  bool pulled_up_ = false;
   bool suspended_ = false;
 };
 
