@@ -13,6 +13,9 @@ inline constexpr Ticks never = std::numeric_limits<Ticks>::max();
 /// A cycle lasts numerator / denominator ticks. Most clocks of the chip divide ticks_per_s, then the
 /// denominator is 1; the others stay exact as fractions.
 struct Clock {
+  /// The clock of a crystal that is off by some parts in a million has large terms.
+  __extension__ using Wide = unsigned __int128;
+
   std::uint64_t numerator = 0;  ///< 0: the clock stands still
   std::uint64_t denominator = 1;
 
@@ -26,11 +29,15 @@ struct Clock {
 
   /// The time by which `cycles` are over.
   Ticks duration(std::uint64_t cycles) const {
-    const std::uint64_t scaled = cycles * numerator;
-    return denominator == 1 ? scaled : (scaled + denominator - 1) / denominator;
+    if (denominator == 1) return cycles * numerator;
+    return static_cast<Ticks>((Wide{cycles} * numerator + denominator - 1) / denominator);
   }
   /// Whole cycles within `time`.
-  std::uint64_t cycles_in(Ticks time) const { return runs() ? time * denominator / numerator : 0; }
+  std::uint64_t cycles_in(Ticks time) const {
+    if (!runs()) return 0;
+    if (denominator == 1) return time / numerator;
+    return static_cast<std::uint64_t>(Wide{time} * denominator / numerator);
+  }
   /// As cycles_in, for a divided clock: whole periods of `divider` cycles.
   std::uint64_t periods_in(Ticks time, std::uint64_t divider) const { return cycles_in(time) / divider; }
 };

@@ -8,7 +8,7 @@
 namespace inkwell::virtual_board {
 namespace {
 
-constexpr std::uint32_t internal_Hz = 16'000'000, low_speed_internal_Hz = 32'000;
+constexpr std::uint32_t internal_Hz = 16'000'000;
 constexpr auto& map = rcc_registers;
 constexpr Ticks microsecond = ticks_per_s / 1'000'000;
 
@@ -120,16 +120,22 @@ std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
   return divider < 2 ? 0 : static_cast<std::uint32_t>(oscillator_Hz / divider);
 }
 
+// Limits are those of the frequency that the crystal is sold for.
+std::uint32_t Rcc::real_Hz(std::uint32_t nominal_Hz) const {
+  const std::int64_t off_Hz = std::int64_t{nominal_Hz} * machine_.options.crystal_ppm / 1'000'000;
+  return static_cast<std::uint32_t>(nominal_Hz + off_Hz);
+}
+
 std::uint32_t Rcc::real_time_clock_Hz() const {
   const std::uint32_t domain = words_[map.bdcr / 4];
   if (!map.bdcr.rtcen.in(domain)) return 0;
   constexpr std::uint32_t low_speed_external_Hz = 32'768;
   switch (map.bdcr.rtcsel.of(domain)) {
     case 1: return is_ready(lse) ? low_speed_external_Hz : 0;
-    case 2: return is_ready(lsi) ? low_speed_internal_Hz : 0;
+    case 2: return is_ready(lsi) ? machine_.options.low_speed_internal_Hz : 0;
     case 3: {
       const std::uint32_t divider = map.cfgr.rtcpre.of(words_[map.cfgr / 4]);
-      return is_ready(hse) && divider >= 2 ? machine_.options.crystal_Hz / divider : 0;
+      return is_ready(hse) && divider >= 2 ? real_Hz(machine_.options.crystal_Hz) / divider : 0;
     }
     default: return 0;
   }
@@ -186,7 +192,7 @@ void Rcc::check_limits(const Clocks& clocks) const {
 
 void Rcc::set_voltage_scale(bool scale_1) {
   voltage_scale_1_ = scale_1;
-  check_limits(machine_.clocks.frequencies);
+  check_limits(nominal_);
 }
 
 void Rcc::update_tree() {
@@ -204,7 +210,12 @@ void Rcc::update_tree() {
   f.timer2_Hz = f.pclk2_Hz * (divider2 == 1 ? 1 : 2);
   f.usb_Hz = is_ready(pll) && !machine_.clock_is_lost ? pll_output_Hz(PllOutput::usb) : 0;
   if (f.hclk_Hz == 0) return;  // the PLL's dividers make no sense: stay as it was
-  check_limits(f);
+  nominal_ = f;
+  check_limits(nominal_);
+  if (runs_from_crystal())
+    for (auto* clock_Hz : {&f.system_Hz, &f.hclk_Hz, &f.pclk1_Hz, &f.pclk2_Hz, &f.timer1_Hz, &f.timer2_Hz})
+      *clock_Hz = real_Hz(*clock_Hz);
+  if (map.pllcfgr.pllsrc.in(words_[map.pllcfgr / 4])) f.usb_Hz = real_Hz(f.usb_Hz);
 
   ClockTree tree{Clock::of(f.hclk_Hz),
                  Clock::of(f.pclk1_Hz),
@@ -212,7 +223,7 @@ void Rcc::update_tree() {
                  Clock::of(f.timer1_Hz),
                  Clock::of(f.timer2_Hz),
                  Clock::of(f.usb_Hz),
-                 Clock::of(low_speed_internal_Hz),
+                 Clock::of(machine_.options.low_speed_internal_Hz),
                  f};
   if (machine_.clock_is_lost) tree.timer1 = tree.timer2 = Clock{};
   if (tree == machine_.clocks) {

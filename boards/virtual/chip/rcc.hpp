@@ -54,6 +54,8 @@ class Rcc final : public RegisterBlock, public TimedPart {
   };
   bool is_on(unsigned oscillator) const;
   bool is_ready(unsigned oscillator) const;
+  /// Of a clock that comes from the crystal, what it really is.
+  std::uint32_t real_Hz(std::uint32_t nominal_Hz) const;
   enum class PllOutput : std::uint8_t { system, usb };
   std::uint32_t pll_output_Hz(PllOutput output) const;
   void start_oscillators();
@@ -71,6 +73,7 @@ class Rcc final : public RegisterBlock, public TimedPart {
   std::array<Ticks, oscillators> ready_at_{};
   unsigned system_clock_ = 0;  ///< CFGR.SWS
   std::uint32_t reset_flags_ = 0;
+  Clocks nominal_{};  ///< with a crystal that swings as it should
   bool voltage_scale_1_ = true;
   bool crystal_swings_ = true, crystal_failed_ = false;  ///< the latter: CIR.CSSF
   std::uint64_t fresh_until_ = 0;                        ///< cycle of the core

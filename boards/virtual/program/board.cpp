@@ -38,6 +38,8 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
       chip_(plant_, {.mode = options.mode,
                      .pricing = options.pricing,
                      .crystal_Hz = options.crystal_Hz,
+                     .crystal_ppm = options.crystal_ppm,
+                     .low_speed_internal_Hz = options.low_speed_internal_Hz,
                      .unique_id = unique_id_of(options.seed),
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); },

@@ -67,6 +67,20 @@ CommandLine read_command_line(int argc, char** argv) {
       ->check(CLI::Range(4'000'000, 26'000'000).description(""))
       ->type_name("HZ")
       ->capture_default_str();
+  app.add_option(
+         "--crystal-ppm", options.crystal_ppm,
+         "it swings faster than that by so many parts in a million; negative: slower. USB bears 2500 (USB 2.0,\n"
+         "section 7.1.11), a crystal for it has 50")
+      ->check(CLI::Range(-10'000, 10'000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option(
+         "--lsi", options.low_speed_internal_Hz,
+         "frequency of the low-speed internal oscillator, which the watchdog runs from; each chip has its own,\n"
+         "from 17 to 47 kHz")
+      ->check(CLI::Range(17'000, 47'000).description(""))
+      ->type_name("HZ")
+      ->capture_default_str();
   app.add_option("--host-clock-ppm", options.host_clock_ppm,
                  "the USB host's clock is faster than board time by so many parts in a million: its start of frame\n"
                  "comes at its own millisecond; negative: slower (USB 2.0, section 7.1.11, bears 500)")

@@ -18,7 +18,8 @@ namespace {
 constexpr std::uint32_t turnaround_clocks = 6;
 static_assert(board::processor_Hz >= 32'000'000);
 
-constexpr std::uint32_t mode_change_cycles = board::processor_Hz / 1000 * 25;
+/// 25 ms (RM0090, GUSBCFG: FDMOD), and one more for a crystal that is fast.
+constexpr std::uint32_t mode_change_cycles = board::processor_Hz / 1000 * 26;
 
 bool reset_core() {
   if (!wait_for(core_answer_cycles, [] { return Core::GRSTCTL::AHBIDL::is_set(); })) return false;

@@ -20,8 +20,16 @@ std::filesystem::path flashed_image(const std::filesystem::path& build_directory
   return build_directory / ".." / "board" / "inkwell.elf";
 }
 
-FirmwareOnBus::FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm)
-    : chip(circuit, {.log = [](const std::string&) {}}),
+namespace {
+virtual_board::ChipOptions without_log(virtual_board::ChipOptions options) {
+  options.log = [](const std::string&) {};
+  return options;
+}
+}  // namespace
+
+FirmwareOnBus::FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm,
+                             virtual_board::ChipOptions options)
+    : chip(circuit, without_log(std::move(options))),
       core(chip.connections()),
       cable(core),
       port(chip.connections().scheduler, cable, *this, host_clock_ppm) {

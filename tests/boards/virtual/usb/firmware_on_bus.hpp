@@ -76,8 +76,11 @@ std::filesystem::path flashed_image(const std::filesystem::path& build_directory
 /// Chip, cable and a host that enumerates and configures the device.
 class FirmwareOnBus final : private virtual_board::RootPort::Client {
  public:
-  explicit FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm = 0.0);
+  explicit FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm = 0.0,
+                         virtual_board::ChipOptions options = {});
 
+  /// The cable, and VBUS with it; it is in to begin with.
+  void plug(bool in);
   /// Enumerates and configures the device; throws std::runtime_error if it does not come within a second.
   void connect();
   void run_for(double time_s) { chip.run_until(chip.now() + ticks(time_s)); }

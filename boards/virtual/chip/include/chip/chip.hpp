@@ -36,7 +36,9 @@ enum class Mode : std::uint8_t {
 struct ChipOptions {
   Mode mode = Mode::fast;
   Pricing pricing = Pricing::likely;
-  std::uint32_t crystal_Hz = 8'000'000;                                           ///< HSE
+  std::uint32_t crystal_Hz = 8'000'000;          ///< HSE, by its name
+  std::int32_t crystal_ppm = 0;                  ///< and how much faster than that it swings
+  std::uint32_t low_speed_internal_Hz = 32'000;  ///< LSI: 17 to 47 kHz by the data sheet
   std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
   std::uint32_t random_seed = 1;                                                  ///< of the RNG peripheral
   /// Takes each line of the log (without a newline); by default it goes to stderr.

@@ -1,0 +1,100 @@
+// The flashed firmware on chips and crystals that are not as their names say, within the data sheets and beyond.
+#include <doctest/doctest.h>
+
+#include <stdexcept>
+
+#include <board/omni_driver.hpp>
+
+#include "firmware_on_bus.hpp"
+
+namespace inkwell::virtual_usb_test {
+namespace {
+
+using virtual_board::ChipOptions;
+using virtual_board::PinLevel;
+using virtual_board::ResetCause;
+
+struct OtherBoard {
+  explicit OtherBoard(const ChipOptions& options) : bus(flashed_image(INKWELL_BUILD_DIRECTORY), 0.0, options) {}
+  std::uint32_t watchdog_resets() const {
+    return bus.chip.counters().resets[static_cast<std::size_t>(ResetCause::independent_watchdog)];
+  }
+  FirmwareOnBus bus;
+};
+
+}  // namespace
+
+TEST_CASE("a crystal that is off by what USB bears gives a pose in each frame of the host") {
+  for (const int ppm : {-2'400, 50, 2'400}) {
+    CAPTURE(ppm);
+    OtherBoard other({.crystal_ppm = ppm});
+    FirmwareOnBus& bus = other.bus;
+    bus.connect();
+    CHECK(bus.chip.clocks().hclk_Hz == board::processor_Hz + board::processor_Hz / 1'000'000 * ppm);
+    int frames = 0, poses = 0;
+    bus.keep_asking_for_poses();
+    bus.run_for(0.05);
+    bus.cable.on_start_of_frame = [&](std::uint16_t) { ++frames; };
+    bus.cable.on_finished_in = [&](unsigned endpoint, bool done) { poses += endpoint == 1 && done ? 1 : 0; };
+    bus.run_for(0.2);
+    CHECK(frames >= 199);
+    CHECK(poses >= frames - 1);
+    for (const auto& sentence : bus.violations()) FAIL_CHECK(sentence);
+  }
+}
+
+TEST_CASE("with a crystal that is off by more, the host hears nothing, and a rule says why") {
+  OtherBoard other({.crystal_ppm = 2'600});
+  FirmwareOnBus& bus = other.bus;
+  CHECK_THROWS_AS(bus.connect(), std::runtime_error);
+  REQUIRE(bus.violations().size() == 1);
+  CHECK(bus.chip.violations().front().rule == virtual_board::Rule::usb_clock);
+}
+
+TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fastest chip, and bites on both") {
+  struct Sort {
+    std::uint32_t low_speed_internal_Hz;
+    double not_before_s, by_s;
+  };
+  for (const Sort& sort : {Sort{17'000, 0.0366, 0.0387}, Sort{47'000, 0.0126, 0.0147}}) {
+    CAPTURE(sort.low_speed_internal_Hz);
+    OtherBoard other({.low_speed_internal_Hz = sort.low_speed_internal_Hz});
+    FirmwareOnBus& bus = other.bus;
+    bus.connect();
+    bus.run_for(0.3);
+    REQUIRE(other.watchdog_resets() == 0);
+    constexpr unsigned control_interrupt = 16 + 18;
+    bus.chip.lose_exception(control_interrupt, true);
+    bus.run_for(sort.not_before_s);
+    CHECK(other.watchdog_resets() == 0);
+    bus.run_for(sort.by_s - sort.not_before_s);
+    CHECK(other.watchdog_resets() == 1);
+  }
+}
+
+TEST_CASE("a crystal that never starts: the light blinks ten times a second, no device, no bridge") {
+  OtherBoard other({});
+  FirmwareOnBus& bus = other.bus;
+  bus.chip.let_crystal_swing(false);
+  bus.chip.reset();
+  bus.run_for(0.3);
+  int changes = 0;
+  PinLevel before = PinLevel::floating;
+  for (int i = 0; i < 200; ++i) {
+    bus.run_for(0.005);
+    const PinLevel now = bus.chip.pin_output(board::status_led.port, board::status_led.number);
+    changes += now != before ? 1 : 0;
+    before = now;
+    CHECK(bus.chip.pin_output(board::bridge_enable.port, board::bridge_enable.number) != PinLevel::high);
+    for (const auto& bridge : board::bridges)
+      for (const auto& leg : {bridge.leg_a.pin, bridge.leg_b.pin})
+        CHECK(bus.chip.pin_output(leg.port, leg.number) == PinLevel::floating);
+  }
+  CHECK(changes >= 19);
+  CHECK(changes <= 22);
+  CHECK(bus.core.attachment() == 0);
+  CHECK(bus.chip.clocks().hclk_Hz == 16'000'000);
+  CHECK(bus.violations().empty());
+}
+
+}  // namespace inkwell::virtual_usb_test
