@@ -38,18 +38,23 @@ INKWELL_INTERRUPT void PoseRecorder::record(const protocol::SignalValues& signal
   written_.store(written + 1);
 }
 
-// A copy takes a microsecond and may be interrupted; only if it took two whole control periods is it torn.
-PoseRecorder::Period PoseRecorder::newest() const {
-  for (;;) {
+// A copy takes a microsecond and may be interrupted; only if it took two whole control periods is it torn. Three torn
+// ones in a row would say that the interrupt leaves the main loop no time; the caller then goes on without.
+std::optional<PoseRecorder::Period> PoseRecorder::newest() const {
+  constexpr int tries = 3;
+  for (int i = 0; i < tries; ++i) {
     const std::uint32_t written = written_.load();
+    if (written == 0) return std::nullopt;
     const Period period = periods_[(written - 1) % 2];
     if (written_.load() - written < 2) return period;
   }
+  return std::nullopt;
 }
 
 bool PoseRecorder::read(protocol::PoseReport& report) const {
-  if (written_.load() == 0) return false;
-  const Period period = newest();
+  const std::optional<Period> recorded = newest();
+  if (!recorded) return false;
+  const Period& period = *recorded;
   report.report_id = protocol::ReportId::pose;
   report.state = period.summary.state;
   report.fault = period.summary.fault;
@@ -72,14 +77,16 @@ bool PoseRecorder::take(protocol::PoseReport& report) {
   return true;
 }
 
-BoardTime PoseRecorder::time_of(std::uint32_t cycles) const {
-  const PeriodSummary latest = newest().summary;
+std::optional<BoardTime> PoseRecorder::time_of(std::uint32_t cycles) const {
+  const std::optional<Period> recorded = newest();
+  if (!recorded) return std::nullopt;
+  const PeriodSummary& latest = recorded->summary;
   const std::uint32_t since = cycles - latest.begin_cycles;
   if (static_cast<std::int32_t>(since) >= 0)
-    return {latest.periods + since / cycles_per_period_, since % cycles_per_period_};
+    return BoardTime{latest.periods + since / cycles_per_period_, since % cycles_per_period_};
   const std::uint32_t before = -since;
   const std::uint32_t whole = (before + cycles_per_period_ - 1) / cycles_per_period_;
-  return {latest.periods - whole, whole * cycles_per_period_ - before};
+  return BoardTime{latest.periods - whole, whole * cycles_per_period_ - before};
 }
 
 }  // namespace inkwell::link

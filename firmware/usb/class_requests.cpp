@@ -110,11 +110,12 @@ std::optional<protocol::FrameReport> Device::frame_report() {
   const std::optional<Frame> frame = port_.frame();
   if (!frame) return std::nullopt;
   const auto time = link_.poses.time_of(frame->begin_cycles);
+  if (!time) return std::nullopt;
   protocol::FrameReport report{};
   report.frame_number = frame->number;
   report.sequence = frame->count;
-  report.time_periods = time.periods;
-  report.time_cycles = time.cycles;
+  report.time_periods = time->periods;
+  report.time_cycles = time->cycles;
   return report;
 }
 

@@ -79,14 +79,16 @@ TEST_CASE("the load is the longest interrupt since the last report that was take
 
 TEST_CASE("a moment of the cycle counter has a board time") {
   PoseRecorder recorder(cycles_per_period);
+  CHECK_FALSE(recorder.time_of(0));          // no period yet
   constexpr std::uint32_t period = 600'000;  // the counter has wrapped
   recorder.record(some_signals(), summary_of(period));
   for (const std::int32_t cycles : {0, 1, 8399, 8400, 20'000, -1, -8399, -8400, -8401, -168'000}) {
     CAPTURE(cycles);
     const auto time = recorder.time_of(period * cycles_per_period + static_cast<std::uint32_t>(cycles));
-    CHECK(time.cycles < cycles_per_period);
-    const auto periods_since = static_cast<std::int32_t>(time.periods - period);
-    CHECK(periods_since * static_cast<std::int32_t>(cycles_per_period) + static_cast<std::int32_t>(time.cycles) ==
+    REQUIRE(time);
+    CHECK(time->cycles < cycles_per_period);
+    const auto periods_since = static_cast<std::int32_t>(time->periods - period);
+    CHECK(periods_since * static_cast<std::int32_t>(cycles_per_period) + static_cast<std::int32_t>(time->cycles) ==
           cycles);
   }
 }

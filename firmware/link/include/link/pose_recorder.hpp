@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <link/shared.hpp>
 #include <protocol/reports.hpp>
@@ -41,14 +42,15 @@ class PoseRecorder {
 
   // ---- main loop ----
 
-  /// The newest pose, without a sequence; false before the first one.
+  /// The newest pose, without a sequence; false if there is none: before the first period, or if it was overwritten
+  /// during each of three tries to copy it.
   bool read(protocol::PoseReport& report) const;
 
   /// The same for a report that is sent: the longest interrupt is looked for anew.
   bool take(protocol::PoseReport& report);
 
-  /// Board time at a moment of the cycle counter that is less than 12 s ago.
-  BoardTime time_of(std::uint32_t cycles) const;
+  /// Board time at a moment of the cycle counter that is less than 12 s ago; nothing if there is no pose to count from.
+  std::optional<BoardTime> time_of(std::uint32_t cycles) const;
 
  private:
   struct Period {
@@ -57,7 +59,7 @@ class PoseRecorder {
     std::uint32_t longest_cycles;
     PeriodSummary summary;
   };
-  Period newest() const;
+  std::optional<Period> newest() const;
 
   std::array<Period, 2> periods_{};
   Shared<std::uint32_t> written_{0};       ///< written by the interrupt
