@@ -9,7 +9,7 @@ namespace inkwell::drivers {
 /// `first` interrupts whatever runs: it is the control interrupt's alone.
 enum class Priority : std::uint8_t { first = 0x00, last = 0xF0 };
 
-/// No interrupt comes while it lives, which may be a microsecond.
+/// No interrupt comes while it lives, which may be a microsecond, or a sleep that an interrupt ends.
 class InterruptsHeld {
  public:
   InterruptsHeld() { asm volatile("cpsid i" ::: "memory"); }

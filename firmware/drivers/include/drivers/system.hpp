@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include <drivers/interrupts.hpp>
 #include <registers/clock.hpp>
 #include <registers/processor.hpp>
 
@@ -42,9 +43,8 @@ inline std::array<char, 24> unique_identifier() {
 /// over.
 template <class Question>
 void sleep_unless(Question is_something_to_do) {
-  asm volatile("cpsid i" ::: "memory");
+  const InterruptsHeld held;
   if (!is_something_to_do()) asm volatile("wfi" ::: "memory");
-  asm volatile("cpsie i" ::: "memory");
 }
 
 }  // namespace inkwell::drivers
