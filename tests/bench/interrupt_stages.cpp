@@ -12,6 +12,7 @@
 #include <board/omni_driver.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
+#include <stepped_board.hpp>
 
 namespace inkwell::bench {
 namespace {
@@ -60,12 +61,8 @@ class PressedBoard {
   static constexpr double slice_s = 0.01;
 
   static device::VirtualBoardOptions options(device::CyclePricing pricing, const std::filesystem::path& profile) {
-    device::VirtualBoardOptions options;
-    options.mode = device::SimulationMode::exact;
-    options.pricing = pricing;
+    auto options = tests::stepped_board(device::SimulationMode::exact, pricing);
     options.profile = profile;
-    options.real_time = false;
-    options.paused = true;
     return options;
   }
 
@@ -80,13 +77,7 @@ class PressedBoard {
   }
 
   void take_to(device::Vector3 target_m, double duration_s) {
-    const auto truth = control_.truth();
-    const device::Vector3 here_m{truth.at("true_position_x_m"), truth.at("true_position_y_m"),
-                                 truth.at("true_position_z_m")};
-    control_.hand({.holds = true, .target_m = here_m, .stiffness_N_per_m = 1500, .damping_Ns_per_m = 15});
-    control_.dock(false);
-    control_.hand_path({{0.0, here_m}, {duration_s, target_m}});
-    run(duration_s + 0.3);
+    run(tests::bring_stylus(control_, target_m, duration_s));
   }
 
   void keep_longest(const device::ScopeSamples& samples) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <doctest/doctest.h>
+#include <stepped_board.hpp>
 
 namespace inkwell::tests {
 namespace {
@@ -13,12 +14,8 @@ namespace {
 using namespace std::chrono_literals;
 
 device::VirtualBoardOptions options(device::SimulationMode mode, std::uint64_t seed, device::CyclePricing pricing) {
-  device::VirtualBoardOptions options;
-  options.mode = mode;
+  auto options = stepped_board(mode, pricing);
   options.seed = seed;
-  options.pricing = pricing;
-  options.real_time = false;
-  options.paused = true;
   options.strict = true;
   return options;
 }
@@ -86,13 +83,7 @@ void BoardRig::run_until(const std::function<bool(const protocol::PoseReport&)>&
 }
 
 void BoardRig::take_to(device::Vector3 target_m, double duration_s) {
-  const auto truth = control.truth();
-  const device::Vector3 here_m{truth.at("true_position_x_m"), truth.at("true_position_y_m"),
-                               truth.at("true_position_z_m")};
-  control.hand({.holds = true, .target_m = here_m, .stiffness_N_per_m = 1500, .damping_Ns_per_m = 15});
-  control.dock(false);
-  control.hand_path({{0.0, here_m}, {duration_s, target_m}});
-  run(duration_s + 0.3);
+  run(bring_stylus(control, target_m, duration_s));
 }
 
 void BoardRig::make_active() {

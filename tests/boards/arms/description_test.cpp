@@ -5,6 +5,7 @@
 #include <string>
 
 #include <doctest/doctest.h>
+#include <failure.hpp>
 
 namespace {
 
@@ -29,17 +30,10 @@ std::string omni_with(const std::string& piece, const std::string& instead) {
 
 /// What parse() says about a text, or "" if it takes it.
 std::string complaint(const std::string& text) {
-  try {
-    arms::parse(text, "some.toml");
-    return {};
-  } catch (const arms::DescriptionError& error) {
-    return error.what();
-  }
+  return tests::message_of<arms::DescriptionError>([&] { arms::parse(text, "some.toml"); });
 }
 
-bool holds(const std::string& text, const std::string& piece) { return text.find(piece) != std::string::npos; }
-
-#define CHECK_SAYS(text, piece) CHECK_MESSAGE(holds(text, piece), text)
+#define CHECK_SAYS(text, piece) CHECK_MESSAGE(tests::contains(text, piece), text)
 
 }  // namespace
 

@@ -1,45 +1,23 @@
 #include <doctest/doctest.h>
 
-#include <unistd.h>
-
 #include <cstdlib>
-#include <filesystem>
-#include <functional>
 #include <string>
 
 #include <device/parameter_file.hpp>
+#include <failure.hpp>
+#include <temporary_directory.hpp>
 
 using namespace inkwell;
+using namespace inkwell::tests;
 using protocol::Parameter;
-
-namespace {
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const device::Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool contains(const std::string& text, const char* words) { return text.find(words) != std::string::npos; }
-
-struct TemporaryFile {
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("inkwell-parameters-" + std::to_string(getpid()) + ".toml");
-  ~TemporaryFile() { std::filesystem::remove(path); }
-};
-
-}  // namespace
 
 TEST_CASE("parameters come back from a file exactly as they were") {
   auto parameters = protocol::default_parameters();
   parameters[Parameter::wall_stiffness_N_per_m] = 0.1f * 7777.0f;
   parameters[Parameter::box_minimum_x_m] = -0.0712345678f;
-  const TemporaryFile file;
-  device::save_parameters(file.path, parameters);
-  const auto loaded = device::load_parameters(file.path);
+  const TemporaryDirectory directory;
+  device::save_parameters(directory / "soft.toml", parameters);
+  const auto loaded = device::load_parameters(directory / "soft.toml");
   CHECK(loaded.unknown.empty());
   REQUIRE(loaded.changes.size() == protocol::parameter_count);
   for (const auto& [parameter, value] : loaded.changes) CHECK(value == parameters[parameter]);
@@ -65,7 +43,9 @@ TEST_CASE("names that this version does not know are returned, not refused") {
 }
 
 TEST_CASE("a bad file is refused with its line and the remedy") {
-  const auto refusal = [](const char* text) { return message_of([&] { device::parse_parameters(text, "bad.toml"); }); };
+  const auto refusal = [](const char* text) {
+    return message_of<device::Error>([&] { device::parse_parameters(text, "bad.toml"); });
+  };
   const auto not_toml = refusal("[parameters]\nforce_limit_N = = 2\n");
   CHECK(contains(not_toml, "bad.toml, line 2"));
   const auto too_large = refusal("[parameters]\n\nforce_limit_N = 80.0\n");
@@ -75,25 +55,27 @@ TEST_CASE("a bad file is refused with its line and the remedy") {
   CHECK(contains(refusal("[parameters]\nforce_limit_N = nan\n"), "force_limit_N"));
   CHECK(contains(refusal("[parameters]\ntransmission = 0.5\n"), "whole number"));
   CHECK(contains(refusal("force_limit_N = 2\n"), "[parameters]"));
-  CHECK(contains(message_of([] { device::load_parameters("/nowhere/at/all.toml"); }), "/nowhere/at/all.toml"));
+  CHECK(contains(message_of<device::Error>([] { device::load_parameters("/nowhere/at/all.toml"); }),
+                 "/nowhere/at/all.toml"));
 }
 
 TEST_CASE("a file that cannot be written leaves the old one alone") {
-  CHECK(contains(message_of([] { device::save_parameters("/nowhere/at/all.toml", protocol::default_parameters()); }),
+  CHECK(contains(message_of<device::Error>(
+                     [] { device::save_parameters("/nowhere/at/all.toml", protocol::default_parameters()); }),
                  "cannot be written"));
 }
 
 TEST_CASE("a mistyped name gets the nearest one suggested") {
   CHECK(device::nearest_parameter_name("wall_stifness_N_per_m") == "wall_stiffness_N_per_m");
   CHECK(device::nearest_parameter_name("box_minimum_x") == "box_minimum_x_m");
-  CHECK(contains(message_of([] { device::parameter_named("force_limit"); }), "force_limit_N"));
+  CHECK(contains(message_of<device::Error>([] { device::parameter_named("force_limit"); }), "force_limit_N"));
 }
 
 TEST_CASE("NAME=VALUE is read, and refused with what would be right") {
   const auto [parameter, value] = device::parse_change("wall_damping_Ns_per_m=2.5");
   CHECK(parameter == Parameter::wall_damping_Ns_per_m);
   CHECK(value == 2.5f);
-  const auto refusal = [](const char* text) { return message_of([&] { device::parse_change(text); }); };
+  const auto refusal = [](const char* text) { return message_of<device::Error>([&] { device::parse_change(text); }); };
   CHECK(contains(refusal("wall_damping_Ns_per_m"), "NAME=VALUE"));
   CHECK(contains(refusal("wall_damping_Ns_per_m="), "not a number"));
   CHECK(contains(refusal("wall_damping_Ns_per_m=2,5"), "not a number"));

@@ -8,6 +8,7 @@
 
 #include <device/device.hpp>
 #include <device/session.hpp>
+#include <failure.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "fake_usb.hpp"
@@ -20,16 +21,6 @@ using namespace std::chrono_literals;
 namespace {
 
 Bytes bulk_number(int number) { return Bytes(100, static_cast<std::byte>(number)); }
-
-template <class Failure>
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Failure& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// What a session asks an arm first.
 void answer_as_inkwell(FakeUsbDevice& arm) {

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <device/device.hpp>
+#include <failure.hpp>
 
 #include "fake_usbip_server.hpp"
 
@@ -26,18 +27,6 @@ protocol::PoseReport pose_number(std::uint32_t sequence) {
   pose.position_m[2] = 0.125f;
   return pose;
 }
-
-template <class Failure>
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Failure& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool contains(const std::string& text, const char* words) { return text.find(words) != std::string::npos; }
 
 }  // namespace
 

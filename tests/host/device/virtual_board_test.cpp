@@ -10,6 +10,7 @@
 #include <thread>
 
 #include <device/virtual_board.hpp>
+#include <failure.hpp>
 
 #include "fake_usbip_server.hpp"
 #include "temporary_directory.hpp"
@@ -42,15 +43,8 @@ class Script {
 constexpr char run_until_told[] = "echo $$ > process\necho ready usbip=7 control=8\nwhile :; do sleep 0.01; done\n";
 
 std::string failure_of(const device::VirtualBoardOptions& options) {
-  try {
-    device::VirtualBoard board(options);
-  } catch (const device::Error& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<device::Error>([&] { device::VirtualBoard board(options); });
 }
-
-bool contains(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
 }  // namespace
 

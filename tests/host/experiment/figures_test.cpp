@@ -7,12 +7,14 @@
 #include <experiment/figures.hpp>
 #include <recording/signals.hpp>
 
+#include <failure.hpp>
 #include <system/image.hpp>
 #include <temporary_directory.hpp>
 
 using namespace inkwell;
 using namespace inkwell::experiment;
 using inkwell::tests::Colour;
+using inkwell::tests::message_of;
 using inkwell::tests::read_png;
 using inkwell::tests::TemporaryDirectory;
 using protocol::Signal;
@@ -87,13 +89,8 @@ TEST_CASE("gnuplot draws the four figures, each line in its colour") {
 
 TEST_CASE("what cannot be drawn as in the paper is said in a sentence") {
   const TemporaryDirectory directory;
-  const auto error_of = [&](const recording::Recording& recording, const FigureOptions& options) -> std::string {
-    try {
-      draw_figures(recording, directory.path(), options);
-    } catch (const device::Error& error) {
-      return error.what();
-    }
-    return {};
+  const auto error_of = [&](const recording::Recording& recording, const FigureOptions& options) {
+    return message_of<device::Error>([&] { draw_figures(recording, directory.path(), options); });
   };
   CHECK(error_of(push(), {.wall = Wall{0, 1}}).find("wall x+") != std::string::npos);
   CHECK(error_of(push(), {.wall = {}, .from_s = 0.5, .to_s = 0.4}).find("takes 0.700 s") != std::string::npos);

@@ -42,6 +42,13 @@ void run_to_step(FakeArm& arm, Guide& guide, std::size_t step) {
 guides::CurrentLoopOptions one_motor(double bandwidth_Hz = 600) { return {{2}, bandwidth_Hz}; }
 constexpr std::size_t identify_step = 1, trial_step = 3;  // after the inkwell; after the step response of now
 
+void run_into_trial(FakeArm& arm, Guide& guide) {
+  run_to_step(arm, guide, trial_step);
+  guide.confirm();
+  arm.pass_millisecond(guide);
+  arm.pass_millisecond(guide);
+}
+
 }  // namespace
 
 TEST_CASE("nothing is powered before the user agrees, and the text says how much it will be") {
@@ -113,10 +120,7 @@ TEST_CASE("cancel ends a pulse at once") {
 TEST_CASE("cancel in the trial puts the old gains back") {
   FakeArm arm;
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
-  run_to_step(arm, guide, trial_step);
-  guide.confirm();
-  arm.pass_millisecond(guide);
-  arm.pass_millisecond(guide);
+  run_into_trial(arm, guide);
   REQUIRE(arm.parameters() != protocol::default_parameters());
   guide.cancel(arm);
   arm.pass_millisecond(guide);
@@ -129,10 +133,7 @@ TEST_CASE("cancel in the trial puts the old gains back") {
 TEST_CASE("a device that goes away ends the guide with a sentence; what was on trial is to be put back") {
   FakeArm arm;
   Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
-  run_to_step(arm, guide, trial_step);
-  guide.confirm();
-  arm.pass_millisecond(guide);
-  arm.pass_millisecond(guide);
+  run_into_trial(arm, guide);
   arm.unplug();
   arm.pass_millisecond(guide);
   REQUIRE(guide.phase() == Phase::failed);

@@ -10,6 +10,7 @@
 #include <recording/figure.hpp>
 #include <recording/gnuplot.hpp>
 
+#include <failure.hpp>
 #include <system/image.hpp>
 #include <temporary_directory.hpp>
 
@@ -17,6 +18,7 @@ using namespace inkwell;
 using namespace inkwell::recording;
 using inkwell::tests::Colour;
 using inkwell::tests::Image;
+using inkwell::tests::message_of;
 using inkwell::tests::read_png;
 using inkwell::tests::TemporaryDirectory;
 using protocol::Signal;
@@ -106,12 +108,7 @@ std::uint32_t png_size(const std::filesystem::path& file, std::size_t at) {
 }
 
 std::string error_of(const Recording& recording, const FigureOptions& options, const std::filesystem::path& picture) {
-  try {
-    draw_figure(recording, options, picture);
-  } catch (const device::Error& error) {
-    return error.what();
-  }
-  return {};
+  return message_of<device::Error>([&] { draw_figure(recording, options, picture); });
 }
 
 }  // namespace

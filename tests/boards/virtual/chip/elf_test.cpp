@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <failure.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -8,6 +9,8 @@
 #include "chip_fixture.hpp"
 
 using namespace inkwell::virtual_board;
+using inkwell::tests::contains;
+using inkwell::tests::message_of;
 using namespace inkwell::virtual_board::test;
 
 namespace {
@@ -23,17 +26,10 @@ std::string complaint(const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
   RecordingCircuit circuit;
   Chip chip(circuit);
-  std::string said;
-  try {
-    chip.load_elf(path);
-  } catch (const ChipError& error) {
-    said = error.what();
-  }
+  const std::string said = message_of<ChipError>([&] { chip.load_elf(path); });
   std::filesystem::remove(path);
   return said;
 }
-
-bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <failure.hpp>
+
 #include "usbip_client.hpp"
 
 namespace inkwell::virtual_usb_test {
@@ -29,6 +31,14 @@ void configure(UsbIpClient& client, std::uint32_t sequence = 1) {
   REQUIRE(reply.header.command == Command::return_submit);
   REQUIRE(reply.header.sequence == sequence);
   REQUIRE(reply.status == 0);
+}
+
+usbip::ReturnSubmit ask_for_device_descriptor(UsbIpClient& client) {
+  client.submit(7, 0, true, 18, {}, get_device_descriptor);
+  const auto reply = client.read_reply();
+  REQUIRE(reply.header.sequence == 7);
+  REQUIRE(reply.status == 0);
+  return reply;
 }
 
 TEST_CASE("the device list shows descriptors once the device is enumerated") {
@@ -73,11 +83,8 @@ TEST_CASE("control transfers and errors over the socket") {
   REQUIRE(board.wait_until_enumerated());
   UsbIpClient client(board.usb.port());
   REQUIRE(client.import() == OperationStatus::success);
-  client.submit(7, 0, true, 18, {}, get_device_descriptor);
-  auto reply = client.read_reply();
+  auto reply = ask_for_device_descriptor(client);
   CHECK(reply.header.command == Command::return_submit);
-  CHECK(reply.header.sequence == 7);
-  CHECK(reply.status == 0);
   REQUIRE(reply.actual_length == 18);
   const Bytes descriptor = client.receive(18);
   CHECK(descriptor[0] == std::byte{18});
@@ -355,10 +362,7 @@ TEST_CASE("who imports right after a client died with transfers under way is ser
     dying.reset();
     const auto status = next.import();
     if (status != OperationStatus::success) continue;  // it came before the server saw the other one die
-    next.submit(7, 0, true, 18, {}, get_device_descriptor);
-    const auto reply = next.read_reply();
-    REQUIRE(reply.header.sequence == 7);
-    REQUIRE(reply.status == 0);
+    ask_for_device_descriptor(next);
   }
 }
 
@@ -382,15 +386,12 @@ TEST_CASE("a busy port is reported in a sentence") {
   FakeLog log;
   FakeChipState state;
   FakeTriggers triggers;
-  std::string message;
-  try {
+  const std::string message = tests::message_of<std::runtime_error>([&] {
     virtual_board::VirtualUsb second(
         {scheduler, interrupts, log, log, state, triggers}, board.usb.port(), 0.0, [] {}, [] { return false; });
-  } catch (const std::runtime_error& error) {
-    message = error.what();
-  }
-  CHECK(message.find(std::to_string(board.usb.port())) != std::string::npos);
-  CHECK(message.find("another program listens") != std::string::npos);
+  });
+  CHECK(tests::contains(message, std::to_string(board.usb.port())));
+  CHECK(tests::contains(message, "another program listens"));
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+// A virtual board whose time passes only when it is told to: the same calls give the same run on any machine.
+#pragma once
+
+#include <device/control_client.hpp>
+#include <device/virtual_board.hpp>
+
+namespace inkwell::tests {
+
+inline device::VirtualBoardOptions stepped_board(device::SimulationMode mode, device::CyclePricing pricing) {
+  device::VirtualBoardOptions options;
+  options.mode = mode;
+  options.pricing = pricing;
+  options.real_time = false;
+  options.paused = true;
+  return options;
+}
+
+/// Lets the hand take the stylus out of the inkwell and bring it to a point of the workspace; the board time until it
+/// rests there, s.
+inline double bring_stylus(device::ControlClient& control, device::Vector3 target_m, double duration_s) {
+  constexpr double comes_to_rest_s = 0.3;
+  const auto truth = control.truth();
+  const device::Vector3 here_m{truth.at("true_position_x_m"), truth.at("true_position_y_m"),
+                               truth.at("true_position_z_m")};
+  control.hand({.holds = true, .target_m = here_m, .stiffness_N_per_m = 1500, .damping_Ns_per_m = 15});
+  control.dock(false);
+  control.hand_path({{0.0, here_m}, {duration_s, target_m}});
+  return duration_s + comes_to_rest_s;
+}
+
+}  // namespace inkwell::tests
