@@ -10,10 +10,10 @@
 #include <board/omni_driver.hpp>
 #include <device/parameter_file.hpp>
 #include <guides/motor_identification.hpp>
+#include <guides/pulse_recorder.hpp>
 #include <recording/current_step.hpp>
 
 #include "joint_motion.hpp"
-#include "pulse_recorder.hpp"
 
 namespace inkwell::guides {
 namespace {

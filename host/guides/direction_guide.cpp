@@ -6,8 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <guides/pulse_recorder.hpp>
+
 #include "joint_motion.hpp"
-#include "pulse_recorder.hpp"
 
 namespace inkwell::guides {
 namespace {

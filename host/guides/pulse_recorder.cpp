@@ -1,4 +1,4 @@
-#include "pulse_recorder.hpp"
+#include <guides/pulse_recorder.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,8 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
   if (state_ == State::waits_for_scope) {
     if (since_.seconds(pose) > scope_limit_s)
       throw device::Error("The scope sends nothing. Reset the board and start the guide again.");
-    if (recording_.size() < samples_before) return false;
+    if (!is_at_rest()) return false;
+    recording_.keep(recording_.size() - samples_before, recording_.size());
     port.send(command_, pulse_);
     since_.start(pose);
     state_ = State::waits_for_end;
@@ -72,6 +73,14 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
   recording_.keep(from, begin + needed);
   state_ = State::done;
   return true;
+}
+
+// A recording that is made again may begin while the pulse of the one before is still on.
+bool PulseRecorder::is_at_rest() const {
+  const auto& seen = recording_.column(seen_in_);
+  if (seen.size() < samples_before) return false;
+  return std::all_of(seen.end() - static_cast<std::ptrdiff_t>(samples_before), seen.end(),
+                     [](float value) { return value == 0.0f; });
 }
 
 std::vector<double> PulseRecorder::values_of(protocol::Signal signal) const {

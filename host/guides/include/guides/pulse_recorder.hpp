@@ -28,6 +28,7 @@ class PulseRecorder {
  private:
   enum class State : std::uint8_t { waits_for_scope, waits_for_end, done };
   void start_over(const protocol::PoseReport& pose);
+  bool is_at_rest() const;
 
   protocol::Command command_;
   protocol::TestPulse pulse_;
