@@ -75,6 +75,7 @@ void ControlClient::buttons(bool first, bool second) { call({{"command", "button
 void ControlClient::supply(double voltage_V) { call({{"command", "supply"}, {"voltage_V", voltage_V}}); }
 void ControlClient::bridge_fault(bool fault) { call({{"command", "bridge_fault"}, {"fault", fault}}); }
 void ControlClient::jump(std::uint32_t address) { call({{"command", "jump"}, {"address", address}}); }
+void ControlClient::halt(double for_s) { call({{"command", "halt"}, {"for_s", for_s}}); }
 void ControlClient::stall(double for_s) { call({{"command", "stall"}, {"for_s", for_s}}); }
 void ControlClient::lose_exception(int exception, bool lost) {
   call({{"command", "lose_exception"}, {"exception", exception}, {"lost", lost}});

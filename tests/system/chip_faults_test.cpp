@@ -88,6 +88,20 @@ TEST_CASE("a processor that stands still for a moment while no interrupt runs is
   CHECK(rig.pose().state == State::active);
 }
 
+TEST_CASE("a debug probe that halts the core takes the voltage off the motors, and the watchdog waits for it") {
+  BoardRig rig;
+  press_into_wall(rig);
+  REQUIRE(any_motor_driven(rig.control));
+  rig.control.halt(0.1);
+  CHECK_FALSE(any_leg_high_within(rig.control, 0.001));
+  rig.control.run(0.098);
+  CHECK_FALSE(any_leg_high_within(rig.control, 0.0005));
+  rig.control.run(0.001);
+  CHECK(restarts(rig.control) == 0);
+  rig.control.run(0.05);
+  CHECK(restarts(rig.control) == 0);
+}
+
 TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of the firmware lives") {
   BoardRig rig;
   press_into_wall(rig);

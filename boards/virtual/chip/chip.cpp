@@ -8,6 +8,7 @@ namespace inkwell::virtual_board {
 
 struct Chip::Parts : ChipParts {
   using ChipParts::ChipParts;
+  Scheduler::Id end_of_halt = 0;
 };
 
 Chip::Chip(Circuit& circuit, const ChipOptions& options) : parts_(std::make_unique<Parts>(circuit, options)) {
@@ -54,6 +55,12 @@ void Chip::reset(ResetCause cause) {
 Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
 void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
 void Chip::stall(Ticks duration) { parts_->execution.stall(duration); }
+void Chip::halt(Ticks duration) {
+  auto& p = *parts_;
+  p.execution.halt(duration);
+  p.events.cancel(p.end_of_halt);
+  p.end_of_halt = p.events.at(now() + duration, [&p] { p.machine.debug_halt.set_halted(false); });
+}
 void Chip::lose_exception(unsigned exception, bool lost) { parts_->machine.nvic.lose(exception, lost); }
 void Chip::let_crystal_swing(bool swings) { parts_->rcc.let_crystal_swing(swings); }
 unsigned Chip::current_exception() const { return parts_->processor.current_exception(); }

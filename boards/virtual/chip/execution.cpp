@@ -51,6 +51,7 @@ void Execution::reset(ResetCause cause) {
   processor_.reset(system_control_.vector_table());
   processor_.anchor(machine_.timeline.now());
   machine_.core_stalls_until = 0;
+  machine_.debug_halt.set_halted(false);
   state_ = State::runs;
   lockup_reason_.clear();
   first_fault_.reset();
@@ -151,7 +152,7 @@ bool Execution::wakes() const {
   return machine_.nvic.next(masks) != exception_none;
 }
 
-// Everything but the core goes on. Its own counter of cycles too, as long as it has a clock.
+// Everything but the core goes on. Its own counter of cycles too, as long as it has a clock and no probe halts it.
 void Execution::stand_until(Ticks when) {
   auto& timeline = machine_.timeline;
   const Ticks from = timeline.now();
@@ -161,7 +162,8 @@ void Execution::stand_until(Ticks when) {
   to = std::max(from, to);
   timeline.catch_up(to);
   if (state_ != State::runs) return;
-  if (!machine_.clock_is_lost) processor_.wait(static_cast<unsigned>(machine_.clocks.hclk.cycles_in(to - from)));
+  const bool counts = !machine_.clock_is_lost && !machine_.debug_halt.halted();
+  if (counts) processor_.wait(static_cast<unsigned>(machine_.clocks.hclk.cycles_in(to - from)));
   processor_.anchor(timeline.now());
 }
 

@@ -24,6 +24,10 @@ class Execution {
   void reset(ResetCause cause);
   void jump(std::uint32_t address);
   void stall(Ticks duration) { machine_.core_stalls_until = machine_.timeline.now() + duration; }
+  void halt(Ticks duration) {
+    stall(duration);
+    machine_.debug_halt.set_halted(true);
+  }
   void request_stop() {
     stop_requested_ = true;
     if (running_) processor_.end_slice();

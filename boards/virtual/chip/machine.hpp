@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clock.hpp"
+#include "debug_halt.hpp"
 #include "debugging.hpp"
 #include "log.hpp"
 #include "memory.hpp"
@@ -58,6 +59,7 @@ struct Machine {
   Nvic nvic;
   ClockTree clocks;
   Debugging debugging;
+  DebugHalt debug_halt;
   std::vector<ClockUser*> clock_users;
 
   Adcs* adcs = nullptr;

@@ -66,7 +66,8 @@ void SystemControl::reset() {
   debug_monitor_ = 0;
   trace_control_ = dwt.ctrl.reset_value;
   cycle_base_ = cycle_held_ = 0;
-  debug_freeze_ = {};
+  machine_.debug_halt.set_stops(DebugHalt::apb1, 0);
+  machine_.debug_halt.set_stops(DebugHalt::apb2, 0);
   systick_.reset();
 }
 
@@ -160,8 +161,8 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
     case fpu_base + fpu.mvfr + 4: return 0x1100'0011;
     case dbg_base + dbg.idcode: return dbg.idcode.reset_value;
     case dbg_base + dbg.cr: return dbg.cr.dbg_sleep.with(machine_.sleep_counts_cycles);
-    case dbg_base + dbg.apb1_fz: return debug_freeze_[0];
-    case dbg_base + dbg.apb2_fz: return debug_freeze_[1];
+    case dbg_base + dbg.apb1_fz: return machine_.debug_halt.stops(DebugHalt::apb1);
+    case dbg_base + dbg.apb2_fz: return machine_.debug_halt.stops(DebugHalt::apb2);
     default: break;
   }
   if (is_priority(address)) {
@@ -244,8 +245,8 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case fpu_base + fpu.fpcar: float_address_ = value; return;
     case fpu_base + fpu.fpdscr: float_default_ = value; return;
     case dbg_base + dbg.cr: machine_.sleep_counts_cycles = dbg.cr.dbg_sleep.in(value); return;
-    case dbg_base + dbg.apb1_fz: debug_freeze_[0] = value; return;
-    case dbg_base + dbg.apb2_fz: debug_freeze_[1] = value; return;
+    case dbg_base + dbg.apb1_fz: machine_.debug_halt.set_stops(DebugHalt::apb1, value); return;
+    case dbg_base + dbg.apb2_fz: machine_.debug_halt.set_stops(DebugHalt::apb2, value); return;
     default: break;
   }
   if (address - stk_base < stk_bytes) return systick_.write(address - stk_base, value);

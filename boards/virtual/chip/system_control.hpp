@@ -70,7 +70,6 @@ class SystemControl {
   std::uint32_t float_control_ = fpu.fpccr.reset_value, float_address_ = 0, float_default_ = 0;
   std::uint32_t debug_monitor_ = 0, trace_control_ = dwt.ctrl.reset_value;
   std::uint32_t cycle_base_ = 0, cycle_held_ = 0;
-  std::array<std::uint32_t, 2> debug_freeze_{};  ///< DBGMCU: nothing here stops for a debugger
 };
 
 }  // namespace inkwell::virtual_board

@@ -33,7 +33,7 @@ void Timer::reset() {
 const Clock& Timer::clock() const { return traits_.on_apb2 ? machine_.clocks.timer2 : machine_.clocks.timer1; }
 
 bool Timer::runs() const {
-  if (!enabled() || encoder_mode() || slave_mode() == external_clock) return false;
+  if (!enabled() || frozen_ || encoder_mode() || slave_mode() == external_clock) return false;
   return slave_mode() != gated || gate_open_;
 }
 
@@ -60,6 +60,13 @@ void Timer::settle() {
 
 void Timer::before_clock_change() { settle(); }
 void Timer::after_clock_change() { begin_ramp(machine_.timeline.now()); }
+
+void Timer::freeze(bool frozen) {
+  settle();
+  frozen_ = frozen;
+  begin_ramp(machine_.timeline.now());
+  configure_outputs();
+}
 
 void Timer::begin_ramp(Ticks now) {
   ramp_start_ = now;
@@ -177,6 +184,7 @@ void Timer::reinitialise(bool by_software) {
 }
 
 void Timer::count_one(bool down) {
+  if (frozen_) return;
   down_ = down;
   bool wrapped = false;
   if (down) {

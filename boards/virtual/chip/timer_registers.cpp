@@ -289,6 +289,11 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
 Timers::Timers(Machine& machine) {
   for (const auto& traits : timer_traits) timers_.emplace_back(machine, traits);
   machine.timers = this;
+  // DBGMCU_APB1_FZ and APB2_FZ: DBG_TIMx_STOP.
+  constexpr unsigned stop_bits[14] = {0, 0, 1, 2, 3, 4, 5, 1, 16, 17, 18, 6, 7, 8};
+  for (auto& timer : timers_)
+    machine.debug_halt.add(timer, timer.traits().on_apb2 ? DebugHalt::apb2 : DebugHalt::apb1,
+                           stop_bits[timer.traits().number - 1]);
 }
 
 void Timers::trigger_from(unsigned master, bool level, bool is_pulse) {

@@ -42,13 +42,15 @@ struct TimerTraits {
 /// Sources of a trigger for the ADCs: channel 1..4 of a timer, or its trigger output.
 inline constexpr unsigned trigger_output = 0;
 
-class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
+class Timer final : public RegisterBlock, public TimedPart, public ClockUser, public Freezable {
  public:
   Timer(Machine& machine, const TimerTraits& traits);
   void reset() override;
   void step(Ticks now) override;
   void before_clock_change() override;
   void after_clock_change() override;
+  /// The counter stands, and TIM1 and TIM8 switch their outputs off (RM0090, "Debug support for timers").
+  void freeze(bool frozen) override;
 
   /// A pin that is an input of this timer changed.
   void input_changed(unsigned line, bool high);
@@ -95,7 +97,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   unsigned trigger_source() const { return tim.smcr.ts.of(smcr_); }
   unsigned master_mode() const { return tim.cr2.mms.of(cr2_); }
   bool encoder_mode() const { return slave_mode() >= encoder_1 && slave_mode() <= encoder_3; }
-  bool outputs_on() const { return !traits_.breaks || tim.bdtr.moe.in(bdtr_); }
+  bool outputs_on() const { return !traits_.breaks || (tim.bdtr.moe.in(bdtr_) && !frozen_); }
   bool runs() const;
   void settle();
   void begin_ramp(Ticks now);
@@ -151,6 +153,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser {
   bool down_ = false;
   bool gate_open_ = false;
   bool break_input_ = false;
+  bool frozen_ = false;
   Ticks ramp_start_ = 0;
   std::uint64_t ramp_length_ = 0, accounted_ = 0, next_tick_ = 0;
 };

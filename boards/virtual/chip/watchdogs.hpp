@@ -37,9 +37,12 @@ struct WindowWatchdogRegisters {
 };
 inline constexpr WindowWatchdogRegisters wwdg;
 
-class IndependentWatchdog final : public RegisterBlock, public TimedPart {
+class IndependentWatchdog final : public RegisterBlock, public TimedPart, public Freezable {
  public:
-  explicit IndependentWatchdog(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) {}
+  explicit IndependentWatchdog(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) {
+    constexpr unsigned stop_bit = 12;  // DBG_IWDG_STOP
+    machine.debug_halt.add(*this, DebugHalt::apb1, stop_bit);
+  }
   void reset() override {
     prescaler_ = 0;
     reload_ = iwdg.rlr.reset_value;
@@ -48,6 +51,16 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart {
     machine_.timeline.set(slot_, never, never);
   }
   void step(Ticks) override { machine_.request_reset(ResetCause::independent_watchdog); }
+  void freeze(bool frozen) override {
+    if (!runs_) return;
+    const Ticks now = machine_.timeline.now();
+    if (frozen)
+      left_ = end_ - now;
+    else
+      end_ = now + left_;
+    const Ticks next = frozen ? never : end_;
+    machine_.timeline.set(slot_, next, next);
+  }
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override {
@@ -85,20 +98,27 @@ class IndependentWatchdog final : public RegisterBlock, public TimedPart {
   }
   void restart() {
     const std::uint64_t divider = std::uint64_t{4} << std::min<std::uint32_t>(prescaler_, 6);
-    const Ticks end = machine_.timeline.now() + machine_.clocks.low_speed_internal.duration(divider * (reload_ + 1));
-    machine_.timeline.set(slot_, end, end);
+    end_ = machine_.timeline.now() + machine_.clocks.low_speed_internal.duration(divider * (reload_ + 1));
+    machine_.timeline.set(slot_, end_, end_);
   }
   Machine& machine_;
   Timeline::Slot slot_;
   std::uint32_t prescaler_ = 0, reload_ = iwdg.rlr.reset_value;
   Ticks prescaler_taken_at_ = 0, reload_taken_at_ = 0;
+  Ticks end_ = 0, left_ = 0;  ///< when it bites; how long it had when it was frozen
   bool unlocked_ = false, runs_ = false;
 };
 
-class WindowWatchdog final : public RegisterBlock, public TimedPart, public ClockUser {
+class WindowWatchdog final : public RegisterBlock, public TimedPart, public ClockUser, public Freezable {
  public:
   explicit WindowWatchdog(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) {
     machine.clock_users.push_back(this);
+    constexpr unsigned stop_bit = 11;  // DBG_WWDG_STOP
+    machine.debug_halt.add(*this, DebugHalt::apb1, stop_bit);
+  }
+  void freeze(bool frozen) override {
+    frozen_ = frozen;
+    after_clock_change();
   }
   void reset() override {
     counter_ = wwdg.cr.reset_value;
@@ -151,7 +171,7 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
  private:
   static constexpr std::uint32_t last_count = 0x40;  ///< one less resets the chip
   void plan() {
-    if (!active_) return machine_.timeline.set(slot_, never, never);
+    if (!active_ || frozen_) return machine_.timeline.set(slot_, never, never);
     const Ticks next =
         start_ + machine_.clocks.pclk1.duration(std::uint64_t{4096} << wwdg.cfr.wdgtb.of(configuration_));
     machine_.timeline.set(slot_, next, counter_ <= last_count + 1 ? next : never);
@@ -161,7 +181,7 @@ class WindowWatchdog final : public RegisterBlock, public TimedPart, public Cloc
   Timeline::Slot slot_;
   std::uint32_t counter_ = wwdg.cr.reset_value, configuration_ = wwdg.cfr.reset_value;
   Ticks start_ = 0;
-  bool active_ = false, early_ = false;
+  bool active_ = false, early_ = false, frozen_ = false;
 };
 
 }  // namespace inkwell::virtual_board

@@ -250,6 +250,11 @@ json stall(const json& request, Simulation& simulation) {
   return {};
 }
 
+json halt(const json& request, Simulation& simulation) {
+  simulation.board().chip().halt(ticks(number(request, "for_s", 0.0, 1e3)));
+  return {};
+}
+
 json lose_exception(const json& request, Simulation& simulation) {
   const double exception = number(request, "exception", 2, exception_numbers - 1);
   simulation.board().chip().lose_exception(static_cast<unsigned>(exception), truth_value(request, "lost"));
@@ -337,6 +342,7 @@ const std::vector<Command>& commands() {
       {"pin", {"pin", "drive"}, "level at a pin, such as PA5; drives it high, low or floating from outside first", pin},
       {"jump", {"address"}, "throw the program counter there, as a flipped bit would", jump},
       {"stall", {"for_s"}, "the core stands still while all else goes on, as on a bus that does not answer", stall},
+      {"halt", {"for_s"}, "a debug probe halts the core, and what DBGMCU_APBx_FZ says; all else goes on", halt},
       {"lose_exception",
        {"exception", "lost"},
        "it never reaches the core, or does again; 16 is interrupt 0",

@@ -74,6 +74,7 @@ class ControlClient {
   void bridge_fault(bool fault);     ///< a bridge pulls the fault wire low, and lets go of it
   void jump(std::uint32_t address);  ///< throws the processor's program counter somewhere, as a flipped bit would
   void stall(double for_s);          ///< the core stands still, all else goes on
+  void halt(double for_s);           ///< a debug probe halts it, with what the firmware lets stop then
   void lose_exception(int exception, bool lost);  ///< it never reaches the core, or does again
   void crystal(bool swings);                      ///< the crystal stops, or swings again
   void hand(const Hand& hand);

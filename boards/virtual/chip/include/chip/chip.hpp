@@ -119,9 +119,12 @@ class Chip {
   /// Sets the program counter, as a debugger does between two instructions, or a particle that flips a bit of it.
   /// Not from inside run_until().
   void jump(std::uint32_t address);
-  // Faults that are put into it, not from inside run_until(). A reset ends a stall; the others last.
+  // Faults that are put into it, not from inside run_until(). A reset ends a stall and a halt; the others last.
   /// The core does nothing for this long, as when the bus keeps it waiting; all else goes on.
   void stall(Ticks duration);
+  /// A debug probe halts the core for this long; what firmware asked for in DBGMCU_APBx_FZ stands still too. Unlike the
+  /// halts of debug_port(), in which all of board time stands.
+  void halt(Ticks duration);
   /// An exception by number that never reaches the core, or does again.
   void lose_exception(unsigned exception, bool lost);
   /// The crystal stops, or swings again.
