@@ -181,7 +181,7 @@ std::uint64_t Companion::picture_digest() const {
   if (drawn_pose_) digest.add_bytes(&*drawn_pose_, sizeof *drawn_pose_);
   const auto parameters = shown_parameters().shown();
   digest.add_bytes(parameters.values.data(), parameters.values.size() * sizeof parameters.values[0]);
-  digest.add(style_.palette);
+  digest.add(*style_.palette);
   for (const float each : {scene_.place.x, scene_.place.y, scene_.size.x, scene_.size.y}) digest.add(each);
   scene_pane_.add_to(digest);
   return digest.value();
