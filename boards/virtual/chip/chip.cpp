@@ -61,6 +61,15 @@ void Chip::halt(Ticks duration) {
   p.events.cancel(p.end_of_halt);
   p.end_of_halt = p.events.at(now() + duration, [&p] { p.machine.debug_halt.set_halted(false); });
 }
+void Chip::set_supply_V(double volts) {
+  auto& machine = parts_->machine;
+  machine.supply_V = volts;
+  const auto threshold = parts_->flash.brown_out();
+  const bool was_low = machine.supply_is_low;
+  machine.supply_is_low = volts < (was_low ? threshold.rising_V : threshold.falling_V);
+  if (machine.supply_is_low != was_low) reset(ResetCause::brown_out);
+  parts_->flash.check_wait_states();
+}
 void Chip::lose_exception(unsigned exception, bool lost) { parts_->machine.nvic.lose(exception, lost); }
 void Chip::let_crystal_swing(bool swings) { parts_->rcc.let_crystal_swing(swings); }
 unsigned Chip::current_exception() const { return parts_->processor.current_exception(); }

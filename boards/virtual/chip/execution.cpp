@@ -50,7 +50,7 @@ void Execution::reset(ResetCause cause) {
   machine_.sleep_counts_cycles = false;
   processor_.reset(system_control_.vector_table());
   processor_.anchor(machine_.timeline.now());
-  machine_.core_stalls_until = 0;
+  machine_.core_stalls_until = machine_.supply_is_low ? never : 0;
   machine_.debug_halt.set_halted(false);
   state_ = State::runs;
   lockup_reason_.clear();

@@ -1,5 +1,6 @@
 #include "flash.hpp"
 
+#include <cmath>
 #include <cstring>
 
 #include "processor.hpp"
@@ -25,7 +26,11 @@ constexpr Sector sector(unsigned number) {
 
 }  // namespace
 
-FlashController::FlashController(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) {
+FlashController::FlashController(Machine& machine)
+    : machine_(machine),
+      slot_(machine.timeline.add(*this)),
+      option_bytes_((map.optcr.reset_value & writable(map.optcr) & ~map.optcr.bor_lev.mask()) |
+                    map.optcr.bor_lev.with(3 - machine.options.brown_out_level)) {
   machine.flash = this;
   machine.clock_users.push_back(this);
 }
@@ -36,19 +41,29 @@ void FlashController::reset() {
   control_ = map.cr.reset_value;
   unlock_step_ = 0;
   unlock_failed_ = false;
+  options_ = option_bytes_;
+  options_locked_ = true;
+  options_start_ = options_unlock_failed_ = false;
+  options_unlock_step_ = 0;
   machine_.timeline.set(slot_, never, never);
   update_interrupt();
 }
 
 void FlashController::check_wait_states() {
-  // One wait state for each 30 MHz at 2.7 V to 3.6 V (RM0090, table "Number of wait states").
+  // RM0090, table "Number of wait states": so much for each of them, by the supply.
+  const double supply_V = machine_.supply_V;
+  const std::uint32_t step_Hz = supply_V >= 2.7   ? 30'000'000
+                                : supply_V >= 2.4 ? 24'000'000
+                                : supply_V >= 2.1 ? 22'000'000
+                                                  : 20'000'000;
   const std::uint32_t hclk_Hz = machine_.clocks.frequencies.hclk_Hz;
   const bool was_misread = machine_.flash_is_misread;
-  machine_.flash_is_misread = hclk_Hz > 30'000'000 * (map.acr.latency.of(access_) + 1);
+  machine_.flash_is_misread = hclk_Hz > step_Hz * (map.acr.latency.of(access_) + 1);
   if (machine_.flash_is_misread != was_misread) machine_.processor->end_slice();
   if (machine_.flash_is_misread)
-    machine_.violations.violate(Rule::flash_wait_states,
-                                std::to_string(map.acr.latency.of(access_)) + " at " + std::to_string(hclk_Hz) + " Hz");
+    machine_.violations.violate(Rule::flash_wait_states, std::to_string(map.acr.latency.of(access_)) + " at " +
+                                                             std::to_string(hclk_Hz) + " Hz and " +
+                                                             std::to_string(std::lround(1000 * supply_V)) + " mV");
 }
 
 void FlashController::set_accelerator(std::uint32_t access) {
@@ -77,8 +92,37 @@ void FlashController::step(Ticks) {
   status_ &= ~map.sr.bsy.mask();
   if (map.cr.eopie.in(control_)) status_ |= map.sr.eop.mask();
   control_ &= ~map.cr.strt.mask();
+  options_start_ = false;
   machine_.timeline.set(slot_, never, never);
   update_interrupt();
+}
+
+FlashController::Threshold FlashController::brown_out() const {
+  constexpr Threshold thresholds[] = {{2.83, 2.92}, {2.50, 2.59}, {2.19, 2.29}, {1.68, 1.72}};
+  return thresholds[map.optcr.bor_lev.of(option_bytes_)];
+}
+
+void FlashController::write_option_key(std::uint32_t key) {
+  constexpr std::uint32_t keys[] = {0x0819'2A3B, 0x4C5D'6E7F};
+  if (!options_locked_ || options_unlock_failed_) return;
+  if (key != keys[options_unlock_step_]) {
+    options_unlock_failed_ = true;
+    return machine_.violations.violate(Rule::option_bytes_locked, "key");
+  }
+  if (++options_unlock_step_ < std::size(keys)) return;
+  options_locked_ = false;
+  options_unlock_step_ = 0;
+}
+
+void FlashController::write_options(std::uint32_t value) {
+  if (options_locked_) return machine_.violations.violate(Rule::option_bytes_locked);
+  if (map.sr.bsy.in(status_)) return;
+  options_ = value & writable(map.optcr);
+  options_locked_ = map.optcr.optlock.in(value);
+  if (!map.optcr.optstrt.in(value)) return;
+  option_bytes_ = options_;
+  options_start_ = true;
+  begin(sector(0).erase_time);
 }
 
 std::optional<std::uint32_t> FlashController::program(std::uint32_t address, std::uint32_t value, unsigned size) {
@@ -123,7 +167,7 @@ void FlashController::erase() {
 }
 
 std::uint32_t FlashController::stored(std::uint32_t offset) const {
-  return offset == map.acr ? access_ : offset == map.cr ? control_ : 0;
+  return offset == map.acr ? access_ : offset == map.cr ? control_ : offset == map.optcr ? options_ : 0;
 }
 
 std::uint32_t FlashController::read_word(std::uint32_t offset) {
@@ -131,7 +175,7 @@ std::uint32_t FlashController::read_word(std::uint32_t offset) {
     case map.acr: return access_;
     case map.sr: return status_;
     case map.cr: return control_;
-    case map.optcr: return map.optcr.reset_value;  // factory option bytes, locked
+    case map.optcr: return options_ | map.optcr.optlock.with(options_locked_) | map.optcr.optstrt.with(options_start_);
     case map.keyr:
     case map.optkeyr: return 0;
     default: machine_.log.note("FLASH", offset, false, 0); return 0;
@@ -157,6 +201,8 @@ void FlashController::write_word(std::uint32_t offset, std::uint32_t value) {
       }
       return;
     }
+    case map.optkeyr: return write_option_key(value);
+    case map.optcr: return write_options(value);
     case map.sr:
       status_ &= ~(value & bits_of(map.sr, Access::rc_w1));
       update_interrupt();

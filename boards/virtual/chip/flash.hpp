@@ -28,11 +28,10 @@ struct FlashRegisters {
     Field pg{"PG", 0}, ser{"SER", 1}, mer{"MER", 2}, snb{"SNB", 3, 4}, psize{"PSIZE", 8, 2},
         strt{"STRT", 16, 1, Access::rs}, eopie{"EOPIE", 24}, errie{"ERRIE", 25}, lock{"LOCK", 31, 1, Access::rs};
   } cr{{"CR", 0x10, 0x8000'0000}};
-  /// Its factory value cannot be changed here.
   struct : Register {
-    Field optlock{"OPTLOCK", 0, 1, Access::r}, optstrt{"OPTSTRT", 1, 1, Access::r}, bor_lev{"BOR_LEV", 2, 2, Access::r},
-        wdg_sw{"WDG_SW", 5, 1, Access::r}, nrst_stop{"nRST_STOP", 6, 1, Access::r},
-        nrst_stdby{"nRST_STDBY", 7, 1, Access::r}, rdp{"RDP", 8, 8, Access::r}, nwrp{"nWRP", 16, 12, Access::r};
+    Field optlock{"OPTLOCK", 0, 1, Access::rs}, optstrt{"OPTSTRT", 1, 1, Access::rs}, bor_lev{"BOR_LEV", 2, 2},
+        wdg_sw{"WDG_SW", 5}, nrst_stop{"nRST_STOP", 6}, nrst_stdby{"nRST_STDBY", 7}, rdp{"RDP", 8, 8},
+        nwrp{"nWRP", 16, 12};
   } optcr{{"OPTCR", 0x14, 0x0FFF'AAED}};
 };
 inline constexpr FlashRegisters flash_registers;
@@ -46,6 +45,13 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void after_clock_change() override { check_wait_states(); }
   /// A store of the processor into the flash: what is there afterwards. Nothing: not the flash, a bus fault.
   std::optional<std::uint32_t> program(std::uint32_t address, std::uint32_t value, unsigned size);
+  /// Falling and rising thresholds of the brown-out reset (data sheet, typical).
+  struct Threshold {
+    double falling_V, rising_V;
+  };
+  Threshold brown_out() const;
+  /// What the supply allows has changed.
+  void check_wait_states();
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;
@@ -55,7 +61,8 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
 
  private:
   void erase();
-  void check_wait_states();
+  void write_option_key(std::uint32_t key);
+  void write_options(std::uint32_t value);
   void set_accelerator(std::uint32_t access);
   void begin(Ticks duration);
   void update_interrupt();
@@ -65,6 +72,10 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   std::uint32_t access_ = 0, status_ = 0, control_ = 0;
   unsigned unlock_step_ = 0;
   bool unlock_failed_ = false;
+  std::uint32_t option_bytes_;  ///< as programmed: they outlive every reset
+  std::uint32_t options_ = 0;   ///< OPTCR without its lock and its start
+  bool options_locked_ = true, options_start_ = false, options_unlock_failed_ = false;
+  unsigned options_unlock_step_ = 0;
 };
 
 }  // namespace inkwell::virtual_board

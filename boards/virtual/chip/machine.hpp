@@ -71,6 +71,8 @@ struct Machine {
   Rcc* rcc = nullptr;
   Timers* timers = nullptr;
 
+  double supply_V = 3.3;
+  bool supply_is_low = false;        ///< the brown-out reset holds the chip
   bool flash_is_misread = false;     ///< too few wait states for HCLK
   bool traps_zero_division = false;  ///< CCR.DIV_0_TRP
   bool clock_is_lost = false;        ///< the crystal that the core runs from has stopped, and nobody noticed

@@ -53,7 +53,10 @@ void Rcc::reset() {
 }
 
 void Rcc::record_reset(ResetCause cause) {
-  reset_flags_ |= map.csr.pinrstf.mask() << static_cast<unsigned>(cause);
+  if (cause == ResetCause::brown_out)
+    reset_flags_ |= map.csr.borrstf.mask();
+  else
+    reset_flags_ |= map.csr.pinrstf.mask() << static_cast<unsigned>(cause);
   // Every internal reset pulls the pin NRST too; power-on comes with a brown-out reset (RM0090, "System reset").
   reset_flags_ |= map.csr.pinrstf.mask();
   if (cause == ResetCause::power_on) reset_flags_ |= map.csr.borrstf.mask();

@@ -20,6 +20,7 @@ std::string_view name_of(ResetCause cause) {
     case ResetCause::independent_watchdog: return "the independent watchdog";
     case ResetCause::window_watchdog: return "the window watchdog";
     case ResetCause::low_power: return "low-power management";
+    case ResetCause::brown_out: return "a supply below, or again above, its brown-out level";
   }
   return "an unknown cause";
 }
@@ -40,6 +41,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
                      .crystal_Hz = options.crystal_Hz,
                      .crystal_ppm = options.crystal_ppm,
                      .low_speed_internal_Hz = options.low_speed_internal_Hz,
+                     .brown_out_level = options.brown_out_level,
                      .unique_id = unique_id_of(options.seed),
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); },

@@ -176,6 +176,11 @@ json supply(const json& request, Simulation& simulation) {
   return {};
 }
 
+json logic_supply(const json& request, Simulation& simulation) {
+  simulation.board().chip().set_supply_V(number(request, "voltage_V", 0.0, 3.6));
+  return {};
+}
+
 json bridge_fault(const json& request, Simulation& simulation) {
   simulation.board().plant().set_bridge_fault(truth_value(request, "fault"));
   return {};
@@ -338,6 +343,7 @@ const std::vector<Command>& commands() {
       {"usb", {"connected"}, "plug or pull the cable, and with it VBUS", usb},
       {"buttons", {"pressed"}, "of the stylus: [true,false]", buttons},
       {"supply", {"voltage_V"}, "of the bridges", supply},
+      {"logic_supply", {"voltage_V"}, "of the chip, 3.3 V to begin with", logic_supply},
       {"bridge_fault", {"fault"}, "a bridge pulls the fault wire", bridge_fault},
       {"pin", {"pin", "drive"}, "level at a pin, such as PA5; drives it high, low or floating from outside first", pin},
       {"jump", {"address"}, "throw the program counter there, as a flipped bit would", jump},

@@ -81,6 +81,11 @@ CommandLine read_command_line(int argc, char** argv) {
       ->check(CLI::Range(17'000, 47'000).description(""))
       ->type_name("HZ")
       ->capture_default_str();
+  app.add_option("--brown-out", options.brown_out_level,
+                 "brown-out level in the chip's option bytes: 0 is off, as in a new chip; 3 is what the board wants")
+      ->check(CLI::Range(0, 3).description(""))
+      ->type_name("LEVEL")
+      ->capture_default_str();
   app.add_option("--host-clock-ppm", options.host_clock_ppm,
                  "the USB host's clock is faster than board time by so many parts in a million: its start of frame\n"
                  "comes at its own millisecond; negative: slower (USB 2.0, section 7.1.11, bears 500)")

@@ -27,7 +27,8 @@ struct Options {
   std::uint32_t crystal_Hz = 8'000'000;
   std::int32_t crystal_ppm = 0;  ///< the crystal swings faster than its name by so many parts in a million
   std::uint32_t low_speed_internal_Hz = 32'000;
-  double host_clock_ppm = 0.0;  ///< the USB host's clock is faster than board time by so many parts in a million
+  unsigned brown_out_level = 0;  ///< of the option bytes
+  double host_clock_ppm = 0.0;   ///< the USB host's clock is faster than board time by so many parts in a million
   bool real_time = false;
   std::uint64_t seed = 1;         ///< of all noise and of the serial number
   std::optional<double> seconds;  ///< of board time, after which the program ends

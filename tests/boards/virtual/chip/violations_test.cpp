@@ -38,6 +38,7 @@ constexpr Case cases[] = {
     {21, Rule::timer_locked},
     {22, Rule::watchdog_busy},
     {23, Rule::usb_disturbed},
+    {24, Rule::option_bytes_locked},
 };
 
 /// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.
@@ -145,6 +146,10 @@ TEST_SUITE("virtual chip: rules of silicon") {
     SUBCASE("the host sees no device without pins, and hears none without 48 MHz") {
       CHECK_FALSE(Planted(3).host_is_answered());
       CHECK_FALSE(Planted(4).host_is_answered());
+    }
+    SUBCASE("option bytes change only when they are unlocked") {
+      CHECK(Planted(0).test.result(7) == 0x0FFF'AAE1);
+      CHECK(Planted(24).test.result(7) == 0x0FFF'AAED);
     }
     SUBCASE("what LOCK protects stays") { CHECK(Planted(21).test.result(4) == 0); }
   }

@@ -39,6 +39,7 @@ struct ChipOptions {
   std::uint32_t crystal_Hz = 8'000'000;          ///< HSE, by its name
   std::int32_t crystal_ppm = 0;                  ///< and how much faster than that it swings
   std::uint32_t low_speed_internal_Hz = 32'000;  ///< LSI: 17 to 47 kHz by the data sheet
+  unsigned brown_out_level = 0;                  ///< of the option bytes: 0 is off, as in a new chip, to 3
   std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
   std::uint32_t random_seed = 1;                                                  ///< of the RNG peripheral
   /// Takes each line of the log (without a newline); by default it goes to stderr.
@@ -49,9 +50,17 @@ struct ChipOptions {
   std::function<void(std::uint32_t address, std::uint64_t cycles)> on_instruction;
 };
 
-/// RCC_CSR's reset flags, in the order of its bits 26..31.
-enum class ResetCause : std::uint8_t { pin, power_on, software, independent_watchdog, window_watchdog, low_power };
-inline constexpr std::size_t reset_causes = 6;
+/// RCC_CSR's reset flags, in the order of its bits 26..31, and its bit 25.
+enum class ResetCause : std::uint8_t {
+  pin,
+  power_on,
+  software,
+  independent_watchdog,
+  window_watchdog,
+  low_power,
+  brown_out
+};
+inline constexpr std::size_t reset_causes = 7;
 
 /// Exceptions are counted by number: 11 is SVCall, 15 is SysTick, 16 + position is an interrupt.
 inline constexpr unsigned exception_numbers = 16 + 82;
@@ -127,6 +136,8 @@ class Chip {
   void halt(Ticks duration);
   /// An exception by number that never reaches the core, or does again.
   void lose_exception(unsigned exception, bool lost);
+  /// The supply of the chip, 3.3 V to begin with. Below the brown-out level of the option bytes it is held in reset.
+  void set_supply_V(double volts);
   /// The crystal stops, or swings again.
   void let_crystal_swing(bool swings);
   /// The exception that runs; 0 in thread mode.

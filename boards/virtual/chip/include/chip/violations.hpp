@@ -57,6 +57,10 @@ namespace inkwell::virtual_board {
        "IWDG_PR or IWDG_RLR is written while PVU or RVU is set", "the value is lost", "wait until the flag is 0")      \
   RULE(copy_by_first_controller, "DMA_SxCR", "RM0090, DMA main features", "DMA1 is asked to move memory to memory",    \
        "nothing is moved", "take DMA2")                                                                                \
+  RULE(option_bytes_locked, "FLASH_OPTCR", "RM0090, Unlocking the option bytes",                                       \
+       "It is written while OPTLOCK is set, or with a wrong key",                                                      \
+       "the write is ignored; a wrong key locks until reset",                                                          \
+       "write 0x08192A3B and 0x4C5D6E7F to FLASH_OPTKEYR first")                                                       \
   RULE(usb_clock, "RCC_PLLCFGR", "RM0090, OTG_FS main features; USB 2.0, 7.1.11",                                      \
        "The USB core is attached with a clock that is not 48 MHz within 0.25 %", "the host hears nothing",             \
        "set PLLQ for 48 MHz, from the crystal")                                                                        \

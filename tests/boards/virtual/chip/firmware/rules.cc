@@ -30,6 +30,7 @@ enum Fault : std::uint32_t {
   timer_locked,
   watchdog_busy,
   usb_disturbed,
+  option_bytes_locked,
 };
 
 std::uint32_t fault;
@@ -98,6 +99,14 @@ void use_others() {
     }
   word(0x40003000) = 0x5555;
   word(0x40003008) = 3000;
+
+  constexpr std::uint32_t optkeyr = 0x40023C08, optcr = 0x40023C14;
+  if (fault != option_bytes_locked) {
+    word(optkeyr) = 0x08192A3B;
+    word(optkeyr) = 0x4C5D6E7F;
+  }
+  word(optcr) = (word(optcr) & ~0xFu) | 1;  // brown-out level 3, not programmed yet
+  results[7] = word(optcr);
 
   if (fault == ccm_clock_off) word(rcc::ahb1enr) &= ~(1u << 20);
   word(0x10000000) = 1;
