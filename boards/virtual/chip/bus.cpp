@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 
 #include "processor.hpp"
 #include "rcc.hpp"
@@ -12,6 +13,7 @@ namespace inkwell::virtual_board {
 namespace {
 
 constexpr std::uint32_t apb_base = 0x4000'0000, apb_bytes = 0x8'0000;
+constexpr std::uint32_t apb_end = 0x4002'0000;  ///< what follows is AHB1
 constexpr std::uint32_t ahb2_base = 0x5000'0000, ahb2_bytes = 0x6'1000;
 constexpr std::uint32_t private_base = 0xE000'0000, private_bytes = 0x10'0000;
 constexpr std::uint32_t external_base = 0xA000'0000, external_bytes = 0x1000;
@@ -31,6 +33,20 @@ void write_window(uc_engine*, std::uint64_t offset, unsigned size, std::uint64_t
 template <std::uint32_t base, std::uint32_t bytes>
 constexpr Bus::Window window() {
   return {base, bytes, read_window<base>, write_window<base>};
+}
+
+/// The fewest bytes that the manual lets one write to registers of peripherals whose names begin so. Where silicon does
+/// as well with fewer, as with the data registers of serial ports, there is no row.
+unsigned narrowest_write(std::string_view name) {
+  struct Row {
+    std::string_view begin;
+    unsigned bytes;
+  };
+  constexpr Row rows[] = {{"TIM", 2}, {"IWDG", 2}, {"WWDG", 2}, {"PWR", 2}, {"I2C", 2}, {"ADC", 4},
+                          {"DAC", 4}, {"CAN", 4},  {"EXTI", 4}, {"RTC", 4}, {"DMA", 4}, {"RNG", 4}};
+  for (const Row& row : rows)
+    if (name.substr(0, row.begin.size()) == row.begin) return row.bytes;
+  return 1;
 }
 
 }  // namespace
@@ -55,7 +71,7 @@ void Bus::add(std::uint32_t base, std::uint32_t bytes, const std::string& name, 
       throw ChipError("The peripheral " + name +
                       " is not on the bus: its base must be a multiple of 1024 in the "
                       "regions 0x40000000 or 0x50000000.");
-    *slot = {&peripheral, base, enable_register, enable_mask, name};
+    *slot = {&peripheral, base, enable_register, enable_mask, name, narrowest_write(name)};
   }
   if (std::find(peripherals_.begin(), peripherals_.end(), &peripheral) == peripherals_.end())
     peripherals_.push_back(&peripheral);
@@ -106,6 +122,12 @@ std::uint32_t Bus::read_register(std::uint32_t address, unsigned size) {
   return is_clocked(*slot, address) ? slot->peripheral->read(address - slot->base, size) : 0;
 }
 
+void Bus::check_width(std::uint32_t address, unsigned size) {
+  const Slot* slot = slot_at(address);
+  if (slot != nullptr && size < slot->narrowest_write)
+    machine_.violations.violate(Rule::narrow_register_write, slot->name);
+}
+
 void Bus::write_register(std::uint32_t address, std::uint32_t value, unsigned size) {
   Slot* slot = slot_at(address);
   if (slot == nullptr || slot->peripheral == nullptr) {
@@ -114,7 +136,14 @@ void Bus::write_register(std::uint32_t address, std::uint32_t value, unsigned si
     machine_.log.note(name, address & 0x3FF, true, value);
     return;
   }
-  if (is_clocked(*slot, address)) slot->peripheral->write(address - slot->base, value, size);
+  if (!is_clocked(*slot, address)) return;
+  // A bridge to an APB makes a word of every write, with the bytes repeated (RM0090, "AHB/APB bridges").
+  if (size < slot->narrowest_write && address < apb_end) {
+    const std::uint32_t repeated = size == 1 ? 0x0101'0101u * (value & 0xFF) : 0x0001'0001u * (value & 0xFFFF);
+    slot->peripheral->write((address & ~3u) - slot->base, repeated, 4);
+    return;
+  }
+  slot->peripheral->write(address - slot->base, value, size);
 }
 
 void Bus::synchronise() { machine_.timeline.catch_up(machine_.processor->now()); }
@@ -163,6 +192,7 @@ void Bus::write(std::uint32_t address, std::uint32_t value, unsigned size) {
     const std::uint32_t old = read_register(target, 4);
     write_register(target, (value & 1) != 0 ? old | mask : old & ~mask, 4);
   } else {
+    check_width(address, size);
     write_register(address, value, size);
   }
   settle_processor();

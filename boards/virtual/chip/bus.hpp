@@ -74,7 +74,9 @@ class Bus {
     const std::uint32_t* enable_register = nullptr;
     std::uint32_t enable_mask = 0;
     std::string name;
+    unsigned narrowest_write = 1;  ///< bytes
   };
+  void check_width(std::uint32_t address, unsigned size);
   Slot* slot_at(std::uint32_t address);
   bool is_clocked(const Slot& slot, std::uint32_t address);
   void synchronise();

@@ -39,6 +39,7 @@ constexpr Case cases[] = {
     {22, Rule::watchdog_busy},
     {23, Rule::usb_disturbed},
     {24, Rule::option_bytes_locked},
+    {25, Rule::narrow_register_write},
 };
 
 /// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.
@@ -150,6 +151,9 @@ TEST_SUITE("virtual chip: rules of silicon") {
     SUBCASE("option bytes change only when they are unlocked") {
       CHECK(Planted(0).test.result(7) == 0x0FFF'AAE1);
       CHECK(Planted(24).test.result(7) == 0x0FFF'AAED);
+    }
+    SUBCASE("a byte that is written to a register of an APB is repeated") {
+      CHECK(Planted(25).test.result(6) == 0x0303);
     }
     SUBCASE("what LOCK protects stays") { CHECK(Planted(21).test.result(4) == 0); }
   }

@@ -61,6 +61,9 @@ namespace inkwell::virtual_board {
        "It is written while OPTLOCK is set, or with a wrong key",                                                      \
        "the write is ignored; a wrong key locks until reset",                                                          \
        "write 0x08192A3B and 0x4C5D6E7F to FLASH_OPTKEYR first")                                                       \
+  RULE(narrow_register_write, "", "RM0090, AHB/APB bridges; register map of the peripheral",                           \
+       "A register is written by fewer bits than its peripheral takes",                                                \
+       "the bridge repeats the bytes in the whole word", "write whole words, or half-words where the manual says so")  \
   RULE(usb_clock, "RCC_PLLCFGR", "RM0090, OTG_FS main features; USB 2.0, 7.1.11",                                      \
        "The USB core is attached with a clock that is not 48 MHz within 0.25 %", "the host hears nothing",             \
        "set PLLQ for 48 MHz, from the crystal")                                                                        \

@@ -31,6 +31,7 @@ enum Fault : std::uint32_t {
   watchdog_busy,
   usb_disturbed,
   option_bytes_locked,
+  narrow_register_write,
 };
 
 std::uint32_t fault;
@@ -82,6 +83,9 @@ void use_others() {
   constexpr std::uint32_t tim8 = timer::tim8;
   word(rcc::apb2enr) |= 2;
   read_back(rcc::apb2enr);
+  word(tim8 + timer::psc) = 0;
+  if (fault == narrow_register_write) byte(tim8 + timer::psc) = 3;
+  results[6] = word(tim8 + timer::psc);
   word(tim8 + timer::bdtr) = 1u << 8 | 1u << 12;
   word(tim8 + timer::bdtr) = 1u << 8 | 1u << 12 | 1u << 15 | (fault == timer_locked ? 20 : 0);
   results[4] = word(tim8 + timer::bdtr) & 0xFF;
