@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include <virtual_usb/bit_stuffing.hpp>
 #include <virtual_usb/otg_fs_device.hpp>
 
 #include "otg_fs_map.hpp"
@@ -15,9 +16,10 @@ constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
 /// So long a device may take to see that VBUS has gone (USB 2.0, section 7.1.5).
 constexpr Ticks pull_up_release = 10 * ticks_per_s;
-constexpr Ticks byte_ticks = ticks_per_s / 1'500'000;
-/// From an IN token to the end of the handshake, without the data and the bits that are stuffed into it.
-constexpr Ticks in_transaction_bytes = 13;
+constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
+/// From an IN token to the end of the time in which the handshake may come, without the data and what is stuffed into
+/// it.
+constexpr Ticks in_transaction_bits = 8 * 14;
 
 /// End of the periodic part of a frame, in thousandths of it (DCFG.PFIVL).
 unsigned periodic_frame_per_mille(std::uint32_t device_configuration) {
@@ -221,13 +223,14 @@ InReply OtgFsDevice::in(unsigned address, unsigned number, std::span<std::byte, 
     std::memcpy(data.data() + i, &word, std::min<std::uint32_t>(4, bytes - i));
   }
   endpoint.bytes_on_wire = bytes;
-  endpoint.wire_until = scheduler_.now() + (in_transaction_bytes + bytes) * byte_ticks;
+  const Ticks stuffed = stuffed_bits(endpoint.data1, std::span<const std::byte>(data).first(bytes));
+  endpoint.wire_until = scheduler_.now() + (in_transaction_bits + 8 * bytes + stuffed) * bit_ticks;
   return {Handshake::ack, endpoint.data1, bytes};
 }
 
 bool OtgFsDevice::finish_in(unsigned number) {
   InEndpoint& endpoint = in_[number];
-  if (!endpoint.bytes_on_wire) return false;
+  if (!endpoint.bytes_on_wire || scheduler_.now() > endpoint.wire_until) return false;
   const std::uint32_t bytes = *endpoint.bytes_on_wire;
   endpoint.bytes_on_wire.reset();
   endpoint.wire_until = 0;

@@ -51,6 +51,13 @@ void read_packet(std::span<std::byte> target, std::size_t size) {
   }
 }
 
+/// A transfer may end while its control register is changed: EPENA that was read as one and is written back would begin
+/// another one.
+template <class Control, class... Fields>
+void change(unsigned endpoint, Fields... fields) {
+  Control::modify(endpoint, typename Control::EPENA(0), fields...);
+}
+
 /// Makes endpoint 0 ready for three SETUP packets in a row and one OUT packet.
 void write_control_out_size() {
   using Size = Device::DOEPTSIZ;
@@ -72,7 +79,7 @@ bool OtgFs::next_event(Event& event) {
   }
   if (Core::GINTSTS::ENUMDNE::from(interrupts)) {
     Core::GINTSTS::write(Core::GINTSTS::ENUMDNE(1));
-    Device::DIEPCTL::modify(0, Device::DIEPCTL::MPSIZ(0));  // code of 64 bytes on endpoint 0
+    change<Device::DIEPCTL>(0, Device::DIEPCTL::MPSIZ(0));  // code of 64 bytes on endpoint 0
     Device::DCTL::modify(Device::DCTL::CGINAK(1));
   }
   // What was sent comes before what was received: the host goes on only after it has the packet.
@@ -101,7 +108,7 @@ bool OtgFs::follow_cable(Event& event) {
 // receive FIFO.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
-  for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) Device::DOEPCTL::modify(i, Device::DOEPCTL::SNAK(1));
+  for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) change<Device::DOEPCTL>(i, Device::DOEPCTL::SNAK(1));
   for (unsigned i = 0; i < in_endpoints; ++i) stop_in(i);
   stop_out();
   fifo_memory::lay_out();
@@ -263,16 +270,16 @@ OtgFs::Armed OtgFs::arm_control() {
   if (control_receive_waits_) begin_receive(0);
   if (control_send_waits_) begin_send(0);
   if (control_stall_waits_) {
-    Device::DIEPCTL::modify(0, Device::DIEPCTL::STALL(1));
-    Device::DOEPCTL::modify(0, Device::DOEPCTL::STALL(1));
+    change<Device::DIEPCTL>(0, Device::DIEPCTL::STALL(1));
+    change<Device::DOEPCTL>(0, Device::DOEPCTL::STALL(1));
   }
   control_receive_waits_ = control_send_waits_ = control_stall_waits_ = false;
   using Waiting = Core::GRXSTSR;
   if (!Core::GINTSTS::RXFLVL::is_set()) return Armed::yes;
   const std::uint32_t waiting = Waiting::read();
   if (Waiting::PKTSTS::from(waiting) != setup_data || Waiting::EPNUM::from(waiting) != 0) return Armed::yes;
-  Device::DIEPCTL::modify(0, Device::DIEPCTL::SNAK(1));
-  Device::DOEPCTL::modify(0, Device::DOEPCTL::SNAK(1));
+  change<Device::DIEPCTL>(0, Device::DIEPCTL::SNAK(1));
+  change<Device::DOEPCTL>(0, Device::DOEPCTL::SNAK(1));
   return Armed::too_late;
 }
 
@@ -339,7 +346,7 @@ void OtgFs::stop_in(unsigned endpoint) {
     return;
   }
   if (Control::EPENA::from(Control::read(endpoint))) {
-    Control::modify(endpoint, Control::SNAK(1));
+    change<Control>(endpoint, Control::SNAK(1));
     static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::INEPNE::from(Flags::read(endpoint)) != 0; }));
     // A packet that was on its way may have ended the transfer meanwhile: what is off already never says that it is.
     if (Control::EPENA::from(Control::read(endpoint))) {
@@ -372,9 +379,9 @@ void OtgFs::close(std::uint8_t endpoint_address) {
   const unsigned endpoint = number_of(endpoint_address);
   if (is_in(endpoint_address)) {
     stop_in(endpoint);
-    Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::USBAEP(0), Device::DIEPCTL::SNAK(1));
+    change<Device::DIEPCTL>(endpoint, Device::DIEPCTL::USBAEP(0), Device::DIEPCTL::SNAK(1));
   } else {
-    Device::DOEPCTL::modify(endpoint, Device::DOEPCTL::USBAEP(0), Device::DOEPCTL::SNAK(1));
+    change<Device::DOEPCTL>(endpoint, Device::DOEPCTL::USBAEP(0), Device::DOEPCTL::SNAK(1));
   }
 }
 
@@ -387,9 +394,9 @@ void OtgFs::stall(std::uint8_t endpoint_address) {
     answer_control();
   } else if (is_in(endpoint_address)) {
     stop_in(endpoint);
-    Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::STALL(1));
+    change<Device::DIEPCTL>(endpoint, Device::DIEPCTL::STALL(1));
   } else {
-    Device::DOEPCTL::modify(endpoint, Device::DOEPCTL::STALL(1));
+    change<Device::DOEPCTL>(endpoint, Device::DOEPCTL::STALL(1));
   }
 }
 
@@ -397,9 +404,9 @@ void OtgFs::clear_stall(std::uint8_t endpoint_address) {
   const unsigned endpoint = number_of(endpoint_address);
   if (is_in(endpoint_address)) {
     stop_in(endpoint);
-    Device::DIEPCTL::modify(endpoint, Device::DIEPCTL::STALL(0), Device::DIEPCTL::SD0PID(1));
+    change<Device::DIEPCTL>(endpoint, Device::DIEPCTL::STALL(0), Device::DIEPCTL::SD0PID(1));
   } else {
-    Device::DOEPCTL::modify(endpoint, Device::DOEPCTL::STALL(0), Device::DOEPCTL::SD0PID(1));
+    change<Device::DOEPCTL>(endpoint, Device::DOEPCTL::STALL(0), Device::DOEPCTL::SD0PID(1));
   }
 }
 

@@ -31,10 +31,11 @@ FirmwareOnBus::FirmwareOnBus(const std::filesystem::path& image, double host_clo
                              virtual_board::ChipOptions options)
     : chip(circuit, without_log(std::move(options))),
       core(chip.connections()),
+      registers(core),
       cable(core),
       port(chip.connections().scheduler, cable, *this, host_clock_ppm) {
   chip.load_elf(image);
-  chip.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", core);
+  chip.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", registers);
   chip.reset(ResetCause::power_on);
   for (const auto& [letter, number] : {std::pair{'B', 12u}, {'A', 6u}, {'B', 13u}, {'B', 14u}, {'B', 15u}})
     chip.input_pins().drive(letter, number, PinLevel::high);

@@ -70,6 +70,27 @@ class Cable : public virtual_board::BusDevice {
   virtual_board::BusDevice& device_;
 };
 
+/// The core's registers, as the chip's bus sees them; tells what the firmware reads there, before it can do anything
+/// with it.
+class WatchedRegisters final : public virtual_board::Peripheral {
+ public:
+  explicit WatchedRegisters(virtual_board::Peripheral& registers) : registers_(registers) {}
+  std::uint32_t read(std::uint32_t offset, unsigned size) override {
+    const std::uint32_t value = registers_.read(offset, size);
+    if (on_read) on_read(offset, value);
+    return value;
+  }
+  void write(std::uint32_t offset, std::uint32_t value, unsigned size) override {
+    registers_.write(offset, value, size);
+  }
+  void reset() override { registers_.reset(); }
+
+  std::function<void(std::uint32_t offset, std::uint32_t value)> on_read;
+
+ private:
+  virtual_board::Peripheral& registers_;
+};
+
 /// build/board/inkwell.elf, beside the build folder of this program.
 std::filesystem::path flashed_image(const std::filesystem::path& build_directory);
 
@@ -102,6 +123,7 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   RestingCircuit circuit;
   Chip chip;
   virtual_board::OtgFsDevice core;
+  WatchedRegisters registers;
   Cable cable;
   virtual_board::RootPort port;
 
