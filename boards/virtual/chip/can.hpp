@@ -1,11 +1,12 @@
 // CAN1 and CAN2 at a transceiver without a bus (RM0090, "Controller area network"): the controller enters and leaves
-// its modes; what it sends nobody acknowledges, so the errors count up to error passive. Filters are kept, nothing
-// comes in; loop-back is not modelled.
+// its modes; what it sends nobody acknowledges, so the errors count up to error passive. In loop-back it hears itself,
+// through the filters.
 #pragma once
 
 #include <utility>
 
 #include "bus.hpp"
+#include "can_reception.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -53,19 +54,33 @@ inline constexpr CanRegisters can;
 class Can final : public RegisterBlock {
  public:
   /// Interrupts stand at four positions in a row: transmission, both FIFOs, errors and modes.
-  Can(Machine& machine, Scheduler& events, unsigned number, unsigned first_position)
-      : machine_(machine), events_(events), number_(number), first_position_(first_position) {}
+  /// CAN2 has CAN1's filters.
+  Can(Machine& machine, Scheduler& events, unsigned number, unsigned first_position, const Can* first = nullptr)
+      : machine_(machine),
+        events_(events),
+        number_(number),
+        first_position_(first_position),
+        filters_(first != nullptr ? first->own_filters_ : own_filters_) {}
   void reset() override {
     words_ = {};
     for (const auto& one : {Register{can.mcr}, Register{can.msr}, Register{can.tsr}, Register{can.fmr}})
       word(one) = one.reset_value;
+    for (auto& fifo : fifos_) fifo.clear();
+    own_filters_ = {};
     if (changing_ != 0) events_.cancel(std::exchange(changing_, 0));
     if (sending_ != 0) events_.cancel(std::exchange(sending_, 0));
     update();
   }
 
  protected:
-  std::uint32_t read_word(std::uint32_t offset) override { return stored(offset); }
+  std::uint32_t read_word(std::uint32_t offset) override {
+    if (can.rfr.covers(offset)) return fifos_[can.rfr.index(offset)].status();
+    if (offset >= mailboxes_received && offset < mailboxes_received + 0x20) {
+      const unsigned place = (offset - mailboxes_received) / 4;
+      return fifos_[place / 4].word(place % 4);
+    }
+    return stored(offset);
+  }
   void write_word(std::uint32_t offset, std::uint32_t value) override {
     if (offset >= bytes) return machine_.log.note("CAN" + std::to_string(number_), offset, true, value);
     if (can.tir.covers(offset)) {
@@ -82,10 +97,11 @@ class Can final : public RegisterBlock {
       write_transmit_status(value);
     } else if (offset == can.esr) {
       word(can.esr) = (word(can.esr) & ~can.esr.lec.mask()) | (value & can.esr.lec.mask());
-    } else if (!can.rfr.covers(offset)) {
+    } else if (can.rfr.covers(offset)) {
+      fifos_[can.rfr.index(offset)].write_status(value);
+    } else {
       word(offset) = value;
-      if (offset == can.btr && can.btr.lbkm.in(value))
-        machine_.log.say_once("CAN" + std::to_string(number_) + "_BTR.LBKM: loop-back is not modelled");
+      if (number_ == 1 && offset >= can.fmr) keep_filters();
     }
     update();
   }
@@ -94,7 +110,20 @@ class Can final : public RegisterBlock {
 
  private:
   static constexpr std::uint32_t bytes = 0x320;
+  static constexpr std::uint32_t mailboxes_received = 0x1B0;  ///< RI0R
   std::uint32_t& word(std::uint32_t offset) { return words_[offset / 4]; }
+  void keep_filters() {
+    constexpr std::uint32_t finit = 1;
+    own_filters_.initialising = (word(can.fmr) & finit) != 0;
+    own_filters_.first_of_second_controller = word(can.fmr) >> 8 & 0x3F;
+    own_filters_.lists = word(can.fm1r);
+    own_filters_.whole_words = word(can.fs1r);
+    own_filters_.second_fifo = word(can.ffa1r);
+    own_filters_.active = word(can.fa1r);
+    for (unsigned i = 0; i < CanFilters::banks; ++i)
+      own_filters_.bank[i] = {word(can.first_filter + i * can.first_filter.stride),
+                              word(can.second_filter + i * can.second_filter.stride)};
+  }
   Ticks bits(unsigned count) {
     const std::uint32_t timing = word(can.btr);
     const std::uint64_t quanta = 3 + can.btr.ts1.of(timing) + can.btr.ts2.of(timing);
@@ -132,12 +161,44 @@ class Can final : public RegisterBlock {
     const bool on_bus = (word(can.msr) & (can.msr.inak.mask() | can.msr.slak.mask())) == 0;
     if (!waits || !on_bus || sending_ != 0) return;
     constexpr unsigned shortest_frame_bits = 47;
-    sending_ = events_.at(machine_.timeline.now() + bits(shortest_frame_bits), [this] {
+    const bool hears_itself = can.btr.lbkm.in(word(can.btr));
+    const unsigned data_bits =
+        hears_itself ? 8 * std::min(word(can.tdtr + next_mailbox() * can.tdtr.stride) & 0xF, 8u) : 0;
+    sending_ = events_.at(machine_.timeline.now() + bits(shortest_frame_bits + data_bits), [this] {
       sending_ = 0;
-      miss_acknowledgement();
+      if (can.btr.lbkm.in(word(can.btr)))
+        hear_itself();
+      else
+        miss_acknowledgement();
       send();
       update();
     });
+  }
+  /// Of those that wait, the one with the lowest identifier.
+  unsigned next_mailbox() {
+    constexpr std::uint32_t request = 1;
+    unsigned next = 0;
+    std::uint32_t lowest = ~0u;
+    for (unsigned i = 0; i < 3; ++i) {
+      const std::uint32_t identifier = word(can.tir + i * can.tir.stride) & ~request;
+      if (can.tsr.tme.in(word(can.tsr), i) || identifier >= lowest) continue;
+      lowest = identifier;
+      next = i;
+    }
+    return next;
+  }
+  void hear_itself() {
+    if ((word(can.tsr) & can.tsr.tme.masks()) == can.tsr.tme.masks()) return;  // given up meanwhile
+    constexpr std::uint32_t request = 1, length = 0xF;
+    const unsigned mailbox = next_mailbox();
+    const auto sent = [&](const auto& registers) { return word(registers + mailbox * registers.stride); };
+    CanFrame frame{sent(can.tir) & ~request, sent(can.tdtr) & length, sent(can.tdlr), sent(can.tdhr)};
+    give_up(mailbox);
+    word(can.tsr) |= can.tsr.txok.mask(mailbox);
+    const auto match = filters_.match(frame.identifier, number_);
+    if (!match) return;
+    frame.length |= match->index << 8;
+    fifos_[match->fifo].put(frame, can.mcr.rflm.in(word(can.mcr)));
   }
   // Each such error counts 8, until the controller is error passive: then it counts no more (ISO 11898-1).
   void miss_acknowledgement() {
@@ -162,6 +223,15 @@ class Can final : public RegisterBlock {
     const std::uint32_t enables = word(can.ier), status = word(can.msr);
     machine_.nvic.set_source(first_position_, 0,
                              can.ier.tmeie.in(enables) && (word(can.tsr) & can.tsr.rqcp.masks()) != 0);
+    const std::array told_by_fifo{std::array{&can.ier.fmpie0, &can.ier.ffie0, &can.ier.fovie0},
+                                  std::array{&can.ier.fmpie1, &can.ier.ffie1, &can.ier.fovie1}};
+    for (unsigned i = 0; i < 2; ++i) {
+      const std::uint32_t fifo = fifos_[i].status();
+      const bool told = (told_by_fifo[i][0]->in(enables) && (fifo & CanFifo::pending) != 0) ||
+                        (told_by_fifo[i][1]->in(enables) && (fifo & CanFifo::full) != 0) ||
+                        (told_by_fifo[i][2]->in(enables) && (fifo & CanFifo::overrun) != 0);
+      machine_.nvic.set_source(first_position_ + 1 + i, 0, told);
+    }
     machine_.nvic.set_source(first_position_ + 3, 0,
                              can.msr.erri.in(status) || (can.ier.wkuie.in(enables) && can.msr.wkui.in(status)) ||
                                  (can.ier.slkie.in(enables) && can.msr.slaki.in(status)));
@@ -171,6 +241,9 @@ class Can final : public RegisterBlock {
   Scheduler& events_;
   unsigned number_, first_position_;
   std::array<std::uint32_t, bytes / 4> words_{};
+  std::array<CanFifo, 2> fifos_{};
+  CanFilters own_filters_;
+  const CanFilters& filters_;
   Scheduler::Id changing_ = 0, sending_ = 0;
 };
 

@@ -139,9 +139,12 @@ void ChipParts::put_peripherals() {
   for (unsigned i = 0; i < std::size(i2c_places); ++i)
     put(i2c_places[i].place.base, "I2C" + std::to_string(i + 1),
         make<I2c>(machine, events, i + 1, i2c_places[i].position), i2c_places[i].place.clock);
-  for (unsigned i = 0; i < std::size(can_places); ++i)
-    put(can_places[i].place.base, "CAN" + std::to_string(i + 1),
-        make<Can>(machine, events, i + 1, can_places[i].position), can_places[i].place.clock);
+  const Can* first_can = nullptr;
+  for (unsigned i = 0; i < std::size(can_places); ++i) {
+    Can& one = make<Can>(machine, events, i + 1, can_places[i].position, first_can);
+    put(can_places[i].place.base, "CAN" + std::to_string(i + 1), one, can_places[i].place.clock);
+    if (first_can == nullptr) first_can = &one;
+  }
   put(0x4000'7400, "DAC", make<Dac>(machine), gate(map.apb1enr, map.apb1enr.dacen));
   put(0x4000'2800, "RTC", make<RealTimeClock>(machine, events));
   for (unsigned i = 0; i < Pins::ports; ++i)

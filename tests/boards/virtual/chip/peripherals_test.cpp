@@ -284,4 +284,25 @@ TEST_SUITE("virtual chip: peripherals") {
       CHECK(test.log.empty());
     }
   }
+
+  TEST_CASE("a CAN controller in loop-back hears what its filters let through") {
+    ChipUnderTest test("can_loop");
+    test.run_for(0.1);
+    REQUIRE(test.result(0) == finished);
+    CHECK(test.result(1) == 2 * 7);
+    CHECK(test.result(2) == 0);
+    CHECK(test.result(3) == 1);
+    CHECK(test.result(4) == 0x123u << 21);
+    CHECK(test.result(5) == 5);
+    CHECK(test.result(6) == 0x4433'2211);
+    CHECK(test.result(7) == 0x55);
+    CHECK(test.result(8) == 1);
+    CHECK(test.result(9) == 1);
+    CHECK(test.result(10) == 3 << 8);  // the fourth identifier of the list
+    CHECK(test.result(14) == 4 << 8);  // whole words go before halves
+    CHECK(test.result(11) == (3 | 1 << 3 | 1 << 4));
+    CHECK(test.result(12) == 2);
+    CHECK(test.result(13) == 3);
+    CHECK(test.log.empty());
+  }
 }
