@@ -77,6 +77,14 @@ void Adc::start_regular(Ticks now) {
   begin_conversion(now);
 }
 
+void Adc::start_regular_at(Ticks when) {
+  if (!is_on() || (sr_ & overrun) != 0 || group_ != Group::none) return;
+  sr_ |= adc.sr.strt.mask();
+  group_ = Group::regular;
+  phase_ = Phase::waiting;
+  machine_.timeline.set(slot_, when, never);
+}
+
 void Adc::check_start(Ticks now) {
   constexpr std::uint32_t limit_Hz = 36'000'000;  // at 2.4 V to 3.6 V
   const std::uint32_t clock_Hz = machine_.clocks.frequencies.pclk2_Hz / adcs_.prescaler();
@@ -89,6 +97,7 @@ void Adc::begin_conversion(Ticks now) {
   check_start(now);
   const unsigned channel = channel_of(group_, group_ == Group::injected ? rank_ : regular_rank_);
   phase_ = Phase::sampling;
+  began_ = now;
   const Ticks sampled = now + duration(sampling_cycles(channel));
   const Ticks done = sampled + duration(resolution_bits());
   // Without an interrupt or DMA nobody needs to be stopped for the result.
@@ -125,6 +134,7 @@ std::uint32_t Adc::sample(unsigned channel, Ticks now) const {
 }
 
 void Adc::step(Ticks now) {
+  if (phase_ == Phase::waiting) return begin_conversion(now);
   const unsigned channel = channel_of(group_, group_ == Group::injected ? rank_ : regular_rank_);
   if (phase_ == Phase::sampling) {
     sample_ = sample(channel, now);
@@ -169,7 +179,7 @@ void Adc::finish_injected(Ticks now) {
 }
 
 void Adc::finish_regular(Ticks now) {
-  const bool checks_overrun = adc.cr2.dma.in(cr2_) || adc.cr2.eocs.in(cr2_);
+  const bool checks_overrun = adc.cr2.dma.in(cr2_) || adc.cr2.eocs.in(cr2_) || adcs_.shares_dma();
   if (checks_overrun && (sr_ & end_of_conversion) != 0) {
     // The old result was not read: no more requests until firmware clears OVR.
     sr_ |= overrun;
@@ -194,6 +204,7 @@ void Adc::finish_regular(Ticks now) {
     automatic_injected_ = true;
     start_injected(now);
   } else if ((!over && !pause) || (over && adc.cr2.cont.in(cr2_))) {
+    if (adcs_.interleaved()) return start_regular_at(std::max(now, began_ + adcs_.interleaving_turn()));
     group_ = Group::regular;
     begin_conversion(now);
   }

@@ -1,5 +1,5 @@
-// ADC1 to ADC3 (RM0090, "Analog-to-digital converter"): regular and injected groups, simultaneous modes.
-// Not modelled: interleaved and alternate-trigger modes.
+// ADC1 to ADC3 (RM0090, "Analog-to-digital converter"): regular and injected groups, simultaneous and
+// interleaved modes. Not modelled: alternate-trigger modes.
 #pragma once
 
 #include <array>
@@ -32,6 +32,9 @@ class Adc final : public TimedPart {
   int regular_trigger() const { return adc.cr2.exten.in(cr2_) ? static_cast<int>(adc.cr2.extsel.of(cr2_)) : -1; }
   void start_injected(Ticks now);
   void start_regular(Ticks now);
+  /// After a delay: the turn of a slave in an interleaved mode.
+  void start_regular_at(Ticks when);
+  unsigned regular_sampling_cycles() const { return sampling_cycles(channel_of(Group::regular, regular_rank_)); }
   /// A trigger of this ADC is followed by something that the processor must see.
   bool injected_matters() const { return adc.cr1.jeocie.in(cr1_); }
   bool regular_matters() const { return adc.cr1.eocie.in(cr1_) || adc.cr2.dma.in(cr2_); }
@@ -40,7 +43,7 @@ class Adc final : public TimedPart {
 
  private:
   enum class Group : std::uint8_t { none, regular, injected };
-  enum class Phase : std::uint8_t { sampling, converting };
+  enum class Phase : std::uint8_t { waiting, sampling, converting };
   unsigned regular_length() const;
   unsigned injected_length() const;
   unsigned channel_of(Group group, unsigned rank) const;
@@ -71,6 +74,7 @@ class Adc final : public TimedPart {
   bool resume_regular_ = false, automatic_injected_ = false;
   std::uint32_t sample_ = 0;
   Ticks stable_at_ = 0;
+  Ticks began_ = 0;      ///< the conversion
   bool spoilt_ = false;  ///< the conversion cannot give a true result
 };
 
@@ -93,7 +97,11 @@ class Adcs final : public RegisterBlock {
   bool temperature_on() const { return adc_common.ccr.tsvrefe.in(ccr_); }
   bool battery_on() const { return adc_common.ccr.vbate.in(ccr_); }
   /// Results of regular groups go through the common data register (CCR.DMA).
-  bool shares_dma() const { return adc_common.ccr.dma.in(ccr_) && regular_simultaneous(); }
+  bool shares_dma() const { return adc_common.ccr.dma.in(ccr_) && converts_together(); }
+  /// The converters take turns at their regular groups.
+  bool interleaved() const;
+  /// From one turn of a converter to its next, if it is not still busy.
+  Ticks interleaving_turn() const { return group_size() * interleaving_delay(); }
   /// One more of them.
   void share(std::uint32_t result);
   void note_injected_sequence(Ticks now);
@@ -114,6 +122,8 @@ class Adcs final : public RegisterBlock {
   bool is_slave(unsigned index, bool injected) const;
   bool injected_simultaneous() const;
   bool regular_simultaneous() const;
+  bool converts_together() const { return regular_simultaneous() || interleaved(); }
+  Ticks interleaving_delay() const;
   unsigned group_size() const;
 
   Machine& machine_;

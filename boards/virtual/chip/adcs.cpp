@@ -1,5 +1,8 @@
-// The three converters together: triggers, simultaneous modes, common registers.
+// The three converters together: triggers, simultaneous and interleaved modes, common registers.
 #include "adc.hpp"
+
+#include <algorithm>
+
 #include "dma.hpp"
 #include "rcc_map.hpp"
 #include "timers.hpp"
@@ -50,13 +53,25 @@ bool Adcs::regular_simultaneous() const {
   return mode == 0x01 || mode == 0x02 || mode == 0x06 || mode == 0x11 || mode == 0x12 || mode == 0x16;
 }
 
+bool Adcs::interleaved() const {
+  const unsigned mode = adc_common.ccr.multi.of(ccr_);
+  return mode == 0x07 || mode == 0x17;
+}
+
+// From one converter's start to the next one's: what DELAY says, but never while another one samples (RM0090,
+// "Interleaved mode").
+Ticks Adcs::interleaving_delay() const {
+  const unsigned asked = 5 + adc_common.ccr.delay.of(ccr_), sampling = adcs_[0].regular_sampling_cycles() + 2;
+  return machine_.clocks.pclk2.duration(std::uint64_t{std::max(asked, sampling)} * prescaler());
+}
+
 unsigned Adcs::group_size() const {
   constexpr std::uint32_t triple = 0x10;
   return (adc_common.ccr.multi.of(ccr_) & triple) != 0 ? 3 : 2;
 }
 
 bool Adcs::is_slave(unsigned index, bool injected) const {
-  return index != 0 && index < group_size() && (injected ? injected_simultaneous() : regular_simultaneous());
+  return index != 0 && index < group_size() && (injected ? injected_simultaneous() : converts_together());
 }
 
 // RM0090, "Multi ADC mode": mode 1 moves each result by itself, modes 2 and 3 two of them, as half words and as bytes.
@@ -94,6 +109,8 @@ void Adcs::start_regular(unsigned index, Ticks now) {
   adcs_[index].start_regular(now);
   if (index == 0 && regular_simultaneous())
     for (unsigned i = 1; i < group_size(); ++i) adcs_[i].start_regular(now);
+  if (index == 0 && interleaved())
+    for (unsigned i = 1; i < group_size(); ++i) adcs_[i].start_regular_at(now + i * interleaving_delay());
 }
 
 void Adcs::trigger(unsigned timer, unsigned channel) {
@@ -171,8 +188,8 @@ void Adcs::write_word(std::uint32_t offset, std::uint32_t value) {
   if (offset != common + adc_common.ccr) return machine_.log.note("ADC common", offset, true, value);
   ccr_ = value & writable(adc_common.ccr);
   shared_.clear();
-  if (adc_common.ccr.multi.of(ccr_) != 0 && !injected_simultaneous() && !regular_simultaneous())
-    machine_.log.note("ADC interleaved or alternate mode,", offset, true, value);
+  if (adc_common.ccr.multi.of(ccr_) != 0 && !injected_simultaneous() && !converts_together())
+    machine_.log.note("ADC alternate-trigger mode,", offset, true, value);
 }
 
 }  // namespace inkwell::virtual_board

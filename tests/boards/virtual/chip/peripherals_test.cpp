@@ -250,6 +250,32 @@ TEST_SUITE("virtual chip: peripherals") {
     }
   }
 
+  TEST_CASE("interleaved converters sample one pin in turns, until nobody takes their results") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("interleaved", mode);
+      test.circuit.voltages = {{{'C', 0}, 1.0}};
+      test.run_for(0.01);
+      REQUIRE(test.result(0) == finished);
+      constexpr std::uint32_t one_volt = 1241;
+      for (unsigned i = 0; i < 6; ++i) CHECK(test.result(1 + i) == (one_volt << 16 | one_volt));
+      for (unsigned i = 0; i < 3; ++i) CHECK(test.result(9 + i) == (one_volt << 16 | one_volt));
+      CHECK(test.result(7) == 0);
+      // 4 MHz: five cycles apart, as long as three samples take; then the sampling time of 15 and two more.
+      const auto& samples = test.circuit.samples;
+      constexpr Ticks cycle = ticks_per_s / 4'000'000;
+      REQUIRE(samples.size() > 18);
+      for (unsigned i = 1; i < 12; ++i) CHECK(samples[i].when - samples[i - 1].when == 5 * cycle);
+      bool slow = false;
+      for (std::size_t i = 12; i + 2 < samples.size(); ++i)
+        slow |= samples[i + 1].when - samples[i].when == 17 * cycle &&
+                samples[i + 2].when - samples[i + 1].when == 17 * cycle;
+      CHECK(slow);
+      CHECK(samples.size() < 50);  // overrun ended both runs
+      CHECK(test.log.empty());
+    }
+  }
+
   TEST_CASE("with nothing connected, what drivers wait for comes, or their errors do") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
