@@ -138,7 +138,6 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
   push_data(request);
   setup_stage_open_ = true;
   setup_done_unpopped_ = true;
-  setup_is_unseen_ = true;
   setup_done_lost_ = false;
   if (setup_packets_allowed_ > 0)
     --setup_packets_allowed_;

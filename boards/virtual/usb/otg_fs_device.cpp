@@ -125,7 +125,6 @@ std::uint32_t OtgFsDevice::read_register(std::uint32_t offset) {
 }
 
 std::uint32_t OtgFsDevice::read_global(std::uint32_t offset) {
-  if (offset == otg.gintsts || offset == otg.grxstsr || offset == otg.grxstsp) setup_is_unseen_ = false;
   if (otg.dieptxf.covers(offset)) return transmit_size_[1 + otg.dieptxf.index(offset)];
   switch (offset) {
     case otg.gotgctl: return otg.gotgctl.cidsts.mask() | (has_session() ? otg.gotgctl.bsvld.mask() : 0);

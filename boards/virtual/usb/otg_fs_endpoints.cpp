@@ -293,11 +293,10 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
 }
 
 // Seen on silicon: clearing NAK on endpoint 0 between a SETUP packet and the pop of its setup-done word
-// loses that word. It is no broken rule if the packet came between the driver's look and its store: no driver can
-// close that gap, it can only look again.
+// loses that word.
 void OtgFsDevice::lose_setup_done_word() {
   if (!setup_done_unpopped_ || setup_done_lost_) return;
-  if (!setup_is_unseen_) rules_.violate(Rule::usb_nak_cleared_early);
+  rules_.violate(Rule::usb_nak_cleared_early);
   setup_done_lost_ = true;
 }
 

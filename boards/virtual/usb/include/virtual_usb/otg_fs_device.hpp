@@ -192,7 +192,6 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   bool setup_stage_open_ = false;       ///< from a SETUP packet to the next token: setup done is not written yet
   bool setup_done_unpopped_ = false;    ///< from a SETUP packet until firmware pops its setup-done word
   bool setup_done_lost_ = false;        ///< CNAK came in between: the word will not be seen
-  bool setup_is_unseen_ = false;        ///< firmware has not looked for it: nobody could know of it
   unsigned setup_packets_allowed_ = 0;  ///< DOEPTSIZ0.STUPCNT
   bool bus_power_ = false;
   bool pulled_up_ = false;
