@@ -6,6 +6,8 @@
 #include <fstream>
 #include <iterator>
 
+#include <temporary_directory.hpp>
+
 #include "chip_fixture.hpp"
 
 using namespace inkwell::virtual_board;
@@ -22,12 +24,12 @@ std::string read_file(const std::string& path) {
 
 /// What load_elf says of a file with this content.
 std::string complaint(const std::string& content) {
-  const auto path = std::filesystem::temp_directory_path() / "inkwell-corrupt.elf";
+  const inkwell::tests::TemporaryDirectory directory;
+  const auto path = directory / "corrupt.elf";
   std::ofstream(path, std::ios::binary) << content;
   RecordingCircuit circuit;
   Chip chip(circuit);
   const std::string said = message_of<ChipError>([&] { chip.load_elf(path); });
-  std::filesystem::remove(path);
   return said;
 }
 
@@ -78,13 +80,13 @@ TEST_SUITE("virtual chip: ELF") {
     CHECK(contains(complaint(with_word(18, 243)), "RISC-V"));
 
     // A stack for more RAM is said, but firmware may set its stack by itself.
-    const auto path = std::filesystem::temp_directory_path() / "inkwell-other-chip.elf";
+    const inkwell::tests::TemporaryDirectory directory;
+    const auto path = directory / "other_chip.elf";
     std::ofstream(path, std::ios::binary) << with_word(vectors, 0x2003'0000);
     ChipUnderTest test("watchdog");
     test.breaks_rules = true;
     CHECK(test.log.empty());
     test.chip.load_elf(path);
-    std::filesystem::remove(path);
     REQUIRE(test.log.size() == 1);
     CHECK(contains(test.log[0], "0x20030000"));
     CHECK(contains(test.log[0], "another chip"));

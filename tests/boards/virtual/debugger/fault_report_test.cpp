@@ -4,6 +4,8 @@
 #include <fstream>
 #include <map>
 
+#include <temporary_directory.hpp>
+
 #include "../chip/chip_fixture.hpp"
 
 using namespace inkwell::virtual_board;
@@ -24,12 +26,12 @@ TEST_SUITE("virtual board: debugger") {
     // Cut anywhere, the file has names or none.
     std::ifstream whole(firmware_path("lock_up"), std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(whole), {}};
-    const auto path = std::filesystem::temp_directory_path() / "inkwell-cut-symbols.elf";
+    const inkwell::tests::TemporaryDirectory directory;
+    const auto path = directory / "cut_symbols.elf";
     for (std::size_t bytes = 0; bytes < content.size(); bytes += 997) {
       std::ofstream(path, std::ios::binary) << content.substr(0, bytes);
       Symbols{path}.name(reset);
     }
-    std::filesystem::remove(path);
   }
 
   TEST_CASE("callers are the words in LR and on the stack that point behind a call") {

@@ -1,10 +1,10 @@
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <debugger/waveform.hpp>
-#include <filesystem>
 #include <fstream>
 #include <stdexcept>
+
+#include <temporary_directory.hpp>
 
 #include "../chip/chip_fixture.hpp"
 
@@ -15,8 +15,8 @@ namespace {
 
 /// What a firmware leaves in the file, line by line, after so long.
 std::vector<std::string> lines_of(ChipUnderTest& test, double time_s, std::vector<PinName> pins) {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("inkwell-waveform-" + std::to_string(::getpid()) + ".vcd");
+  const inkwell::tests::TemporaryDirectory directory;
+  const auto path = directory / "waveform.vcd";
   {
     const Waveform waveform(path, std::move(pins), test.chip);
     test.run_for(time_s);
@@ -24,7 +24,6 @@ std::vector<std::string> lines_of(ChipUnderTest& test, double time_s, std::vecto
   std::ifstream file(path);
   std::vector<std::string> lines;
   for (std::string line; std::getline(file, line);) lines.push_back(line);
-  std::filesystem::remove(path);
   return lines;
 }
 
