@@ -53,6 +53,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const control::Settings& settings = host_link.parameters.take(period);
   if (host_link.commands.take_sign_of_life()) controller.host_alive();
   if (const auto* command = host_link.commands.take()) controller.carry_out(*command);
+  if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
+  if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
 
   write_bridges(controller.step(samples, settings, clock));
 
@@ -61,6 +63,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   host_link.poses.record(signals, {.state = controller.state(),
                                    .fault = controller.fault(),
                                    .switches = controller.switches(),
+                                   .force_sources = controller.force_sources(),
                                    .command_token = host_link.commands.last_token(),
                                    .periods = period,
                                    .begin_cycles = begin_cycles,
@@ -70,7 +73,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
 
   const bool overrun = bridges.period_is_over();
   if (overrun) controller.raise(protocol::Fault::servo_overrun);
-  host_link.status.record(controller.state(), controller.motor_heat(), controller.servo_cycles(), overrun);
+  host_link.status.record(controller.state(), controller.motor_heat(), controller.servo_cycles(),
+                          controller.late_force_reports(), overrun);
   completed_periods.store(controller.periods());
 }
 

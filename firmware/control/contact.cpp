@@ -23,19 +23,21 @@ Contact find_contact(const Vector3& probe_m, const Box& box) {
   return {proxy_m, proxy_m - probe_m};
 }
 
-Force wall_force(const Contact& contact, const Vector3& velocity_m_per_s, const Wall& wall) {
+Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m_per_s, const Wall& wall) {
   const Vector3& out_m = contact.penetration_m;
-  const Vector3 force_N{axis_force_N(out_m.x, velocity_m_per_s.x, wall),
-                        axis_force_N(out_m.y, velocity_m_per_s.y, wall),
-                        axis_force_N(out_m.z, velocity_m_per_s.z, wall)};
+  return {axis_force_N(out_m.x, velocity_m_per_s.x, wall), axis_force_N(out_m.y, velocity_m_per_s.y, wall),
+          axis_force_N(out_m.z, velocity_m_per_s.z, wall)};
+}
+
+Force bounded(const Vector3& force_N, float limit_N) {
   // Below a micronewton there is no direction to keep, and the reciprocal root would leave its range.
   constexpr float smallest_squared_N2 = 1e-12f;
   const float squared_N2 = dot(force_N, force_N);
   if (squared_N2 < smallest_squared_N2) return {};
   const float per_magnitude = reciprocal_square_root(squared_N2);
   const float magnitude_N = squared_N2 * per_magnitude;
-  if (magnitude_N <= wall.force_limit_N) return {force_N, magnitude_N};
-  return {(wall.force_limit_N * per_magnitude) * force_N, wall.force_limit_N};
+  if (magnitude_N <= limit_N) return {force_N, magnitude_N};
+  return {(limit_N * per_magnitude) * force_N, limit_N};
 }
 
 }  // namespace inkwell::control

@@ -1,6 +1,7 @@
 #include <control/controller.hpp>
 
 #include <cmath>
+#include <utility>
 
 #include <control/trigonometry.hpp>
 
@@ -10,11 +11,17 @@ namespace {
 
 using protocol::Command;
 using protocol::Fault;
+using protocol::ForceMode;
+using protocol::ForceSource;
 using protocol::Signal;
 using protocol::State;
 
 bool is_closed(std::uint8_t switches, protocol::Switch which) {
   return (switches & static_cast<std::uint8_t>(which)) != 0;
+}
+
+std::uint8_t source_bits(ForceSource source, bool is_felt) {
+  return is_felt ? static_cast<std::uint8_t>(source) : std::uint8_t{0};
 }
 
 /// Beyond its limit, or so near to a rail of its sensor that the true current may be any.
@@ -62,6 +69,15 @@ void Controller::carry_out(const protocol::CommandReport& command) {
   }
 }
 
+void Controller::drive(const ForceTarget& target, const Settings& settings) {
+  if (head_for(program_, target, settings.program_force)) ++late_force_reports_;
+}
+
+void Controller::replace_shapes(const Shapes& shapes) {
+  shapes_.replace(shapes);
+  shapes_replaced_ = true;
+}
+
 void Controller::raise(Fault fault) {
   if (requests_.raised == Fault::none) requests_.raised = fault;
 }
@@ -99,15 +115,28 @@ void Controller::find_pose(const Settings& settings) {
   velocity_m_per_s_ = probe_velocity(pose_.jacobian, joint_speed_rad_per_s_);
 }
 
-void Controller::render_contact(const Settings& settings) {
+void Controller::render_force(const Settings& settings) {
   contact_ = find_contact(pose_.position_m, settings.box);
+  advance(program_, settings.program_force);
+  const bool shapes_changed = shapes_.age() || std::exchange(shapes_replaced_, false);
+  const bool walls_rendered = program_.mode != ForceMode::instead_of_walls;
+  const bool walls_changed = std::exchange(walls_rendered_, walls_rendered) != walls_rendered;
+  force_sources_ = source_bits(ForceSource::walls, walls_rendered) | source_bits(ForceSource::shapes, shapes_.any()) |
+                   source_bits(ForceSource::program, program_.is_driven());
   if (!force_is_on()) {
     force_ = {};
     force_gain_ = 0.0f;
+    touched_N_ = {};
+    transition_ = {};
     return;
   }
+  Vector3 touched_N = shapes_.force_N(pose_.position_m, velocity_m_per_s_);
+  if (walls_rendered) touched_N = touched_N + wall_force_N(contact_, velocity_m_per_s_, settings.wall);
+  if (shapes_changed || walls_changed) transition_ = over(touched_N_ - touched_N, settings.recovery_N_per_period);
+  touched_N_ = touched_N + transition_.force_N();
+  advance(transition_);
   force_gain_ = clamp(force_gain_ + settings.ramp_per_period, 0.0f, 1.0f);
-  force_ = scaled(wall_force(contact_, velocity_m_per_s_, settings.wall), force_gain_);
+  force_ = scaled(bounded(touched_N_ + program_.force_N, settings.force_limit_N), force_gain_);
 }
 
 void Controller::find_current_references(const Settings& settings) {
@@ -183,6 +212,8 @@ void Controller::write_signals(protocol::SignalValues& signals) const {
   put(signals, Signal::gimbal_1_rad, gimbal_rad_);
   put(signals, Signal::joint_speed_1_rad_s, joint_speed_rad_per_s_);
   put(signals, Signal::motor_heat_1, heat_.heat);
+  put(signals, Signal::program_force_x_N, program_.force_N);
+  signals[Signal::force_sources] = force_sources_;
   signals[Signal::supply_V] = supply_.supply_V;
   signals[Signal::servo_cycles] = static_cast<float>(servo_cycles_);
   static constexpr Signal cycles_of_stage[stage_count] = {Signal::stage_sample_cycles,  Signal::stage_pose_cycles,

@@ -89,6 +89,15 @@ Limits limits(const ParameterSet& set) {
   return limits;
 }
 
+ProgramForceLimits program_force(const ParameterSet& set) {
+  const float change_N_per_period = set[Parameter::program_force_change_N_per_s] * protocol::servo_period_s;
+  return {set[Parameter::force_limit_N], change_N_per_period, 1.0f / change_N_per_period,
+          periods_in(set[Parameter::program_force_expiry_s])};
+}
+
+/// A jump goes by 4 % of the force limit in a millisecond: the skin takes no kick from it, and it is over in 25 ms.
+constexpr float recovery_per_s = 0.04f * 1000.0f;
+
 /// Rise of the force's gain in one period; a ramp of less than a period is a step.
 float ramp_per_period(float ramp_s) {
   return ramp_s > protocol::servo_period_s ? protocol::servo_period_s / ramp_s : 1.0f;
@@ -101,8 +110,10 @@ Settings prepare(const ParameterSet& parameters) {
           .encoders = encoders(parameters),
           .gimbal = gimbal(parameters),
           .box = box(parameters),
-          .wall = {parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m],
-                   parameters[Parameter::force_limit_N]},
+          .wall = {parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m]},
+          .force_limit_N = parameters[Parameter::force_limit_N],
+          .recovery_N_per_period = recovery_per_s * protocol::servo_period_s * parameters[Parameter::force_limit_N],
+          .program_force = program_force(parameters),
           .ramp_per_period = ramp_per_period(parameters[Parameter::force_ramp_s]),
           .motors = motors(parameters),
           .heat = heat(parameters),

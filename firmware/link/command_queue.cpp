@@ -46,7 +46,7 @@ std::optional<protocol::CommandReport> decode_command(std::span<const std::byte>
 }
 
 bool CommandQueue::push(const protocol::CommandReport& command) {
-  sign_of_life_.store(true);
+  note_sign_of_life();
   if (!has_room()) return false;
   const std::uint32_t pushed = pushed_.load();
   commands_[pushed % capacity] = command;

@@ -1,5 +1,6 @@
 #include <link/parameter_store.hpp>
 
+#include <array>
 #include <cstddef>
 
 namespace inkwell::link {
@@ -16,12 +17,13 @@ constexpr protocol::ParameterSet defaults = protocol::default_parameters();
 
 }  // namespace
 
-ParameterStore::ParameterStore() : values_(defaults), settings_{control::prepare(defaults), control::Settings{}} {}
+ParameterStore::ParameterStore() : values_(defaults), settings_{control::prepare(defaults)} {}
 
 protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on) {
   ++transactions_;
   ParameterCheck check;
-  if (offered_.load())
+  control::Settings* next = settings_.next();
+  if (next == nullptr)
     check.refusal = protocol::Refusal::busy;
   else
     check = check_transaction(report, values_, force_is_on);
@@ -31,8 +33,8 @@ protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool
   refused_value_ = check.value;
   if (refusal_ == protocol::Refusal::accepted) {
     values_ = check.set;
-    settings_[active_ ^ 1u] = control::prepare(values_);
-    offered_.store(true);
+    *next = control::prepare(values_);
+    settings_.offer();
   }
   return refusal_;
 }

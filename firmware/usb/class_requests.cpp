@@ -38,7 +38,9 @@ Answer Device::hid_request(const SetupPacket& setup) {
   } else if (setup.request_type == class_interface_out) {
     if (setup.request == set_report_request) {
       const bool known = setup.value == report_value(output_report_type, ReportId::command) ||
-                         setup.value == report_value(feature_report, ReportId::parameters);
+                         setup.value == report_value(output_report_type, ReportId::force) ||
+                         setup.value == report_value(feature_report, ReportId::parameters) ||
+                         setup.value == report_value(feature_report, ReportId::shapes);
       return known && setup.length != 0 ? Answer::receive() : Answer::stall();
     }
     if (setup.request == set_idle_request && setup.length == 0) {
@@ -82,6 +84,11 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
   if (setup.value == report_value(output_report_type, ReportId::command)) {
     return pass_on(link::decode_command(data));  // a stall tells the host to try again
   }
+  if (setup.value == report_value(output_report_type, ReportId::force)) {
+    take_force(data);
+    return true;
+  }
+  if (setup.value == report_value(feature_report, ReportId::shapes)) return link_.program.accept_shapes(data);
   // What is wrong with a transaction is told by the TransactionReport, not by a stall.
   // In this order: were the state read first, the interrupt could take the command in between.
   const bool force_is_on =
@@ -101,6 +108,10 @@ protocol::InformationReport Device::information() const {
   report.scope_samples_dropped = link_.scope.samples_dropped();
   report.pose_reports_dropped = poses_dropped_;
   report.servo_overruns = link_.status.overruns();
+  report.force_reports = link_.program.forces_received();
+  report.force_reports_lost = link_.program.forces_lost();
+  report.force_reports_late = link_.status.late_force_reports();
+  report.force_reports_refused = link_.program.forces_refused();
   report.reset_cause = identity_.reset_cause;
   for (std::size_t i = 0; i < 3; ++i) report.motor_heat[i] = link_.status.motor_heat(i);
   return report;

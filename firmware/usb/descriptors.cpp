@@ -72,10 +72,12 @@ constexpr auto report_descriptor =
                0x75, 0x08),       // report size, 8 bits
          report(ReportId::pose, 2, input_item, sizeof(protocol::PoseReport)),
          report(ReportId::command, 3, output_item, sizeof(protocol::CommandReport)),
+         report(ReportId::force, 8, output_item, sizeof(protocol::ForceReport)),
          report(ReportId::information, 4, feature_item, sizeof(protocol::InformationReport)),
          report(ReportId::parameters, 5, feature_item, sizeof(protocol::ParametersReport)),
          report(ReportId::transaction, 6, feature_item, sizeof(protocol::TransactionReport)),
          report(ReportId::frame, 7, feature_item, sizeof(protocol::FrameReport)),
+         report(ReportId::shapes, 9, feature_item, sizeof(protocol::ShapesReport)),
          bytes(0xC0));  // end of the collection
 
 // ---- device and configuration (USB 2.0, section 9.6) -----------------------------------------------

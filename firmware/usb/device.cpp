@@ -60,8 +60,7 @@ void Device::handle(const Event& event) {
       if (event.endpoint == 0) {
         control_.received(data);
       } else if (event.endpoint == identity::hid_out_endpoint && configured()) {
-        held_command_ = link::decode_command(data);
-        pass_on_held_command();
+        take_report(data);
       }
       break;
     case Event::Kind::sent:
@@ -87,6 +86,7 @@ void Device::bus_reset() {
 
 void Device::host_gone() {
   link_.commands.host_gone();
+  link_.program.host_gone();
   if (held_command_) {
     held_command_.reset();
     if (configured()) port_.receive(identity::hid_out_endpoint);
@@ -182,6 +182,20 @@ void Device::send_scope() {
   scope_wants_end_ = frame.size() % packet_size_maximum == 0;
   endpoint.busy = true;
   port_.send(endpoint.address, frame);
+}
+
+void Device::take_report(std::span<const std::byte> report) {
+  if (!report.empty() && report[0] == static_cast<std::byte>(protocol::ReportId::force)) {
+    take_force(report);
+    port_.receive(identity::hid_out_endpoint);
+    return;
+  }
+  held_command_ = link::decode_command(report);
+  pass_on_held_command();
+}
+
+void Device::take_force(std::span<const std::byte> report) {
+  if (link_.program.accept_force(report)) link_.commands.note_sign_of_life();
 }
 
 bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {

@@ -41,6 +41,8 @@ enum class ParameterKind : std::uint8_t {
   X(202, wall_damping_Ns_per_m, real, "Ns/m", 0.0f, 20.0f, 2.0f, "contact", "Damping constant c of the walls (paper, section 3.3). It acts only in contact.") \
   X(203, force_limit_N, real, "N", 0.0f, 8.0f, 3.3f, "contact", "Largest magnitude of the force that is asked of the motors.")    \
   X(204, force_ramp_s, real, "s", 0.0f, 2.0f, 0.25f, "contact", "Time in which the force rises from nothing to full after it is switched on.") \
+  X(220, program_force_expiry_s, real, "s", 0.005f, 0.5f, 0.05f, "program force", "Silence of a program on the PC after which its force fades within 10 ms.") \
+  X(221, program_force_change_N_per_s, real, "N/s", 1.0f, 20000.0f, 1000.0f, "program force", "How fast the force that a program asks for may change; a faster one is stretched in time.") \
   X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, arm_defaults::current_proportional_gain_V_per_A, "current loop", "Proportional gain of the current loops. The inductance times the wanted bandwidth in rad/s.") \
   X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, arm_defaults::current_integral_gain_V_per_As, "current loop", "Integral gain of the current loops. The resistance times the wanted bandwidth in rad/s.") \
   X(302, voltage_limit_V, real, "V", 0.0f, 24.0f, 16.0f, "current loop", "Largest voltage that a current loop may put on a motor; the supply bounds it as well.") \

@@ -1,10 +1,11 @@
 // What goes over the HID interface. All structures are packed and little-endian, as both ends are.
 //
 //   device -> host   input report    PoseReport, one for each frame of the bus, a millisecond by the host's clock
-//   host -> device   output report   CommandReport; any of them counts as a sign of life
+//   host -> device   output report   CommandReport, ForceReport; any of them counts as a sign of life
 //   host <- device   feature report  InformationReport, ParametersReport (get), TransactionReport,
 //                                    FrameReport
-//   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all
+//   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all; ShapesReport,
+//                                    likewise
 #pragma once
 
 #include <bit>
@@ -21,7 +22,7 @@ namespace inkwell::protocol {
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 3;
+inline constexpr std::uint16_t protocol_version = 4;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -32,14 +33,54 @@ inline constexpr std::uint32_t pose_rate_Hz = 1'000;
 enum class ReportId : std::uint8_t {
   pose = 0x01,         ///< input
   command = 0x02,      ///< output
+  force = 0x03,        ///< output
   information = 0x10,  ///< feature, get
   parameters = 0x11,   ///< feature, get and set
   transaction = 0x12,  ///< feature, get
   frame = 0x13,        ///< feature, get
+  shapes = 0x14,       ///< feature, set
 };
 
 /// Bits of PoseReport::switches.
 enum class Switch : std::uint8_t { button_1 = 1, button_2 = 2, inkwell = 4 };
+
+// clang-format off
+/// X(bit, name, meaning)
+#define INKWELL_FORCE_SOURCES(X)                                   \
+  X(1, walls, "The walls of the box are felt.")                    \
+  X(2, shapes, "Planes or a sphere that a program placed are felt.") \
+  X(4, program, "A program on the PC sends forces.")
+// clang-format on
+
+/// Whose force the hand feels: bits of PoseReport::force_sources.
+enum class ForceSource : std::uint8_t {
+#define X(bit, name, ...) name = bit,
+  INKWELL_FORCE_SOURCES(X)
+#undef X
+};
+
+struct ForceSourceInfo {
+  ForceSource source;
+  std::string_view name;
+  std::string_view meaning;
+};
+
+inline constexpr auto force_source_table = std::to_array<ForceSourceInfo>({
+#define X(bit, name, meaning) {ForceSource::name, #name, meaning},
+    INKWELL_FORCE_SOURCES(X)
+#undef X
+});
+
+constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
+  return (force_sources & static_cast<std::uint8_t>(source)) != 0;
+}
+
+/// What a program's force has to do with the walls of the box. Shapes are felt in every mode.
+enum class ForceMode : std::uint8_t {
+  none = 0,              ///< the program has ended: its force fades
+  beside_walls = 1,      ///< both are felt
+  instead_of_walls = 2,  ///< the walls are not felt
+};
 
 #pragma pack(push, 1)
 
@@ -55,10 +96,11 @@ struct PoseReport {
   float gimbal_rad[3];
   float force_N[3];
   float joint_rad[3];
-  std::uint8_t switches;       ///< bits of Switch, 1 is pressed
-  std::uint8_t servo_load;     ///< longest control interrupt since the last report, 255 is the whole period
-  std::uint8_t command_token;  ///< token of the last command carried out
-  std::uint8_t supply_dV;      ///< supply of the bridges in tenths of a volt
+  std::uint8_t switches : 4;       ///< bits of Switch, 1 is pressed
+  std::uint8_t force_sources : 4;  ///< bits of ForceSource
+  std::uint8_t servo_load;         ///< longest control interrupt since the last report, 255 is the whole period
+  std::uint8_t command_token;      ///< token of the last command carried out
+  std::uint8_t supply_dV;          ///< supply of the bridges in tenths of a volt
 };
 
 enum class Command : std::uint8_t {
@@ -98,6 +140,22 @@ struct CommandReport {
   };
 };
 
+/// The longest interval between two reports of a program that the board interpolates.
+inline constexpr std::uint8_t force_interval_maximum_ms = 50;
+
+/// Output report, up to one in a millisecond: the force that a program wants at the probe. The board moves to it in a
+/// straight line over the program's own interval, keeps it below the force limit and its change below
+/// program_force_change_N_per_s, and lets it fade program_force_expiry_s after the last report. A force that is not
+/// finite, an unknown mode or an interval out of range is refused and counted.
+struct ForceReport {
+  ReportId report_id = ReportId::force;
+  ForceMode mode;
+  std::uint8_t version = protocol_version;
+  std::uint8_t interval_ms;  ///< 1..force_interval_maximum_ms
+  std::uint32_t sequence;    ///< one more each time; a gap is counted as lost
+  float force_N[3];          ///< on the hand, workspace axes
+};
+
 /// Feature report: who the device is, and what it has counted since it started.
 struct InformationReport {
   ReportId report_id = ReportId::information;
@@ -112,8 +170,12 @@ struct InformationReport {
   std::uint32_t scope_samples_dropped;  ///< because the host did not read
   std::uint32_t pose_reports_dropped;   ///< frames in which a host that otherwise polled did not
   std::uint32_t servo_overruns;
-  std::uint32_t reset_cause;  ///< RCC_CSR bits 31..24 as found at start-up
-  float motor_heat[3];        ///< now; 1 is what the continuous current leads to
+  std::uint32_t force_reports;          ///< received since the start, refused ones included
+  std::uint32_t force_reports_lost;     ///< gaps in their sequence
+  std::uint32_t force_reports_late;     ///< came more than a millisecond after their interval
+  std::uint32_t force_reports_refused;  ///< what they said was not sound
+  std::uint32_t reset_cause;            ///< RCC_CSR bits 31..24 as found at start-up
+  float motor_heat[3];                  ///< now; 1 is what the continuous current leads to
 };
 
 enum class ParameterOperation : std::uint8_t {
@@ -162,8 +224,49 @@ struct FrameReport {
   std::uint32_t time_cycles;   ///< processor cycles from the begin of that period to the begin of the frame
 };
 
+/// How a shape feels.
+struct SurfaceEntry {
+  float stiffness_N_per_m;  ///< above 0, to the maximum of wall_stiffness_N_per_m
+  float damping_Ns_per_m;   ///< 0 to the maximum of wall_damping_Ns_per_m
+  float static_friction;    ///< 0..friction_maximum, a part of the normal force
+  float dynamic_friction;   ///< 0..static_friction
+  float life_s;             ///< 0..shape_life_maximum_s from when it takes effect; 0 for a shape that is not there
+};
+
+struct PlaneEntry {
+  float point_m[3];  ///< any point of it
+  float normal[3];   ///< into the free space, of any length but 0
+  SurfaceEntry surface;
+};
+
+struct SphereEntry {
+  float centre_m[3];
+  float radius_m;  ///< the free space is outside
+  SurfaceEntry surface;
+};
+
+inline constexpr std::size_t shape_planes_maximum = 8;
+inline constexpr float shape_life_maximum_s = 10.0f;
+inline constexpr float shape_distance_maximum_m = 10.0f;  ///< of every length and coordinate
+inline constexpr float friction_maximum = 3.0f;
+
+/// Feature report, set: the shapes from now on, each in a place of its own. They take the place of all that were there
+/// at the start of one control period, without a jump of the force. Only the used part is sent:
+/// shapes_report_size(plane_count) bytes. One that is not sound is refused whole, by a stall.
+struct ShapesReport {
+  ReportId report_id = ReportId::shapes;
+  std::uint8_t version = protocol_version;
+  std::uint8_t plane_count;  ///< 0..shape_planes_maximum
+  std::uint8_t reserved = 0;
+  SphereEntry sphere;
+  PlaneEntry planes[shape_planes_maximum];
+};
+
 #pragma pack(pop)
 
+constexpr std::size_t shapes_report_size(std::size_t plane_count) {
+  return offsetof(ShapesReport, planes) + plane_count * sizeof(PlaneEntry);
+}
 constexpr std::size_t parameters_report_size(std::size_t count) {
   return offsetof(ParametersReport, entries) + count * sizeof(ParameterEntry);
 }
@@ -171,11 +274,13 @@ constexpr std::size_t parameters_report_size(std::size_t count) {
 static_assert(sizeof(PoseReport) == 64);
 static_assert(sizeof(SignalSelection) == 33 && sizeof(TestPulse) == 9);
 static_assert(sizeof(CommandReport) == 37);
-static_assert(sizeof(InformationReport) == 56);
+static_assert(sizeof(ForceReport) == 20);
+static_assert(sizeof(InformationReport) == 72);
 static_assert(sizeof(ParameterEntry) == 8);
 static_assert(sizeof(ParametersReport) == 8 + 8 * parameter_entries_maximum);
 static_assert(sizeof(TransactionReport) == 16);
 static_assert(sizeof(FrameReport) == 16);
+static_assert(sizeof(SurfaceEntry) == 20 && sizeof(PlaneEntry) == 44 && sizeof(SphereEntry) == 36);
 static_assert(std::is_trivially_copyable_v<PoseReport> && std::is_trivially_copyable_v<ParametersReport>);
 
 namespace detail {

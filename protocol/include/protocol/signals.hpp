@@ -73,7 +73,11 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
   X(44, stage_report_cycles, "cycles", float32, "Cycles of stage 6: supervisor, pose and scope records.") \
   X(45, motor_heat_1, "", float32, "Heat of motor 1's winding: 1 is what its continuous current leads to.")    \
   X(46, motor_heat_2, "", float32, "Heat of motor 2's winding.")                                               \
-  X(47, motor_heat_3, "", float32, "Heat of motor 3's winding.")
+  X(47, motor_heat_3, "", float32, "Heat of motor 3's winding.")                                               \
+  X(48, program_force_x_N, "N", float32, "Force of a program on the PC, as the board has interpolated it, x.") \
+  X(49, program_force_y_N, "N", float32, "Force of a program on the PC, y.")                                   \
+  X(50, program_force_z_N, "N", float32, "Force of a program on the PC, z.")                                   \
+  X(51, force_sources, "", float32, "Whose force it is: 1 the walls, 2 shapes, 4 a program; their sum.")
 // clang-format on
 
 /// Index of a signal in the table, which is also its id on the wire.

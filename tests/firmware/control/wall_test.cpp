@@ -116,7 +116,7 @@ Push push_against_wall(protocol::ParameterSet parameters) {
     const float force_N = -signals[Signal::force_x_N];
     push.largest_force_N = std::max(push.largest_force_N, force_N);
     push.deepest_m = std::max(push.deepest_m, depth_m);
-    if (force_N > 0.0f && force_N < settings.wall.force_limit_N) {
+    if (force_N > 0.0f && force_N < settings.force_limit_N) {
       const float law_N =
           settings.wall.stiffness_N_per_m * depth_m + settings.wall.damping_Ns_per_m * signals[Signal::velocity_x_m_s];
       push.law_error_N = std::max(push.law_error_N, std::abs(force_N - law_N));

@@ -127,10 +127,10 @@ struct DeviceBench {
       protocol::SignalValues signals{};
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
       link.poses.record(signals,
-                        {state, protocol::Fault::none, 0, link.commands.last_token(), periods, periods * 8400, 100});
+                        {state, protocol::Fault::none, 0, 0, link.commands.last_token(), periods, periods * 8400, 100});
       port.pass_period();
       record(link.scope, signals, periods++);
-      link.status.record(state, {}, 100, false);
+      link.status.record(state, {}, 100, 0, false);
     }
   }
 
@@ -144,7 +144,8 @@ inline protocol::CommandReport command(protocol::Command kind, std::uint8_t toke
   return report;
 }
 
-inline std::span<const std::byte> bytes_of(const protocol::CommandReport& report) {
+template <class Report>
+std::span<const std::byte> bytes_of(const Report& report) {
   return std::as_bytes(std::span(&report, 1));
 }
 

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <limits>
+
 #include "../link/transaction.hpp"
 #include "device_bench.hpp"
 
@@ -173,7 +175,7 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   DeviceBench bench;
   bench.configure();
   bench.run(5);
-  bench.link.status.record(protocol::State::ready, {0.25f, 0.5f, 1.5f}, 4321, true);
+  bench.link.status.record(protocol::State::ready, {0.25f, 0.5f, 1.5f}, 4321, 0, true);
   const auto report = bench.get_feature<protocol::InformationReport>(protocol::ReportId::information);
   CHECK(report.report_id == protocol::ReportId::information);
   CHECK(report.version == protocol::protocol_version);
@@ -255,6 +257,61 @@ TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
   CHECK(bench.last_command->command == protocol::Command::disable_force);
 }
 
+TEST_CASE("HID: a program's forces come by the interrupt endpoint and by SET_REPORT, and are signs of life") {
+  DeviceBench bench;
+  bench.configure();
+  bench.run(1);  // the reset's disable_force is taken
+  protocol::ForceReport force{};
+  force.mode = protocol::ForceMode::beside_walls;
+  force.interval_ms = 1;
+  force.force_N[1] = 0.5f;
+  for (std::uint32_t sequence = 0; sequence < 20; ++sequence) {
+    force.sequence = sequence;
+    REQUIRE(bench.port.out(1, bytes_of(force)) == Handshake::ack);
+    bench.device.poll();
+    CHECK(bench.link.commands.take_sign_of_life());
+    const control::ForceTarget* target = bench.link.program.take_force();
+    REQUIRE(target != nullptr);
+    CHECK(target->force_N.y == 0.5f);
+  }
+  force.sequence = 22;
+  CHECK(bench.set_report(2, force) == done_result);
+  CHECK(bench.link.program.take_force() != nullptr);
+
+  force.force_N[0] = std::numeric_limits<float>::quiet_NaN();
+  bench.link.commands.take_sign_of_life();
+  REQUIRE(bench.port.out(1, bytes_of(force)) == Handshake::ack);
+  bench.device.poll();
+  CHECK_FALSE(bench.link.commands.take_sign_of_life());
+  CHECK(bench.link.program.take_force() == nullptr);
+  bench.link.status.record(protocol::State::ready, {}, 100, 3, false);
+  const auto information = bench.get_feature<protocol::InformationReport>(protocol::ReportId::information);
+  CHECK(information.force_reports == 22);
+  CHECK(information.force_reports_lost == 2);
+  CHECK(information.force_reports_late == 3);
+  CHECK(information.force_reports_refused == 1);
+}
+
+TEST_CASE("HID: shapes come whole or are refused by a stall, and go with the host") {
+  DeviceBench bench;
+  bench.configure();
+  bench.link.program.take_shapes();  // none, from the reset
+  protocol::ShapesReport shapes{};
+  shapes.plane_count = protocol::shape_planes_maximum;
+  for (auto& plane : shapes.planes) plane = {{0, 0, 0}, {0, 0, 1}, {800.0f, 1.0f, 0.0f, 0.0f, 1.0f}};
+  CHECK(bench.set_report(3, shapes) == done_result);
+  const control::Shapes* taken = bench.link.program.take_shapes();
+  REQUIRE(taken != nullptr);
+  CHECK(taken->life_periods[8] != 0);
+  shapes.planes[7].normal[2] = 0.0f;
+  CHECK(bench.set_report(3, shapes) == stall_result);
+  CHECK(bench.link.program.take_shapes() == nullptr);
+  CHECK(bench.configure(0) == done_result);
+  taken = bench.link.program.take_shapes();
+  REQUIRE(taken != nullptr);
+  CHECK(taken->life_periods[8] == 0);
+}
+
 TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, and nothing happens") {
   DeviceBench bench;
   bench.configure();
@@ -265,7 +322,7 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
   for (unsigned type = 0; type < 5; ++type)
     for (unsigned id = 0; id < 256; ++id) {
       const auto value = static_cast<std::uint16_t>(type << 8 | id);
-      if (value == 0x0202 || value == 0x0311) continue;
+      if (value == 0x0202 || value == 0x0203 || value == 0x0311 || value == 0x0314) continue;
       bench.setup(request(0x21, 9, value, 0, 37));
       CHECK(bench.port.out(0, bytes_of(good)) == Handshake::stall);
     }

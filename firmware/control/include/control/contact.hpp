@@ -14,7 +14,6 @@ struct Box {
 struct Wall {
   float stiffness_N_per_m;
   float damping_Ns_per_m;
-  float force_limit_N;  ///< bound of the force's magnitude
 };
 
 struct Contact {
@@ -31,9 +30,11 @@ struct Force {
 Contact find_contact(const Vector3& probe_m, const Box& box);
 
 /// F = k d e + c d' e on each axis in contact, d' the rate of the penetration. A wall never pulls: where
-/// the damper would outweigh the spring on leaving, that axis gives nothing. The magnitude is bounded by
-/// the force limit, the direction stays.
-Force wall_force(const Contact& contact, const Vector3& velocity_m_per_s, const Wall& wall);
+/// the damper would outweigh the spring on leaving, that axis gives nothing.
+Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m_per_s, const Wall& wall);
+
+/// A force of at most `limit_N`, in its direction.
+Force bounded(const Vector3& force_N, float limit_N);
 
 /// The force times a gain of 0..1, for ramping in.
 constexpr Force scaled(const Force& force, float gain) { return {gain * force.force_N, gain * force.magnitude_N}; }

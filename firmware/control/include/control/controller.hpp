@@ -5,10 +5,13 @@
 #include <cstdint>
 
 #include <control/conditioning.hpp>
+#include <control/program_force.hpp>
 #include <control/samples.hpp>
 #include <control/settings.hpp>
+#include <control/shapes.hpp>
 #include <control/supervisor.hpp>
 #include <control/test_pulse.hpp>
+#include <control/transition.hpp>
 #include <control/velocity.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/signals.hpp>
@@ -16,7 +19,7 @@
 namespace inkwell::control {
 
 /// Everything between the samples and the duties. Single-threaded: all but the constructor is called in the
-/// control interrupt, in the order carry_out / host_alive / raise, step, finish.
+/// control interrupt, in the order carry_out / host_alive / drive / replace_shapes / raise, step, finish.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board) : board_(board) {}
@@ -29,7 +32,7 @@ class Controller {
     cycles_[sample] = clock.lap();
     find_pose(settings);
     cycles_[pose] = clock.lap();
-    render_contact(settings);
+    render_force(settings);
     cycles_[contact] = clock.lap();
     find_current_references(settings);
     cycles_[torque] = clock.lap();
@@ -52,6 +55,10 @@ class Controller {
   void carry_out(const protocol::CommandReport& command);
   /// The host was heard: any output report came in.
   void host_alive() { host_silence_periods_ = 0; }
+  /// A program on the PC asks for a force.
+  void drive(const ForceTarget& target, const Settings& settings);
+  /// A program on the PC has placed other shapes; they must stay as they are until the next call.
+  void replace_shapes(const Shapes& shapes);
   /// Reports a fault found outside the signal path; it switches the bridges off in the next step.
   void raise(protocol::Fault fault);
 
@@ -65,7 +72,9 @@ class Controller {
   }
   protocol::State state() const { return supervisor_.state; }
   protocol::Fault fault() const { return supervisor_.fault; }
-  std::uint8_t switches() const { return switches_.closed; }    ///< bits of protocol::Switch, debounced
+  std::uint8_t switches() const { return switches_.closed; }                ///< bits of protocol::Switch, debounced
+  std::uint8_t force_sources() const { return force_sources_; }             ///< bits of protocol::ForceSource
+  std::uint32_t late_force_reports() const { return late_force_reports_; }  ///< since the start
   std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
   const Triple& motor_heat() const { return heat_.heat; }       ///< 1 is what the continuous current leads to
@@ -76,7 +85,7 @@ class Controller {
 
   void condition_samples(const Samples& samples, const Settings& settings);
   void find_pose(const Settings& settings);
-  void render_contact(const Settings& settings);
+  void render_force(const Settings& settings);
   void find_current_references(const Settings& settings);
   void regulate_currents(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
@@ -97,6 +106,13 @@ class Controller {
   Supervisor supervisor_;
   Requests requests_;
   float force_gain_ = 0.0f;
+  ProgramForce program_;
+  TouchedShapes shapes_;
+  bool shapes_replaced_ = false;
+  bool walls_rendered_ = true;
+  Vector3 touched_N_;  ///< of walls, shapes and transition, in the period before
+  Transition transition_;
+  std::uint32_t late_force_reports_ = 0;
   std::uint32_t host_silence_periods_ = 0;
 
   // Results of this period, in the order of the path.
@@ -110,6 +126,7 @@ class Controller {
   Vector3 velocity_m_per_s_;
   Contact contact_;
   Force force_{};
+  std::uint8_t force_sources_ = 0;
   Triple torque_Nm_{};
   Triple reference_A_{};
   Drive drive_;

@@ -8,6 +8,7 @@
 #include <control/encoders.hpp>
 #include <control/kinematics.hpp>
 #include <control/motor_heat.hpp>
+#include <control/program_force.hpp>
 #include <control/torque.hpp>
 #include <protocol/parameters.hpp>
 
@@ -35,6 +36,9 @@ struct Settings {
   std::array<GimbalCurve, 3> gimbal;
   Box box;  ///< already smaller by the sphere's radius
   Wall wall;
+  float force_limit_N;          ///< bound of the magnitude of all that is rendered together
+  float recovery_N_per_period;  ///< how fast a force gets over a jump of what it is made of (Transition)
+  ProgramForceLimits program_force;
   float ramp_per_period;  ///< rise of the force's gain in one control period
   Motors motors;
   HeatScale heat;

@@ -29,6 +29,9 @@ class CommandQueue {
   /// Queues a decoded command and notes a sign of life; false if the queue is full.
   [[nodiscard]] bool push(const protocol::CommandReport& command);
 
+  /// The host was heard, without a command.
+  void note_sign_of_life() { sign_of_life_.store(true); }
+
   /// Whether such a command waits for the interrupt.
   bool waiting(protocol::Command command) const;
 

@@ -5,10 +5,12 @@
 //   settings = link.parameters.take(periods)
 //   if (link.commands.take_sign_of_life()) controller.host_alive()
 //   if (command = link.commands.take()) controller.carry_out(*command)
+//   if (target = link.program.take_force()) controller.drive(*target, settings)
+//   if (shapes = link.program.take_shapes()) controller.replace_shapes(*shapes)
 //   controller.step(...)
 //   controller.write_signals(link.scope.next())
 //   link.poses.record(link.scope.next(), {...}); link.scope.record(periods)
-//   link.status.record(controller.state(), motor_heat, cycles, overrun)
+//   link.status.record(controller.state(), motor_heat, cycles, late_force_reports, overrun)
 //
 // About 10 KB, most of it the last samples of the scope: it lives in the core-coupled memory. The scope's frames are
 // the main loop's and lie elsewhere.
@@ -19,6 +21,7 @@
 #include <link/command_queue.hpp>
 #include <link/parameter_store.hpp>
 #include <link/pose_recorder.hpp>
+#include <link/program_requests.hpp>
 #include <link/scope_recorder.hpp>
 #include <link/servo_status.hpp>
 
@@ -30,6 +33,7 @@ struct Link {
 
   ParameterStore parameters;
   CommandQueue commands;
+  ProgramRequests program;
   PoseRecorder poses;
   ScopeRecorder scope;
   ServoStatus status;

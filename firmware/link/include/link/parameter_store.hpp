@@ -1,20 +1,19 @@
 // The parameters: checked and prepared in the main loop, taken whole at the start of a control period.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include <control/settings.hpp>
+#include <link/handover.hpp>
 #include <link/parameter_check.hpp>
 #include <link/shared.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::link {
 
-/// Holds the parameters and two buffers of prepared settings: the interrupt works with one, the main
-/// loop prepares the next transaction in the other. The interrupt alone swaps them.
+/// Holds the parameters, and hands the settings prepared from them over to the interrupt.
 class ParameterStore {
  public:
   /// Starts with the defaults of the table.
@@ -38,19 +37,13 @@ class ParameterStore {
 
   /// Called once at the start of a control period; swaps if there is a transaction to take.
   const control::Settings& take(std::uint32_t periods) {
-    if (offered_.load()) {
-      active_ ^= 1u;
-      applied_at_periods_.store(periods);
-      offered_.store(false);
-    }
-    return settings_[active_];
+    if (settings_.take()) applied_at_periods_.store(periods);
+    return settings_.used();
   }
 
  private:
   protocol::ParameterSet values_;
-  std::array<control::Settings, 2> settings_;
-  std::uint32_t active_ = 0;  ///< written by the interrupt, and only while `offered_`
-  Shared<bool> offered_{false};
+  Handover<control::Settings> settings_;
   Shared<std::uint32_t> applied_at_periods_{0};
   protocol::Refusal refusal_ = protocol::Refusal::accepted;
   std::uint16_t refused_id_ = 0;

@@ -59,6 +59,9 @@ class Device final : private ControlRequests {
   void host_gone();
   void start_endpoints();
   void stop_endpoints();
+  /// A report on the interrupt endpoint.
+  void take_report(std::span<const std::byte> report);
+  void take_force(std::span<const std::byte> report);
   /// Ignores what is no command; false if the queue has no room for one.
   bool pass_on(const std::optional<protocol::CommandReport>& command);
   /// Passes on what came by the interrupt endpoint and only then lets the next report come: while the queue is full

@@ -10,7 +10,8 @@
 
 namespace inkwell::recording {
 
-/// What a replay and its plots need: joints, gimbal, position, penetration, force, torques, currents and duties.
+/// What a replay and its plots need: joints, gimbal, position, penetration, force, torques, currents, duties,
+/// and whose force it is.
 std::vector<protocol::Signal> standard_signals();
 
 /// The whole path of the paper's Figure 7, from the encoders to the duties: as much as the scope carries at once.

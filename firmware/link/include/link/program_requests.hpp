@@ -1,0 +1,56 @@
+// What a program on the PC asks for: forces, and shapes to be felt.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <control/program_force.hpp>
+#include <control/shapes.hpp>
+#include <link/handover.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell::link {
+
+/// The force in a ForceReport (from its report id on), ready for the interrupt; nothing if its length, version, mode,
+/// interval or force is not one of the protocol.
+std::optional<control::ForceTarget> decode_force(std::span<const std::byte> report);
+
+/// The same for a ShapesReport; false if anything in it is not sound, and then `shapes` is undefined.
+bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes);
+
+/// Each newer request takes the place of the older one.
+class ProgramRequests {
+ public:
+  // ---- main loop ----
+
+  /// Takes a ForceReport; false if it is not sound, which is counted.
+  bool accept_force(std::span<const std::byte> report);
+
+  /// Takes a ShapesReport; false if it is not sound, or if the interrupt has not taken the one before.
+  bool accept_shapes(std::span<const std::byte> report);
+
+  /// The host is gone, and with it every shape. A force expires by itself.
+  void host_gone();
+
+  std::uint32_t forces_received() const { return forces_received_; }
+  std::uint32_t forces_lost() const { return forces_lost_; }
+  std::uint32_t forces_refused() const { return forces_refused_; }
+
+  // ---- control interrupt ----
+
+  /// What came since the last call; null for nothing. Valid until the next call.
+  const control::ForceTarget* take_force() { return forces_.take() ? &forces_.used() : nullptr; }
+  const control::Shapes* take_shapes() { return shapes_.take() ? &shapes_.used() : nullptr; }
+
+ private:
+  Handover<control::ForceTarget> forces_;
+  Handover<control::Shapes> shapes_;
+  std::uint32_t forces_received_ = 0;
+  std::uint32_t forces_lost_ = 0;
+  std::uint32_t forces_refused_ = 0;
+  std::optional<std::uint32_t> newest_sequence_;  ///< none while no program drives
+};
+
+}  // namespace inkwell::link

@@ -1,0 +1,141 @@
+#include <link/program_requests.hpp>
+
+#include <cmath>
+#include <cstring>
+
+namespace inkwell::link {
+
+namespace {
+
+using control::Vector3;
+using protocol::ForceMode;
+using protocol::Parameter;
+
+/// NaN is not within.
+bool within(float value, float low, float high) { return value >= low && value <= high; }
+
+bool sound(const float (&coordinates)[3], float limit) {
+  return within(coordinates[0], -limit, limit) && within(coordinates[1], -limit, limit) &&
+         within(coordinates[2], -limit, limit);
+}
+
+Vector3 vector_of(const float (&coordinates)[3]) { return {coordinates[0], coordinates[1], coordinates[2]}; }
+
+/// As long as it takes that the squares of what comes stay finite.
+constexpr float longest_force_N = 1e6f;
+
+Vector3 shortened(const Vector3& force_N) {
+  const float largest_N = std::fmax(std::fabs(force_N.x), std::fmax(std::fabs(force_N.y), std::fabs(force_N.z)));
+  if (largest_N <= longest_force_N) return force_N;
+  const float part = longest_force_N / largest_N;
+  return part * force_N;
+}
+
+bool decode_surface(const protocol::SurfaceEntry& entry, control::Surface& surface, std::uint32_t& life_periods) {
+  life_periods = 0;
+  if (entry.life_s == 0.0f) return true;  // not there, whatever else it says
+  const bool is_sound = entry.stiffness_N_per_m > 0.0f &&
+                        entry.stiffness_N_per_m <= info(Parameter::wall_stiffness_N_per_m).maximum &&
+                        within(entry.damping_Ns_per_m, 0.0f, info(Parameter::wall_damping_Ns_per_m).maximum) &&
+                        within(entry.static_friction, 0.0f, protocol::friction_maximum) &&
+                        within(entry.dynamic_friction, 0.0f, entry.static_friction) &&
+                        within(entry.life_s, 0.0f, protocol::shape_life_maximum_s);
+  if (!is_sound) return false;
+  surface = {entry.stiffness_N_per_m, 1.0f / entry.stiffness_N_per_m, entry.damping_Ns_per_m, entry.static_friction,
+             entry.dynamic_friction};
+  life_periods = 1 + static_cast<std::uint32_t>(entry.life_s * static_cast<float>(protocol::servo_rate_Hz));
+  return true;
+}
+
+bool decode_plane(const protocol::PlaneEntry& entry, control::Plane& plane) {
+  const float limit = protocol::shape_distance_maximum_m;
+  if (!sound(entry.point_m, limit) || !sound(entry.normal, limit)) return false;
+  const Vector3 direction = vector_of(entry.normal);
+  const float squared = control::dot(direction, direction);
+  constexpr float shortest_squared = 1e-12f;
+  if (squared < shortest_squared) return false;
+  plane.normal = (1.0f / std::sqrt(squared)) * direction;
+  plane.offset_m = control::dot(plane.normal, vector_of(entry.point_m));
+  return true;
+}
+
+bool decode_sphere(const protocol::SphereEntry& entry, control::Sphere& sphere) {
+  const float limit = protocol::shape_distance_maximum_m;
+  if (!sound(entry.centre_m, limit) || !(entry.radius_m > 0.0f && entry.radius_m <= limit)) return false;
+  sphere = {vector_of(entry.centre_m), entry.radius_m, entry.radius_m * entry.radius_m};
+  return true;
+}
+
+}  // namespace
+
+std::optional<control::ForceTarget> decode_force(std::span<const std::byte> report) {
+  protocol::ForceReport force;
+  if (report.size() != sizeof force) return std::nullopt;
+  std::memcpy(&force, report.data(), sizeof force);
+  const bool is_sound = force.version == protocol::protocol_version && force.mode <= ForceMode::instead_of_walls &&
+                        force.interval_ms >= 1 && force.interval_ms <= protocol::force_interval_maximum_ms &&
+                        std::isfinite(force.force_N[0]) && std::isfinite(force.force_N[1]) &&
+                        std::isfinite(force.force_N[2]);
+  if (!is_sound) return std::nullopt;
+  const std::uint32_t interval_periods = force.interval_ms * (protocol::servo_rate_Hz / 1000);
+  return control::ForceTarget{shortened(vector_of(force.force_N)), force.mode, interval_periods,
+                              1.0f / static_cast<float>(interval_periods)};
+}
+
+bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes) {
+  protocol::ShapesReport set;
+  if (report.size() < protocol::shapes_report_size(0) || report.size() > sizeof set) return false;
+  std::memcpy(&set, report.data(), report.size());
+  if (set.version != protocol::protocol_version || set.plane_count > protocol::shape_planes_maximum ||
+      report.size() != protocol::shapes_report_size(set.plane_count))
+    return false;
+  shapes = {};
+  if (!decode_surface(set.sphere.surface, shapes.surfaces[0], shapes.life_periods[0])) return false;
+  if (shapes.life_periods[0] != 0 && !decode_sphere(set.sphere, shapes.sphere)) return false;
+  for (std::size_t i = 0; i < set.plane_count; ++i) {
+    if (!decode_surface(set.planes[i].surface, shapes.surfaces[1 + i], shapes.life_periods[1 + i])) return false;
+    if (shapes.life_periods[1 + i] != 0 && !decode_plane(set.planes[i], shapes.planes[i])) return false;
+  }
+  return true;
+}
+
+bool ProgramRequests::accept_force(std::span<const std::byte> report) {
+  ++forces_received_;
+  const auto target = decode_force(report);
+  if (!target) {
+    ++forces_refused_;
+    return false;
+  }
+  std::uint32_t sequence = 0;
+  std::memcpy(&sequence, &report[offsetof(protocol::ForceReport, sequence)], sizeof sequence);
+  // Another program starts with a sequence of its own: only what goes on counts.
+  constexpr std::uint32_t longest_gap = 1000;
+  if (newest_sequence_ && sequence - *newest_sequence_ - 1 < longest_gap)
+    forces_lost_ += sequence - *newest_sequence_ - 1;
+  newest_sequence_ = sequence;
+  if (target->mode == ForceMode::none) newest_sequence_.reset();
+  if (control::ForceTarget* next = forces_.next()) {
+    *next = *target;
+    forces_.offer();
+  } else {
+    ++forces_lost_;
+  }
+  return true;
+}
+
+bool ProgramRequests::accept_shapes(std::span<const std::byte> report) {
+  control::Shapes* next = shapes_.next();
+  if (next == nullptr || !decode_shapes(report, *next)) return false;
+  shapes_.offer();
+  return true;
+}
+
+void ProgramRequests::host_gone() {
+  newest_sequence_.reset();
+  if (control::Shapes* next = shapes_.next()) {
+    *next = {};
+    shapes_.offer();
+  }
+}
+
+}  // namespace inkwell::link

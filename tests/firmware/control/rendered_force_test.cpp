@@ -1,0 +1,195 @@
+// What the controller makes of walls, shapes and a program's force together.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <firmware/control/arms.hpp>
+#include <firmware/control/simulated_arm.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::Vector3;
+using protocol::ForceMode;
+using protocol::ForceSource;
+using protocol::Parameter;
+using protocol::Signal;
+
+constexpr float wall_depth_m = 0.001f;
+
+/// The inkwell lies 1 mm deep in the lower wall along z and far from the others; walls are all spring.
+protocol::ParameterSet parameters_in_wall() {
+  protocol::ParameterSet set = tests::omni_parameters();
+  const control::Settings settings = control::prepare(set);
+  const float z_m = control::forward_kinematics(settings.encoders.inkwell_rad, settings.arm).position_m.z;
+  set[Parameter::box_minimum_x_m] = set[Parameter::box_minimum_y_m] = -0.5f;
+  set[Parameter::box_maximum_x_m] = set[Parameter::box_maximum_y_m] = set[Parameter::box_maximum_z_m] = 0.5f;
+  set[Parameter::sphere_radius_m] = 0.0f;
+  set[Parameter::box_minimum_z_m] = z_m + wall_depth_m;
+  set[Parameter::wall_stiffness_N_per_m] = 1000.0f;
+  return set;
+}
+
+/// A board whose arm stands still, the force on and ramped in.
+struct StillArm {
+  control::Settings settings = control::prepare(parameters_in_wall());
+  control::Controller controller = tests::active_controller(settings);
+  Vector3 probe_m;
+
+  StillArm() {
+    run(6'000);
+    const auto signals = controller.signals();
+    probe_m = {signals[Signal::position_x_m], signals[Signal::position_y_m], signals[Signal::position_z_m]};
+  }
+
+  void run(std::uint32_t periods) {
+    for (std::uint32_t i = 0; i < periods; ++i) {
+      controller.host_alive();
+      tests::run(controller, tests::samples_at_rest(), settings, 1);
+    }
+  }
+
+  Vector3 force_N() const {
+    const auto signals = controller.signals();
+    return {signals[Signal::force_x_N], signals[Signal::force_y_N], signals[Signal::force_z_N]};
+  }
+
+  /// The largest change of the force from one millisecond to the next.
+  float largest_step_N(std::uint32_t milliseconds) {
+    float largest_N = 0.0f;
+    for (std::uint32_t i = 0; i < milliseconds; ++i) {
+      const Vector3 before_N = force_N();
+      run(20);
+      const Vector3 change_N = force_N() - before_N;
+      largest_N = std::max(largest_N, std::sqrt(control::dot(change_N, change_N)));
+    }
+    return largest_N;
+  }
+
+  void drive(const Vector3& force_N, ForceMode mode) { controller.drive({force_N, mode, 20, 0.05f}, settings); }
+
+  control::Shapes floor(float depth_m) const {
+    control::Shapes shapes;
+    shapes.planes[0] = {{0.0f, 0.0f, 1.0f}, probe_m.z + depth_m};
+    shapes.surfaces[1] = {1000.0f, 1e-3f, 0.0f, 0.0f, 0.0f};
+    shapes.life_periods[1] = 100'000;
+    return shapes;
+  }
+};
+
+constexpr std::uint8_t bit(ForceSource source) { return static_cast<std::uint8_t>(source); }
+
+TEST_CASE("a program's force adds to the walls") {
+  StillArm arm;
+  CHECK(arm.controller.force_sources() == bit(ForceSource::walls));
+  CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
+  arm.drive({0.5f, 0.0f, 0.25f}, ForceMode::beside_walls);
+  arm.run(100);
+  CHECK(arm.force_N().x == doctest::Approx(0.5f).epsilon(1e-3));
+  CHECK(arm.force_N().z == doctest::Approx(1.25f).epsilon(1e-3));
+  CHECK(arm.controller.force_sources() == (bit(ForceSource::walls) | bit(ForceSource::program)));
+  const auto signals = arm.controller.signals();
+  CHECK(signals[Signal::program_force_x_N] == doctest::Approx(0.5f).epsilon(1e-4));
+  CHECK(signals[Signal::program_force_z_N] == doctest::Approx(0.25f).epsilon(1e-4));
+  CHECK(signals[Signal::force_sources] == 5.0f);
+}
+
+TEST_CASE("a program that takes the walls' place, and gives it back, is felt without a jump") {
+  StillArm arm;
+  arm.drive({}, ForceMode::instead_of_walls);
+  const float limit_N = 0.05f * arm.settings.force_limit_N;
+  CHECK(arm.largest_step_N(40) <= limit_N);
+  CHECK(arm.force_N().z == doctest::Approx(0.0f).epsilon(1e-6));
+  CHECK(arm.controller.force_sources() == bit(ForceSource::program));
+  arm.drive({}, ForceMode::beside_walls);
+  CHECK(arm.largest_step_N(40) <= limit_N);
+  CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
+  arm.drive({}, ForceMode::instead_of_walls);
+  arm.run(800);
+  // The program falls silent: after its expiry the walls are back.
+  CHECK(arm.largest_step_N(100) <= limit_N);
+  CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
+  CHECK(arm.controller.force_sources() == bit(ForceSource::walls));
+}
+
+TEST_CASE("a plane that comes, moves by 5 mm or goes under a pressing hand never kicks") {
+  StillArm arm;
+  const float limit_N = 0.05f * arm.settings.force_limit_N;
+  arm.drive({}, ForceMode::instead_of_walls);
+  arm.run(800);
+  control::Shapes shapes[2] = {arm.floor(0.001f), {}};
+  arm.controller.replace_shapes(shapes[0]);
+  arm.drive({}, ForceMode::instead_of_walls);
+  CHECK(arm.largest_step_N(40) <= limit_N);
+  CHECK(arm.controller.force_sources() == (bit(ForceSource::shapes) | bit(ForceSource::program)));
+  arm.drive({}, ForceMode::instead_of_walls);
+  arm.run(800);
+  CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(1e-3));
+
+  const control::Shapes moves[] = {arm.floor(0.003f), arm.floor(-0.002f), arm.floor(0.0025f), arm.floor(0.0f), {}};
+  std::size_t place = 1;
+  for (const control::Shapes& moved : moves) {
+    arm.drive({}, ForceMode::instead_of_walls);
+    shapes[place] = moved;
+    arm.controller.replace_shapes(shapes[place]);
+    place ^= 1u;
+    CHECK(arm.largest_step_N(40) <= limit_N);
+    const float depth_m = moved.life_periods[1] == 0 ? 0.0f : moved.planes[0].offset_m - arm.probe_m.z;
+    CHECK(arm.force_N().z == doctest::Approx(std::max(0.0f, 1000.0f * depth_m)).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("a shape whose life ends under a pressing hand lets go softly") {
+  StillArm arm;
+  arm.drive({}, ForceMode::instead_of_walls);
+  arm.run(800);
+  control::Shapes shapes = arm.floor(0.002f);
+  shapes.life_periods[1] = 1'000;
+  arm.controller.replace_shapes(shapes);
+  arm.drive({}, ForceMode::instead_of_walls);
+  arm.run(980);
+  CHECK(arm.force_N().z == doctest::Approx(2.0f).epsilon(2e-3));
+  arm.drive({}, ForceMode::instead_of_walls);
+  CHECK(arm.largest_step_N(40) <= 0.05f * arm.settings.force_limit_N);
+  CHECK(arm.force_N().z == doctest::Approx(0.0f).epsilon(1e-6));
+}
+
+TEST_CASE("all together stay below the force limit, in their direction") {
+  StillArm arm;
+  control::Shapes shapes = arm.floor(0.003f);
+  arm.controller.replace_shapes(shapes);
+  for (int i = 0; i < 5; ++i) {
+    arm.drive({-3.0f, 0.0f, 0.0f}, ForceMode::beside_walls);
+    arm.run(800);
+  }
+  const Vector3 force_N = arm.force_N();
+  CHECK(std::sqrt(control::dot(force_N, force_N)) == doctest::Approx(arm.settings.force_limit_N).epsilon(1e-4));
+  CHECK(force_N.z / force_N.x == doctest::Approx(-4.0f / 3.0f).epsilon(1e-2));
+}
+
+TEST_CASE("a program moves nothing while the force is off, and is ramped in with it") {
+  const control::Settings settings = control::prepare(parameters_in_wall());
+  control::Controller controller = tests::ready_controller(settings);
+  controller.drive({{2.0f, 0.0f, 0.0f}, ForceMode::instead_of_walls, 20, 0.05f}, settings);
+  const control::Drive drive = tests::run(controller, tests::samples_at_rest(), settings, 100);
+  CHECK(!drive.enabled);
+  CHECK(controller.signals()[Signal::force_x_N] == 0.0f);
+  controller.carry_out(tests::command(protocol::Command::enable_force));
+  tests::run(controller, tests::samples_at_rest(), settings, 21);
+  // 20 of the 5000 periods of the ramp.
+  CHECK(controller.signals()[Signal::force_x_N] == doctest::Approx(2.0f * 20 / 5000).epsilon(0.01));
+}
+
+TEST_CASE("late reports are counted") {
+  StillArm arm;
+  arm.drive({}, ForceMode::beside_walls);
+  arm.run(40);
+  arm.drive({}, ForceMode::beside_walls);
+  CHECK(arm.controller.late_force_reports() == 0);
+  arm.run(41);
+  arm.drive({}, ForceMode::beside_walls);
+  CHECK(arm.controller.late_force_reports() == 1);
+}
+
+}  // namespace

@@ -1,0 +1,202 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <link/program_requests.hpp>
+
+namespace {
+
+using namespace inkwell;
+using protocol::ForceMode;
+using protocol::ForceReport;
+using protocol::ShapesReport;
+
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+ForceReport force(std::uint32_t sequence, float x_N = 1.0f) {
+  ForceReport report{};
+  report.mode = ForceMode::beside_walls;
+  report.interval_ms = 1;
+  report.sequence = sequence;
+  report.force_N[0] = x_N;
+  return report;
+}
+
+template <class Report>
+std::span<const std::byte> bytes(const Report& report) {
+  return std::as_bytes(std::span(&report, 1));
+}
+
+std::span<const std::byte> bytes(const ShapesReport& report) {
+  return std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count));
+}
+
+constexpr protocol::SurfaceEntry sound_surface{800.0f, 1.0f, 0.5f, 0.4f, 2.0f};
+
+ShapesReport one_plane() {
+  ShapesReport report{};
+  report.plane_count = 1;
+  report.planes[0] = {{0.0f, 0.0f, 0.02f}, {0.0f, 0.0f, 4.0f}, sound_surface};
+  return report;
+}
+
+TEST_CASE("a sound force is ready for the interrupt once") {
+  link::ProgramRequests requests;
+  CHECK(requests.take_force() == nullptr);
+  ForceReport report = force(7, -2.5f);
+  report.interval_ms = 4;
+  report.mode = ForceMode::instead_of_walls;
+  requests.accept_force(bytes(report));
+  const control::ForceTarget* target = requests.take_force();
+  REQUIRE(target != nullptr);
+  CHECK(target->force_N == control::Vector3{-2.5f, 0.0f, 0.0f});
+  CHECK(target->mode == ForceMode::instead_of_walls);
+  CHECK(target->interval_periods == 80);
+  CHECK(target->per_interval == doctest::Approx(1.0f / 80));
+  CHECK(requests.take_force() == nullptr);
+  CHECK(requests.forces_received() == 1);
+  CHECK(requests.forces_refused() == 0);
+}
+
+TEST_CASE("what is no force is refused, counted and reaches nobody") {
+  const auto broken = [](auto change) {
+    ForceReport report = force(1);
+    change(report);
+    return report;
+  };
+  const ForceReport reports[] = {
+      broken([](auto& report) { report.force_N[0] = not_a_number; }),
+      broken([](auto& report) { report.force_N[1] = infinite; }),
+      broken([](auto& report) { report.force_N[2] = -infinite; }),
+      broken([](auto& report) { report.interval_ms = 0; }),
+      broken([](auto& report) { report.interval_ms = protocol::force_interval_maximum_ms + 1; }),
+      broken([](auto& report) { report.mode = static_cast<ForceMode>(3); }),
+      broken([](auto& report) { report.version = 0; }),
+  };
+  link::ProgramRequests requests;
+  std::uint32_t refused = 0;
+  for (const ForceReport& report : reports) {
+    CAPTURE(refused);
+    requests.accept_force(bytes(report));
+    CHECK(requests.take_force() == nullptr);
+    CHECK(requests.forces_refused() == ++refused);
+  }
+  for (const std::size_t size : {1u, 19u}) requests.accept_force(bytes(force(1)).first(size));
+  CHECK(requests.forces_refused() == refused + 2);
+  CHECK(requests.forces_received() == refused + 2);
+}
+
+TEST_CASE("a huge force stays finite in its square and keeps its direction") {
+  ForceReport report = force(1, 3e38f);
+  report.force_N[1] = -1.5e38f;
+  const auto target = link::decode_force(bytes(report));
+  REQUIRE(target);
+  CHECK(std::isfinite(control::dot(target->force_N, target->force_N)));
+  CHECK(target->force_N.x / target->force_N.y == doctest::Approx(-2.0f));
+}
+
+TEST_CASE("gaps in the sequence are counted as lost, another program's start is none") {
+  link::ProgramRequests requests;
+  const auto accept = [&](std::uint32_t sequence) {
+    requests.accept_force(bytes(force(sequence)));
+    requests.take_force();
+  };
+  accept(0xFFFFFFFEu);
+  accept(0xFFFFFFFFu);
+  accept(0);
+  CHECK(requests.forces_lost() == 0);
+  accept(3);
+  CHECK(requests.forces_lost() == 2);
+  accept(1'000'000);
+  CHECK(requests.forces_lost() == 2);
+  ForceReport end = force(1'000'001);
+  end.mode = ForceMode::none;
+  requests.accept_force(bytes(end));
+  requests.take_force();
+  accept(1'000'005);  // after an end anything is a start
+  CHECK(requests.forces_lost() == 2);
+  requests.accept_force(bytes(force(1'000'006)));
+  requests.accept_force(bytes(force(1'000'007)));  // the interrupt did not take the one before
+  CHECK(requests.forces_lost() == 3);
+  CHECK(requests.take_force() != nullptr);
+}
+
+TEST_CASE("a plane's normal gets the length 1, and its offset is that of its point") {
+  control::Shapes shapes;
+  ShapesReport report = one_plane();
+  report.planes[0].point_m[0] = 5.0f;  // anywhere on it
+  report.planes[0].normal[0] = 3.0f;
+  REQUIRE(link::decode_shapes(bytes(report), shapes));
+  CHECK(shapes.planes[0].normal.x == doctest::Approx(0.6f));
+  CHECK(shapes.planes[0].normal.z == doctest::Approx(0.8f));
+  CHECK(shapes.planes[0].offset_m == doctest::Approx(0.6f * 5.0f + 0.8f * 0.02f));
+  CHECK(shapes.surfaces[1].m_per_N == doctest::Approx(1.0f / 800.0f));
+  CHECK(shapes.surfaces[1].dynamic_friction == 0.4f);
+  CHECK(shapes.life_periods[1] == 40'001);
+  CHECK(shapes.life_periods[0] == 0);
+  CHECK(shapes.life_periods[2] == 0);
+}
+
+TEST_CASE("a set of shapes is taken whole or refused whole") {
+  const auto broken = [](auto change) {
+    ShapesReport report = one_plane();
+    report.plane_count = 2;
+    report.planes[1] = report.planes[0];
+    report.sphere = {{0.0f, 0.0f, 0.0f}, 0.01f, sound_surface};
+    change(report);
+    return report;
+  };
+  link::ProgramRequests requests;
+  REQUIRE(requests.accept_shapes(bytes(broken([](auto&) {}))));
+  REQUIRE(requests.take_shapes() != nullptr);
+  const ShapesReport reports[] = {
+      broken([](auto& report) { report.version = 1; }),
+      broken([](auto& report) { report.planes[1].normal[2] = 0.0f; }),
+      broken([](auto& report) { report.planes[1].normal[0] = not_a_number; }),
+      broken([](auto& report) { report.planes[1].point_m[1] = 11.0f; }),
+      broken([](auto& report) { report.planes[1].surface.stiffness_N_per_m = 0.0f; }),
+      broken([](auto& report) { report.planes[1].surface.stiffness_N_per_m = 3001.0f; }),
+      broken([](auto& report) { report.planes[1].surface.damping_Ns_per_m = -0.1f; }),
+      broken([](auto& report) { report.planes[1].surface.static_friction = 3.5f; }),
+      broken([](auto& report) { report.planes[1].surface.dynamic_friction = 0.6f; }),
+      broken([](auto& report) { report.planes[1].surface.life_s = 11.0f; }),
+      broken([](auto& report) { report.planes[1].surface.life_s = not_a_number; }),
+      broken([](auto& report) { report.sphere.radius_m = 0.0f; }),
+      broken([](auto& report) { report.sphere.centre_m[0] = infinite; }),
+  };
+  std::size_t which = 0;
+  for (const ShapesReport& report : reports) {
+    CAPTURE(which++);
+    CHECK(!requests.accept_shapes(bytes(report)));
+    CHECK(requests.take_shapes() == nullptr);
+  }
+  ShapesReport many = one_plane();
+  many.plane_count = protocol::shape_planes_maximum + 1;
+  CHECK(!requests.accept_shapes(std::as_bytes(std::span(&many, 1))));
+  CHECK(!requests.accept_shapes(bytes(one_plane()).first(protocol::shapes_report_size(1) - 1)));
+  CHECK(!requests.accept_shapes(bytes(one_plane()).first(4)));
+  CHECK(!requests.accept_shapes({}));
+}
+
+TEST_CASE("a place without life may hold anything") {
+  ShapesReport report = one_plane();
+  report.planes[0].surface = {};
+  report.planes[0].normal[0] = not_a_number;
+  control::Shapes shapes;
+  REQUIRE(link::decode_shapes(bytes(report), shapes));
+  CHECK(shapes.life_periods[1] == 0);
+}
+
+TEST_CASE("the shapes go with the host") {
+  link::ProgramRequests requests;
+  requests.accept_shapes(bytes(one_plane()));
+  REQUIRE(requests.take_shapes() != nullptr);
+  requests.host_gone();
+  const control::Shapes* shapes = requests.take_shapes();
+  REQUIRE(shapes != nullptr);
+  for (const std::uint32_t periods : shapes->life_periods) CHECK(periods == 0);
+}
+
+}  // namespace
