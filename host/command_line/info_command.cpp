@@ -28,6 +28,10 @@ ordered_json to_json(const device::Information& information, const std::optional
                     {"servo_overruns", report.servo_overruns},
                     {"pose_reports_dropped", report.pose_reports_dropped},
                     {"scope_samples_dropped", report.scope_samples_dropped},
+                    {"force_reports", report.force_reports},
+                    {"force_reports_lost", report.force_reports_lost},
+                    {"force_reports_late", report.force_reports_late},
+                    {"force_reports_refused", report.force_reports_refused},
                     {"reset_cause", report.reset_cause},
                     {"motor_heat", report.motor_heat}};
   if (pose) {
@@ -49,6 +53,8 @@ void print(const device::Information& information, const std::optional<protocol:
              report.servo_overruns);
   fmt::print("dropped             {} pose reports, {} scope samples, since the board started\n",
              report.pose_reports_dropped, report.scope_samples_dropped);
+  fmt::print("forces of programs  {} received, {} lost, {} late, {} refused\n", report.force_reports,
+             report.force_reports_lost, report.force_reports_late, report.force_reports_refused);
   fmt::print("motor heat          {:.0f} %, {:.0f} %, {:.0f} % of what the continuous current leads to\n",
              100.0 * report.motor_heat[0], 100.0 * report.motor_heat[1], 100.0 * report.motor_heat[2]);
   if (!pose) {

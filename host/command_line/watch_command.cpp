@@ -3,8 +3,11 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <device/bus_clock.hpp>
@@ -27,6 +30,13 @@ bool is_pressed(const PoseReport& pose, protocol::Switch which) {
   return (pose.switches & static_cast<std::uint8_t>(which)) != 0;
 }
 
+std::vector<std::string_view> force_sources(const PoseReport& pose) {
+  std::vector<std::string_view> names;
+  for (const auto& row : protocol::force_source_table)
+    if (protocol::is_felt(pose.force_sources, row.source)) names.push_back(row.name);
+  return names;
+}
+
 nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::uint64_t lost) {
   return {{"sequence", pose.sequence},
           {"time_s", static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz},
@@ -36,6 +46,7 @@ nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::
           {"position_m", {pose.position_m[0], pose.position_m[1], pose.position_m[2]}},
           {"gimbal_rad", {pose.gimbal_rad[0], pose.gimbal_rad[1], pose.gimbal_rad[2]}},
           {"force_N", {pose.force_N[0], pose.force_N[1], pose.force_N[2]}},
+          {"force_sources", force_sources(pose)},
           {"joint_rad", {pose.joint_rad[0], pose.joint_rad[1], pose.joint_rad[2]}},
           {"button_1", is_pressed(pose, protocol::Switch::button_1)},
           {"button_2", is_pressed(pose, protocol::Switch::button_2)},
@@ -45,19 +56,20 @@ nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::
 }
 
 void print_head() {
-  fmt::print("{:>9}  {:<12} {:>26}  {:>23}  {:<12} {}\n", "time / s", "state", "position x y z / mm", "force x y z / N",
-             "switches", "lost");
+  fmt::print("{:>9}  {:<12} {:>26}  {:>23}  {:<12} {:>5}  {}\n", "time / s", "state", "position x y z / mm",
+             "force x y z / N", "switches", "lost", "force of");
 }
 
 void print_line(const PoseReport& pose, std::uint64_t lost) {
   const auto& p = pose.position_m;
   const auto& f = pose.force_N;
-  fmt::print("{:9.3f}  {:<12} {:8.2f} {:8.2f} {:8.2f}  {:7.2f} {:7.2f} {:7.2f}  {}{}{} {:>6}\n",
+  fmt::print("{:9.3f}  {:<12} {:8.2f} {:8.2f} {:8.2f}  {:7.2f} {:7.2f} {:7.2f}  {}{}{} {:>6}  {}\n",
              static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz,
              pose.state == protocol::State::fault ? info(pose.fault).name : info(pose.state).name, 1e3f * p[0],
              1e3f * p[1], 1e3f * p[2], f[0], f[1], f[2], is_pressed(pose, protocol::Switch::button_1) ? "1 " : "- ",
              is_pressed(pose, protocol::Switch::button_2) ? "2 " : "- ",
-             is_pressed(pose, protocol::Switch::inkwell) ? "inkwell" : "-      ", lost);
+             is_pressed(pose, protocol::Switch::inkwell) ? "inkwell" : "-      ", lost,
+             pose.state == protocol::State::active ? fmt::format("{}", fmt::join(force_sources(pose), ", ")) : "-");
 }
 
 int watch(const DeviceOptions& options, const WatchOptions& watch_options) {

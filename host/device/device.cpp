@@ -39,10 +39,13 @@ Refused::Refused(const protocol::TransactionReport& refusal) : Error(refusal_sen
 
 struct Device::Implementation {
   std::unique_ptr<Transport> transport;
+  std::mutex feature_mutex;  ///< a transaction and the report on it belong together
+  std::mutex output_mutex;   ///< guards the next four
   std::uint8_t token = 0;
-  Clock::time_point last_command_at{};
-  std::uint32_t last_command_period = 0;
-  std::uint32_t newest_period = 0;
+  std::uint32_t force_sequence = 0;
+  Clock::time_point last_output_at{};
+  std::uint32_t last_output_period = 0;
+  std::atomic<std::uint32_t> newest_period = 0;
   mutable std::mutex scope_mutex;  ///< the selection comes from one thread, the frames are read by another
   ScopeDecoder decoder;
 
@@ -56,18 +59,28 @@ struct Device::Implementation {
                       what, length, sizeof report));
   }
 
-  std::uint8_t next_token() {
+  /// Gives the command its token and sends it. `before` is done once the token is known.
+  template <class Before>
+  std::uint8_t send(protocol::CommandReport& command, Before before) {
+    const std::lock_guard lock(output_mutex);
     token = token == 255 ? 1 : static_cast<std::uint8_t>(token + 1);  // 0 stands for "no command yet"
-    return token;
-  }
-
-  std::uint8_t send(protocol::CommandReport& command) {
     command.report_id = ReportId::command;
     command.version = protocol::protocol_version;
-    transport->write_report(std::as_bytes(std::span(&command, 1)));
-    last_command_at = Clock::now();
-    last_command_period = newest_period;
-    return command.token;
+    command.token = token;
+    before();
+    write(command);
+    return token;
+  }
+  std::uint8_t send(protocol::CommandReport& command) {
+    return send(command, [] {});
+  }
+
+  /// Any output report is a sign of life. Called with output_mutex held.
+  template <class Report>
+  void write(const Report& report) {
+    transport->write_report(std::as_bytes(std::span(&report, 1)));
+    last_output_at = Clock::now();
+    last_output_period = newest_period;
   }
 
   protocol::TransactionReport transaction_report() {
@@ -81,6 +94,7 @@ struct Device::Implementation {
   /// Nothing is read before: that would cost a frame on the way from a slider to the interrupt.
   protocol::TransactionReport transact(const protocol::ParametersReport& report) {
     const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::parameters_report_size(report.count));
+    const std::lock_guard lock(feature_mutex);
     const auto give_up_at = Clock::now() + busy_timeout;
     for (;;) {
       std::optional<Stalled> stalled;
@@ -123,6 +137,7 @@ Device::Device(std::unique_ptr<Transport> transport) : implementation_(std::make
 Device::~Device() = default;
 
 protocol::FrameReport Device::frame() {
+  const std::lock_guard lock(implementation_->feature_mutex);
   protocol::FrameReport report{};
   report.report_id = ReportId::frame;
   implementation_->get(report, "frame");
@@ -130,6 +145,7 @@ protocol::FrameReport Device::frame() {
 }
 
 Information Device::information() {
+  const std::lock_guard lock(implementation_->feature_mutex);
   Information information{};
   information.report.report_id = ReportId::information;
   implementation_->get(information.report, "information");
@@ -156,22 +172,23 @@ std::optional<protocol::PoseReport> Device::read_pose(std::chrono::milliseconds 
 std::uint8_t Device::send(Command command) {
   protocol::CommandReport report{};
   report.command = command;
-  report.token = implementation_->next_token();
   return implementation_->send(report);
 }
 
 void Device::keep_alive() {
-  const auto& self = *implementation_;
-  const std::uint32_t passed = self.newest_period - self.last_command_period;
-  if (passed == 0) return;  // its time stands still: heartbeats would pile up before the next command
-  if (passed >= heartbeat_periods || Clock::now() - self.last_command_at >= heartbeat_interval)
-    send(Command::heartbeat);
+  auto& self = *implementation_;
+  {
+    const std::lock_guard lock(self.output_mutex);
+    const std::uint32_t passed = self.newest_period - self.last_output_period;
+    if (passed == 0) return;  // its time stands still: heartbeats would pile up before the next command
+    if (passed < heartbeat_periods && Clock::now() - self.last_output_at < heartbeat_interval) return;
+  }
+  send(Command::heartbeat);
 }
 
 std::uint8_t Device::send(Command command, const protocol::TestPulse& pulse) {
   protocol::CommandReport report{};
   report.command = command;
-  report.token = implementation_->next_token();
   report.test = pulse;
   return implementation_->send(report);
 }
@@ -183,17 +200,37 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
   if (!signals.empty()) implementation_->transport->claim_scope();
   protocol::CommandReport report{};
   report.command = Command::select_signals;
-  report.token = implementation_->next_token();
   report.selection.count = static_cast<std::uint8_t>(signals.size());
   for (std::size_t i = 0; i < signals.size(); ++i) report.selection.signals[i] = static_cast<std::uint8_t>(signals[i]);
-  {
+  return implementation_->send(report, [&] {
     const std::lock_guard lock(implementation_->scope_mutex);
     implementation_->decoder.expect(report.token, {signals.begin(), signals.end()});
+  });
+}
+
+void Device::send_force(const ForceRequest& request) {
+  protocol::ForceReport report = force_report(request);
+  const std::lock_guard lock(implementation_->output_mutex);
+  report.sequence = implementation_->force_sequence++;
+  implementation_->write(report);
+}
+
+void Device::place_shapes(const Shapes& shapes) {
+  const protocol::ShapesReport report = shapes_report(shapes);
+  const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count));
+  const std::lock_guard lock(implementation_->feature_mutex);
+  const auto give_up_at = Clock::now() + busy_timeout;
+  for (;;) {
+    try {
+      return implementation_->transport->set_feature(bytes);
+    } catch (const Stalled&) {  // the interrupt has not taken the shapes before
+      if (Clock::now() > give_up_at) throw;
+    }
   }
-  return implementation_->send(report);
 }
 
 protocol::ParameterSet Device::parameters() {
+  const std::lock_guard lock(implementation_->feature_mutex);
   protocol::ParametersReport report{};
   report.report_id = ReportId::parameters;
   const std::size_t length = implementation_->transport->get_feature(writable_bytes(report));

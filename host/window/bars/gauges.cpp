@@ -20,6 +20,21 @@ Colour colour_of(State state, const Palette& palette) {
   }
 }
 
+/// While a program takes part, it stands where the state does: the hand should know whose force it feels.
+std::string state_text(const protocol::PoseReport& pose) {
+  const bool program = protocol::is_felt(pose.force_sources, protocol::ForceSource::program) ||
+                       protocol::is_felt(pose.force_sources, protocol::ForceSource::shapes);
+  return pose.state == State::active && program ? "program" : std::string(protocol::info(pose.state).name);
+}
+
+std::string state_help(const protocol::PoseReport& pose) {
+  std::string help(protocol::info(pose.state).meaning);
+  if (pose.state != State::active) return help;
+  for (const auto& row : protocol::force_source_table)
+    if (protocol::is_felt(pose.force_sources, row.source)) help += fmt::format("\n{}", row.meaning);
+  return help;
+}
+
 Colour colour_of(HeatLevel level, const Palette& palette) {
   return level == HeatLevel::hot ? palette.danger : level == HeatLevel::warm ? palette.caution : palette.text;
 }
@@ -33,11 +48,10 @@ std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette) {
   const MotorHeatView heat = alive ? motor_heat_view(status.information->report) : MotorHeatView{};
   const double load_percent = 100.0 * pose.servo_load / 255.0;
   const std::uint64_t lost = status.poses_lost + status.scope_samples_lost;
-  const protocol::StateInfo& state = protocol::info(pose.state);
   const std::string advice = heat_advice(heat);
   std::vector<Gauge> gauges{
-      {"State", std::string(state.name), colour_of(pose.state, palette),
-       alive ? std::string(state.meaning) : "No device is connected.", pose.state == State::fault},
+      {"State", state_text(pose), colour_of(pose.state, palette), alive ? state_help(pose) : "No device is connected.",
+       pose.state == State::fault},
       {"Servo load", fmt::format("{:.0f} %", load_percent), load_percent > 80 ? palette.caution : palette.text,
        "The longest control interrupt since the pose report before, as a part of its period.", load_percent > 80},
       {"Supply", fmt::format("{:.1f} V", pose.supply_dV / 10.0), palette.text, "Voltage of the bridges' supply."},

@@ -1,4 +1,4 @@
-// The protocol on top of a transport: poses, commands, parameters, scope. Synchronous; see session.hpp for the
+// The protocol on top of a transport: poses, commands, forces, parameters, scope. Synchronous; see session.hpp for the
 // threaded client that the window uses.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <device/program_force.hpp>
 #include <device/scope_decoder.hpp>
 #include <device/transport.hpp>
 #include <protocol/reports.hpp>
@@ -39,6 +40,7 @@ class Refused : public Error {
 
 using ParameterChange = std::pair<protocol::Parameter, float>;
 
+/// May be used by several threads, but poses are read by one of them and the scope by one.
 class Device {
  public:
   /// Opens the device and checks the protocol version first. Throws Error with the remedy if it differs.
@@ -63,12 +65,18 @@ class Device {
   /// None stops the scope. Throws InUse if another program has it.
   std::uint8_t select_signals(std::span<const protocol::Signal> signals);
 
+  /// The force from now on, until the next one or its expiry. A sign of life. Throws Error for one that the board would
+  /// refuse.
+  void send_force(const ForceRequest& request);
+  /// Takes the place of all shapes that were there, at one control period. Throws likewise.
+  void place_shapes(const Shapes& shapes);
+
   protocol::ParameterSet parameters();
   /// One transaction: all take effect at one control period, or none does and Refused is thrown.
   protocol::TransactionReport set_parameters(std::span<const ParameterChange> changes);
   protocol::TransactionReport restore_default_parameters();
 
-  /// Waits for the next scope frame; none on time-out. May be called from a second thread.
+  /// Waits for the next scope frame; none on time-out.
   std::optional<ScopeSamples> read_scope(std::chrono::milliseconds timeout);
   std::uint64_t malformed_scope_frames() const;
 

@@ -1,0 +1,168 @@
+// A program on the PC makes the hand feel forces and shapes, and what becomes of them when it stops.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "board_rig.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using protocol::ForceMode;
+using protocol::ForceSource;
+using protocol::Parameter;
+
+constexpr float force_limit_N = 3.3f;
+constexpr std::uint32_t periods_per_ms = protocol::servo_rate_Hz / 1000;
+
+/// The arm held by a hand in free space, the force on.
+struct ProgramRig : BoardRig {
+  ProgramRig() {
+    set({{Parameter::force_ramp_s, 0.0f}, {Parameter::force_limit_N, force_limit_N}});
+    take_to(free_point_m);
+    make_active();
+    // The board's own limit, not the host's silence, ends what a program began.
+    set({{Parameter::host_timeout_s, 2.0f}});
+  }
+
+  /// A millisecond; what the device sent in it.
+  std::vector<protocol::PoseReport> millisecond() {
+    control.run(0.001);
+    std::vector<protocol::PoseReport> seen;
+    while (auto pose = device->read_pose(0ms)) seen.push_back(*pose);
+    return seen;
+  }
+
+  /// Sends the same force each millisecond; the poses that came meanwhile.
+  std::vector<protocol::PoseReport> drive(const device::ForceRequest& request, int milliseconds) {
+    std::vector<protocol::PoseReport> seen;
+    for (int i = 0; i < milliseconds; ++i) {
+      device->send_force(request);
+      for (const auto& pose : millisecond()) seen.push_back(pose);
+    }
+    return seen;
+  }
+};
+
+double length(const float (&vector)[3]) { return std::hypot(vector[0], vector[1], vector[2]); }
+
+/// The largest change of the force between two poses, for each millisecond between them.
+double largest_step_N(const std::vector<protocol::PoseReport>& poses) {
+  double largest_N = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const auto& before = poses[i - 1];
+    const double change_N = std::hypot(poses[i].force_N[0] - before.force_N[0], poses[i].force_N[1] - before.force_N[1],
+                                       poses[i].force_N[2] - before.force_N[2]);
+    const double milliseconds = static_cast<double>(poses[i].time_periods - before.time_periods) / periods_per_ms;
+    largest_N = std::max(largest_N, change_N / std::max(1.0, milliseconds));
+  }
+  return largest_N;
+}
+
+TEST_CASE("a program's force is felt, shown as its own, and gone within its expiry and 10 ms when it is killed") {
+  ProgramRig rig;
+  const auto before = rig.control.truth().at("true_position_x_m").get<double>();
+  const auto poses = rig.drive({.force_N = {1.0f, 0.0f, 0.0f}}, 200);
+  REQUIRE(poses.size() > 190);
+  CHECK(poses.back().force_N[0] == doctest::Approx(1.0).epsilon(1e-3));
+  CHECK(protocol::is_felt(poses.back().force_sources, ForceSource::program));
+  CHECK(protocol::is_felt(poses.back().force_sources, ForceSource::walls));
+  // The hand is a spring of 1500 N/m.
+  CHECK(rig.control.truth().at("true_position_x_m").get<double>() - before == doctest::Approx(1.0 / 1500).epsilon(0.3));
+
+  std::vector<protocol::PoseReport> silence;
+  for (int i = 0; i < 80; ++i)
+    for (const auto& pose : rig.millisecond()) silence.push_back(pose);
+  const std::uint32_t last_heard = poses.back().time_periods;
+  const auto is_gone = [](const auto& pose) { return pose.force_N[0] == 0.0f; };
+  const auto gone = std::find_if(silence.begin(), silence.end(), is_gone);
+  REQUIRE(gone != silence.end());
+  CHECK(gone->time_periods - last_heard <= (50 + 10 + 2) * periods_per_ms);
+  CHECK(gone->time_periods - last_heard >= 50 * periods_per_ms);
+  CHECK(std::all_of(gone, silence.end(), is_gone));
+  CHECK(!protocol::is_felt(silence.back().force_sources, ForceSource::program));
+  CHECK(silence.back().state == protocol::State::active);
+
+  const auto counted = rig.device->information().report;
+  CHECK(counted.force_reports == 200);
+  CHECK(counted.force_reports_lost == 0);
+  CHECK(counted.force_reports_refused == 0);
+}
+
+TEST_CASE("a huge force is the force limit in its direction, a program that ends fades at once") {
+  ProgramRig rig;
+  const auto poses = rig.drive({.force_N = {3e30f, 0.0f, -4e30f}}, 40);
+  CHECK(length(poses.back().force_N) == doctest::Approx(force_limit_N).epsilon(1e-3));
+  CHECK(poses.back().force_N[2] / poses.back().force_N[0] == doctest::Approx(-4.0 / 3.0).epsilon(1e-3));
+  CHECK(largest_step_N(poses) <= info(Parameter::program_force_change_N_per_s).default_value * 1.1e-3);
+  rig.device->send_force({.mode = ForceMode::none});
+  std::vector<protocol::PoseReport> end;
+  for (int i = 0; i < 15; ++i)
+    for (const auto& pose : rig.millisecond()) end.push_back(pose);
+  CHECK(length(end.back().force_N) == 0.0);
+}
+
+TEST_CASE("what the board would refuse is refused with a sentence before it is sent") {
+  ProgramRig rig;
+  CHECK_THROWS_WITH_AS(rig.device->send_force({.force_N = {std::numeric_limits<float>::quiet_NaN(), 0, 0}}),
+                       "The force is nan N on one axis. Give finite numbers.", device::Error);
+  CHECK_THROWS_WITH_AS(rig.device->send_force({.interval_ms = 51}),
+                       "A force for 51 ms can not be sent. Send one every 1 to 50 ms, and name that interval.",
+                       device::Error);
+  device::Shapes shapes;
+  shapes.planes[3] = device::Plane{.normal = {0, 0, 0}};
+  CHECK_THROWS_WITH_AS(rig.device->place_shapes(shapes),
+                       "The normal of plane 3 has no length. Let it point into the free space.", device::Error);
+  shapes.planes[3] = device::Plane{.surface = {.stiffness_N_per_m = 1e6f}};
+  CHECK_THROWS_AS(rig.device->place_shapes(shapes), device::Error);
+  CHECK(rig.device->information().report.force_reports == 0);
+}
+
+TEST_CASE("a plane that moves 5 mm under a hand that presses with 1 N never kicks") {
+  ProgramRig rig;
+  const auto floor_at = [](double z_m) {
+    device::Shapes shapes;
+    shapes.planes[0] = device::Plane{.point_m = {0, 0, static_cast<float>(z_m)},
+                                     .normal = {0, 0, 1},
+                                     .surface = {.stiffness_N_per_m = 800, .damping_Ns_per_m = 2, .life_s = 5}};
+    return shapes;
+  };
+  // A soft hand, so that it gives way: it presses with 1 N when the probe rests on the plane.
+  constexpr double hand_N_per_m = 200;
+  rig.control.hand({.holds = true, .target_m = free_point_m, .stiffness_N_per_m = hand_N_per_m});
+  rig.run(0.3);
+  const double z_m = rig.control.truth().at("true_position_z_m").get<double>();
+  rig.device->place_shapes(floor_at(z_m));
+  device::Vector3 target_m = free_point_m;
+  target_m[2] = z_m - 1.0 / hand_N_per_m - 1.0 / 800;
+  rig.control.hand_path({{0.0, free_point_m}, {0.3, target_m}});
+  rig.run(0.8);
+  CHECK(rig.pose().force_N[2] == doctest::Approx(1.0).epsilon(0.1));
+  CHECK(protocol::is_felt(rig.pose().force_sources, ForceSource::shapes));
+  for (const double moved_m : {0.005, 0.0, -0.005}) {
+    CAPTURE(moved_m);
+    rig.device->place_shapes(floor_at(z_m + moved_m));
+    std::vector<protocol::PoseReport> poses{rig.pose()};
+    for (int i = 0; i < 300; ++i)
+      for (const auto& pose : rig.millisecond()) poses.push_back(pose);
+    CHECK(largest_step_N(poses) <= 0.05 * force_limit_N);
+    rig.run(0.2);
+  }
+}
+
+TEST_CASE("a shape that is not placed anew ends with its life") {
+  ProgramRig rig;
+  device::Shapes shapes;
+  shapes.sphere = device::Sphere{.centre_m = {0, 0, 0.5f}, .radius_m = 0.01f, .surface = {.life_s = 0.1f}};
+  rig.device->place_shapes(shapes);
+  rig.run(0.05);
+  CHECK(protocol::is_felt(rig.pose().force_sources, ForceSource::shapes));
+  rig.run(0.1);
+  CHECK(!protocol::is_felt(rig.pose().force_sources, ForceSource::shapes));
+}
+
+}  // namespace
+}  // namespace inkwell::tests
