@@ -13,7 +13,7 @@ namespace inkwell::virtual_usb_test {
 using namespace virtual_board;
 
 namespace {
-constexpr std::uint8_t pose_endpoint = 1, scope_endpoint = 2;
+constexpr std::uint8_t pose_endpoint = 1, report_endpoint = 1, scope_endpoint = 2;
 }  // namespace
 
 std::filesystem::path flashed_image(const std::filesystem::path& build_directory) {
@@ -80,21 +80,24 @@ void FirmwareOnBus::keep_asking_for_poses() {
   for (int i = 0; i < requests_under_way; ++i) ask(pose_endpoint, sizeof(protocol::PoseReport));
 }
 
-void FirmwareOnBus::stream_scope(std::uint8_t signals) {
+void FirmwareOnBus::stream_scope(std::span<const protocol::Signal> signals) {
   protocol::CommandReport report{};
   report.command = protocol::Command::select_signals;
   report.token = 1;
-  report.selection.count = signals;
-  for (std::uint8_t i = 0; i < signals; ++i) report.selection.signals[i] = i;
-  Urb urb;
-  urb.sequence = ++sequence_;
-  urb.endpoint = 1;
-  urb.length = sizeof report;
-  urb.data.resize(sizeof report);
-  std::memcpy(urb.data.data(), &report, sizeof report);
-  port.submit(std::move(urb));
+  report.selection.count = static_cast<std::uint8_t>(signals.size());
+  for (std::size_t i = 0; i < signals.size(); ++i) report.selection.signals[i] = static_cast<std::uint8_t>(signals[i]);
+  send_report(report);
   constexpr int requests_under_way = 8;
   for (int i = 0; i < requests_under_way; ++i) ask(scope_endpoint, protocol::scope_frame_maximum);
+}
+
+void FirmwareOnBus::send_report(std::span<const std::byte> report) {
+  Urb urb;
+  urb.sequence = ++sequence_;
+  urb.endpoint = report_endpoint;
+  urb.length = static_cast<std::uint32_t>(report.size());
+  urb.data.assign(report.begin(), report.end());
+  port.submit(std::move(urb));
 }
 
 void FirmwareOnBus::ask(std::uint8_t endpoint, std::uint32_t length) {
@@ -107,10 +110,23 @@ void FirmwareOnBus::ask(std::uint8_t endpoint, std::uint32_t length) {
 }
 
 void FirmwareOnBus::completed(Urb&& urb, std::int32_t status) {
-  if (urb.endpoint == 0)
+  if (urb.endpoint == 0) {
     answers_[urb.sequence] = {status, std::move(urb.data)};
-  else if (status == 0 && urb.in && (urb.endpoint == scope_endpoint || asks_for_poses_))
-    ask(urb.endpoint, urb.length);
+    return;
+  }
+  if (status != 0) return;
+  if (!urb.in) {
+    if (on_report_sent) on_report_sent();
+    return;
+  }
+  if (urb.endpoint == scope_endpoint || asks_for_poses_) ask(urb.endpoint, urb.length);
+  if (urb.endpoint == scope_endpoint) {
+    if (on_scope_frame) on_scope_frame(urb.data);
+  } else if (on_pose && urb.data.size() == sizeof(protocol::PoseReport)) {
+    protocol::PoseReport pose;
+    std::memcpy(&pose, urb.data.data(), sizeof pose);
+    on_pose(pose);
+  }
 }
 
 std::vector<std::string> FirmwareOnBus::violations() const {

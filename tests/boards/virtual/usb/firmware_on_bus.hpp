@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -115,10 +117,19 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   /// From now on there is always a request for the next pose.
   void keep_asking_for_poses();
   /// Selects signals for the scope and reads it from now on.
-  void stream_scope(std::uint8_t signals);
+  void stream_scope(std::span<const protocol::Signal> signals);
+  /// An output report on the interrupt endpoint.
+  template <class Report>
+  void send_report(const Report& report) {
+    send_report(std::as_bytes(std::span(&report, 1)));
+  }
   void stop_asking_for_poses() { asks_for_poses_ = false; }
   /// Rules of the chip that the firmware broke, as sentences.
   std::vector<std::string> violations() const;
+
+  std::function<void(const protocol::PoseReport&)> on_pose;
+  std::function<void(std::span<const std::byte> frame)> on_scope_frame;
+  std::function<void()> on_report_sent;
 
   RestingCircuit circuit;
   Chip chip;
@@ -132,6 +143,7 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   void enumerated(const virtual_board::DeviceDescription&) override {}
   void detached() override {}
   void completed(Urb&& urb, std::int32_t status) override;
+  void send_report(std::span<const std::byte> report);
   void ask(std::uint8_t endpoint, std::uint32_t length);
 
   std::uint32_t sequence_ = 0;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include <board/omni_driver.hpp>
 
@@ -95,7 +96,9 @@ PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_p
   };
   bus.cable.on_finished_in = [&](unsigned endpoint, bool done) { measurement.finished(endpoint, done); };
   bus.keep_asking_for_poses();
-  if (scope_signals != 0) bus.stream_scope(scope_signals);
+  std::vector<protocol::Signal> signals;
+  for (std::uint8_t i = 0; i < scope_signals; ++i) signals.push_back(static_cast<protocol::Signal>(i));
+  if (!signals.empty()) bus.stream_scope(signals);
   bus.run_for(0.1);  // the encoder's state settles
   measurement.plan_edge();
   measurement.counting = true;
