@@ -1,5 +1,6 @@
 #include <device/virtual_board.hpp>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -15,6 +16,7 @@
 #include <cstring>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -73,8 +75,15 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
 
 }  // namespace
 
-std::filesystem::path executable_directory() {
+std::filesystem::path own_directory() {
   std::error_code code;
+  // Of a program the loader knows only the name that it was called by.
+  Dl_info here{};
+  if (dladdr(reinterpret_cast<void*>(&own_directory), &here) != 0 && here.dli_fname != nullptr &&
+      std::string_view(here.dli_fname).find(".so") != std::string_view::npos) {
+    const auto library = std::filesystem::canonical(here.dli_fname, code);
+    if (!code) return library.parent_path();
+  }
   const auto executable = std::filesystem::read_symlink("/proc/self/exe", code);
   return code ? std::filesystem::current_path() : executable.parent_path();
 }
@@ -159,7 +168,7 @@ struct VirtualBoard::Implementation {
 };
 
 VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_(std::make_unique<Implementation>()) {
-  const auto directory = executable_directory();
+  const auto directory = own_directory();
   const auto program = options.program.empty() ? directory / "virtual-board" : options.program;
   const auto elf = options.elf.empty() ? (directory / "../board/inkwell.elf").lexically_normal() : options.elf;
   if (access(program.c_str(), X_OK) != 0)

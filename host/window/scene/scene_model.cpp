@@ -5,6 +5,7 @@
 
 #include <control/contact.hpp>
 #include <control/settings.hpp>
+#include <kinematics/stylus.hpp>
 
 namespace inkwell::window {
 
@@ -20,23 +21,6 @@ glm::vec3 to_glm(const float (&values)[3]) { return {values[0], values[1], value
 
 glm::vec3 up_of(control::Frame frame) {
   return frame == control::Frame::paper ? glm::vec3{0, 0, 1} : glm::vec3{0, 1, 0};
-}
-
-glm::vec3 turned(glm::vec3 vector, glm::vec3 axis, float angle_rad) {
-  return vector * std::cos(angle_rad) + glm::cross(axis, vector) * std::sin(angle_rad) +
-         axis * glm::dot(axis, vector) * (1.0f - std::cos(angle_rad));
-}
-
-// The gimbal: yaw about the forearm, pitch about the axis across it, roll about the stylus itself. With all three
-// at zero the stylus stands square on the forearm, in the arm's plane, away from the base. Signs as OpenHaptics
-// has them: right, down and clockwise are where the stylus goes for a negative, positive and positive angle.
-void orient_stylus(SceneModel& scene, glm::vec3 gimbal_rad) {
-  const glm::vec3 forearm = glm::normalize(scene.probe_m - scene.elbow_m);
-  glm::vec3 outward = glm::cross(forearm, scene.arm_side);
-  glm::vec3 across = turned(scene.arm_side, forearm, gimbal_rad.x);
-  outward = turned(turned(outward, forearm, gimbal_rad.x), across, gimbal_rad.y);
-  scene.stylus_direction = outward;
-  scene.stylus_side = turned(across, outward, gimbal_rad.z);
 }
 
 }  // namespace
@@ -90,13 +74,12 @@ SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const pr
   }
 
   const glm::vec3 up = up_of(scene.frame);
-  // The waist's angle tells the links' plane; the links do not while they are in line.
-  const float waist_rad = joint_rad[0];
-  const glm::vec3 forward = scene.frame == control::Frame::paper
-                                ? glm::vec3{std::cos(waist_rad), std::sin(waist_rad), 0.0f}
-                                : glm::vec3{-std::sin(waist_rad), 0.0f, std::cos(waist_rad)};
-  scene.arm_side = glm::normalize(glm::cross(up, forward));
-  orient_stylus(scene, pose ? to_glm(pose->gimbal_rad) : glm::vec3{0.0f});
+  scene.arm_side = kinematics::arm_side(joint_rad[0], scene.frame);
+  const std::array<float, 3> gimbal_rad =
+      pose ? std::array{pose->gimbal_rad[0], pose->gimbal_rad[1], pose->gimbal_rad[2]} : std::array<float, 3>{};
+  const glm::mat3 stylus = kinematics::stylus_rotation(joint_rad, gimbal_rad, settings.arm);
+  scene.stylus_side = stylus[0];
+  scene.stylus_direction = stylus[2];
 
   scene.floor_height_m = std::min({glm::dot(scene.shoulder_m, up) - base_height_m,
                                    glm::dot(scene.inkwell_m, up) - 0.03f, glm::dot(scene.box_minimum_m, up) - 0.012f});

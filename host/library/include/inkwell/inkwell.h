@@ -1,0 +1,252 @@
+/* libinkwell: a haptic arm in a program of one's own.
+ *
+ *   inkwell_arm* arm = NULL;
+ *   if (inkwell_open(NULL, &arm) != INKWELL_OK) { puts(inkwell_error_text()); return 1; }
+ *   inkwell_enable_force(arm, 5.0);
+ *   inkwell_start_servo(arm, my_servo, NULL);       // called at each pose, a thousand times a second
+ *   ...
+ *   inkwell_close(arm);
+ *
+ * Lengths are in metres, forces in newtons, angles in radians, times in seconds. Positions and forces are in the arm's
+ * workspace axes; the Omni's are x to the right, y up, z to the user.
+ *
+ * Every function may be called from any thread, except that inkwell_close() must be the last one for its arm. None of
+ * them throws or aborts; each tells how it ended by its result, and inkwell_error_text() says it as a sentence. */
+#ifndef INKWELL_INKWELL_H
+#define INKWELL_INKWELL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define INKWELL_API __attribute__((visibility("default")))
+
+typedef enum inkwell_result {
+  INKWELL_OK = 0,
+  INKWELL_NO_DEVICE = 1,     /* no arm there, or more than one and none was named */
+  INKWELL_NO_PERMISSION = 2, /* the user may not use the device */
+  INKWELL_INCOMPATIBLE = 3,  /* its firmware belongs to another version of this library */
+  INKWELL_DISCONNECTED = 4,  /* it was there and is gone */
+  INKWELL_IN_USE = 5,        /* another program has what only one can have */
+  INKWELL_BAD_ARGUMENT = 6,  /* a value that the function can not take */
+  INKWELL_REFUSED = 7,       /* the device does not take it, or not now */
+  INKWELL_TIMED_OUT = 8,     /* what was waited for did not come */
+  INKWELL_FAILED = 9         /* anything else; the sentence says what */
+} inkwell_result;
+
+/* "0.3.0": of the library. */
+INKWELL_API const char* inkwell_version(void);
+
+/* What went wrong last in the calling thread, with what to do: a sentence, empty after none. Valid until the thread's
+ * next call. */
+INKWELL_API const char* inkwell_error_text(void);
+
+/* ---- devices ------------------------------------------------------------------------------------------------ */
+
+typedef struct inkwell_device {
+  char address[128];      /* for inkwell_open() */
+  char serial_number[32]; /* empty where it is not known before the device is opened */
+  char product[64];
+  int is_virtual; /* what comes from it is a simulation */
+} inkwell_device;
+
+/* The arms on this computer's USB, and the virtual board that INKWELL_DEVICE names, if it does. Writes at most
+ * `capacity` of them and tells in `count` how many there are. */
+INKWELL_API inkwell_result inkwell_list_devices(inkwell_device* devices, size_t capacity, size_t* count);
+
+typedef struct inkwell_arm inkwell_arm;
+
+/* Opens an arm. `address`:
+ *   NULL or ""         what the environment's INKWELL_DEVICE says, else the only arm on USB
+ *   a serial number    the arm on USB that has it
+ *   "usbip:HOST:PORT"  the arm of a USB/IP server, such as a virtual board that runs already
+ *   "virtual"          a virtual board of its own, which ends with inkwell_close(); "virtual:FILE" with the arm that
+ *                      FILE describes
+ * The force is off. */
+INKWELL_API inkwell_result inkwell_open(const char* address, inkwell_arm** arm);
+
+/* Ends the servo, lets this program's force fade and forgets the arm. NULL is allowed. */
+INKWELL_API void inkwell_close(inkwell_arm* arm);
+
+typedef struct inkwell_information {
+  char serial_number[32];
+  char product[64];
+  char firmware_version[16];
+  int is_virtual;
+  double servo_rate_Hz;          /* of the board's control interrupt */
+  uint32_t servo_cycles_longest; /* longest control interrupt since the board started, processor cycles */
+  uint32_t force_reports;        /* forces received from programs since the board started */
+  uint32_t force_reports_lost;
+  uint32_t force_reports_late;
+  uint32_t force_reports_refused;
+  double motor_heat[3]; /* 1 is what the continuous current leads to */
+} inkwell_information;
+
+/* Asks the device. */
+INKWELL_API inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_information* information);
+
+/* ---- pose --------------------------------------------------------------------------------------------------- */
+
+typedef enum inkwell_state {
+  INKWELL_STARTING = 0,
+  INKWELL_UNREFERENCED = 1, /* the stylus has to rest in the inkwell once */
+  INKWELL_READY = 2,        /* the pose is valid, the force is off */
+  INKWELL_ACTIVE = 3,       /* the pose is valid, the force is on */
+  INKWELL_FAULT = 4         /* the force is off, and inkwell_fault_text() says why */
+} inkwell_state;
+
+enum inkwell_force_source {
+  INKWELL_WALLS = 1,  /* the walls of the board's own box are felt */
+  INKWELL_SHAPES = 2, /* planes or a sphere that a program placed */
+  INKWELL_PROGRAM = 4 /* forces of a program */
+};
+
+typedef struct inkwell_pose {
+  double time_s;     /* board time */
+  uint32_t sequence; /* one more for each millisecond of the bus; a gap is a pose that this program missed */
+  inkwell_state state;
+  int fault;              /* 0 for none */
+  double position_m[3];   /* of the probe, where the stylus is held */
+  double velocity_m_s[3]; /* over the last 8 ms */
+  double rotation[9];   /* of the stylus, row by row: columns are its x, y and z axis; z points out of its tip's back */
+  double gimbal_rad[3]; /* yaw, pitch, roll */
+  double joint_rad[3];
+  double force_N[3];      /* that the board asks of the motors, everything together */
+  uint32_t force_sources; /* bits of inkwell_force_source */
+  int button_1, button_2; /* 1 while pressed */
+  int in_inkwell;         /* 1 while the stylus rests in the inkwell */
+  double supply_V;
+} inkwell_pose;
+
+/* The newest pose; at once. */
+INKWELL_API inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose);
+
+/* Waits for the next pose that this thread has not seen. */
+INKWELL_API inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose);
+
+/* Cause and remedy of a fault's code; never NULL. */
+INKWELL_API const char* inkwell_fault_text(int fault);
+
+/* ---- force -------------------------------------------------------------------------------------------------- */
+
+/* Switches the force on: this is where the program says that a hand may feel it. Waits until the device is active. In
+ * a fault or before the stylus was in the inkwell it is INKWELL_REFUSED. */
+INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout_s);
+INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
+/* Clears a fault whose cause is gone. */
+INKWELL_API inkwell_result inkwell_clear_fault(inkwell_arm* arm);
+
+typedef enum inkwell_force_mode {
+  INKWELL_BESIDE_WALLS = 1,    /* the walls of the board's box are felt too */
+  INKWELL_INSTEAD_OF_WALLS = 2 /* only what programs ask for */
+} inkwell_force_mode;
+
+/* How this program's forces and the board's walls go together; INKWELL_INSTEAD_OF_WALLS unless it is set. */
+INKWELL_API inkwell_result inkwell_set_force_mode(inkwell_arm* arm, inkwell_force_mode mode);
+
+/* The force on the hand until the next call. It goes out within a millisecond, at most one in each. The board moves to
+ * it in a line; without another call it fades after program_force_expiry_s. Another program that drives the arm makes
+ * it INKWELL_IN_USE. In the servo, return the force instead. */
+INKWELL_API inkwell_result inkwell_set_force(inkwell_arm* arm, const double force_N[3]);
+
+/* Called at each pose, a thousand times a second, in a thread of the library. Writes the force on the hand, which is
+ * 0 before. Returns 0 to go on, anything else to end the servo. Another program that drives the arm ends it. */
+typedef int (*inkwell_servo)(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user);
+INKWELL_API inkwell_result inkwell_start_servo(inkwell_arm* arm, inkwell_servo servo, void* user);
+/* Waits until the servo is not called any more, except when called by the servo itself. */
+INKWELL_API inkwell_result inkwell_stop_servo(inkwell_arm* arm);
+/* 1 while the servo is being called. */
+INKWELL_API int inkwell_servo_is_running(inkwell_arm* arm);
+
+/* ---- shapes ------------------------------------------------------------------------------------------------- */
+
+#define INKWELL_PLANES_MAXIMUM 8
+
+/* How a shape feels. A shape whose life is 0 is not there. */
+typedef struct inkwell_surface {
+  double stiffness_N_per_m;
+  double damping_Ns_per_m;
+  double static_friction;  /* bound of the tangential force while it sticks, as a part of the normal force */
+  double dynamic_friction; /* the same while it slides; at most the static one */
+  double life_s;           /* then the board forgets the shape, unless it is placed anew; at most 10 s */
+} inkwell_surface;
+
+typedef struct inkwell_plane {
+  double point_m[3];
+  double normal[3]; /* into the free space, of any length but 0 */
+  inkwell_surface surface;
+} inkwell_plane;
+
+typedef struct inkwell_sphere {
+  double centre_m[3];
+  double radius_m; /* the free space is outside */
+  inkwell_surface surface;
+} inkwell_sphere;
+
+/* Takes the place of all shapes, at one control period and without a jump of the force; the board renders them at its
+ * full rate. The probe is a point to them. `sphere` may be NULL, `plane_count` 0. */
+INKWELL_API inkwell_result inkwell_place_shapes(inkwell_arm* arm, const inkwell_plane* planes, size_t plane_count,
+                                                const inkwell_sphere* sphere);
+
+/* ---- parameters --------------------------------------------------------------------------------------------- */
+
+typedef struct inkwell_parameter {
+  const char* name; /* ends in its unit */
+  const char* unit; /* "" for a pure number */
+  const char* help;
+  double minimum, maximum, default_value;
+} inkwell_parameter;
+
+INKWELL_API size_t inkwell_parameter_count(void);
+/* Row `index` of the table; NULL beyond its end. */
+INKWELL_API const inkwell_parameter* inkwell_parameter_at(size_t index);
+INKWELL_API inkwell_result inkwell_get_parameter(inkwell_arm* arm, const char* name, double* value);
+/* All of them take effect at one control period, or none does. */
+INKWELL_API inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names, const double* values,
+                                                  size_t count);
+
+/* ---- the hand of a virtual board ------------------------------------------------------------------------------ */
+
+/* Only on an arm that was opened as "virtual"; INKWELL_REFUSED on any other. */
+
+/* The simulated hand takes the stylus out of the inkwell and pulls the probe to `target_m` as a spring of
+ * `stiffness_N_per_m` with a hundredth of that as damping would. */
+INKWELL_API inkwell_result inkwell_move_virtual_hand(inkwell_arm* arm, const double target_m[3],
+                                                     double stiffness_N_per_m);
+/* It lets go, so that the arm falls as a real one would. */
+INKWELL_API inkwell_result inkwell_release_virtual_hand(inkwell_arm* arm);
+/* It presses (1) or lets go of (0) the buttons of the stylus. */
+INKWELL_API inkwell_result inkwell_press_virtual_buttons(inkwell_arm* arm, int button_1, int button_2);
+
+/* ---- scope and recording ------------------------------------------------------------------------------------ */
+
+typedef struct inkwell_signal {
+  const char* name; /* ends in its unit */
+  const char* unit;
+  const char* help;
+} inkwell_signal;
+
+INKWELL_API size_t inkwell_signal_count(void);
+INKWELL_API const inkwell_signal* inkwell_signal_at(size_t index);
+
+/* Streams these signals at every control period from now on; none stops it. Only one program can have the scope. */
+INKWELL_API inkwell_result inkwell_select_signals(inkwell_arm* arm, const char* const* names, size_t count);
+
+/* Takes samples that have come: waits until there are some, then writes at most `capacity` rows of one value for each
+ * selected signal to `values`, their control periods to `periods` (which may be NULL) and their number to `count`.
+ * `lost` (may be NULL) tells how many samples were missing before them. A time-out gives INKWELL_OK and 0 rows. */
+INKWELL_API inkwell_result inkwell_read_scope(inkwell_arm* arm, double timeout_s, float* values, uint32_t* periods,
+                                              size_t capacity, size_t* count, uint64_t* lost);
+
+/* Records the selected signals into a file (HDF5, or CSV by its ending) until inkwell_stop_recording(). */
+INKWELL_API inkwell_result inkwell_start_recording(inkwell_arm* arm, const char* path);
+/* Finishes the file and tells how many samples it has and how many were lost; both may be NULL. */
+INKWELL_API inkwell_result inkwell_stop_recording(inkwell_arm* arm, uint64_t* samples, uint64_t* lost);
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* INKWELL_INKWELL_H */

@@ -1,0 +1,134 @@
+// libinkwell for C++: the C interface with owners that let go by themselves, and errors as exceptions.
+//
+//   inkwell::Arm arm;                                  // the only one on USB, or what INKWELL_DEVICE names
+//   arm.enable_force();
+//   arm.start_servo([](const inkwell::Pose& pose) {    // a thousand times a second
+//     return inkwell::Vector{-200.0 * pose.position_m[0], 0.0, 0.0};
+//   });
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <inkwell/inkwell.h>
+
+namespace inkwell {
+
+using Pose = inkwell_pose;
+using Plane = inkwell_plane;
+using Sphere = inkwell_sphere;
+using Vector = std::array<double, 3>;
+
+class Failure : public std::runtime_error {
+ public:
+  explicit Failure(inkwell_result failed) : std::runtime_error(inkwell_error_text()), result(failed) {}
+  inkwell_result result;
+};
+
+inline void require(inkwell_result result) {
+  if (result != INKWELL_OK) throw Failure(result);
+}
+
+inline std::vector<inkwell_device> devices() {
+  std::size_t count = 0;
+  require(inkwell_list_devices(nullptr, 0, &count));
+  std::vector<inkwell_device> list(count);
+  require(inkwell_list_devices(list.data(), list.size(), &count));
+  if (count < list.size()) list.resize(count);  // one was unplugged in between
+  return list;
+}
+
+/// An open arm; addresses as inkwell_open() takes them.
+class Arm {
+ public:
+  /// Returns the force on the hand. What it throws ends the servo, and comes out of stop_servo().
+  using Servo = std::function<Vector(const Pose&)>;
+
+  explicit Arm(const std::string& address = "") {
+    inkwell_arm* opened = nullptr;
+    require(inkwell_open(address.c_str(), &opened));
+    arm_.reset(opened);
+  }
+
+  inkwell_arm* get() const { return arm_.get(); }
+
+  Pose pose() const {
+    Pose pose;
+    require(inkwell_get_pose(get(), &pose));
+    return pose;
+  }
+  Pose wait_for_pose(double timeout_s = 2.0) const {
+    Pose pose;
+    require(inkwell_wait_for_pose(get(), timeout_s, &pose));
+    return pose;
+  }
+  inkwell_information information() const {
+    inkwell_information information;
+    require(inkwell_get_information(get(), &information));
+    return information;
+  }
+
+  void enable_force(double timeout_s = 5.0) { require(inkwell_enable_force(get(), timeout_s)); }
+  void disable_force() { require(inkwell_disable_force(get())); }
+  void clear_fault() { require(inkwell_clear_fault(get())); }
+  void set_force_mode(inkwell_force_mode mode) { require(inkwell_set_force_mode(get(), mode)); }
+  void set_force(const Vector& force_N) { require(inkwell_set_force(get(), force_N.data())); }
+  void place_shapes(const std::vector<Plane>& planes, const Sphere* sphere = nullptr) {
+    require(inkwell_place_shapes(get(), planes.data(), planes.size(), sphere));
+  }
+
+  void start_servo(Servo servo) {
+    auto next = std::make_unique<ServoState>(ServoState{std::move(servo), nullptr});
+    require(inkwell_start_servo(get(), &Arm::call_servo, next.get()));
+    servo_ = std::move(next);
+  }
+  void stop_servo() {
+    require(inkwell_stop_servo(get()));
+    if (!servo_) return;
+    const std::exception_ptr thrown = std::exchange(servo_->thrown, nullptr);
+    if (thrown) std::rethrow_exception(thrown);
+  }
+  bool servo_is_running() const { return inkwell_servo_is_running(get()) != 0; }
+
+  double parameter(const std::string& name) const {
+    double value = 0;
+    require(inkwell_get_parameter(get(), name.c_str(), &value));
+    return value;
+  }
+  void set_parameter(const std::string& name, double value) {
+    const char* names[] = {name.c_str()};
+    require(inkwell_set_parameters(get(), names, &value, 1));
+  }
+
+ private:
+  struct ServoState {
+    Servo servo;
+    std::exception_ptr thrown;
+  };
+  static int call_servo(inkwell_arm*, const inkwell_pose* pose, double force_N[3], void* user) noexcept {
+    auto& state = *static_cast<ServoState*>(user);
+    try {
+      const Vector wanted_N = state.servo(*pose);
+      for (std::size_t i = 0; i < 3; ++i) force_N[i] = wanted_N[i];
+      return 0;
+    } catch (...) {
+      state.thrown = std::current_exception();
+      return 1;
+    }
+  }
+  struct Close {
+    void operator()(inkwell_arm* arm) const { inkwell_close(arm); }
+  };
+
+  std::unique_ptr<ServoState> servo_;
+  std::unique_ptr<inkwell_arm, Close> arm_;  ///< after the servo's state, so that the servo ends first
+};
+
+}  // namespace inkwell

@@ -1,0 +1,41 @@
+#include <control/settings.hpp>
+#include <kinematics/stylus.hpp>
+
+#include "arm.hpp"
+
+namespace inkwell::library {
+
+PoseReader::PoseReader(const protocol::ParameterSet& parameters) : arm_(control::prepare(parameters).arm) {}
+
+inkwell_pose PoseReader::read(const protocol::PoseReport& report) {
+  // The report's counter wraps after 59 hours.
+  periods_ += static_cast<std::uint32_t>(report.time_periods - static_cast<std::uint32_t>(periods_));
+  inkwell_pose pose{};
+  pose.time_s = static_cast<double>(periods_) / protocol::servo_rate_Hz;
+  pose.sequence = report.sequence;
+  pose.state = static_cast<inkwell_state>(report.state);
+  pose.fault = static_cast<int>(report.fault);
+  std::array<float, 3> joint_rad{}, gimbal_rad{};
+  std::array<double, 3> position_m{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    pose.position_m[i] = position_m[i] = report.position_m[i];
+    pose.joint_rad[i] = joint_rad[i] = report.joint_rad[i];
+    pose.gimbal_rad[i] = gimbal_rad[i] = report.gimbal_rad[i];
+    pose.force_N[i] = report.force_N[i];
+  }
+  velocity_.add(pose.time_s, position_m);
+  const auto velocity_m_s = velocity_.velocity_m_s();
+  for (std::size_t i = 0; i < 3; ++i) pose.velocity_m_s[i] = velocity_m_s[i];
+  const glm::mat3 rotation = kinematics::stylus_rotation(joint_rad, gimbal_rad, arm_);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) pose.rotation[3 * row + column] = rotation[column][row];
+  pose.force_sources = report.force_sources;
+  const auto pressed = [&](protocol::Switch which) { return (report.switches & static_cast<unsigned>(which)) != 0; };
+  pose.button_1 = pressed(protocol::Switch::button_1);
+  pose.button_2 = pressed(protocol::Switch::button_2);
+  pose.in_inkwell = pressed(protocol::Switch::inkwell);
+  pose.supply_V = report.supply_dV / 10.0;
+  return pose;
+}
+
+}  // namespace inkwell::library

@@ -1,0 +1,307 @@
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <inkwell/inkwell.h>
+#include <temporary_directory.hpp>
+
+namespace {
+
+using inkwell::tests::TemporaryDirectory;
+
+/// Where the hand of these tests holds the stylus: in the middle of the box.
+constexpr double free_point_m[3]{0.0, 0.0, -0.03};
+constexpr double hand_N_per_m = 300;
+
+bool says(const std::string& words) { return std::string(inkwell_error_text()).find(words) != std::string::npos; }
+
+struct VirtualArm {
+  inkwell_arm* arm = nullptr;
+  VirtualArm() {
+    const auto result = inkwell_open("virtual", &arm);
+    REQUIRE_MESSAGE(result == INKWELL_OK, inkwell_error_text());
+  }
+  ~VirtualArm() { inkwell_close(arm); }
+  VirtualArm(const VirtualArm&) = delete;
+  VirtualArm& operator=(const VirtualArm&) = delete;
+
+  /// Passes on poses until one fulfils the condition, for as much board time.
+  template <class Condition>
+  inkwell_pose wait_until(Condition condition, double limit_s = 5.0) {
+    inkwell_pose pose;
+    REQUIRE(inkwell_get_pose(arm, &pose) == INKWELL_OK);
+    const double begin_s = pose.time_s;
+    while (!condition(pose)) {
+      REQUIRE_MESSAGE(pose.time_s < begin_s + limit_s, "the condition was not reached in time");
+      REQUIRE_MESSAGE(inkwell_wait_for_pose(arm, 10.0, &pose) == INKWELL_OK, inkwell_error_text());
+    }
+    return pose;
+  }
+
+  void hold_in_the_open() {
+    wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
+    REQUIRE(inkwell_move_virtual_hand(arm, free_point_m, hand_N_per_m) == INKWELL_OK);
+    wait_until([](const auto& pose) { return std::hypot(pose.position_m[0], pose.position_m[1]) < 0.004; });
+  }
+  void make_active() {
+    hold_in_the_open();
+    REQUIRE_MESSAGE(inkwell_enable_force(arm, 30.0) == INKWELL_OK, inkwell_error_text());
+  }
+};
+
+TEST_CASE("an arm tells who it is and where the stylus is") {
+  VirtualArm virtual_arm;
+  inkwell_information information;
+  REQUIRE(inkwell_get_information(virtual_arm.arm, &information) == INKWELL_OK);
+  CHECK(information.is_virtual == 1);
+  CHECK(std::string(information.serial_number).size() == 24);
+  CHECK(std::string(information.product) == "Inkwell haptic arm");
+  CHECK(std::string(information.firmware_version) == inkwell_version());
+  CHECK(information.servo_rate_Hz == 20'000);
+
+  const auto pose = virtual_arm.wait_until([](const auto& now) { return now.state == INKWELL_READY; });
+  CHECK(pose.in_inkwell == 1);
+  CHECK(pose.supply_V == doctest::Approx(18.0).epsilon(0.05));
+  for (int row = 0; row < 3; ++row)
+    for (int other = 0; other < 3; ++other) {
+      double product = 0;
+      for (int i = 0; i < 3; ++i) product += pose.rotation[3 * row + i] * pose.rotation[3 * other + i];
+      CHECK(product == doctest::Approx(row == other ? 1.0 : 0.0).epsilon(1e-5));
+    }
+  REQUIRE(inkwell_press_virtual_buttons(virtual_arm.arm, 0, 1) == INKWELL_OK);
+  CHECK(virtual_arm.wait_until([](const auto& now) { return now.button_2 == 1; }).button_1 == 0);
+}
+
+TEST_CASE("poses come one after the other, and the velocity is that of the probe") {
+  VirtualArm virtual_arm;
+  virtual_arm.hold_in_the_open();
+  const double beside_m[3]{0.03, 0.0, -0.03};
+  REQUIRE(inkwell_move_virtual_hand(virtual_arm.arm, beside_m, hand_N_per_m) == INKWELL_OK);
+  inkwell_pose before, pose;
+  REQUIRE(inkwell_wait_for_pose(virtual_arm.arm, 10.0, &before) == INKWELL_OK);
+  const inkwell_pose first = before;
+  double travelled_m = 0;
+  for (int i = 0; i < 300; ++i) {
+    REQUIRE(inkwell_wait_for_pose(virtual_arm.arm, 10.0, &pose) == INKWELL_OK);
+    CHECK(pose.sequence > before.sequence);
+    travelled_m += pose.velocity_m_s[0] * (pose.time_s - before.time_s);
+    before = pose;
+  }
+  CHECK(pose.position_m[0] - first.position_m[0] > 0.015);
+  CHECK(travelled_m == doctest::Approx(pose.position_m[0] - first.position_m[0]).epsilon(0.1));
+}
+
+struct Spring {
+  double stiffness_N_per_m = 100;
+  std::atomic<int> calls = 0;
+};
+
+int spring(inkwell_arm*, const inkwell_pose* pose, double force_N[3], void* user) {
+  auto& self = *static_cast<Spring*>(user);
+  ++self.calls;
+  for (int i = 0; i < 3; ++i)
+    force_N[i] = -self.stiffness_N_per_m * (pose->position_m[i] - (i == 0 ? 0.02 : free_point_m[i]));
+  return 0;
+}
+
+TEST_CASE("a servo pulls the hand, and lets go when it is stopped") {
+  VirtualArm virtual_arm;
+  virtual_arm.make_active();
+  Spring user;
+  REQUIRE(inkwell_start_servo(virtual_arm.arm, spring, &user) == INKWELL_OK);
+  CHECK(inkwell_servo_is_running(virtual_arm.arm) == 1);
+  CHECK(inkwell_start_servo(virtual_arm.arm, spring, &user) == INKWELL_REFUSED);
+  // Between two springs of 300 and 100 N/m, 20 mm apart.
+  const auto pulled = virtual_arm.wait_until([](const auto& pose) {
+    return std::abs(pose.position_m[0] - 0.005) < 0.0007 && std::abs(pose.velocity_m_s[0]) < 0.005;
+  });
+  CHECK(pulled.force_N[0] == doctest::Approx(1.5).epsilon(0.1));
+  CHECK((pulled.force_sources & INKWELL_PROGRAM) != 0);
+  CHECK((pulled.force_sources & INKWELL_WALLS) == 0);
+  REQUIRE(inkwell_stop_servo(virtual_arm.arm) == INKWELL_OK);
+  CHECK(inkwell_servo_is_running(virtual_arm.arm) == 0);
+  const int calls = user.calls;
+  CHECK(calls > 20);
+  virtual_arm.wait_until(
+      [](const auto& pose) { return (pose.force_sources & INKWELL_PROGRAM) == 0 && pose.force_N[0] == 0.0; });
+  CHECK(user.calls == calls);
+  inkwell_information information;
+  REQUIRE(inkwell_get_information(virtual_arm.arm, &information) == INKWELL_OK);
+  CHECK(information.force_reports > 20);
+  CHECK(information.force_reports_refused == 0);
+}
+
+TEST_CASE("a servo may end itself, answer with no number, or be closed under way") {
+  VirtualArm virtual_arm;
+  virtual_arm.make_active();
+  std::atomic<int> calls = 0;
+  const auto ends = [](inkwell_arm* arm, const inkwell_pose*, double force_N[3], void* user) {
+    force_N[0] = std::numeric_limits<double>::quiet_NaN();
+    auto& count = *static_cast<std::atomic<int>*>(user);
+    if (++count == 5) inkwell_stop_servo(arm);
+    return count < 5 ? 0 : 1;
+  };
+  REQUIRE(inkwell_start_servo(virtual_arm.arm, ends, &calls) == INKWELL_OK);
+  virtual_arm.wait_until([&](const auto&) { return inkwell_servo_is_running(virtual_arm.arm) == 0; });
+  CHECK(calls == 5);
+  calls = 1000;
+  const auto goes_on = [](inkwell_arm*, const inkwell_pose*, double*, void* user) {
+    ++*static_cast<std::atomic<int>*>(user);
+    return 0;
+  };
+  REQUIRE(inkwell_start_servo(virtual_arm.arm, goes_on, &calls) == INKWELL_OK);
+  virtual_arm.wait_until([&](const auto&) { return calls > 1010; });
+  inkwell_information information;
+  REQUIRE(inkwell_get_information(virtual_arm.arm, &information) == INKWELL_OK);
+  CHECK(information.force_reports_refused == 0);
+}
+
+TEST_CASE("forces without a servo: felt while they are renewed, bounded, refused if they are none") {
+  VirtualArm virtual_arm;
+  virtual_arm.make_active();
+  REQUIRE(inkwell_set_force_mode(virtual_arm.arm, INKWELL_BESIDE_WALLS) == INKWELL_OK);
+  const double huge_N[3]{std::numeric_limits<double>::infinity(), 0, 0};
+  const auto felt = virtual_arm.wait_until([&](const auto& pose) {
+    REQUIRE(inkwell_set_force(virtual_arm.arm, huge_N) == INKWELL_OK);
+    return std::abs(pose.force_N[0]) > 3.0;
+  });
+  CHECK(felt.force_N[0] < 3.31);
+  CHECK(felt.force_sources == (INKWELL_PROGRAM | INKWELL_WALLS));
+  virtual_arm.wait_until([](const auto& pose) { return (pose.force_sources & INKWELL_PROGRAM) == 0; });
+  const double none_N[3]{0, std::numeric_limits<double>::quiet_NaN(), 0};
+  CHECK(inkwell_set_force(virtual_arm.arm, none_N) == INKWELL_BAD_ARGUMENT);
+  CHECK(says("not a number"));
+  CHECK(inkwell_set_force_mode(virtual_arm.arm, static_cast<inkwell_force_mode>(7)) == INKWELL_BAD_ARGUMENT);
+}
+
+TEST_CASE("a plane holds the probe up, and a set that is not sound changes nothing") {
+  VirtualArm virtual_arm;
+  virtual_arm.make_active();
+  inkwell_plane floor{{0, 0, -0.03}, {0, 0, 1}, {1000, 2, 0, 0, 10}};
+  REQUIRE_MESSAGE(inkwell_place_shapes(virtual_arm.arm, &floor, 1, nullptr) == INKWELL_OK, inkwell_error_text());
+  const double below_m[3]{0, 0, -0.034};
+  REQUIRE(inkwell_move_virtual_hand(virtual_arm.arm, below_m, hand_N_per_m) == INKWELL_OK);
+  // Springs of 300 and 1000 N/m, 4 mm apart.
+  virtual_arm.wait_until([](const auto& pose) {
+    return std::abs(pose.force_N[2] - 0.92) < 0.1 && (pose.force_sources & INKWELL_SHAPES) != 0;
+  });
+  floor.normal[2] = 0;
+  CHECK(inkwell_place_shapes(virtual_arm.arm, &floor, 1, nullptr) == INKWELL_BAD_ARGUMENT);
+  CHECK(says("normal of plane 0"));
+  const std::vector<inkwell_plane> many(9, floor);
+  CHECK(inkwell_place_shapes(virtual_arm.arm, many.data(), many.size(), nullptr) == INKWELL_BAD_ARGUMENT);
+  CHECK(inkwell_place_shapes(virtual_arm.arm, nullptr, 1, nullptr) == INKWELL_BAD_ARGUMENT);
+  inkwell_pose pose;
+  REQUIRE(inkwell_wait_for_pose(virtual_arm.arm, 10, &pose) == INKWELL_OK);
+  CHECK((pose.force_sources & INKWELL_SHAPES) != 0);
+  REQUIRE(inkwell_place_shapes(virtual_arm.arm, nullptr, 0, nullptr) == INKWELL_OK);
+  virtual_arm.wait_until([](const auto& now) { return (now.force_sources & INKWELL_SHAPES) == 0; });
+}
+
+TEST_CASE("parameters by name: read, set together, refused whole") {
+  VirtualArm virtual_arm;
+  double value = 0;
+  REQUIRE(inkwell_get_parameter(virtual_arm.arm, "wall_stiffness_N_per_m", &value) == INKWELL_OK);
+  CHECK(value == 800);
+  const char* names[]{"wall_stiffness_N_per_m", "wall_damping_Ns_per_m"};
+  const double good[]{500, 1.5}, bad[]{600, 1e6};
+  REQUIRE(inkwell_set_parameters(virtual_arm.arm, names, good, 2) == INKWELL_OK);
+  CHECK(inkwell_set_parameters(virtual_arm.arm, names, bad, 2) == INKWELL_REFUSED);
+  CHECK(says("wall_damping_Ns_per_m"));
+  REQUIRE(inkwell_get_parameter(virtual_arm.arm, "wall_stiffness_N_per_m", &value) == INKWELL_OK);
+  CHECK(value == 500);
+  CHECK(inkwell_get_parameter(virtual_arm.arm, "wall_stifness_N_per_m", &value) == INKWELL_BAD_ARGUMENT);
+  CHECK(says("Did you mean wall_stiffness_N_per_m?"));
+  bool found = false;
+  for (std::size_t i = 0; i < inkwell_parameter_count(); ++i)
+    found |= std::string(inkwell_parameter_at(i)->name) == "force_limit_N" && inkwell_parameter_at(i)->maximum == 8;
+  CHECK(found);
+  CHECK(inkwell_parameter_at(inkwell_parameter_count()) == nullptr);
+}
+
+TEST_CASE("the scope gives every control period, and a recording keeps them") {
+  VirtualArm virtual_arm;
+  std::vector<float> values(2 * 1000);
+  std::vector<std::uint32_t> periods(1000);
+  std::size_t count = 0;
+  std::uint64_t lost = 0;
+  CHECK(inkwell_read_scope(virtual_arm.arm, 0.1, values.data(), periods.data(), 1000, &count, &lost) ==
+        INKWELL_REFUSED);
+  const char* wrong[]{"position_x_mm"};
+  CHECK(inkwell_select_signals(virtual_arm.arm, wrong, 1) == INKWELL_BAD_ARGUMENT);
+  const char* names[]{"position_z_m", "supply_V"};
+  REQUIRE_MESSAGE(inkwell_select_signals(virtual_arm.arm, names, 2) == INKWELL_OK, inkwell_error_text());
+  std::uint32_t next = 0;
+  for (std::size_t rows = 0; rows < 5000; rows += count) {
+    REQUIRE(inkwell_read_scope(virtual_arm.arm, 10, values.data(), periods.data(), 37, &count, &lost) == INKWELL_OK);
+    REQUIRE(count > 0);
+    REQUIRE(count <= 37);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (rows + i > 0) REQUIRE(periods[i] == next + (i == 0 ? lost : 0));
+      next = periods[i] + 1;
+      CHECK(values[2 * i + 1] == doctest::Approx(18.0).epsilon(0.05));
+    }
+  }
+  const TemporaryDirectory directory;
+  const auto file = directory.file("arm.csv");
+  REQUIRE_MESSAGE(inkwell_start_recording(virtual_arm.arm, file.c_str()) == INKWELL_OK, inkwell_error_text());
+  CHECK(inkwell_start_recording(virtual_arm.arm, file.c_str()) == INKWELL_REFUSED);
+  inkwell_pose pose;
+  for (int i = 0; i < 100; ++i) REQUIRE(inkwell_wait_for_pose(virtual_arm.arm, 10, &pose) == INKWELL_OK);
+  std::uint64_t samples = 0;
+  REQUIRE_MESSAGE(inkwell_stop_recording(virtual_arm.arm, &samples, &lost) == INKWELL_OK, inkwell_error_text());
+  CHECK(samples > 1000);
+  CHECK(lost == 0);
+  std::ifstream text(file);
+  std::string line, all;
+  while (std::getline(text, line)) all += line + '\n';
+  CHECK(all.find("position_z_m") != std::string::npos);
+  CHECK(inkwell_stop_recording(virtual_arm.arm, nullptr, nullptr) == INKWELL_REFUSED);
+}
+
+TEST_CASE("two arms at once") {
+  VirtualArm left, right;
+  inkwell_information one, other;
+  REQUIRE(inkwell_get_information(left.arm, &one) == INKWELL_OK);
+  REQUIRE(inkwell_get_information(right.arm, &other) == INKWELL_OK);
+  CHECK(std::string(one.serial_number) != other.serial_number);
+  const double force_N[3]{};
+  CHECK(inkwell_set_force(left.arm, force_N) == INKWELL_OK);
+  CHECK_MESSAGE(inkwell_set_force(right.arm, force_N) == INKWELL_OK, inkwell_error_text());
+}
+
+TEST_CASE("what is wrong is said in a sentence, and nothing is touched") {
+  inkwell_arm* arm = nullptr;
+  CHECK(inkwell_open("usbip:nowhere", &arm) == INKWELL_BAD_ARGUMENT);
+  CHECK(says("usbip:127.0.0.1:3240"));
+  CHECK(inkwell_open("usbip:127.0.0.1:1", &arm) == INKWELL_FAILED);
+  CHECK(inkwell_open("no such number", &arm) == INKWELL_NO_DEVICE);
+  CHECK(says("no such number"));
+  CHECK(inkwell_open("virtual:/no/such/arm.toml", &arm) == INKWELL_FAILED);
+  CHECK(says("/no/such/arm.toml"));
+  CHECK(inkwell_open("virtual", nullptr) == INKWELL_BAD_ARGUMENT);
+  CHECK(arm == nullptr);
+  inkwell_pose pose;
+  CHECK(inkwell_get_pose(nullptr, &pose) == INKWELL_BAD_ARGUMENT);
+  CHECK(says("The arm is NULL"));
+  CHECK(inkwell_list_devices(nullptr, 3, nullptr) == INKWELL_BAD_ARGUMENT);
+  CHECK(inkwell_servo_is_running(nullptr) == 0);
+  inkwell_close(nullptr);
+  CHECK(std::string(inkwell_fault_text(5)).find("motor current") != std::string::npos);
+  CHECK(std::string(inkwell_fault_text(-1)).size() > 10);
+
+  VirtualArm virtual_arm;
+  CHECK(inkwell_get_pose(virtual_arm.arm, nullptr) == INKWELL_BAD_ARGUMENT);
+  CHECK(inkwell_set_force(virtual_arm.arm, nullptr) == INKWELL_BAD_ARGUMENT);
+  CHECK(inkwell_start_servo(virtual_arm.arm, nullptr, nullptr) == INKWELL_BAD_ARGUMENT);
+}
+
+}  // namespace
