@@ -8,6 +8,9 @@
 
 namespace inkwell::device {
 
+inline constexpr char scope_in_use[] =
+    "The arm's scope is in use. Close the other program that records it or shows its signals.";
+
 std::unique_ptr<Transport> open_usb_transport(const Endpoint& endpoint);
 std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint);
 

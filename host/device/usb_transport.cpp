@@ -93,8 +93,7 @@ class BulkReader {
     if (length < 0) throw Disconnected(unplugged);
     layout_ = parse_configuration(std::as_bytes(std::span(descriptor.data(), static_cast<std::size_t>(length))));
     const int result = libusb_claim_interface(handle_, layout_.scope_interface);
-    if (result == LIBUSB_ERROR_BUSY)
-      throw InUse("The arm's scope is in use. Close the other program that records it or shows its signals.");
+    if (result == LIBUSB_ERROR_BUSY) throw InUse(scope_in_use);
     if (result != 0) throw Disconnected(unplugged);
     claimed_ = true;
   }

@@ -77,10 +77,19 @@ class UsbipTransport : public Transport {
         setup::set_feature_report(layout_.hid_interface, id, static_cast<std::uint16_t>(report.size())), report);
   }
 
-  void claim_scope() override {  // the import has made all of the device ours
-    if (std::exchange(scope_claimed_, true)) return;
+  void claim_scope() override {
+    if (scope_claimed_) return;
+    {
+      const std::lock_guard lock(bulk_mutex_);
+      bulk_denied_ = false;
+      ask_for_bulk();
+    }
+    // Orders are looked at one after the other: with this answer a refusal of the request before has come, too.
+    connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18));
     const std::lock_guard lock(bulk_mutex_);
-    for (int i = 0; i < bulk_transfers; ++i) ask_for_bulk();
+    if (bulk_denied_) throw InUse(scope_in_use);
+    scope_claimed_ = true;
+    for (int i = 1; i < bulk_transfers; ++i) ask_for_bulk();
   }
 
   std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) override {
@@ -123,6 +132,11 @@ class UsbipTransport : public Transport {
   }
 
   void take_bulk(UsbipConnection::Completion done) {
+    if (done.status == -EBUSY) {
+      const std::lock_guard lock(bulk_mutex_);
+      bulk_denied_ = true;
+      return;
+    }
     if (done.status != 0 && done.status != -ECONNRESET) return lose(unplugged);
     if (!done.data.empty()) bulk_.push(std::move(done.data));
     const std::lock_guard lock(bulk_mutex_);
@@ -166,7 +180,8 @@ class UsbipTransport : public Transport {
   UsbLayout layout_;
   TransferQueue reports_, bulk_;
   bool scope_claimed_ = false;
-  std::mutex bulk_mutex_;          ///< guards the next two
+  std::mutex bulk_mutex_;          ///< guards the next three
+  bool bulk_denied_ = false;       ///< another program has it
   int bulk_owed_ = 0;              ///< transfers not under way because the reader is behind
   std::uint32_t newest_bulk_ = 0;  ///< sequence of the transfer that was asked for last
   std::mutex writes_mutex_;

@@ -24,6 +24,8 @@ namespace inkwell::virtual_board {
 
 namespace {
 constexpr std::size_t connections_maximum = 16;
+/// The device is shared (SharedPort), but others must be able to ask for it.
+constexpr std::size_t importers_maximum = 8;
 constexpr std::size_t receive_bytes = 256 * 1024;
 /// A client that lets more than this wait is not reading; it is disconnected.
 constexpr std::size_t unsent_maximum = 64u << 20;
@@ -194,7 +196,7 @@ void UsbIpServer::accept_connections() {
   }
 }
 
-// Clients that only hold their connection must not keep others out. There is one importer at most.
+// Clients that only hold their connection must not keep others out. Not all of them are importers.
 void UsbIpServer::make_room() {
   const auto oldest = std::find_if(connections_.begin(), connections_.end(),
                                    [](const Connection& connection) { return !connection.import; });
@@ -279,8 +281,9 @@ bool UsbIpServer::handle_operation(Connection& connection, std::span<const std::
   connection.consumed += sizeof request;
 
   const bool known = device && request.bus_id.view() == exported_bus_id;
-  const bool busy = std::any_of(connections_.begin(), connections_.end(),
-                                [](const Connection& other) { return other.import.has_value(); });
+  const auto importers = std::count_if(connections_.begin(), connections_.end(),
+                                       [](const Connection& other) { return other.import.has_value(); });
+  const bool busy = static_cast<std::size_t>(importers) >= importers_maximum;
   if (!known || busy) {
     append_import_refused(connection.to_send, known ? usbip::OperationStatus::busy : usbip::OperationStatus::no_device);
     connection.closing = true;
@@ -332,11 +335,11 @@ void UsbIpServer::deliver_results() {
     results.swap(results_);
     withdrawn = std::exchange(withdrawn_, false);
   }
-  const auto importer = std::find_if(connections_.begin(), connections_.end(),
-                                     [](const Connection& one) { return one.import.has_value(); });
-  if (importer == connections_.end()) return;
   for (const Result& result : results) {
-    if (result.session != importer->import->session()) continue;
+    const auto importer = std::find_if(connections_.begin(), connections_.end(), [&](const Connection& one) {
+      return one.import && one.import->session() == result.session;
+    });
+    if (importer == connections_.end()) continue;
     if (result.kind == Result::Kind::submitted) {
       importer->import->forget(result.urb.sequence);
       append_submitted(importer->to_send, result.urb, result.status);
@@ -345,9 +348,11 @@ void UsbIpServer::deliver_results() {
       append_unlinked(importer->to_send, result.urb.sequence, result.status);
     }
   }
-  if (withdrawn) {
-    send(*importer);  // as much as goes without waiting
-    end(*importer);
+  if (!withdrawn) return;
+  for (Connection& importer : connections_) {
+    if (!importer.import) continue;
+    send(importer);  // as much as goes without waiting
+    if (!importer.dead) end(importer);
   }
 }
 

@@ -62,7 +62,7 @@ class UsbIpServer {
   void answer(Result&& result);
   /// Offers a device for import.
   void offer(const DeviceDescription& device);
-  /// The device is gone: its importer is disconnected.
+  /// The device is gone: its importers are disconnected.
   void withdraw();
 
  private:

@@ -1,13 +1,16 @@
 #include <virtual_usb/virtual_usb.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <virtual_usb/host_pace.hpp>
-#include <virtual_usb/root_port.hpp>
+
+#include "shared_port.hpp"
 #include "usbip_server.hpp"
 
 namespace inkwell::virtual_board {
@@ -17,15 +20,25 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds attention{50};  // how soon a board that waits for its host notices its end
 }  // namespace
 
-struct VirtualUsb::Implementation final : RootPort::Client {
+struct VirtualUsb::Implementation final : SharedPort::Client {
   Implementation(const ChipConnections& chip, std::uint16_t tcp_port, double host_clock_ppm,
                  std::function<void()> on_request, std::function<bool()> ends)
       : core(chip),
-        root_port(chip.scheduler, core, *this, host_clock_ppm),
+        port(chip.scheduler, core, *this, host_clock_ppm),
         is_ending(std::move(ends)),
         server(tcp_port, std::move(on_request)) {}
 
   void between_transactions() override { wait_while(&HostPace::is_starved); }
+
+  bool any(bool (HostPace::*condition)() const) const {
+    return std::ranges::any_of(paces, [&](const auto& entry) { return (entry.second.*condition)(); });
+  }
+  /// Whether a program that board time waits for is waited for no longer than a while.
+  bool is_limited(bool (HostPace::*condition)() const) const {
+    return std::ranges::any_of(paces, [&](const auto& entry) {
+      return (entry.second.*condition)() && !entry.second.is_waited_for_without_limit();
+    });
+  }
 
   void serve() {
     server.take(orders);
@@ -34,19 +47,20 @@ struct VirtualUsb::Implementation final : RootPort::Client {
   }
 
   void wait_while(bool (HostPace::*condition)() const) {
-    if (!(pace.*condition)()) return;
+    if (!any(condition)) return;
     bool has_told = false;
     std::optional<bool> was_limited;
     Clock::time_point late_at;
-    while ((pace.*condition)() && !is_ending()) {
-      const bool is_limited = !pace.is_waited_for_without_limit();
-      if (was_limited != is_limited) late_at = Clock::now() + HostPace::patience;
-      was_limited = is_limited;
+    while (any(condition) && !is_ending()) {
+      const bool limited = is_limited(condition);
+      if (was_limited != limited) late_at = Clock::now() + HostPace::patience;
+      was_limited = limited;
       if (server.wait_for_order(Clock::now() + attention)) {
         serve();
-      } else if (Clock::now() >= late_at && is_limited) {
+      } else if (Clock::now() >= late_at && limited) {
         std::cerr << "USB/IP: the client does not ask for more; board time no longer waits for it.\n";
-        pace.lose_patience();
+        for (auto& [session, pace] : paces)
+          if ((pace.*condition)()) pace.lose_patience();
       } else if (Clock::now() >= late_at && !has_told) {
         std::cerr << "USB/IP: the client has stopped; board time waits until it goes on or is gone.\n";
         has_told = true;
@@ -58,25 +72,24 @@ struct VirtualUsb::Implementation final : RootPort::Client {
     using Kind = UsbIpServer::Order::Kind;
     switch (order.kind) {
       case Kind::import:
-        session = order.session;
-        pace.start_anew();
-        root_port.import();
+        paces[order.session] = {};
+        port.import(order.session);
         break;
       case Kind::release:
-        pace.start_anew();
-        root_port.release();
+        paces.erase(order.session);
+        port.release(order.session);
         break;
       case Kind::submit:
-        pace.submitted(order.urb);
-        root_port.submit(std::move(order.urb));
+        paces[order.session].submitted(order.urb);
+        port.submit(order.session, std::move(order.urb));
         break;
       case Kind::unlink: {
-        const auto found = root_port.unlink(order.unlink_sequence);
+        const auto found = port.unlink(order.session, order.unlink_sequence);
         if (found)
-          pace.unlinked(*found);
+          paces[order.session].unlinked(*found);
         else
-          pace.unlinked_too_late(order.unlink_sequence);
-        server.answer({UsbIpServer::Result::Kind::unlinked, session, std::move(order.urb),
+          paces[order.session].unlinked_too_late(order.unlink_sequence);
+        server.answer({UsbIpServer::Result::Kind::unlinked, order.session, std::move(order.urb),
                        found ? transfer_status::unlinked : transfer_status::success, order.unlink_sequence});
         break;
       }
@@ -85,19 +98,18 @@ struct VirtualUsb::Implementation final : RootPort::Client {
 
   void enumerated(const DeviceDescription& description) override { server.offer(description); }
   void detached() override {
-    pace.start_anew();
+    for (auto& [session, pace] : paces) pace.start_anew();
     server.withdraw();
   }
-  void completed(Urb&& urb, std::int32_t status) override {
-    pace.completed(urb, status);
+  void completed(std::uint32_t session, Urb&& urb, std::int32_t status) override {
+    paces[session].completed(urb, status);
     server.answer({UsbIpServer::Result::Kind::submitted, session, std::move(urb), status});
   }
 
   OtgFsDevice core;
-  RootPort root_port;
-  HostPace pace;
+  SharedPort port;
+  std::map<std::uint32_t, HostPace> paces;  ///< of each program that has imported the device
   std::function<bool()> is_ending;
-  std::uint32_t session = 0;
   std::vector<UsbIpServer::Order> orders;
   UsbIpServer server;
 };
@@ -118,11 +130,11 @@ void VirtualUsb::settle() {
   implementation_->serve();
   implementation_->wait_while(&HostPace::is_owed);
 }
-bool VirtualUsb::is_asked() const { return implementation_->pace.is_asked(); }
-void VirtualUsb::connect() { implementation_->root_port.plug(true); }
-void VirtualUsb::disconnect() { implementation_->root_port.plug(false); }
-bool VirtualUsb::connected() const { return implementation_->root_port.plugged(); }
-bool VirtualUsb::enumerated() const { return implementation_->root_port.enumerated(); }
-bool VirtualUsb::imported() const { return implementation_->root_port.imported(); }
+bool VirtualUsb::is_asked() const { return implementation_->any(&HostPace::is_asked); }
+void VirtualUsb::connect() { implementation_->port.plug(true); }
+void VirtualUsb::disconnect() { implementation_->port.plug(false); }
+bool VirtualUsb::connected() const { return implementation_->port.plugged(); }
+bool VirtualUsb::enumerated() const { return implementation_->port.enumerated(); }
+bool VirtualUsb::imported() const { return implementation_->port.imported(); }
 
 }  // namespace inkwell::virtual_board

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <list>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -113,19 +114,19 @@ TEST_CASE("control transfers and errors over the socket") {
   board.call([&] { CHECK(board.log.sentences.empty()); });
 }
 
-TEST_CASE("a second importer is refused, an unknown device too, and a next one is welcome") {
+TEST_CASE("one importer too many is refused, an unknown device too, and a next one is welcome") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   {
-    UsbIpClient first(board.usb.port());
-    REQUIRE(first.import() == OperationStatus::success);
-    UsbIpClient second(board.usb.port());
-    CHECK(second.import() == OperationStatus::busy);
-    CHECK(second.closed());
+    std::list<UsbIpClient> importers;
+    for (int i = 0; i < 8; ++i) REQUIRE(importers.emplace_back(board.usb.port()).import() == OperationStatus::success);
+    UsbIpClient another(board.usb.port());
+    CHECK(another.import() == OperationStatus::busy);
+    CHECK(another.closed());
     UsbIpClient third(board.usb.port());
     CHECK(third.import("2-1") == OperationStatus::no_device);
     CHECK(third.closed());
-    configure(first);
+    configure(importers.front());
   }
   REQUIRE(board.wait_until_enumerated());  // until the release has arrived
   unsigned resets = 0;

@@ -10,7 +10,7 @@ namespace inkwell::virtual_board {
 
 /// Results of a transfer: negated numbers of Linux' errno, which is what goes over USB/IP.
 namespace transfer_status {
-inline constexpr std::int32_t success = 0, invalid = -22, stalled = -32, no_answer = -71, overflow = -75,
+inline constexpr std::int32_t success = 0, busy = -16, invalid = -22, stalled = -32, no_answer = -71, overflow = -75,
                               unlinked = -104, short_packet = -121;
 }
 

@@ -1,0 +1,165 @@
+// Several programs at the one device of a virtual board.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <optional>
+
+#include "usbip_client.hpp"
+
+namespace inkwell::virtual_usb_test {
+
+using usbip::OperationStatus;
+
+namespace {
+
+constexpr std::int32_t busy = -16;
+constexpr std::array<std::uint8_t, 8> set_configuration{0x00, 9, 5, 0, 0, 0, 0, 0};
+
+struct Program : UsbIpClient {
+  explicit Program(LiveBoard& board) : UsbIpClient(board.usb.port()) {
+    REQUIRE(import() == OperationStatus::success);
+    submit(1, 0, false, 0, {}, set_configuration);
+    REQUIRE(read_reply().status == 0);
+  }
+  /// The first byte of the report that answers the oldest request.
+  int read_report() {
+    const auto reply = read_reply();
+    REQUIRE(reply.status == 0);
+    const Bytes data = receive(reply.actual_length);
+    REQUIRE(!data.empty());
+    return std::to_integer<int>(data[0]);
+  }
+};
+
+void send_report(LiveBoard& board, std::uint8_t first) {
+  board.call([&] { board.firmware.send_report(std::array{std::byte{first}, std::byte{0}}); });
+}
+
+}  // namespace
+
+TEST_CASE("each report reaches every program that asks, and the first alone resets the device") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  Program first(board);
+  unsigned resets = 0;
+  board.call([&] { resets = board.firmware.resets; });
+  Program second(board), silent(board);
+  board.call([&] { CHECK(board.firmware.resets == resets); });
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    first.submit(10 + i, 1, true, 64);
+    second.submit(10 + i, 1, true, 64);
+  }
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    send_report(board, static_cast<std::uint8_t>(50 + i));
+    CHECK(first.read_report() == 50 + i);
+    CHECK(second.read_report() == 50 + i);
+  }
+  // A program that did not ask has missed them; it gets the next one.
+  silent.submit(10, 1, true, 64);
+  send_report(board, 60);
+  CHECK(silent.read_report() == 60);
+  board.call([&] { CHECK(board.log.sentences.empty()); });
+}
+
+TEST_CASE("numbers of transfers are each program's own, and a request that is taken back is nobody else's") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  Program first(board), second(board);
+  first.submit(7, 1, true, 64);
+  second.submit(7, 1, true, 64);
+  first.unlink(8, 7);
+  CHECK(first.receive<usbip::ReturnUnlink>().status == -104);
+  send_report(board, 33);
+  CHECK(second.read_report() == 33);
+  // Nobody asks any more: what comes now waits for the next who does.
+  second.submit(9, 1, true, 64);
+  second.unlink(10, 9);
+  CHECK(second.receive<usbip::ReturnUnlink>().status == -104);
+  send_report(board, 34);
+  first.submit(11, 1, true, 64);
+  CHECK(first.read_report() == 34);
+  // Control transfers of both go through.
+  constexpr std::array<std::uint8_t, 8> get_status{0x80, 0, 0, 0, 0, 0, 2, 0};
+  for (Program* program : {&first, &second}) {
+    program->submit(20, 0, true, 2, {}, get_status);
+    const auto reply = program->read_reply();
+    CHECK(reply.header.sequence == 20);
+    CHECK(program->receive(reply.actual_length).size() == 2);
+  }
+}
+
+TEST_CASE("the stream belongs to the program that asked first, until it takes its requests back or is gone") {
+  LiveBoard board;
+  board.firmware.stream(true);
+  REQUIRE(board.wait_until_enumerated());
+  std::optional<Program> first(std::in_place, board);
+  Program second(board);
+  first->submit(30, 2, true, 64);
+  CHECK(first->receive(first->read_reply().actual_length).size() == 64);
+  board.pause(true);
+  first->submit(31, 2, true, 64);
+  board.call([&] { board.usb.settle(); });
+  second.submit(30, 2, true, 64);
+  CHECK(second.read_reply().status == busy);
+  SUBCASE("taken back") {
+    first->unlink(32, 31);
+    CHECK(first->receive<usbip::ReturnUnlink>().status == -104);
+  }
+  SUBCASE("gone") {
+    first.reset();
+    board.call([&] { board.usb.settle(); });
+  }
+  board.pause(false);
+  second.submit(33, 2, true, 64);
+  const auto reply = second.read_reply();
+  CHECK(reply.status == 0);
+  CHECK(second.receive(reply.actual_length).size() == 64);
+}
+
+TEST_CASE("a program that goes leaves the others as they are; with the last the bus falls silent") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  unsigned resets = 0;
+  {
+    std::optional<Program> first(std::in_place, board);
+    Program second(board);
+    board.call([&] { resets = board.firmware.resets; });
+    first->submit(40, 1, true, 64);
+    second.submit(40, 1, true, 64);
+    first.reset();
+    board.call([&] { board.usb.settle(); });
+    send_report(board, 70);
+    CHECK(second.read_report() == 70);
+    board.call([&] {
+      CHECK(board.firmware.resets == resets);
+      CHECK(board.firmware.configuration == 5);
+      CHECK(board.usb.imported());
+    });
+  }
+  REQUIRE(board.wait_until_enumerated());
+  board.call([&] { CHECK(!board.usb.imported()); });
+  Program next(board);
+  board.call([&] { CHECK(board.firmware.resets == resets + 1); });
+}
+
+TEST_CASE("unplugged, every program is told, and all may come back") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  {
+    Program first(board), second(board);
+    first.submit(50, 1, true, 64);
+    board.call([&] { board.usb.disconnect(); });
+    CHECK(first.closed());
+    CHECK(second.closed());
+  }
+  board.call([&] { board.usb.connect(); });
+  REQUIRE(board.wait_until_enumerated());
+  Program first(board), second(board);
+  first.submit(50, 1, true, 64);
+  second.submit(50, 1, true, 64);
+  send_report(board, 80);
+  CHECK(first.read_report() == 80);
+  CHECK(second.read_report() == 80);
+}
+
+}  // namespace inkwell::virtual_usb_test
