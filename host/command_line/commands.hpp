@@ -28,6 +28,7 @@ struct Place {
   X(watch)                  \
   X(parameters)             \
   X(signals)                \
+  X(reference)              \
   X(experiment)             \
   X(calibrate)              \
   X(tune)                   \

@@ -194,7 +194,7 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
     outcome.stop = active;
   }
   ImGui::EndDisabled();
-  help_on_hover("Force", "While it is on the walls push back. It rises gently and goes off at once.", style);
+  help_on_hover("Force", "While it is on, walls and programs push back. It rises gently and goes off at once.", style);
   outcome.toggle_scope = toggle_button("Scope", scope_is_shown, style, make_room(style.points(60)));
   outcome.toggle_theme = button(style.palette == &dark_palette ? "Light" : "Dark", make_room(style.points(60)));
   end_pane();

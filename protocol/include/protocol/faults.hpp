@@ -12,7 +12,7 @@ enum class State : std::uint8_t {
   starting,      ///< measures the offsets of the current sensors; bridges off
   unreferenced,  ///< waits for the stylus to rest in the inkwell once; no force
   ready,         ///< pose is valid, force is off
-  active,        ///< pose is valid, walls push back
+  active,        ///< pose is valid, force is on
   fault,         ///< bridges off until the fault is cleared
 };
 
@@ -25,7 +25,7 @@ inline constexpr auto state_table = std::to_array<StateInfo>({
     {"starting", "The board measures its current sensors. This takes a tenth of a second."},
     {"unreferenced", "Put the stylus into the inkwell once, so that the board knows where the arm is."},
     {"ready", "The pose is valid. The force is off."},
-    {"active", "The pose is valid and the walls push back."},
+    {"active", "The pose is valid. The force is on."},
     {"fault", "The motors are off because of the fault shown."},
 });
 

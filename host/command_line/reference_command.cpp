@@ -1,0 +1,101 @@
+#include "commands.hpp"
+
+#include <fmt/format.h>
+
+#include <device/fault_text.hpp>
+#include <protocol/reports.hpp>
+#include <protocol/usb_identity.hpp>
+
+#include "help.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+using protocol::ReportId;
+
+struct ReportRow {
+  ReportId id;
+  const char* name;
+  const char* way;
+  std::size_t bytes;
+  const char* what;
+};
+
+constexpr ReportRow reports[] = {
+    {ReportId::pose, "PoseReport", "input, interrupt", sizeof(protocol::PoseReport), "the pose, each millisecond"},
+    {ReportId::command, "CommandReport", "output", sizeof(protocol::CommandReport), "a command; a sign of life"},
+    {ReportId::force, "ForceReport", "output", sizeof(protocol::ForceReport), "a program's force; a sign of life"},
+    {ReportId::information, "InformationReport", "feature, get", sizeof(protocol::InformationReport),
+     "who the device is, and what it has counted"},
+    {ReportId::parameters, "ParametersReport", "feature, get and set", sizeof(protocol::ParametersReport),
+     "every parameter; set: one transaction, only its used part is sent"},
+    {ReportId::transaction, "TransactionReport", "feature, get", sizeof(protocol::TransactionReport),
+     "what became of the last transaction"},
+    {ReportId::frame, "FrameReport", "feature, get", sizeof(protocol::FrameReport),
+     "when the newest frame of the bus began, in board time"},
+    {ReportId::shapes, "ShapesReport", "feature, set", sizeof(protocol::ShapesReport),
+     "the shapes that are felt from now on; only its used part is sent"},
+};
+
+void print_reports() {
+  fmt::print(
+      "## Reports of the HID interface\n\nPacked, little-endian; their fields are in "
+      "`protocol/include/protocol/reports.hpp`. The scope's frames go over interface {}, endpoint 0x{:02x}: "
+      "`protocol/scope.hpp`.\n\n| id | report | way | bytes | what it is |\n| --- | --- | --- | --- | --- |\n",
+      protocol::usb::scope_interface, protocol::usb::scope_in_endpoint);
+  for (const auto& row : reports)
+    fmt::print("| 0x{:02x} | {} | {} | {} | {} |\n", static_cast<unsigned>(row.id), row.name, row.way, row.bytes,
+               row.what);
+}
+
+void print_codes() {
+  fmt::print("\n## States\n\n| code | state | meaning |\n| --- | --- | --- |\n");
+  for (std::size_t i = 0; i < protocol::state_table.size(); ++i)
+    fmt::print("| {} | {} | {} |\n", i, protocol::state_table[i].name, protocol::state_table[i].meaning);
+  fmt::print("\n## Whose force is felt\n\n| bit | source | meaning |\n| --- | --- | --- |\n");
+  for (const auto& row : protocol::force_source_table)
+    fmt::print("| {} | {} | {} |\n", static_cast<unsigned>(row.source), row.name, row.meaning);
+  fmt::print("\n## Faults\n\n| code | fault | cause | remedy |\n| --- | --- | --- | --- |\n");
+  for (const auto& row : protocol::fault_table) {
+    const auto text = device::fault_text(static_cast<protocol::Fault>(row.code));
+    fmt::print("| {} | {} | {} | {} |\n", row.code, row.name, text.cause, text.remedy);
+  }
+  fmt::print("\n## Refusals of a transaction\n\n| code | refusal | cause | remedy |\n| --- | --- | --- | --- |\n");
+  for (const auto& row : protocol::refusal_table)
+    fmt::print("| {} | {} | {} | {} |\n", row.code, row.name, row.cause, row.remedy);
+}
+
+void print_tables() {
+  fmt::print(
+      "\n## Parameters\n\n| id | parameter | unit | range | default | what it is |\n"
+      "| --- | --- | --- | --- | --- | --- |\n");
+  for (const auto& row : protocol::parameter_table)
+    fmt::print("| {} | `{}` | {} | {:g} to {:g} | {:g} | {} |\n", row.id, row.name, row.unit, row.minimum, row.maximum,
+               row.default_value, row.help);
+  fmt::print(
+      "\n## Signals of the scope\n\n| id | signal | unit | bytes | what it is |\n| --- | --- | --- | --- | --- |\n");
+  for (const auto& row : protocol::signal_table)
+    fmt::print("| {} | `{}` | {} | {} | {} |\n", row.id, row.name, row.unit, protocol::wire_size(row.wire), row.help);
+}
+
+}  // namespace
+
+void add_reference_command(const Place& place) {
+  auto* command = place.program.add_subcommand(
+      "reference", "The protocol as Markdown: reports, codes, parameters and signals; needs no device");
+  add_examples(*command, "inkwell reference > protocol.md");
+  command->callback([place] {
+    place.action = [] {
+      fmt::print(
+          "# Protocol, version {}\n\nUSB {:04x}:{:04x}. Made by `inkwell reference` from the tables that firmware "
+          "and companion share.\n\n",
+          protocol::protocol_version, protocol::usb::vendor_id, protocol::usb::product_id);
+      print_reports();
+      print_codes();
+      print_tables();
+      return 0;
+    };
+  });
+}
+
+}  // namespace inkwell::command_line
