@@ -130,7 +130,7 @@ void Controller::render_force(const Settings& settings) {
     transition_ = {};
     return;
   }
-  Vector3 touched_N = shapes_.force_N(pose_.position_m, velocity_m_per_s_);
+  Vector3 touched_N = shapes_.any() ? shapes_.force_N(pose_.position_m, velocity_m_per_s_) : Vector3{};
   if (walls_rendered) touched_N = touched_N + wall_force_N(contact_, velocity_m_per_s_, settings.wall);
   if (shapes_changed || walls_changed) transition_ = over(touched_N_ - touched_N, settings.recovery_N_per_period);
   touched_N_ = touched_N + transition_.force_N();

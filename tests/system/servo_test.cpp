@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 
 #include <board/omni_driver.hpp>
@@ -48,6 +50,55 @@ TEST_CASE("the longest control interrupt leaves half of its period, pressed into
   CHECK(report.servo_cycles_longest > 500);  // it did run and was measured
   CHECK(report.servo_cycles_longest < board::servo_cycles / 2);
   CHECK(report.servo_overruns == 0);
+}
+
+namespace {
+
+/// The longest contact stage of the next 0.1 s.
+float contact_cycles(BoardRig& rig) {
+  while (rig.device->read_scope(std::chrono::milliseconds(0))) {
+  }
+  rig.run(0.1);
+  float longest = 0;
+  while (const auto samples = rig.device->read_scope(std::chrono::milliseconds(0)))
+    for (const float cycles : samples->values) longest = std::max(longest, cycles);
+  return longest;
+}
+
+/// Eight planes around a point, the first `touched` of them a millimetre beyond it.
+device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched, float friction) {
+  device::Shapes shapes;
+  for (std::size_t i = 0; i < shapes.planes.size(); ++i) {
+    const auto angle_rad = 0.7f * static_cast<float>(i);
+    const std::array normal{0.6f * std::cos(angle_rad), 0.6f * std::sin(angle_rad), 0.8f};
+    const float height_m = i < touched ? 0.001f : -0.02f;
+    device::Plane plane{.normal = normal,
+                        .surface = {.static_friction = friction, .dynamic_friction = 0.5f * friction, .life_s = 10}};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      plane.point_m[axis] = static_cast<float>(point_m[axis]) + height_m * normal[axis];
+    shapes.planes[i] = plane;
+  }
+  return shapes;
+}
+
+}  // namespace
+
+TEST_CASE("eight planes cost at most 250 cycles while none is touched, and leave a third of the period at worst") {
+  BoardRig rig(device::SimulationMode::fast, 1, device::CyclePricing::conservative);
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.device->select_signals(std::array{Signal::stage_contact_cycles});
+  const float without = contact_cycles(rig);
+  rig.device->place_shapes(eight_planes(free_point_m, 0, 0.0f));
+  rig.run(0.1);
+  const float with = contact_cycles(rig);
+  MESSAGE("simulation: contact stage ", without, " cycles without shapes, ", with, " with eight planes");
+  CHECK(with > without);
+  CHECK(with - without <= 250.0f);
+  rig.device->place_shapes(eight_planes(free_point_m, 3, 0.4f));
+  rig.run(0.1);
+  MESSAGE("simulation: ", contact_cycles(rig), " with three of eight planes touched, with friction");
+  CHECK(rig.device->information().report.servo_cycles_longest < board::servo_cycles * 0.65);
 }
 
 TEST_CASE("a motor that holds against a wall warms as its true current says") {

@@ -110,8 +110,10 @@ TEST_CASE("friction sticks up to its static bound, then slides with the dynamic 
   const Surface surface = rough(0.8f, 0.5f);
   const Vector3 up{0.0f, 0.0f, 1.0f};
   Grip grip;
-  const auto force_at = [&](float x_m) { return control::surface_force_N(surface, up, 0.001f, {x_m, 0, 0}, {}, grip); };
-  CHECK(force_at(0.0f).x == 0.0f);  // 1 N of normal force
+  const auto force_at = [&](float x_m, bool is_new = false) {
+    return control::surface_force_N(surface, up, 0.001f, {x_m, 0, 0}, {}, grip, is_new);
+  };
+  CHECK(force_at(0.0f, true).x == 0.0f);  // 1 N of normal force
   CHECK(force_at(0.0007f).x == doctest::Approx(-0.7f));
   CHECK(force_at(0.0009f).x == doctest::Approx(-0.5f));
   CHECK(grip.slides);
@@ -137,6 +139,14 @@ TEST_CASE("a plane lets go where it is left, and holds where it is touched again
     next.planes[0].offset_m = 0.0001f;
     touched.replace(next);
     CHECK(touched.force_N({0.0007f, 0.0f, -0.001f}, {}).x == doctest::Approx(-0.2f));
+  }
+  SUBCASE("one whose life has ended in between does not") {
+    Shapes short_lived = shapes;
+    short_lived.life_periods[1] = 1;
+    touched.replace(short_lived);
+    CHECK(touched.age());
+    touched.replace(shapes);
+    CHECK(touched.force_N({0.0007f, 0.0f, -0.001f}, {}).x == 0.0f);
   }
   SUBCASE("a plane that was away in between does not") {
     const Shapes nothing;

@@ -42,12 +42,12 @@ TEST_CASE("device and configuration, byte for byte") {
   CHECK(bench.get_descriptor(0x0200, 512).data ==
         bytes({9, 2,    57,   0,    2,  1,    0,    0xC0, 0,  // takes nothing from the bus
                9, 4,    0,    0,    2,  0x03, 0,    0,    4,  // HID
-               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 69,   0,  //
+               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 87,   0,  //
                7, 5,    0x81, 3,    64, 0,    1,              //
                7, 5,    0x01, 3,    64, 0,    1,              //
                9, 4,    1,    0,    1,  0xFF, 0,    0,    5,  // scope
                7, 5,    0x82, 2,    64, 0,    0}));
-  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 69, 0}));
+  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 87, 0}));
 }
 
 TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes") {
@@ -57,7 +57,7 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
   using namespace protocol;
   const std::size_t pose = sizeof(PoseReport), command = sizeof(CommandReport), information = sizeof(InformationReport),
                     parameters = sizeof(ParametersReport), transaction = sizeof(TransactionReport),
-                    frame = sizeof(FrameReport);
+                    frame = sizeof(FrameReport), force = sizeof(ForceReport), shapes = sizeof(ShapesReport);
   CHECK(bench.get_descriptor(0x2200, 4096, 1).data == bytes({0x06,
                                                              0x00,
                                                              0xFF,
@@ -88,6 +88,15 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
                                                              0x96,
                                                              low(command),
                                                              high(command),
+                                                             0x91,
+                                                             0x02,
+                                                             0x85,
+                                                             0x03,
+                                                             0x09,
+                                                             8,
+                                                             0x96,
+                                                             low(force),
+                                                             high(force),
                                                              0x91,
                                                              0x02,  //
                                                              0x85,
@@ -124,6 +133,15 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
                                                              0x96,
                                                              low(frame),
                                                              high(frame),
+                                                             0xB1,
+                                                             0x02,
+                                                             0x85,
+                                                             0x14,
+                                                             0x09,
+                                                             9,
+                                                             0x96,
+                                                             low(shapes),
+                                                             high(shapes),
                                                              0xB1,
                                                              0x02,  //
                                                              0xC0}));

@@ -46,15 +46,14 @@ struct Shapes {
 /// Where the probe holds on to a shape that it touches.
 struct Grip {
   Vector3 point_m;
-  bool holds = false;
   bool slides = false;
 };
 
 /// The normal spring and damper, which never pull, and friction that sticks and slides (Salisbury et al., "Haptic
 /// rendering: programming touch interaction with virtual objects", I3D 1995). `depth_m`: of the probe behind the
-/// surface.
+/// surface; `is_new`: it was not behind it in the period before, so it takes hold where it is.
 Vector3 surface_force_N(const Surface& surface, const Vector3& normal, float depth_m, const Vector3& probe_m,
-                        const Vector3& velocity_m_per_s, Grip& grip);
+                        const Vector3& velocity_m_per_s, Grip& grip, bool is_new);
 
 /// The shapes as they are felt from period to period.
 class TouchedShapes {
@@ -68,7 +67,7 @@ class TouchedShapes {
 
   Vector3 force_N(const Vector3& probe_m, const Vector3& velocity_m_per_s);
 
-  bool any() const { return sphere_lives_ || planes_alive_ != 0; }
+  bool any() const { return sphere_lives_ || any_plane_lives_; }
 
  private:
   void list_alive();
@@ -77,9 +76,10 @@ class TouchedShapes {
   std::uint32_t age_periods_ = 0;
   std::uint32_t next_end_periods_ = 0;  ///< age at which the next life ends; 0 for none
   bool sphere_lives_ = false;
-  std::size_t planes_alive_ = 0;
-  std::array<std::uint8_t, protocol::shape_planes_maximum> alive_{};  ///< the first `planes_alive_` of it
-  std::array<Grip, Shapes::maximum> grips_{};
+  bool any_plane_lives_ = false;
+  std::array<Plane, protocol::shape_planes_maximum> planes_{};  ///< one that does not live lies out of reach
+  std::array<Grip, Shapes::maximum> grips_{};                   ///< by the shape's number
+  std::uint32_t touched_ = 0;                                   ///< in the period before; bit of the shape's number
 };
 
 }  // namespace inkwell::control
