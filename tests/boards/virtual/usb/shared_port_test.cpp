@@ -21,6 +21,7 @@ struct Program : UsbIpClient {
     submit(1, 0, false, 0, {}, set_configuration);
     REQUIRE(read_reply().status == 0);
   }
+  void ask_for_report(std::uint32_t sequence) { submit(sequence, 1, true, 64); }
   /// The first byte of the report that answers the oldest request.
   int read_report() {
     const auto reply = read_reply();
@@ -31,8 +32,14 @@ struct Program : UsbIpClient {
   }
 };
 
-void send_report(LiveBoard& board, std::uint8_t first) {
-  board.call([&] { board.firmware.send_report(std::array{std::byte{first}, std::byte{0}}); });
+/// What programs have asked for by now is known to the board.
+void settle(LiveBoard& board) {
+  board.call([&] { board.usb.settle(); });
+}
+
+void send_report(LiveBoard& board, int first) {
+  settle(board);
+  board.call([&] { board.firmware.send_report(std::array{std::byte(first), std::byte{0}}); });
 }
 
 }  // namespace
@@ -43,22 +50,21 @@ TEST_CASE("each report reaches every program that asks, and the first alone rese
   Program first(board);
   unsigned resets = 0;
   board.call([&] { resets = board.firmware.resets; });
-  Program second(board), silent(board);
+  Program second(board), late(board);
   board.call([&] { CHECK(board.firmware.resets == resets); });
-  // One more than are answered: the board would wait for who stops asking.
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    first.submit(10 + i, 1, true, 64);
-    second.submit(10 + i, 1, true, 64);
-  }
-  for (std::uint8_t i = 0; i < 3; ++i) {
-    send_report(board, static_cast<std::uint8_t>(50 + i));
-    CHECK(first.read_report() == 50 + i);
-    CHECK(second.read_report() == 50 + i);
+  first.ask_for_report(10);
+  second.ask_for_report(10);
+  for (int i = 0; i < 3; ++i) {
+    send_report(board, 50 + i);
+    for (Program* program : {&first, &second}) {
+      CHECK(program->read_report() == 50 + i);
+      program->ask_for_report(static_cast<std::uint32_t>(11 + i));
+    }
   }
   // A program that did not ask has missed them; it gets the next one.
-  silent.submit(10, 1, true, 64);
+  late.ask_for_report(10);
   send_report(board, 60);
-  CHECK(silent.read_report() == 60);
+  CHECK(late.read_report() == 60);
   board.call([&] { CHECK(board.log.sentences.empty()); });
 }
 
@@ -66,26 +72,26 @@ TEST_CASE("numbers of transfers are each program's own, and a request that is ta
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());
   Program first(board), second(board);
-  first.submit(7, 1, true, 64);
-  second.submit(7, 1, true, 64);
+  first.ask_for_report(7);
+  second.ask_for_report(7);
   first.unlink(8, 7);
   CHECK(first.receive<usbip::ReturnUnlink>().status == -104);
   send_report(board, 33);
   CHECK(second.read_report() == 33);
   // Nobody asks any more: what comes now waits for the next who does.
-  second.submit(9, 1, true, 64);
+  second.ask_for_report(9);
   second.unlink(10, 9);
   CHECK(second.receive<usbip::ReturnUnlink>().status == -104);
   send_report(board, 34);
-  first.submit(11, 1, true, 64);
+  first.ask_for_report(11);
   CHECK(first.read_report() == 34);
   // Control transfers of both go through.
-  constexpr std::array<std::uint8_t, 8> get_status{0x80, 0, 0, 0, 0, 0, 2, 0};
+  constexpr std::array<std::uint8_t, 8> get_device_descriptor{0x80, 6, 0, 1, 0, 0, 18, 0};
   for (Program* program : {&first, &second}) {
-    program->submit(20, 0, true, 2, {}, get_status);
+    program->submit(20, 0, true, 18, {}, get_device_descriptor);
     const auto reply = program->read_reply();
     CHECK(reply.header.sequence == 20);
-    CHECK(program->receive(reply.actual_length).size() == 2);
+    CHECK(program->receive(reply.actual_length).size() == 18);
   }
 }
 
@@ -99,16 +105,18 @@ TEST_CASE("the stream belongs to the program that asked first, until it takes it
   CHECK(first->receive(first->read_reply().actual_length).size() == 64);
   board.pause(true);
   first->submit(31, 2, true, 64);
-  board.call([&] { board.usb.settle(); });
+  settle(board);
   second.submit(30, 2, true, 64);
+  settle(board);
   CHECK(second.read_reply().status == busy);
   SUBCASE("taken back") {
     first->unlink(32, 31);
+    settle(board);
     CHECK(first->receive<usbip::ReturnUnlink>().status == -104);
   }
   SUBCASE("gone") {
     first.reset();
-    board.call([&] { board.usb.settle(); });
+    settle(board);
   }
   board.pause(false);
   second.submit(33, 2, true, 64);
@@ -125,10 +133,10 @@ TEST_CASE("a program that goes leaves the others as they are; with the last the 
     std::optional<Program> first(std::in_place, board);
     Program second(board);
     board.call([&] { resets = board.firmware.resets; });
-    first->submit(40, 1, true, 64);
-    second.submit(40, 1, true, 64);
+    first->ask_for_report(40);
+    second.ask_for_report(40);
     first.reset();
-    board.call([&] { board.usb.settle(); });
+    settle(board);
     send_report(board, 70);
     CHECK(second.read_report() == 70);
     board.call([&] {
@@ -148,7 +156,7 @@ TEST_CASE("unplugged, every program is told, and all may come back") {
   REQUIRE(board.wait_until_enumerated());
   {
     Program first(board), second(board);
-    first.submit(50, 1, true, 64);
+    first.ask_for_report(50);
     board.call([&] { board.usb.disconnect(); });
     CHECK(first.closed());
     CHECK(second.closed());
@@ -156,8 +164,8 @@ TEST_CASE("unplugged, every program is told, and all may come back") {
   board.call([&] { board.usb.connect(); });
   REQUIRE(board.wait_until_enumerated());
   Program first(board), second(board);
-  first.submit(50, 1, true, 64);
-  second.submit(50, 1, true, 64);
+  first.ask_for_report(50);
+  second.ask_for_report(50);
   send_report(board, 80);
   CHECK(first.read_report() == 80);
   CHECK(second.read_report() == 80);
