@@ -139,17 +139,25 @@ void ParameterEditor::redo(double now_s) {
 
 std::vector<ParameterChange> ParameterEditor::take_changes() { return std::exchange(outgoing_, {}); }
 
-std::string label_of(const protocol::ParameterInfo& info) {
-  // Longest first, so that "_N_per_m" is not taken for "_m".
-  static constexpr std::array<std::string_view, 12> unit_endings{
-      "_Nm_per_A", "_Ns_per_m", "_V_per_As", "_V_per_A", "_m_per_s", "_N_per_m", "_rad", "_m", "_N", "_s", "_V", "_A"};
-  std::string_view name = info.name;
-  for (std::string_view ending : unit_endings) {
-    if (name.ends_with(ending)) {
-      name.remove_suffix(ending.size());
-      break;
-    }
+namespace {
+
+/// How a unit stands at the end of a parameter's name: "V/(As)" as "_V_per_As".
+std::string name_ending(std::string_view unit) {
+  std::string ending = unit.empty() ? "" : "_";
+  for (const char character : unit) {
+    if (character == '/')
+      ending += "_per_";
+    else if (character != '(' && character != ')')
+      ending += character;
   }
+  return ending;
+}
+
+}  // namespace
+
+std::string label_of(const protocol::ParameterInfo& info) {
+  std::string_view name = info.name;
+  if (const std::string ending = name_ending(info.unit); name.ends_with(ending)) name.remove_suffix(ending.size());
   // "box_minimum_x" stands under "Box": the group's name need not be said again.
   const std::string_view first_word = info.group.substr(0, info.group.find(' '));
   if (name.starts_with(first_word) && name.size() > first_word.size() + 1 && name[first_word.size()] == '_' &&

@@ -131,6 +131,9 @@ TEST_CASE("labels are words without group and unit") {
   CHECK(window::label_of(protocol::info(Parameter::current_limit_1_A)) == "Current limit 1");
   CHECK(window::label_of(protocol::info(Parameter::torque_constant_2_Nm_per_A)) == "Torque constant 2");
   CHECK(window::label_of(protocol::info(Parameter::gimbal_1_slope_rad)) == "Gimbal 1 slope");
+  CHECK(window::label_of(protocol::info(Parameter::program_force_change_N_per_s)) == "Force change");
+  CHECK(window::label_of(protocol::info(Parameter::transmission)) == "Transmission");
+  CHECK(window::label_of(protocol::info(Parameter::encoder_1_counts_per_turn)) == "Encoder 1 counts per turn");
 }
 
 TEST_CASE("every preset lies in its parameters' ranges") {
