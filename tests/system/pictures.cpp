@@ -1,6 +1,7 @@
 // Not a test: tools/pictures runs this to photograph the window's panes, with the virtual board under the mouse.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -8,6 +9,7 @@
 
 #include "window_rig.hpp"
 
+using namespace inkwell;
 using namespace inkwell::tests;
 
 namespace {
@@ -45,6 +47,32 @@ TEST_CASE("pictures: the whole window, dark and light" * doctest::skip()) {
     push_into_two_walls(rig);
     rig.picture(picture_file(theme == "dark" ? "window" : "light"));
   }
+}
+
+TEST_CASE("pictures: the sliders of every group of parameters" * doctest::skip()) {
+  WindowRig rig;
+  constexpr int rows_that_fit = 18, wheel_steps_over_all = 12;
+  const auto item = [](std::string_view name) { return "tuning/" + std::string(name); };
+  const auto each_group = [](auto action) {
+    std::string_view group;
+    for (const auto& row : protocol::parameter_table)
+      if (row.group != group) action(row.name, group = row.group);
+  };
+  each_group([&](std::string_view first, std::string_view group) {
+    if (rig.look().has(item(first))) rig.click(item(group));  // closes it
+  });
+  each_group([&](std::string_view, std::string_view group) {
+    rig.click(item(group));
+    const std::string name = "parameters of " + std::string(group);
+    rig.picture(picture_file(name));
+    if (std::ranges::count(protocol::parameter_table, group, &protocol::ParameterInfo::group) > rows_that_fit) {
+      const auto over = rig.look().item(item(group)).centre();
+      rig.scroll_down(over, wheel_steps_over_all);
+      rig.picture(picture_file(name + ", the rest"));
+      rig.scroll_up(over, wheel_steps_over_all);
+    }
+    rig.click(item(group));
+  });
 }
 
 TEST_CASE("pictures: the scope with statistics and cursors" * doctest::skip()) {

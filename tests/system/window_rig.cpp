@@ -135,10 +135,12 @@ void WindowRig::drag(Point from, Point to, int steps) {
   }
 }
 
-void WindowRig::scroll_down(Point over, int steps) {
+void WindowRig::turn_wheel(Point over, int steps, const char* button) {
   move_to(over);
-  for (int step = 0; step < steps; ++step) play({"click", "5"});
+  for (int step = 0; step < steps; ++step) play({"click", button});
 }
+void WindowRig::scroll_down(Point over, int steps) { turn_wheel(over, steps, "5"); }
+void WindowRig::scroll_up(Point over, int steps) { turn_wheel(over, steps, "4"); }
 
 void WindowRig::press_key(const std::string& key) {
   play({"keydown", key});

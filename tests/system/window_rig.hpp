@@ -67,6 +67,7 @@ class WindowRig {
   /// Moves with the button down in `steps`, each in a frame of its own, and leaves it down.
   void drag(Point from, Point to, int steps = 8);
   void scroll_down(Point over, int steps);
+  void scroll_up(Point over, int steps);
   void press_key(const std::string& key);
   /// Takes the place of what the text field held.
   void enter(const std::string& field, const std::string& text);
@@ -87,6 +88,7 @@ class WindowRig {
  private:
   nlohmann::json ask(const std::string& question);
   void play(const std::vector<std::string>& events);
+  void turn_wheel(Point over, int steps, const char* button);
 
   TemporaryDirectory directory_;
   RunningProgram display_;

@@ -266,6 +266,7 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
   ImGui::PushFont(style.fonts.strong);
   const bool open = ImGui::CollapsingHeader((title + "###" + std::string(group)).c_str(),
                                             often_used ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  note_item(group);
   ImGui::PopFont();
   if (changed > 0) {
     ImGui::PushFont(style.fonts.caption);
