@@ -193,6 +193,11 @@ inkwell_pose Arm::wait_for_pose(double timeout_s, std::optional<std::uint32_t> a
   return newest_.pose;
 }
 
+control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
+  const std::lock_guard lock(mutex_);
+  return reader_->forward_kinematics(joint_rad);
+}
+
 // ---- force -------------------------------------------------------------------------------------------------
 
 void Arm::enable_force(double timeout_s) {

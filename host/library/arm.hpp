@@ -59,6 +59,7 @@ class PoseReader {
  public:
   explicit PoseReader(const protocol::ParameterSet& parameters);
   inkwell_pose read(const protocol::PoseReport& report);
+  control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
  private:
   control::Arm arm_;
@@ -82,6 +83,8 @@ class Arm {
   inkwell_pose pose() const;
   /// The first pose after the one with `sequence`.
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence);
+
+  control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
   void enable_force(double timeout_s);
   void disable_force();

@@ -17,6 +17,7 @@
 using namespace inkwell::library;
 namespace device = inkwell::device;
 namespace protocol = inkwell::protocol;
+namespace control = inkwell::control;
 
 struct inkwell_arm {
   explicit inkwell_arm(const std::string& address) : arm(address) {}
@@ -84,6 +85,13 @@ void copy(const std::string& text, char (&to)[size]) {
 
 std::array<float, 3> floats(const double (&values)[3]) {
   return {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
+}
+
+/// The vector's three values, `stride` places apart.
+void put(const control::Vector3& vector, double* to, std::size_t stride) {
+  to[0] = vector.x;
+  to[stride] = vector.y;
+  to[2 * stride] = vector.z;
 }
 
 device::Surface surface_of(const inkwell_surface& surface) {
@@ -190,6 +198,22 @@ inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell
     *pose =
         arm->arm.wait_for_pose(timeout_s, seen == seen_sequences.end() ? std::nullopt : std::optional(seen->second));
     seen_sequences[arm] = pose->sequence;
+  });
+}
+
+inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_rad[3], double position_m[3],
+                                          double jacobian[9]) {
+  return guarded([&] {
+    control::Triple joints{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!std::isfinite(required(joint_rad, "The list of joint angles")[i]))
+        throw BadArgument("A joint angle is not a finite number. Give angles in radians.");
+      joints[i] = static_cast<float>(joint_rad[i]);
+    }
+    const auto pose = arm_of(arm).forward_kinematics(joints);
+    if (position_m != nullptr) put(pose.position_m, position_m, 1);
+    if (jacobian == nullptr) return;
+    for (std::size_t joint = 0; joint < 3; ++joint) put(pose.jacobian.column[joint], jacobian + joint, 3);
   });
 }
 

@@ -38,4 +38,8 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report) {
   return pose;
 }
 
+control::Pose PoseReader::forward_kinematics(const control::Triple& joint_rad) const {
+  return control::forward_kinematics(joint_rad, arm_);
+}
+
 }  // namespace inkwell::library

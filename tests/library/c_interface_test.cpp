@@ -99,6 +99,26 @@ TEST_CASE("poses come one after the other, and the velocity is that of the probe
   CHECK(travelled_m == doctest::Approx(pose.position_m[0] - first.position_m[0]).epsilon(0.1));
 }
 
+TEST_CASE("forward kinematics: the pose's own position, and a Jacobian that agrees with it") {
+  VirtualArm virtual_arm;
+  const auto pose = virtual_arm.wait_until([](const auto& now) { return now.state == INKWELL_READY; });
+  double position_m[3], jacobian[9];
+  REQUIRE(inkwell_forward_kinematics(virtual_arm.arm, pose.joint_rad, position_m, jacobian) == INKWELL_OK);
+  for (int i = 0; i < 3; ++i) CHECK(position_m[i] == doctest::Approx(pose.position_m[i]).epsilon(1e-4));
+  for (int joint = 0; joint < 3; ++joint) {
+    constexpr double step_rad = 0.01;
+    double beside_rad[3]{pose.joint_rad[0], pose.joint_rad[1], pose.joint_rad[2]}, beside_m[3];
+    beside_rad[joint] += step_rad;
+    REQUIRE(inkwell_forward_kinematics(virtual_arm.arm, beside_rad, beside_m, nullptr) == INKWELL_OK);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double slope_m_per_rad = (beside_m[axis] - position_m[axis]) / step_rad;
+      CHECK(std::abs(jacobian[3 * axis + joint] - slope_m_per_rad) < 0.002);
+    }
+  }
+  const double none_rad[3]{std::numeric_limits<double>::infinity(), 0, 0};
+  CHECK(inkwell_forward_kinematics(virtual_arm.arm, none_rad, position_m, jacobian) == INKWELL_BAD_ARGUMENT);
+}
+
 struct Spring {
   double stiffness_N_per_m = 100;
   std::atomic<int> calls = 0;

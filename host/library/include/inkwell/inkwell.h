@@ -127,6 +127,11 @@ INKWELL_API inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose
 /* Waits for the next pose that this thread has not seen. */
 INKWELL_API inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose);
 
+/* Where the probe is for these joint angles, and how it moves: `jacobian`, row by row in m/rad, times the joints' speeds
+ * is the probe's velocity; its transpose times a force is the joints' torques. Each may be NULL. */
+INKWELL_API inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_rad[3], double position_m[3],
+                                                      double jacobian[9]);
+
 /* Cause and remedy of a fault's code; never NULL. */
 INKWELL_API const char* inkwell_fault_text(int fault);
 
