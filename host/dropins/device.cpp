@@ -1,0 +1,230 @@
+#include "device.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "errors.hpp"
+
+namespace inkwell::dropins {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double motor_value_full = 32767.0;
+/// Between questions for the motors' heat, and between looks at the arm's state.
+constexpr auto heat_period = 500ms, care_period = 20ms;
+constexpr double enable_timeout_s = 1.0;
+/// Part of a new angular velocity in the one that is shown, once a millisecond.
+constexpr double angular_smoothing = 0.125;
+/// A probe that is slower is at rest.
+constexpr double rest_m_per_s = 0.1;
+
+// Faults of the board that HDAPI takes for a passing thing: the force comes back by itself once the probe is at rest.
+constexpr int fault_over_speed = 6, fault_host_silent = 8;
+
+bool passes(int fault) { return fault == fault_over_speed || fault == fault_host_silent; }
+
+double speed_m_per_s(const inkwell_pose& pose) {
+  return std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]);
+}
+
+/// From one attitude to the next a millisecond or so later: the axis is in the antisymmetric part of the turn.
+Vector turn_rad(const double (&from)[9], const double (&to)[9]) {
+  const auto turn = [&](int row, int column) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) sum += to[3 * row + i] * from[3 * column + i];
+    return sum;
+  };
+  return {0.5 * (turn(2, 1) - turn(1, 2)), 0.5 * (turn(0, 2) - turn(2, 0)), 0.5 * (turn(1, 0) - turn(0, 1))};
+}
+
+void require(inkwell_result result) {
+  if (result != INKWELL_OK) throw std::runtime_error(inkwell_error_text());
+}
+
+}  // namespace
+
+bool* Capabilities::find(Enum value) {
+  switch (value) {
+#define X(code, name, text, at_start) \
+  case code: return &name;
+    INKWELL_HD_CAPABILITIES(X)
+#undef X
+    default: return nullptr;
+  }
+}
+
+Device::Device(Handle handle, std::string name, const std::string& address)
+    : handle_(handle), name_(std::move(name)), address_(address) {
+  inkwell_arm* opened = nullptr;
+  require(inkwell_open(address.c_str(), &opened));
+  arm_.reset(opened);
+  require(inkwell_get_information(arm(), &information_));
+  facts_ = read_facts(arm());
+  // HDAPI's devices belong to one program: another one is to hear of it now, not at its first force.
+  const double none_N[3]{};
+  require(inkwell_set_force(arm(), none_N));
+  look();
+  before_ = now_;
+  care_thread_ = std::thread([this] { care(); });
+}
+
+Device::~Device() {
+  if (!care_thread_.joinable()) return;
+  {
+    const std::lock_guard lock(care_mutex_);
+    ends_ = true;
+    care_changed_.notify_one();
+  }
+  care_thread_.join();
+}
+
+void Device::raise(ErrorCode code, const std::string& sentence, int internal_code) const {
+  dropins::raise(code, handle_, sentence, internal_code);
+}
+
+// ---- frames ------------------------------------------------------------------------------------------------
+
+void Device::begin_frame(std::optional<std::uint64_t> tick) {
+  if (in_frame_) return raise(illegal_begin);
+  if (tick && begun_in_tick_ == tick && capabilities.one_frame_limit) return raise(illegal_begin);
+  in_frame_ = true;
+  begun_in_tick_ = tick;
+  look();
+  note_condition();
+}
+
+void Device::look() {
+  Moment seen;
+  const auto result = inkwell_get_pose(arm(), &seen.pose);
+  if (result != INKWELL_OK) {
+    raise(comm_error, inkwell_error_text(), result);
+    seen = now_;
+    seen.command = {};
+  } else {
+    const double passed_s = seen.pose.time_s - now_.pose.time_s;
+    seen.angular_velocity_rad_per_s = now_.angular_velocity_rad_per_s;
+    if (passed_s > 0.0 && now_.pose.time_s > 0.0) {
+      const Vector turned_rad = turn_rad(now_.pose.rotation, seen.pose.rotation);
+      const double part = 1.0 - std::pow(1.0 - angular_smoothing, passed_s * 1e3);
+      for (std::size_t i = 0; i < 3; ++i)
+        seen.angular_velocity_rad_per_s[i] += part * (turned_rad[i] / passed_s - seen.angular_velocity_rad_per_s[i]);
+    }
+    if (seen.pose.sequence != now_.pose.sequence) is_silent_ = false;
+    if (is_silent_) raise(comm_error, "The device sends no poses. Reset the board, or let a paused virtual board run.");
+  }
+  before_ = std::exchange(now_, seen);
+}
+
+/// Raises what came up since the last frame, once.
+void Device::note_condition() {
+  if (now_.pose.state == INKWELL_READY || now_.pose.state == INKWELL_ACTIVE) was_referenced_ = true;
+  if (now_.pose.state == INKWELL_UNREFERENCED) was_referenced_ = false;
+  const int fault = now_.pose.state == INKWELL_FAULT ? now_.pose.fault : 0;
+  if (std::exchange(fault_, fault) != fault && fault != 0)
+    raise(fault == fault_over_speed ? exceeded_max_velocity : force_error, inkwell_fault_text(fault), fault);
+  const bool is_warm = *std::max_element(std::begin(motor_heat_), std::end(motor_heat_)) >= 1.0;
+  if (!std::exchange(was_warm_, is_warm) && is_warm) raise(warm_motors);
+}
+
+std::optional<Vector> Device::demanded_force() const {
+  const Command& command = now_.command;
+  if (command.motor_values && (command.force_N || command.joint_torque_mNm)) return std::nullopt;
+  if (command.motor_values) {
+    Vector torque_Nm;
+    for (std::size_t i = 0; i < 3; ++i)
+      torque_Nm[i] = (*command.motor_values)[i] / motor_value_full * facts_.joint_torque_full_Nm[i];
+    return force_of_torques(arm(), now_.pose, torque_Nm);
+  }
+  if (command.joint_torque_mNm) {
+    const Vector& torque = *command.joint_torque_mNm;
+    return force_of_torques(arm(), now_.pose, {1e-3 * torque[0], 1e-3 * torque[1], 1e-3 * torque[2]});
+  }
+  return command.force_N.value_or(Vector{});
+}
+
+void Device::end_frame() {
+  if (!std::exchange(in_frame_, false)) return raise(illegal_end);
+  auto demanded_N = demanded_force();
+  if (!demanded_N) raise(force_error);
+  const ForceDemand demand{demanded_N.value_or(Vector{}), speed_m_per_s(now_.pose), now_.pose.time_s,
+                           wants_force() && now_.pose.state == INKWELL_ACTIVE && now_.pose.in_inkwell == 0};
+  const ForceLimits limits{.maximum_N = facts_.force_maximum_N,
+                           .speed_m_per_s = 1e-3 * settings.velocity_limit_mm_per_s,
+                           .change_N_per_ms = settings.impulse_limit_N_per_ms,
+                           .ramp_N_per_s = settings.ramping_rate_N_per_s,
+                           .clamps = capabilities.max_force_clamping,
+                           .ramps = capabilities.force_ramping,
+                           .limits_force = capabilities.software_force_limit,
+                           .limits_speed = capabilities.velocity_limit,
+                           .limits_change = capabilities.impulse_limit};
+  const auto answer = guard_.step(demand, limits);
+  if (answer.error != success) raise(answer.error);
+  now_.command.force_N = answer.force_N;
+  if (!wants_force()) return;
+  const auto result = inkwell_set_force(arm(), answer.force_N.data());
+  // A lost link has been told by the frame's beginning.
+  if (result != INKWELL_OK && result != INKWELL_DISCONNECTED) raise(force_error, inkwell_error_text(), result);
+}
+
+Calibration Device::calibration() {
+  inkwell_pose pose;
+  const auto result = inkwell_get_pose(arm(), &pose);
+  if (result != INKWELL_OK) {
+    raise(comm_error, inkwell_error_text(), result);
+    return calibration_needs_manual_input;
+  }
+  const bool is_referenced =
+      pose.state == INKWELL_READY || pose.state == INKWELL_ACTIVE || (pose.state == INKWELL_FAULT && was_referenced_);
+  return is_referenced          ? calibration_ok
+         : pose.in_inkwell != 0 ? calibration_needs_update
+                                : calibration_needs_manual_input;
+}
+
+// ---- the force as a whole ----------------------------------------------------------------------------------
+
+void Device::set_scheduler_runs(bool runs) {
+  scheduler_runs_ = runs;
+  follow_force_output();
+}
+
+void Device::follow_force_output() {
+  const std::lock_guard lock(care_mutex_);
+  force_is_wanted_ = wants_force();
+  fault_is_to_be_cleared_ = force_is_wanted_;
+  care_changed_.notify_one();
+}
+
+void Device::care() {
+  using Clock = std::chrono::steady_clock;
+  auto heat_at = Clock::now();
+  bool switched_on = false;
+  std::unique_lock lock(care_mutex_);
+  while (!ends_) {
+    const bool wanted = force_is_wanted_, clears = std::exchange(fault_is_to_be_cleared_, false);
+    lock.unlock();
+    inkwell_pose pose;
+    // What fails here is a lost link, which the next frame tells, or the arm is not ready, which the next turn tries.
+    if (inkwell_get_pose(arm(), &pose) == INKWELL_OK) {
+      if (pose.state == INKWELL_FAULT && wanted &&
+          (clears || (passes(pose.fault) && speed_m_per_s(pose) < rest_m_per_s)))
+        inkwell_clear_fault(arm());
+      if (pose.state == INKWELL_READY && wanted)
+        switched_on |= inkwell_enable_force(arm(), enable_timeout_s) == INKWELL_OK;
+      if (!wanted && std::exchange(switched_on, false)) inkwell_disable_force(arm());
+      inkwell_information information;
+      if (Clock::now() >= heat_at && inkwell_get_information(arm(), &information) == INKWELL_OK) {
+        std::copy_n(information.motor_heat, 3, motor_heat_);
+        heat_at = Clock::now() + heat_period;
+      }
+    }
+    lock.lock();
+    care_changed_.wait_for(lock, care_period,
+                           [&] { return ends_ || force_is_wanted_ != wanted || fault_is_to_be_cleared_; });
+  }
+}
+
+}  // namespace inkwell::dropins

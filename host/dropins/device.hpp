@@ -1,0 +1,137 @@
+// An arm as HDAPI shows it: what a frame saw, what it asks for, and which forces are allowed.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <inkwell/inkwell.h>
+
+#include "arm_facts.hpp"
+#include "constants.hpp"
+#include "force_guard.hpp"
+
+namespace inkwell::dropins {
+
+/// What a program asked for in a frame, as it wrote it.
+struct Command {
+  std::optional<Vector> force_N, joint_torque_mNm;
+  std::optional<std::array<double, 6>> motor_values;
+  Vector torque_mNm{}, gimbal_torque_mNm{};  ///< kept for who reads them back: the arm has no motors for them
+};
+
+/// What a frame saw, and what it asked for.
+struct Moment {
+  inkwell_pose pose{};
+  Vector angular_velocity_rad_per_s{};
+  Command command;
+};
+
+/// Capabilities, with what is on when a device is opened.
+#define INKWELL_HD_CAPABILITIES(X)                                  \
+  X(0x4000, force_output, "HD_FORCE_OUTPUT", false)                 \
+  X(0x4001, max_force_clamping, "HD_MAX_FORCE_CLAMPING", true)      \
+  X(0x4002, force_ramping, "HD_FORCE_RAMPING", true)                \
+  X(0x4003, software_force_limit, "HD_SOFTWARE_FORCE_LIMIT", true)  \
+  X(0x4004, one_frame_limit, "HD_ONE_FRAME_LIMIT", true)            \
+  X(0x2606, velocity_limit, "HD_SOFTWARE_VELOCITY_LIMIT", true)     \
+  X(0x2607, impulse_limit, "HD_SOFTWARE_FORCE_IMPULSE_LIMIT", true) \
+  X(0x2900, user_status_light, "HD_USER_STATUS_LIGHT", false)
+
+struct Capabilities {
+#define X(value, name, text, at_start) bool name = at_start;
+  INKWELL_HD_CAPABILITIES(X)
+#undef X
+  /// NULL for a value that is none.
+  bool* find(Enum value);
+};
+
+/// Figures that a program may set.
+struct Settings {
+  double velocity_limit_mm_per_s = 1200.0;
+  double impulse_limit_N_per_ms = 4.0;
+  double ramping_rate_N_per_s = 10.0;
+  double status_light = 0.0;
+};
+
+/// Every member that is not marked otherwise is called with the lock of Devices.
+class Device {
+ public:
+  /// Opens the arm and claims its force. Throws std::runtime_error with the reason.
+  Device(Handle handle, std::string name, const std::string& address);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  Handle handle() const { return handle_; }
+  const std::string& name() const { return name_; }
+  const std::string& address() const { return address_; }
+  inkwell_arm* arm() const { return arm_.get(); }
+  const ArmFacts& facts() const { return facts_; }
+  const inkwell_information& information() const { return information_; }
+  double motor_heat(std::size_t motor) const { return motor_heat_[motor]; }
+  const Moment& now() const { return now_; }
+  const Moment& before() const { return before_; }
+
+  Capabilities capabilities;
+  Settings settings;
+
+  /// `tick` of the scheduler if it is the one who calls.
+  void begin_frame(std::optional<std::uint64_t> tick);
+  void end_frame();
+  bool in_frame() const { return in_frame_; }
+  /// What the frame is to ask for.
+  Command& command() { return now_.command; }
+
+  /// The scheduler runs, or does no more; the force follows this and the capability.
+  void set_scheduler_runs(bool runs);
+  /// The program wants its force, again if it was lost by a fault.
+  void follow_force_output();
+
+  Calibration calibration();
+
+  /// Whether a frame would see nothing new; set by the scheduler.
+  void set_silent(bool silent) { is_silent_ = silent; }
+  bool is_silent() const { return is_silent_; }
+
+ private:
+  struct Close {
+    void operator()(inkwell_arm* arm) const { inkwell_close(arm); }
+  };
+  void raise(ErrorCode code, const std::string& sentence = {}, int internal_code = 0) const;
+  void look();
+  void note_condition();
+  void send();
+  std::optional<Vector> demanded_force() const;
+  bool wants_force() const { return scheduler_runs_ && capabilities.force_output; }
+  /// The thread that does what takes a round trip to the device, so that no frame waits for it.
+  void care();
+
+  const Handle handle_;
+  const std::string name_, address_;
+  std::unique_ptr<inkwell_arm, Close> arm_;
+  ArmFacts facts_{};
+  inkwell_information information_{};
+
+  Moment now_, before_;
+  bool in_frame_ = false;
+  std::optional<std::uint64_t> begun_in_tick_;
+  ForceGuard guard_;
+  bool scheduler_runs_ = false;
+  bool was_referenced_ = false, was_warm_ = false;
+  int fault_ = 0;
+  std::atomic<bool> is_silent_ = false;
+
+  std::atomic<double> motor_heat_[3]{};
+  std::mutex care_mutex_;
+  std::condition_variable care_changed_;
+  bool ends_ = false, force_is_wanted_ = false, fault_is_to_be_cleared_ = false;
+  std::thread care_thread_;
+};
+
+}  // namespace inkwell::dropins

@@ -1,0 +1,141 @@
+#include "devices.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <stdexcept>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "errors.hpp"
+
+namespace inkwell::dropins {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Names that programs give to the arm that they expect to be the only one.
+constexpr std::string_view default_names[] = {"", "Default Device", "Default PHANToM"};
+
+bool is_address(std::string_view name) {
+  return name.starts_with("usbip:") || name == "virtual" || name.starts_with("virtual:");
+}
+
+/// Each opening of such an address makes a board of its own.
+bool makes_a_board(std::string_view address) { return address == "virtual" || address.starts_with("virtual:"); }
+
+std::vector<inkwell_device> list_arms() {
+  std::size_t count = 0;
+  if (inkwell_list_devices(nullptr, 0, &count) != INKWELL_OK) return {};
+  std::vector<inkwell_device> arms(count);
+  if (inkwell_list_devices(arms.data(), arms.size(), &count) != INKWELL_OK) return {};
+  arms.resize(std::min(count, arms.size()));
+  return arms;
+}
+
+}  // namespace
+
+std::string Devices::address_for(const std::string& name) const {
+  if (is_address(name)) return name;
+  const auto arms = list_arms();
+  for (const auto& arm : arms)
+    if (!name.empty() && (name == arm.serial_number || name == arm.address)) return arm.address;
+  // A name of the program's own, as "Left": the next arm that it has not opened.
+  const auto is_open = [this](std::string_view address) {
+    return !makes_a_board(address) && std::any_of(devices_.begin(), devices_.end(), [&](const auto& device) {
+      return device && device->address() == address;
+    });
+  };
+  const char* told = std::getenv("INKWELL_DEVICE");
+  if (told != nullptr && *told != '\0' && !is_open(told)) return told;
+  for (const auto& arm : arms)
+    if (!is_open(arm.address)) return arm.address;
+  if (!arms.empty())
+    throw std::runtime_error(fmt::format(
+        "There is no arm for the name {}: this program has opened each of the {} there are.", name, arms.size()));
+  return {};  // none: inkwell_open() says so
+}
+
+Handle Devices::open(const char* given) {
+  const std::lock_guard one_at_a_time(opening_);
+  std::string name = given == nullptr ? "" : given;
+  if (std::find(std::begin(default_names), std::end(default_names), name) != std::end(default_names)) name.clear();
+  std::string address;
+  Handle handle = 0;
+  try {
+    {
+      const std::lock_guard lock(mutex_);
+      for (const auto& device : devices_)
+        if (device && (device->name() == name || (!makes_a_board(name) && device->address() == name))) {
+          raise(device_already_initiated, device->handle());
+          return invalid_handle;
+        }
+      address = address_for(name);
+      const auto place = std::find(devices_.begin(), devices_.end(), nullptr);
+      handle = static_cast<Handle>(place - devices_.begin());
+    }
+    auto device = std::make_shared<Device>(handle, name, address);
+    const std::lock_guard lock(mutex_);
+    if (handle == devices_.size()) devices_.emplace_back();
+    device->set_scheduler_runs(scheduler_runs_);
+    devices_[handle] = std::move(device);
+    current_ = handle;
+    return handle;
+  } catch (const std::exception& error) {
+    raise(device_fault, invalid_handle, error.what());
+    return invalid_handle;
+  }
+}
+
+bool Devices::close(Handle handle) {
+  std::shared_ptr<Device> device;
+  {
+    const std::lock_guard lock(mutex_);
+    if (find(handle) == nullptr) return false;
+    device = std::exchange(devices_[handle], nullptr);
+    if (current_ == handle) current_ = invalid_handle;
+  }
+  // The scheduler may wait for its next pose; the arm is to be free when this returns.
+  while (device.use_count() > 1) std::this_thread::sleep_for(1ms);
+  return true;
+}
+
+void Devices::close_all() {
+  for (Handle handle = 0;; ++handle) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (handle >= devices_.size()) return;
+      if (!devices_[handle]) continue;
+    }
+    close(handle);
+  }
+}
+
+Device* Devices::find(Handle handle) {
+  if (handle < devices_.size() && devices_[handle]) return devices_[handle].get();
+  raise(bad_handle, handle);
+  return nullptr;
+}
+
+bool Devices::make_current(Handle handle) {
+  if (find(handle) == nullptr) return false;
+  current_ = handle;
+  return true;
+}
+
+void Devices::set_scheduler_runs(bool runs) {
+  scheduler_runs_ = runs;
+  for (const auto& device : devices_)
+    if (device) device->set_scheduler_runs(runs);
+}
+
+std::shared_ptr<Device> Devices::pacing() {
+  for (const auto& device : devices_)
+    if (device && !device->is_silent()) return device;
+  return nullptr;
+}
+
+}  // namespace inkwell::dropins

@@ -1,0 +1,45 @@
+// The devices that the program has open, by handle, and which of them is current.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "device.hpp"
+
+namespace inkwell::dropins {
+
+class Devices {
+ public:
+  /// Held by every call of the interface while it looks at a device; never while one is opened or closed.
+  std::mutex& mutex() { return mutex_; }
+
+  /// Opens the arm that the name stands for and makes it current; raises an error and gives invalid_handle if it can
+  /// not. Takes the lock itself.
+  Handle open(const char* name);
+  /// Takes the lock itself. False if there is no such device.
+  bool close(Handle handle);
+  void close_all();
+
+  // The following with the lock.
+
+  /// The device under the handle; NULL, and BAD_HANDLE is raised, if there is none.
+  Device* find(Handle handle);
+  Device* current() { return find(current_); }
+  Handle current_handle() const { return current_; }
+  bool make_current(Handle handle);
+  void set_scheduler_runs(bool runs);
+  /// The first device that sends poses, by which the scheduler is paced; none if there is none.
+  std::shared_ptr<Device> pacing();
+
+ private:
+  std::string address_for(const std::string& name) const;
+
+  std::mutex mutex_, opening_;
+  std::vector<std::shared_ptr<Device>> devices_;  ///< by handle; empty places were closed
+  Handle current_ = invalid_handle;
+  bool scheduler_runs_ = false;
+};
+
+}  // namespace inkwell::dropins

@@ -1,0 +1,46 @@
+// What HDAPI promises of every force: bounded, never with a jump, off while the stylus is too fast, and back by a ramp.
+#pragma once
+
+#include <array>
+
+#include "constants.hpp"
+
+namespace inkwell::dropins {
+
+using Vector = std::array<double, 3>;
+
+double length(const Vector& vector);
+
+/// Which of the promises are wanted, and their figures.
+struct ForceLimits {
+  double maximum_N;
+  double speed_m_per_s;
+  double change_N_per_ms;
+  double ramp_N_per_s;
+  bool clamps, ramps, limits_force, limits_speed, limits_change;
+};
+
+struct ForceDemand {
+  Vector force_N;
+  double speed_m_per_s;
+  double time_s;  ///< of the board
+  bool is_on;     ///< the arm's force is on, and the stylus is out of the inkwell
+};
+
+class ForceGuard {
+ public:
+  struct Answer {
+    Vector force_N;
+    ErrorCode error;  ///< `success`, or why there is no force
+  };
+  Answer step(const ForceDemand& demand, const ForceLimits& limits);
+
+ private:
+  Answer drop(ErrorCode why);
+
+  double ramp_N_ = 0.0;  ///< as large may the force be by now
+  double time_s_ = 0.0;
+  Vector before_N_{};
+};
+
+}  // namespace inkwell::dropins

@@ -1,0 +1,146 @@
+// Devices, frames, scheduler, errors, calibration. What is asked for and set is in hd_state.cpp.
+#include "hd_interface.hpp"
+
+#include <chrono>
+#include <system_error>
+
+#include "errors.hpp"
+#include "guarded.hpp"
+#include "runtime.hpp"
+
+using namespace inkwell::dropins;
+
+namespace {
+
+/// With a callback that does not return, hdStopScheduler() does not return either.
+constexpr auto for_ever = std::chrono::hours(24);
+
+Handle current_handle() {
+  const std::lock_guard lock(runtime().devices.mutex());
+  return runtime().devices.current_handle();
+}
+
+template <class Action>
+void with_device(Handle handle, Action action) {
+  guarded([&] {
+    const std::lock_guard lock(runtime().devices.mutex());
+    if (Device* device = runtime().devices.find(handle)) action(*device);
+  });
+}
+
+}  // namespace
+
+// ---- devices and frames ------------------------------------------------------------------------------------
+
+HdHandle hdInitDevice(const char* name) { return runtime().devices.open(name); }
+
+void hdDisableDevice(HdHandle device) {
+  guarded([&] { runtime().devices.close(device); });
+}
+
+void hdMakeCurrentDevice(HdHandle device) {
+  with_device(device, [&](Device&) { runtime().devices.make_current(device); });
+}
+
+HdHandle hdGetCurrentDevice(void) { return current_handle(); }
+
+void hdBeginFrame(HdHandle handle) {
+  with_device(handle, [&](Device& device) {
+    runtime().devices.make_current(handle);
+    device.begin_frame(runtime().scheduler.tick_of_caller());
+  });
+}
+
+void hdEndFrame(HdHandle handle) {
+  with_device(handle, [](Device& device) { device.end_frame(); });
+}
+
+// ---- errors ------------------------------------------------------------------------------------------------
+
+HdErrorInfo hdGetError(void) { return take_error(); }
+const char* hdGetErrorString(unsigned code) { return error_text(code); }
+
+// ---- scheduler ---------------------------------------------------------------------------------------------
+
+void hdStartScheduler(void) {
+  try {
+    runtime().scheduler.start();
+    const std::lock_guard lock(runtime().devices.mutex());
+    runtime().devices.set_scheduler_runs(true);
+  } catch (const std::system_error& error) {
+    raise(timer_error, current_handle(), error.what());
+  }
+}
+
+void hdStopScheduler(void) {
+  guarded([] {
+    {
+      const std::lock_guard lock(runtime().devices.mutex());
+      runtime().devices.set_scheduler_runs(false);
+    }
+    runtime().scheduler.stop(for_ever);
+  });
+}
+
+void hdSetSchedulerRate(unsigned long rate_Hz) {
+  if (!runtime().scheduler.set_rate(rate_Hz))
+    raise(invalid_value, current_handle(), "The arm sends a thousand poses a second. Set 1000 or 500 Hz.");
+}
+
+HdTask hdScheduleAsynchronous(HdCallback callback, void* user, unsigned short priority) {
+  if (callback == nullptr) {
+    raise(invalid_value, current_handle(), "The callback is NULL. Give one.");
+    return invalid_handle;
+  }
+  const auto task = runtime().scheduler.add(callback, user, priority);
+  if (task == invalid_handle) raise(scheduler_full, current_handle());
+  return task;
+}
+
+void hdScheduleSynchronous(HdCallback callback, void* user, unsigned short priority) {
+  if (callback == nullptr) return raise(invalid_value, current_handle(), "The callback is NULL. Give one.");
+  if (!runtime().scheduler.run_until_done(callback, user, priority)) raise(scheduler_full, current_handle());
+}
+
+void hdUnschedule(HdTask task) {
+  if (!runtime().scheduler.remove(task))
+    raise(invalid_operation, current_handle(), "The callback is not scheduled: it is done, or never was.");
+}
+
+HdBoolean hdWaitForCompletion(HdTask task, unsigned wait_code) {
+  if (wait_code == wait_check_status) return runtime().scheduler.is_listed(task) ? 1 : 0;
+  if (wait_code != wait_infinite) {
+    raise(invalid_value, current_handle());
+    return 0;
+  }
+  return runtime().scheduler.wait_until_done(task) ? 1 : 0;
+}
+
+double hdGetSchedulerTimeStamp(void) { return runtime().scheduler.time_since_tick_s(); }
+
+// ---- calibration -------------------------------------------------------------------------------------------
+
+HdEnum hdCheckCalibration(void) {
+  HdEnum answer = calibration_needs_manual_input;
+  with_device(current_handle(), [&](Device& device) { answer = device.calibration(); });
+  return answer;
+}
+
+HdEnum hdCheckCalibrationStyle(void) { return calibration_style_inkwell; }
+
+void hdUpdateCalibration(HdEnum style) {
+  // The board takes the inkwell's angles by itself when the stylus rests there, so that nothing is left to be done.
+  with_device(current_handle(), [&](Device& device) {
+    if (style != calibration_style_inkwell)
+      return raise(invalid_enum, device.handle(), "The arm is calibrated by the inkwell. Update that style.");
+    if (!runtime().scheduler.runs())
+      raise(invalid_operation, device.handle(), "The inkwell calibrates while the scheduler runs. Start it.");
+  });
+}
+
+void hdUpdateCalibrationMessage(HdEnum style) { hdUpdateCalibration(style); }
+
+// ---- the rest ----------------------------------------------------------------------------------------------
+
+HdBoolean hdDeploymentLicense(const char*, const char*, const char*) { return 1; }
+HdBoolean hdScaleGimbalAngles(double, double, double, double[16]) { return 1; }

@@ -1,0 +1,295 @@
+// libhdPhantom.so, through which CHAI3D 3 finds an Omni: a program on libHD.so with a frame a tick for each open
+// device.
+//
+// CHAI3D's x points to the user, y to the right and z up, so that its axes are HDAPI's z, x and y; metres and newtons.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <inkwell/inkwell.h>
+
+#include "hd_interface.hpp"
+
+using namespace inkwell::dropins;
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Enum current_buttons = 0x2000, current_position = 0x2050, current_velocity = 0x2051,
+               current_transform = 0x2052, usable_workspace = 0x2551, current_force = 0x2700, force_output = 0x4000;
+constexpr unsigned short priority = 32767;
+constexpr char type_text[] = "PHANTOM Omni";
+/// For a tick; the original waits for ever.
+constexpr auto tick_patience = 1s;
+constexpr int good = 0, bad = -1;
+/// HDAPI's axis for each of CHAI3D's.
+constexpr std::size_t hd_axis[3]{2, 0, 1};
+constexpr double mm = 1e-3;
+
+struct Seen {
+  double position_mm[3], velocity_mm_per_s[3], transform[16];
+  int buttons;
+};
+
+struct Phantom {
+  Handle handle = invalid_handle;  ///< from the first question on
+  bool is_enabled = false;         ///< from hdPhantomOpen() on
+  bool is_lost = false;
+  unsigned long frames = 0;
+  Seen seen{};
+  double force_N[3]{};  ///< in HDAPI's axes
+};
+
+struct Servo {
+  std::mutex opening;  ///< of devices, and starts and stops
+  std::vector<std::string> addresses;
+  bool runs = false;
+  HdTask task = invalid_handle;
+
+  std::mutex mutex;
+  std::condition_variable ticked;
+  std::map<int, Phantom> phantoms;
+};
+
+Servo& servo() {
+  static auto& servo = *new Servo;
+  return servo;
+}
+
+void frame(Phantom& phantom) {
+  Seen seen{};
+  double force_N[3];
+  hdBeginFrame(phantom.handle);
+  hdGetDoublev(current_position, seen.position_mm);
+  hdGetDoublev(current_velocity, seen.velocity_mm_per_s);
+  hdGetDoublev(current_transform, seen.transform);
+  hdGetIntegerv(current_buttons, &seen.buttons);
+  {
+    const std::lock_guard lock(servo().mutex);
+    phantom.seen = seen;
+    std::copy_n(phantom.force_N, 3, force_N);
+  }
+  hdSetDoublev(current_force, force_N);
+  hdEndFrame(phantom.handle);
+}
+
+unsigned tick(void*) {
+  std::vector<Phantom*> open;  // a map's places stay; a handle is taken away only while the servo stands
+  {
+    const std::lock_guard lock(servo().mutex);
+    for (auto& [number, phantom] : servo().phantoms)
+      if (phantom.is_enabled) open.push_back(&phantom);
+  }
+  for (auto* phantom : open) frame(*phantom);
+  const std::lock_guard lock(servo().mutex);
+  for (auto* phantom : open) ++phantom->frames;
+  for (auto error = hdGetError(); error.code != success; error = hdGetError())
+    for (auto* phantom : open)
+      if (error.code == comm_error && error.device == phantom->handle) phantom->is_lost = true;
+  servo().ticked.notify_all();
+  return callback_continue;
+}
+
+void start_servo() {
+  if (servo().runs) return;
+  servo().task = hdScheduleAsynchronous(tick, nullptr, priority);
+  hdStartScheduler();
+  servo().runs = true;
+}
+
+void stop_servo() {
+  if (!servo().runs) return;
+  hdStopScheduler();
+  hdUnschedule(servo().task);
+  servo().runs = false;
+}
+
+void list_arms() {
+  std::size_t count = 0;
+  if (inkwell_list_devices(nullptr, 0, &count) != INKWELL_OK) return;
+  std::vector<inkwell_device> arms(count);
+  if (inkwell_list_devices(arms.data(), arms.size(), &count) != INKWELL_OK) return;
+  arms.resize(std::min(count, arms.size()));
+  // What INKWELL_DEVICE names stands last there, and is who is meant.
+  std::reverse(arms.begin(), arms.end());
+  servo().addresses.clear();
+  for (const auto& arm : arms) servo().addresses.emplace_back(arm.address);
+}
+
+bool is_number(int number) {
+  if (servo().addresses.empty()) list_arms();
+  return number >= 0 && static_cast<std::size_t>(number) < servo().addresses.size();
+}
+
+/// The device, opened if it was not; NULL if it can not be.
+Phantom* reach(int number) {
+  if (!is_number(number)) return nullptr;
+  if (const auto found = servo().phantoms.find(number);
+      found != servo().phantoms.end() && found->second.handle != invalid_handle)
+    return &found->second;
+  const auto handle = hdInitDevice(servo().addresses[static_cast<std::size_t>(number)].c_str());
+  if (handle == invalid_handle) return nullptr;
+  const std::lock_guard lock(servo().mutex);
+  auto& phantom = servo().phantoms[number];
+  phantom.handle = handle;
+  return &phantom;
+}
+
+/// With the servo running and a frame seen, hands the open device to `action`; -1 if it is not open or is lost.
+template <class Action>
+int with_open(int number, bool until_next_tick, Action action) {
+  {
+    const std::lock_guard opening(servo().opening);
+    if (const auto found = servo().phantoms.find(number); found == servo().phantoms.end() || !found->second.is_enabled)
+      return bad;
+    start_servo();
+  }
+  std::unique_lock lock(servo().mutex);
+  auto& phantom = servo().phantoms[number];
+  const int result = until_next_tick ? action(phantom) : good;
+  if (const auto frames = phantom.frames;
+      (until_next_tick || frames == 0) &&
+      !servo().ticked.wait_for(lock, tick_patience, [&] { return phantom.frames != frames; }))
+    return bad;
+  if (phantom.is_lost) return bad;
+  return until_next_tick ? result : action(phantom);
+}
+
+int read_vector(int number, const double (Seen::*member)[3], double* x, double* y, double* z) {
+  double* const to[3]{x, y, z};
+  if (std::find(to, to + 3, nullptr) != to + 3) return bad;
+  return with_open(number, false, [&](const Phantom& phantom) {
+    for (std::size_t axis = 0; axis < 3; ++axis) *to[axis] = mm * (phantom.seen.*member)[hd_axis[axis]];
+    return good;
+  });
+}
+
+bool is_sound(const double* const (&values)[3]) {
+  return std::all_of(values, values + 3, [](const double* value) { return value != nullptr && std::isfinite(*value); });
+}
+
+}  // namespace
+
+extern "C" {
+
+INKWELL_HD int hdPhantomGetNumDevices(void) {
+  const std::lock_guard opening(servo().opening);
+  const bool is_open = std::any_of(servo().phantoms.begin(), servo().phantoms.end(),
+                                   [](const auto& entry) { return entry.second.handle != invalid_handle; });
+  if (!is_open) list_arms();  // the numbers of open ones stay
+  return static_cast<int>(servo().addresses.size());
+}
+
+INKWELL_HD int hdPhantomOpen(int number) {
+  const std::lock_guard opening(servo().opening);
+  Phantom* phantom = reach(number);
+  if (phantom == nullptr) return bad;
+  hdMakeCurrentDevice(phantom->handle);
+  hdEnable(force_output);
+  {
+    const std::lock_guard lock(servo().mutex);
+    phantom->is_enabled = true;
+    phantom->frames = 0;
+  }
+  start_servo();
+  return number;
+}
+
+INKWELL_HD int hdPhantomClose(int number) {
+  const std::lock_guard opening(servo().opening);
+  const auto found = servo().phantoms.find(number);
+  if (found == servo().phantoms.end() || found->second.handle == invalid_handle) return bad;
+  const bool ran = servo().runs;
+  stop_servo();  // no frame is open after it
+  hdDisableDevice(found->second.handle);
+  const std::lock_guard lock(servo().mutex);
+  found->second = {};
+  const bool is_used = std::any_of(servo().phantoms.begin(), servo().phantoms.end(),
+                                   [](const auto& entry) { return entry.second.is_enabled; });
+  if (ran && is_used) start_servo();
+  return good;
+}
+
+INKWELL_HD int hdPhantomGetPosition(int number, double* x, double* y, double* z) {
+  return read_vector(number, &Seen::position_mm, x, y, z);
+}
+
+INKWELL_HD int hdPhantomGetLinearVelocity(int number, double* x, double* y, double* z) {
+  return read_vector(number, &Seen::velocity_mm_per_s, x, y, z);
+}
+
+INKWELL_HD int hdPhantomGetRotation(int number, double* r00, double* r01, double* r02, double* r10, double* r11,
+                                    double* r12, double* r20, double* r21, double* r22) {
+  double* const to[9]{r00, r01, r02, r10, r11, r12, r20, r21, r22};
+  if (std::find(to, to + 9, nullptr) != to + 9) return bad;
+  return with_open(number, false, [&](const Phantom& phantom) {
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t column = 0; column < 3; ++column)
+        *to[3 * row + column] = phantom.seen.transform[4 * hd_axis[column] + hd_axis[row]];
+    return good;
+  });
+}
+
+INKWELL_HD int hdPhantomGetButtons(int number) {
+  return with_open(number, false, [](const Phantom& phantom) { return phantom.seen.buttons; });
+}
+
+INKWELL_HD int hdPhantomSetForce(int number, const double* x, const double* y, const double* z) {
+  const double* const force_N[3]{x, y, z};
+  if (!is_sound(force_N)) return bad;
+  return with_open(number, true, [&](Phantom& phantom) {
+    for (std::size_t axis = 0; axis < 3; ++axis) phantom.force_N[hd_axis[axis]] = *force_N[axis];
+    return good;
+  });
+}
+
+/// The stylus has no motors: a torque is taken and not felt.
+INKWELL_HD int hdPhantomSetTorque(int number, const double* x, const double* y, const double* z) {
+  const double* const torque_Nm[3]{x, y, z};
+  if (!is_sound(torque_Nm)) return bad;
+  return with_open(number, true, [](Phantom&) { return good; });
+}
+
+INKWELL_HD int hdPhantomSetForceAndTorque(int number, const double* force_x, const double* force_y,
+                                          const double* force_z, const double* torque_x, const double* torque_y,
+                                          const double* torque_z) {
+  const double* const torque_Nm[3]{torque_x, torque_y, torque_z};
+  return is_sound(torque_Nm) ? hdPhantomSetForce(number, force_x, force_y, force_z) : bad;
+}
+
+INKWELL_HD int hdPhantomGetWorkspaceRadius(int number, double* radius_m) {
+  const std::lock_guard opening(servo().opening);
+  Phantom* phantom = radius_m == nullptr ? nullptr : reach(number);
+  if (phantom == nullptr) return bad;
+  hdMakeCurrentDevice(phantom->handle);
+  double box_mm[6]{};
+  hdGetDoublev(usable_workspace, box_mm);
+  *radius_m = 0.5 * mm * std::hypot(box_mm[3] - box_mm[0], box_mm[4] - box_mm[1], box_mm[5] - box_mm[2]);
+  return good;
+}
+
+INKWELL_HD int hdPhantomGetType(int number, char* text) {
+  const std::lock_guard opening(servo().opening);
+  if (text == nullptr || !is_number(number)) return bad;
+  std::memcpy(text, type_text, sizeof type_text);
+  return good;
+}
+
+INKWELL_HD void hdPhantomStartServo(void) {
+  const std::lock_guard opening(servo().opening);
+  start_servo();
+}
+
+INKWELL_HD void hdPhantomStopServo(void) {
+  const std::lock_guard opening(servo().opening);
+  stop_servo();
+}
+
+}  // extern "C"

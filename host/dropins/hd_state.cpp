@@ -1,0 +1,121 @@
+// What programs ask for and set, by the table of parameters.
+#include <algorithm>
+#include <cmath>
+
+#include "errors.hpp"
+#include "guarded.hpp"
+#include "hd_interface.hpp"
+#include "parameters.hpp"
+#include "runtime.hpp"
+
+using namespace inkwell::dropins;
+
+namespace {
+
+/// The row that a call with this type asks for, and the current device if the row needs one. Raises what is wrong.
+struct Asked {
+  const Parameter* row = nullptr;
+  Device* device = nullptr;
+  bool is_last = false;
+
+  Asked(Enum value, unsigned type, const void* values) {
+    auto& devices = runtime().devices;
+    const auto found = find_parameter(value);
+    const ErrorCode error = !found                            ? invalid_enum
+                            : (found->row->types & type) == 0 ? invalid_input_type
+                            : values == nullptr               ? invalid_value
+                                                              : success;
+    if (error != success) {
+      raise(error, devices.current_handle());
+      return;
+    }
+    is_last = found->is_last;
+    if (found->row->needs_device && (device = devices.current()) == nullptr) return;
+    row = found->row;
+  }
+
+  Source source() const {
+    const Moment* moment = device == nullptr ? nullptr : is_last ? &device->before() : &device->now();
+    return {device, moment, runtime().scheduler};
+  }
+};
+
+template <class Value>
+void get(Enum value, unsigned type, Value* values) {
+  guarded([&] {
+    const std::lock_guard lock(runtime().devices.mutex());
+    const Asked asked(value, type, values);
+    if (asked.row == nullptr) return;
+    double read[values_maximum]{};
+    asked.row->read(asked.source(), read);
+    std::transform(read, read + asked.row->count, values, [](double each) { return static_cast<Value>(each); });
+  });
+}
+
+template <class Value>
+void set(Enum value, unsigned type, const Value* values) {
+  guarded([&] {
+    const std::lock_guard lock(runtime().devices.mutex());
+    const Asked asked(value, type, values);
+    if (asked.row == nullptr) return;
+    const Handle handle = runtime().devices.current_handle();
+    if (asked.row->write == nullptr || asked.is_last) return raise(invalid_operation, handle, "This can not be set.");
+    if (!asked.device->in_frame()) return raise(frame_error, handle);
+    double given[values_maximum]{};
+    std::copy_n(values, asked.row->count, given);
+    const bool is_finite =
+        std::all_of(given, given + asked.row->count, [](double each) { return std::isfinite(each); });
+    if (!is_finite || !asked.row->write(*asked.device, given)) raise(invalid_value, handle);
+  });
+}
+
+/// The current device's capability; raises what is wrong.
+template <class Action>
+void with_capability(Enum capability, Action action) {
+  guarded([&] {
+    auto& devices = runtime().devices;
+    const std::lock_guard lock(devices.mutex());
+    if (Capabilities().find(capability) == nullptr) return raise(invalid_enum, devices.current_handle());
+    if (Device* device = devices.current()) action(*device, *device->capabilities.find(capability));
+  });
+}
+
+void switch_capability(Enum capability, bool on) {
+  with_capability(capability, [&](Device& device, bool& is_on) {
+    is_on = on;
+    if (&is_on == &device.capabilities.force_output) device.follow_force_output();
+  });
+}
+
+}  // namespace
+
+void hdGetBooleanv(HdEnum parameter, HdBoolean* values) { get(parameter, type_boolean, values); }
+void hdGetIntegerv(HdEnum parameter, int* values) { get(parameter, type_integer, values); }
+void hdGetFloatv(HdEnum parameter, float* values) { get(parameter, type_float, values); }
+void hdGetDoublev(HdEnum parameter, double* values) { get(parameter, type_double, values); }
+void hdGetLongv(HdEnum parameter, long* values) { get(parameter, type_long, values); }
+
+void hdSetBooleanv(HdEnum parameter, const HdBoolean* values) { set(parameter, type_boolean, values); }
+void hdSetIntegerv(HdEnum parameter, const int* values) { set(parameter, type_integer, values); }
+void hdSetFloatv(HdEnum parameter, const float* values) { set(parameter, type_float, values); }
+void hdSetDoublev(HdEnum parameter, const double* values) { set(parameter, type_double, values); }
+void hdSetLongv(HdEnum parameter, const long* values) { set(parameter, type_long, values); }
+
+const char* hdGetString(HdEnum parameter) {
+  const char* text = "";
+  guarded([&] {
+    const std::lock_guard lock(runtime().devices.mutex());
+    const Asked asked(parameter, type_string, &text);
+    if (asked.row != nullptr) text = keep(asked.row->text(asked.source()));
+  });
+  return text;
+}
+
+void hdEnable(HdEnum capability) { switch_capability(capability, true); }
+void hdDisable(HdEnum capability) { switch_capability(capability, false); }
+
+HdBoolean hdIsEnabled(HdEnum capability) {
+  HdBoolean answer = 0;
+  with_capability(capability, [&](Device&, bool& is_on) { answer = is_on ? 1 : 0; });
+  return answer;
+}

@@ -1,0 +1,19 @@
+// The one device list and the one scheduler of the program.
+#pragma once
+
+#include "devices.hpp"
+#include "pacer.hpp"
+#include "scheduler.hpp"
+
+namespace inkwell::dropins {
+
+struct Runtime {
+  Devices devices;
+  Pacer pacer{devices};
+  Scheduler scheduler{[this](std::uint32_t poses, const auto& ends) { return pacer.wait(poses, ends); }};
+};
+
+/// Lives until the process ends, because programs call in from their last destructors.
+Runtime& runtime();
+
+}  // namespace inkwell::dropins
