@@ -35,7 +35,8 @@ struct Place {
   X(check)                  \
   X(record)                 \
   X(replay)                 \
-  X(plot)
+  X(plot)                   \
+  X(run)
 
 #define X(name) void add_##name##_command(const Place& place);
 INKWELL_COMMANDS(X)

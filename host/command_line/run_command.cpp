@@ -1,0 +1,114 @@
+// A program that was made for another arm's libraries, started with ours under their names.
+#include "commands.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "help.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+constexpr int killed_by = 128;  // as shells tell it
+constexpr int passed_on[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2};
+
+volatile std::sig_atomic_t program_process = 0, early_signal = 0;
+
+/// A terminal sends its keys' signals to the program as well; what others send is meant for it.
+void pass_on(int signal, siginfo_t* information, void*) {
+  if (information->si_code == SI_KERNEL) return;
+  if (program_process == 0)
+    early_signal = signal;
+  else
+    kill(program_process, signal);
+}
+
+std::string address_of(const DeviceOptions& options, const Connection& connection) {
+  if (connection.board) return fmt::format("usbip:127.0.0.1:{}", connection.board->usbip_port());
+  if (!options.usbip.empty()) return "usbip:" + options.usbip;
+  return connection.device->information().serial_number;
+}
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::string() : std::string(value);
+}
+
+void say_which_device(const Connection& connection, const std::string& address) {
+  const auto information = connection.device->information();
+  fmt::print(stderr, "inkwell: the program gets the arm {} ({}){}.\n", information.serial_number, address,
+             connection.is_simulation ? ", a simulation" : "");
+}
+
+int run(const DeviceOptions& options, std::vector<std::string> words) {
+  if (words.empty()) throw UsageError("No program is named. Give one: inkwell run [--virtual] PROGRAM [ARGUMENTS].");
+  const auto libraries = device::own_directory() / "dropins";
+  if (!std::filesystem::exists(libraries / "libHD.so"))
+    throw device::Error(
+        fmt::format("The libraries in {} are missing. Build them with tools/build.", libraries.string()));
+
+  auto connection = connect(options, BoardTime::paced);
+  const auto address = address_of(options, connection);
+  say_which_device(connection, address);
+  connection.device.reset();  // it is the program's from now on
+
+  const std::string others = environment("LD_LIBRARY_PATH");
+  setenv("LD_LIBRARY_PATH", (libraries.string() + (others.empty() ? "" : ":" + others)).c_str(), 1);
+  setenv("INKWELL_DEVICE", address.c_str(), 1);
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  struct sigaction action {};
+  action.sa_sigaction = pass_on;
+  action.sa_flags = SA_SIGINFO | SA_RESTART;
+  for (const int signal : passed_on) sigaction(signal, &action, nullptr);
+  pid_t process = 0;
+  if (const int code = posix_spawnp(&process, arguments[0], nullptr, nullptr, arguments.data(), environ); code != 0)
+    throw device::Error(fmt::format("{} can not be started: {}. Check its name and that it may be executed.", words[0],
+                                    std::strerror(code)));
+  program_process = process;
+  if (early_signal != 0) kill(process, early_signal);
+
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFSIGNALED(status) ? killed_by + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+}  // namespace
+
+void add_run_command(const Place& place) {
+  auto* command = place.program.add_subcommand(
+      "run",
+      "Start a program that was made for an Omni's libraries (HDAPI, CHAI3D) with this arm\n\n"
+      "Puts libHD.so and libhdPhantom.so of this arm in the place of theirs and sets INKWELL_DEVICE. With --virtual, "
+      "a\n"
+      "virtual board lives as long as the program. Options stand before PROGRAM; what stands behind is its own.\n"
+      "Exit code: the program's, or 128 and the signal that ended it.");
+  const auto own = std::make_shared<DeviceOptions>();
+  command->fallthrough(false);
+  own->add_to(*command);
+  command->prefix_command();
+  add_examples(*command, "inkwell run ./01-mydevice\ninkwell run --virtual ./HelloHapticDevice");
+  command->callback([place, own, command] {
+    place.action = [&given = place.device, own, words = command->remaining()] {
+      const bool before = given.is_virtual || !given.usbip.empty() || !given.serial_number.empty();
+      return run(before ? given : *own, words);
+    };
+  });
+}
+
+}  // namespace inkwell::command_line
