@@ -1,0 +1,43 @@
+// A virtual board for programs that find it by INKWELL_DEVICE, and its simulated hand.
+#pragma once
+
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include <device/virtual_board.hpp>
+
+namespace inkwell::tests {
+
+/// Where the hand of these tests holds the stylus; no two axes alike.
+inline constexpr device::Vector3 held_point_m{0.02, 0.01, -0.03};
+inline constexpr double hand_N_per_m = 300;
+
+struct Board {
+  device::VirtualBoard board{{}};
+  device::ControlClient control = board.control();
+  std::string address = "usbip:127.0.0.1:" + std::to_string(board.usbip_port());
+
+  device::Vector3 rest_m = held_point_m;
+
+  Board() {
+    setenv("INKWELL_DEVICE", address.c_str(), 1);
+    wait_for_device();
+  }
+  ~Board() { unsetenv("INKWELL_DEVICE"); }
+
+  void wait_for_device() const {
+    while (!board.find()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  void hold() {
+    control.hand({.holds = true, .target_m = held_point_m, .stiffness_N_per_m = hand_N_per_m, .damping_Ns_per_m = 8});
+    control.dock(false);
+  }
+  double position_m(char axis) { return control.truth().at(std::string("true_position_") + axis + "_m").get<double>(); }
+  /// How far the stylus was pulled out of where it rested.
+  double pulled_m(std::size_t axis) { return position_m("xyz"[axis]) - rest_m[axis]; }
+  double time_s() { return control.status().board_time_s; }
+};
+
+}  // namespace inkwell::tests

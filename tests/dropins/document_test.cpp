@@ -1,0 +1,56 @@
+// docs/dropins.md names every function and every parameter, with its value, count and unit.
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include <dropins/parameters.hpp>
+
+namespace inkwell::dropins {
+namespace {
+
+std::string read(const std::string& path) {
+  std::ifstream file(std::string(INKWELL_SOURCE_DIRECTORY) + path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST_CASE("the document's table of parameters is that of the library") {
+  const auto document = read("/docs/dropins.md");
+  std::string missing;
+  for (const auto& row : parameter_table()) {
+    const std::string values =
+        row.last == 0 ? fmt::format("{:04x}", row.value) : fmt::format("{:04x}, {:04x}", row.value, row.last);
+    const auto line = fmt::format("| {} | {} | {} | {} | {} | {} |\n", values, row.name, row.count, row.unit,
+                                  row.write != nullptr ? "yes" : "", row.meaning);
+    if (document.find(line) == std::string::npos) missing += line;
+  }
+  CHECK_MESSAGE(missing.empty(), missing);
+}
+
+TEST_CASE("the document names every function") {
+  const auto document = read("/docs/dropins.md");
+  for (const auto header : {"/host/dropins/hd_interface.hpp", "/host/dropins/hd_phantom.cpp"}) {
+    const auto text = read(header);
+    REQUIRE(text.size() > 1000);
+    for (auto place = text.find("\nINKWELL_HD "); place != std::string::npos;
+         place = text.find("\nINKWELL_HD ", place + 1)) {
+      const auto end = text.find('(', place);
+      const auto name = text.substr(text.rfind(' ', end) + 1, end - text.rfind(' ', end) - 1);
+      CHECK_MESSAGE(document.find(name) != std::string::npos, name);
+    }
+  }
+}
+
+TEST_CASE("no value stands twice in the table") {
+  for (const auto& row : parameter_table()) {
+    CHECK(find_parameter(row.value)->row == &row);
+    if (row.last != 0) CHECK(find_parameter(row.last)->row == &row);
+    CHECK((row.read != nullptr || row.text != nullptr));
+    CHECK(row.count <= values_maximum);
+  }
+}
+
+}  // namespace
+}  // namespace inkwell::dropins

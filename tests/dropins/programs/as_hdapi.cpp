@@ -1,0 +1,46 @@
+// A program that was linked against libHD.so: pulls to the right in each tick until it is told otherwise, or ends in
+// the middle of a frame. Says when it drives.
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+
+#include "../hdapi.hpp"
+
+namespace {
+
+HHD device = HD_INVALID_HANDLE;
+std::atomic<int> ticks = 0;
+bool ends_in_a_frame = false;
+
+HDCallbackCode pull(void*) {
+  const double force_N[3]{1, 0, 0};
+  hdBeginFrame(device);
+  hdSetDoublev(HD_CURRENT_FORCE, force_N);
+  double sent_N[3]{};
+  if (ends_in_a_frame && ticks > 500) std::_Exit(3);
+  hdEndFrame(device);
+  hdGetDoublev(HD_CURRENT_FORCE, sent_N);
+  if (sent_N[0] > 0.99) ++ticks;
+  return HD_CALLBACK_CONTINUE;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  ends_in_a_frame = count > 1 && std::strcmp(arguments[1], "ends-in-a-frame") == 0;
+  device = hdInitDevice(nullptr);
+  if (const HDErrorInfo error = hdGetError(); error.errorCode != HD_SUCCESS) {
+    std::printf("%s\n", hdGetErrorString(error.errorCode));
+    return 1;
+  }
+  hdEnable(HD_FORCE_OUTPUT);
+  hdScheduleAsynchronous(pull, nullptr, HD_DEFAULT_SCHEDULER_PRIORITY);
+  hdStartScheduler();
+  while (ticks < 100) std::this_thread::yield();
+  std::printf("drives\n");
+  std::fflush(stdout);
+  std::getchar();
+  return 0;
+}

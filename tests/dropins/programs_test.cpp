@@ -1,0 +1,140 @@
+// Programs of their own processes: as CHAI3D and as HDAPI's users are, started by `inkwell run` or beside each other.
+#include <doctest/doctest.h>
+
+#include <signal.h>
+
+#include <cmath>
+#include <sstream>
+
+#include <system/program.hpp>
+
+#include "board.hpp"
+#include "hdapi.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::string program(const std::string& name) { return build_directory() + "/" + name; }
+
+/// What stands behind the first word of the line that begins with it.
+std::string told(const std::string& text, const std::string& word) {
+  const auto begin = text.find(word + " ");
+  return begin == std::string::npos
+             ? ""
+             : text.substr(begin + word.size() + 1, text.find('\n', begin) - begin - word.size() - 1);
+}
+
+struct Place {
+  int result = -7;
+  double x = 0, y = 0, z = 0;
+  explicit Place(const std::string& line) { std::istringstream(line) >> result >> x >> y >> z; }
+};
+
+TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and with force") {
+  Board board;
+  board.hold();
+  const auto held = run_program("inkwell", {"run", "--usbip", board.address.substr(6), program("drop-in-as-chai3d")});
+  INFO(held.out, held.err);
+  REQUIRE(held.exit_code == 0);
+  CHECK(told(held.out, "devices") == "1");
+  CHECK(told(held.out, "early") == "-1");
+  CHECK(told(held.out, "radius") == "0 0.1368");  // of a box of 160, 180 and 130 mm
+  CHECK(told(held.out, "type") == "0 PHANTOM Omni");
+  CHECK(told(held.out, "open") == "-1 0");
+  CHECK(told(held.out, "refused") == "0");
+  CHECK(told(held.out, "buttons") == "0");
+  CHECK(told(held.out, "close") == "0");
+  CHECK(told(held.out, "late") == "-1");
+  const Place place(told(held.out, "position")), turn(told(held.out, "rotation"));
+  CHECK(place.result == 0);
+  CHECK(std::abs(place.x - held_point_m[2]) < 0.005);
+  CHECK(std::abs(place.y - held_point_m[0]) < 0.005);
+  CHECK(std::abs(place.z - held_point_m[1]) < 0.005);
+  CHECK(turn.result == 0);
+  CHECK(turn.x > 0.5);  // the stylus's back is towards the user: CHAI3D's x
+  const auto pulled =
+      run_program("inkwell", {"run", "--usbip", board.address.substr(6), program("drop-in-as-chai3d"), "1.0"});
+  INFO(pulled.out, pulled.err);
+  CHECK(Place(told(pulled.out, "position")).y - place.y == doctest::Approx(1.0 / hand_N_per_m).epsilon(0.2));
+}
+
+TEST_CASE("`inkwell run` gives the program a virtual board, tells which, and ends as the program does") {
+  const auto run = run_program("inkwell", {"run", "--virtual", program("drop-in-as-chai3d")});
+  INFO(run.out, run.err);
+  CHECK(run.exit_code == 0);
+  CHECK(told(run.out, "position").substr(0, 2) == "0 ");
+  CHECK(run.err.find("the program gets the arm") != std::string::npos);
+  CHECK(run.err.find("a simulation") != std::string::npos);
+  CHECK(run_program("inkwell", {"run", "--virtual", "sh", "-c", "exit 7"}).exit_code == 7);
+  CHECK(run_program("inkwell", {"run", "--virtual", "sh", "-c", "kill -9 $$"}).exit_code == 137);
+  CHECK(run_program("inkwell", {"--virtual", "run", "sh", "-c", "test \"$1\" = --help", "sh", "--help"}).exit_code ==
+        0);
+  const auto missing = run_program("inkwell", {"run", "--virtual", "/no/such/program"});
+  CHECK(missing.exit_code == 1);
+  CHECK(missing.err.find("/no/such/program can not be started") != std::string::npos);
+  CHECK(run_program("inkwell", {"run", "--virtual"}).exit_code == 2);
+  CHECK(run_program("inkwell", {"run", "--usbip", "127.0.0.1:1", "true"}).exit_code == 1);
+}
+
+TEST_CASE("`inkwell run` passes signals on") {
+  Board board;
+  RunningProgram run({program("inkwell"), "run", "--usbip", board.address.substr(6), "sh", "-c",
+                      "trap 'exit 9' TERM; echo ready; while :; do sleep 0.01; done"});
+  CHECK(run.read_line() == "ready");
+  kill(run.process(), SIGTERM);
+  CHECK(run.wait() == 9);
+}
+
+TEST_CASE("both sonames lead to the one library") {
+  const auto libraries = build_directory() + "/dropins/";
+  CHECK(std::filesystem::canonical(libraries + "libHD.so.3.0") ==
+        std::filesystem::canonical(libraries + "libHD.so.3.4"));
+  CHECK(std::filesystem::canonical(libraries + "libHD.so") == std::filesystem::canonical(libraries + "libHD.so.3.4"));
+}
+
+TEST_CASE("two programs that both drive: the second is told of the first, and may when that is gone") {
+  Board board;
+  board.hold();
+  const HHD before = hdInitDevice(nullptr);  // until the board knows where it is
+  REQUIRE(before == 0);
+  while (hdCheckCalibration() != HD_CALIBRATION_OK) {
+  }
+  hdDisableDevice(before);
+  {
+    RunningProgram first({program("drop-in-as-hdapi")});
+    CHECK(first.read_line() == "drives");
+    CHECK(hdInitDevice(nullptr) == HD_INVALID_HANDLE);
+    CHECK(hdGetError().errorCode == HD_DEVICE_FAULT);
+    const std::string text = hdGetErrorString(HD_DEVICE_FAULT);
+    INFO(text);
+    CHECK(text.find("process " + std::to_string(first.process())) != std::string::npos);
+    const double asked_s = board.time_s();
+    while (board.pulled_m(0) < 0.0025 && board.time_s() < asked_s + 2.0) {
+    }
+    CHECK(board.pulled_m(0) > 0.0025);
+    kill(first.process(), SIGKILL);
+    CHECK(!first.wait());
+  }
+  const HHD device = hdInitDevice(nullptr);
+  CHECK_MESSAGE(device == 0, std::string(hdGetErrorString(HD_DEVICE_FAULT)));
+  hdDisableDevice(device);
+}
+
+TEST_CASE("a program that ends between the beginning and the end of a frame: its force fades") {
+  Board board;
+  board.hold();
+  {
+    RunningProgram program_in_a_frame({program("drop-in-as-hdapi"), "ends-in-a-frame"});
+    CHECK(program_in_a_frame.read_line() == "drives");
+    CHECK(program_in_a_frame.wait() == 3);
+  }
+  const double end_s = board.time_s();
+  while (board.time_s() < end_s + 0.5) {
+  }
+  CHECK(std::abs(board.pulled_m(0)) < 0.0015);
+}
+
+}  // namespace
+}  // namespace inkwell::tests
