@@ -60,8 +60,7 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->needs(is_virtual_flag)
       ->group(group);
   app.add_flag("--real-time", real_time, "Pace it to the clock on the wall")->needs(is_virtual_flag)->group(group);
-  app.add_option("--usbip", usbip,
-                 "HOST:PORT of a USB/IP server, such as a virtual board that runs already; not with --virtual")
+  app.add_option("--usbip", usbip, "HOST:PORT of a USB/IP server, such as a running virtual board; not with --virtual")
       ->type_name("ADDRESS")
       ->excludes(is_virtual_flag);
   app.add_option("--serial", serial_number, "Use the arm with this serial number; not with --virtual")
