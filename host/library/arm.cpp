@@ -19,14 +19,17 @@ using Clock = std::chrono::steady_clock;
 using protocol::Command;
 using protocol::State;
 
-constexpr double enumeration_limit_s = 15.0;
+constexpr double enumeration_limit_s = 60.0;
 constexpr auto read_timeout = 2ms;
+/// Until a device that was asked for its force is asked again.
+constexpr auto ask_again = 100ms;
 /// Samples of the scope that nobody has read: five seconds.
 constexpr std::size_t rows_maximum = 5 * protocol::servo_rate_Hz;
 /// Until the fading of this program's last force has begun.
 constexpr auto farewell = 5ms;
 
 Clock::time_point in(double seconds) {
+  if (std::isnan(seconds)) throw BadArgument("The time-out is not a number. Give seconds, from 0 on.");
   return Clock::now() +
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::clamp(seconds, 0.0, 1e6)));
 }
@@ -35,7 +38,7 @@ device::Endpoint wait_for_endpoint(const device::VirtualBoard& board) {
   const auto give_up_at = in(enumeration_limit_s);
   for (;;) {
     if (const auto endpoint = board.find()) return *endpoint;
-    if (Clock::now() > give_up_at) throw TimedOut("The virtual board shows no USB device within 15 s. Try again.");
+    if (Clock::now() > give_up_at) throw TimedOut("The virtual board shows no USB device within a minute. Try again.");
     std::this_thread::sleep_for(5ms);
   }
 }
@@ -142,7 +145,13 @@ void Arm::report_loop(std::promise<void> opened) {
         const std::lock_guard lock(mutex_);
         newest_ = {reader_->read(*report), true};
         pose_changed_.notify_all();
-        if (!std::exchange(is_open, true)) opened.set_value();
+        // A board of its own has its stylus in the inkwell until the program moves the hand.
+        const bool knows_where_it_is =
+            newest_.pose.state != INKWELL_STARTING && newest_.pose.state != INKWELL_UNREFERENCED;
+        if (!is_open && (!board_ || knows_where_it_is)) {
+          is_open = true;
+          opened.set_value();
+        }
       }
       device_->keep_alive();
       if (!is_open && Clock::now() > give_up_at)
@@ -201,21 +210,27 @@ control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
 // ---- force -------------------------------------------------------------------------------------------------
 
 void Arm::enable_force(double timeout_s) {
-  const inkwell_pose before = pose();
-  if (before.state == INKWELL_FAULT) throw NotNow(device::fault_line(static_cast<protocol::Fault>(before.fault)));
-  device().send(Command::enable_force);
   const auto give_up_at = in(timeout_s);
-  std::unique_lock lock(mutex_);
-  pose_changed_.wait_until(lock, give_up_at, [&] {
-    return lost_ || newest_.pose.state == INKWELL_ACTIVE || newest_.pose.state == INKWELL_FAULT;
-  });
-  require_connected(lock);
-  const inkwell_pose& now = newest_.pose;
-  if (now.state == INKWELL_ACTIVE) return;
-  if (now.state == INKWELL_FAULT) throw NotNow(device::fault_line(static_cast<protocol::Fault>(now.fault)));
-  if (now.state == INKWELL_UNREFERENCED)
-    throw NotNow("The arm does not know where it is. Put the stylus into the inkwell once, then try again.");
-  throw TimedOut("The device did not switch the force on in time. Try again.");
+  const auto refuse_in_fault = [](const inkwell_pose& now) {
+    if (now.state == INKWELL_FAULT) throw NotNow(device::fault_line(static_cast<protocol::Fault>(now.fault)));
+  };
+  refuse_in_fault(pose());
+  for (;;) {
+    // A device that does not know yet where it is forgets that it was asked.
+    device().send(Command::enable_force);
+    std::unique_lock lock(mutex_);
+    pose_changed_.wait_until(lock, std::min(give_up_at, Clock::now() + ask_again), [&] {
+      return lost_ || newest_.pose.state == INKWELL_ACTIVE || newest_.pose.state == INKWELL_FAULT;
+    });
+    require_connected(lock);
+    const inkwell_pose& now = newest_.pose;
+    if (now.state == INKWELL_ACTIVE) return;
+    refuse_in_fault(now);
+    if (Clock::now() < give_up_at) continue;
+    if (now.state == INKWELL_UNREFERENCED)
+      throw NotNow("The arm does not know where it is. Put the stylus into the inkwell once, then try again.");
+    throw TimedOut("The device did not switch the force on in time. Try again.");
+  }
 }
 
 void Arm::disable_force() { device().send(Command::disable_force); }

@@ -63,8 +63,8 @@ typedef struct inkwell_arm inkwell_arm;
  *   NULL or ""         what the environment's INKWELL_DEVICE says, else the only arm on USB
  *   a serial number    the arm on USB that has it
  *   "usbip:HOST:PORT"  the arm of a USB/IP server, such as a virtual board that runs already
- *   "virtual"          a virtual board of its own, which ends with inkwell_close(); "virtual:FILE" with the arm that
- *                      FILE describes
+ *   "virtual"          a virtual board of its own, which is ready and ends with inkwell_close(); "virtual:FILE" with
+ *                      the arm that FILE describes
  * The force is off. */
 INKWELL_API inkwell_result inkwell_open(const char* address, inkwell_arm** arm);
 
