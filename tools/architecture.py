@@ -75,8 +75,9 @@ def read_graph(path: pathlib.Path) -> list[Target]:
 
 
 def library_name(link: str) -> str:
-    """PkgConfig::hdf5 -> hdf5, nlohmann_json::nlohmann_json -> nlohmann_json."""
-    return link.rpartition("::")[2].lower()
+    """PkgConfig::hdf5 -> hdf5, nlohmann_json::nlohmann_json -> nlohmann_json, pybind11::module -> pybind11."""
+    package, _, part = link.rpartition("::")
+    return (package if part.lower() in {"headers", "module"} else part).lower()
 
 
 # The operating system's own, and the flags that every target has.

@@ -1,0 +1,35 @@
+// A spring between the hands of two arms: what one does, the other feels.
+//
+//   two_arms ADDRESS ADDRESS     of the arms, as inkwell_open() takes them
+#include <cstdio>
+
+#include <inkwell/inkwell.hpp>
+
+constexpr double stiffness_N_per_m = 150;
+
+inkwell::Vector pull_N(const inkwell::Pose& from, const inkwell::Pose& to) {
+  inkwell::Vector force_N;
+  for (int i = 0; i < 3; ++i) force_N[i] = stiffness_N_per_m * (to.position_m[i] - from.position_m[i]);
+  return force_N;
+}
+
+int main(int argc, char** argv) try {
+  if (argc != 3) {
+    std::fputs("Give the addresses of two arms, such as their serial numbers.\n", stderr);
+    return 2;
+  }
+  inkwell::Arm right(argv[2]), left(argv[1]);
+  left.enable_force();
+  right.enable_force();
+  left.start_servo([&](const inkwell::Pose& here) {
+    const inkwell::Pose there = right.pose();
+    right.set_force(pull_N(there, here));
+    return pull_N(here, there);
+  });
+  std::puts("Press Enter to end.");
+  std::getchar();
+  left.stop_servo();
+} catch (const inkwell::Failure& failure) {
+  std::fprintf(stderr, "%s\n", failure.what());
+  return 1;
+}

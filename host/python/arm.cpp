@@ -1,0 +1,228 @@
+#include "arm.hpp"
+
+#include <cmath>
+#include <optional>
+
+#include <pybind11/stl.h>
+
+namespace inkwell::python {
+namespace {
+
+/// In the thread that calls a servo.
+thread_local bool in_servo = false;
+
+/// None is no force; anything but three numbers ends the servo.
+Vector force_of(const py::object& answer) {
+  if (answer.is_none()) return {};
+  Vector force_N;
+  try {
+    force_N = answer.cast<Vector>();
+  } catch (const py::cast_error&) {
+    throw py::type_error("The servo returned " + std::string(py::repr(answer)) +
+                         ". Let it return three numbers, the force in N, or None.");
+  }
+  for (const double value : force_N)
+    if (std::isnan(value)) throw py::value_error("The servo returned a force that is not a number on one axis.");
+  return force_N;
+}
+
+}  // namespace
+
+void raise(inkwell_result result, const std::string& sentence) {
+  const py::object classes = py::module_::import("inkwell.errors").attr("BY_RESULT");
+  const py::object type = classes[py::int_(static_cast<int>(result))];
+  PyErr_SetObject(type.ptr(), py::str(sentence).ptr());
+  throw py::error_already_set();
+}
+
+Arm::Use::Use(Arm& arm) : arm_(arm) {
+  bool closed;
+  {
+    const std::lock_guard lock(arm.mutex_);
+    closed = arm.closed_;
+    if (!closed) ++arm.uses_;
+  }
+  if (closed) raise(INKWELL_REFUSED, "The arm is closed. Open it anew.");
+}
+
+Arm::Use::~Use() {
+  const std::lock_guard lock(arm_.mutex_);
+  if (--arm_.uses_ == 0) arm_.unused_.notify_all();
+}
+
+Arm::Arm(const std::string& address) {
+  call([&] { return inkwell_open(address.c_str(), &arm_); });
+}
+
+Arm::~Arm() {
+  const py::error_scope keeps_what_is_being_raised;
+  try {
+    close();
+  } catch (py::error_already_set& error) {
+    error.discard_as_unraisable("an arm that was not closed");
+  } catch (const py::builtin_exception&) {  // a call that cannot be made any more
+  }
+}
+
+bool Arm::is_closed() const {
+  const std::lock_guard lock(mutex_);
+  return closed_;
+}
+
+void Arm::close() {
+  if (is_closed()) return;
+  if (in_servo) raise(INKWELL_REFUSED, "A servo can not close its arm. Stop it, and close the arm elsewhere.");
+  {
+    const Use arm(*this);
+    call([&] { return inkwell_stop_servo(arm); });
+  }
+  {
+    const py::gil_scoped_release unlocked;
+    std::unique_lock lock(mutex_);
+    if (closed_) return;
+    closed_ = true;
+    unused_.wait(lock, [&] { return uses_ == 0; });
+    lock.unlock();
+    inkwell_close(arm_);
+  }
+  raise_what_the_servo_raised();
+}
+
+// ---- pose --------------------------------------------------------------------------------------------------
+
+Pose Arm::pose() {
+  const Use arm(*this);
+  Pose pose;
+  call([&] { return inkwell_get_pose(arm, &pose); });
+  return pose;
+}
+
+Pose Arm::wait_for_pose(double timeout_s) {
+  Pose pose;
+  call_patiently(timeout_s, [&](inkwell_arm* arm, double time_s) { return inkwell_wait_for_pose(arm, time_s, &pose); });
+  return pose;
+}
+
+inkwell_information Arm::information() {
+  const Use arm(*this);
+  inkwell_information information;
+  call([&] { return inkwell_get_information(arm, &information); });
+  return information;
+}
+
+// ---- force -------------------------------------------------------------------------------------------------
+
+void Arm::enable_force(double timeout_s) {
+  call_patiently(
+      timeout_s, [](inkwell_arm* arm, double time_s) { return inkwell_enable_force(arm, time_s); },
+      [this](inkwell_result result) {
+        // Refused for now, or for good?
+        return result == INKWELL_TIMED_OUT || (result == INKWELL_REFUSED && pose().state != INKWELL_FAULT);
+      });
+}
+
+void Arm::disable_force() {
+  const Use arm(*this);
+  call([&] { return inkwell_disable_force(arm); });
+}
+
+void Arm::clear_fault() {
+  const Use arm(*this);
+  call([&] { return inkwell_clear_fault(arm); });
+}
+
+void Arm::set_force_mode(inkwell_force_mode mode) {
+  const Use arm(*this);
+  call([&] { return inkwell_set_force_mode(arm, mode); });
+}
+
+void Arm::set_force(const std::array<double, 3>& force_N) {
+  const Use arm(*this);
+  call([&] { return inkwell_set_force(arm, force_N.data()); });
+}
+
+void Arm::place_shapes(const std::vector<Plane>& planes, const Sphere* sphere) {
+  const Use arm(*this);
+  call([&] { return inkwell_place_shapes(arm, planes.data(), planes.size(), sphere); });
+}
+
+// ---- the servo ---------------------------------------------------------------------------------------------
+
+int Arm::call_servo(inkwell_arm*, const inkwell_pose* pose, double force_N[3], void* user) noexcept {
+  auto& servo = *static_cast<Servo*>(user);
+  const py::gil_scoped_acquire locked;
+  in_servo = true;
+  try {
+    const Vector wanted_N = force_of(servo.function(*pose));
+    for (std::size_t i = 0; i < 3; ++i) force_N[i] = wanted_N[i];
+    return 0;
+  } catch (...) {
+    servo.raised = std::current_exception();
+    return 1;
+  }
+}
+
+void Arm::start_servo(py::function servo) {
+  const Use arm(*this);
+  if (!servo_is_running()) raise_what_the_servo_raised();
+  auto next = std::make_unique<Servo>(Servo{std::move(servo), nullptr});
+  call([&] { return inkwell_start_servo(arm, &Arm::call_servo, next.get()); });
+  servo_ = std::move(next);
+}
+
+void Arm::stop_servo() {
+  const Use arm(*this);
+  call([&] { return inkwell_stop_servo(arm); });
+  if (!in_servo) raise_what_the_servo_raised();
+}
+
+bool Arm::servo_is_running() {
+  const Use arm(*this);
+  const py::gil_scoped_release unlocked;
+  return inkwell_servo_is_running(arm) != 0;
+}
+
+void Arm::raise_what_the_servo_raised() {
+  if (!servo_) return;
+  const std::exception_ptr raised = std::exchange(servo_->raised, nullptr);
+  if (raised) std::rethrow_exception(raised);
+}
+
+// ---- parameters --------------------------------------------------------------------------------------------
+
+double Arm::parameter(const std::string& name) {
+  const Use arm(*this);
+  double value = 0;
+  call([&] { return inkwell_get_parameter(arm, name.c_str(), &value); });
+  return value;
+}
+
+void Arm::set_parameters(const std::vector<std::pair<std::string, double>>& changes) {
+  const Use arm(*this);
+  std::vector<const char*> names;
+  std::vector<double> values;
+  for (const auto& [name, value] : changes) {
+    names.push_back(name.c_str());
+    values.push_back(value);
+  }
+  call([&] { return inkwell_set_parameters(arm, names.data(), values.data(), names.size()); });
+}
+
+// ---- the hand of a virtual board ---------------------------------------------------------------------------
+
+void Arm::move_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m) {
+  const Use arm(*this);
+  call([&] { return inkwell_move_virtual_hand(arm, target_m.data(), stiffness_N_per_m); });
+}
+
+void Arm::release_virtual_hand() {
+  const Use arm(*this);
+  call([&] { return inkwell_release_virtual_hand(arm); });
+}
+
+void Arm::press_virtual_buttons(bool button_1, bool button_2) {
+  const Use arm(*this);
+  call([&] { return inkwell_press_virtual_buttons(arm, button_1, button_2); });
+}
+
+}  // namespace inkwell::python

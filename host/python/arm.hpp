@@ -1,0 +1,123 @@
+// An open arm for the interpreter: calls wait without its lock, hear Ctrl-C, and none meets an arm that is closed.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "failure.hpp"
+
+namespace inkwell::python {
+
+class Arm {
+ public:
+  explicit Arm(const std::string& address);
+  ~Arm();
+  Arm(const Arm&) = delete;
+  Arm& operator=(const Arm&) = delete;
+
+  void close();
+  bool is_closed() const;
+
+  Pose pose();
+  Pose wait_for_pose(double timeout_s);
+  inkwell_information information();
+
+  void enable_force(double timeout_s);
+  void disable_force();
+  void clear_fault();
+  void set_force_mode(inkwell_force_mode mode);
+  void set_force(const std::array<double, 3>& force_N);
+  void place_shapes(const std::vector<Plane>& planes, const Sphere* sphere);
+
+  void start_servo(py::function servo);
+  /// Raises what the servo raised.
+  void stop_servo();
+  bool servo_is_running();
+
+  double parameter(const std::string& name);
+  void set_parameters(const std::vector<std::pair<std::string, double>>& changes);
+
+  void move_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m);
+  void release_virtual_hand();
+  void press_virtual_buttons(bool button_1, bool button_2);
+
+  void select_signals(const std::vector<std::string>& names);
+  /// (values, periods, lost): at most `rows` rows of one value for each signal; with `fill` all of them, unless none
+  /// comes within the time.
+  py::tuple read_scope(std::size_t rows, double timeout_s, bool fill);
+  void start_recording(const std::string& path);
+  /// (samples, lost)
+  std::pair<std::uint64_t, std::uint64_t> stop_recording();
+
+ private:
+  /// While one lives, the arm stays open.
+  class Use {
+   public:
+    explicit Use(Arm& arm);
+    ~Use();
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+    operator inkwell_arm*() const { return arm_.arm_; }
+
+   private:
+    Arm& arm_;
+  };
+  struct Servo {
+    py::function function;
+    std::exception_ptr raised;
+  };
+
+  static int call_servo(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user) noexcept;
+  void raise_what_the_servo_raised();
+  /// Tries `attempt(arm, time)` for short times until it does not ask to go on, so that Ctrl-C and close() are heard.
+  template <class Attempt, class GoesOn>
+  void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
+  template <class Attempt>
+  void call_patiently(double timeout_s, Attempt attempt) {
+    call_patiently(timeout_s, attempt, [](inkwell_result result) { return result == INKWELL_TIMED_OUT; });
+  }
+
+  inkwell_arm* arm_ = nullptr;
+  mutable std::mutex mutex_;
+  std::condition_variable unused_;
+  int uses_ = 0;
+  bool closed_ = false;
+  std::unique_ptr<Servo> servo_;  ///< guarded by the interpreter's lock
+
+  std::mutex scope_mutex_;  ///< so that the signals stay the same while samples of them are read
+  std::size_t signal_count_ = 0;
+};
+
+template <class Attempt, class GoesOn>
+void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double attempt_s = 0.05, longest_s = 1e6;
+  if (!(timeout_s >= 0)) raise(INKWELL_BAD_ARGUMENT, "The time-out is no time. Give seconds, from 0 on.");
+  const auto give_up_at = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
+                                             timeout_s < longest_s ? timeout_s : longest_s));
+  for (;;) {
+    const double left_s = std::chrono::duration<double>(give_up_at - Clock::now()).count();
+    const bool is_last = left_s <= attempt_s;
+    inkwell_result result;
+    std::string sentence;
+    {
+      const Use arm(*this);
+      const py::gil_scoped_release unlocked;
+      result = attempt(static_cast<inkwell_arm*>(arm), is_last ? (left_s > 0 ? left_s : 0.0) : attempt_s);
+      if (result != INKWELL_OK) sentence = inkwell_error_text();
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (result == INKWELL_OK) return;
+    if (is_last || !goes_on(result)) raise(result, sentence);
+  }
+}
+
+}  // namespace inkwell::python

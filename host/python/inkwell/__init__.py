@@ -1,0 +1,44 @@
+"""A haptic arm in Python.
+
+    import inkwell
+
+    with inkwell.open() as arm:            # or open("virtual"), a simulated one
+        arm.enable_force()
+
+        @arm.servo
+        def spring(pose):                  # a thousand times a second
+            return -100 * (pose.position_m - [0, 0, -0.03])
+
+        input("Enter ends it. ")
+
+Lengths are in metres, forces in newtons, angles in radians, times in seconds. What goes wrong is an inkwell.Error.
+"""
+
+from ._native import Device, ForceMode, Information, Pose, State, devices
+from ._native import version as _version
+from .arm import Arm, Recording, VirtualHand, open
+from .errors import (BadArgument, Disconnected, Error, Failed, Incompatible, InUse, NoDevice, NoPermission, Refused,
+                     TimedOut)
+from .parameters import Parameter, Parameters
+from .parameters import TABLE as _parameters
+from .scope import Samples, Signal
+from .scope import TABLE as _signals
+from .shapes import Plane, Sphere, Surface
+
+__version__ = _version()
+__all__ = [
+    "Arm", "BadArgument", "Device", "Disconnected", "Error", "Failed", "ForceMode", "InUse", "Incompatible",
+    "Information", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording", "Refused",
+    "Samples", "Signal", "Sphere", "State", "Surface", "TimedOut", "VirtualHand", "devices", "open", "parameters_table",
+    "signals",
+]
+
+
+def signals() -> list[Signal]:
+    """The signals that can be recorded, with unit and help."""
+    return list(_signals.values())
+
+
+def parameters_table() -> list[Parameter]:
+    """The parameters that every arm has, with unit, range, default and help."""
+    return list(_parameters.values())

@@ -1,0 +1,256 @@
+"""An open arm."""
+
+import atexit
+import contextlib
+import os
+import time
+import types
+import weakref
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native, errors
+from ._native import ForceMode, Information, Pose
+from .parameters import Parameters
+from .scope import Samples
+from .shapes import Plane, Sphere
+
+Vector = Sequence[float] | npt.NDArray[np.floating]
+"""Three numbers along the axes of the workspace."""
+Servo = TypeVar("Servo", bound=Callable[[Pose], Vector | None])
+
+_open: "weakref.WeakSet[Arm]" = weakref.WeakSet()
+# An arm that drives stays open, even if no name is left for it.
+_driving: "set[Arm]" = set()
+
+
+@atexit.register
+def _close_all() -> None:
+    # A servo that is called while the interpreter ends would find none.
+    for arm in list(_open):
+        with contextlib.suppress(Exception):
+            arm.close()
+
+
+class VirtualHand:
+    """The simulated hand of an arm that was opened as "virtual"."""
+
+    def __init__(self, arm: _native.Arm) -> None:
+        self._arm = arm
+
+    def move(self, target_m: Vector, stiffness_N_per_m: float = 300.0) -> None:
+        """Takes the stylus out of the inkwell and pulls the probe to `target_m` (m) as a spring does, with a hundredth
+        of its stiffness as damping."""
+        self._arm.move_virtual_hand(target_m, stiffness_N_per_m)
+
+    def release(self) -> None:
+        """Lets go, so that the arm falls as a real one would."""
+        self._arm.release_virtual_hand()
+
+    def press(self, button_1: bool = False, button_2: bool = False) -> None:
+        """Presses the buttons that are True and lets go of the others."""
+        self._arm.press_virtual_buttons(button_1, button_2)
+
+
+class Recording:
+    """What a recording has, once it is over."""
+
+    def __init__(self, path: str) -> None:
+        self.path = path
+        self.samples = 0
+        """Control periods in the file."""
+        self.lost = 0
+        """Control periods that did not reach it."""
+
+
+class Arm:
+    """An open arm, from inkwell.open(). Closes at the end of `with`.
+
+    Lengths are in metres, forces in newtons, angles in radians, times in seconds; positions and forces are in the
+    workspace's axes, on the Omni x to the right, y up, z to the user. Any thread may use it; what waits lets the other
+    threads run. What goes wrong is an inkwell.Error.
+    """
+
+    def __init__(self, address: str | None = None) -> None:
+        self._native = _native.Arm(address or "")
+        self._signals: tuple[str, ...] = ()
+        self._servo_rate_Hz = self._native.information().servo_rate_Hz
+        self.parameters = Parameters(self._native)
+        self.virtual_hand = VirtualHand(self._native)
+        _open.add(self)
+
+    def close(self) -> None:
+        """Ends the servo, lets this program's force fade and forgets the arm. Raises what the servo raised."""
+        try:
+            self._native.close()
+        finally:
+            if self._native.is_closed():
+                _driving.discard(self)
+                _open.discard(self)
+
+    def __enter__(self) -> "Arm":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, raised: BaseException | None,
+                 _: types.TracebackType | None) -> None:
+        try:
+            self.close()
+        except Exception as error:
+            if raised is None:
+                raise
+            raised.add_note(f"The servo had ended with {type(error).__name__}: {error}")
+
+    @property
+    def information(self) -> Information:
+        """What the arm says of itself and has counted; asks it."""
+        return self._native.information()
+
+    # ---- pose ------------------------------------------------------------------------------------------------
+
+    @property
+    def pose(self) -> Pose:
+        """The newest pose, at once."""
+        return self._native.pose()
+
+    def wait_for_pose(self, timeout_s: float = 10.0) -> Pose:
+        """The next pose that this thread has not seen. Raises TimedOut."""
+        return self._native.wait_for_pose(timeout_s)
+
+    def poses(self, duration_s: float = float("inf")) -> Iterator[Pose]:
+        """Each next pose, for so much board time; those that come while the loop's body runs are passed over."""
+        pose = first = self.wait_for_pose()
+        while pose.time_s - first.time_s <= duration_s:
+            yield pose
+            pose = self.wait_for_pose()
+
+    # ---- force -----------------------------------------------------------------------------------------------
+
+    def enable_force(self, timeout_s: float = 5.0) -> None:
+        """Switches the force on: here the program says that a hand may feel it. Waits for the device, which has to know
+        where it is. Raises Refused with the remedy."""
+        self._native.enable_force(timeout_s)
+
+    def disable_force(self) -> None:
+        """Switches the force off."""
+        self._native.disable_force()
+
+    def clear_fault(self) -> None:
+        """Clears a fault whose cause is gone."""
+        self._native.clear_fault()
+
+    def set_force_mode(self, mode: ForceMode) -> None:
+        """How this program's forces and the board's walls go together; INSTEAD_OF_WALLS unless it is set."""
+        self._native.set_force_mode(mode)
+
+    def set_force(self, force_N: Vector) -> None:
+        """The force on the hand (N; shape (3,)) until the next call. Without another call it fades after
+        program_force_expiry_s. Raises InUse if another program drives the arm. In a servo, return the force instead."""
+        self._native.set_force(force_N)
+
+    def servo(self, function: Servo) -> Servo:
+        """Decorates the function that is called at each pose, a thousand times a second, and returns the force on the
+        hand (N; shape (3,)) or None:
+
+            @arm.servo
+            def spring(pose):
+                return -100 * (pose.position_m - [0, 0, -0.03])
+
+        It is called in a thread of its own until stop_servo() or the end of `with`, which raise what it raised. It
+        shares the interpreter with the other threads, so let it be short.
+        """
+        self._native.start_servo(function)
+        _driving.add(self)
+        return function
+
+    def stop_servo(self) -> None:
+        """Waits until the servo is not called any more; in a servo, ends it after this call. Raises what it raised."""
+        try:
+            self._native.stop_servo()
+        finally:
+            if not self._native.is_closed() and not self._native.servo_is_running():
+                _driving.discard(self)
+
+    @property
+    def servo_is_running(self) -> bool:
+        """True while the servo is being called."""
+        return self._native.servo_is_running()
+
+    def wait_for_servo(self, timeout_s: float = float("inf")) -> bool:
+        """Waits until the servo ends by itself, and tells whether it did. Raises what it raised."""
+        give_up_at = time.monotonic() + timeout_s
+        while self.servo_is_running:
+            if time.monotonic() > give_up_at:
+                return False
+            time.sleep(0.01)
+        self.stop_servo()
+        return True
+
+    def place_shapes(self, *shapes: Plane | Sphere) -> None:
+        """Places up to eight planes and one sphere instead of all shapes, at one control period and without a jump of
+        the force. Without arguments, takes them away."""
+        spheres = [shape for shape in shapes if isinstance(shape, Sphere)]
+        planes = [shape for shape in shapes if isinstance(shape, Plane)]
+        if len(spheres) + len(planes) < len(shapes):
+            raise TypeError("A shape is an inkwell.Plane or an inkwell.Sphere.")
+        if len(spheres) > 1:
+            raise errors.BadArgument(f"{len(spheres)} spheres are too many. Give the nearest.")
+        self._native.place_shapes(planes, spheres[0] if spheres else None)
+
+    # ---- scope and recording ---------------------------------------------------------------------------------
+
+    def select_signals(self, *names: str) -> None:
+        """Streams these signals (inkwell.signals() lists them) at every control period from now on; none stops it."""
+        self._native.select_signals(names)
+        self._signals = names
+
+    def read_scope(self, rows: int = 4096, timeout_s: float = 1.0) -> Samples:
+        """Samples of the selected signals that have come: waits until there are some, and takes at most `rows`. After a
+        time-out there are none."""
+        return self._samples(rows, timeout_s, False)
+
+    def capture(self, *names: str, duration_s: float, timeout_s: float = 10.0) -> Samples:
+        """Selects these signals and takes samples for `duration_s` of board time. Raises TimedOut if none comes for
+        `timeout_s`."""
+        self.select_signals(*names)
+        samples = self._samples(round(duration_s * self._servo_rate_Hz), timeout_s, True)
+        self.select_signals()
+        return samples
+
+    def _samples(self, rows: int, timeout_s: float, fill: bool) -> Samples:
+        signals = self._signals
+        values, periods, lost = self._native.read_scope(rows, timeout_s, fill)
+        return Samples(signals, values, periods, lost, self._servo_rate_Hz)
+
+    @contextlib.contextmanager
+    def record(self, path: str | os.PathLike[str], *names: str) -> Iterator[Recording]:
+        """Records these signals into a file (.h5, or .csv) until the end of `with`:
+
+            with arm.record("push.h5", "position_x_m", "force_x_N") as recording:
+                time.sleep(5)
+            print(recording.samples, recording.lost)
+        """
+        recording = Recording(os.fspath(path))
+        self.select_signals(*names)
+        try:
+            self._native.start_recording(recording.path)
+            try:
+                yield recording
+            finally:
+                recording.samples, recording.lost = self._native.stop_recording()
+        finally:
+            self.select_signals()
+
+
+def open(address: str | None = None) -> Arm:
+    """Opens an arm; its force is off.
+
+    address: None           what the environment's INKWELL_DEVICE says, else the only arm on USB
+             serial number  the arm on USB that has it
+             "usbip:HOST:PORT"  that of a USB/IP server, such as a virtual board that runs already
+             "virtual"      a virtual board of its own, which ends with the arm; "virtual:FILE" with the arm that FILE
+                            describes
+    """
+    return Arm(address)

@@ -1,0 +1,84 @@
+"""The parameters of an arm as attributes, from the library's own table."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from . import _native, errors
+
+
+class Parameter(NamedTuple):
+    """A row of the table of parameters."""
+
+    name: str
+    """It ends in its unit."""
+    unit: str
+    """Empty for a pure number."""
+    help: str
+    minimum: float
+    maximum: float
+    default: float
+
+    def describe(self) -> str:
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.minimum:g} to {self.maximum:g}{unit}, default {self.default:g}{unit}. {self.help}"
+
+
+TABLE = {row[0]: Parameter(*row) for row in _native.parameters()}
+
+
+class Parameters:
+    """The parameters of an arm. Reading one tells its value, setting one sends it to the board:
+
+        arm.parameters.wall_stiffness_N_per_m = 500
+        arm.parameters.set(wall_stiffness_N_per_m=500, wall_damping_Ns_per_m=1)   # both at one control period
+
+    print(arm.parameters) shows all values, help(inkwell.Parameters) units, ranges and defaults.
+    """
+
+    __slots__ = ("_arm",)
+
+    def __init__(self, arm: _native.Arm) -> None:
+        object.__setattr__(self, "_arm", arm)
+
+    def set(self, **values: float) -> None:
+        """Sets several: all take effect at one control period, or none does."""
+        self._arm.set_parameters(list(values.items()))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(TABLE)
+
+    def __getattr__(self, name: str) -> float:
+        # Only what has no property below comes here.
+        raise self._unknown(name)
+
+    def __setattr__(self, name: str, value: float) -> None:
+        if name not in TABLE:
+            raise self._unknown(name)
+        super().__setattr__(name, value)
+
+    def _unknown(self, name: str) -> Exception:
+        if name.startswith("_"):  # what Python and notebooks ask every object
+            return AttributeError(name)
+        try:
+            self._arm.parameter(name)
+        except errors.BadArgument as error:
+            return AttributeError(str(error), name=name)
+        return AttributeError(name)
+
+    def __repr__(self) -> str:
+        rows = (f"{row.name:38} {getattr(self, row.name):12g} {row.unit}" for row in TABLE.values())
+        return "\n".join(row.rstrip() for row in rows)
+
+
+def _property(row: Parameter) -> property:
+    def read(self: Parameters) -> float:
+        return self._arm.parameter(row.name)
+
+    def write(self: Parameters, value: float) -> None:
+        self._arm.set_parameters([(row.name, float(value))])
+
+    return property(read, write, doc=row.describe())
+
+
+for _row in TABLE.values():
+    setattr(Parameters, _row.name, _property(_row))

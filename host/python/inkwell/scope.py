@@ -1,0 +1,49 @@
+"""Samples of the board's scope as arrays."""
+
+import dataclasses
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+
+
+class Signal(NamedTuple):
+    """A row of the table of signals."""
+
+    name: str
+    """It ends in its unit."""
+    unit: str
+    help: str
+
+
+TABLE = {row[0]: Signal(*row) for row in _native.signals()}
+
+
+@dataclasses.dataclass(frozen=True)
+class Samples:
+    """Samples of some signals, one row for each control period. samples["force_x_N"] is one of them."""
+
+    signals: tuple[str, ...]
+    values: npt.NDArray[np.float32]
+    """Shape (samples, signals)."""
+    periods: npt.NDArray[np.uint32]
+    """The control period of each sample; shape (samples,)."""
+    lost: int
+    """How many samples are missing before and between these."""
+    servo_rate_Hz: float
+    """Control periods in a second."""
+
+    @property
+    def time_s(self) -> npt.NDArray[np.float64]:
+        """Time since the first sample, s; shape (samples,)."""
+        return (self.periods - self.periods[:1]) / self.servo_rate_Hz
+
+    def __getitem__(self, signal: str) -> npt.NDArray[np.float32]:
+        if signal not in self.signals:
+            raise KeyError(f"{signal} was not selected, only {', '.join(self.signals)}")
+        return self.values[:, self.signals.index(signal)]
+
+    def __len__(self) -> int:
+        return len(self.values)

@@ -1,0 +1,210 @@
+// What the package's Python files are built on: the library's structs with arrays that numpy reads, and an arm.
+#include <string>
+#include <vector>
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "arm.hpp"
+
+namespace inkwell::python {
+namespace {
+
+/// A member's numbers as a read-only array, without a copy; the struct lives as long as the array.
+template <class Struct, std::size_t size>
+py::cpp_function array_of(double (Struct::*member)[size], std::vector<py::ssize_t> shape = {size}) {
+  return [member, shape](const py::object& self) {
+    py::array_t<double> array(shape, self.cast<const Struct&>().*member, self);
+    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+    return array;
+  };
+}
+
+/// A member of text, or a flag that C has as an int.
+template <class Struct, std::size_t size>
+py::cpp_function text_of(char (Struct::*member)[size]) {
+  return [member](const Struct& self) { return std::string(self.*member); };
+}
+template <class Struct>
+py::cpp_function flag_of(int Struct::*member) {
+  return [member](const Struct& self) { return self.*member != 0; };
+}
+
+template <inkwell_force_source source>
+bool feels(const inkwell_pose& pose) {
+  return (pose.force_sources & source) != 0;
+}
+
+std::string describe(const inkwell_pose& pose) {
+  return py::str("<inkwell.Pose {:.3f} s, {}: probe at {:.4f} {:.4f} {:.4f} m>")
+      .format(pose.time_s, py::cast(pose.state).attr("name"), pose.position_m[0], pose.position_m[1],
+              pose.position_m[2]);
+}
+
+inkwell_surface surface_of(const py::handle& shape) {
+  return {shape.attr("stiffness_N_per_m").cast<double>(), shape.attr("damping_Ns_per_m").cast<double>(),
+          shape.attr("static_friction").cast<double>(), shape.attr("dynamic_friction").cast<double>(),
+          shape.attr("life_s").cast<double>()};
+}
+
+void put(const py::handle& vector, double (&to)[3]) {
+  const auto values = vector.cast<Vector>();
+  for (std::size_t i = 0; i < 3; ++i) to[i] = values[i];
+}
+
+/// From the classes of inkwell/shapes.py.
+void place_shapes(Arm& arm, const py::list& planes, const py::object& sphere) {
+  std::vector<Plane> flat;
+  for (const auto& plane : planes) {
+    Plane next{};
+    put(plane.attr("point_m"), next.point_m);
+    put(plane.attr("normal"), next.normal);
+    next.surface = surface_of(plane);
+    flat.push_back(next);
+  }
+  Sphere round{};
+  if (!sphere.is_none()) {
+    put(sphere.attr("centre_m"), round.centre_m);
+    round.radius_m = sphere.attr("radius_m").cast<double>();
+    round.surface = surface_of(sphere);
+  }
+  arm.place_shapes(flat, sphere.is_none() ? nullptr : &round);
+}
+
+std::vector<inkwell_device> list_devices() {
+  std::vector<inkwell_device> devices;
+  std::size_t count = 0;
+  do {  // until none was plugged in meanwhile
+    devices.resize(count);
+    call([&] { return inkwell_list_devices(devices.data(), devices.size(), &count); });
+  } while (count > devices.size());
+  devices.resize(count);
+  return devices;
+}
+
+py::list parameters() {
+  py::list rows;
+  for (std::size_t i = 0; i < inkwell_parameter_count(); ++i) {
+    const auto& row = *inkwell_parameter_at(i);
+    rows.append(py::make_tuple(row.name, row.unit, row.help, row.minimum, row.maximum, row.default_value));
+  }
+  return rows;
+}
+
+py::list signals() {
+  py::list rows;
+  for (std::size_t i = 0; i < inkwell_signal_count(); ++i) {
+    const auto& row = *inkwell_signal_at(i);
+    rows.append(py::make_tuple(row.name, row.unit, row.help));
+  }
+  return rows;
+}
+
+void define_structs(py::module_& module) {
+  py::enum_<inkwell_state>(module, "State", "What the arm is ready for.")
+      .value("STARTING", INKWELL_STARTING)
+      .value("UNREFERENCED", INKWELL_UNREFERENCED, "the stylus has to rest in the inkwell once")
+      .value("READY", INKWELL_READY, "the pose is valid, the force is off")
+      .value("ACTIVE", INKWELL_ACTIVE, "the pose is valid, the force is on")
+      .value("FAULT", INKWELL_FAULT, "the force is off, and fault_text says why");
+  py::enum_<inkwell_force_mode>(module, "ForceMode", "How a program's forces and the board's walls go together.")
+      .value("BESIDE_WALLS", INKWELL_BESIDE_WALLS, "the walls of the board's box are felt too")
+      .value("INSTEAD_OF_WALLS", INKWELL_INSTEAD_OF_WALLS, "only what programs ask for");
+
+  py::class_<inkwell_pose>(module, "Pose", "Where the stylus is, once a millisecond. Its arrays are read-only.")
+      .def_readonly("time_s", &inkwell_pose::time_s, "board time, s")
+      .def_readonly("sequence", &inkwell_pose::sequence,
+                    "one more for each millisecond; a gap is a pose that was missed")
+      .def_readonly("state", &inkwell_pose::state)
+      .def_readonly("fault", &inkwell_pose::fault, "code of the fault, 0 for none")
+      .def_property_readonly(
+          "fault_text", [](const inkwell_pose& pose) { return std::string(inkwell_fault_text(pose.fault)); },
+          "cause and remedy of the fault")
+      .def_property_readonly("position_m", array_of(&inkwell_pose::position_m),
+                             "of the probe, where the stylus is held, in the workspace's axes, m; shape (3,)")
+      .def_property_readonly("velocity_m_s", array_of(&inkwell_pose::velocity_m_s),
+                             "over the last 8 ms, m/s; shape (3,)")
+      .def_property_readonly("rotation", array_of(&inkwell_pose::rotation, {3, 3}),
+                             "of the stylus; the columns are its x, y and z axis; shape (3, 3)")
+      .def_property_readonly("gimbal_rad", array_of(&inkwell_pose::gimbal_rad), "yaw, pitch and roll, rad; shape (3,)")
+      .def_property_readonly("joint_rad", array_of(&inkwell_pose::joint_rad), "joint angles, rad; shape (3,)")
+      .def_property_readonly("force_N", array_of(&inkwell_pose::force_N),
+                             "that the board asks of the motors, everything together, N; shape (3,)")
+      .def_property_readonly("feels_walls", &feels<INKWELL_WALLS>, "the walls of the board's box are felt")
+      .def_property_readonly("feels_shapes", &feels<INKWELL_SHAPES>, "shapes that a program placed are felt")
+      .def_property_readonly("feels_program", &feels<INKWELL_PROGRAM>, "forces of a program are felt")
+      .def_property_readonly("button_1", flag_of(&inkwell_pose::button_1), "pressed")
+      .def_property_readonly("button_2", flag_of(&inkwell_pose::button_2), "pressed")
+      .def_property_readonly("in_inkwell", flag_of(&inkwell_pose::in_inkwell), "the stylus rests in the inkwell")
+      .def_readonly("supply_V", &inkwell_pose::supply_V, "supply of the motors, V")
+      .def("__repr__", &describe);
+
+  py::class_<inkwell_device>(module, "Device", "An arm that can be opened.")
+      .def_property_readonly("address", text_of(&inkwell_device::address), "for inkwell.open()")
+      .def_property_readonly("serial_number", text_of(&inkwell_device::serial_number),
+                             "empty where it is not known before the device is opened")
+      .def_property_readonly("product", text_of(&inkwell_device::product))
+      .def_property_readonly("is_virtual", flag_of(&inkwell_device::is_virtual), "what comes from it is a simulation")
+      .def("__repr__", [](const inkwell_device& device) {
+        return std::string(
+            py::str("<inkwell.Device {!r}{}>").format(device.address, device.is_virtual != 0 ? ", a simulation" : ""));
+      });
+
+  using Information = inkwell_information;
+  py::class_<Information>(module, "Information", "What an arm says of itself and has counted.")
+      .def_property_readonly("serial_number", text_of(&Information::serial_number))
+      .def_property_readonly("product", text_of(&Information::product))
+      .def_property_readonly("firmware_version", text_of(&Information::firmware_version))
+      .def_property_readonly("is_virtual", flag_of(&Information::is_virtual), "what comes from it is a simulation")
+      .def_readonly("servo_rate_Hz", &Information::servo_rate_Hz, "of the board's control interrupt, Hz")
+      .def_readonly("servo_cycles_longest", &Information::servo_cycles_longest,
+                    "longest control interrupt since the board started, processor cycles")
+      .def_readonly("force_reports", &Information::force_reports, "forces of programs since the board started")
+      .def_readonly("force_reports_lost", &Information::force_reports_lost)
+      .def_readonly("force_reports_late", &Information::force_reports_late)
+      .def_readonly("force_reports_refused", &Information::force_reports_refused)
+      .def_property_readonly("motor_heat", array_of(&Information::motor_heat),
+                             "1 is what the continuous current leads to; shape (3,)");
+}
+
+void define_arm(py::module_& module) {
+  py::class_<Arm>(module, "Arm")
+      .def(py::init<const std::string&>())
+      .def("close", &Arm::close)
+      .def("is_closed", &Arm::is_closed)
+      .def("pose", &Arm::pose)
+      .def("wait_for_pose", &Arm::wait_for_pose)
+      .def("information", &Arm::information)
+      .def("enable_force", &Arm::enable_force)
+      .def("disable_force", &Arm::disable_force)
+      .def("clear_fault", &Arm::clear_fault)
+      .def("set_force_mode", &Arm::set_force_mode)
+      .def("set_force", &Arm::set_force)
+      .def("place_shapes", &place_shapes)
+      .def("start_servo", &Arm::start_servo)
+      .def("stop_servo", &Arm::stop_servo)
+      .def("servo_is_running", &Arm::servo_is_running)
+      .def("parameter", &Arm::parameter)
+      .def("set_parameters", &Arm::set_parameters)
+      .def("move_virtual_hand", &Arm::move_virtual_hand)
+      .def("release_virtual_hand", &Arm::release_virtual_hand)
+      .def("press_virtual_buttons", &Arm::press_virtual_buttons)
+      .def("select_signals", &Arm::select_signals)
+      .def("read_scope", &Arm::read_scope)
+      .def("start_recording", &Arm::start_recording)
+      .def("stop_recording", &Arm::stop_recording);
+}
+
+}  // namespace
+}  // namespace inkwell::python
+
+PYBIND11_MODULE(_native, module) {
+  module.doc() = "libinkwell for the package's Python files.";
+  inkwell::python::define_structs(module);
+  inkwell::python::define_arm(module);
+  module.def("version", &inkwell_version);
+  module.def("devices", &inkwell::python::list_devices,
+             "The arms on this computer's USB, and the virtual one that INKWELL_DEVICE names.");
+  module.def("parameters", &inkwell::python::parameters);
+  module.def("signals", &inkwell::python::signals);
+}

@@ -1,0 +1,167 @@
+"""Every example does on a virtual board what its first line says, whichever language it is in.
+
+    examples_test.py BUILD_FOLDER
+"""
+
+import contextlib
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from virtual_board import AXES, FREE_POINT_M, VirtualBoard, rests_at_x
+
+BUILD = pathlib.Path()
+HOST = pathlib.Path(__file__).resolve().parents[2] / "host"
+
+
+def beside(x_m: float) -> tuple[float, float, float]:
+    return x_m, *FREE_POINT_M[1:]
+
+
+def command(name: str) -> list[str]:
+    """The example of this file name."""
+    if name.endswith(".py"):
+        return [sys.executable, str(HOST / "python/examples" / name)]
+    # Into a pipe C writes when its buffer is full, unless it is told otherwise.
+    return ["stdbuf", "-oL", str(BUILD / "examples" / pathlib.Path(name).stem)]
+
+
+@contextlib.contextmanager
+def running(name: str, *arguments: str) -> Iterator[subprocess.Popen]:
+    """Runs an example until its Enter, which it obeys without a complaint."""
+    program = subprocess.Popen([*command(name), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+    try:
+        yield program
+        output, errors = program.communicate("\n")
+    except BaseException:
+        program.kill()
+        program.communicate()
+        raise
+    assert (program.returncode, errors) == (0, ""), f"{name}: {program.returncode} {errors}{output}"
+
+
+def in_each_language(*names: str) -> Callable[[Callable], Callable]:
+    """Runs a test once for each of these examples, which do the same, beside a board of its own."""
+    def decorate(test: Callable) -> Callable:
+        def in_turn(self: unittest.TestCase) -> None:
+            for name in names:
+                with self.subTest(name), VirtualBoard(BUILD) as board:
+                    test(self, name, board)
+        return in_turn
+    return decorate
+
+
+class Examples(unittest.TestCase):
+    @in_each_language("spring_to_a_point.c", "spring_to_a_point.py")
+    def test_spring_to_a_point(self, name, board):
+        board.take_to(beside(0.02))
+        with running(name, board.address):
+            # Between the hand's spring of 300 N/m and the program's of 100, 20 mm apart.
+            board.wait_until(rests_at_x(0.015))
+        board.wait_until(rests_at_x(0.02))
+
+    @in_each_language("magnetic_surface.cpp", "magnetic_surface.py")
+    def test_magnetic_surface(self, name, board):
+        board.take_to(beside(0.006))
+        with running(name, board.address):
+            # Springs of 300 and 200 N/m, 6 mm apart.
+            board.wait_until(rests_at_x(0.0036, 0.0008))
+            board.hold(beside(0.016))
+            board.wait_until(rests_at_x(0.016))
+            board.hold(beside(-0.006))
+            board.wait_until(rests_at_x(-0.0036, 0.0008))
+
+    @in_each_language("viscous_field.cpp", "viscous_field.py")
+    def test_viscous_field(self, name, board):
+        board.take_to(beside(-0.03))
+
+        def stroke() -> tuple[float, float]:
+            """Force of the hand (N) and velocity (m/s) on the way, on average; the hand's are smooth movements."""
+            board.call("hand_path", points=[{"after_s": 0.6, "target_m": beside(0.03)}])
+            now = board.wait_until(lambda now: now["true_position_x_m"] > -0.01)
+            seen = []
+            while now["true_position_x_m"] < 0.01:
+                seen.append((now["hand_force_x_N"], now["true_velocity_x_m_s"]))
+                now = board.truth()
+            board.hold(beside(-0.03))
+            board.wait_until(rests_at_x(-0.03, 0.002))
+            return tuple(np.mean(seen, axis=0)) if seen else (0.0, 1.0)
+
+        friction_N, _ = stroke()
+        with running(name, board.address) as program:
+            self.assertEqual(program.stdout.readline(), "Press Enter to end.\n")
+            board.let_pass(0.5)  # in which the force rises
+            damping_Ns_per_m = []
+            # A computer that is busy may not let the program keep up through a stroke, but through one of some.
+            while not damping_Ns_per_m or abs(damping_Ns_per_m[-1] - 4) > 1:
+                self.assertLess(len(damping_Ns_per_m), 10, damping_Ns_per_m)
+                force_N, velocity_m_s = stroke()
+                damping_Ns_per_m.append((force_N - friction_N) / velocity_m_s)
+
+    @in_each_language("sphere.cpp", "sphere.py")
+    def test_sphere(self, name, board):
+        board.take_to(beside(0.03), 600)
+        with running(name, board.address) as program:
+            self.assertEqual(program.stdout.readline(), "Press Enter to end.\n")
+            board.let_pass(0.5)
+            board.hold(beside(0.015), 600)
+            # Between springs of 800 and 600 N/m, 5 mm apart; gravity and friction have their part.
+            board.wait_until(rests_at_x(0.0179, 0.0008))
+            radius_m = np.linalg.norm(np.subtract(board.position_m(), FREE_POINT_M))
+            self.assertGreater(radius_m, 0.0172)
+        board.wait_until(rests_at_x(0.015))
+
+    @in_each_language("two_arms.cpp", "two_arms.py")
+    def test_two_arms(self, name, board):
+        with VirtualBoard(BUILD, seed=2) as other:
+            board.take_to(beside(-0.01))
+            other.take_to(beside(0.01))
+            with running(name, board.address, other.address):
+                # Springs of 300, 150 and 300 N/m in a row, 20 mm long.
+                board.wait_until(rests_at_x(-0.005))
+                other.wait_until(rests_at_x(0.005))
+                # What one hand does, the other feels.
+                other.hold(beside(0.03))
+                board.wait_until(rests_at_x(0.0))
+
+    def test_recording(self):
+        with VirtualBoard(BUILD) as board, tempfile.TemporaryDirectory() as folder:
+            board.take_to(beside(0.0))
+            # To and fro, 20 mm in half a second.
+            board.call("hand_path", points=[{"after_s": 0.5 * i, "target_m": beside(0.02 * (i % 2))}
+                                            for i in range(1, 200)])
+            file = pathlib.Path(folder, "movement.npz")
+            with running("recording.py", str(file), board.address) as program:
+                self.assertEqual(program.stdout.readline(), "Move the stylus.\n")
+                said = program.stdout.readline()
+            movement = np.load(file)
+            self.assertEqual(movement["position_m"].shape, (40_000, len(AXES)))
+            self.assertAlmostEqual(movement["time_s"][-1], 2.0, places=3)
+            self.assertAlmostEqual(np.ptp(movement["position_m"][:, 0]), 0.02, delta=0.003)
+            counted = re.fullmatch(r"40000 samples, 0 lost: (\d+) mm of path, at most 0\.\d\d m/s\n", said)
+            self.assertTrue(counted, said)
+            self.assertAlmostEqual(float(counted[1]), 80, delta=15)
+
+    def test_what_is_missing_is_said(self):
+        for name in "two_arms.cpp", "two_arms.py":
+            program = subprocess.run([*command(name)], stderr=subprocess.PIPE, text=True)
+            self.assertNotEqual(program.returncode, 0)
+            self.assertIn("Give the addresses of two arms", program.stderr)
+
+    def test_each_is_short(self):
+        sources = [*HOST.glob("library/examples/*.c*"), *HOST.glob("python/examples/*.py")]
+        self.assertGreaterEqual(len(sources), 11)
+        for source in sources:
+            self.assertLess(len(source.read_text().splitlines()), 60, source)
+
+
+if __name__ == "__main__":
+    BUILD = pathlib.Path(sys.argv[1]).resolve()
+    unittest.main(argv=sys.argv[:1] + sys.argv[2:])

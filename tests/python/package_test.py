@@ -1,0 +1,412 @@
+"""The package inkwell as users meet it, on virtual boards.
+
+    package_test.py BUILD_FOLDER
+"""
+
+import ast
+import gc
+import inspect
+import math
+import os
+import pathlib
+import pydoc
+import signal
+import subprocess
+import sys
+import tempfile
+import textwrap
+import threading
+import unittest
+
+import numpy as np
+
+import inkwell
+from inkwell import _native, errors
+from virtual_board import FREE_POINT_M, VirtualBoard, be_patient
+
+BUILD = pathlib.Path()
+
+
+def wait_until(arm, condition, limit_s=10.0):
+    """The first pose that fulfils the condition, within so much board time."""
+    begin_s = arm.pose.time_s
+    while True:
+        pose = arm.wait_for_pose(10)
+        if condition(pose):
+            return pose
+        if pose.time_s > begin_s + limit_s:
+            raise AssertionError(f"within {limit_s} s it did not come to this; last: {pose}")
+
+
+def make_active(arm):
+    be_patient(arm)
+    wait_until(arm, lambda pose: pose.state == inkwell.State.READY)
+    arm.virtual_hand.move(FREE_POINT_M)
+    wait_until(arm, lambda pose: math.hypot(*pose.position_m[:2]) < 0.004)
+    arm.enable_force(30)
+
+
+def run(program, *arguments):
+    """Runs a Python program of its own."""
+    return subprocess.run([sys.executable, "-c", textwrap.dedent(program), *arguments], capture_output=True, text=True)
+
+
+class Reading(unittest.TestCase):
+    """What does not drive, on one arm."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.arm = inkwell.open("virtual")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.arm.close()
+
+    def test_information(self):
+        information = self.arm.information
+        self.assertTrue(information.is_virtual)
+        self.assertEqual(information.product, "Inkwell haptic arm")
+        self.assertEqual(information.firmware_version, inkwell.__version__)
+        self.assertEqual(information.servo_rate_Hz, 20_000)
+        self.assertEqual(information.motor_heat.shape, (3,))
+
+    def test_a_pose_has_arrays_that_outlive_it_and_are_not_written(self):
+        pose = wait_until(self.arm, lambda pose: pose.state == inkwell.State.READY)
+        self.assertTrue(pose.in_inkwell)
+        self.assertFalse(pose.feels_program)
+        self.assertAlmostEqual(pose.supply_V, 18, delta=1)
+        np.testing.assert_allclose(pose.rotation @ pose.rotation.T, np.eye(3), atol=1e-5)
+        self.assertRegex(repr(pose), "READY: probe at")
+        position_m = pose.position_m
+        self.assertTrue(np.shares_memory(position_m, pose.position_m))
+        with self.assertRaises(ValueError):
+            position_m[0] = 1
+        before = position_m.copy()
+        del pose
+        gc.collect()
+        np.testing.assert_array_equal(position_m, before)
+
+    def test_poses_come_in_order(self):
+        sequences = [pose.sequence for pose in self.arm.poses(duration_s=0.1)]
+        self.assertGreater(len(sequences), 3)
+        self.assertTrue(all(np.diff(sequences) > 0))
+
+    def test_buttons(self):
+        self.arm.virtual_hand.press(button_2=True)
+        pose = wait_until(self.arm, lambda pose: pose.button_2)
+        self.assertFalse(pose.button_1)
+        self.arm.virtual_hand.press()
+
+    def test_parameters_are_attributes(self):
+        parameters = self.arm.parameters
+        self.assertEqual(parameters.wall_stiffness_N_per_m, 800)
+        parameters.wall_stiffness_N_per_m = 500
+        self.assertEqual(parameters.wall_stiffness_N_per_m, 500)
+        parameters.set(wall_stiffness_N_per_m=600, wall_damping_Ns_per_m=1)
+        with self.assertRaisesRegex(inkwell.Refused, "wall_damping_Ns_per_m"):
+            parameters.set(wall_stiffness_N_per_m=700, wall_damping_Ns_per_m=1e6)
+        with self.assertRaises(inkwell.Refused):
+            parameters.wall_stiffness_N_per_m = math.nan
+        with self.assertRaises(TypeError):
+            parameters.wall_stiffness_N_per_m = None
+        with self.assertRaises(ValueError):
+            parameters.wall_stiffness_N_per_m = "stiff"
+        self.assertEqual(parameters.wall_stiffness_N_per_m, 600)
+        self.assertIn("wall_stiffness_N_per_m                          600 N/m", repr(parameters))
+
+    def test_an_unknown_parameter_is_an_attribute_that_is_not_there(self):
+        for attempt in (lambda: self.arm.parameters.wall_stifness_N_per_m,
+                        lambda: setattr(self.arm.parameters, "wall_stifness_N_per_m", 1)):
+            with self.assertRaisesRegex(AttributeError, "Did you mean wall_stiffness_N_per_m?"):
+                attempt()
+        with self.assertRaisesRegex(inkwell.BadArgument, "Did you mean wall_stiffness_N_per_m?"):
+            self.arm.parameters.set(wall_stifness_N_per_m=1)
+        self.assertFalse(hasattr(self.arm.parameters, "_repr_html_"))
+
+    def test_scope(self):
+        with self.assertRaises(inkwell.BadArgument):
+            self.arm.select_signals("position_x_mm")
+        with self.assertRaises(inkwell.Refused):
+            self.arm.read_scope()
+        samples = self.arm.capture("position_z_m", "supply_V", duration_s=0.2)
+        self.assertEqual(samples.values.shape, (4000, 2))
+        self.assertEqual(samples.values.dtype, np.float32)
+        self.assertTrue(np.shares_memory(samples["supply_V"], samples.values))
+        np.testing.assert_allclose(samples["supply_V"], 18, atol=1)
+        self.assertEqual(np.diff(samples.periods).sum() - len(samples) + 1, samples.lost)
+        self.assertAlmostEqual(samples.time_s[-1], samples.periods[-1] / 2e4 - samples.periods[0] / 2e4)
+        with self.assertRaises(KeyError):
+            samples["force_x_N"]
+        self.arm.select_signals("supply_V")
+        some = self.arm.read_scope(rows=37)
+        self.assertTrue(0 < len(some) <= 37)
+        self.arm.select_signals()
+
+    def test_recording(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "arm.csv")
+            with self.arm.record(file, "position_z_m") as recording:
+                for _ in self.arm.poses(duration_s=0.1):
+                    with self.assertRaises(inkwell.Refused):
+                        self.arm.select_signals("supply_V")
+            self.assertGreater(recording.samples, 1000)
+            self.assertEqual(recording.lost, 0)
+            self.assertIn("position_z_m", file.read_text())
+            with self.assertRaises(inkwell.Error), self.arm.record(pathlib.Path(folder, "no/such/arm.csv"), "supply_V"):
+                pass
+
+    def test_times_that_are_none(self):
+        for timeout_s in math.nan, -1.0:
+            with self.assertRaisesRegex(inkwell.BadArgument, "time-out"):
+                self.arm.wait_for_pose(timeout_s)
+        with self.assertRaises(inkwell.TimedOut):
+            for _ in range(10_000):  # far more in a millisecond than there are poses
+                self.arm.wait_for_pose(0)
+
+
+class Driving(unittest.TestCase):
+    def setUp(self):
+        self.arm = inkwell.open("virtual")
+        self.addCleanup(self.arm.close)
+
+    def test_a_servo_pulls_and_lets_go(self):
+        make_active(self.arm)
+        calls = 0
+
+        @self.arm.servo
+        def spring(pose):
+            nonlocal calls
+            calls += 1
+            return -100 * (pose.position_m - [0.02, *FREE_POINT_M[1:]])
+
+        self.assertTrue(callable(spring))
+        self.assertTrue(self.arm.servo_is_running)
+        with self.assertRaisesRegex(inkwell.Refused, "runs on this arm already"):
+            self.arm.servo(lambda pose: None)
+        # Between two springs of 300 and 100 N/m, 20 mm apart.
+        pulled = wait_until(self.arm, lambda pose: abs(pose.position_m[0] - 0.005) < 0.0007
+                            and abs(pose.velocity_m_s[0]) < 0.005)
+        self.assertAlmostEqual(pulled.force_N[0], 1.5, delta=0.15)
+        self.assertTrue(pulled.feels_program)
+        self.assertFalse(pulled.feels_walls)
+        self.arm.stop_servo()
+        after = calls
+        wait_until(self.arm, lambda pose: not pose.feels_program and pose.force_N[0] == 0)
+        self.assertEqual(calls, after)
+        self.assertFalse(self.arm.servo_is_running)
+
+    def test_what_a_servo_raises_ends_it_and_comes_out(self):
+        def broken(pose):
+            raise ZeroDivisionError("in the servo")
+
+        self.arm.servo(broken)
+        with self.assertRaisesRegex(ZeroDivisionError, "in the servo"):
+            self.arm.wait_for_servo(60)
+        self.arm.stop_servo()  # said once
+        self.arm.servo(broken)
+        wait_until(self.arm, lambda _: not self.arm.servo_is_running)
+        with self.assertRaises(ZeroDivisionError):
+            self.arm.servo(lambda pose: None)
+        with self.assertRaises(ZeroDivisionError), self.arm:
+            self.arm.servo(broken)
+            wait_until(self.arm, lambda _: not self.arm.servo_is_running)
+        with self.assertRaises(inkwell.Refused):
+            self.arm.pose
+
+    def test_an_error_of_the_program_is_kept_beside_that_of_the_servo(self):
+        with self.assertRaisesRegex(KeyError, "of the program") as raised, self.arm:
+            self.arm.servo(lambda pose: 1 / 0)
+            wait_until(self.arm, lambda _: not self.arm.servo_is_running)
+            raise KeyError("of the program")
+        self.assertIn("ZeroDivisionError", raised.exception.__notes__[0])
+
+    def test_what_is_no_force_ends_the_servo(self):
+        for answer, error, words in ((math.nan, 0, 0), ValueError, "not a number"), ((1, 2), TypeError, "three numbers"):
+            with self.subTest(answer), self.assertRaisesRegex(error, words):
+                self.arm.servo(lambda pose: answer)
+                self.arm.wait_for_servo(60)
+        self.assertEqual(self.arm.information.force_reports_refused, 0)
+
+    def test_a_servo_may_stop_itself_but_not_close_its_arm(self):
+        calls = 0
+
+        @self.arm.servo
+        def five(pose):
+            nonlocal calls
+            calls += 1
+            if calls == 5:
+                self.arm.stop_servo()
+
+        self.assertTrue(self.arm.wait_for_servo(60))
+        self.assertEqual(calls, 5)
+        self.arm.servo(lambda pose: self.arm.close())
+        with self.assertRaisesRegex(inkwell.Refused, "can not close its arm"):
+            self.arm.wait_for_servo(60)
+        self.assertGreater(self.arm.pose.time_s, 0)
+
+    def test_forces_without_a_servo(self):
+        make_active(self.arm)
+        self.arm.set_force_mode(inkwell.ForceMode.BESIDE_WALLS)
+
+        def pushed(pose):
+            self.arm.set_force([math.inf, 0, 0])
+            return abs(pose.force_N[0]) > 3
+
+        felt = wait_until(self.arm, pushed)
+        self.assertLess(felt.force_N[0], 3.31)
+        self.assertTrue(felt.feels_program and felt.feels_walls)
+        wait_until(self.arm, lambda pose: not pose.feels_program)
+        with self.assertRaisesRegex(inkwell.BadArgument, "not a number"):
+            self.arm.set_force((0, math.nan, 0))
+        for wrong in (1, 2), "xyz", None:
+            with self.assertRaises(TypeError):
+                self.arm.set_force(wrong)
+
+    def test_shapes(self):
+        make_active(self.arm)
+        self.arm.place_shapes(inkwell.Plane(FREE_POINT_M, (0, 0, 1), stiffness_N_per_m=1000))
+        self.arm.virtual_hand.move((0, 0, -0.034))
+        # Springs of 300 and 1000 N/m, 4 mm apart.
+        wait_until(self.arm, lambda pose: abs(pose.force_N[2] - 0.92) < 0.1 and pose.feels_shapes)
+        for wrong, words in (([inkwell.Plane(FREE_POINT_M, (0, 0, 0))], "normal of plane 0"),
+                             ([inkwell.Plane((math.nan, 0, 0), (0, 0, 1))], "plane 0"),
+                             ([inkwell.Plane(FREE_POINT_M, (0, 0, 1))] * 9, "9 planes are too many"),
+                             ([inkwell.Sphere(FREE_POINT_M, 0.01)] * 2, "2 spheres are too many")):
+            with self.assertRaisesRegex(inkwell.BadArgument, words):
+                self.arm.place_shapes(*wrong)
+        with self.assertRaises(TypeError):
+            self.arm.place_shapes("a plane")
+        self.assertTrue(self.arm.wait_for_pose(10).feels_shapes)
+        self.arm.place_shapes()
+        wait_until(self.arm, lambda pose: not pose.feels_shapes)
+
+    def test_other_threads_run_while_one_waits_and_closing_ends_the_wait(self):
+        raised = []
+
+        def wait():
+            try:
+                while True:
+                    self.arm.wait_for_pose(60)
+            except inkwell.Error as error:
+                raised.append(error)
+
+        waiting = [threading.Thread(target=wait) for _ in range(4)]
+        for thread in waiting:
+            thread.start()
+        wait_until(self.arm, lambda _: True)
+        self.arm.close()
+        for thread in waiting:
+            thread.join()
+        self.assertEqual([str(error) for error in raised], ["The arm is closed. Open it anew."] * 4)
+        self.arm.close()
+
+
+class Programs(unittest.TestCase):
+    """What takes a process of its own."""
+
+    def test_two_arms_have_two_numbers(self):
+        with inkwell.open("virtual") as one, inkwell.open("virtual") as other:
+            self.assertNotEqual(one.information.serial_number, other.information.serial_number)
+            one.set_force((0, 0, 0))
+            other.set_force((0, 0, 0))
+
+    def test_one_program_drives_and_another_looks_on(self):
+        program = """
+            import sys, inkwell
+            with inkwell.open(sys.argv[1]) as arm:
+                print(arm.wait_for_pose(10).time_s > 0)
+                try:
+                    arm.servo(lambda pose: None)
+                except inkwell.InUse as error:
+                    print(error)
+            """
+        with VirtualBoard(BUILD) as board, inkwell.open(board.address) as first:
+            with self.assertRaisesRegex(inkwell.Refused, 'opened as "virtual"'):
+                first.virtual_hand.release()
+            first.set_force((0, 0, 0))
+            said = run(program, board.address)
+            self.assertRegex(said.stdout, rf"^True\n\w+ \(process {os.getpid()}\) drives this arm already. End it first.\n$")
+            with inkwell.open(board.address) as second, self.assertRaises(inkwell.InUse):
+                second.set_force((0, 0, 0))
+
+    def test_ctrl_c(self):
+        program = subprocess.Popen(
+            [sys.executable, "-c", textwrap.dedent("""
+                import inkwell
+                with inkwell.open("virtual") as arm:
+                    arm.servo(lambda pose: None)
+                    print("waits", flush=True)
+                    for _ in arm.poses():
+                        pass
+                """)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(program.stdout.readline(), "waits\n")
+        program.send_signal(signal.SIGINT)
+        _, errors = program.communicate()
+        self.assertTrue(errors.rstrip().endswith("KeyboardInterrupt"), errors)
+        self.assertEqual(program.returncode, -signal.SIGINT)
+
+    def test_a_program_that_forgets_to_close_ends_in_peace(self):
+        said = run("""
+            import inkwell
+            arm = inkwell.open("virtual")
+            @arm.servo
+            def servo(pose):
+                return arm.pose.position_m * 0
+            arm.wait_for_pose(10)
+            print("end")
+            """)
+        self.assertEqual((said.returncode, said.stdout, said.stderr), (0, "end\n", ""))
+
+    def test_addresses_that_lead_nowhere(self):
+        for address, error, words in (("no such number", inkwell.NoDevice, "no such number"),
+                                      ("usbip:nowhere", inkwell.BadArgument, "usbip:127.0.0.1:3240"),
+                                      ("usbip:127.0.0.1:1", inkwell.Failed, "127.0.0.1"),
+                                      ("virtual:/no/such/arm.toml", inkwell.Failed, "/no/such/arm.toml")):
+            with self.subTest(address), self.assertRaisesRegex(error, words):
+                inkwell.open(address)
+
+    def test_devices(self):
+        said = run("import os; os.environ['INKWELL_DEVICE'] = 'virtual'\n"
+                   "import inkwell; print(inkwell.devices()[-1], inkwell.devices()[-1].is_virtual)")
+        self.assertEqual(said.stdout, "<inkwell.Device 'virtual', a simulation> True\n", said.stderr)
+
+
+class Help(unittest.TestCase):
+    def test_units_and_ranges_of_parameters(self):
+        text = pydoc.render_doc(inkwell.Parameters, renderer=pydoc.plaintext)
+        self.assertRegex(text, r"wall_stiffness_N_per_m\n +\| +0 to 3000 N/m, default 800 N/m. Spring constant")
+
+    def test_each_public_thing_says_what_it_is(self):
+        for name in inkwell.__all__:
+            self.assertTrue(inspect.getdoc(getattr(inkwell, name)), name)
+        for kind in inkwell.Arm, inkwell.VirtualHand:
+            for name, member in inspect.getmembers(kind):
+                self.assertTrue(name.startswith("_") or inspect.getdoc(member), f"{kind.__name__}.{name}")
+
+    def test_an_error_for_each_result(self):
+        header = (pathlib.Path(__file__).parents[2] / "host/library/include/inkwell/inkwell.h").read_text()
+        for result, kind in errors.BY_RESULT.items():
+            name = "".join(f"_{letter}" if letter.isupper() else letter.upper() for letter in kind.__name__)
+            self.assertIn(f"INKWELL{name} = {result}", header)
+        self.assertEqual(len(errors.BY_RESULT), header[:header.index("} inkwell_result")].count(" = ") - 2)
+
+    def test_stub_and_module_agree(self):
+        def names(thing):
+            return {name for name in vars(thing) if not name.startswith("_")}
+
+        package = pathlib.Path(inkwell.__file__).parent
+        self.assertTrue((package / "py.typed").exists())
+        stub = {node.name: node for node in ast.parse((package / "_native.pyi").read_text()).body
+                if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+        self.assertEqual(set(stub), names(_native))
+        for name, node in stub.items():
+            if isinstance(node, ast.ClassDef):
+                told = {each.name if isinstance(each, ast.FunctionDef) else each.targets[0].id for each in node.body
+                        if isinstance(each, (ast.FunctionDef, ast.Assign))} - {"__init__"}
+                self.assertEqual(told, names(getattr(_native, name)) - {"name", "value"}, name)
+
+
+if __name__ == "__main__":
+    BUILD = pathlib.Path(sys.argv[1]).resolve()
+    os.environ.pop("INKWELL_DEVICE", None)
+    unittest.main(argv=sys.argv[:1] + sys.argv[2:])

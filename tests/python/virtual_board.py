@@ -1,0 +1,90 @@
+"""A virtual board that a test starts beside the program under test, and whose hand it moves."""
+
+import json
+import pathlib
+import re
+import socket
+import subprocess
+from collections.abc import Callable, Sequence
+
+import inkwell
+
+FREE_POINT_M = (0.0, 0.0, -0.03)  # in the middle of the box
+AXES = "xyz"
+
+
+def be_patient(arm: inkwell.Arm) -> None:
+    """On a busy computer the programs are late, which is not what is tested."""
+    arm.parameters.set(host_timeout_s=2, program_force_expiry_s=0.5)
+
+
+class VirtualBoard:
+    """Ends at the end of `with`. Times are those of the board."""
+
+    def __init__(self, build: pathlib.Path, seed: int = 1) -> None:
+        self._process = subprocess.Popen(
+            [build / "virtual-board", "--elf", build.parent / "board/inkwell.elf", "--real-time", "--seed", str(seed)],
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        ready = self._process.stdout.readline()
+        ports = re.fullmatch(r"ready usbip=(\d+) control=(\d+)\n", ready)
+        assert ports, f"the virtual board did not start: {ready!r}"
+        self.address = f"usbip:127.0.0.1:{ports[1]}"
+        self._control = socket.create_connection(("127.0.0.1", int(ports[2])))
+        self._replies = self._control.makefile()
+        self.let_pass(0.5)  # in which the USB finds it
+
+    def __enter__(self) -> "VirtualBoard":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._replies.close()
+        self._control.close()
+        self._process.terminate()
+        self._process.wait()
+        self._process.stdout.close()
+
+    def call(self, command: str, **arguments: object) -> dict:
+        self._control.sendall(json.dumps({"command": command, **arguments}).encode() + b"\n")
+        reply = json.loads(self._replies.readline())
+        assert reply["ok"], reply
+        return reply
+
+    def truth(self) -> dict:
+        return self.call("truth")
+
+    def position_m(self) -> list[float]:
+        now = self.truth()
+        return [now[f"true_position_{axis}_m"] for axis in AXES]
+
+    def hold(self, target_m: Sequence[float], stiffness_N_per_m: float = 300.0) -> None:
+        """The hand takes the stylus out of the inkwell and pulls the probe to `target_m` as a spring does."""
+        self.call("hand", holds=True, target_m=list(target_m), stiffness_N_per_m=stiffness_N_per_m,
+                  damping_Ns_per_m=0.01 * stiffness_N_per_m)
+        self.call("dock", docked=False)
+
+    def wait_until(self, condition: Callable[[dict], bool], limit_s: float = 10.0) -> dict:
+        """The first truth that fulfils the condition, within so much board time."""
+        begin_s = self.truth()["board_time_s"]
+        while True:
+            now = self.truth()
+            if condition(now):
+                return now
+            if now["board_time_s"] > begin_s + limit_s:
+                raise AssertionError(f"within {limit_s} s it did not come to this; last: {now}")
+
+    def let_pass(self, duration_s: float) -> None:
+        end_s = self.truth()["board_time_s"] + duration_s
+        self.wait_until(lambda now: now["board_time_s"] >= end_s, duration_s + 10)
+
+    def take_to(self, point_m: Sequence[float], stiffness_N_per_m: float = 300.0) -> None:
+        """Lets the arm find out where it is, then holds the stylus at a point and waits until it rests there."""
+        self.let_pass(max(0.0, 1.0 - self.truth()["board_time_s"]))
+        with inkwell.open(self.address) as arm:
+            be_patient(arm)
+        self.hold(point_m, stiffness_N_per_m)
+        self.wait_until(rests_at_x(point_m[0]))
+
+
+def rests_at_x(x_m: float, tolerance_m: float = 0.001) -> Callable[[dict], bool]:
+    return lambda now: (abs(now["true_position_x_m"] - x_m) < tolerance_m
+                        and abs(now["true_velocity_x_m_s"]) < 0.005)
