@@ -1,0 +1,47 @@
+function fit = identify_friction(arm, picture)
+% fit = identify_friction(arm, picture)  Identifies what opposes a movement of the stylus along x, and draws it.
+%
+% The program leads the stylus to and fro by a spring for six seconds, takes the force that this needs, and fits to it
+%
+%   force_N = coulomb_N * sign(velocity) + viscous_Ns_per_m * velocity + stiffness_N_per_m * x + offset_N
+%
+% On a real arm, take the stylus to the middle of the box and let go of it once it is held: then the friction is that of
+% the arm. A hand that holds it is a stiffness and a damping beside. `picture` is the name of a PNG file.
+  centre_m = [0; 0; -0.03];
+  amplitude_m = 0.02;
+  frequency_Hz = 0.5;
+  spring_N_per_m = 200;
+  damping_Ns_per_m = 1;
+  duration_s = 6;
+
+  inkwell_enable(arm);
+  measured = zeros(0, 3);  % x, velocity along x, force along x
+  pose = inkwell_pose(arm);
+  begin_s = pose.time_s;
+  while pose.time_s < begin_s + duration_s
+    now_s = pose.time_s - begin_s;
+    target_m = centre_m + [amplitude_m * sin(2 * pi * frequency_Hz * now_s); 0; 0];
+    inkwell_force(arm, spring_N_per_m * (target_m - pose.position_m) - damping_Ns_per_m * pose.velocity_m_s);
+    if now_s > 1
+      measured(end + 1, :) = [pose.position_m(1), pose.velocity_m_s(1), pose.force_N(1)];
+    end
+    pose = inkwell_pose(arm);
+  end
+  inkwell_enable(arm, false);
+
+  moves = abs(measured(:, 2)) > 0.005;
+  x_m = measured(moves, 1);
+  velocity_m_s = measured(moves, 2);
+  force_N = measured(moves, 3);
+  terms = [sign(velocity_m_s), velocity_m_s, x_m, ones(size(x_m))];
+  found = terms \ force_N;
+  fit = struct('coulomb_N', found(1), 'viscous_Ns_per_m', found(2), 'stiffness_N_per_m', found(3), 'offset_N', found(4));
+
+  elastic_N = terms(:, 3:4) * found(3:4);
+  figure('visible', 'off');
+  plot(velocity_m_s, force_N - elastic_N, '.', velocity_m_s, terms * found - elastic_N, '.');
+  xlabel('velocity / (m/s)');
+  ylabel('force against the movement / N');
+  legend('measured', 'fitted', 'location', 'northwest');
+  print(picture, '-dpng');
+end

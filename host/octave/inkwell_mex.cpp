@@ -1,0 +1,251 @@
+// libinkwell for Octave and MATLAB, from one source: inkwell_mex(COMMAND, ...) is what the .m files beside it call.
+//
+//   mkoctfile --mex inkwell_mex.cpp -Ihost/library/include -Lbuild/pc -linkwell     Octave
+//   mex inkwell_mex.cpp -Ihost/library/include -Lbuild/pc -linkwell                 MATLAB
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <mex.h>
+#include <inkwell/inkwell.hpp>
+
+namespace {
+
+using inkwell::require;
+using Arguments = std::vector<const mxArray*>;
+
+std::map<int, inkwell_arm*> arms;  ///< open ones, by the number that the interpreter knows them by
+int newest = 0;
+
+struct Wrong : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+const mxArray* argument(const Arguments& arguments, std::size_t index) {
+  if (index >= arguments.size()) throw Wrong("An argument is missing. See the help of the function.");
+  return arguments[index];
+}
+
+std::string text(const mxArray* value) {
+  char* characters = mxIsChar(value) ? mxArrayToString(value) : nullptr;
+  if (characters == nullptr) throw Wrong("A name was expected. Give it as text, 'like this'.");
+  const std::string copy = characters;
+  mxFree(characters);
+  return copy;
+}
+
+std::vector<std::string> texts(const mxArray* value) {
+  if (!mxIsCell(value)) return {text(value)};
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < mxGetNumberOfElements(value); ++i) {
+    const mxArray* cell = mxGetCell(value, static_cast<mwIndex>(i));
+    if (cell == nullptr) throw Wrong("A name is missing in the list of names.");
+    all.push_back(text(cell));
+  }
+  return all;
+}
+
+std::vector<const char*> pointers(const std::vector<std::string>& names) {
+  std::vector<const char*> pointers;
+  for (const auto& name : names) pointers.push_back(name.c_str());
+  return pointers;
+}
+
+double number(const mxArray* value) {
+  if (!mxIsDouble(value) || mxIsComplex(value) || mxGetNumberOfElements(value) != 1)
+    throw Wrong("A number was expected.");
+  return mxGetScalar(value);
+}
+
+inkwell::Vector vector(const mxArray* value) {
+  if (!mxIsDouble(value) || mxIsComplex(value) || mxGetNumberOfElements(value) != 3)
+    throw Wrong("Three numbers were expected, [x y z].");
+  const double* numbers = mxGetPr(value);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+std::map<int, inkwell_arm*>::iterator find(const Arguments& arguments) {
+  const double wanted = number(argument(arguments, 0));
+  const auto found = wanted >= 1 && wanted <= newest ? arms.find(static_cast<int>(wanted)) : arms.end();
+  if (found == arms.end() || found->first != wanted) throw Wrong("This arm is not open. Open one with inkwell_open.");
+  return found;
+}
+
+void close_all() {
+  for (const auto& [_, arm] : arms) inkwell_close(arm);
+  arms.clear();
+}
+
+mxArray* column(const double* values, std::size_t count) {
+  mxArray* array = mxCreateDoubleMatrix(static_cast<mwSize>(count), 1, mxREAL);
+  for (std::size_t i = 0; i < count; ++i) mxGetPr(array)[i] = values[i];
+  return array;
+}
+
+// ---- commands: arguments after the command's name, answers in the order of the .m file ------------------------
+
+using Answers = std::vector<mxArray*>;
+
+Answers open(const Arguments& arguments) {
+  const std::string address = arguments.empty() ? std::string() : text(arguments[0]);
+  inkwell_arm* arm = nullptr;
+  require(inkwell_open(address.c_str(), &arm));
+  arms[++newest] = arm;
+  return {mxCreateDoubleScalar(newest)};
+}
+
+Answers close(const Arguments& arguments) {
+  const auto found = find(arguments);
+  inkwell_close(found->second);
+  arms.erase(found);
+  return {};
+}
+
+Answers pose(const Arguments& arguments) {
+  inkwell_pose pose;
+  require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));
+  static const char* const states[] = {"starting", "unreferenced", "ready", "active", "fault"};
+  const char* names[] = {"time_s",     "state",     "fault_text", "position_m", "velocity_m_s", "rotation",
+                         "gimbal_rad", "joint_rad", "force_N",    "button_1",   "button_2",     "in_inkwell"};
+  mxArray* told = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  mxArray* rotation = mxCreateDoubleMatrix(3, 3, mxREAL);
+  for (int row = 0; row < 3; ++row)
+    for (int each = 0; each < 3; ++each) mxGetPr(rotation)[3 * each + row] = pose.rotation[3 * row + each];
+  mxArray* values[] = {mxCreateDoubleScalar(pose.time_s),
+                       mxCreateString(pose.state >= 0 && pose.state < 5 ? states[pose.state] : "unknown"),
+                       mxCreateString(inkwell_fault_text(pose.fault)),
+                       column(pose.position_m, 3),
+                       column(pose.velocity_m_s, 3),
+                       rotation,
+                       column(pose.gimbal_rad, 3),
+                       column(pose.joint_rad, 3),
+                       column(pose.force_N, 3),
+                       mxCreateLogicalScalar(pose.button_1 != 0),
+                       mxCreateLogicalScalar(pose.button_2 != 0),
+                       mxCreateLogicalScalar(pose.in_inkwell != 0)};
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(told, 0, names[i], values[i]);
+  return {told};
+}
+
+Answers enable(const Arguments& arguments) {
+  const bool on = number(argument(arguments, 1)) != 0.0;
+  inkwell_arm* arm = find(arguments)->second;
+  require(on ? inkwell_enable_force(arm, 5.0) : inkwell_disable_force(arm));
+  return {};
+}
+
+Answers force(const Arguments& arguments) {
+  require(inkwell_set_force(find(arguments)->second, vector(argument(arguments, 1)).data()));
+  return {};
+}
+
+Answers get(const Arguments& arguments) {
+  double value = 0;
+  require(inkwell_get_parameter(find(arguments)->second, text(argument(arguments, 1)).c_str(), &value));
+  return {mxCreateDoubleScalar(value)};
+}
+
+Answers set(const Arguments& arguments) {
+  const auto names = texts(argument(arguments, 1));
+  const mxArray* values = argument(arguments, 2);
+  if (!mxIsDouble(values) || mxIsComplex(values) || mxGetNumberOfElements(values) != names.size())
+    throw Wrong("Give as many values as names.");
+  require(inkwell_set_parameters(find(arguments)->second, pointers(names).data(), mxGetPr(values), names.size()));
+  return {};
+}
+
+Answers parameters(const Arguments&) {
+  const char* names[] = {"name", "unit", "help", "minimum", "maximum", "default_value"};
+  mxArray* table = mxCreateStructMatrix(static_cast<mwSize>(inkwell_parameter_count()), 1,
+                                        static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < inkwell_parameter_count(); ++i) {
+    const inkwell_parameter& row = *inkwell_parameter_at(i);
+    mxArray* values[] = {mxCreateString(row.name),          mxCreateString(row.unit),
+                         mxCreateString(row.help),          mxCreateDoubleScalar(row.minimum),
+                         mxCreateDoubleScalar(row.maximum), mxCreateDoubleScalar(row.default_value)};
+    for (std::size_t j = 0; j < std::size(names); ++j) mxSetField(table, static_cast<mwIndex>(i), names[j], values[j]);
+  }
+  return {table};
+}
+
+Answers signals(const Arguments&) {
+  mxArray* names = mxCreateCellMatrix(static_cast<mwSize>(inkwell_signal_count()), 1);
+  for (std::size_t i = 0; i < inkwell_signal_count(); ++i)
+    mxSetCell(names, static_cast<mwIndex>(i), mxCreateString(inkwell_signal_at(i)->name));
+  return {names};
+}
+
+Answers select(const Arguments& arguments) {
+  const auto names = texts(argument(arguments, 1));
+  require(inkwell_select_signals(find(arguments)->second, pointers(names).data(), names.size()));
+  return {};
+}
+
+/// Reads so many samples of the signals whose number the caller knows: values, control periods, how many were lost.
+Answers read(const Arguments& arguments) {
+  inkwell_arm* arm = find(arguments)->second;
+  const auto columns = static_cast<std::size_t>(number(argument(arguments, 1)));
+  const auto wanted = static_cast<std::size_t>(number(argument(arguments, 2)));
+  std::vector<float> values(wanted * columns);
+  std::vector<std::uint32_t> periods(wanted);
+  std::size_t rows = 0;
+  std::uint64_t lost = 0;
+  while (rows < wanted) {
+    std::size_t count = 0;
+    std::uint64_t lost_before = 0;
+    require(inkwell_read_scope(arm, 10.0, values.data() + rows * columns, periods.data() + rows, wanted - rows, &count,
+                               &lost_before));
+    if (count == 0) throw Wrong("No samples came within 10 s. Reset the board, or let a paused virtual board run.");
+    rows += count;
+    lost += lost_before;
+  }
+  mxArray* matrix = mxCreateDoubleMatrix(static_cast<mwSize>(rows), static_cast<mwSize>(columns), mxREAL);
+  mxArray* numbers = mxCreateDoubleMatrix(static_cast<mwSize>(rows), 1, mxREAL);
+  for (std::size_t row = 0; row < rows; ++row) {
+    mxGetPr(numbers)[row] = periods[row];
+    for (std::size_t i = 0; i < columns; ++i) mxGetPr(matrix)[i * rows + row] = values[row * columns + i];
+  }
+  return {matrix, numbers, mxCreateDoubleScalar(static_cast<double>(lost))};
+}
+
+Answers hand(const Arguments& arguments) {
+  inkwell_arm* arm = find(arguments)->second;
+  if (arguments.size() < 2) {
+    require(inkwell_release_virtual_hand(arm));
+  } else {
+    require(inkwell_move_virtual_hand(arm, vector(arguments[1]).data(), number(argument(arguments, 2))));
+  }
+  return {};
+}
+
+const std::map<std::string, Answers (*)(const Arguments&)> commands{
+    {"open", open}, {"close", close}, {"pose", pose},     {"enable", enable},         {"force", force},
+    {"get", get},   {"set", set},     {"select", select}, {"parameters", parameters}, {"signals", signals},
+    {"read", read}, {"hand", hand},
+};
+
+Answers run(const Arguments& arguments) {
+  const auto command = commands.find(text(argument(arguments, 0)));
+  if (command == commands.end())
+    throw Wrong("There is no such command. Use the functions whose names begin with inkwell_.");
+  return command->second(Arguments(arguments.begin() + 1, arguments.end()));
+}
+
+}  // namespace
+
+void mexFunction(int answer_count, mxArray* answers[], int argument_count, const mxArray* arguments[]) {
+  static char sentence[1024];  // mexErrMsgIdAndTxt() does not come back, so nothing may be left to be destroyed
+  sentence[0] = '\0';
+  mexAtExit(close_all);
+  try {
+    const Answers told = run(Arguments(arguments, arguments + argument_count));
+    for (std::size_t i = 0; i < told.size() && (i == 0 || i < static_cast<std::size_t>(answer_count)); ++i)
+      answers[i] = told[i];
+  } catch (const std::exception& error) {
+    std::snprintf(sentence, sizeof sentence, "%s", error.what());
+  }
+  if (sentence[0] != '\0') mexErrMsgIdAndTxt("inkwell:refused", "%s", sentence);
+}

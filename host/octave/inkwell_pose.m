@@ -1,0 +1,12 @@
+function pose = inkwell_pose(arm)
+% pose = inkwell_pose(arm)  Waits for the next pose; there is one each millisecond.
+%
+%   pose.time_s         board time, s
+%   pose.state          'starting', 'unreferenced', 'ready', 'active' (the force is on) or 'fault'
+%   pose.position_m     of the probe, where the stylus is held, m, 3 x 1
+%   pose.velocity_m_s   over the last 8 ms, m/s, 3 x 1
+%   pose.rotation       of the stylus, 3 x 3; the columns are its x, y and z axis
+%   pose.gimbal_rad, pose.joint_rad, pose.force_N    3 x 1
+%   pose.button_1, pose.button_2, pose.in_inkwell    true or false
+  pose = inkwell_mex('pose', arm);
+end

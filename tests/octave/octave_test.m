@@ -1,0 +1,76 @@
+% The Octave functions as users call them, on virtual boards of their own. Ends with an error if one does otherwise.
+1;
+
+function refused(action, words)
+  try
+    action();
+  catch error_of
+    assert(! isempty(strfind(error_of.message, words)), "said instead: %s", error_of.message);
+    return;
+  end
+  error("%s was not refused", func2str(action));
+end
+
+% What is wrong is an error with the library's sentence.
+refused(@() inkwell_open('no such number'), 'no such number');
+refused(@() inkwell_pose(7), 'not open');
+refused(@() inkwell_pose(0.5), 'not open');
+refused(@() inkwell_mex(), 'missing');
+refused(@() inkwell_mex('nonsense'), 'no such command');
+refused(@() inkwell_mex('read'), 'missing');
+
+arm = inkwell_open('virtual');
+pose = inkwell_pose(arm);
+assert(pose.state, 'ready');
+assert(size(pose.position_m), [3 1]);
+assert(pose.rotation * pose.rotation', eye(3), 1e-5);
+
+% Parameters: one, several, all, unknown, out of range.
+assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 800);
+inkwell_parameters(arm, {'wall_stiffness_N_per_m', 'wall_damping_Ns_per_m'}, [500 1.5]);
+assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 500);
+table = inkwell_parameters();
+assert(table(strcmp({table.name}, 'force_limit_N')).unit, 'N');
+refused(@() inkwell_parameters(arm, 'wall_stifness_N_per_m'), 'Did you mean wall_stiffness_N_per_m?');
+refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', NaN), 'wall_stiffness_N_per_m');
+refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', [1 2]), 'as many values');
+
+% The scope as a matrix.
+assert(any(strcmp(inkwell_signals(), 'supply_V')));
+[samples, time_s, lost] = inkwell_capture(arm, {'position_z_m', 'supply_V'}, 0.1);
+assert(size(samples), [2000 2]);
+assert(samples(:, 2), 18 * ones(2000, 1), 1);
+assert(time_s(end), (1999 + lost) / 20000, 1e-9);
+refused(@() inkwell_capture(arm, {'position_z_mm'}, 0.1), 'Did you mean position_z_m?');
+
+% A force pulls the hand: between springs of 300 and 100 N/m, 20 mm apart.
+target_m = [0.02; 0; -0.03];
+inkwell_parameters(arm, {'host_timeout_s', 'program_force_expiry_s'}, [2 0.5]);  % a busy computer is late
+inkwell_hand(arm, [0 0 -0.03]);
+do
+  pose = inkwell_pose(arm);
+until norm(pose.position_m(1:2)) < 0.004
+inkwell_enable(arm);
+refused(@() inkwell_force(arm, [NaN 0 0]), 'not a number');
+refused(@() inkwell_force(arm, [1 2]), 'Three numbers');
+pose = inkwell_pose(arm);
+begin_s = pose.time_s;
+while abs(pose.position_m(1) - 0.005) > 0.0007 || abs(pose.velocity_m_s(1)) > 0.005
+  assert(pose.time_s < begin_s + 10, 'the hand was not pulled');
+  inkwell_force(arm, 100 * (target_m - pose.position_m));
+  pose = inkwell_pose(arm);
+end
+assert(pose.force_N(1), 1.5, 0.2);
+assert(pose.state, 'active');
+
+% The example finds the friction of the simulated waist, 0.010 Nm at the lever of the probe, beside the hand's spring.
+graphics_toolkit('gnuplot');
+picture = [tempname() '.png'];
+found = identify_friction(arm, picture);
+assert(found.stiffness_N_per_m, 300, 45);
+assert(found.coulomb_N > 0.02 && found.coulomb_N < 0.2, 'coulomb_N is %g', found.coulomb_N);
+assert(stat(picture).size > 1000);
+delete(picture);
+
+inkwell_close(arm);
+refused(@() inkwell_close(arm), 'not open');
