@@ -24,7 +24,14 @@ extern "C" {
 
 #define INKWELL_API __attribute__((visibility("default")))
 
-typedef enum inkwell_result {
+/* Any int may come from C, so C++ must not take an enumeration for narrower. */
+#ifdef __cplusplus
+#define INKWELL_AS_INT : int
+#else
+#define INKWELL_AS_INT
+#endif
+
+typedef enum inkwell_result INKWELL_AS_INT {
   INKWELL_OK = 0,
   INKWELL_NO_DEVICE = 1,     /* no arm there, or more than one and none was named */
   INKWELL_NO_PERMISSION = 2, /* the user may not use the device */
@@ -90,7 +97,7 @@ INKWELL_API inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_inf
 
 /* ---- pose --------------------------------------------------------------------------------------------------- */
 
-typedef enum inkwell_state {
+typedef enum inkwell_state INKWELL_AS_INT {
   INKWELL_STARTING = 0,
   INKWELL_UNREFERENCED = 1, /* the stylus has to rest in the inkwell once */
   INKWELL_READY = 2,        /* the pose is valid, the force is off */
@@ -127,8 +134,8 @@ INKWELL_API inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose
 /* Waits for the next pose that this thread has not seen. */
 INKWELL_API inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose);
 
-/* Where the probe is for these joint angles, and how it moves: `jacobian`, row by row in m/rad, times the joints' speeds
- * is the probe's velocity; its transpose times a force is the joints' torques. Each may be NULL. */
+/* Where the probe is for these joint angles, and how it moves: `jacobian`, row by row in m/rad, times the joints'
+ * speeds is the probe's velocity; its transpose times a force is the joints' torques. Each may be NULL. */
 INKWELL_API inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_rad[3], double position_m[3],
                                                       double jacobian[9]);
 
@@ -144,7 +151,7 @@ INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
 /* Clears a fault whose cause is gone. */
 INKWELL_API inkwell_result inkwell_clear_fault(inkwell_arm* arm);
 
-typedef enum inkwell_force_mode {
+typedef enum inkwell_force_mode INKWELL_AS_INT {
   INKWELL_BESIDE_WALLS = 1,    /* the walls of the board's box are felt too */
   INKWELL_INSTEAD_OF_WALLS = 2 /* only what programs ask for */
 } inkwell_force_mode;
