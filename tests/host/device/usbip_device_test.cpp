@@ -77,7 +77,7 @@ TEST_CASE("commands carry version and a token that is never 0") {
   CHECK(commands[0].token != commands[1].token);
   CHECK(commands[300].command == protocol::Command::test_current);
   CHECK(commands[300].test.motor == 2);
-  CHECK(commands[300].test.amplitude == 0.5f);
+  CHECK(float{commands[300].test.amplitude} == 0.5f);  // a copy: in the report it may lie anywhere
 }
 
 TEST_CASE("keep_alive follows board time where that is faster than the clock") {
