@@ -7,8 +7,6 @@ using namespace inkwell::tests;
 
 namespace {
 
-constexpr auto limit = std::chrono::seconds(120);
-
 /// What GDB prints after `commands` with the board that listens at `port`.
 std::string gdb(const std::string& elf, const std::string& port, std::initializer_list<const char*> commands) {
   std::vector<std::string> arguments{"-nx", "-batch", elf, "-ex", "target remote 127.0.0.1:" + port};
@@ -16,7 +14,7 @@ std::string gdb(const std::string& elf, const std::string& port, std::initialize
     arguments.emplace_back("-ex");
     arguments.emplace_back(command);
   }
-  const auto result = run_program("/usr/bin/gdb-multiarch", arguments, limit);
+  const auto result = run_program("/usr/bin/gdb-multiarch", arguments);
   return result.out + result.err;
 }
 
@@ -32,7 +30,7 @@ std::string word_after(const std::string& text, const std::string& mark) {
 TEST_CASE("GDB stops in the control interrupt, looks, steps, watches a variable and lets go") {
   const std::string elf = build_directory() + "/../board/inkwell.elf";
   RunningProgram board({build_directory() + "/virtual-board", "--elf", elf, "--gdb", "0"});
-  const std::string port = word_after(board.read_line(limit), "gdb=");
+  const std::string port = word_after(board.read_line(), "gdb=");
 
   const std::string said =
       gdb(elf, port,

@@ -115,8 +115,7 @@ std::size_t steadiest_hold(const Columns& recording, const std::string& axis, st
 TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
   // One run for all that is looked at below.
   static const TemporaryDirectory directory;
-  static const auto result =
-      run_program("inkwell", {"experiment", "wall", "--virtual", "--out", directory.path()}, std::chrono::seconds(300));
+  static const auto result = run_program("inkwell", {"experiment", "wall", "--virtual", "--out", directory.path()});
   INFO("output: ", result.out, result.err);
   REQUIRE(result.exit_code == 0);
   static const Columns recording(directory.file("recording.csv"));

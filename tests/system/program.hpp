@@ -10,6 +10,10 @@
 
 namespace inkwell::tests {
 
+/// How long a whole program, and one answer of it, may take: they end what hangs and are no measure of speed, so a
+/// machine that does thirty other things is still quick enough.
+inline constexpr std::chrono::seconds hang_guard{1200}, patience{300};
+
 struct ProgramResult {
   int exit_code;  ///< -1 if the program was ended by a signal or by the time limit
   std::string out;
@@ -19,7 +23,7 @@ struct ProgramResult {
 /// Runs build/pc/`program`, or the program of an absolute path, with the arguments. Ends it after `limit`, which no
 /// healthy run reaches.
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments,
-                          std::chrono::seconds limit = std::chrono::seconds(120));
+                          std::chrono::seconds limit = hang_guard);
 
 /// A program that runs until this object ends it. Its standard error goes where the test's goes.
 class RunningProgram {
@@ -32,9 +36,9 @@ class RunningProgram {
 
   void write_line(const std::string& line);
   /// The next line of standard output; throws std::runtime_error if none comes within `limit`.
-  std::string read_line(std::chrono::seconds limit = std::chrono::seconds(60));
+  std::string read_line(std::chrono::seconds limit = patience);
   /// Waits for its end; the exit code, or none if it was ended by a signal or still runs after `limit`.
-  std::optional<int> wait(std::chrono::seconds limit = std::chrono::seconds(60));
+  std::optional<int> wait(std::chrono::seconds limit = patience);
   int process() const { return process_; }
 
  private:

@@ -15,8 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-constexpr auto patience = 60s;
-
 device::VirtualBoardOptions board_options() {
   device::VirtualBoardOptions options;
   options.mode = device::SimulationMode::fast;
