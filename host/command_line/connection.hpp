@@ -3,15 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include <device/device.hpp>
-#include <device/virtual_board.hpp>
+#include <device/open_arm.hpp>
 
 namespace inkwell::command_line {
 
@@ -25,7 +21,7 @@ class UsageError : public device::Error {
 enum class BoardTime : std::uint8_t {
   as_it_can,
   paced,     ///< to the clock on the wall
-  as_asked,  ///< stands still from its first instruction on, but while Connection::control lets it pass
+  as_asked,  ///< stands still from its first instruction on, but while OpenArm::control lets it pass
 };
 
 struct DeviceOptions {
@@ -41,31 +37,16 @@ struct DeviceOptions {
   bool is_strict = false;  ///< a virtual board ends when the firmware does what silicon would not bear
 
   void add_to(CLI::App& app);
+  /// Throws UsageError.
+  device::Address address() const;
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardTime time) const;
 };
 
-/// What was found where the options point, without waiting.
-std::vector<device::Endpoint> list_devices(const DeviceOptions& options, const device::VirtualBoard* board);
-
-/// An open device and, with --virtual, the board that it is on.
-struct Connection {
-  std::unique_ptr<device::VirtualBoard> board;
-  std::optional<device::ControlClient> control;  ///< of a board whose time passes as asked
-  std::unique_ptr<device::Device> device;
-  bool is_simulation = false;
-};
-
 /// Opens the device that the options name. With --arm, a virtual board's firmware gets that arm's parameters.
-Connection connect(const DeviceOptions& options, BoardTime time = BoardTime::as_it_can,
-                   device::SimulationMode default_mode = device::SimulationMode::fast);
-
-/// The endpoint of a real device, or of one at --usbip. Throws device::Error if there is none.
-device::Endpoint find_one(const DeviceOptions& options);
+device::OpenArm connect(const DeviceOptions& options, BoardTime time = BoardTime::as_it_can,
+                        device::SimulationMode default_mode = device::SimulationMode::fast);
 
 /// Name of the arm that --arm describes; empty without it, because a board does not know which arm it is built into.
 std::string arm_name(const DeviceOptions& options);
-
-/// The rows of the parameter table that an arm description sets.
-std::vector<device::ParameterChange> arm_parameters(const std::filesystem::path& file);
 
 }  // namespace inkwell::command_line

@@ -53,7 +53,7 @@ int run_wall(DeviceOptions options, const WallCommandOptions& command) {
     wall.virtual_board = options.virtual_board(mode, time);
   }
   auto connection = connect(options, time, mode);
-  wall.simulation = connection.is_simulation;
+  wall.simulation = connection.endpoint.is_virtual;
   const auto summary = experiment::run_wall_experiment(
       *connection.device, connection.control ? &*connection.control : nullptr, wall, progress);
   if (options.json)

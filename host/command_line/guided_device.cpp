@@ -17,7 +17,7 @@ constexpr auto connection_limit = 15s, transaction_limit = 5s;
 
 GuidedDevice::GuidedDevice(const DeviceOptions& options) {
   std::vector<device::ParameterChange> changes;
-  if (!options.arm.empty()) changes = arm_parameters(options.arm);
+  if (!options.arm.empty()) changes = device::arm_parameters(options.arm);
   if (options.is_virtual) {
     protocol::ParameterSet arm = protocol::default_parameters();
     for (const auto& [parameter, value] : changes) arm[parameter] = value;
@@ -26,7 +26,7 @@ GuidedDevice::GuidedDevice(const DeviceOptions& options) {
     user_.emplace(board_->control(), arm);
     session_ = std::make_unique<device::Session>([this] { return board_->find(); });
   } else {
-    const auto endpoint = find_one(options);  // complains at once if there is none
+    const auto endpoint = device::find_arm(options.address());  // complains at once if there is none
     session_ = std::make_unique<device::Session>([endpoint] { return endpoint; });
   }
   session_->on_scope([this](const device::ScopeSamples& samples) {

@@ -195,7 +195,7 @@ void add_parameters_command(const Place& place) {
       ->required();
   add("arm", "Send the geometry, limits and box of an arm description in one transaction",
       "inkwell parameters arm boards/arms/paper.toml",
-      [&options, file] { return send(options, arm_parameters(*file)); })
+      [&options, file] { return send(options, device::arm_parameters(*file)); })
       ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")
       ->required();
 }

@@ -152,7 +152,7 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   const auto connection = connect(device_options, BoardTime::paced);
   auto& device = *connection.device;
   const auto information = recording::describe(device.information(), device.parameters(), signals,
-                                               arm_name(device_options), connection.is_simulation);
+                                               arm_name(device_options), connection.endpoint.is_virtual);
   recording::Recorder recorder(options.file, information);
   device.select_signals(signals);
   std::string failure;

@@ -35,21 +35,14 @@ void pass_on(int signal, siginfo_t* information, void*) {
     kill(program_process, signal);
 }
 
-std::string address_of(const DeviceOptions& options, const Connection& connection) {
-  if (connection.board) return fmt::format("usbip:127.0.0.1:{}", connection.board->usbip_port());
-  if (!options.usbip.empty()) return "usbip:" + options.usbip;
-  return connection.device->information().serial_number;
-}
-
 std::string environment(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? std::string() : std::string(value);
 }
 
-void say_which_device(const Connection& connection, const std::string& address) {
-  const auto information = connection.device->information();
-  fmt::print(stderr, "inkwell: the program gets the arm {} ({}){}.\n", information.serial_number, address,
-             connection.is_simulation ? ", a simulation" : "");
+void say_which_device(const device::Endpoint& endpoint, const std::string& address) {
+  fmt::print(stderr, "inkwell: the program gets the arm {} ({}){}.\n", endpoint.serial_number, address,
+             endpoint.is_virtual ? ", a simulation" : "");
 }
 
 int run(const DeviceOptions& options, std::vector<std::string> words) {
@@ -60,8 +53,8 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
         fmt::format("The libraries in {} are missing. Build them with tools/build.", libraries.string()));
 
   auto connection = connect(options, BoardTime::paced);
-  const auto address = address_of(options, connection);
-  say_which_device(connection, address);
+  const auto address = device::address_of(connection.endpoint);
+  say_which_device(connection.endpoint, address);
   connection.device.reset();  // it is the program's from now on
 
   const std::string others = environment("LD_LIBRARY_PATH");

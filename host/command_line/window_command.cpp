@@ -18,14 +18,16 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
     if (window_options.parameters_file.empty()) window_options.parameters_file = options.arm;
     window_options.simulated_arm = protocol::default_parameters();
     if (!options.arm.empty())
-      for (const auto& [parameter, value] : arm_parameters(options.arm))
+      for (const auto& [parameter, value] : device::arm_parameters(options.arm))
         (*window_options.simulated_arm)[parameter] = value;
   }
   if (!theme.empty()) window_options.theme = theme == "light" ? window::Theme::light : window::Theme::dark;
   window_options.serial_number = options.serial_number;
   window_options.virtual_board_control_port = control_port;
   window_options.list_devices = [&options, virtual_board = board.get()] {
-    return list_devices(options, virtual_board);
+    if (virtual_board == nullptr) return device::find_arms(options.address());
+    const auto endpoint = virtual_board->find();
+    return endpoint ? std::vector{*endpoint} : std::vector<device::Endpoint>{};
   };
   return window::run_window(window_options);
 }

@@ -20,12 +20,15 @@ using namespace std::chrono_literals;
 /// Names that programs give to the arm that they expect to be the only one.
 constexpr std::string_view default_names[] = {"", "Default Device", "Default PHANToM"};
 
-bool is_address(std::string_view name) {
-  return name.starts_with("usbip:") || name == "virtual" || name.starts_with("virtual:");
+/// Throws std::runtime_error if it is written as an address and is none.
+inkwell_address_kind kind_of(const std::string& address) {
+  inkwell_address_kind kind{};
+  if (inkwell_kind_of_address(address.c_str(), &kind) != INKWELL_OK) throw std::runtime_error(inkwell_error_text());
+  return kind;
 }
 
 /// Each opening of such an address makes a board of its own.
-bool makes_a_board(std::string_view address) { return address == "virtual" || address.starts_with("virtual:"); }
+bool makes_a_board(const std::string& address) { return kind_of(address) == INKWELL_OWN_BOARD; }
 
 std::vector<inkwell_device> list_arms() {
   std::size_t count = 0;
@@ -39,12 +42,12 @@ std::vector<inkwell_device> list_arms() {
 }  // namespace
 
 std::string Devices::address_for(const std::string& name) const {
-  if (is_address(name)) return name;
+  if (kind_of(name) != INKWELL_ON_USB) return name;
   const auto arms = list_arms();
   for (const auto& arm : arms)
     if (!name.empty() && (name == arm.serial_number || name == arm.address)) return arm.address;
   // A name of the program's own, as "Left": the next arm that it has not opened.
-  const auto is_open = [this](std::string_view address) {
+  const auto is_open = [this](const std::string& address) {
     return !makes_a_board(address) && std::any_of(devices_.begin(), devices_.end(), [&](const auto& device) {
       return device && device->address() == address;
     });

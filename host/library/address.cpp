@@ -1,54 +1,17 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
-
-#include <fmt/format.h>
 
 #include "arm.hpp"
 
 namespace inkwell::library {
 namespace {
 
-constexpr char usbip_scheme[] = "usbip:", virtual_scheme[] = "virtual:", own_board[] = "virtual";
-
 std::string environment_address() {
   const char* address = std::getenv("INKWELL_DEVICE");
   return address == nullptr ? std::string() : std::string(address);
-}
-
-device::Endpoint find_usbip(const std::string& address) {
-  const auto colon = address.rfind(':');
-  std::uint16_t port = 0;
-  const char* digits = address.data() + colon + 1;
-  const char* end = address.data() + address.size();
-  if (colon == std::string::npos || colon == 0 || std::from_chars(digits, end, port).ptr != end || port == 0)
-    throw BadArgument(
-        fmt::format("`usbip:{}` is no address. Give usbip:HOST:PORT, for example usbip:127.0.0.1:3240.", address));
-  const auto endpoints = device::find_usbip_devices(address.substr(0, colon), port);
-  if (endpoints.empty())
-    throw NoDevice(
-        fmt::format("The USB/IP server at {} exports no arm. Check that its board runs Inkwell's firmware "
-                    "and its cable is in.",
-                    address));
-  return endpoints.front();
-}
-
-device::Endpoint find_usb(const std::string& serial_number) {
-  auto endpoints = device::find_usb_devices();
-  if (!serial_number.empty()) {
-    for (const auto& endpoint : endpoints)
-      if (endpoint.serial_number == serial_number) return endpoint;
-    throw NoDevice(fmt::format("No arm with the serial number {} is plugged in.", serial_number));
-  }
-  if (endpoints.empty())
-    throw NoDevice("No arm was found on USB. Plug one in, or open \"virtual\" for a simulated one.");
-  if (endpoints.size() == 1) return endpoints.front();
-  std::string numbers;
-  for (const auto& endpoint : endpoints) numbers += " " + endpoint.serial_number;
-  throw NoDevice(fmt::format("{} arms are plugged in. Open one by its serial number:{}.", endpoints.size(), numbers));
 }
 
 /// Boards that run at the same time have serial numbers of their own.
@@ -73,28 +36,21 @@ inkwell_device entry(const std::string& address, const device::Endpoint& endpoin
 
 }  // namespace
 
-Address resolve(const std::string& given) {
-  const std::string address = given.empty() ? environment_address() : given;
-  if (address == own_board || address.starts_with(virtual_scheme)) {
-    device::VirtualBoardOptions options;
-    options.seed = next_seed();
-    if (address != own_board) options.arm = address.substr(std::strlen(virtual_scheme));
-    return {options, std::nullopt};
-  }
-  if (address.starts_with(usbip_scheme)) return {std::nullopt, find_usbip(address.substr(std::strlen(usbip_scheme)))};
-  return {std::nullopt, find_usb(address)};
+device::OpenArm open_arm(const std::string& given) {
+  return device::open_arm(device::parse_address(given.empty() ? environment_address() : given), {.seed = next_seed()});
 }
 
 std::vector<inkwell_device> list_devices() {
   std::vector<inkwell_device> devices;
-  for (const auto& endpoint : device::find_usb_devices()) devices.push_back(entry(endpoint.serial_number, endpoint));
-  const std::string address = environment_address();
-  if (address.starts_with(usbip_scheme)) {
-    devices.push_back(entry(address, find_usbip(address.substr(std::strlen(usbip_scheme)))));
-  } else if (address == own_board || address.starts_with(virtual_scheme)) {
+  for (const auto& endpoint : device::find_usb_devices())
+    devices.push_back(entry(device::address_of(endpoint), endpoint));
+  const std::string told = environment_address();
+  const auto address = device::parse_address(told);
+  if (address.kind == device::Address::Kind::usbip) devices.push_back(entry(told, device::find_arm(address)));
+  if (address.kind == device::Address::Kind::own_board) {
     device::Endpoint endpoint{};
     endpoint.is_virtual = true;
-    devices.push_back(entry(address, endpoint));
+    devices.push_back(entry(told, endpoint));
   }
   return devices;
 }

@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 using protocol::Command;
 using protocol::State;
 
-constexpr double enumeration_limit_s = 60.0;
+constexpr double first_pose_limit_s = 60.0;
 constexpr auto read_timeout = 2ms;
 /// Until a device that was asked for its force is asked again.
 constexpr auto ask_again = 100ms;
@@ -32,15 +32,6 @@ Clock::time_point in(double seconds) {
   if (std::isnan(seconds)) throw BadArgument("The time-out is not a number. Give seconds, from 0 on.");
   return Clock::now() +
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::clamp(seconds, 0.0, 1e6)));
-}
-
-device::Endpoint wait_for_endpoint(const device::VirtualBoard& board) {
-  const auto give_up_at = in(enumeration_limit_s);
-  for (;;) {
-    if (const auto endpoint = board.find()) return *endpoint;
-    if (Clock::now() > give_up_at) throw TimedOut("The virtual board shows no USB device within a minute. Try again.");
-    std::this_thread::sleep_for(5ms);
-  }
 }
 
 /// Milliseconds from one force of the program to the next, as it sends them.
@@ -118,15 +109,11 @@ Arm::~Arm() {
 }
 
 void Arm::open(const std::string& address) {
-  Address found = resolve(address);
-  if (found.own_board) {
-    board_ = std::make_unique<device::VirtualBoard>(*found.own_board);
-    control_.emplace(board_->control());
-    found.endpoint = wait_for_endpoint(*board_);
-  }
-  device_ = device::Device::open(*found.endpoint);
-  endpoint_ = *found.endpoint;
-  endpoint_.serial_number = device_->information().serial_number;
+  device::OpenArm opened = open_arm(address);
+  board_ = std::move(opened.board);
+  control_ = std::move(opened.control);
+  device_ = std::move(opened.device);
+  endpoint_ = opened.endpoint;
   reader_.emplace(device_->parameters());
 }
 
@@ -134,7 +121,7 @@ void Arm::open(const std::string& address) {
 
 void Arm::report_loop(std::promise<void> opened) {
   bool is_open = false;
-  const auto give_up_at = in(enumeration_limit_s);
+  const auto give_up_at = in(first_pose_limit_s);
   const auto stops = [this] {
     const std::lock_guard lock(mutex_);
     return stopping_;

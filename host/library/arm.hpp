@@ -14,9 +14,8 @@
 
 #include <inkwell/inkwell.h>
 #include <control/kinematics.hpp>
-#include <device/device.hpp>
 #include <device/driver_claim.hpp>
-#include <device/virtual_board.hpp>
+#include <device/open_arm.hpp>
 #include <kinematics/velocity.hpp>
 #include <recording/recorder.hpp>
 
@@ -26,11 +25,6 @@ using device::Error;
 
 /// What was waited for did not come.
 class TimedOut : public Error {
- public:
-  using Error::Error;
-};
-/// No arm is there, or more than one and none was named.
-class NoDevice : public Error {
  public:
   using Error::Error;
 };
@@ -45,13 +39,9 @@ class NotNow : public Error {
   using Error::Error;
 };
 
-/// Where an address of inkwell_open() leads.
-struct Address {
-  std::optional<device::VirtualBoardOptions> own_board;  ///< else `endpoint`
-  std::optional<device::Endpoint> endpoint;
-};
-Address resolve(const std::string& address);
-/// Everything that resolve() can find, with the address that leads there.
+/// What the address of inkwell_open() stands for; what INKWELL_DEVICE says if it is empty.
+device::OpenArm open_arm(const std::string& address);
+/// Everything that open_arm() can find, with the address that leads there.
 std::vector<inkwell_device> list_devices();
 
 /// A pose with what follows from it.

@@ -44,9 +44,11 @@ inkwell_result guarded(Action action) noexcept {
   try {
     action();
     return INKWELL_OK;
-  } catch (const NoDevice& error) {
+  } catch (const device::NoDevice& error) {
     return fail(INKWELL_NO_DEVICE, error.what());
   } catch (const BadArgument& error) {
+    return fail(INKWELL_BAD_ARGUMENT, error.what());
+  } catch (const device::BadAddress& error) {
     return fail(INKWELL_BAD_ARGUMENT, error.what());
   } catch (const TimedOut& error) {
     return fail(INKWELL_TIMED_OUT, error.what());
@@ -151,6 +153,17 @@ inkwell_result inkwell_list_devices(inkwell_device* devices, size_t capacity, si
     const auto found = list_devices();
     *count = found.size();
     std::copy_n(found.begin(), std::min(capacity, found.size()), devices);
+  });
+}
+
+inkwell_result inkwell_kind_of_address(const char* address, inkwell_address_kind* kind) {
+  return guarded([&] {
+    required(kind, "The place for the kind");
+    switch (device::parse_address(required(address, "The address")).kind) {
+      case device::Address::Kind::usb: *kind = INKWELL_ON_USB; break;
+      case device::Address::Kind::usbip: *kind = INKWELL_AT_SERVER; break;
+      case device::Address::Kind::own_board: *kind = INKWELL_OWN_BOARD; break;
+    }
   });
 }
 

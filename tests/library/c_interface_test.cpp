@@ -25,9 +25,9 @@ bool says(const std::string& words) { return std::string(inkwell_error_text()).f
 
 struct VirtualArm {
   inkwell_arm* arm = nullptr;
-  VirtualArm() {
-    const auto result = inkwell_open("virtual", &arm);
-    REQUIRE_MESSAGE(result == INKWELL_OK, inkwell_error_text());
+  explicit VirtualArm(const std::string& address = "virtual") {
+    const auto result = inkwell_open(address.c_str(), &arm);
+    REQUIRE_MESSAGE(result == INKWELL_OK, std::string(inkwell_error_text()));
   }
   ~VirtualArm() { inkwell_close(arm); }
   VirtualArm(const VirtualArm&) = delete;
@@ -117,6 +117,27 @@ TEST_CASE("forward kinematics: the pose's own position, and a Jacobian that agre
   }
   const double none_rad[3]{std::numeric_limits<double>::infinity(), 0, 0};
   CHECK(inkwell_forward_kinematics(virtual_arm.arm, none_rad, position_m, jacobian) == INKWELL_BAD_ARGUMENT);
+}
+
+TEST_CASE("an arm of other lengths: its firmware knows them") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("long.toml");
+  {
+    std::ifstream omni(INKWELL_SOURCE_DIRECTORY "/boards/arms/omni.toml");
+    std::ofstream changed(file);
+    for (std::string line; std::getline(omni, line);)
+      changed << (line.starts_with("link_3_m ") ? "link_3_m = 0.16" : line) << '\n';
+  }
+  VirtualArm virtual_arm("virtual:" + file);
+  double length_m = 0;
+  REQUIRE(inkwell_get_parameter(virtual_arm.arm, "link_3_m", &length_m) == INKWELL_OK);
+  CHECK(length_m == doctest::Approx(0.16));
+  constexpr double stiff_N_per_m = 2000;  // gives way to gravity by less than a millimetre
+  REQUIRE(inkwell_move_virtual_hand(virtual_arm.arm, free_point_m, stiff_N_per_m) == INKWELL_OK);
+  virtual_arm.wait_until([](const auto& pose) {
+    return std::hypot(pose.position_m[0] - free_point_m[0], pose.position_m[1] - free_point_m[1],
+                      pose.position_m[2] - free_point_m[2]) < 0.002;
+  });
 }
 
 struct Spring {
@@ -301,7 +322,7 @@ TEST_CASE("two arms at once") {
 TEST_CASE("what is wrong is said in a sentence, and nothing is touched") {
   inkwell_arm* arm = nullptr;
   CHECK(inkwell_open("usbip:nowhere", &arm) == INKWELL_BAD_ARGUMENT);
-  CHECK(says("usbip:127.0.0.1:3240"));
+  CHECK(says("127.0.0.1:3240"));
   CHECK(inkwell_open("usbip:127.0.0.1:1", &arm) == INKWELL_FAILED);
   CHECK(inkwell_open("no such number", &arm) == INKWELL_NO_DEVICE);
   CHECK(says("no such number"));
@@ -313,6 +334,15 @@ TEST_CASE("what is wrong is said in a sentence, and nothing is touched") {
   CHECK(inkwell_get_pose(nullptr, &pose) == INKWELL_BAD_ARGUMENT);
   CHECK(says("The arm is NULL"));
   CHECK(inkwell_list_devices(nullptr, 3, nullptr) == INKWELL_BAD_ARGUMENT);
+  inkwell_address_kind kind;
+  CHECK(inkwell_kind_of_address("virtual:arm.toml", &kind) == INKWELL_OK);
+  CHECK(kind == INKWELL_OWN_BOARD);
+  CHECK(inkwell_kind_of_address("usbip:localhost:3240", &kind) == INKWELL_OK);
+  CHECK(kind == INKWELL_AT_SERVER);
+  CHECK(inkwell_kind_of_address("Left", &kind) == INKWELL_OK);
+  CHECK(kind == INKWELL_ON_USB);
+  CHECK(inkwell_kind_of_address("usbip:nowhere", &kind) == INKWELL_BAD_ARGUMENT);
+  CHECK(inkwell_kind_of_address(nullptr, &kind) == INKWELL_BAD_ARGUMENT);
   CHECK(inkwell_servo_is_running(nullptr) == 0);
   inkwell_close(nullptr);
   CHECK(std::string(inkwell_fault_text(5)).find("motor current") != std::string::npos);

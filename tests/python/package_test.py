@@ -359,7 +359,7 @@ class Programs(unittest.TestCase):
 
     def test_addresses_that_lead_nowhere(self):
         for address, error, words in (("no such number", inkwell.NoDevice, "no such number"),
-                                      ("usbip:nowhere", inkwell.BadArgument, "usbip:127.0.0.1:3240"),
+                                      ("usbip:nowhere", inkwell.BadArgument, "127.0.0.1:3240"),
                                       ("usbip:127.0.0.1:1", inkwell.Failed, "127.0.0.1"),
                                       ("virtual:/no/such/arm.toml", inkwell.Failed, "/no/such/arm.toml")):
             with self.subTest(address), self.assertRaisesRegex(error, words):

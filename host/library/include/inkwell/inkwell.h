@@ -66,6 +66,15 @@ INKWELL_API inkwell_result inkwell_list_devices(inkwell_device* devices, size_t 
 
 typedef struct inkwell_arm inkwell_arm;
 
+typedef enum inkwell_address_kind INKWELL_AS_INT {
+  INKWELL_ON_USB = 0,    /* any text that is none of the others: a serial number, if it is one */
+  INKWELL_AT_SERVER = 1, /* "usbip:HOST:PORT" */
+  INKWELL_OWN_BOARD = 2  /* "virtual" or "virtual:FILE": each opening makes a board of its own */
+} inkwell_address_kind;
+
+/* What kind of address inkwell_open() takes the text for, without looking there. */
+INKWELL_API inkwell_result inkwell_kind_of_address(const char* address, inkwell_address_kind* kind);
+
 /* Opens an arm. `address`:
  *   NULL or ""         what the environment's INKWELL_DEVICE says, else the only arm on USB
  *   a serial number    the arm on USB that has it

@@ -1,0 +1,80 @@
+#include <device/address.hpp>
+
+#include <algorithm>
+#include <charconv>
+
+#include <fmt/format.h>
+
+namespace inkwell::device {
+namespace {
+
+constexpr std::string_view usbip_scheme = "usbip:", board_scheme = "virtual:", own_board = "virtual",
+                           this_computer = "127.0.0.1";
+
+std::string serial_numbers(const std::vector<Endpoint>& endpoints) {
+  std::string numbers;
+  for (const auto& endpoint : endpoints) numbers += " " + endpoint.serial_number;
+  return numbers;
+}
+
+std::string nobody(const Address& address) {
+  if (address.kind == Address::Kind::usbip)
+    return fmt::format(
+        "The USB/IP server at {}:{} exports no arm. Check that its board runs Inkwell's firmware and its cable is in.",
+        address.host, address.port);
+  if (address.serial_number.empty()) return "No arm was found on USB. Plug one in, or use a virtual one.";
+  const auto others = find_arms({});
+  return fmt::format("No arm with the serial number {} is plugged in. {}", address.serial_number,
+                     others.empty() ? "None is: plug it in." : "Those are:" + serial_numbers(others) + ".");
+}
+
+}  // namespace
+
+Address parse_server(std::string_view text) {
+  const auto colon = text.rfind(':');
+  const bool names_host = colon != std::string_view::npos;
+  const std::string_view host = names_host && colon > 0 ? text.substr(0, colon) : this_computer;
+  const std::string_view digits = names_host ? text.substr(colon + 1) : text;
+  std::uint16_t port = 0;
+  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+  if (code != std::errc{} || end != digits.data() + digits.size() || port == 0)
+    throw BadAddress(
+        fmt::format("`{}` is no address of a USB/IP server. Give HOST:PORT, for example 127.0.0.1:3240.", text));
+  return {.kind = Address::Kind::usbip, .host = std::string(host), .port = port};
+}
+
+Address parse_address(std::string_view text) {
+  if (text.starts_with(usbip_scheme)) return parse_server(text.substr(usbip_scheme.size()));
+  if (text == own_board) return {.kind = Address::Kind::own_board};
+  if (text.starts_with(board_scheme))
+    return {.kind = Address::Kind::own_board, .arm = std::string(text.substr(board_scheme.size()))};
+  return {.kind = Address::Kind::usb, .serial_number = std::string(text)};
+}
+
+std::string address_of(const Endpoint& endpoint) {
+  return endpoint.kind == Endpoint::Kind::usb ? endpoint.serial_number
+                                              : fmt::format("{}{}:{}", usbip_scheme, endpoint.host, endpoint.port);
+}
+
+std::vector<Endpoint> find_arms(const Address& address) {
+  switch (address.kind) {
+    case Address::Kind::own_board: return {};
+    case Address::Kind::usbip: return find_usbip_devices(address.host, address.port);
+    case Address::Kind::usb: break;
+  }
+  auto endpoints = find_usb_devices();
+  if (!address.serial_number.empty())
+    std::erase_if(endpoints, [&](const auto& endpoint) { return endpoint.serial_number != address.serial_number; });
+  return endpoints;
+}
+
+Endpoint find_arm(const Address& address) {
+  const auto endpoints = find_arms(address);
+  if (endpoints.empty()) throw NoDevice(nobody(address));
+  if (address.kind == Address::Kind::usb && endpoints.size() > 1)
+    throw NoDevice(fmt::format("{} arms are plugged in. Choose one by its serial number:{}.", endpoints.size(),
+                               serial_numbers(endpoints)));
+  return endpoints.front();
+}
+
+}  // namespace inkwell::device

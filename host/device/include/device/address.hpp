@@ -1,0 +1,55 @@
+// Where an arm is, as people and programs write it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <device/transport.hpp>
+
+namespace inkwell::device {
+
+/// A text that is no address.
+class BadAddress : public Error {
+ public:
+  using Error::Error;
+};
+
+/// No arm is there, or more than one and none was named.
+class NoDevice : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Written as one of
+///
+///     (nothing)        the only arm on USB
+///     NUMBER           the arm on USB that has this serial number
+///     usbip:HOST:PORT  the arm of a USB/IP server, such as a virtual board that runs already
+///     virtual          a virtual board that is started for it
+///     virtual:FILE     the same, with the arm that FILE describes
+struct Address {
+  enum class Kind : std::uint8_t { usb, usbip, own_board };
+  Kind kind = Kind::usb;
+  std::string serial_number{};  ///< for `usb`; empty for the only one
+  std::string host{};           ///< for `usbip`
+  std::uint16_t port = 0;       ///< for `usbip`
+  std::filesystem::path arm{};  ///< for `own_board`; empty for the Omni
+};
+
+/// Throws BadAddress.
+Address parse_address(std::string_view text);
+/// Of a USB/IP server: HOST:PORT, or PORT alone on this computer. Throws BadAddress.
+Address parse_server(std::string_view text);
+/// Leads back to a device that was found, once it was opened.
+std::string address_of(const Endpoint& endpoint);
+
+/// The arms that the address may mean; none for a board that is not started yet. Throws Error if a server does not
+/// answer.
+std::vector<Endpoint> find_arms(const Address& address);
+/// The one that it means. Throws NoDevice.
+Endpoint find_arm(const Address& address);
+
+}  // namespace inkwell::device

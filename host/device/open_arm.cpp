@@ -1,0 +1,70 @@
+#include <device/open_arm.hpp>
+
+#include <chrono>
+#include <thread>
+
+#include <arms/description.hpp>
+
+namespace inkwell::device {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double show_limit_s = 2.0;  // of board time; the firmware shows itself after 0.1
+constexpr double step_s = 0.01;
+constexpr auto look_again = 5ms;
+
+Endpoint wait_for_endpoint(const VirtualBoard& board, ControlClient& control, bool time_stands) {
+  for (;;) {
+    const bool is_late = control.status().board_time_s > show_limit_s;
+    if (const auto endpoint = board.find()) return *endpoint;
+    if (is_late) throw Error("The virtual board shows no USB device. Check that its firmware is Inkwell's.");
+    if (time_stands)
+      control.run(step_s);
+    else
+      std::this_thread::sleep_for(look_again);
+  }
+}
+
+OpenArm open_on_own_board(const VirtualBoardOptions& options) {
+  std::vector<ParameterChange> arm;
+  if (!options.arm.empty()) arm = arm_parameters(options.arm);
+  OpenArm opened;
+  opened.board = std::make_unique<VirtualBoard>(options);
+  opened.control.emplace(opened.board->control());
+  if (options.paused) opened.control->stand_by();
+  opened.endpoint = wait_for_endpoint(*opened.board, *opened.control, options.paused);
+  opened.device = Device::open(opened.endpoint);
+  if (!arm.empty()) opened.device->set_parameters(arm);
+  return opened;
+}
+
+}  // namespace
+
+OpenArm open_arm(const Address& address, VirtualBoardOptions board_options) {
+  OpenArm opened;
+  if (address.kind == Address::Kind::own_board) {
+    board_options.arm = address.arm;
+    opened = open_on_own_board(board_options);
+  } else {
+    opened.endpoint = find_arm(address);
+    opened.device = Device::open(opened.endpoint);
+  }
+  opened.endpoint.serial_number = opened.device->information().serial_number;
+  return opened;
+}
+
+std::vector<ParameterChange> arm_parameters(const std::filesystem::path& file) {
+  std::vector<ParameterChange> changes;
+  try {
+    const auto arm = arms::read(file);
+    for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+      if (protocol::parameter_table[i].belongs_to_arm)
+        changes.emplace_back(static_cast<protocol::Parameter>(i), arm.parameters.values[i]);
+  } catch (const arms::DescriptionError& error) {
+    throw Error(error.what());
+  }
+  return changes;
+}
+
+}  // namespace inkwell::device

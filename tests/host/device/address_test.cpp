@@ -1,0 +1,76 @@
+// Addresses as people write them, and the arms that they lead to.
+#include <doctest/doctest.h>
+
+#include <device/address.hpp>
+#include <failure.hpp>
+
+#include "fake_usb.hpp"
+#include "fake_usbip_server.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using device::Address;
+using device::parse_address;
+
+namespace {
+
+std::string refusal(const Address& address) {
+  return message_of<device::NoDevice>([&] { device::find_arm(address); });
+}
+
+}  // namespace
+
+TEST_CASE("an address is a serial number, a USB/IP server or a virtual board") {
+  CHECK(parse_address("").kind == Address::Kind::usb);
+  CHECK(parse_address("").serial_number.empty());
+  CHECK(parse_address("3932").serial_number == "3932");
+  CHECK(parse_address("virtually").kind == Address::Kind::usb);
+  const auto server = parse_address("usbip:host.example:3240");
+  CHECK(server.kind == Address::Kind::usbip);
+  CHECK(server.host == "host.example");
+  CHECK(server.port == 3240);
+  for (const auto here : {"3240", ":3240", "127.0.0.1:3240"}) {
+    CHECK(device::parse_server(here).host == "127.0.0.1");
+    CHECK(device::parse_server(here).port == 3240);
+  }
+  CHECK(parse_address("virtual").kind == Address::Kind::own_board);
+  CHECK(parse_address("virtual").arm.empty());
+  CHECK(parse_address("virtual:arms/mine.toml").kind == Address::Kind::own_board);
+  CHECK(parse_address("virtual:arms/mine.toml").arm == "arms/mine.toml");
+}
+
+TEST_CASE("what is no address is told with one that is") {
+  for (const auto wrong :
+       {"usbip:", "usbip:nowhere", "usbip:host:", "usbip:host:0", "usbip:host:65536", "usbip:host:3x"}) {
+    CAPTURE(wrong);
+    CHECK(contains(message_of<device::BadAddress>([&] { parse_address(wrong); }), "127.0.0.1:3240"));
+  }
+}
+
+TEST_CASE("one arm is meant, or the sentence says which there are") {
+  FakeUsb usb;
+  CHECK(contains(refusal({}), "No arm was found on USB"));
+  CHECK(contains(refusal(parse_address("0033")), "0033 is plugged in. None is"));
+  usb.add_arm("0011");
+  CHECK(device::find_arm({}).serial_number == "0011");
+  CHECK(device::address_of(device::find_arm({})) == "0011");
+  usb.add_arm("0022");
+  CHECK(contains(refusal({}), "2 arms are plugged in. Choose one by its serial number:"));
+  for (const auto number : {" 0011", " 0022"}) {
+    CHECK(contains(refusal({}), number));
+    CHECK(contains(refusal(parse_address("0033")), number));
+  }
+  CHECK(device::find_arm(parse_address("0022")).serial_number == "0022");
+  CHECK(contains(refusal(parse_address("0033")), "No arm with the serial number 0033 is plugged in. Those are:"));
+  CHECK(device::find_arms(parse_address("virtual")).empty());
+}
+
+TEST_CASE("a server's arm is found, and found again by the address of what was found") {
+  FakeUsbipServer server;
+  const auto address = device::address_of(server.endpoint());
+  const auto found = device::find_arm(parse_address(address));
+  CHECK(found.port == server.port());
+  CHECK(device::address_of(found) == address);
+  server.product_id = 0x0BAD;
+  CHECK(contains(refusal(parse_address(address)), "exports no arm"));
+}
