@@ -20,7 +20,7 @@ struct UartOption {
   enum class Kind : std::uint8_t { terminal, port, path } kind = Kind::terminal;
   std::uint16_t port = 0;
   std::filesystem::path path;
-  /// Of a text such as usart1=stdio, uart4=5000, usart3=/tmp/tty. Throws std::invalid_argument with a sentence.
+  /// Of a text such as usart1=stdio, uart4=5000, usart3=PATH. Throws std::invalid_argument with a sentence.
   static UartOption of(const std::string& text);
 };
 
