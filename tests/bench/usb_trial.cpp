@@ -55,8 +55,8 @@ int forces(const std::filesystem::path& image, double host_clock_ppm, double tim
   return timing.received == timing.sent && timing.lost == 0 && timing.late == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-int hostile(const std::filesystem::path& image, std::uint64_t cases, std::uint64_t seed) {
-  const HostileOutcome outcome = be_hostile(image, cases, seed);
+int hostile(const std::filesystem::path& image, std::uint64_t from, std::uint64_t cases, std::uint64_t seed) {
+  const HostileOutcome outcome = be_hostile(image, from, from + cases, seed);
   fmt::print(
       "{} cases; a SETUP upon another was answered {} times, {} of them with the other's answer, {} times refused as "
       "the other and {} times not answered at all\n",
@@ -85,14 +85,17 @@ int main(int argc, char** argv) {
   auto* forces_command = app.add_subcommand("forces", "Does a program's force arrive each millisecond, and how soon?");
   forces_command->add_option("--host-clock-ppm", host_clock_ppm, "how much faster than board time the host's clock is");
   forces_command->add_option("--seconds", time_s, "of board time")->capture_default_str();
-  std::uint64_t cases = 10'000, seed = 1;
+  std::uint64_t from = 0, cases = 10'000, seed = 1;
   auto* hostile_command = app.add_subcommand("hostile", "Does the device survive a host that keeps to no rule?");
+  hostile_command
+      ->add_option("--from", from, "the first case; those before it in its row of 10000 are gone through too")
+      ->capture_default_str();
   hostile_command->add_option("--cases", cases, "single cases")->capture_default_str();
   hostile_command->add_option("--seed", seed, "of the cases")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
     if (*forces_command) return forces(image, host_clock_ppm, time_s);
-    if (*hostile_command) return hostile(image, cases, seed);
+    if (*hostile_command) return hostile(image, from, cases, seed);
     return poses(image, host_clock_ppm, time_s, scope_signals);
   } catch (const std::exception& error) {
     std::cerr << "usb-trial: " << error.what() << '\n';

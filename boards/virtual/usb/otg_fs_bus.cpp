@@ -139,6 +139,7 @@ Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<cons
   setup_stage_open_ = true;
   setup_done_unpopped_ = true;
   setup_done_lost_ = false;
+  setup_was_seen_ = false;
   if (setup_packets_allowed_ > 0)
     --setup_packets_allowed_;
   else

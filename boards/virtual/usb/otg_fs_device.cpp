@@ -80,6 +80,8 @@ void OtgFsDevice::reset_core() {
   global_in_nak_ = global_out_nak_asked_ = global_out_nak_effective_ = false;
   address_ = 0;
   control_transfer_open_ = setup_stage_open_ = setup_done_unpopped_ = setup_done_lost_ = false;
+  setup_was_seen_ = false;
+  receive_found_empty_at_ = 0;
   setup_packets_allowed_ = 0;
   update_pull_up();
   update_interrupt();
@@ -132,9 +134,9 @@ std::uint32_t OtgFsDevice::read_global(std::uint32_t offset) {
     case otg.gahbcfg: return bus_configuration_;
     case otg.gusbcfg: return usb_configuration_;
     case otg.grstctl: return reset_control();
-    case otg.gintsts: return interrupt_status();
+    case otg.gintsts: note_look_at_receive_fifo(); return interrupt_status();
     case otg.gintmsk: return interrupt_mask_;
-    case otg.grxstsr: return receive_.empty() ? 0 : receive_.front();
+    case otg.grxstsr: note_look_at_receive_fifo(); return receive_.empty() ? 0 : receive_.front();
     case otg.grxstsp: return pop_receive_status();
     case otg.grxfsiz: return receive_size_;
     case otg.dieptxf0: return transmit_size_[0];

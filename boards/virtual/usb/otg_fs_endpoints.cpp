@@ -9,6 +9,9 @@ namespace inkwell::virtual_board {
 
 namespace {
 
+/// From reading that the receive FIFO is empty to clearing NAK: some instructions, with interrupts held.
+constexpr Ticks look_before_clearing_nak = ticks_per_s / 1'000'000;
+
 constexpr std::uint32_t stored_in_bits(unsigned endpoint) {
   const auto& control = otg.diepctl;
   const std::uint32_t common = control.mpsiz.mask() | control.txfnum.mask();
@@ -293,11 +296,19 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
 }
 
 // Seen on silicon: clearing NAK on endpoint 0 between a SETUP packet and the pop of its setup-done word
-// loses that word.
+// loses that word. Firmware can not help it if the packet came since it looked, just before.
 void OtgFsDevice::lose_setup_done_word() {
   if (!setup_done_unpopped_ || setup_done_lost_) return;
-  rules_.violate(Rule::usb_nak_cleared_early);
+  const bool looked = scheduler_.now() - receive_found_empty_at_ <= look_before_clearing_nak;
+  if (setup_was_seen_ || !looked) rules_.violate(Rule::usb_nak_cleared_early);
   setup_done_lost_ = true;
+}
+
+void OtgFsDevice::note_look_at_receive_fifo() {
+  if (receive_.empty())
+    receive_found_empty_at_ = scheduler_.now();
+  else
+    setup_was_seen_ = true;
 }
 
 std::uint32_t OtgFsDevice::pop_receive_status() {
@@ -312,6 +323,7 @@ std::uint32_t OtgFsDevice::pop_receive_status() {
     update_interrupt();
     return word;
   }
+  note_look_at_receive_fifo();
   const std::uint32_t word = receive_.pop();
   const unsigned number = otg.grxstsp.epnum.of(word);
   switch (otg.grxstsp.pktsts.of(word)) {

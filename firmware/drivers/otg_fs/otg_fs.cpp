@@ -114,7 +114,7 @@ void OtgFs::bus_reset() {
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);
   control_receive_waits_ = control_stall_waits_ = false;
-  setup_done_is_in_doubt_ = setup_done_may_follow_ = false;
+  setup_waits_ = setup_done_is_lost_ = false;
   suspended_ = false;
   frame_clock_.forget();
   set_address(0);
@@ -153,17 +153,13 @@ bool OtgFs::take_received_word(Event& event) {
   switch (Core::GRXSTSP::PKTSTS::from(status)) {
     case setup_data:
       read_packet(setup_, size);
-      setup_done_may_follow_ = setup_done_is_in_doubt_;
-      if (!setup_done_is_in_doubt_) return false;
-      setup_done_is_in_doubt_ = false;
+      setup_waits_ = true;
+      if (!setup_done_is_lost_) return false;
       pass_on_setup(event);
       return true;
     case setup_done:
       // Only now is it known that no other SETUP follows, and only now may NAK be cleared again.
-      if (setup_done_may_follow_) {
-        setup_done_may_follow_ = false;
-        return false;
-      }
+      if (!setup_waits_) return false;
       pass_on_setup(event);
       return true;
     case out_data:
@@ -189,6 +185,7 @@ void OtgFs::pass_on_setup(Event& event) {
   Device::DOEPINT::write(0, ~0u);
   write_control_out_size();
   control_receive_waits_ = control_stall_waits_ = false;
+  setup_waits_ = setup_done_is_lost_ = false;
   event.kind = Event::Kind::setup;
   event.endpoint = 0;
   event.length = static_cast<std::uint8_t>(setup_.size());
@@ -244,30 +241,24 @@ void OtgFs::receive(std::uint8_t endpoint_address) {
   }
 }
 
-// Endpoint 0 is not touched while something waits in the receive FIFO: it may be a SETUP packet, which makes
-// this answer stale, and clearing NAK before its setup-done word is popped loses that word.
+// Endpoint 0 is not touched between a SETUP packet, which makes this answer stale, and the end of its stage: clearing
+// NAK before the setup-done word is popped loses that word. What waits in the receive FIFO may be one.
 void OtgFs::answer_control() {
-  const bool sends = control_send_waits_, receives = control_receive_waits_;
-  if (!sends && !receives && !control_stall_waits_) return;
-  switch (arm_control()) {
-    case Armed::not_yet: break;
-    case Armed::yes:
-      if (sends) fill(0);
-      break;
-    case Armed::too_late:
-      setup_done_is_in_doubt_ = receives;
-      stop_in(0);
-      break;
-  }
+  const bool sends = control_send_waits_;
+  if ((sends || control_receive_waits_ || control_stall_waits_) && arm_control() && sends) fill(0);
 }
 
 // A SETUP may come between the look at the receive FIFO and the write that clears NAK, which then opens the endpoint
 // for the data stage of a request that this does not answer. No interrupt makes that gap longer, and a second look
 // finds what came in it. The host's next token ends 4 us after the SETUP at the earliest: NAK stands again before.
-OtgFs::Armed OtgFs::arm_control() {
+//
+// Each SETUP sets NAK. So NAK tells whether it came before the write, which then took its setup-done word away, or
+// behind it: then its word comes as ever.
+bool OtgFs::arm_control() {
   const InterruptsHeld held;
-  if (Core::GINTSTS::RXFLVL::is_set()) return Armed::not_yet;
-  if (control_receive_waits_) begin_receive(0);
+  const bool receives = control_receive_waits_;
+  if (setup_waits_ || Core::GINTSTS::RXFLVL::is_set()) return false;
+  if (receives) begin_receive(0);
   if (control_send_waits_) begin_send(0);
   if (control_stall_waits_) {
     change<Device::DIEPCTL>(0, Device::DIEPCTL::STALL(1));
@@ -275,12 +266,13 @@ OtgFs::Armed OtgFs::arm_control() {
   }
   control_receive_waits_ = control_send_waits_ = control_stall_waits_ = false;
   using Waiting = Core::GRXSTSR;
-  if (!Core::GINTSTS::RXFLVL::is_set()) return Armed::yes;
+  if (!Core::GINTSTS::RXFLVL::is_set()) return true;
   const std::uint32_t waiting = Waiting::read();
-  if (Waiting::PKTSTS::from(waiting) != setup_data || Waiting::EPNUM::from(waiting) != 0) return Armed::yes;
+  if (Waiting::PKTSTS::from(waiting) != setup_data || Waiting::EPNUM::from(waiting) != 0) return true;
+  setup_done_is_lost_ = receives && !Device::DOEPCTL::NAKSTS::from(Device::DOEPCTL::read(0));
   change<Device::DIEPCTL>(0, Device::DIEPCTL::SNAK(1));
   change<Device::DOEPCTL>(0, Device::DOEPCTL::SNAK(1));
-  return Armed::too_late;
+  return false;
 }
 
 void OtgFs::begin_send(unsigned endpoint) {

@@ -113,6 +113,7 @@ struct UsbDevice {
   struct DOEPCTL : RegisterArray<base + 0x300, 0x20, 4> {
     using MPSIZ = Field<DOEPCTL, 0, 11>;
     using USBAEP = Field<DOEPCTL, 15, 1>;
+    using NAKSTS = Field<DOEPCTL, 17, 1>;
     using EPTYP = Field<DOEPCTL, 18, 2>;
     using STALL = Field<DOEPCTL, 21, 1>;
     using CNAK = Field<DOEPCTL, 26, 1>;

@@ -40,4 +40,105 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
   }
 }
 
+namespace {
+
+constexpr unsigned own_address = 2;
+constexpr std::uint32_t receive_pop = 0x020, control_in = 0x900, control_out = 0xB00, fifos = 0x1000, naksts = 1u << 17;
+constexpr std::uint8_t device_descriptor = 1, configuration_descriptor = 2;
+using Setup = std::array<std::byte, 8>;
+
+constexpr Setup set_idle{std::byte{0x21}, std::byte{0x0A}};
+Setup descriptor_request(std::uint8_t type) {
+  return {std::byte{0x80}, std::byte{6}, std::byte{0}, std::byte{type}, {}, {}, std::byte{64}, {}};
+}
+
+/// The firmware, a host that sends one SETUP and a token, and then another SETUP when it is told to.
+struct Race {
+  Race() : bus(flashed_image(INKWELL_BUILD_DIRECTORY)) { bus.connect(); }
+
+  void begin(const Setup& setup) {
+    bus.cable.setup(own_address, 0, setup);
+    bus.cable.in(own_address, 0, packet);  // ends the stage of this SETUP
+    came = read = false;
+  }
+  void interfere() {
+    came = true;
+    bus.cable.setup(own_address, 0, descriptor_request(configuration_descriptor));
+    // Well before the next token, which ends 4 us after the SETUP at the earliest.
+    auto& scheduler = bus.chip.connections().scheduler;
+    scheduler.at(scheduler.now() + ticks(1e-6), [this] {
+      if (read || fills) return;  // a look would disturb the words of a packet
+      CHECK((bus.core.read(control_in, 4) & naksts) != 0);
+      CHECK((bus.core.read(control_out, 4) & naksts) != 0);
+    });
+  }
+  /// The second byte of what the device sends at last, the type of a descriptor; 0 if it sends none.
+  std::uint8_t answer() {
+    for (int i = 0; i < 300; ++i) {
+      bus.run_for(10e-6);
+      const auto reply = bus.cable.in(own_address, 0, packet);
+      if (reply.handshake != virtual_board::Handshake::ack) continue;
+      bus.cable.finish_in(0);
+      return reply.length >= 2 ? static_cast<std::uint8_t>(packet[1]) : 0;
+    }
+    return 0;
+  }
+
+  FirmwareOnBus bus;
+  std::array<std::byte, virtual_board::full_speed_packet_maximum> packet{};
+  bool came = false, read = false, fills = false;
+};
+
+}  // namespace
+
+TEST_CASE("a SETUP that comes while the one before is answered gets its own answer, after whichever access it comes") {
+  Race race;
+  for (const Setup& first : {descriptor_request(device_descriptor), set_idle}) {
+    bool too_late = false;
+    for (int access = 1; !too_late; ++access) {
+      CAPTURE(access);
+      int left = access;
+      race.begin(first);
+      const auto count = [&] {
+        if (--left == 0) race.interfere();
+      };
+      race.bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t) {
+        race.read |= race.came && offset == receive_pop;
+        race.fills = false;
+        count();
+      };
+      race.bus.registers.on_write = [&](std::uint32_t offset) {
+        race.fills = offset >= fifos;
+        count();
+      };
+      race.bus.run_for(60e-6);
+      race.bus.registers.on_read = {};
+      race.bus.registers.on_write = {};
+      too_late = !race.came;
+      if (too_late)
+        CHECK(access > 15);
+      else
+        CHECK(race.answer() == configuration_descriptor);
+      race.bus.run_for(0.001);
+    }
+  }
+  for (const auto& sentence : race.bus.violations()) FAIL_CHECK(sentence);
+}
+
+TEST_CASE("while a SETUP has been read and its end has not, nothing is made ready") {
+  Race race;
+  race.begin(descriptor_request(device_descriptor));
+  // When the driver answers the first one, the next one is there; that is read before the answer is given.
+  constexpr std::uint32_t setup_done = 4;
+  race.bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
+    if (!race.came && offset == receive_pop && (value >> 17 & 0xF) == setup_done) race.interfere();
+  };
+  race.bus.run_for(100e-6);
+  REQUIRE(race.came);
+  CHECK((race.bus.core.read(control_in, 4) & naksts) != 0);
+  CHECK((race.bus.core.read(control_out, 4) & naksts) != 0);
+  CHECK(race.answer() == configuration_descriptor);
+  for (const auto& sentence : race.bus.violations()) FAIL_CHECK(sentence);
+}
+
 }  // namespace inkwell::virtual_usb_test

@@ -73,7 +73,7 @@ class Cable : public virtual_board::BusDevice {
 };
 
 /// The core's registers, as the chip's bus sees them; tells what the firmware reads there, before it can do anything
-/// with it.
+/// with it, and where it has written.
 class WatchedRegisters final : public virtual_board::Peripheral {
  public:
   explicit WatchedRegisters(virtual_board::Peripheral& registers) : registers_(registers) {}
@@ -84,10 +84,12 @@ class WatchedRegisters final : public virtual_board::Peripheral {
   }
   void write(std::uint32_t offset, std::uint32_t value, unsigned size) override {
     registers_.write(offset, value, size);
+    if (on_write) on_write(offset);
   }
   void reset() override { registers_.reset(); }
 
   std::function<void(std::uint32_t offset, std::uint32_t value)> on_read;
+  std::function<void(std::uint32_t offset)> on_write;
 
  private:
   virtual_board::Peripheral& registers_;

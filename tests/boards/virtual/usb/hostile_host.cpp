@@ -35,7 +35,11 @@ Setup descriptor_request(std::uint8_t type) { return request(0x80, 6, static_cas
 
 class HostileHost {
  public:
-  HostileHost(const std::filesystem::path& image, std::uint64_t seed) : bus_(image), random_(seed) { bus_.connect(); }
+  HostileHost(const std::filesystem::path& image, std::uint64_t seed, std::uint64_t row) : bus_(image) {
+    std::seed_seq numbers{seed, row};
+    random_.seed(numbers);
+    bus_.connect();
+  }
 
   void one_case(HostileOutcome& outcome) {
     switch (random_() % 8) {
@@ -165,6 +169,10 @@ class HostileHost {
     for (auto before = 1 + random_() % 12; before > 0; --before) {
       setup(descriptor_request(kinds[first]));
       pause_s(between(0, 40e-6));
+      if (random_() % 2 == 0) continue;
+      // A token ends the stage of this SETUP, and the next one comes while its answer is made ready.
+      random_() % 2 == 0 ? void(in(0, random_() % 2 == 0)) : void(out(0, true, {}));
+      pause_s(between(0, 20e-6));
     }
     if (setup(descriptor_request(wanted)) != Handshake::ack) return;
     const auto answer = read_packet();
@@ -228,14 +236,23 @@ class HostileHost {
 
 }  // namespace
 
-HostileOutcome be_hostile(const std::filesystem::path& image, std::uint64_t cases, std::uint64_t seed) {
+HostileOutcome be_hostile(const std::filesystem::path& image, std::uint64_t from, std::uint64_t end,
+                          std::uint64_t seed) {
   HostileOutcome outcome;
-  HostileHost host(image, seed);
-  while (outcome.cases < cases) {
-    for (std::uint64_t i = 0; i < cases_in_a_batch && outcome.cases < cases; ++i) host.one_case(outcome);
-    if (const auto failure = host.recover()) {
-      outcome.failures.push_back(fmt::format("after {} cases of seed {}: {}", outcome.cases, seed, *failure));
-      break;
+  for (std::uint64_t row = from / hostile_cases_in_a_row; row * hostile_cases_in_a_row < end; ++row) {
+    HostileHost host(image, seed, row);
+    const std::uint64_t last = std::min((row + 1) * hostile_cases_in_a_row, end);
+    for (std::uint64_t number = row * hostile_cases_in_a_row; number < last;) {
+      const std::uint64_t first = number;
+      while (number < std::min(first + cases_in_a_batch, last)) {
+        host.one_case(outcome);
+        ++number;
+      }
+      if (const auto failure = host.recover()) {
+        outcome.failures.push_back(fmt::format("in cases {} to {} of seed {} (again by --from {} --cases {}): {}",
+                                               first, number - 1, seed, first, number - first, *failure));
+        return outcome;
+      }
     }
   }
   return outcome;

@@ -10,7 +10,7 @@
 namespace inkwell::virtual_usb_test {
 
 struct HostileOutcome {
-  std::uint64_t cases = 0;
+  std::uint64_t cases = 0;          ///< that were gone through
   std::uint64_t answers = 0;        ///< to a SETUP that came upon another one
   std::uint64_t wrong_answers = 0;  ///< those that answer the other one
   std::uint64_t missing_answers = 0;
@@ -21,7 +21,13 @@ struct HostileOutcome {
   std::vector<std::string> failures;  ///< batches after which the device was not well, and rules of the chip it broke
 };
 
-/// `cases` cases in batches, chosen by `seed`. Ends at the first failure.
-HostileOutcome be_hostile(const std::filesystem::path& image, std::uint64_t cases, std::uint64_t seed);
+/// So many cases in a row meet one board; the next ones meet a new one. A case is always the same, whatever was before
+/// its row.
+inline constexpr std::uint64_t hostile_cases_in_a_row = 10'000;
+
+/// The cases `from` to before `end` of those that `seed` chooses, and what leads to them in their row. Ends at the
+/// first failure.
+HostileOutcome be_hostile(const std::filesystem::path& image, std::uint64_t from, std::uint64_t end,
+                          std::uint64_t seed);
 
 }  // namespace inkwell::virtual_usb_test

@@ -184,6 +184,26 @@ TEST_CASE("back-to-back SETUP packets all arrive, four exceed the count") {
   }
 }
 
+TEST_CASE("NAK that is cleared upon a SETUP that nobody could have seen loses the setup-done word, and is no fault") {
+  const auto clear_nak = [](bool sees, double time_since_look_us) {
+    CoreBench bench;
+    bench.read(gintsts);
+    bench.wait_us(time_since_look_us);
+    bench.core.setup(0, 0, some_request);
+    if (sees) bench.read(gintsts);
+    bench.write(0xB00, epena | cnak);
+    CHECK((bench.read(0xB00) & naksts) == 0);
+    bench.read(grxstsp);
+    for (int i = 0; i < 2; ++i) bench.read(0x1000);
+    bench.in(0);
+    CHECK((bench.read(gintsts) & rxflvl) == 0);  // where the setup-done word would be
+    return !bench.log.broken.empty();
+  };
+  CHECK_FALSE(clear_nak(false, 0.5));
+  CHECK(clear_nak(true, 0.5));
+  CHECK(clear_nak(false, 5.0));
+}
+
 TEST_CASE("a new address holds from the end of the status stage") {
   CoreBench bench;
   bench.core.setup(0, 0, some_request);

@@ -120,6 +120,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   std::size_t receive_words_free() const;
   void end_setup_stage();
   void lose_setup_done_word();
+  void note_look_at_receive_fifo();
 
   unsigned in_packet_maximum(unsigned endpoint) const;
   unsigned transmit_fifo_of(unsigned endpoint) const;
@@ -192,6 +193,8 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   bool setup_stage_open_ = false;       ///< from a SETUP packet to the next token: setup done is not written yet
   bool setup_done_unpopped_ = false;    ///< from a SETUP packet until firmware pops its setup-done word
   bool setup_done_lost_ = false;        ///< CNAK came in between: the word will not be seen
+  bool setup_was_seen_ = false;         ///< firmware has found the receive FIFO filled since the last SETUP
+  Ticks receive_found_empty_at_ = 0;    ///< by firmware, the last time
   unsigned setup_packets_allowed_ = 0;  ///< DOEPTSIZ0.STUPCNT
   bool bus_power_ = false;
   bool pulled_up_ = false;

@@ -75,9 +75,8 @@ class OtgFs final : public usb::Port {
   void pass_on_setup(usb::Event& event);
   bool next_suspend_or_resume(usb::Event& event, std::uint32_t interrupts);
   void answer_control();
-  /// `too_late`: for a request that is over.
-  enum class Armed : std::uint8_t { not_yet, yes, too_late };
-  Armed arm_control();
+  /// False while a SETUP makes the answer stale, or may.
+  bool arm_control();
   void begin_send(unsigned endpoint);
   void begin_receive(unsigned endpoint);
   void fill(unsigned endpoint);
@@ -91,8 +90,8 @@ class OtgFs final : public usb::Port {
   bool control_send_waits_ = false;
   bool control_receive_waits_ = false;
   bool control_stall_waits_ = false;
-  bool setup_done_is_in_doubt_ = false;  ///< NAK was cleared when a SETUP had just come, so its end may not be told
-  bool setup_done_may_follow_ = false;   ///< of a SETUP that was passed on without waiting for it
+  bool setup_waits_ = false;         ///< `setup_` has been read; the end of its stage has not
+  bool setup_done_is_lost_ = false;  ///< of the SETUP in the receive FIFO: NAK was cleared when it had just come
   bool pulled_up_ = false;
   bool suspended_ = false;
 };
