@@ -1,10 +1,10 @@
+#include "address.hpp"
+
 #include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
-
-#include "arm.hpp"
 
 namespace inkwell::library {
 namespace {

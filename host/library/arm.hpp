@@ -1,137 +1,81 @@
-// An open arm: three threads that read poses, call the servo and send forces, so that no caller waits for the USB.
+// An open arm, put together from parts that each own their data. Any thread may call any of them:
+//
+//   part         its thread                      what it owns
+//   PoseFeed     -                               the newest pose, and why there are no more
+//   Connection   opens the arm, reads poses      the device, the board that was started for it, the arm's geometry
+//   ForceOutput  sends forces                    the newest force, and how it goes with the walls
+//   ScopeStream  reads samples                   which signals, samples that are not read yet, the recording
+//   Servo        calls the program's function    the function, and whether it is being called
+//
+// Each part has mutexes of its own, and with one held calls no other part but PoseFeed, which calls none.
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
-#include <functional>
-#include <future>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include <inkwell/inkwell.h>
-#include <control/kinematics.hpp>
 #include <device/driver_claim.hpp>
-#include <device/open_arm.hpp>
-#include <kinematics/velocity.hpp>
-#include <recording/recorder.hpp>
+
+#include "connection.hpp"
+#include "force_output.hpp"
+#include "pose_feed.hpp"
+#include "scope_stream.hpp"
+#include "servo.hpp"
 
 namespace inkwell::library {
 
-using device::Error;
-
-/// What was waited for did not come.
-class TimedOut : public Error {
- public:
-  using Error::Error;
-};
-/// A value that the function can not take.
-class BadArgument : public Error {
- public:
-  using Error::Error;
-};
-/// The device does not take it, or not now.
-class NotNow : public Error {
- public:
-  using Error::Error;
-};
-
-/// What the address of inkwell_open() stands for; what INKWELL_DEVICE says if it is empty.
-device::OpenArm open_arm(const std::string& address);
-/// Everything that open_arm() can find, with the address that leads there.
-std::vector<inkwell_device> list_devices();
-
-/// A pose with what follows from it.
-class PoseReader {
- public:
-  explicit PoseReader(const protocol::ParameterSet& parameters);
-  inkwell_pose read(const protocol::PoseReport& report);
-  control::Pose forward_kinematics(const control::Triple& joint_rad) const;
-
- private:
-  control::Arm arm_;
-  kinematics::VelocityFit velocity_;
-  std::uint64_t periods_ = 0;  ///< since the board started, beyond the wrap of the report's counter
-};
-
 class Arm {
  public:
-  using Servo = std::function<bool(const inkwell_pose& pose, double (&force_N)[3])>;
-
   explicit Arm(const std::string& address);
+  /// Takes the force away first, then waits for a call of the servo that is under way. Not to be called by the servo.
   ~Arm();
   Arm(const Arm&) = delete;
   Arm& operator=(const Arm&) = delete;
 
   device::Device& device();  ///< throws Disconnected once it is gone
-  const device::Endpoint& endpoint() const { return endpoint_; }
-  device::ControlClient& virtual_hand();  ///< throws NotNow if the board is not this arm's own
+  const device::Endpoint& endpoint() const { return connection_.endpoint(); }
+  Servo& servo() { return servo_; }
+  ScopeStream& scope() { return scope_; }
 
-  inkwell_pose pose() const;
+  inkwell_pose pose() const { return poses_.newest(); }
   /// The first pose after the one with `sequence`.
-  inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence);
-
+  inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
   void enable_force(double timeout_s);
   void disable_force();
-  void set_force_mode(protocol::ForceMode mode);
+  void set_force_mode(protocol::ForceMode mode) { force_.set_mode(mode); }
   void set_force(const double (&force_N)[3]);
   void place_shapes(const device::Shapes& shapes);
-  void start_servo(Servo servo);
-  void stop_servo();
-  bool servo_is_running() const;
+  void start_servo(Servo::Function function);
 
   void set_parameters(const std::vector<device::ParameterChange>& changes);
+  void start_recording(const std::string& path) { scope_.start_recording(path, endpoint().is_virtual); }
 
-  void select_signals(const std::vector<protocol::Signal>& signals);
-  /// At most `capacity` samples of those that came; none on time-out.
-  std::optional<device::ScopeSamples> read_scope(double timeout_s, std::size_t capacity);
-  void start_recording(const std::string& path);
-  recording::RecorderStatus stop_recording();
+  /// Hands the control client of the board that was started for this arm to `action`. Throws NotNow if none was.
+  template <class Action>
+  void with_own_board(Action action) {
+    connection_.with_own_board(action);
+  }
 
  private:
-  struct Published {
-    inkwell_pose pose{};
-    bool valid = false;
-  };
-
-  void open(const std::string& address);
-  void report_loop(std::promise<void> opened);
-  void output_loop();
-  void servo_loop(Servo servo);
-  void scope_loop();
-  void lose(const std::string& reason);
+  /// This program drives the arm from now on. Throws InUse if another does.
   void claim();
-  void require_connected(const std::unique_lock<std::mutex>& lock) const;
+  void bid_farewell();
 
-  std::unique_ptr<device::VirtualBoard> board_;  ///< made and ended by the report thread
-  std::optional<device::ControlClient> control_;
-  std::unique_ptr<device::Device> device_;
-  device::Endpoint endpoint_{};
+  PoseFeed poses_;
+  Connection connection_;
+  ForceOutput force_;
+  ScopeStream scope_;
 
-  mutable std::mutex mutex_;
-  std::condition_variable pose_changed_, force_changed_, servo_changed_, scope_changed_;
-  bool stopping_ = false;
-  std::optional<std::string> lost_;  ///< why the device is gone
-  Published newest_;
-  std::optional<PoseReader> reader_;
-
-  std::optional<device::ForceRequest> next_force_;
-  protocol::ForceMode mode_ = protocol::ForceMode::instead_of_walls;
+  std::mutex claim_mutex_;
   std::optional<device::DriverClaim> claim_;  ///< from the first force on
-  bool servo_runs_ = false, servo_ends_ = false;
-  std::thread::id servo_thread_id_;
+  std::atomic<bool> drives_ = false;          ///< there is a claim
+  std::mutex parameters_mutex_;               ///< one transaction at a time, with what follows from it
 
-  std::vector<protocol::Signal> signals_;
-  std::vector<device::ScopeSamples> samples_;  ///< not read yet
-  std::size_t rows_kept_ = 0;
-  std::unique_ptr<recording::Recorder> recorder_;
-
-  std::thread report_thread_, output_thread_, servo_thread_, scope_thread_;
+  Servo servo_;  ///< the last one: its function uses all the others
 };
 
 }  // namespace inkwell::library

@@ -1,13 +1,10 @@
-#include <control/settings.hpp>
-#include <kinematics/stylus.hpp>
+#include "pose_reader.hpp"
 
-#include "arm.hpp"
+#include <kinematics/stylus.hpp>
 
 namespace inkwell::library {
 
-PoseReader::PoseReader(const protocol::ParameterSet& parameters) : arm_(control::prepare(parameters).arm) {}
-
-inkwell_pose PoseReader::read(const protocol::PoseReport& report) {
+inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control::Arm& geometry) {
   // The report's counter wraps after 59 hours.
   periods_ += static_cast<std::uint32_t>(report.time_periods - static_cast<std::uint32_t>(periods_));
   inkwell_pose pose{};
@@ -26,7 +23,7 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report) {
   velocity_.add(pose.time_s, position_m);
   const auto velocity_m_s = velocity_.velocity_m_s();
   for (std::size_t i = 0; i < 3; ++i) pose.velocity_m_s[i] = velocity_m_s[i];
-  const glm::mat3 rotation = kinematics::stylus_rotation(joint_rad, gimbal_rad, arm_);
+  const glm::mat3 rotation = kinematics::stylus_rotation(joint_rad, gimbal_rad, geometry);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) pose.rotation[3 * row + column] = rotation[column][row];
   pose.force_sources = report.force_sources;
@@ -36,10 +33,6 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report) {
   pose.in_inkwell = pressed(protocol::Switch::inkwell);
   pose.supply_V = report.supply_dV / 10.0;
   return pose;
-}
-
-control::Pose PoseReader::forward_kinematics(const control::Triple& joint_rad) const {
-  return control::forward_kinematics(joint_rad, arm_);
 }
 
 }  // namespace inkwell::library

@@ -84,8 +84,10 @@ INKWELL_API inkwell_result inkwell_kind_of_address(const char* address, inkwell_
  * The force is off. */
 INKWELL_API inkwell_result inkwell_open(const char* address, inkwell_arm** arm);
 
-/* Ends the servo, lets this program's force fade and forgets the arm. NULL is allowed. */
-INKWELL_API void inkwell_close(inkwell_arm* arm);
+/* Lets this program's force fade, ends the servo and forgets the arm. NULL is allowed. It waits for a call of the servo
+ * that is under way, for ever if that does not return; its force has faded by then. In the servo itself it is
+ * INKWELL_REFUSED, and the arm stays open. */
+INKWELL_API inkwell_result inkwell_close(inkwell_arm* arm);
 
 typedef struct inkwell_information {
   char serial_number[32];

@@ -1,0 +1,56 @@
+#include "c_guard.hpp"
+
+#include <exception>
+
+#include <device/address.hpp>
+#include <device/device.hpp>
+
+namespace inkwell::library {
+namespace {
+
+thread_local std::string error_text;
+
+inkwell_result fail(inkwell_result result, const char* sentence) {
+  try {
+    error_text = sentence;
+  } catch (...) {
+    error_text.clear();
+  }
+  return result;
+}
+
+}  // namespace
+
+inkwell_result result_of_exception() noexcept {
+  try {
+    throw;
+  } catch (const device::NoDevice& error) {
+    return fail(INKWELL_NO_DEVICE, error.what());
+  } catch (const BadArgument& error) {
+    return fail(INKWELL_BAD_ARGUMENT, error.what());
+  } catch (const device::BadAddress& error) {
+    return fail(INKWELL_BAD_ARGUMENT, error.what());
+  } catch (const TimedOut& error) {
+    return fail(INKWELL_TIMED_OUT, error.what());
+  } catch (const NotNow& error) {
+    return fail(INKWELL_REFUSED, error.what());
+  } catch (const device::Refused& error) {
+    return fail(INKWELL_REFUSED, error.what());
+  } catch (const device::NoPermission& error) {
+    return fail(INKWELL_NO_PERMISSION, error.what());
+  } catch (const device::Incompatible& error) {
+    return fail(INKWELL_INCOMPATIBLE, error.what());
+  } catch (const device::Disconnected& error) {
+    return fail(INKWELL_DISCONNECTED, error.what());
+  } catch (const device::InUse& error) {
+    return fail(INKWELL_IN_USE, error.what());
+  } catch (const std::exception& error) {
+    return fail(INKWELL_FAILED, error.what());
+  } catch (...) {
+    return fail(INKWELL_FAILED, "Something failed that nobody expected. Report this with the version of the library.");
+  }
+}
+
+}  // namespace inkwell::library
+
+const char* inkwell_error_text(void) { return inkwell::library::error_text.c_str(); }

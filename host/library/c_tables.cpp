@@ -1,0 +1,128 @@
+// What the C interface has by name: parameters, signals, and the scope and recordings that are made of these.
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include <device/nearest_name.hpp>
+
+#include "c_guard.hpp"
+
+using namespace inkwell::library;
+namespace device = inkwell::device;
+namespace protocol = inkwell::protocol;
+
+namespace {
+
+protocol::Parameter parameter_named(const char* name) {
+  if (const auto parameter = protocol::find_parameter(std::string_view(required(name, "A parameter's name"))))
+    return *parameter;
+  throw BadArgument(fmt::format("There is no parameter {}. Did you mean {}?", name,
+                                device::nearest_name(protocol::parameter_table, name)));
+}
+
+protocol::Signal signal_named(const char* name) {
+  if (const auto signal = protocol::find_signal(std::string_view(required(name, "A signal's name")))) return *signal;
+  throw BadArgument(
+      fmt::format("There is no signal {}. Did you mean {}?", name, device::nearest_name(protocol::signal_table, name)));
+}
+
+/// The table as C has it. Its texts are literals, so they end in a zero.
+template <class Row, class Table, class Fill>
+std::vector<Row> rows(const Table& table, Fill fill) {
+  std::vector<Row> rows;
+  for (const auto& entry : table) rows.push_back(fill(entry));
+  return rows;
+}
+
+const std::vector<inkwell_parameter>& parameter_rows() {
+  static const auto table = rows<inkwell_parameter>(protocol::parameter_table, [](const auto& row) {
+    return inkwell_parameter{row.name.data(), row.unit.data(), row.help.data(),
+                             row.minimum,     row.maximum,     row.default_value};
+  });
+  return table;
+}
+
+const std::vector<inkwell_signal>& signal_rows() {
+  static const auto table = rows<inkwell_signal>(protocol::signal_table, [](const auto& row) {
+    return inkwell_signal{row.name.data(), row.unit.data(), row.help.data()};
+  });
+  return table;
+}
+
+}  // namespace
+
+// ---- parameters --------------------------------------------------------------------------------------------
+
+size_t inkwell_parameter_count(void) { return protocol::parameter_count; }
+
+const inkwell_parameter* inkwell_parameter_at(size_t index) {
+  const inkwell_parameter* row = nullptr;
+  guarded([&] { row = index < parameter_rows().size() ? &parameter_rows()[index] : nullptr; });
+  return row;
+}
+
+inkwell_result inkwell_get_parameter(inkwell_arm* arm, const char* name, double* value) {
+  return guarded([&] {
+    required(value, "The place for the value");
+    const auto parameter = parameter_named(name);
+    *value = arm_of(arm).device().parameters()[parameter];
+  });
+}
+
+inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names, const double* values, size_t count) {
+  return guarded([&] {
+    if (count > 0) required(names, "The list of names"), required(values, "The list of values");
+    std::vector<device::ParameterChange> changes;
+    for (std::size_t i = 0; i < count; ++i)
+      changes.emplace_back(parameter_named(names[i]), static_cast<float>(values[i]));
+    arm_of(arm).set_parameters(changes);
+  });
+}
+
+// ---- scope and recording -----------------------------------------------------------------------------------
+
+size_t inkwell_signal_count(void) { return protocol::signal_count; }
+
+const inkwell_signal* inkwell_signal_at(size_t index) {
+  const inkwell_signal* row = nullptr;
+  guarded([&] { row = index < signal_rows().size() ? &signal_rows()[index] : nullptr; });
+  return row;
+}
+
+inkwell_result inkwell_select_signals(inkwell_arm* arm, const char* const* names, size_t count) {
+  return guarded([&] {
+    if (count > 0) required(names, "The list of names");
+    std::vector<protocol::Signal> signals;
+    for (std::size_t i = 0; i < count; ++i) signals.push_back(signal_named(names[i]));
+    arm_of(arm).scope().select(signals);
+  });
+}
+
+inkwell_result inkwell_read_scope(inkwell_arm* arm, double timeout_s, float* values, uint32_t* periods, size_t capacity,
+                                  size_t* count, uint64_t* lost) {
+  return guarded([&] {
+    required(count, "The count");
+    if (capacity > 0) required(values, "The place for the samples");
+    *count = 0;
+    if (lost != nullptr) *lost = 0;
+    const auto samples = arm_of(arm).scope().read(timeout_s, capacity);
+    if (!samples) return;
+    *count = samples->count;
+    std::copy(samples->values.begin(), samples->values.end(), values);
+    for (std::size_t i = 0; periods != nullptr && i < samples->count; ++i)
+      periods[i] = samples->first_period + static_cast<std::uint32_t>(i);
+    if (lost != nullptr) *lost = samples->lost_before;
+  });
+}
+
+inkwell_result inkwell_start_recording(inkwell_arm* arm, const char* path) {
+  return guarded([&] { arm_of(arm).start_recording(required(path, "The file's name")); });
+}
+
+inkwell_result inkwell_stop_recording(inkwell_arm* arm, uint64_t* samples, uint64_t* lost) {
+  return guarded([&] {
+    const auto status = arm_of(arm).scope().stop_recording();
+    if (samples != nullptr) *samples = status.samples;
+    if (lost != nullptr) *lost = status.lost;
+  });
+}

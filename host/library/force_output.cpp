@@ -1,0 +1,90 @@
+#include "force_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "errors.hpp"
+
+namespace inkwell::library {
+namespace {
+
+/// Milliseconds from one force of the program to the next, as it sends them.
+class Interval {
+ public:
+  int next() {
+    const auto now = Clock::now();
+    const double passed_ms = std::chrono::duration<double, std::milli>(now - before_).count();
+    before_ = now;
+    // A pause is not the program's pace; a single late one is not either.
+    if (passed_ms < protocol::force_interval_maximum_ms) smoothed_ms_ += 0.2 * (passed_ms - smoothed_ms_);
+    return std::clamp(static_cast<int>(std::lround(smoothed_ms_)), 1, int{protocol::force_interval_maximum_ms});
+  }
+
+ private:
+  Clock::time_point before_{};
+  double smoothed_ms_ = 1.0;
+};
+
+}  // namespace
+
+ForceOutput::ForceOutput(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
+  thread_ = std::thread([this] { run(); });
+}
+
+ForceOutput::~ForceOutput() { stop(); }
+
+void ForceOutput::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stops_ = true;
+    changed_.notify_one();
+  }
+  if (thread_.joinable()) thread_.join();
+}
+
+void ForceOutput::set_mode(protocol::ForceMode mode) {
+  const std::lock_guard lock(mutex_);
+  mode_ = mode;
+}
+
+void ForceOutput::send(const double (&force_N)[3]) {
+  device::ForceRequest request;
+  for (std::size_t i = 0; i < 3; ++i) {
+    // What float can not hold is as huge as the largest that it can: the board bounds it.
+    constexpr double largest_N = 1e30;
+    if (std::isnan(force_N[i])) throw BadArgument("The force is not a number on one axis. Give finite numbers.");
+    request.force_N[i] = static_cast<float>(std::clamp(force_N[i], -largest_N, largest_N));
+  }
+  const std::lock_guard lock(mutex_);
+  request.mode = mode_;
+  next_ = request;
+  changed_.notify_one();
+}
+
+void ForceOutput::let_go() {
+  const std::lock_guard lock(mutex_);
+  next_ = device::ForceRequest{.mode = protocol::ForceMode::none};
+  changed_.notify_one();
+}
+
+void ForceOutput::run() {
+  Interval interval;
+  for (;;) {
+    device::ForceRequest request;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return stops_ || next_; });
+      if (stops_) return;
+      request = *std::exchange(next_, std::nullopt);
+    }
+    request.interval_ms = interval.next();
+    try {
+      device_.send_force(request);
+    } catch (const Error& error) {
+      return poses_.end(error.what());
+    }
+  }
+}
+
+}  // namespace inkwell::library

@@ -1,0 +1,43 @@
+// The thread that sends a program's forces, so that no caller waits for the USB.
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include <device/device.hpp>
+
+#include "pose_feed.hpp"
+
+namespace inkwell::library {
+
+/// Sends the newest force, at most one in a millisecond: the USB takes no more, and an old one is worth nothing.
+class ForceOutput {
+ public:
+  /// Ends `poses` if the device is gone.
+  ForceOutput(device::Device& device, PoseFeed& poses);
+  ~ForceOutput();
+
+  void set_mode(protocol::ForceMode mode);
+  /// Throws BadArgument for what is no number.
+  void send(const double (&force_N)[3]);
+  /// The force is over, and fades.
+  void let_go();
+  /// Nothing is sent once this returns.
+  void stop();
+
+ private:
+  void run();
+
+  device::Device& device_;
+  PoseFeed& poses_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<device::ForceRequest> next_;
+  protocol::ForceMode mode_ = protocol::ForceMode::instead_of_walls;
+  bool stops_ = false;
+  std::thread thread_;
+};
+
+}  // namespace inkwell::library

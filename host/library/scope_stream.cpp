@@ -1,0 +1,129 @@
+#include "scope_stream.hpp"
+
+#include <utility>
+
+#include "errors.hpp"
+
+namespace inkwell::library {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Samples that nobody has read: five seconds.
+constexpr std::size_t rows_maximum = 5 * protocol::servo_rate_Hz;
+/// How soon the end is noticed when no samples come.
+constexpr auto read_timeout = 20ms;
+
+}  // namespace
+
+ScopeStream::ScopeStream(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
+  thread_ = std::thread([this] { run(); });
+}
+
+ScopeStream::~ScopeStream() {
+  {
+    const std::lock_guard lock(mutex_);
+    stops_ = true;
+    changed_.notify_all();
+  }
+  thread_.join();
+}
+
+void ScopeStream::select(const std::vector<protocol::Signal>& signals) {
+  const std::lock_guard user(user_mutex_);
+  if (recorder_) throw NotNow("A recording runs. Stop it before other signals are selected.");
+  poses_.require_open();
+  device_.select_signals(signals);
+  const std::lock_guard lock(mutex_);
+  signals_ = signals;
+  samples_.clear();
+  rows_kept_ = 0;
+  changed_.notify_all();
+}
+
+void ScopeStream::run() {
+  while (!poses_.end_reason()) {
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return stops_ || !signals_.empty(); });
+      if (stops_) return;
+    }
+    try {
+      if (auto samples = device_.read_scope(read_timeout)) keep(std::move(*samples));
+    } catch (const Error& error) {
+      poses_.end(error.what());
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  stops_ = true;
+  changed_.notify_all();
+}
+
+void ScopeStream::keep(device::ScopeSamples samples) {
+  const std::lock_guard lock(mutex_);
+  if (samples.signals != signals_) return;
+  if (recorder_) recorder_->push(samples);
+  rows_kept_ += samples.count;
+  samples_.push_back(std::move(samples));
+  while (rows_kept_ > rows_maximum) {  // nobody reads: the oldest go, and are counted
+    samples_[1].lost_before += samples_[0].lost_before + samples_[0].count;
+    rows_kept_ -= samples_[0].count;
+    samples_.pop_front();
+  }
+  changed_.notify_all();
+}
+
+std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::size_t capacity) {
+  poses_.require_open();
+  std::unique_lock lock(mutex_);
+  if (signals_.empty()) throw NotNow("No signals are selected. Select some first.");
+  changed_.wait_until(lock, in(timeout_s), [&] { return stops_ || !samples_.empty(); });
+  if (samples_.empty() || capacity == 0) {
+    lock.unlock();
+    poses_.require_open();
+    return std::nullopt;
+  }
+  device::ScopeSamples& oldest = samples_.front();
+  device::ScopeSamples taken;
+  if (oldest.count <= capacity) {
+    taken = std::move(oldest);
+    samples_.pop_front();
+  } else {
+    taken = oldest;
+    const auto values = static_cast<std::ptrdiff_t>(capacity * signals_.size());
+    taken.values.resize(static_cast<std::size_t>(values));
+    taken.count = capacity;
+    oldest.values.erase(oldest.values.begin(), oldest.values.begin() + values);
+    oldest.first_period += static_cast<std::uint32_t>(capacity);
+    oldest.count -= capacity;
+    oldest.lost_before = 0;
+  }
+  rows_kept_ -= taken.count;
+  return taken;
+}
+
+void ScopeStream::start_recording(const std::string& path, bool is_simulation) {
+  const std::lock_guard user(user_mutex_);
+  if (signals_.empty()) throw NotNow("No signals are selected. Select those to be recorded first.");
+  if (recorder_) throw NotNow("A recording runs already. Stop it first.");
+  poses_.require_open();
+  auto recorder = std::make_unique<recording::Recorder>(
+      path, recording::describe(device_.information(), device_.parameters(), signals_, "", is_simulation));
+  const std::lock_guard lock(mutex_);
+  recorder_ = std::move(recorder);
+}
+
+recording::RecorderStatus ScopeStream::stop_recording() {
+  const std::lock_guard user(user_mutex_);
+  if (!recorder_) throw NotNow("No recording runs.");
+  std::unique_ptr<recording::Recorder> finished;
+  {
+    const std::lock_guard lock(mutex_);
+    finished = std::move(recorder_);
+  }
+  const auto status = finished->stop();
+  if (!status.error.empty()) throw Error(status.error);
+  return status;
+}
+
+}  // namespace inkwell::library

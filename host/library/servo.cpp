@@ -1,0 +1,94 @@
+#include "servo.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "errors.hpp"
+
+namespace inkwell::library {
+
+Servo::Servo(const PoseFeed& poses, Output output, std::function<void()> let_go)
+    : poses_(poses), output_(std::move(output)), let_go_(std::move(let_go)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+Servo::~Servo() {
+  ask_to_end();
+  {
+    const std::lock_guard lock(mutex_);
+    closes_ = true;
+    changed_.notify_all();
+  }
+  thread_.join();
+}
+
+void Servo::start(Function function) {
+  const std::lock_guard lock(mutex_);
+  if (runs_) throw NotNow("A servo runs on this arm already. Stop it first.");
+  runs_ = true;
+  ++started_;
+  is_to_end_ = false;
+  function_ = std::move(function);
+  changed_.notify_all();
+}
+
+void Servo::ask_to_end() {
+  is_to_end_ = true;
+  poses_.wake();
+}
+
+void Servo::stop() {
+  std::uint64_t meant = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!runs_) return;
+    meant = started_;
+    is_to_end_ = true;
+  }
+  poses_.wake();
+  if (is_caller()) return;
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return !runs_ || started_ != meant; });
+}
+
+bool Servo::is_running() const {
+  const std::lock_guard lock(mutex_);
+  return runs_;
+}
+
+void Servo::run() {
+  for (;;) {
+    Function function;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [&] { return closes_ || function_; });
+      if (closes_) return;
+      function = std::exchange(function_, nullptr);
+    }
+    try {
+      call(function);
+    } catch (...) {  // the link is lost, or the program threw: nothing is to be called any more
+    }
+    let_go_();
+    const std::lock_guard lock(mutex_);
+    runs_ = false;
+    changed_.notify_all();
+  }
+}
+
+void Servo::call(const Function& function) {
+  std::uint32_t seen = poses_.newest().sequence;
+  for (bool goes_on = true; goes_on;) {
+    const auto pose = poses_.wait([&](const auto& newest) { return is_to_end_ || newest.sequence != seen; });
+    if (is_to_end_) return;
+    seen = pose.sequence;
+    double force_N[3]{};
+    goes_on = function(pose, force_N);
+    // A force that is no number is none; the device would refuse it and let the one before expire.
+    for (double& value : force_N)
+      if (std::isnan(value)) value = 0.0;
+    output_(force_N);
+  }
+}
+
+}  // namespace inkwell::library
