@@ -23,9 +23,7 @@ constexpr double angular_smoothing = 0.125;
 constexpr double rest_m_per_s = 0.1;
 
 // Faults of the board that HDAPI takes for a passing thing: the force comes back by itself once the probe is at rest.
-constexpr int fault_over_speed = 6, fault_host_silent = 8;
-
-bool passes(int fault) { return fault == fault_over_speed || fault == fault_host_silent; }
+bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
 double speed_m_per_s(const inkwell_pose& pose) {
   return std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]);
@@ -125,7 +123,7 @@ void Device::note_condition() {
   if (now_.pose.state == INKWELL_UNREFERENCED) was_referenced_ = false;
   const int fault = now_.pose.state == INKWELL_FAULT ? now_.pose.fault : 0;
   if (std::exchange(fault_, fault) != fault && fault != 0)
-    raise(fault == fault_over_speed ? exceeded_max_velocity : force_error, inkwell_fault_text(fault), fault);
+    raise(fault == INKWELL_FAULT_OVER_SPEED ? exceeded_max_velocity : force_error, inkwell_fault_text(fault), fault);
   const bool is_warm = *std::max_element(std::begin(motor_heat_), std::end(motor_heat_)) >= 1.0;
   if (!std::exchange(was_warm_, is_warm) && is_warm) raise(warm_motors);
 }

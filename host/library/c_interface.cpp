@@ -6,6 +6,7 @@
 #include <string>
 
 #include <device/fault_text.hpp>
+#include <protocol/faults.hpp>
 
 #include "address.hpp"
 #include "c_guard.hpp"
@@ -134,6 +135,12 @@ inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_r
     if (jacobian == nullptr) return;
     for (std::size_t joint = 0; joint < 3; ++joint) put(pose.jacobian.column[joint], jacobian + joint, 3);
   });
+}
+
+const char* inkwell_fault_name(int fault) {
+  for (const auto& row : protocol::fault_table)
+    if (row.code == fault) return row.name.data();  // a literal, so it ends in a zero
+  return nullptr;
 }
 
 const char* inkwell_fault_text(int fault) {

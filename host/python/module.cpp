@@ -91,6 +91,14 @@ py::list parameters() {
   return rows;
 }
 
+/// (code, name)
+py::list faults() {
+  py::list rows;
+  for (int code = 0; inkwell_fault_name(code) != nullptr; ++code)
+    rows.append(py::make_tuple(code, inkwell_fault_name(code)));
+  return rows;
+}
+
 py::list signals() {
   py::list rows;
   for (std::size_t i = 0; i < inkwell_signal_count(); ++i) {
@@ -116,7 +124,7 @@ void define_structs(py::module_& module) {
       .def_readonly("sequence", &inkwell_pose::sequence,
                     "one more for each millisecond; a gap is a pose that was missed")
       .def_readonly("state", &inkwell_pose::state)
-      .def_readonly("fault", &inkwell_pose::fault, "code of the fault, 0 for none")
+      .def_readonly("fault", &inkwell_pose::fault, "one of inkwell.Fault")
       .def_property_readonly(
           "fault_text", [](const inkwell_pose& pose) { return std::string(inkwell_fault_text(pose.fault)); },
           "cause and remedy of the fault")
@@ -205,6 +213,7 @@ PYBIND11_MODULE(_native, module) {
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,
              "The arms on this computer's USB, and the virtual one that INKWELL_DEVICE names.");
+  module.def("faults", &inkwell::python::faults);
   module.def("parameters", &inkwell::python::parameters);
   module.def("signals", &inkwell::python::signals);
 }

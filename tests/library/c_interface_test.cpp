@@ -305,7 +305,9 @@ TEST_CASE("what is wrong is said in a sentence, and nothing is touched") {
   CHECK(inkwell_kind_of_address(nullptr, &kind) == INKWELL_BAD_ARGUMENT);
   CHECK(inkwell_servo_is_running(nullptr) == 0);
   inkwell_close(nullptr);
-  CHECK(std::string(inkwell_fault_text(5)).find("motor current") != std::string::npos);
+  CHECK(std::string(inkwell_fault_name(INKWELL_FAULT_OVER_SPEED)) == "over_speed");
+  CHECK(inkwell_fault_name(-1) == nullptr);
+  CHECK(std::string(inkwell_fault_text(INKWELL_FAULT_OVER_CURRENT)).find("motor current") != std::string::npos);
   CHECK(std::string(inkwell_fault_text(-1)).size() > 10);
 
   VirtualArm virtual_arm;

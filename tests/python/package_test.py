@@ -74,6 +74,7 @@ class Reading(unittest.TestCase):
         pose = wait_until(self.arm, lambda pose: pose.state == inkwell.State.READY)
         self.assertTrue(pose.in_inkwell)
         self.assertFalse(pose.feels_program)
+        self.assertEqual(pose.fault, inkwell.Fault.NONE)
         self.assertAlmostEqual(pose.supply_V, 18, delta=1)
         np.testing.assert_allclose(pose.rotation @ pose.rotation.T, np.eye(3), atol=1e-5)
         self.assertRegex(repr(pose), "READY: probe at")
@@ -389,6 +390,12 @@ class Help(unittest.TestCase):
             name = "".join(f"_{letter}" if letter.isupper() else letter.upper() for letter in kind.__name__)
             self.assertIn(f"INKWELL{name} = {result}", header)
         self.assertEqual(len(errors.BY_RESULT), header[:header.index("} inkwell_result")].count(" = ") - 2)
+
+    def test_faults_have_the_names_of_the_header(self):
+        header = (pathlib.Path(__file__).parents[2] / "host/library/include/inkwell/inkwell.h").read_text()
+        for fault in inkwell.Fault:
+            self.assertIn(f"INKWELL_FAULT_{fault.name} = {fault.value}", header)
+        self.assertEqual(inkwell.Fault.OVER_SPEED, 6)
 
     def test_stub_and_module_agree(self):
         def names(thing):

@@ -19,6 +19,7 @@ from ._native import version as _version
 from .arm import Arm, Recording, VirtualHand, open
 from .errors import (BadArgument, Disconnected, Error, Failed, Incompatible, InUse, NoDevice, NoPermission, Refused,
                      TimedOut)
+from .faults import Fault
 from .parameters import Parameter, Parameters
 from .parameters import TABLE as _parameters
 from .scope import Samples, Signal
@@ -27,10 +28,10 @@ from .shapes import Plane, Sphere, Surface
 
 __version__ = _version()
 __all__ = [
-    "Arm", "BadArgument", "Device", "Disconnected", "Error", "Failed", "ForceMode", "InUse", "Incompatible",
-    "Information", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording", "Refused",
-    "Samples", "Signal", "Sphere", "State", "Surface", "TimedOut", "VirtualHand", "devices", "open", "parameters_table",
-    "signals",
+    "Arm", "BadArgument", "Device", "Disconnected", "Error", "Failed", "Fault", "ForceMode", "InUse",
+    "Incompatible", "Information", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording",
+    "Refused", "Samples", "Signal", "Sphere", "State", "Surface", "TimedOut", "VirtualHand", "devices", "open",
+    "parameters_table", "signals",
 ]
 
 

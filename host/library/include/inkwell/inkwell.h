@@ -116,6 +116,24 @@ typedef enum inkwell_state INKWELL_AS_INT {
   INKWELL_FAULT = 4         /* the force is off, and inkwell_fault_text() says why */
 } inkwell_state;
 
+/* Why the device is in INKWELL_FAULT. A code that is not here is of firmware that this library does not know. */
+typedef enum inkwell_fault INKWELL_AS_INT {
+  INKWELL_FAULT_NONE = 0,
+  INKWELL_FAULT_BRIDGE_FAULT = 1,
+  INKWELL_FAULT_SUPPLY_LOW = 2,
+  INKWELL_FAULT_SUPPLY_HIGH = 3,
+  INKWELL_FAULT_CURRENT_SENSOR = 4,
+  INKWELL_FAULT_OVER_CURRENT = 5,
+  INKWELL_FAULT_OVER_SPEED = 6,
+  INKWELL_FAULT_ENCODER_IMPLAUSIBLE = 7,
+  INKWELL_FAULT_HOST_SILENT = 8,
+  INKWELL_FAULT_SERVO_OVERRUN = 9,
+  INKWELL_FAULT_WATCHDOG = 10,
+  INKWELL_FAULT_PROCESSOR_FAULT = 11,
+  INKWELL_FAULT_NOT_FINITE = 12,
+  INKWELL_FAULT_SAMPLES_STALE = 13
+} inkwell_fault;
+
 enum inkwell_force_source {
   INKWELL_WALLS = 1,  /* the walls of the board's own box are felt */
   INKWELL_SHAPES = 2, /* planes or a sphere that a program placed */
@@ -126,7 +144,7 @@ typedef struct inkwell_pose {
   double time_s;     /* board time */
   uint32_t sequence; /* one more for each millisecond of the bus; a gap is a pose that this program missed */
   inkwell_state state;
-  int fault;              /* 0 for none */
+  int fault;              /* one of inkwell_fault */
   double position_m[3];   /* of the probe, where the stylus is held */
   double velocity_m_s[3]; /* over the last 8 ms */
   double rotation[9];   /* of the stylus, row by row: columns are its x, y and z axis; z points out of its tip's back */
@@ -152,6 +170,8 @@ INKWELL_API inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const do
 
 /* Cause and remedy of a fault's code; never NULL. */
 INKWELL_API const char* inkwell_fault_text(int fault);
+/* "over_speed" for INKWELL_FAULT_OVER_SPEED; NULL for a code that has no name. */
+INKWELL_API const char* inkwell_fault_name(int fault);
 
 /* ---- force -------------------------------------------------------------------------------------------------- */
 

@@ -1,0 +1,53 @@
+// The header of the C interface can include nothing of the protocol, so what it numbers is compared with that here.
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include <inkwell/inkwell.h>
+#include <protocol/faults.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell {
+namespace {
+
+/// A name of C's and its value.
+struct Code {
+  std::string_view name;
+  int value;
+};
+#define CODE(name) \
+  { #name, INKWELL_##name }
+
+/// Whether C's name is the protocol's in capitals, behind `prefix`.
+constexpr bool is_capital_of(std::string_view c, std::string_view prefix, std::string_view name) {
+  if (!c.starts_with(prefix)) return false;
+  c.remove_prefix(prefix.size());
+  return std::ranges::equal(c, name, [](char capital, char letter) {
+    return capital == (letter >= 'a' && letter <= 'z' ? letter - 'a' + 'A' : letter);
+  });
+}
+
+constexpr Code faults[] = {
+    CODE(FAULT_NONE),           CODE(FAULT_BRIDGE_FAULT),  CODE(FAULT_SUPPLY_LOW), CODE(FAULT_SUPPLY_HIGH),
+    CODE(FAULT_CURRENT_SENSOR), CODE(FAULT_OVER_CURRENT),  CODE(FAULT_OVER_SPEED), CODE(FAULT_ENCODER_IMPLAUSIBLE),
+    CODE(FAULT_HOST_SILENT),    CODE(FAULT_SERVO_OVERRUN), CODE(FAULT_WATCHDOG),   CODE(FAULT_PROCESSOR_FAULT),
+    CODE(FAULT_NOT_FINITE),     CODE(FAULT_SAMPLES_STALE)};
+static_assert(std::ranges::equal(faults, protocol::fault_table, [](const Code& c, const protocol::CodeInfo& row) {
+  return c.value == row.code && is_capital_of(c.name, "FAULT_", row.name);
+}));
+
+constexpr Code sources[] = {CODE(WALLS), CODE(SHAPES), CODE(PROGRAM)};
+static_assert(std::ranges::equal(sources, protocol::force_source_table, [](const Code& c, const auto& row) {
+  return c.value == static_cast<int>(row.source) && is_capital_of(c.name, "", row.name);
+}));
+
+static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));
+static_assert(INKWELL_INSTEAD_OF_WALLS == static_cast<int>(protocol::ForceMode::instead_of_walls));
+
+constexpr Code states[] = {CODE(STARTING), CODE(UNREFERENCED), CODE(READY), CODE(ACTIVE), CODE(FAULT)};
+static_assert(std::ranges::equal(states, protocol::state_table, [](const Code& c, const protocol::StateInfo& row) {
+  return c.value == &row - protocol::state_table.data() && is_capital_of(c.name, "", row.name);
+}));
+
+}  // namespace
+}  // namespace inkwell
