@@ -56,10 +56,12 @@ void ForceOutput::send(const double (&force_N)[3]) {
     if (std::isnan(force_N[i])) throw BadArgument("The force is not a number on one axis. Give finite numbers.");
     request.force_N[i] = static_cast<float>(std::clamp(force_N[i], -largest_N, largest_N));
   }
-  const std::lock_guard lock(mutex_);
-  request.mode = mode_;
-  next_ = request;
-  changed_.notify_one();
+  {
+    const std::lock_guard lock(mutex_);
+    request.mode = mode_;
+    next_ = request;
+  }
+  changed_.notify_one();  // with the lock, the thread would wake to wait for it, and the caller would wake it again
 }
 
 void ForceOutput::let_go() {
