@@ -20,13 +20,17 @@ double length(const Vector& vector) { return std::hypot(vector[0], vector[1], ve
 
 ForceGuard::Answer ForceGuard::drop(ErrorCode why) {
   ramp_N_ = 0.0;
-  before_N_ = {};
+  before_N_ = earlier_N_ = {};
   return {{}, why};
 }
 
 ForceGuard::Answer ForceGuard::step(const ForceDemand& demand, const ForceLimits& limits) {
   const double passed_s = std::max(0.0, demand.time_s - time_s_);
   time_s_ = demand.time_s;
+  if (passed_s > 0.0) {  // several frames may see the same pose: together they change the force no more than one
+    earlier_N_ = before_N_;
+    since_earlier_s_ = passed_s;
+  }
   if (!demand.is_on) return drop(success);
   if (limits.limits_speed && demand.speed_m_per_s > limits.speed_m_per_s) return drop(exceeded_max_velocity);
   const bool is_huge = length(demand.force_N) > limits.maximum_N;
@@ -39,9 +43,9 @@ ForceGuard::Answer ForceGuard::step(const ForceDemand& demand, const ForceLimits
   if (limits.ramps && ramp_N_ < limits.maximum_N) force_N = scaled_to(force_N, ramp_N_);
   if (limits.limits_change) {
     Vector change_N;
-    for (std::size_t i = 0; i < 3; ++i) change_N[i] = force_N[i] - before_N_[i];
-    change_N = scaled_to(change_N, limits.change_N_per_ms * 1e3 * std::clamp(passed_s, 1e-3, pause_s));
-    for (std::size_t i = 0; i < 3; ++i) force_N[i] = before_N_[i] + change_N[i];
+    for (std::size_t i = 0; i < 3; ++i) change_N[i] = force_N[i] - earlier_N_[i];
+    change_N = scaled_to(change_N, limits.change_N_per_ms * 1e3 * std::clamp(since_earlier_s_, 1e-3, pause_s));
+    for (std::size_t i = 0; i < 3; ++i) force_N[i] = earlier_N_[i] + change_N[i];
   }
   before_N_ = force_N;
   return {force_N, success};

@@ -41,6 +41,8 @@ class ForceGuard {
   double ramp_N_ = 0.0;  ///< as large may the force be by now
   double time_s_ = 0.0;
   Vector before_N_{};
+  Vector earlier_N_{};  ///< the last one at the pose before
+  double since_earlier_s_ = 0.0;
 };
 
 }  // namespace inkwell::dropins

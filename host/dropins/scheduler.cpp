@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace inkwell::dropins {
 namespace {
@@ -43,7 +44,12 @@ bool Scheduler::stop(std::chrono::milliseconds limit) {
   if (!runs_) return true;
   ends_ = true;
   changed_.notify_all();
-  return is_servo_thread() || changed_.wait_for(lock, limit, [this] { return !runs_; });
+  if (is_servo_thread()) return true;
+  if (!changed_.wait_for(lock, limit, [this] { return !runs_; })) return false;
+  std::thread ended = std::move(thread_);
+  lock.unlock();
+  if (ended.joinable()) ended.join();
+  return true;
 }
 
 bool Scheduler::runs() const {

@@ -14,14 +14,22 @@ namespace inkwell::tests {
 inline constexpr device::Vector3 held_point_m{0.02, 0.01, -0.03};
 inline constexpr double hand_N_per_m = 300;
 
+/// A firmware that speaks the next version of the protocol.
+inline const device::VirtualBoardOptions next_protocol{.elf = INKWELL_BUILD_DIRECTORY "/../board/next-protocol.elf"};
+
 struct Board {
-  device::VirtualBoard board{{}};
+  device::VirtualBoard board;
   device::ControlClient control = board.control();
   std::string address = "usbip:127.0.0.1:" + std::to_string(board.usbip_port());
 
   device::Vector3 rest_m = held_point_m;
 
-  Board() {
+  /// With `paused` the stylus is out of the inkwell when time begins, so that the board does not know where it is.
+  explicit Board(const device::VirtualBoardOptions& options = {}) : board(options) {
+    if (options.paused) {
+      control.dock(false);
+      control.resume();
+    }
     setenv("INKWELL_DEVICE", address.c_str(), 1);
     wait_for_device();
   }

@@ -40,6 +40,16 @@ TEST_CASE("a force comes by its ramp, keeps its direction, and ends at the maxim
   CHECK(course.after(400, {0, 30, 40}) == doctest::Approx(3.0));
 }
 
+TEST_CASE("frames that see the same pose change the force together no more than one does") {
+  Course course;
+  course.limits_now.ramps = false;
+  course.limits_now.change_N_per_ms = 0.5;
+  course.step({});
+  CHECK(length(course.step({3, 0, 0}).force_N) == doctest::Approx(0.5));
+  for (int i = 0; i < 9; ++i) CHECK(length(course.step({3, 0, 0}, 0, true, 0.0).force_N) == doctest::Approx(0.5));
+  CHECK(length(course.step({3, 0, 0}).force_N) == doctest::Approx(1.0));
+}
+
 TEST_CASE("without clamping a force that is too large is dropped, told, and back by the ramp") {
   Course course;
   course.limits_now.clamps = false;

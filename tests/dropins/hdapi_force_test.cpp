@@ -1,0 +1,157 @@
+// libHD.so: forces on the hand, their bounds, and what becomes of them when the program or the link fails.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "held.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+TEST_CASE("a force pulls the hand, as much and where it says; a joint torque too; motor values beside it do not") {
+  Held held;
+  const double ramp_N_per_s[]{100};
+  std::array<double, 3> sent_N{};
+  CHECK_FALSE(until(
+      [&] {
+        held.frame([] { set_force({1, 0, 0}); });
+        return held.pulled_m(0) > 0.002;
+      },
+      200));  // is off
+  hdEnable(HD_FORCE_OUTPUT);
+  CHECK(held.pulls(0, 0.0028, 0.0038, [&] {
+    hdSetDoublev(HD_FORCE_RAMPING_RATE, ramp_N_per_s);
+    hdGetDoublev(HD_CURRENT_FORCE, sent_N.data());
+    CHECK(sent_N[0] == 0.0);
+    set_force({9, 9, 9});
+    set_force({1, 0, 0});  // the last one counts
+  }));
+  CHECK(std::abs(held.pulled_m(1)) < 0.001);
+  hdGetDoublev(HD_CURRENT_FORCE, sent_N.data());
+  CHECK(sent_N[0] == doctest::Approx(1.0));
+  CHECK(held.pulls(1, 0.0028, 0.0038, [] { set_force({0, 1, 0}); }));
+  double jacobian_mm[36];
+  hdGetDoublev(HD_CURRENT_JACOBIAN, jacobian_mm);
+  const double pull_z_mNm[3]{jacobian_mm[12], jacobian_mm[13], jacobian_mm[14]};  // 1 N along z
+  CHECK(held.pulls(2, 0.0028, 0.0038, [&] {
+    set_force({3, 0, 0});
+    hdSetDoublev(HD_CURRENT_JOINT_TORQUE, pull_z_mNm);
+  }));
+  CHECK(only_error() == HD_SUCCESS);
+  const long values[3]{1000, 0, 0};
+  until([&] {
+    held.frame([&] {
+      set_force({1, 0, 0});
+      hdSetLongv(HD_CURRENT_MOTOR_DAC_VALUES, values);
+    });
+    return true;
+  });
+  CHECK(only_error() == HD_FORCE_ERROR);
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
+  hdStopScheduler();
+  hdStartScheduler();
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
+}
+
+TEST_CASE("too much force is clamped, or told and dropped") {
+  Held held;
+  double maximum_N = 0;
+  std::array<double, 3> sent_N{};
+  hdGetDoublev(HD_NOMINAL_MAX_FORCE, &maximum_N);
+  CHECK(maximum_N == doctest::Approx(3.3));
+  hdEnable(HD_FORCE_OUTPUT);
+  const double ramp_N_per_s[]{1000};
+  CHECK(until([&] {
+    held.frame([&] {
+      hdSetDoublev(HD_FORCE_RAMPING_RATE, ramp_N_per_s);
+      set_force({0, 30, 40});
+    });
+    hdGetDoublev(HD_CURRENT_FORCE, sent_N.data());
+    return sent_N[2] > 2.6;
+  }));
+  CHECK(sent_N[1] == doctest::Approx(0.6 * maximum_N));
+  CHECK(sent_N[2] == doctest::Approx(0.8 * maximum_N));
+  forget_errors();
+  hdDisable(HD_MAX_FORCE_CLAMPING);
+  until([&] {
+    held.frame([] { set_force({0, 30, 40}); });
+    hdGetDoublev(HD_CURRENT_FORCE, sent_N.data());
+    return true;
+  });
+  CHECK(hdGetError().errorCode == 0x201);
+  CHECK(sent_N[2] == 0.0);
+}
+
+TEST_CASE("a callback that sleeps loses the force, and it comes back") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
+  until([&] {
+    const double begin_s = held.time_s();
+    while (held.time_s() < begin_s + 0.4) {
+    }
+    return true;
+  });
+  CHECK(std::abs(held.pulled_m(0)) < 0.0015);
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
+}
+
+TEST_CASE("frames as fast as a program can make them, beside a thread that asks") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  std::atomic<bool> ends = false;
+  std::jthread asks([&] {
+    double position_mm[3];
+    while (!ends) {
+      hdGetDoublev(HD_CURRENT_POSITION, position_mm);
+      CHECK(hdCheckCalibration() == HD_CALIBRATION_OK);
+    }
+  });
+  const double begin_s = held.time_s();
+  while (held.pulled_m(0) < 0.0028 && held.time_s() < begin_s + 5.0)
+    for (int i = 0; i < 10; ++i) held.frame([] { set_force({1, 0, 0}); });
+  ends = true;
+  CHECK(held.pulled_m(0) > 0.0028);
+  CHECK(only_error() == HD_SUCCESS);
+}
+
+TEST_CASE("a board that is lost in the middle of a frame") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  hdBeginFrame(held.device);
+  held.control.quit();
+  while (hdCheckCalibration() == HD_CALIBRATION_OK) std::this_thread::yield();
+  forget_errors();
+  set_force({1, 0, 0});
+  hdEndFrame(held.device);
+  CHECK(only_error() == HD_SUCCESS);  // the next frame tells it
+  held.frame([] {});
+  CHECK(only_error() == HD_COMM_ERROR);
+}
+
+TEST_CASE("a lost link is an error of communication, and the device may be opened again") {
+  Held held;
+  held.control.usb(false);
+  HDerror error = HD_SUCCESS;
+  CHECK(until([&] {
+    held.frame([] {});
+    error = hdGetError().errorCode;
+    return error != HD_SUCCESS;
+  }));
+  CHECK(error == HD_COMM_ERROR);
+  CHECK(says(HD_COMM_ERROR, "HD_COMM_ERROR: "));
+  hdStopScheduler();
+  hdDisableDevice(held.device);
+  held.control.usb(true);
+  held.wait_for_device();
+  forget_errors();
+  CHECK_MESSAGE(hdInitDevice(nullptr) == held.device, std::string(hdGetErrorString(HD_DEVICE_FAULT)));
+  hdStartScheduler();
+  CHECK(until([&] { return hdCheckCalibration() == HD_CALIBRATION_OK; }));
+}
+
+}  // namespace
+}  // namespace inkwell::tests

@@ -1,0 +1,111 @@
+// libHD.so: callbacks, their order and their time.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <vector>
+
+#include "held.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+TEST_CASE("a frame may begin in one callback and end in another of the same tick") {
+  Held held;
+  struct State {
+    HHD device;
+    int begun = 0, ended = 0;
+  } state{held.device};
+  const auto first = hdScheduleAsynchronous(
+      [](void* user) {
+        hdBeginFrame(static_cast<State*>(user)->device);
+        ++static_cast<State*>(user)->begun;
+        return HD_CALLBACK_CONTINUE;
+      },
+      &state, 65535);
+  const auto last = hdScheduleAsynchronous(
+      [](void* user) {
+        hdEndFrame(static_cast<State*>(user)->device);
+        return ++static_cast<State*>(user)->ended < 50 ? HD_CALLBACK_CONTINUE : HD_CALLBACK_DONE;
+      },
+      &state, 0);
+  CHECK(first <= 0xFFFFFFFE);
+  hdUnschedule(hdWaitForCompletion(last, HD_WAIT_INFINITE) ? first : 0);
+  CHECK(state.ended == 50);
+  while (const auto error = hdGetError().errorCode)
+    CHECK(error == HD_ILLEGAL_BEGIN);  // the first may have been left over
+}
+
+TEST_CASE("the scheduler: order, waiting, taking out, and what is called by the servo thread itself") {
+  Held held;
+  static std::vector<int> order;
+  order.clear();
+  const auto note = [](void* user) {
+    if (order.size() < 6) order.push_back(*static_cast<int*>(user));
+    return HD_CALLBACK_CONTINUE;
+  };
+  int low = 1, middle = 2, high = 3;
+  std::array<HDSchedulerHandle, 3> tasks{};
+  until([&] {  // by the servo thread each is called at once, and again in the next tick
+    tasks = {hdScheduleAsynchronous(note, &low, 10), hdScheduleAsynchronous(note, &high, 30),
+             hdScheduleAsynchronous(note, &middle, 20)};
+    return true;
+  });
+  CHECK(until([] { return order.size() == 6; }));
+  CHECK(order == std::vector<int>{1, 3, 2, 3, 2, 1});
+  for (const auto task : tasks) {
+    CHECK(hdWaitForCompletion(task, HD_WAIT_CHECK_STATUS) == 1);
+    hdUnschedule(task);
+    CHECK(hdWaitForCompletion(task, HD_WAIT_CHECK_STATUS) == 0);
+  }
+  CHECK(only_error() == HD_SUCCESS);
+  hdUnschedule(tasks[0]);
+  CHECK(only_error() == HD_INVALID_OPERATION);
+  int calls = 0;
+  const auto counts = [](void* user) {
+    return ++*static_cast<int*>(user) < 5 ? HD_CALLBACK_CONTINUE : HD_CALLBACK_DONE;
+  };
+  CHECK(hdWaitForCompletion(hdScheduleAsynchronous(counts, &calls, 5), HD_WAIT_INFINITE) == 1);
+  CHECK(calls == 5);
+  hdStopScheduler();
+  calls = 0;
+  const auto waiting = hdScheduleAsynchronous(counts, &calls, 5);
+  CHECK(calls == 0);
+  hdScheduleSynchronous(counts, &calls, 5);  // nobody else would
+  CHECK(calls == 1);
+  hdStartScheduler();
+  CHECK(hdWaitForCompletion(waiting, HD_WAIT_INFINITE) == 1);
+  CHECK(calls == 5);
+  hdScheduleAsynchronous(nullptr, nullptr, 5);
+  CHECK(only_error() == HD_INVALID_VALUE);
+}
+
+TEST_CASE("a tick is a millisecond of the board, or two") {
+  Held held;
+  int rate_Hz = 0;
+  const auto ticks_in_board_time = [&] {
+    double begin_s = 0, end_s = 0;
+    int ticks = 0;
+    begin_s = held.time_s();
+    until([&] { return ++ticks == 400; });
+    end_s = held.time_s();
+    return ticks / (end_s - begin_s);
+  };
+  CHECK(ticks_in_board_time() < 1'050);
+  CHECK(until([&] {
+    hdGetIntegerv(HD_INSTANTANEOUS_UPDATE_RATE, &rate_Hz);
+    return rate_Hz == 1000;
+  }));
+  hdSetSchedulerRate(500);
+  CHECK(only_error() == HD_SUCCESS);
+  CHECK(ticks_in_board_time() < 525);
+  double rate = 0;
+  hdGetDoublev(HD_UPDATE_RATE, &rate);
+  CHECK(rate == 500.0);
+  hdSetSchedulerRate(1600);
+  CHECK(only_error() == HD_INVALID_VALUE);
+  hdSetSchedulerRate(1000);
+  CHECK(hdGetSchedulerTimeStamp() >= 0.0);
+}
+
+}  // namespace
+}  // namespace inkwell::tests

@@ -1,0 +1,58 @@
+// Devices that are not what a program hopes for, and programs that ask for too much.
+#include <doctest/doctest.h>
+
+#include <inkwell/inkwell.h>
+#include <dropins/board.hpp>
+
+#include "virtual_arm.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+TEST_CASE("an arm that does not know where it is gives no force until it was in the inkwell") {
+  Board board({.paused = true});
+  VirtualArm virtual_arm(board.address);
+  virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_UNREFERENCED; });
+  CHECK(inkwell_enable_force(virtual_arm.arm, 0.1) == INKWELL_REFUSED);
+  CHECK(says("Put the stylus into the inkwell"));
+  board.control.dock(true);
+  virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
+}
+
+TEST_CASE("an arm of another version of the protocol is not opened, and the sentence tells the versions") {
+  Board board(next_protocol);
+  inkwell_arm* arm = nullptr;
+  CHECK(inkwell_open(board.address.c_str(), &arm) == INKWELL_INCOMPATIBLE);
+  CHECK(says("of the protocol"));
+  CHECK(arm == nullptr);
+}
+
+TEST_CASE("more forces than the USB takes: the newest goes out, and none is refused or lost") {
+  VirtualArm virtual_arm;
+  virtual_arm.make_active();
+  inkwell_information before, after;
+  inkwell_pose pose;
+  REQUIRE(inkwell_get_information(virtual_arm.arm, &before) == INKWELL_OK);
+  REQUIRE(inkwell_wait_for_pose(virtual_arm.arm, 10.0, &pose) == INKWELL_OK);
+  const auto first = pose.sequence;
+  int forces = 0;
+  // Ten a pose.
+  virtual_arm.wait_until([&](const auto& now) {
+    for (const double each_N : {-3., -3., -3., -3., -3., -3., -3., -3., -3., 1.}) {
+      const double force_N[3]{each_N, 0, 0};
+      REQUIRE(inkwell_set_force(virtual_arm.arm, force_N) == INKWELL_OK);
+      ++forces;
+    }
+    pose = now;
+    return forces > 3000;
+  });
+  REQUIRE(inkwell_get_information(virtual_arm.arm, &after) == INKWELL_OK);
+  CHECK(after.force_reports - before.force_reports > 0);
+  REQUIRE(inkwell_wait_for_pose(virtual_arm.arm, 10.0, &pose) == INKWELL_OK);
+  CHECK(after.force_reports - before.force_reports <= pose.sequence - first + 2);
+  CHECK(after.force_reports_refused == before.force_reports_refused);
+  CHECK(after.force_reports_lost == before.force_reports_lost);
+}
+
+}  // namespace
+}  // namespace inkwell::tests
