@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::uint32_t private_bus = 0xE000'0000, private_bus_end = 0xE010'0000;
 
-/// Devices and the system's own region: the default memory map executes nothing there.
-bool is_never_executed(std::uint32_t address) {
+/// Devices and the system's own region: the default memory map executes nothing there, and wants every access aligned.
+bool is_of_devices(std::uint32_t address) {
   return (address >= 0x4000'0000 && address < 0x6000'0000) || address >= 0xA000'0000;
 }
 
@@ -17,7 +17,7 @@ bool is_never_executed(std::uint32_t address) {
 
 std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, bool privileged) const {
   const bool fetch = access == Access::fetch;
-  if (fetch && is_never_executed(address)) return Outcome::execute_never;
+  if (fetch && is_of_devices(address)) return Outcome::execute_never;
   const bool on_private_bus = address >= private_bus && address < private_bus_end;
   if (on_private_bus) return privileged ? std::nullopt : std::optional(Outcome::data_fault);
   if (protects_ && !machine_.memory_protection.allows(address, access == Access::store, fetch, privileged))
@@ -50,6 +50,10 @@ int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, bool priv
   if (!refusal_of(page, Access::fetch, privileged)) rights |= may_execute;
   return rights;
 }
+
+// ARMv7-M, A3.2.1 and A3.5: of Device and Strongly-ordered memory. What the memory protection unit could make of these
+// regions is left out.
+bool Processor::is_device(std::uint32_t address) const { return is_of_devices(address); }
 
 void Processor::misaligned(std::uint32_t address) {
   refusal_ = Outcome::misaligned;

@@ -13,6 +13,14 @@ bool arm_cpu_tlb_fill_arm(void* processor, std::uint64_t address, int bytes, int
 void arm_cpu_do_unaligned_access_arm(void* processor, std::uint64_t address, int access, int index,
                                      std::uintptr_t return_address);
 std::uint32_t cpu_lduw_code_arm(void* state, std::uint32_t address);
+std::uint64_t helper_le_lduw_mmu_arm(void* state, std::uint32_t address, std::uint32_t operation,
+                                     std::uintptr_t return_address);
+std::uint64_t helper_le_ldul_mmu_arm(void* state, std::uint32_t address, std::uint32_t operation,
+                                     std::uintptr_t return_address);
+void helper_le_stw_mmu_arm(void* state, std::uint32_t address, std::uint32_t value, std::uint32_t operation,
+                           std::uintptr_t return_address);
+void helper_le_stl_mmu_arm(void* state, std::uint32_t address, std::uint32_t value, std::uint32_t operation,
+                           std::uintptr_t return_address);
 void tcg_gen_qemu_ld_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation);
 void tcg_gen_qemu_st_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation);
 }
@@ -38,6 +46,10 @@ struct Engine {
   decltype(&cpu_lduw_code_arm) fetch = find<decltype(cpu_lduw_code_arm)>("cpu_lduw_code_arm");
   decltype(&tcg_gen_qemu_ld_i32_arm) load = find<decltype(tcg_gen_qemu_ld_i32_arm)>("tcg_gen_qemu_ld_i32_arm");
   decltype(&tcg_gen_qemu_st_i32_arm) store = find<decltype(tcg_gen_qemu_st_i32_arm)>("tcg_gen_qemu_st_i32_arm");
+  decltype(&helper_le_lduw_mmu_arm) load_half = find<decltype(helper_le_lduw_mmu_arm)>("helper_le_lduw_mmu_arm");
+  decltype(&helper_le_ldul_mmu_arm) load_word = find<decltype(helper_le_ldul_mmu_arm)>("helper_le_ldul_mmu_arm");
+  decltype(&helper_le_stw_mmu_arm) store_half = find<decltype(helper_le_stw_mmu_arm)>("helper_le_stw_mmu_arm");
+  decltype(&helper_le_stl_mmu_arm) store_word = find<decltype(helper_le_stl_mmu_arm)>("helper_le_stl_mmu_arm");
   PageFunction* mark_plain = find<PageFunction>("tlb_set_dirty_arm");
   PageFunction* forget_page = find<PageFunction>("tlb_flush_page_arm");
   Function* forget_pages = find<Function>("tlb_flush_arm");
@@ -71,6 +83,15 @@ int aligned_if_needed(int operation) {
   constexpr int aligned = 0x70;  // MO_ALIGN
   return in_use != nullptr && in_use->must_be_aligned(translated.first, translated.second) ? operation | aligned
                                                                                            : operation;
+}
+
+/// The engine would make two accesses of one to a device that is not aligned, and nobody would see it.
+void check_alignment(std::uint32_t address, unsigned bytes, EngineCalls::Access access, std::uint32_t operation,
+                     std::uintptr_t return_address) {
+  if (address % bytes == 0 || in_use == nullptr || !in_use->is_device(address)) return;
+  constexpr std::uint32_t index_mask = 0xF;
+  arm_cpu_do_unaligned_access_arm(in_use->remembered_processor(), address, static_cast<int>(access),
+                                  static_cast<int>(operation & index_mask), return_address);  // does not come back
 }
 
 }  // namespace
@@ -142,4 +163,32 @@ void tcg_gen_qemu_ld_i32_arm(void* context, void* value, void* address, std::uin
 void tcg_gen_qemu_st_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation) {
   using namespace inkwell::virtual_board;
   engine().store(context, value, address, index, aligned_if_needed(operation));
+}
+
+std::uint64_t helper_le_lduw_mmu_arm(void* state, std::uint32_t address, std::uint32_t operation,
+                                     std::uintptr_t return_address) {
+  using namespace inkwell::virtual_board;
+  check_alignment(address, 2, EngineCalls::Access::load, operation, return_address);
+  return engine().load_half(state, address, operation, return_address);
+}
+
+std::uint64_t helper_le_ldul_mmu_arm(void* state, std::uint32_t address, std::uint32_t operation,
+                                     std::uintptr_t return_address) {
+  using namespace inkwell::virtual_board;
+  check_alignment(address, 4, EngineCalls::Access::load, operation, return_address);
+  return engine().load_word(state, address, operation, return_address);
+}
+
+void helper_le_stw_mmu_arm(void* state, std::uint32_t address, std::uint32_t value, std::uint32_t operation,
+                           std::uintptr_t return_address) {
+  using namespace inkwell::virtual_board;
+  check_alignment(address, 2, EngineCalls::Access::store, operation, return_address);
+  engine().store_half(state, address, value, operation, return_address);
+}
+
+void helper_le_stl_mmu_arm(void* state, std::uint32_t address, std::uint32_t value, std::uint32_t operation,
+                           std::uintptr_t return_address) {
+  using namespace inkwell::virtual_board;
+  check_alignment(address, 4, EngineCalls::Access::store, operation, return_address);
+  engine().store_word(state, address, value, operation, return_address);
 }

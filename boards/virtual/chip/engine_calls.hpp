@@ -1,7 +1,8 @@
 // Where the engine's own functions pass through us, because its interface has no place for it.
 //
 // Unicorn 2.0.1 reaches these of its functions through the procedure linkage table, so a definition in the program
-// takes their place and hands on to the engine's: what translates a load or a store, and what fills the address cache.
+// takes their place and hands on to the engine's: what translates a load or a store, what fills the address cache, and
+// what serves an access that the cache does not.
 // That is how alignment and rights are checked at no cost to an access that is allowed, and how the fault of one that
 // is not has the instruction's own program counter and if-then state.
 #pragma once
@@ -24,6 +25,8 @@ class EngineCalls {
   virtual int rights_in_page(std::uint32_t page, std::uint32_t bytes, bool privileged) = 0;
   /// Stores to the page cannot hit instructions.
   virtual bool takes_plain_stores(std::uint32_t page) const = 0;
+  /// Accesses to this address must be aligned to their size, whatever the instruction.
+  virtual bool is_device(std::uint32_t address) const = 0;
   /// An access that must be aligned is not; it faults.
   virtual void misaligned(std::uint32_t address) = 0;
   /// Asked when a load or a store is translated: it must be aligned to its size.
@@ -42,6 +45,7 @@ class EngineCalls {
   void forget_pages();
   /// The engine tells which processor, in its own terms, it runs.
   void remember_processor(void* processor) { processor_ = processor; }
+  void* remembered_processor() const { return processor_; }
 
  private:
   void* processor_ = nullptr;

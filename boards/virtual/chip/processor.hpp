@@ -184,6 +184,7 @@ class Processor final : public ClockUser, private EngineCalls {
   bool refuses(std::uint32_t address, unsigned bytes, Access access, bool privileged) override;
   int rights_in_page(std::uint32_t page, std::uint32_t bytes, bool privileged) override;
   bool takes_plain_stores(std::uint32_t page) const override { return plain_stores_.plain(page); }
+  bool is_device(std::uint32_t address) const override;
   void misaligned(std::uint32_t address) override;
   bool must_be_aligned(std::uint16_t first, std::uint16_t second) const override;
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, bool privileged) const;

@@ -122,14 +122,20 @@ TEST_SUITE("virtual chip: processor") {
       CHECK(record(10, 0) == refused_data);
       CHECK(record(10, 1) % 64 == 32);
       CHECK(record(10, 2) == 0);
-      CHECK(test.result(60) == 7);
+      CHECK(test.result(100) == 7);
       CHECK(record(11, 0) == refused_code);
-      CHECK(test.result(61) == 8);
+      CHECK(test.result(101) == 8);
       // In the middle of an if-then block: the third of four, then as if nothing had been.
       CHECK(record(12, 0) == no_answer);
       CHECK(record(12, 2) == 0);
       CHECK(record(12, 3) != 0);
-      CHECK(test.result(62) == 1);
+      CHECK(test.result(102) == 1);
+      for (unsigned number = 13; number < 18; ++number) {
+        CAPTURE(number);
+        CHECK(record(number, 0) == unaligned);
+        CHECK(record(number, 2) == 0);
+      }
+      CHECK(test.result(103) == 0x1234'0012);
       CHECK(test.log.empty());
     }
   }

@@ -75,7 +75,7 @@ void run() {
   word(mpu_control) = 1 | 1 << 2;
   asm volatile("dsb\n isb" ::: "memory");
   guarded[7] = 7;
-  results[60] = guarded[8] + guarded[7];
+  results[100] = guarded[8] + guarded[7];
   FAULTING("str r3, [%2]", &guarded[8]);  // 10
   // Region 2: instructions at the end of SRAM may not run.
   word(mpu_base) = 0x20010000 | 1 << 4 | 2;
@@ -86,9 +86,19 @@ void run() {
   word(mpu_control) = 0;
   asm volatile("dsb\n isb" ::: "memory");
   guarded[8] = 8;
-  results[61] = guarded[8];
+  results[101] = guarded[8];
 
   set_handler(5, mended_fault);
-  results[62] = fault_in_block(&expected) - word(0);  // 12
+  results[102] = fault_in_block(&expected) - word(0);  // 12
+  set_handler(5, fault);
+  constexpr std::uint32_t gpio_a_inputs = gpio::a + gpio::idr;
+  word(rcc::ahb1enr) |= 1;
+  FAULTING("ldr r3, [%2]", gpio_a_inputs - 2);  // 13 to 17: registers, whatever CCR says
+  FAULTING("ldrh r3, [%2]", gpio_a_inputs + 1);
+  FAULTING("str r3, [%2]", gpio::a + gpio::odr + 1);
+  FAULTING("strh r3, [%2]", gpio::a + gpio::odr + 3);
+  FAULTING("ldr r3, [%2]", cfsr + 2);
+  half(gpio::a + gpio::odr) = 0x1234;
+  results[103] = byte(gpio::a + gpio::odr + 1) | word(gpio::a + gpio::odr) << 16;
   results[0] = finished;
 }
