@@ -51,7 +51,7 @@ struct CanRegisters {
 };
 inline constexpr CanRegisters can;
 
-class Can final : public RegisterBlock {
+class Can final : public RegisterBlock, public Freezable {
  public:
   /// Interrupts stand at four positions in a row: transmission, both FIFOs, errors and modes.
   /// CAN2 has CAN1's filters.
@@ -60,13 +60,23 @@ class Can final : public RegisterBlock {
         events_(events),
         number_(number),
         first_position_(first_position),
-        filters_(first != nullptr ? first->own_filters_ : own_filters_) {}
+        filters_(first != nullptr ? first->own_filters_ : own_filters_) {
+    constexpr unsigned first_stop_bit = 25;  // DBG_CAN1_STOP
+    machine.debug_halt.add(*this, DebugHalt::apb1, first_stop_bit + number - 1);
+  }
+  /// The bus stands still too while CAN_MCR.DBF asks for it; a frame that was on its way begins again.
+  void freeze(bool frozen) override {
+    frozen_ = frozen && can.mcr.dbf.in(word(can.mcr));
+    if (frozen_ && sending_ != 0) events_.cancel(std::exchange(sending_, 0));
+    send();
+  }
   void reset() override {
     words_ = {};
     for (const auto& one : {Register{can.mcr}, Register{can.msr}, Register{can.tsr}, Register{can.fmr}})
       word(one) = one.reset_value;
     for (auto& fifo : fifos_) fifo.clear();
     own_filters_ = {};
+    frozen_ = false;
     if (changing_ != 0) events_.cancel(std::exchange(changing_, 0));
     if (sending_ != 0) events_.cancel(std::exchange(sending_, 0));
     update();
@@ -159,7 +169,7 @@ class Can final : public RegisterBlock {
   void send() {
     const bool waits = (word(can.tsr) & can.tsr.tme.masks()) != can.tsr.tme.masks();
     const bool on_bus = (word(can.msr) & (can.msr.inak.mask() | can.msr.slak.mask())) == 0;
-    if (!waits || !on_bus || sending_ != 0) return;
+    if (!waits || !on_bus || sending_ != 0 || frozen_) return;
     constexpr unsigned shortest_frame_bits = 47;
     const bool hears_itself = can.btr.lbkm.in(word(can.btr));
     const unsigned data_bits =
@@ -245,6 +255,7 @@ class Can final : public RegisterBlock {
   CanFilters own_filters_;
   const CanFilters& filters_;
   Scheduler::Id changing_ = 0, sending_ = 0;
+  bool frozen_ = false;
 };
 
 }  // namespace inkwell::virtual_board

@@ -1,5 +1,6 @@
-// What stands still while a debug probe halts the core: the parts whose bits firmware has set (RM0090, "Debug MCU APB1
-// freeze register", "APB2 freeze register"). Everything else goes on, as on a board.
+// What stands still while a debug probe halts the core: SysTick, which is the core's own (ARMv7-M, B3.3.1), and the
+// parts whose bits firmware has set (RM0090, "Debug MCU APB1 freeze register", "APB2 freeze register"). Everything else
+// goes on, as on a board. DBG_I2Cx_SMBUS_TIMEOUT has nothing to stop: no bus is held low, so no time-out runs.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@ class Freezable {
 
 class DebugHalt {
  public:
-  enum Bus : unsigned { apb1, apb2 };
+  enum Bus : unsigned { apb1, apb2, core };
 
   void add(Freezable& part, Bus bus, unsigned bit) { lines_.push_back({&part, bus, bit}); }
   bool halted() const { return halted_; }
@@ -46,7 +47,7 @@ class DebugHalt {
     }
   }
   std::vector<Line> lines_;
-  std::array<std::uint32_t, 2> stops_{};
+  std::array<std::uint32_t, 3> stops_{0, 0, ~0u};
   bool halted_ = false;
 };
 

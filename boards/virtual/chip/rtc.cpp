@@ -1,5 +1,6 @@
 #include "rtc.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -20,6 +21,7 @@ constexpr auto year_2000 = std::chrono::sys_days(std::chrono::year(2000) / 1 / 1
 }  // namespace
 
 void RealTimeClock::reset() {
+  wakes_at_ = frozen_at_ = never;
   control_ = unlock_step_ = 0;
   status_ = 0;
   prescaler_ = rtc.prer.reset_value;
@@ -42,7 +44,7 @@ std::uint64_t RealTimeClock::cycles_per_second() const {
 }
 
 std::uint64_t RealTimeClock::cycles() const {
-  return rtc.isr.init.in(status_) ? 0 : clock().cycles_in(machine_.timeline.now() - set_at_);
+  return rtc.isr.init.in(status_) ? 0 : clock().cycles_in(std::min(machine_.timeline.now(), frozen_at_) - set_at_);
 }
 
 std::uint32_t RealTimeClock::time_register() const {
@@ -181,17 +183,38 @@ void RealTimeClock::write_word(std::uint32_t offset, std::uint32_t value) {
 
 void RealTimeClock::plan_wake_up() {
   if (wake_up_ != 0) events_.cancel(std::exchange(wake_up_, 0));
+  wakes_at_ = never;
   if (!rtc.cr.wute.in(control_) || !clock().runs()) return;
   // RTCCLK over 16, 8, 4 or 2, or the seconds, without or with 65536 more of them.
   const std::uint32_t selected = rtc.cr.wcksel.of(control_);
   const std::uint64_t unit = selected < 4 ? 16u >> selected : cycles_per_second();
   const std::uint64_t counts = std::uint64_t{reload_} + 1 + (selected >= 6 ? 0x1'0000 : 0);
-  wake_up_ = events_.at(machine_.timeline.now() + clock().duration(unit * counts), [this] {
+  wake_up_at(machine_.timeline.now() + clock().duration(unit * counts));
+}
+
+void RealTimeClock::wake_up_at(Ticks when) {
+  wakes_at_ = when;
+  wake_up_ = events_.at(when, [this] {
     wake_up_ = 0;
     status_ |= rtc.isr.wutf.mask();
     plan_wake_up();
     update();
   });
+}
+
+void RealTimeClock::freeze(bool frozen) {
+  if (frozen == (frozen_at_ != never)) return;
+  const Ticks now = machine_.timeline.now();
+  if (frozen) {
+    frozen_at_ = now;
+    for (auto* planned : {&wake_up_, &second_})
+      if (*planned != 0) events_.cancel(std::exchange(*planned, 0));
+    return;
+  }
+  const Ticks stood = now - std::exchange(frozen_at_, never);
+  set_at_ += stood;
+  if (wakes_at_ != never) wake_up_at(wakes_at_ + stood);
+  plan_second();
 }
 
 bool RealTimeClock::alarm_matches(std::uint32_t alarm) const {

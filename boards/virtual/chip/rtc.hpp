@@ -57,10 +57,14 @@ struct RtcRegisters {
 };
 inline constexpr RtcRegisters rtc;
 
-class RealTimeClock final : public RegisterBlock {
+class RealTimeClock final : public RegisterBlock, public Freezable {
  public:
-  RealTimeClock(Machine& machine, Scheduler& events) : machine_(machine), events_(events) {}
+  RealTimeClock(Machine& machine, Scheduler& events) : machine_(machine), events_(events) {
+    constexpr unsigned stop_bit = 10;  // DBG_RTC_STOP
+    machine.debug_halt.add(*this, DebugHalt::apb1, stop_bit);
+  }
   void reset() override;
+  void freeze(bool frozen) override;
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;
@@ -79,6 +83,7 @@ class RealTimeClock final : public RegisterBlock {
   void set_calendar();
   void write_status(std::uint32_t value);
   void plan_wake_up();
+  void wake_up_at(Ticks when);
   void plan_second();
   void second_over();
   bool alarm_matches(std::uint32_t alarm) const;
@@ -91,6 +96,8 @@ class RealTimeClock final : public RegisterBlock {
   std::array<std::uint32_t, 20> backup_{};
   std::int64_t set_to_s_ = 0;  ///< seconds since 2000-01-01 00:00
   Ticks set_at_ = 0, synchronised_at_ = 0, initialised_at_ = 0;
+  Ticks wakes_at_ = never;
+  Ticks frozen_at_ = never;
   unsigned unlock_step_ = 0;
   Scheduler::Id wake_up_ = 0, second_ = 0;
 };

@@ -10,7 +10,7 @@
 
 namespace inkwell::virtual_board {
 
-class SysTick final : public TimedPart, public ClockUser {
+class SysTick final : public TimedPart, public ClockUser, public Freezable {
  public:
   explicit SysTick(Machine& machine);
   void reset();
@@ -19,6 +19,7 @@ class SysTick final : public TimedPart, public ClockUser {
   void step(Ticks now) override;
   void before_clock_change() override;
   void after_clock_change() override;
+  void freeze(bool frozen) override;
 
  private:
   std::uint32_t current() const;
@@ -29,6 +30,7 @@ class SysTick final : public TimedPart, public ClockUser {
   Timeline::Slot slot_;
   std::uint32_t control_ = 0, reload_ = 0, held_ = 0;
   Ticks zero_at_ = never;
+  bool frozen_ = false;
 };
 
 class SystemControl {

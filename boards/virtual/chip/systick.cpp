@@ -3,11 +3,13 @@
 namespace inkwell::virtual_board {
 SysTick::SysTick(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this)) {
   machine.clock_users.push_back(this);
+  machine.debug_halt.add(*this, DebugHalt::core, 0);
 }
 
 void SysTick::reset() {
   control_ = reload_ = held_ = 0;
   zero_at_ = never;
+  frozen_ = false;
   announce();
 }
 
@@ -25,7 +27,7 @@ std::uint32_t SysTick::current() const {
 }
 
 void SysTick::start(std::uint32_t counts_until_zero) {
-  zero_at_ = stk.ctrl.enable.in(control_) && (reload_ != 0 || counts_until_zero != 0)
+  zero_at_ = !frozen_ && stk.ctrl.enable.in(control_) && (reload_ != 0 || counts_until_zero != 0)
                  ? machine_.timeline.now() + duration(counts_until_zero)
                  : never;
   announce();
@@ -71,6 +73,13 @@ void SysTick::write(std::uint32_t offset, std::uint32_t value) {
       break;
     default: break;
   }
+}
+
+void SysTick::freeze(bool frozen) {
+  if (frozen == frozen_) return;
+  held_ = current();
+  frozen_ = frozen;
+  start(held_ != 0 ? held_ : reload_ + 1);
 }
 
 void SysTick::before_clock_change() { held_ = current(); }
