@@ -18,8 +18,7 @@ template <class Timer>
 void set_up() {
   constexpr std::uint32_t both_edges = 0b011;
   constexpr std::uint32_t direct_input = 0b01;
-  // Eight equal samples at a quarter of the timer's clock: pulses under 0.38 us are noise. The fastest arm leaves
-  // some microseconds between two edges.
+  static_assert(board::encoder_filter_samples == 8 && board::encoder_filter_divider == 4);
   constexpr std::uint32_t filter = 0b0111;
   Timer::CCMR1::write(typename Timer::CCMR1::CC1S(direct_input), typename Timer::CCMR1::CC2S(direct_input),
                       typename Timer::CCMR1::IC1F(filter), typename Timer::CCMR1::IC2F(filter));

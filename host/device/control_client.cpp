@@ -77,6 +77,10 @@ void ControlClient::bridge_fault(bool fault) { call({{"command", "bridge_fault"}
 void ControlClient::jump(std::uint32_t address) { call({{"command", "jump"}, {"address", address}}); }
 void ControlClient::halt(double for_s) { call({{"command", "halt"}, {"for_s", for_s}}); }
 void ControlClient::stall(double for_s) { call({{"command", "stall"}, {"for_s", for_s}}); }
+void ControlClient::glitch(const std::string& pin, double duration_s) {
+  call({{"command", "glitch"}, {"pin", pin}, {"for_s", duration_s}});
+}
+
 void ControlClient::lose_exception(int exception, bool lost) {
   call({{"command", "lose_exception"}, {"exception", exception}, {"lost", lost}});
 }

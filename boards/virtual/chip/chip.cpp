@@ -61,6 +61,12 @@ void Chip::halt(Ticks duration) {
   p.events.cancel(p.end_of_halt);
   p.end_of_halt = p.events.at(now() + duration, [&p] { p.machine.debug_halt.set_halted(false); });
 }
+void Chip::glitch(char port, unsigned pin, Ticks duration) {
+  auto& p = *parts_;
+  const auto index = static_cast<unsigned>(port - 'A');
+  p.pins.invert(index, pin, true);
+  p.events.at(now() + duration, [&p, index, pin] { p.pins.invert(index, pin, false); });
+}
 void Chip::set_supply_V(double volts) {
   auto& machine = parts_->machine;
   machine.supply_V = volts;

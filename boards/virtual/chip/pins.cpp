@@ -1,5 +1,6 @@
 #include "pins.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <iterator>
 
@@ -134,18 +135,24 @@ PinLevel Pins::output_of(unsigned port, unsigned pin) const {
   return level == PinLevel::high && pins.open_drain(pin) ? PinLevel::floating : level;
 }
 
-PinLevel Pins::level(unsigned port, unsigned pin) const {
+// What a pin is that the chip does not drive.
+PinLevel Pins::outside(unsigned port, unsigned pin) const {
   const State& s = states_[port * 16 + pin];
-  if (s.output != PinLevel::floating) return s.output;
-  if (s.driven != PinLevel::floating) return s.driven;
-  switch (ports_[port].pull(pin)) {
-    case 1: return PinLevel::high;
-    case 2: return PinLevel::low;
-    default: return PinLevel::floating;
+  PinLevel level = s.driven;
+  if (level == PinLevel::floating) {
+    const unsigned pull = ports_[port].pull(pin);
+    level = pull == 1 ? PinLevel::high : pull == 2 ? PinLevel::low : PinLevel::floating;
   }
+  if (!s.inverted) return level;
+  return level == PinLevel::high ? PinLevel::low : PinLevel::high;
 }
 
-void Pins::update(unsigned port, unsigned pin) {
+PinLevel Pins::level(unsigned port, unsigned pin) const {
+  const State& s = states_[port * 16 + pin];
+  return s.output != PinLevel::floating ? s.output : outside(port, pin);
+}
+
+void Pins::update(unsigned port, unsigned pin, Ticks since) {
   State& s = state(port, pin);
   const PinLevel output = output_of(port, pin);
   if (output != s.output) {
@@ -159,10 +166,7 @@ void Pins::update(unsigned port, unsigned pin) {
     }
   GpioPort& pins = ports_[port];
   bool input = false;
-  if (pins.mode(pin) != GpioPort::Mode::analog) {
-    const PinLevel level = output != PinLevel::floating ? output : s.driven;
-    input = level == PinLevel::floating ? pins.pull(pin) == 1 : level == PinLevel::high;
-  }
+  if (pins.mode(pin) != GpioPort::Mode::analog) input = level(port, pin) == PinLevel::high;
   if (input == s.input) return;
   s.input = input;
   pins.set_input(pin, input);
@@ -170,17 +174,22 @@ void Pins::update(unsigned port, unsigned pin) {
   if (output == PinLevel::floating)
     for (unsigned i = 0; i < s.routes; ++i) {
       const TimerPin& route = timer_pins[s.route[i]];
-      machine_.timers->input_changed(route.timer, route.line, input);
+      machine_.timers->input_changed(route.timer, route.line, input, std::min(since, machine_.timeline.now()));
     }
 }
 
-void Pins::drive(char port, unsigned pin, PinLevel level) {
+void Pins::invert(unsigned port, unsigned pin, bool inverted) {
+  state(port, pin).inverted = inverted;
+  update(port, pin);
+}
+
+void Pins::drive(char port, unsigned pin, PinLevel level, Ticks since) {
   const unsigned index = static_cast<unsigned>(port - 'A');
   if (index >= ports || pin > 15) return;
   State& s = state(index, pin);
   if (s.driven == level) return;
   s.driven = level;
-  update(index, pin);
+  update(index, pin, since);
 }
 
 }  // namespace inkwell::virtual_board

@@ -55,7 +55,9 @@ class Pins final : public InputPins {
     return ports_[port].mode(pin) == GpioPort::Mode::alternate && ports_[port].alternate_function(pin) == function;
   }
   bool is_analog(unsigned port, unsigned pin) const { return ports_[port].mode(pin) == GpioPort::Mode::analog; }
-  void drive(char port, unsigned pin, PinLevel level) override;
+  void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) override;
+  /// What comes in from outside is the opposite of what the circuit drives, or no longer.
+  void invert(unsigned port, unsigned pin, bool inverted);
   /// What a meter would show at the pin.
   PinLevel level(unsigned port, unsigned pin) const;
   PinLevel output(unsigned port, unsigned pin) const { return states_[port * 16 + pin].output; }
@@ -73,7 +75,7 @@ class Pins final : public InputPins {
   /// After mode or alternate function of pins changed.
   void reconnect(unsigned port, std::uint32_t pins);
   /// Finds the level of a pin anew and tells who wants to know.
-  void update(unsigned port, unsigned pin);
+  void update(unsigned port, unsigned pin, Ticks since = just_now);
 
  private:
   struct TimerOutput {
@@ -86,11 +88,13 @@ class Pins final : public InputPins {
     PinLevel output = PinLevel::floating;  ///< by the chip, as the circuit was told
     PinLevel level = PinLevel::floating;   ///< as on_level was told
     bool input = false;
+    bool inverted = false;
     std::uint8_t routes = 0;
     std::array<std::uint8_t, 2> route{};  ///< indices into timer_pins
   };
   State& state(unsigned port, unsigned pin) { return states_[port * 16 + pin]; }
   PinLevel output_of(unsigned port, unsigned pin) const;
+  PinLevel outside(unsigned port, unsigned pin) const;
 
   Machine& machine_;
   std::vector<GpioPort> ports_;

@@ -25,6 +25,7 @@ void Timer::reset() {
   down_ = gate_open_ = false;
   for (auto& channel : channels_) channel = Channel{.input = channel.input};
   if (machine_.timers != nullptr) machine_.timers->set_slave(traits_.number, 0, false);
+  configure_inputs();
   configure_outputs();
   begin_ramp(machine_.timeline.now());
   update_interrupts();
@@ -59,7 +60,10 @@ void Timer::settle() {
 }
 
 void Timer::before_clock_change() { settle(); }
-void Timer::after_clock_change() { begin_ramp(machine_.timeline.now()); }
+void Timer::after_clock_change() {
+  configure_inputs();
+  begin_ramp(machine_.timeline.now());
+}
 
 void Timer::freeze(bool frozen) {
   settle();
@@ -200,6 +204,8 @@ void Timer::count_one(bool down) {
 }
 
 void Timer::step(Ticks now) {
+  take_input_changes(now);
+  if (now < step_due_) return plan();
   account(next_tick_);
   if (next_tick_ >= ramp_length_)
     end_ramp(now);
@@ -219,7 +225,10 @@ Ticks Timer::update_time() const {
 }
 
 void Timer::plan() {
-  if (!runs() || !clock().runs()) return machine_.timeline.set(slot_, never, never);
+  const Ticks input_due = channels_[next_input()].input.next_change();
+  const Ticks input_wake = inputs_wake() ? input_due : never;
+  step_due_ = never;
+  if (!runs() || !clock().runs()) return machine_.timeline.set(slot_, input_due, input_wake);
   next_tick_ = ramp_length_;
   std::uint64_t next_needed = no_match;
   bool any_needed = false;
@@ -237,7 +246,8 @@ void Timer::plan() {
   if (any_needed && next_needed == no_match) next_needed = ramp_length_;
   Ticks wake = next_needed == no_match ? never : time_of(next_needed);
   if (update_needed()) wake = std::min(wake, update_time());
-  machine_.timeline.set(slot_, time_of(next_tick_), wake);
+  step_due_ = time_of(next_tick_);
+  machine_.timeline.set(slot_, std::min(step_due_, input_due), std::min(wake, input_wake));
 }
 
 void Timer::plan_again() {

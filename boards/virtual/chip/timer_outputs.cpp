@@ -114,14 +114,14 @@ void Timer::count_encoder_edge(unsigned changed) {
   const unsigned mode = slave_mode();
   if (!enabled()) return;
   if ((mode == 1 && changed == 0) || (mode == 2 && changed == 1)) return;
-  const bool first = channels_[0].input != tim.ccer.ccp.in(ccer_, 0);
-  const bool second = channels_[1].input != tim.ccer.ccp.in(ccer_, 1);
+  const bool first = input(0) != tim.ccer.ccp.in(ccer_, 0);
+  const bool second = input(1) != tim.ccer.ccp.in(ccer_, 1);
   const bool down = changed == 0 ? first == second : first != second;
   count_one(down);
 }
 
 void Timer::channel_edge(unsigned i) {
-  const bool high = channels_[i].input;
+  const bool high = input(i);
   // Captures: channel i from its own input, its neighbour through the cross connection.
   for (const unsigned target : {i, i ^ 1}) {
     if (target >= traits_.channels || selection(target) != (target == i ? 1u : 2u)) continue;
@@ -137,7 +137,35 @@ void Timer::channel_edge(unsigned i) {
     trigger_in(high != inverted, false);
 }
 
-void Timer::input_changed(unsigned line, bool high) {
+// The bits of ICxF are others while the channel is an output.
+void Timer::configure_inputs() {
+  for (unsigned i = 0; i < traits_.channels; ++i) {
+    const unsigned filter = selection(i) == 0 ? 0 : tim.ccmr1.icf.of(ccmr_[i / 2], i % 2);
+    channels_[i].input.configure(InputFilterSetting::of(filter, tim.cr1.ckd.of(cr1_)), clock(),
+                                 machine_.timeline.now());
+  }
+}
+
+unsigned Timer::next_input() const {
+  unsigned next = 0;
+  for (unsigned i = 1; i < traits_.channels; ++i)
+    if (channels_[i].input.next_change() < channels_[next].input.next_change()) next = i;
+  return next;
+}
+
+void Timer::take_input_changes(Ticks until) {
+  for (;;) {
+    const unsigned i = next_input();
+    if (channels_[i].input.next_change() > until) return;
+    channels_[i].input.pass();
+    if (encoder_mode() && i < 2) count_encoder_edge(i);
+    channel_edge(i);
+  }
+}
+
+bool Timer::inputs_wake() const { return dier_ != 0 || slave_mode() >= reset_mode || master_mode() != master_reset; }
+
+void Timer::input_changed(unsigned line, bool high, Ticks when) {
   if (line == break_input) {
     break_input_ = high;
     check_break();
@@ -150,20 +178,17 @@ void Timer::input_changed(unsigned line, bool high) {
     return;
   }
   if (line >= traits_.channels) return;
-  channels_[line].input = high;
-  if (encoder_mode() && line < 2) {
-    if ((ccmr_[0] & tim.ccmr1.icf.masks()) != 0)
-      machine_.log.say_once("TIMx_CCMR1.ICxF: input filters are not modelled");
-    count_encoder_edge(line);
-  }
-  channel_edge(line);
+  // A sample at the very instant of a change sees what comes after it.
+  if (when != 0) take_input_changes(when - 1);
+  channels_[line].input.drive(high, when);
+  plan();
 }
 
 void Timer::connect_input(unsigned line, bool high) {
   if (line == break_input)
     break_input_ = high;
   else if (line < traits_.channels)
-    channels_[line].input = high;
+    channels_[line].input.connect(high);
 }
 
 void Timer::internal_trigger(unsigned master, bool level, bool is_pulse) {

@@ -134,6 +134,7 @@ std::uint32_t Timer::read_word(std::uint32_t offset) {
       return sr_;
     case tim.cnt:
       if (encoder_mode() || slave_mode() == external_clock) machine_.advance_circuit(Machine::input_age_limit);
+      take_input_changes(machine_.timeline.now());
       return count_now();
     case tim.egr: return 0;
     case tim.dmar:
@@ -165,6 +166,7 @@ void Timer::write_control(std::uint32_t value) {
     down_ = tim.cr1.dir.in(cr1_);
   else if (!was_centred && centre_aligned() && !was_enabled)
     down_ = tim.cr1.dir.in(value);
+  configure_inputs();
   begin_ramp(was_running && runs() ? ramp_start_ : machine_.timeline.now());
   if (enabled() != was_enabled && master_mode() == master_enable) trigger_out(enabled(), false);
 }
@@ -279,6 +281,7 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
   }
   // A new configuration of channels, triggers or interrupts; a channel without preload takes its value at once.
   settle();
+  configure_inputs();
   for (unsigned i = 0; i < traits_.channels; ++i)
     if (!preloads(i)) channels_[i].active_compare = channels_[i].compare;
   begin_ramp(runs() ? ramp_start_ : machine_.timeline.now());

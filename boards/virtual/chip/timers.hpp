@@ -2,8 +2,8 @@
 //
 // The counter is not stepped: it runs in ramps (up to the next overflow or underflow) and its value follows
 // from the time. Steps happen only at compare matches that somebody needs and at the ends of ramps.
-// Not modelled: input filters and prescalers, dead time, DMA bursts, captures by an internal trigger other than USB's
-// start of frame.
+// Not modelled: prescalers of inputs, the filter of the external trigger, dead time, DMA bursts, captures by an
+// internal trigger other than USB's start of frame.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 
 #include "alternate_functions.hpp"
 #include "bus.hpp"
+#include "input_filter.hpp"
 #include "timer_map.hpp"
 
 namespace inkwell::virtual_board {
@@ -52,8 +53,8 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   /// The counter stands, and TIM1 and TIM8 switch their outputs off (RM0090, "Debug support for timers").
   void freeze(bool frozen) override;
 
-  /// A pin that is an input of this timer changed.
-  void input_changed(unsigned line, bool high);
+  /// A pin that is an input of this timer has been so since `when`.
+  void input_changed(unsigned line, bool high, Ticks when);
   /// A pin is connected to this timer; its level so far is no edge.
   void connect_input(unsigned line, bool high);
   /// The clock security system breaks as the break input does (RM0090, "Using the break function").
@@ -81,7 +82,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
     bool needed = false;                            ///< somebody needs its matches in time
     PinLevel when_active = PinLevel::floating, when_inactive = PinLevel::floating;
     PinLevel complement_when_active = PinLevel::floating, complement_when_inactive = PinLevel::floating;
-    bool input = false;  ///< level at its pin
+    InputFilter input{};
   };
 
   // timer.cpp: counting
@@ -126,6 +127,13 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void check_break();
   void break_now();
   void capture(unsigned channel);
+  bool input(unsigned channel) const { return channels_[channel].input.output(); }
+  void configure_inputs();
+  /// The input that changes next behind its filter.
+  unsigned next_input() const;
+  void take_input_changes(Ticks until);
+  /// What an input does can reach the processor before that looks at the counter.
+  bool inputs_wake() const;
   void count_encoder_edge(unsigned changed_channel);
   void trigger_in(bool level, bool is_pulse);
   void channel_edge(unsigned channel);
@@ -154,7 +162,7 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   bool gate_open_ = false;
   bool break_input_ = false;
   bool frozen_ = false;
-  Ticks ramp_start_ = 0;
+  Ticks ramp_start_ = 0, step_due_ = never;
   std::uint64_t ramp_length_ = 0, accounted_ = 0, next_tick_ = 0;
 };
 
@@ -162,7 +170,9 @@ class Timers final : public TriggerLines {
  public:
   explicit Timers(Machine& machine);
   Timer& timer(unsigned number) { return timers_[number - 1]; }
-  void input_changed(unsigned timer_number, unsigned line, bool high) { timer(timer_number).input_changed(line, high); }
+  void input_changed(unsigned timer_number, unsigned line, bool high, Ticks when) {
+    timer(timer_number).input_changed(line, high, when);
+  }
   void trigger_from(unsigned master, bool level, bool is_pulse);
   /// A slave listens to the trigger output of `master` in a mode that starts or steps it.
   bool has_slave(unsigned master) const { return slaves_[master] != 0; }

@@ -212,12 +212,16 @@ void Plant::show(char port, unsigned pin, PinLevel level, PinLevel& shown) {
 void Plant::show_inputs() {
   if (pins_ == nullptr || !inputs_stale_) return;
   inputs_stale_ = false;
+  // The arm has moved evenly since the inputs were shown.
+  const Ticks from = shown_at_, to = next_step_ - step_ticks;
+  shown_at_ = to;
   for (unsigned i = 0; i < 3; ++i) {
     const auto& wiring = board::encoders[i];
-    encoders_[i].follow(arm_.joints_rad()[i], [&](QuadratureEncoder::Levels levels) {
+    encoders_[i].follow(arm_.joints_rad()[i], [&](QuadratureEncoder::Levels levels, double share) {
+      const Ticks when = from + static_cast<Ticks>(share * static_cast<double>(to - from));
       // Neighbouring counts differ in one pin, so each edge is one call.
-      if (levels.a != encoder_levels_[i].a) pins_->drive(wiring.a.pin.port, wiring.a.pin.number, level_of(levels.a));
-      if (levels.b != encoder_levels_[i].b) pins_->drive(wiring.b.pin.port, wiring.b.pin.number, level_of(levels.b));
+      const auto& changed = levels.a != encoder_levels_[i].a ? wiring.a.pin : wiring.b.pin;
+      pins_->drive(changed.port, changed.number, level_of(&changed == &wiring.a.pin ? levels.a : levels.b), when);
       encoder_levels_[i] = levels;
     });
   }

@@ -223,25 +223,35 @@ std::string_view name_of(PinLevel level) {
   }
 }
 
-json pin(const json& request, Simulation& simulation) {
+PinName pin_of(const json& request) {
   const json& name = at(request, "pin", "a pin, such as \"PA5\"");
   if (!name.is_string()) throw Refused("\"pin\" must be a pin, such as \"PA5\"");
-  Chip& chip = simulation.board().chip();
   try {
-    const PinName place = PinName::of(name.get<std::string>());
-    if (const auto level = request.find("drive"); level != request.end()) {
-      if (*level != "high" && *level != "low" && *level != "floating")
-        throw Refused("\"drive\" must be \"high\", \"low\" or \"floating\"");
-      chip.input_pins().drive(place.port, place.pin,
-                              *level == "high"  ? PinLevel::high
-                              : *level == "low" ? PinLevel::low
-                                                : PinLevel::floating);
-    }
-    return {{"level", name_of(chip.pin_level(place.port, place.pin))},
-            {"chip_drives", name_of(chip.pin_output(place.port, place.pin))}};
+    return PinName::of(name.get<std::string>());
   } catch (const std::invalid_argument& error) {
     throw Refused(error.what());
   }
+}
+
+json pin(const json& request, Simulation& simulation) {
+  const PinName place = pin_of(request);
+  Chip& chip = simulation.board().chip();
+  if (const auto level = request.find("drive"); level != request.end()) {
+    if (*level != "high" && *level != "low" && *level != "floating")
+      throw Refused("\"drive\" must be \"high\", \"low\" or \"floating\"");
+    chip.input_pins().drive(place.port, place.pin,
+                            *level == "high"  ? PinLevel::high
+                            : *level == "low" ? PinLevel::low
+                                              : PinLevel::floating);
+  }
+  return {{"level", name_of(chip.pin_level(place.port, place.pin))},
+          {"chip_drives", name_of(chip.pin_output(place.port, place.pin))}};
+}
+
+json glitch(const json& request, Simulation& simulation) {
+  const PinName place = pin_of(request);
+  simulation.board().chip().glitch(place.port, place.pin, ticks(number(request, "for_s", 0.0, 1e3)));
+  return {};
 }
 
 json jump(const json& request, Simulation& simulation) {
@@ -346,6 +356,7 @@ const std::vector<Command>& commands() {
       {"logic_supply", {"voltage_V"}, "of the chip, 3.3 V to begin with", logic_supply},
       {"bridge_fault", {"fault"}, "a bridge pulls the fault wire", bridge_fault},
       {"pin", {"pin", "drive"}, "level at a pin, such as PA5; drives it high, low or floating from outside first", pin},
+      {"glitch", {"pin", "for_s"}, "a pin is the opposite of what drives it, as by a spike on its wire", glitch},
       {"jump", {"address"}, "throw the program counter there, as a flipped bit would", jump},
       {"stall", {"for_s"}, "the core stands still while all else goes on, as on a bus that does not answer", stall},
       {"halt", {"for_s"}, "a debug probe halts the core, and what DBGMCU_APBx_FZ says; all else goes on", halt},

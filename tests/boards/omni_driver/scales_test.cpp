@@ -2,6 +2,8 @@
 // fact would not show between them: these numbers come from the parts and wires that README.md names.
 #include <board/omni_driver.hpp>
 
+#include <numbers>
+
 #include <doctest/doctest.h>
 #include <boards/virtual/plant/driven_plant.hpp>
 
@@ -62,6 +64,24 @@ TEST_CASE("encoder: 360 lines are 1440 counts in a turn of the motor, 13.3 turns
   driven.plant.place({0.5, 0.25, 0.1}, {0.0, 0.0, 0.0});
   driven.idle(0.00005);
   CHECK(std::abs(static_cast<double>(driven.inputs.counts[0] - driven.counts_at_start[0]) - 0.5 * 3048.08) <= 1.0);
+}
+
+TEST_CASE("encoder filter: 0.38 us, and each arm's fastest edges hold an input ten times as long") {
+  CHECK(board::encoder_filter_s == Approx(0.380952e-6));
+  using protocol::Parameter;
+  for (const auto& arm : test::all_arms()) {
+    const auto torque_constants = arm.parameters.of_each(Parameter::torque_constant_1_Nm_per_A);
+    const auto counts_per_turn = arm.parameters.of_each(Parameter::encoder_1_counts_per_turn);
+    for (unsigned motor = 0; motor < 3; ++motor) {
+      CAPTURE(arm.name);
+      CAPTURE(motor);
+      // No motor turns faster than without a load at the highest supply; an input holds its level for two counts.
+      const double fastest_rad_per_s = static_cast<double>(board::supply_maximum_V / torque_constants[motor]);
+      const double counts_per_s =
+          fastest_rad_per_s / (2.0 * std::numbers::pi) * static_cast<double>(counts_per_turn[motor]);
+      CHECK(2.0 / counts_per_s > 10.0 * static_cast<double>(board::encoder_filter_s));
+    }
+  }
 }
 
 }  // namespace

@@ -154,6 +154,15 @@ static_assert(usb_Hz == 48'000'000 && pll_vco_Hz % pll_q == 0, "USB needs exactl
 static_assert(apb1_Hz <= 42'000'000 && apb2_Hz <= 84'000'000);
 static_assert(adc_Hz <= 36'000'000, "limit of the ADC");
 
+// ---- encoders ----------------------------------------------------------------------------------------
+//
+// Motors switch beside the encoders' wires. A level counts when so many samples in a row have seen it, one every so
+// many cycles of the timer's clock (RM0090, TIMx_CCMR1, ICxF); each arm's fastest edges must leave it that time.
+
+inline constexpr std::uint32_t encoder_filter_samples = 8, encoder_filter_divider = 4;
+inline constexpr float encoder_filter_s =
+    static_cast<float>(encoder_filter_samples * encoder_filter_divider) / timer_apb1_Hz;
+
 // ---- bridges -----------------------------------------------------------------------------------------
 //
 // Both legs of a bridge switch at pwm_Hz, centre-aligned, with duties (1 + u) / 2 and (1 - u) / 2. The

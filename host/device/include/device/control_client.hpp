@@ -75,8 +75,9 @@ class ControlClient {
   void jump(std::uint32_t address);  ///< throws the processor's program counter somewhere, as a flipped bit would
   void stall(double for_s);          ///< the core stands still, all else goes on
   void halt(double for_s);           ///< a debug probe halts it, with what the firmware lets stop then
-  void lose_exception(int exception, bool lost);  ///< it never reaches the core, or does again
-  void crystal(bool swings);                      ///< the crystal stops, or swings again
+  void glitch(const std::string& pin, double duration_s);  ///< a pin ("PA0") is the opposite of what drives it
+  void lose_exception(int exception, bool lost);           ///< it never reaches the core, or does again
+  void crystal(bool swings);                               ///< the crystal stops, or swings again
   void hand(const Hand& hand);
   void hand_path(const std::vector<HandWaypoint>& path);  ///< minimum jerk between the waypoints
   void gimbal(const Vector3& angles_rad);                 ///< turns the stylus: yaw, pitch, roll

@@ -12,16 +12,6 @@ namespace {
 constexpr Ticks cycle = 50;  // at 168 MHz
 constexpr Ticks pwm_period = 2000 * cycle;
 
-/// The two encoder inputs step through the quadrature, forward for positive counts.
-void turn(ChipUnderTest& test, int& phase, int counts) {
-  constexpr bool a[] = {false, true, true, false}, b[] = {false, false, true, true};
-  for (; counts != 0; counts += counts > 0 ? -1 : 1) {
-    phase = (phase + (counts > 0 ? 1 : 3)) % 4;
-    test.chip.input_pins().drive('B', 4, a[phase] ? PinLevel::high : PinLevel::low);
-    test.chip.input_pins().drive('B', 5, b[phase] ? PinLevel::high : PinLevel::low);
-  }
-}
-
 }  // namespace
 
 TEST_SUITE("virtual chip: peripherals") {
@@ -111,24 +101,6 @@ TEST_SUITE("virtual chip: peripherals") {
     pins.drive('A', 6, PinLevel::high);
     CHECK(edges_in(0.001).size() > 10);
     CHECK(test.result(2) == 1);
-  }
-
-  TEST_CASE("encoder mode counts every edge, both ways, through the wrap") {
-    ChipUnderTest test("encoder", Mode::fast);
-    int phase = 0;
-    test.chip.input_pins().drive('B', 4, PinLevel::low);
-    test.chip.input_pins().drive('B', 5, PinLevel::low);
-    test.run_for(0.001);
-    REQUIRE(test.result(0) == finished);
-    const auto start = static_cast<std::uint16_t>(test.result(1));
-    int total = 0;
-    for (const int counts : {1, 7, -3, 1000, -2500, 70'000, -5}) {
-      turn(test, phase, counts);
-      total += counts;
-      test.run_for(20e-6);
-      CHECK(static_cast<std::uint16_t>(test.result(1)) == static_cast<std::uint16_t>(start + total));
-      CHECK(test.result(2) == (counts < 0 ? 1 : 0));
-    }
   }
 
   TEST_CASE("injected conversions start with the trigger, all three converters at the same instant") {

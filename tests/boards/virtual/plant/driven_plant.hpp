@@ -21,7 +21,7 @@ inline constexpr Ticks pwm_period = ticks_per_s / board::pwm_Hz;
 /// Levels of the chip's inputs, with a quadrature decoder as the timers have one.
 class DecodedInputs final : public InputPins {
  public:
-  void drive(char port, unsigned pin, PinLevel level) override {
+  void drive(char port, unsigned pin, PinLevel level, Ticks since) override {
     ++calls;
     levels[{port, pin}] = level;
     for (unsigned i = 0; i < 3; ++i) {
@@ -31,6 +31,12 @@ class DecodedInputs final : public InputPins {
       const int moved = (phase - phases[i]) & 3;
       if (moved == 2) ++jumps;  // both pins at once: the direction is lost
       counts[i] += moved == 1 ? 1 : moved == 3 ? -1 : 0;
+      if (moved != 0 && since != just_now) {
+        if (since < newest_edge[i]) ++out_of_order;
+        if (newest_edge[i] != 0 && since >= newest_edge[i])
+          shortest_pause = std::min(shortest_pause, since - newest_edge[i]);
+        newest_edge[i] = since;
+      }
       phases[i] = phase;
     }
   }
@@ -41,7 +47,9 @@ class DecodedInputs final : public InputPins {
   std::map<std::pair<char, unsigned>, PinLevel> levels;
   std::array<int, 3> phases{};
   std::array<std::int64_t, 3> counts{};
-  int calls = 0, jumps = 0;
+  int calls = 0, jumps = 0, out_of_order = 0;
+  std::array<Ticks, 3> newest_edge{};  ///< of each encoder
+  Ticks shortest_pause = just_now;     ///< between two edges of one encoder
 };
 
 /// A plant with the edges that timers would give it: centre-aligned, unipolar, as the board's facts say.

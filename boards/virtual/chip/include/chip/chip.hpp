@@ -134,6 +134,8 @@ class Chip {
   /// A debug probe halts the core for this long; what firmware asked for in DBGMCU_APBx_FZ stands still too. Unlike the
   /// halts of debug_port(), in which all of board time stands.
   void halt(Ticks duration);
+  /// For this long the pin is the opposite of what the circuit drives, as by a spike that couples into its wire.
+  void glitch(char port, unsigned pin, Ticks duration);
   /// An exception by number that never reaches the core, or does again.
   void lose_exception(unsigned exception, bool lost);
   /// The supply of the chip, 3.3 V to begin with. Below the brown-out level of the option bytes it is held in reset.

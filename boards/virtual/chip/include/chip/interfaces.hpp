@@ -89,7 +89,10 @@ class Circuit {
 class InputPins {
  public:
   virtual ~InputPins() = default;
-  virtual void drive(char port, unsigned pin, PinLevel level) = 0;
+  static constexpr Ticks just_now = ~Ticks{0};
+  /// A circuit that looks back, as one that moves in steps does, tells since when the level has been so. Calls for one
+  /// pin come in the order of these times.
+  virtual void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) = 0;
 };
 
 }  // namespace inkwell::virtual_board

@@ -99,6 +99,7 @@ class Plant final : public Circuit {
   // Inputs of the chip
   InputPins* pins_ = nullptr;
   bool inputs_stale_ = true;  ///< something that the inputs show has moved since
+  Ticks shown_at_ = 0;        ///< the arm, by the encoders
   std::array<QuadratureEncoder, 3> encoders_;
   std::array<QuadratureEncoder::Levels, 3> encoder_levels_{};
   std::array<bool, 2> buttons_{};

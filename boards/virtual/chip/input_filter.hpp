@@ -1,0 +1,86 @@
+// The digital filter of a timer's input (RM0090, TIMx_CCMR1: ICxF).
+//
+// Nothing is stepped: a level that holds passes at a sample that can be told in advance.
+#pragma once
+
+#include <cstdint>
+
+#include "clock.hpp"
+
+namespace inkwell::virtual_board {
+
+/// So many equal samples in a row, one every `divider` cycles of the timer's clock.
+struct InputFilterSetting {
+  std::uint32_t divider = 1;
+  std::uint32_t samples = 1;
+  bool operator==(const InputFilterSetting&) const = default;
+
+  /// ICxF `code`, with CR1.CKD `clock_division`. Code 0 is no filter: each sample passes.
+  static constexpr InputFilterSetting of(unsigned code, unsigned clock_division) {
+    constexpr InputFilterSetting by_code[] = {{1, 1}, {1, 2}, {1, 4},  {1, 8},  {2, 6},  {2, 8},  {4, 6},  {4, 8},
+                                              {8, 6}, {8, 8}, {16, 5}, {16, 6}, {16, 8}, {32, 5}, {32, 6}, {32, 8}};
+    InputFilterSetting setting = by_code[code & 15];
+    // Codes 1 to 3 count the timer's own clock, the others tDTS.
+    if (code == 0 || code > 3) setting.divider <<= clock_division;
+    return setting;
+  }
+};
+
+class InputFilter {
+ public:
+  /// Level behind the filter.
+  bool output() const { return output_; }
+  /// When output() changes if the input stays as it is.
+  Ticks next_change() const { return passes_at_; }
+  /// That time has come.
+  void pass() {
+    output_ = input_;
+    passes_at_ = never;
+  }
+
+  /// The input has been so since `when`; what passes before then has passed.
+  void drive(bool high, Ticks when) {
+    if (high == input_) return;
+    input_ = high;
+    if (input_ == output_) {
+      left_at_sample_ = sample_at(when);
+      passes_at_ = never;
+      return;
+    }
+    // If no sample saw that the level was gone, the row goes on.
+    if (sample_at(when) != left_at_sample_) first_sample_ = sample_at(when);
+    left_at_sample_ = never;
+    passes_at_ = (first_sample_ + samples_ - 1) * period_;
+  }
+
+  /// The level is there from the start, and no edge.
+  void connect(bool high) {
+    input_ = output_ = high;
+    passes_at_ = left_at_sample_ = never;
+  }
+
+  /// Samples count anew from `now`.
+  void configure(const InputFilterSetting& setting, const Clock& clock, Ticks now) {
+    const Ticks period = clock.runs() ? clock.duration(setting.divider) : 1;
+    if (period == period_ && setting.samples == samples_) return;
+    period_ = period;
+    samples_ = setting.samples;
+    left_at_sample_ = never;
+    if (passes_at_ == never) return;
+    first_sample_ = sample_at(now);
+    passes_at_ = (first_sample_ + samples_ - 1) * period_;
+  }
+
+ private:
+  /// Number of the first sample that sees what is so since `when`.
+  std::uint64_t sample_at(Ticks when) const { return (when + period_ - 1) / period_; }
+
+  Ticks period_ = 1;
+  std::uint32_t samples_ = 1;
+  bool input_ = false, output_ = false;
+  Ticks passes_at_ = never;
+  std::uint64_t first_sample_ = 0;
+  std::uint64_t left_at_sample_ = never;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,45 @@
+// Spikes on the wire of an encoder, as from the bridges beside it, and what they make of the pose.
+#include <doctest/doctest.h>
+
+#include <functional>
+#include <set>
+
+#include <board/omni_driver.hpp>
+
+#include "firmware_on_bus.hpp"
+
+namespace inkwell::virtual_usb_test {
+namespace {
+
+/// The angles of joint 1 that poses show while spikes of this length follow each other on a wire of its encoder.
+std::set<float> angles_under_spikes(double spike_s, double period_s) {
+  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+  const auto wire = board::encoders[0].a.pin;
+  for (const auto& input : {board::encoders[0].a.pin, board::encoders[0].b.pin})
+    bus.chip.input_pins().drive(input.port, input.number, virtual_board::PinLevel::low);
+  bus.connect();
+  bus.run_for(0.01);
+  std::set<float> angles;
+  bus.on_pose = [&](const protocol::PoseReport& pose) { angles.insert(pose.joint_rad[0]); };
+  auto& scheduler = bus.chip.connections().scheduler;
+  const std::function<void()> spikes = [&] {
+    bus.chip.glitch(wire.port, wire.number, ticks(spike_s));
+    scheduler.at(scheduler.now() + ticks(period_s), spikes);
+  };
+  spikes();
+  bus.keep_asking_for_poses();
+  bus.run_for(0.1);
+  CHECK(bus.violations().empty());
+  return angles;
+}
+
+}  // namespace
+
+TEST_CASE("spikes of 100 ns on an encoder's wire leave the pose alone, longer ones move it by a count") {
+  CHECK(angles_under_spikes(100e-9, 200e-9).size() == 1);
+  CHECK(angles_under_spikes(330e-9, 700e-9).size() == 1);
+  // Half of the time the wire tells of a count that is not there; each spike is counted there and back.
+  CHECK(angles_under_spikes(1e-6, 2.03e-6).size() == 2);
+}
+
+}  // namespace inkwell::virtual_usb_test
