@@ -15,35 +15,15 @@ import subprocess
 import sys
 import tempfile
 import textwrap
-import threading
 import unittest
 
 import numpy as np
 
 import inkwell
 from inkwell import _native, errors
-from virtual_board import FREE_POINT_M, VirtualBoard, be_patient
+from virtual_board import VirtualBoard, wait_until
 
 BUILD = pathlib.Path()
-
-
-def wait_until(arm, condition, limit_s=10.0):
-    """The first pose that fulfils the condition, within so much board time."""
-    begin_s = arm.pose.time_s
-    while True:
-        pose = arm.wait_for_pose(10)
-        if condition(pose):
-            return pose
-        if pose.time_s > begin_s + limit_s:
-            raise AssertionError(f"within {limit_s} s it did not come to this; last: {pose}")
-
-
-def make_active(arm):
-    be_patient(arm)
-    wait_until(arm, lambda pose: pose.state == inkwell.State.READY)
-    arm.virtual_hand.move(FREE_POINT_M)
-    wait_until(arm, lambda pose: math.hypot(*pose.position_m[:2]) < 0.004)
-    arm.enable_force(30)
 
 
 def run(program, *arguments):
@@ -165,143 +145,6 @@ class Reading(unittest.TestCase):
                 self.arm.wait_for_pose(0)
 
 
-class Driving(unittest.TestCase):
-    def setUp(self):
-        self.arm = inkwell.open("virtual")
-        self.addCleanup(self.arm.close)
-
-    def test_a_servo_pulls_and_lets_go(self):
-        make_active(self.arm)
-        calls = 0
-
-        @self.arm.servo
-        def spring(pose):
-            nonlocal calls
-            calls += 1
-            return -100 * (pose.position_m - [0.02, *FREE_POINT_M[1:]])
-
-        self.assertTrue(callable(spring))
-        self.assertTrue(self.arm.servo_is_running)
-        with self.assertRaisesRegex(inkwell.Refused, "runs on this arm already"):
-            self.arm.servo(lambda pose: None)
-        # Between two springs of 300 and 100 N/m, 20 mm apart.
-        pulled = wait_until(self.arm, lambda pose: abs(pose.position_m[0] - 0.005) < 0.0007
-                            and abs(pose.velocity_m_s[0]) < 0.005)
-        self.assertAlmostEqual(pulled.force_N[0], 1.5, delta=0.15)
-        self.assertTrue(pulled.feels_program)
-        self.assertFalse(pulled.feels_walls)
-        self.arm.stop_servo()
-        after = calls
-        wait_until(self.arm, lambda pose: not pose.feels_program and pose.force_N[0] == 0)
-        self.assertEqual(calls, after)
-        self.assertFalse(self.arm.servo_is_running)
-
-    def test_what_a_servo_raises_ends_it_and_comes_out(self):
-        def broken(pose):
-            raise ZeroDivisionError("in the servo")
-
-        self.arm.servo(broken)
-        with self.assertRaisesRegex(ZeroDivisionError, "in the servo"):
-            self.arm.wait_for_servo(60)
-        self.arm.stop_servo()  # said once
-        self.arm.servo(broken)
-        wait_until(self.arm, lambda _: not self.arm.servo_is_running)
-        with self.assertRaises(ZeroDivisionError):
-            self.arm.servo(lambda pose: None)
-        with self.assertRaises(ZeroDivisionError), self.arm:
-            self.arm.servo(broken)
-            wait_until(self.arm, lambda _: not self.arm.servo_is_running)
-        with self.assertRaises(inkwell.Refused):
-            self.arm.pose
-
-    def test_an_error_of_the_program_is_kept_beside_that_of_the_servo(self):
-        with self.assertRaisesRegex(KeyError, "of the program") as raised, self.arm:
-            self.arm.servo(lambda pose: 1 / 0)
-            wait_until(self.arm, lambda _: not self.arm.servo_is_running)
-            raise KeyError("of the program")
-        self.assertIn("ZeroDivisionError", raised.exception.__notes__[0])
-
-    def test_what_is_no_force_ends_the_servo(self):
-        for answer, error, words in ((math.nan, 0, 0), ValueError, "not a number"), ((1, 2), TypeError, "three numbers"):
-            with self.subTest(answer), self.assertRaisesRegex(error, words):
-                self.arm.servo(lambda pose: answer)
-                self.arm.wait_for_servo(60)
-        self.assertEqual(self.arm.information.force_reports_refused, 0)
-
-    def test_a_servo_may_stop_itself_but_not_close_its_arm(self):
-        calls = 0
-
-        @self.arm.servo
-        def five(pose):
-            nonlocal calls
-            calls += 1
-            if calls == 5:
-                self.arm.stop_servo()
-
-        self.assertTrue(self.arm.wait_for_servo(60))
-        self.assertEqual(calls, 5)
-        self.arm.servo(lambda pose: self.arm.close())
-        with self.assertRaisesRegex(inkwell.Refused, "can not close its arm"):
-            self.arm.wait_for_servo(60)
-        self.assertGreater(self.arm.pose.time_s, 0)
-
-    def test_forces_without_a_servo(self):
-        make_active(self.arm)
-        self.arm.set_force_mode(inkwell.ForceMode.BESIDE_WALLS)
-
-        def pushed(pose):
-            self.arm.set_force([math.inf, 0, 0])
-            return abs(pose.force_N[0]) > 3
-
-        felt = wait_until(self.arm, pushed)
-        self.assertLess(felt.force_N[0], 3.31)
-        self.assertTrue(felt.feels_program and felt.feels_walls)
-        wait_until(self.arm, lambda pose: not pose.feels_program)
-        with self.assertRaisesRegex(inkwell.BadArgument, "not a number"):
-            self.arm.set_force((0, math.nan, 0))
-        for wrong in (1, 2), "xyz", None:
-            with self.assertRaises(TypeError):
-                self.arm.set_force(wrong)
-
-    def test_shapes(self):
-        make_active(self.arm)
-        self.arm.place_shapes(inkwell.Plane(FREE_POINT_M, (0, 0, 1), stiffness_N_per_m=1000))
-        self.arm.virtual_hand.move((0, 0, -0.034))
-        # Springs of 300 and 1000 N/m, 4 mm apart.
-        wait_until(self.arm, lambda pose: abs(pose.force_N[2] - 0.92) < 0.1 and pose.feels_shapes)
-        for wrong, words in (([inkwell.Plane(FREE_POINT_M, (0, 0, 0))], "normal of plane 0"),
-                             ([inkwell.Plane((math.nan, 0, 0), (0, 0, 1))], "plane 0"),
-                             ([inkwell.Plane(FREE_POINT_M, (0, 0, 1))] * 9, "9 planes are too many"),
-                             ([inkwell.Sphere(FREE_POINT_M, 0.01)] * 2, "2 spheres are too many")):
-            with self.assertRaisesRegex(inkwell.BadArgument, words):
-                self.arm.place_shapes(*wrong)
-        with self.assertRaises(TypeError):
-            self.arm.place_shapes("a plane")
-        self.assertTrue(self.arm.wait_for_pose(10).feels_shapes)
-        self.arm.place_shapes()
-        wait_until(self.arm, lambda pose: not pose.feels_shapes)
-
-    def test_other_threads_run_while_one_waits_and_closing_ends_the_wait(self):
-        raised = []
-
-        def wait():
-            try:
-                while True:
-                    self.arm.wait_for_pose(60)
-            except inkwell.Error as error:
-                raised.append(error)
-
-        waiting = [threading.Thread(target=wait) for _ in range(4)]
-        for thread in waiting:
-            thread.start()
-        wait_until(self.arm, lambda _: True)
-        self.arm.close()
-        for thread in waiting:
-            thread.join()
-        self.assertEqual([str(error) for error in raised], ["The arm is closed. Open it anew."] * 4)
-        self.arm.close()
-
-
 class Programs(unittest.TestCase):
     """What takes a process of its own."""
 
@@ -342,8 +185,8 @@ class Programs(unittest.TestCase):
                 """)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertEqual(program.stdout.readline(), "waits\n")
         program.send_signal(signal.SIGINT)
-        _, errors = program.communicate()
-        self.assertTrue(errors.rstrip().endswith("KeyboardInterrupt"), errors)
+        _, said = program.communicate()
+        self.assertTrue(said.rstrip().endswith("KeyboardInterrupt"), said)
         self.assertEqual(program.returncode, -signal.SIGINT)
 
     def test_a_program_that_forgets_to_close_ends_in_peace(self):
@@ -365,6 +208,19 @@ class Programs(unittest.TestCase):
                                       ("virtual:/no/such/arm.toml", inkwell.Failed, "/no/such/arm.toml")):
             with self.subTest(address), self.assertRaisesRegex(error, words):
                 inkwell.open(address)
+
+    def test_another_version_of_the_protocol(self):
+        with VirtualBoard(BUILD, elf="next-protocol.elf") as board:
+            with self.assertRaisesRegex(inkwell.Incompatible, "of the protocol"):
+                inkwell.open(board.address)
+
+    def test_an_arm_that_does_not_know_where_it_is(self):
+        with VirtualBoard(BUILD, in_inkwell=False) as board, inkwell.open(board.address) as arm:
+            wait_until(arm, lambda pose: pose.state == inkwell.State.UNREFERENCED)
+            with self.assertRaisesRegex(inkwell.Refused, "Put the stylus into the inkwell"):
+                arm.enable_force(0.1)
+            board.call("dock", docked=True)
+            wait_until(arm, lambda pose: pose.state == inkwell.State.READY)
 
     def test_devices(self):
         said = run("import os; os.environ['INKWELL_DEVICE'] = 'virtual'\n"

@@ -1,6 +1,7 @@
-"""A virtual board that a test starts beside the program under test, and whose hand it moves."""
+"""Virtual boards that tests start beside the program under test or inside it, and their hands."""
 
 import json
+import math
 import pathlib
 import re
 import socket
@@ -18,12 +19,32 @@ def be_patient(arm: inkwell.Arm) -> None:
     arm.parameters.set(host_timeout_s=2, program_force_expiry_s=0.5)
 
 
-class VirtualBoard:
-    """Ends at the end of `with`. Times are those of the board."""
+def wait_until(arm: inkwell.Arm, condition: Callable[[inkwell.Pose], bool], limit_s: float = 10.0) -> inkwell.Pose:
+    """The first pose that fulfils the condition, within so much board time."""
+    begin_s = arm.pose.time_s
+    while True:
+        pose = arm.wait_for_pose(10)
+        if condition(pose):
+            return pose
+        if pose.time_s > begin_s + limit_s:
+            raise AssertionError(f"within {limit_s} s it did not come to this; last: {pose}")
 
-    def __init__(self, build: pathlib.Path, seed: int = 1) -> None:
+
+def make_active(arm: inkwell.Arm) -> None:
+    be_patient(arm)
+    wait_until(arm, lambda pose: pose.state == inkwell.State.READY)
+    arm.virtual_hand.move(FREE_POINT_M)
+    wait_until(arm, lambda pose: math.hypot(*pose.position_m[:2]) < 0.004)
+    arm.enable_force(30)
+
+
+class VirtualBoard:
+    """Ends at the end of `with`. Times are those of the board. Unless its stylus is in the inkwell at first, the board
+    does not know where it is."""
+
+    def __init__(self, build: pathlib.Path, seed: int = 1, elf: str = "inkwell.elf", in_inkwell: bool = True) -> None:
         self._process = subprocess.Popen(
-            [build / "virtual-board", "--elf", build.parent / "board/inkwell.elf", "--real-time", "--seed", str(seed)],
+            [build / "virtual-board", "--elf", build.parent / "board" / elf, "--real-time", "--paused", "--seed", str(seed)],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         ready = self._process.stdout.readline()
         ports = re.fullmatch(r"ready usbip=(\d+) control=(\d+)\n", ready)
@@ -31,6 +52,8 @@ class VirtualBoard:
         self.address = f"usbip:127.0.0.1:{ports[1]}"
         self._control = socket.create_connection(("127.0.0.1", int(ports[2])))
         self._replies = self._control.makefile()
+        self.call("dock", docked=in_inkwell)
+        self.call("resume")
         self.let_pass(0.5)  # in which the USB finds it
 
     def __enter__(self) -> "VirtualBoard":
