@@ -61,6 +61,7 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
   setenv("LD_LIBRARY_PATH", (libraries.string() + (others.empty() ? "" : ":" + others)).c_str(), 1);
   setenv("INKWELL_DEVICE", address.c_str(), 1);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (auto& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 

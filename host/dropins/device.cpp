@@ -48,7 +48,7 @@ void require(inkwell_result result) {
 bool* Capabilities::find(Enum value) {
   switch (value) {
 #define X(code, name, text, at_start) \
-  case code: return &name;
+  case code: return &(name);
     INKWELL_HD_CAPABILITIES(X)
 #undef X
     default: return nullptr;

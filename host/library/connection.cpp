@@ -55,7 +55,7 @@ void Connection::run(const std::string& address, std::promise<void> opened) {
       opened.set_exception(std::current_exception());
   }
   ends_.wait(false);  // a board of its own ends with the thread that made it, and others may still ask the device
-  arm_ = {};
+  const device::OpenArm let_go = std::move(arm_);  // the device before its board
 }
 
 void Connection::read_poses(std::promise<void>& opened, bool& is_open) {

@@ -115,7 +115,8 @@ TEST_CASE("frames as fast as a program can make them, beside a thread that asks"
     for (int i = 0; i < 10; ++i) held.frame([] { set_force({1, 0, 0}); });
   ends = true;
   CHECK(held.pulled_m(0) > 0.0028);
-  CHECK(only_error() == HD_SUCCESS);
+  while (const auto error = hdGetError().errorCode)
+    CHECK(error == HD_FORCE_ERROR);  // a busy computer may have been silent for too long
 }
 
 TEST_CASE("a board that is lost in the middle of a frame") {

@@ -38,6 +38,7 @@ TEST_CASE("a servo can not close its arm, and says so") {
 TEST_CASE("closing takes the force away, and waits for a servo that does not return") {
   Board board;
   VirtualArm looks_on(board.address);
+  looks_on.be_patient();
   looks_on.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
   board.hold();
   looks_on.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });

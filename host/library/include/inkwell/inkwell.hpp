@@ -45,7 +45,7 @@ inline std::vector<inkwell_device> devices() {
   return list;
 }
 
-/// An open arm; addresses as inkwell_open() takes them.
+/// An open arm; addresses as inkwell_open() takes them. Not to be destroyed by its own servo.
 class Arm {
  public:
   /// Returns the force on the hand. What it throws ends the servo, and comes out of stop_servo().
