@@ -180,7 +180,7 @@ struct Session::Implementation {
       if (taken.select) select(to, selection);
       if (restore_defaults) transact(to, [&] { return to.restore_default_parameters(); });
       restore_defaults = false;
-      if (!changes.empty()) transact(to, [&] { return to.set_parameters(changes); });
+      if (!changes.empty()) transact(to, [&to, &wanted = changes] { return to.set_parameters(wanted); });
     } catch (const Stalled&) {
       throw;  // sent again, it would be refused again
     } catch (const Error&) {

@@ -149,7 +149,8 @@ const char* inkwell_fault_text(int fault) {
     const bool known = fault >= 0 && fault <= 0xFFFF;
     text = device::fault_line(static_cast<protocol::Fault>(known ? fault : 0xFFFF));
   });
-  return result == INKWELL_OK ? text.c_str() : "";
+  if (result != INKWELL_OK) text.clear();
+  return text.c_str();
 }
 
 // ---- force -------------------------------------------------------------------------------------------------

@@ -30,6 +30,7 @@ protocol::Signal signal_named(const char* name) {
 template <class Row, class Table, class Fill>
 std::vector<Row> rows(const Table& table, Fill fill) {
   std::vector<Row> rows;
+  rows.reserve(std::size(table));
   for (const auto& entry : table) rows.push_back(fill(entry));
   return rows;
 }

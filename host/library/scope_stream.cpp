@@ -10,7 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Samples that nobody has read: five seconds.
-constexpr std::size_t rows_maximum = 5 * protocol::servo_rate_Hz;
+constexpr std::size_t rows_maximum = std::size_t{5} * protocol::servo_rate_Hz;
 /// How soon the end is noticed when no samples come.
 constexpr auto read_timeout = 20ms;
 
@@ -121,7 +121,7 @@ recording::RecorderStatus ScopeStream::stop_recording() {
     const std::lock_guard lock(mutex_);
     finished = std::move(recorder_);
   }
-  const auto status = finished->stop();
+  auto status = finished->stop();
   if (!status.error.empty()) throw Error(status.error);
   return status;
 }
