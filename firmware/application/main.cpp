@@ -15,12 +15,24 @@
 namespace inkwell::application {
 namespace {
 
-/// The board cannot work, and its bridges are off: blinks ten times a second until it is switched off.
-[[noreturn]] void give_up(std::uint32_t processor_Hz) {
-  for (bool on = true;; on = !on) {
+/// The board cannot work, and its bridges are off: blinks ten times a second for as long as `lasts`.
+template <class Condition>
+void blink_while(std::uint32_t processor_Hz, Condition lasts) {
+  for (bool on = true; lasts(); on = !on) {
     status_led.set(on);
     drivers::wait(processor_Hz / 20);
   }
+}
+void give_up() {
+  blink_while(board::processor_Hz, [] { return true; });
+}
+
+/// False if they did not start at once. There is no USB without them, so nobody can be told but by light and console.
+bool start_clocks() {
+  if (drivers::start_clocks()) return true;
+  if (!drivers::crystal_swings()) report_no_crystal();
+  blink_while(drivers::internal_oscillator_Hz, [] { return !drivers::crystal_swings() || !drivers::start_clocks(); });
+  return false;
 }
 
 }  // namespace
@@ -38,7 +50,7 @@ int main() {
   drivers::start_pins();
   drivers::CycleCounter::start();
   status_led.start();
-  if (!drivers::start_clocks()) give_up(drivers::internal_oscillator_Hz);
+  const bool started_late = !start_clocks();
   report_start(reset_cause, crash);
 
   // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
@@ -47,13 +59,15 @@ int main() {
   encoders.start();
   switches.start();
   analog_inputs.start();
-  if (crash)
+  if (started_late || (crash && crash->crystal_stopped()))
+    controller.raise(protocol::Fault::crystal_failed);
+  else if (crash)
     controller.raise(protocol::Fault::processor_fault);
   else if (reset_cause.watchdog())
     controller.raise(protocol::Fault::watchdog);
 
   // Just after an update there is nearly a whole period in which to arm all three converters.
-  if (!bridges.wait_for_update()) give_up(board::processor_Hz);
+  if (!bridges.wait_for_update()) give_up();
   analog_inputs.arm();
 
   const usb::Identity identity{.serial_number = drivers::unique_identifier(),
@@ -61,7 +75,7 @@ int main() {
                                .processor_clock_Hz = board::processor_Hz,
                                .reset_cause = reset_cause.flags >> 24};
   usb::Device usb_device{usb_port, host_link, identity};
-  if (!usb_port.start()) give_up(board::processor_Hz);
+  if (!usb_port.start()) give_up();
   watchdog.start();
 
   for (;;) {

@@ -1,5 +1,7 @@
 #include "start_report.hpp"
 
+#include <drivers/clocks.hpp>
+
 #include <string_view>
 
 #include "parts.hpp"
@@ -21,7 +23,7 @@ constexpr CrashWord crash_words[] = {
 }  // namespace
 
 void report_start(const drivers::ResetCause& cause, const std::optional<drivers::CrashRecord>& crash) {
-  console.start();
+  console.start(board::apb1_Hz);
   console.write("inkwell " INKWELL_VERSION ", reset cause ");
   console.write_hexadecimal(cause.flags >> 24);
   if (crash) {
@@ -31,6 +33,13 @@ void report_start(const drivers::ResetCause& cause, const std::optional<drivers:
     }
   }
   console.write("\r\n");
+}
+
+void report_no_crystal() {
+  console.start(drivers::internal_oscillator_Hz);
+  console.write("inkwell " INKWELL_VERSION
+                ", the crystal does not swing: no USB and no motors until it does. Check it, its two capacitors and "
+                "their joints.\r\n");
 }
 
 }  // namespace inkwell::application

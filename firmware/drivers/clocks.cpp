@@ -71,4 +71,6 @@ bool start_clocks() {
   return true;
 }
 
+bool crystal_swings() { return RCC::CR::HSERDY::is_set(); }
+
 }  // namespace inkwell::drivers

@@ -21,10 +21,10 @@ void write_character(char character) {
 
 }  // namespace
 
-void Console::start() {
+void Console::start(std::uint32_t bus_Hz) {
   start_clocks_of<Console, USART2>();
   connect<Console, board::console_transmit>(Pull::up, Speed::low);
-  USART2::BRR::write((board::apb1_Hz + baud_Hz / 2) / baud_Hz);
+  USART2::BRR::write((bus_Hz + baud_Hz / 2) / baud_Hz);
   USART2::CR1::write(USART2::CR1::UE(1), USART2::CR1::TE(1));
 }
 

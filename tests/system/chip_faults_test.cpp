@@ -114,7 +114,7 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
   check_fault_after_restart(rig, Fault::watchdog);
 }
 
-TEST_CASE("a crystal that stops switches the bridges off at once, and the board does not start without it") {
+TEST_CASE("a crystal that stops switches the bridges off at once; the board starts when it swings again, and tells") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.crystal(false);
@@ -126,6 +126,8 @@ TEST_CASE("a crystal that stops switches the bridges off at once, and the board 
   CHECK_FALSE(rig.board.find());
 
   rig.control.crystal(true);
+  check_fault_after_restart(rig, Fault::crystal_failed);
+  check_tells(told_by_info(rig), Fault::crystal_failed);
   rig.control.reset();
   reconnect(rig);
   rig.run_until([](const auto& pose) { return pose.state == State::ready || pose.state == State::unreferenced; });

@@ -89,6 +89,11 @@ void Rcc::let_crystal_swing(bool swings) {
 
 void Rcc::lose_crystal() {
   auto& control = words_[map.cr / 4];
+  if (runs_from_crystal())
+    machine_.log.say(
+        map.cr.csson.in(control)
+            ? "The crystal has stopped: the clock security system goes over to HSI and raises the NMI."
+            : "The crystal has stopped: without the clock security system (RCC_CR.CSSON) the chip stands.");
   if (!map.cr.csson.in(control) || !map.cr.hseon.in(control)) {
     machine_.clock_is_lost = runs_from_crystal();
     return update_tree();
@@ -147,6 +152,8 @@ std::uint32_t Rcc::real_time_clock_Hz() const {
 void Rcc::start_oscillators() {
   const Ticks now = machine_.timeline.now();
   Ticks next = never;
+  if (is_on(hse) && !crystal_swings_)
+    machine_.log.say_once("RCC_CR: HSEON is set, but the crystal does not swing: HSERDY stays 0.");
   for (unsigned i = 0; i < oscillators; ++i) {
     if (!is_on(i))
       ready_at_[i] = never;

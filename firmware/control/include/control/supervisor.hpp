@@ -14,7 +14,7 @@
 //
 //   fault                | looked for in                      | cause is gone when
 //   ---------------------+------------------------------------+-----------------------------------------
-//   processor_fault, watchdog, servo_overrun | every state    | at once: raised by the application
+//   processor_fault, watchdog, servo_overrun, crystal_failed | every state | at once: raised by the application
 //   not_finite           | every state                        | the values are finite
 //   current_sensor       | once the offsets are measured      | never: the board must be reset
 //   supply_low, _high    | unreferenced, ready, active        | the supply is within its bounds

@@ -13,4 +13,7 @@ inline constexpr std::uint32_t internal_oscillator_Hz = 16'000'000;
 /// False if the crystal or the PLL does not start within a tenth of a second; the chip then stays at 16 MHz.
 [[nodiscard]] bool start_clocks();
 
+/// After a start_clocks() that failed: the crystal, which is still being started.
+bool crystal_swings();
+
 }  // namespace inkwell::drivers

@@ -1,4 +1,4 @@
-// One line of text after each start, on USART2 at 115200 8N1: for the bench, before USB speaks.
+// Some lines of text after each start, on USART2 at 115200 8N1: for the bench, before USB speaks.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@ class Console {
  public:
   static constexpr std::array claims{peripheral<registers::USART2>(), pin(board::console_transmit)};
 
-  void start();
+  /// Also again, when the clock of its bus has changed.
+  void start(std::uint32_t bus_Hz);
   void write(std::string_view text);
   void write_hexadecimal(std::uint32_t word);
 };

@@ -14,6 +14,9 @@ struct CrashRecord {
   std::uint32_t configurable_fault_status;  ///< CFSR
   std::uint32_t hard_fault_status;          ///< HFSR
   std::uint32_t fault_address;              ///< BFAR
+
+  /// Nothing else raises the non-maskable interrupt (RM0090, "Clock security system").
+  constexpr bool crystal_stopped() const { return exception == 2; }
 };
 
 /// Keeps a record over the reset that follows.

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <stdexcept>
+#include <string>
 
 #include <board/omni_driver.hpp>
 
@@ -72,9 +73,16 @@ TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fast
   }
 }
 
-TEST_CASE("a crystal that never starts: the light blinks ten times a second, no device, no bridge") {
+TEST_CASE("a crystal that does not start: light and console tell, no device, no bridge; late is a fault that tells") {
   OtherBoard other({});
   FirmwareOnBus& bus = other.bus;
+  std::string console;
+  virtual_board::Ticks first = 0, last = 0;
+  bus.chip.on_usart = [&](unsigned, std::uint8_t byte) {
+    console += static_cast<char>(byte);
+    last = bus.chip.now();
+    if (first == 0) first = last;
+  };
   bus.chip.let_crystal_swing(false);
   bus.chip.reset();
   bus.run_for(0.3);
@@ -94,6 +102,20 @@ TEST_CASE("a crystal that never starts: the light blinks ten times a second, no 
   CHECK(changes <= 22);
   CHECK(bus.core.attachment() == 0);
   CHECK(bus.chip.clocks().hclk_Hz == 16'000'000);
+  CHECK(console.find("the crystal does not swing") != std::string::npos);
+  CHECK(console.find("\r\n") == console.size() - 2);
+  constexpr double bits_of_a_character = 10, baud_Hz = 115'200;
+  const double bits = virtual_board::seconds(last - first) * baud_Hz;
+  CHECK(bits / (bits_of_a_character * static_cast<double>(console.size() - 1)) == doctest::Approx(1.0).epsilon(0.01));
+
+  bus.chip.let_crystal_swing(true);
+  bus.connect();
+  protocol::PoseReport pose{};
+  bus.on_pose = [&](const protocol::PoseReport& newest) { pose = newest; };
+  bus.keep_asking_for_poses();
+  bus.run_for(0.01);
+  CHECK(pose.state == protocol::State::fault);
+  CHECK(pose.fault == protocol::Fault::crystal_failed);
   CHECK(bus.violations().empty());
 }
 
