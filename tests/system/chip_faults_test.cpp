@@ -1,6 +1,8 @@
 // What the flashed image does when a part of the chip fails with the bridges on.
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string_view>
 
 #include "hazards.hpp"
@@ -131,6 +133,22 @@ TEST_CASE("a crystal that stops switches the bridges off at once; the board star
   rig.control.reset();
   reconnect(rig);
   rig.run_until([](const auto& pose) { return pose.state == State::ready || pose.state == State::unreferenced; });
+}
+
+TEST_CASE("a spike of 100 ns on an encoder's wire leaves the pose alone; a long one shows a count while it lasts") {
+  BoardRig rig;
+  rig.run(0.3);
+  const auto joint_rad = [&] { return static_cast<double>(rig.pose().joint_rad[0]); };
+  const double before_rad = joint_rad();
+  constexpr double one_count_rad = 2 * std::numbers::pi / (13.3 * 1440);
+  rig.control.glitch("PA0", 100e-9);
+  rig.run(0.02);
+  CHECK(joint_rad() == before_rad);
+  rig.control.glitch("PA0", 0.05);
+  rig.run(0.02);
+  CHECK(std::abs(joint_rad() - before_rad) / one_count_rad == doctest::Approx(1.0).epsilon(0.01));
+  rig.run(0.06);
+  CHECK(joint_rad() == before_rad);
 }
 
 TEST_CASE("a host that gives signs of life keeps the force, and loses it without them") {
