@@ -88,14 +88,18 @@ TEST_SUITE("virtual chip: encoder inputs") {
 
   TEST_CASE("modes 1 and 2 count the edges of one input alone") {
     // From low and low forward: B4, B5, B4, B5.
-    for (const auto& [mode, of_first_edge, of_four] : {std::array{1, 0, 2}, {2, 1, 2}, {3, 1, 4}}) {
-      CAPTURE(mode);
+    struct Row {
+      std::uint32_t mode;
+      int of_first_edge, of_four;
+    };
+    for (const Row row : {Row{1, 0, 2}, {2, 1, 2}, {3, 1, 4}}) {
+      CAPTURE(row.mode);
       Encoder encoder;
-      encoder.write(smcr, static_cast<std::uint32_t>(mode));
+      encoder.write(smcr, row.mode);
       encoder.turn(1, 4 * timer_clock);
-      CHECK(encoder.count() == of_first_edge);
+      CHECK(encoder.count() == row.of_first_edge);
       encoder.turn(3, 4 * timer_clock);
-      CHECK(encoder.count() == of_four);
+      CHECK(encoder.count() == row.of_four);
       encoder.turn(-4, 4 * timer_clock);
       CHECK(encoder.count() == 0);
     }
@@ -103,13 +107,16 @@ TEST_SUITE("virtual chip: encoder inputs") {
 
   TEST_CASE("CCxP inverts an input: one of them turns the direction round, both leave it") {
     constexpr std::uint32_t cc1p = 1 << 1, cc2p = 1 << 5;
-    for (const auto& [polarity, forward] :
-         {std::pair{0u, 9}, std::pair{cc1p, -9}, std::pair{cc2p, -9}, std::pair{cc1p | cc2p, 9}}) {
-      CAPTURE(polarity);
+    struct Row {
+      std::uint32_t polarity;
+      int forward;
+    };
+    for (const Row row : {Row{0, 9}, {cc1p, -9}, {cc2p, -9}, {cc1p | cc2p, 9}}) {
+      CAPTURE(row.polarity);
       Encoder encoder;
-      encoder.write(ccer, polarity);
+      encoder.write(ccer, row.polarity);
       encoder.turn(9, 4 * timer_clock);
-      CHECK(encoder.count() == forward);
+      CHECK(encoder.count() == row.forward);
     }
   }
 
