@@ -94,7 +94,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
     current_A_[i] = samples.current_A[i] - offsets_.offset_A[i];
     const float ratio = samples.gimbal_ratio[i];
     const GimbalCurve& curve = settings.gimbal[i];
-    gimbal_rad_[i] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
+    probe_.gimbal_rad[i] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
   }
   update_heat(heat_, turn_, current_A_[turn_], settings.heat);
   // While walls push, a new reference would move the probe under the hand.
@@ -110,19 +110,23 @@ void Controller::find_pose(const Settings& settings) {
     counts_since_inkwell_[i] = encoder_counts_[i] - reference_.counts[i];
   }
   turn_ = turn_ == 2 ? 0 : turn_ + 1;
-  joint_rad_ = joint_angles(counts_since_inkwell_, settings.encoders);
-  pose_ = forward_kinematics(joint_rad_, settings.arm);
-  velocity_m_per_s_ = probe_velocity(pose_.jacobian, joint_speed_rad_per_s_);
+  probe_.joint_rad = joint_angles(counts_since_inkwell_, settings.encoders);
+  const auto [position_m, jacobian] = forward_kinematics(probe_.joint_rad, settings.arm);
+  probe_.position_m = position_m;
+  jacobian_ = jacobian;
+  probe_.velocity_m_per_s = probe_velocity(jacobian_, joint_speed_rad_per_s_);
 }
 
 void Controller::render_force(const Settings& settings) {
-  contact_ = find_contact(pose_.position_m, settings.box);
+  probe_.contact = find_contact(probe_.position_m, settings.box);
   advance(program_, settings.program_force);
   const bool shapes_changed = shapes_.age() || std::exchange(shapes_replaced_, false);
-  const bool walls_rendered = program_.mode != ForceMode::instead_of_walls;
-  const bool walls_changed = std::exchange(walls_rendered_, walls_rendered) != walls_rendered;
-  force_sources_ = source_bits(ForceSource::walls, walls_rendered) | source_bits(ForceSource::shapes, shapes_.any()) |
+  const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
+  const bool law_changed = std::exchange(law_rendered_, law_rendered) != law_rendered;
+  force_sources_ = source_bits(ForceSource::walls, law_rendered) | source_bits(ForceSource::shapes, shapes_.any()) |
                    source_bits(ForceSource::program, program_.is_driven());
+  const bool law_is_felt = force_is_on() && law_rendered;
+  if (!law_is_felt) law_.rest();
   if (!force_is_on()) {
     force_ = {};
     force_gain_ = 0.0f;
@@ -130,9 +134,18 @@ void Controller::render_force(const Settings& settings) {
     transition_ = {};
     return;
   }
-  Vector3 touched_N = shapes_.any() ? shapes_.force_N(pose_.position_m, velocity_m_per_s_) : Vector3{};
-  if (walls_rendered) touched_N = touched_N + wall_force_N(contact_, velocity_m_per_s_, settings.wall);
-  if (shapes_changed || walls_changed) transition_ = over(touched_N_ - touched_N, settings.recovery_N_per_period);
+  Vector3 touched_N = shapes_.any() ? shapes_.force_N(probe_.position_m, probe_.velocity_m_per_s) : Vector3{};
+  if (law_is_felt) {
+    probe_.wall = settings.wall;
+    probe_.switches = switches_.closed;
+    const Vector3& law_N = law_.force_N(probe_, settings.force_law);
+    // Its square as well, which tells its direction. Where the law was given no numbers, the fault is not its own.
+    if (is_finite(dot(law_N, law_N))) [[likely]]
+      touched_N = touched_N + law_N;
+    else if (is_finite(sum(probe_.position_m) + sum(probe_.velocity_m_per_s)))
+      raise(Fault::force_law);
+  }
+  if (shapes_changed || law_changed) transition_ = over(touched_N_ - touched_N, settings.recovery_N_per_period);
   touched_N_ = touched_N + transition_.force_N();
   advance(transition_);
   force_gain_ = clamp(force_gain_ + settings.ramp_per_period, 0.0f, 1.0f);
@@ -140,7 +153,7 @@ void Controller::render_force(const Settings& settings) {
 }
 
 void Controller::find_current_references(const Settings& settings) {
-  torque_Nm_ = joint_torques(pose_.jacobian, force_.force_N);
+  torque_Nm_ = joint_torques(jacobian_, force_.force_N);
   reference_A_ = current_references(torque_Nm_, settings.motors);
   if (!test_.runs() || test_.quantity != TestPulse::Quantity::current) return;
   const float limit_A = settings.motors.current_limit_A[test_.motor];
@@ -167,8 +180,8 @@ void Controller::regulate_currents(const Settings& settings) {
 
 void Controller::supervise(const Samples& samples, const Settings& settings) {
   ++host_silence_periods_;
-  const float sum_of_all = sum(pose_.position_m) + sum(velocity_m_per_s_) + sum(force_.force_N) + sum(torque_Nm_) +
-                           sum(reference_A_) + sum(current_A_) + sum(drive_.duty) + supply_.supply_V;
+  const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(force_.force_N) +
+                           sum(torque_Nm_) + sum(reference_A_) + sum(current_A_) + sum(drive_.duty) + supply_.supply_V;
   const Conditions conditions{
       .offsets_measured = offsets_.measured(),
       .offsets_plausible = plausible(offsets_),
@@ -180,8 +193,9 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       .samples_stale = samples.slow_age_periods > SupplyFilter::stale_periods,
       .over_current =
           over_current(current_A_, settings.limits.over_current_A, samples.current_A, board_.current_measurable_A),
-      .encoder_implausible = joints_implausible(joint_rad_, settings.arm.transmission, settings.limits),
-      .over_speed = dot(velocity_m_per_s_, velocity_m_per_s_) > settings.limits.speed_limit_squared_m2_per_s2,
+      .encoder_implausible = joints_implausible(probe_.joint_rad, settings.arm.transmission, settings.limits),
+      .over_speed =
+          dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s) > settings.limits.speed_limit_squared_m2_per_s2,
       .host_silent = host_silence_periods_ > settings.limits.host_timeout_periods};
   const Supervisor before = supervisor_;
   supervisor_ = advance(before, conditions, requests_);
@@ -199,17 +213,17 @@ void Controller::write_signals(protocol::SignalValues& signals) const {
   const auto& counts = counts_since_inkwell_;
   put(signals, Signal::encoder_1_counts,
       Triple{static_cast<float>(counts[0]), static_cast<float>(counts[1]), static_cast<float>(counts[2])});
-  put(signals, Signal::joint_1_rad, joint_rad_);
-  put(signals, Signal::position_x_m, pose_.position_m);
-  put(signals, Signal::velocity_x_m_s, velocity_m_per_s_);
-  put(signals, Signal::penetration_x_m, contact_.penetration_m);
+  put(signals, Signal::joint_1_rad, probe_.joint_rad);
+  put(signals, Signal::position_x_m, probe_.position_m);
+  put(signals, Signal::velocity_x_m_s, probe_.velocity_m_per_s);
+  put(signals, Signal::penetration_x_m, probe_.contact.penetration_m);
   put(signals, Signal::force_x_N, force_.force_N);
   signals[Signal::force_N] = force_.magnitude_N;
   put(signals, Signal::torque_1_Nm, torque_Nm_);
   put(signals, Signal::current_reference_1_A, reference_A_);
   put(signals, Signal::current_1_A, current_A_);
   put(signals, Signal::duty_1, drive_.duty);
-  put(signals, Signal::gimbal_1_rad, gimbal_rad_);
+  put(signals, Signal::gimbal_1_rad, probe_.gimbal_rad);
   put(signals, Signal::joint_speed_1_rad_s, joint_speed_rad_per_s_);
   put(signals, Signal::motor_heat_1, heat_.heat);
   put(signals, Signal::program_force_x_N, program_.force_N);
@@ -220,6 +234,7 @@ void Controller::write_signals(protocol::SignalValues& signals) const {
                                                           Signal::stage_contact_cycles, Signal::stage_torque_cycles,
                                                           Signal::stage_current_cycles, Signal::stage_report_cycles};
   for (std::size_t i = 0; i < stage_count; ++i) signals[cycles_of_stage[i]] = static_cast<float>(cycles_[i]);
+  for (std::size_t i = 0; i < force_law_signal_count; ++i) signals.values[protocol::signal_count + i] = law_.signal(i);
 }
 
 }  // namespace inkwell::control

@@ -89,6 +89,12 @@ Limits limits(const ParameterSet& set) {
   return limits;
 }
 
+ForceLawValues force_law(const ParameterSet& set) {
+  ForceLawValues values{};
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = set.values[protocol::parameter_count + i];
+  return values;
+}
+
 ProgramForceLimits program_force(const ParameterSet& set) {
   const float change_N_per_period = set[Parameter::program_force_change_N_per_s] * protocol::servo_period_s;
   return {set[Parameter::force_limit_N], change_N_per_period, 1.0f / change_N_per_period,
@@ -111,6 +117,7 @@ Settings prepare(const ParameterSet& parameters) {
           .gimbal = gimbal(parameters),
           .box = box(parameters),
           .wall = {parameters[Parameter::wall_stiffness_N_per_m], parameters[Parameter::wall_damping_Ns_per_m]},
+          .force_law = force_law(parameters),
           .force_limit_N = parameters[Parameter::force_limit_N],
           .recovery_N_per_period = recovery_per_s * protocol::servo_period_s * parameters[Parameter::force_limit_N],
           .program_force = program_force(parameters),

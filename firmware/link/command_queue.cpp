@@ -1,5 +1,6 @@
 #include <link/command_queue.hpp>
 
+#include <control/installed_force_law.hpp>
 #include <placement/interrupt.hpp>
 
 #include <cmath>
@@ -13,8 +14,9 @@ using protocol::Command;
 
 bool sound(const protocol::SignalSelection& selection) {
   if (selection.count > protocol::scope_signals_maximum) return false;
+  const std::size_t signals = protocol::signal_count + control::installed_force_law.signal_count;
   for (std::size_t i = 0; i < selection.count; ++i)
-    if (selection.signals[i] >= protocol::signal_count) return false;
+    if (selection.signals[i] >= signals) return false;
   return true;
 }
 

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <optional>
 
+#include <control/installed_force_law.hpp>
+
 namespace inkwell::link {
 
 namespace {
@@ -25,7 +27,7 @@ struct Limits {
   float maximum;
 };
 
-constexpr std::array<Limits, parameter_count> limits = [] {
+constexpr std::array<Limits, parameter_count> table_limits = [] {
   std::array<Limits, parameter_count> rows{};
   for (std::size_t i = 0; i < parameter_count; ++i) {
     const protocol::ParameterInfo& row = protocol::parameter_table[i];
@@ -34,15 +36,30 @@ constexpr std::array<Limits, parameter_count> limits = [] {
   return rows;
 }();
 
-constexpr ParameterSet defaults = protocol::default_parameters();
+constexpr ParameterSet table_defaults = protocol::default_parameters();
+
+std::uint16_t id_of(std::size_t index) {
+  return index < parameter_count ? table_limits[index].id
+                                 : static_cast<std::uint16_t>(protocol::force_law_first_id + index - parameter_count);
+}
+
+Limits limits(std::size_t index) {
+  if (index < parameter_count) return table_limits[index];
+  const control::ForceLawRange& range = control::installed_force_law.ranges[index - parameter_count];
+  return {id_of(index), false, false, range.minimum, range.maximum};
+}
 
 /// The table's ids rise.
 std::optional<std::size_t> find(std::uint16_t id) {
+  if (id >= protocol::force_law_first_id) {
+    const std::size_t index = parameter_count + id - protocol::force_law_first_id;
+    return index < image_parameter_count() ? std::optional(index) : std::nullopt;
+  }
   std::size_t first = 0, end = parameter_count;
   while (first < end) {
     const std::size_t middle = (first + end) / 2;
-    if (limits[middle].id == id) return middle;
-    if (limits[middle].id < id)
+    if (table_limits[middle].id == id) return middle;
+    if (table_limits[middle].id < id)
       first = middle + 1;
     else
       end = middle;
@@ -58,12 +75,12 @@ constexpr const Bounds* find_contradiction(const ParameterSet& set) {
   }
   return nullptr;
 }
-static_assert(find_contradiction(defaults) == nullptr, "the arm's defaults contradict each other");
+static_assert(find_contradiction(table_defaults) == nullptr, "the arm's defaults contradict each other");
 
 ParameterCheck refuse(Refusal refusal, std::uint16_t id = 0, float value = 0.0f) { return {refusal, id, value, {}}; }
 
 Refusal check_value(std::size_t index, float value, float current, bool force_is_on) {
-  const Limits& row = limits[index];
+  const Limits row = limits(index);
   if (!std::isfinite(value)) return Refusal::not_finite;
   if (!(row.minimum <= value && value <= row.maximum)) return Refusal::out_of_range;
   // Every whole parameter's range lies far inside that of an int32.
@@ -72,7 +89,7 @@ Refusal check_value(std::size_t index, float value, float current, bool force_is
   return Refusal::accepted;
 }
 
-using Given = std::array<bool, parameter_count>;
+using Given = std::array<bool, parameter_count + protocol::force_law_parameters_maximum>;
 
 /// Which of the parameters in a contradiction the transaction is to blame for.
 Parameter blamed(const Bounds& pair, const Given& given) {
@@ -84,7 +101,7 @@ Parameter blamed(const Bounds& pair, const Given& given) {
 ParameterCheck check_whole(const ParameterSet& set, const Given& given) {
   if (const Bounds* pair = find_contradiction(set)) {
     const Parameter parameter = blamed(*pair, given);
-    return refuse(Refusal::inconsistent, limits[static_cast<std::size_t>(parameter)].id, set[parameter]);
+    return refuse(Refusal::inconsistent, id_of(static_cast<std::size_t>(parameter)), set[parameter]);
   }
   return {Refusal::accepted, 0, 0.0f, set};
 }
@@ -92,9 +109,9 @@ ParameterCheck check_whole(const ParameterSet& set, const Given& given) {
 ParameterCheck restore_defaults(const ParameterSet& current, bool force_is_on) {
   if (force_is_on)
     for (std::size_t i = 0; i < parameter_count; ++i)
-      if (limits[i].arm && defaults.values[i] != current.values[i])
-        return refuse(Refusal::force_is_on, limits[i].id, defaults.values[i]);
-  return {Refusal::accepted, 0, 0.0f, defaults};
+      if (table_limits[i].arm && table_defaults.values[i] != current.values[i])
+        return refuse(Refusal::force_is_on, id_of(i), table_defaults.values[i]);
+  return {Refusal::accepted, 0, 0.0f, image_defaults()};
 }
 
 protocol::ParameterEntry entry_at(std::span<const std::byte> report, std::size_t i) {
@@ -104,6 +121,17 @@ protocol::ParameterEntry entry_at(std::span<const std::byte> report, std::size_t
 }
 
 }  // namespace
+
+std::size_t image_parameter_count() { return parameter_count + control::installed_force_law.parameter_count; }
+
+std::uint16_t image_parameter_id(std::size_t index) { return id_of(index); }
+
+ParameterSet image_defaults() {
+  ParameterSet set = table_defaults;
+  for (std::size_t i = parameter_count; i < image_parameter_count(); ++i)
+    set.values[i] = control::installed_force_law.ranges[i - parameter_count].default_value;
+  return set;
+}
 
 ParameterCheck check_transaction(std::span<const std::byte> report, const ParameterSet& current, bool force_is_on) {
   constexpr std::size_t header_size = protocol::parameters_report_size(0);

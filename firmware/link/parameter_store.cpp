@@ -1,23 +1,10 @@
 #include <link/parameter_store.hpp>
 
-#include <array>
 #include <cstddef>
 
 namespace inkwell::link {
 
-namespace {
-
-constexpr std::array<std::uint16_t, protocol::parameter_count> parameter_ids = [] {
-  std::array<std::uint16_t, protocol::parameter_count> ids{};
-  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = protocol::parameter_table[i].id;
-  return ids;
-}();
-
-constexpr protocol::ParameterSet defaults = protocol::default_parameters();
-
-}  // namespace
-
-ParameterStore::ParameterStore() : values_(defaults), settings_{control::prepare(defaults)} {}
+ParameterStore::ParameterStore() : values_(image_defaults()), settings_{control::prepare(values_)} {}
 
 protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on) {
   ++transactions_;
@@ -43,11 +30,10 @@ std::size_t ParameterStore::read(protocol::ParametersReport& report) const {
   report.report_id = protocol::ReportId::parameters;
   report.operation = protocol::ParameterOperation::set;
   report.version = protocol::protocol_version;
-  report.count = protocol::parameter_count;
+  report.count = static_cast<std::uint16_t>(image_parameter_count());
   report.reserved = 0;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    report.entries[i] = {parameter_ids[i], 0, values_.values[i]};
-  return protocol::parameters_report_size(protocol::parameter_count);
+  for (std::size_t i = 0; i < report.count; ++i) report.entries[i] = {image_parameter_id(i), 0, values_.values[i]};
+  return protocol::parameters_report_size(report.count);
 }
 
 protocol::TransactionReport ParameterStore::result() const {

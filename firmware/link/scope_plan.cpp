@@ -11,6 +11,11 @@ constexpr std::array<protocol::SignalWire, protocol::signal_count> wires = [] {
   return rows;
 }();
 
+/// Signals of a force law are floats.
+protocol::SignalWire wire_of(std::uint8_t signal) {
+  return signal < wires.size() ? wires[signal] : protocol::SignalWire::float32;
+}
+
 constexpr float steps_per_unit(protocol::SignalWire wire) {
   switch (wire) {
     case protocol::SignalWire::current_int16: return 1.0f / protocol::current_step_A;
@@ -29,7 +34,7 @@ ScopePlan prepare(const protocol::SignalSelection& selection, std::uint8_t token
   std::uint32_t size = 0;
   std::size_t run = 0;
   for (std::size_t i = 0; i < selection.count; ++i) {
-    const protocol::SignalWire wire = wires[selection.signals[i]];
+    const protocol::SignalWire wire = wire_of(selection.signals[i]);
     plan.items[i] = selection.signals[i];
     plan.steps_per_unit[i] = steps_per_unit(wire);
     const bool narrow = wire != protocol::SignalWire::float32;

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <new>
 
+#include <control/installed_force_law.hpp>
 #include <protocol/usb_identity.hpp>
 #include <usb/device.hpp>
 
@@ -75,6 +76,8 @@ Answer Device::get_report(const SetupPacket& setup) {
       auto* report = new (buffer.data()) protocol::ParametersReport;
       return Answer::send(buffer.first(link_.parameters.read(*report)));
     }
+    case report_value(feature_report, ReportId::force_law):
+      return Answer::send(std::span(control::installed_force_law.report, control::installed_force_law.report_size));
     default: return Answer::stall();
   }
 }

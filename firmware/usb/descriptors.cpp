@@ -78,6 +78,7 @@ constexpr auto report_descriptor =
          report(ReportId::transaction, 6, feature_item, sizeof(protocol::TransactionReport)),
          report(ReportId::frame, 7, feature_item, sizeof(protocol::FrameReport)),
          report(ReportId::shapes, 9, feature_item, sizeof(protocol::ShapesReport)),
+         report(ReportId::force_law, 10, feature_item, protocol::force_law_report_maximum),
          bytes(0xC0));  // end of the collection
 
 // ---- device and configuration (USB 2.0, section 9.6) -----------------------------------------------

@@ -3,10 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
+#include <device/nearest_name.hpp>
 #include <device/open_arm.hpp>
 
 namespace inkwell::command_line {
@@ -45,6 +49,32 @@ struct DeviceOptions {
 /// Opens the device that the options name. With --arm, a virtual board's firmware gets that arm's parameters.
 device::OpenArm connect(const DeviceOptions& options, BoardTime time = BoardTime::as_it_can,
                         device::SimulationMode default_mode = device::SimulationMode::fast);
+
+/// What was typed, and the device if it had to be asked.
+template <class Value>
+struct Typed {
+  Value value;
+  std::optional<device::OpenArm> connection;
+};
+
+/// Reads what was typed by `read()`. A mistake in it is wrong usage, found before any device is touched; only a name
+/// that no table has may be one of the device's own force law, so that the device is asked.
+template <class Read>
+Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read read,
+                                             BoardTime time = BoardTime::as_it_can) {
+  try {
+    return {read(), std::nullopt};
+  } catch (const device::UnknownName& unknown) {
+    try {
+      auto connection = connect(options, time);
+      return {read(), std::move(connection)};
+    } catch (const device::Error&) {
+      throw UsageError(unknown.what());
+    }
+  } catch (const device::Error& error) {
+    throw UsageError(error.what());
+  }
+}
 
 /// Name of the arm that --arm describes; empty without it, because a board does not know which arm it is built into.
 std::string arm_name(const DeviceOptions& options);

@@ -16,6 +16,12 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::ordered_json;
 
+ordered_json law_signals(const device::ForceLaw& law) {
+  ordered_json json = ordered_json::array();
+  for (const auto& row : law.signals) json.push_back({{"name", row.name}, {"unit", row.unit}, {"help", row.help}});
+  return json;
+}
+
 ordered_json to_json(const device::Information& information, const std::optional<protocol::PoseReport>& pose) {
   const auto& report = information.report;
   ordered_json json{{"serial_number", information.serial_number},
@@ -34,6 +40,8 @@ ordered_json to_json(const device::Information& information, const std::optional
                     {"force_reports_refused", report.force_reports_refused},
                     {"reset_cause", report.reset_cause},
                     {"motor_heat", report.motor_heat}};
+  if (const auto& law = information.force_law)
+    json["force_law"] = {{"name", law->name}, {"help", law->help}, {"signals", law_signals(*law)}};
   if (pose) {
     json["state"] = info(pose->state).name;
     json["fault"] = info(pose->fault).name;
@@ -48,6 +56,11 @@ void print(const device::Information& information, const std::optional<protocol:
   fmt::print("serial number       {}\n", information.serial_number);
   fmt::print("firmware            {}, protocol {} (companion {})\n", information.firmware_version,
              information.protocol_version, INKWELL_VERSION);
+  if (const auto& law = information.force_law) {
+    fmt::print("force law           {}: {}\n", law->name, law->help);
+    for (const auto& row : law->signals)
+      fmt::print("                    signal {} {}: {}\n", row.name, row.unit, row.help);
+  }
   fmt::print("control             {} Hz; longest interrupt {} cycles, {:.0f} % of its period; {} overruns\n",
              report.servo_rate_Hz, report.servo_cycles_longest, 100.0 * report.servo_cycles_longest / cycles_per_period,
              report.servo_overruns);

@@ -30,7 +30,7 @@ int list(const DeviceOptions& options) {
   const ParameterSet held = connection.device->parameters();
   ordered_json json = ordered_json::array();
   std::string_view group;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
     const auto parameter = static_cast<Parameter>(i);
     const auto& row = info(parameter);
     if (options.json) {
@@ -54,22 +54,20 @@ int list(const DeviceOptions& options) {
   return 0;
 }
 
-/// A mistake in what was typed is wrong usage, and is found before any device is touched.
 template <class Read>
-auto read_typed(const std::vector<std::string>& words, Read read) {
-  std::vector<decltype(read(std::string_view()))> results;
-  try {
+auto read_words(const DeviceOptions& options, const std::vector<std::string>& words, Read read) {
+  auto typed = read_typed(options, [&] {
+    std::vector<decltype(read(std::string_view()))> results;
     for (const auto& word : words) results.push_back(read(word));
-  } catch (const device::Error& error) {
-    throw UsageError(error.what());
-  }
-  return results;
+    return results;
+  });
+  if (!typed.connection) typed.connection = connect(options);
+  return typed;
 }
 
 int get(const DeviceOptions& options, const std::vector<std::string>& names) {
-  const auto parameters = read_typed(names, device::parameter_named);
-  const auto connection = connect(options);
-  const ParameterSet held = connection.device->parameters();
+  const auto [parameters, connection] = read_words(options, names, device::parameter_named);
+  const ParameterSet held = connection->device->parameters();
   ordered_json json = ordered_json::object();
   for (auto parameter : parameters) {
     if (options.json)
@@ -89,46 +87,52 @@ void report(const DeviceOptions& options, std::size_t count, const protocol::Tra
     fmt::print("{} parameter{} took effect together.\n", count, count == 1 ? "" : "s");
 }
 
-int send(const DeviceOptions& options, const std::vector<ParameterChange>& changes) {
-  const auto connection = connect(options);
+int send(const DeviceOptions& options, const device::OpenArm& connection, const std::vector<ParameterChange>& changes) {
   report(options, changes.size(), connection.device->set_parameters(changes));
   return 0;
 }
 
 int set(const DeviceOptions& options, const std::vector<std::string>& assignments) {
-  return send(options, read_typed(assignments, device::parse_change));
+  const auto [changes, connection] = read_words(options, assignments, device::parse_change);
+  return send(options, *connection, changes);
 }
 
 int restore_defaults(const DeviceOptions& options) {
   const auto connection = connect(options);
-  report(options, protocol::parameter_count, connection.device->restore_default_parameters());
+  report(options, protocol::known_parameters().size(), connection.device->restore_default_parameters());
   return 0;
 }
 
-device::ParameterFile load_and_complain(const std::string& file) {
-  const auto loaded = device::load_parameters(file);
+/// A file may hold parameters of the device's own force law, so that the device is asked before a name is unknown.
+Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, const std::string& file) {
+  std::optional<device::OpenArm> connection;
+  auto loaded = device::load_parameters(file);
+  if (!loaded.unknown.empty()) {
+    connection = connect(options);
+    loaded = device::load_parameters(file);
+  }
   for (const auto& name : loaded.unknown)
     fmt::print(stderr, "inkwell: {} is not a parameter of this version and is passed over; the nearest is {}.\n", name,
                device::nearest_parameter_name(name));
   if (loaded.changes.empty())
     throw device::Error(fmt::format("{} holds no parameter that this version knows. Nothing was sent.", file));
-  return loaded;
+  if (!connection) connection = connect(options);
+  return {std::move(loaded), std::move(connection)};
 }
 
 int save(const DeviceOptions& options, const std::string& file) {
   const auto connection = connect(options);
   device::save_parameters(file, connection.device->parameters());
   if (options.json)
-    fmt::print("{}\n", ordered_json{{"file", file}, {"parameters", protocol::parameter_count}}.dump());
+    fmt::print("{}\n", ordered_json{{"file", file}, {"parameters", protocol::known_parameters().size()}}.dump());
   else
-    fmt::print("{} parameters were written to {}.\n", protocol::parameter_count, file);
+    fmt::print("{} parameters were written to {}.\n", protocol::known_parameters().size(), file);
   return 0;
 }
 
 int show_differences(const DeviceOptions& options, const std::string& file) {
-  const auto loaded = load_and_complain(file);
-  const auto connection = connect(options);
-  const auto differences = compare(loaded, connection.device->parameters());
+  const auto [loaded, connection] = load_and_complain(options, file);
+  const auto differences = compare(loaded, connection->device->parameters());
   ordered_json json = ordered_json::array();
   for (const auto& difference : differences) {
     const auto& row = info(difference.parameter);
@@ -182,7 +186,10 @@ void add_parameters_command(const Place& place) {
   add("defaults", "Give every parameter its default", "inkwell parameters defaults",
       [&options] { return restore_defaults(options); });
   add("load", "Send the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
-      [&options, file] { return send(options, load_and_complain(*file).changes); })
+      [&options, file] {
+        const auto [loaded, connection] = load_and_complain(options, *file);
+        return send(options, *connection, loaded.changes);
+      })
       ->add_option("FILE", *file, "Written by `inkwell parameters save`")
       ->required();
   add("save", "Write the device's parameters to a TOML file", "inkwell parameters save soft.toml",
@@ -195,7 +202,7 @@ void add_parameters_command(const Place& place) {
       ->required();
   add("arm", "Send the geometry, limits and box of an arm description in one transaction",
       "inkwell parameters arm boards/arms/paper.toml",
-      [&options, file] { return send(options, device::arm_parameters(*file)); })
+      [&options, file] { return send(options, connect(options), device::arm_parameters(*file)); })
       ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")
       ->required();
 }

@@ -142,14 +142,14 @@ ordered_json to_json(const RecordOptions& options, const RecorderStatus& status)
 }
 
 int record(const DeviceOptions& device_options, const RecordOptions& options) {
-  std::vector<protocol::Signal> signals;
-  try {
-    signals = chosen_signals(options);
-    recording::check_can_be_created(options.file);
-  } catch (const device::Error& error) {
-    throw UsageError(error.what());
-  }
-  const auto connection = connect(device_options, BoardTime::paced);
+  auto [signals, early] = read_typed(
+      device_options,
+      [&] {
+        recording::check_can_be_created(options.file);
+        return chosen_signals(options);
+      },
+      BoardTime::paced);
+  const auto connection = early ? std::move(*early) : connect(device_options, BoardTime::paced);
   auto& device = *connection.device;
   const auto information = recording::describe(device.information(), device.parameters(), signals,
                                                arm_name(device_options), connection.endpoint.is_virtual);

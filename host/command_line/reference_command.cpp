@@ -35,6 +35,8 @@ constexpr ReportRow reports[] = {
      "when the newest frame of the bus began, in board time"},
     {ReportId::shapes, "ShapesReport", "feature, set", sizeof(protocol::ShapesReport),
      "the shapes that are felt from now on; only its used part is sent"},
+    {ReportId::force_law, "ForceLawReport", "feature, get", protocol::force_law_report_maximum,
+     "the parameters and signals that the image's own force law adds to the tables; its size is in its head"},
 };
 
 void print_reports() {

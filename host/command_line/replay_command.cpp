@@ -24,8 +24,8 @@ ordered_json to_json(const Recording& recording) {
     simulated.push_back({{"name", info(known).name}, {"unit", info(known).unit}});
   for (const auto& mark : recording.marks)
     marks.push_back({{"time_s", recording.elapsed_s_at(mark.period)}, {"text", mark.text}});
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    parameters[std::string(protocol::parameter_table[i].name)] = about.parameters.values[i];
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
+    parameters[std::string(protocol::known_parameters()[i].name)] = about.parameters.values[i];
   return {{"created_utc", about.created_utc},
           {"firmware_version", about.firmware_version},
           {"protocol_version", about.protocol_version},
@@ -63,9 +63,9 @@ void print(const Recording& recording) {
   for (const auto& mark : recording.marks)
     fmt::print("mark at {:9.3f} s   {}\n", recording.elapsed_s_at(mark.period), mark.text);
   const auto defaults = protocol::default_parameters();
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
     if (about.parameters.values[i] != defaults.values[i])
-      fmt::print("not the default     {} = {}\n", protocol::parameter_table[i].name, about.parameters.values[i]);
+      fmt::print("not the default     {} = {}\n", protocol::known_parameters()[i].name, about.parameters.values[i]);
 }
 
 int describe(const DeviceOptions& options, const std::string& file) {

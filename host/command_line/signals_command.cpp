@@ -14,7 +14,7 @@ using nlohmann::ordered_json;
 
 int list(const DeviceOptions& options) {
   ordered_json json = ordered_json::array();
-  for (const auto& row : protocol::signal_table)
+  for (const auto& row : protocol::known_signals())
     if (options.json)
       json.push_back({{"name", row.name}, {"unit", row.unit}, {"help", row.help}});
     else

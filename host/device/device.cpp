@@ -39,8 +39,9 @@ Refused::Refused(const protocol::TransactionReport& refusal) : Error(refusal_sen
 
 struct Device::Implementation {
   std::unique_ptr<Transport> transport;
-  std::mutex feature_mutex;  ///< a transaction and the report on it belong together
-  std::mutex output_mutex;   ///< guards the next four
+  std::shared_ptr<const ForceLaw> force_law;  ///< set before the device is used
+  std::mutex feature_mutex;                   ///< a transaction and the report on it belong together
+  std::mutex output_mutex;                    ///< guards the next four
   std::uint8_t token = 0;
   std::uint32_t force_sequence = 0;
   Clock::time_point last_output_at{};
@@ -48,6 +49,13 @@ struct Device::Implementation {
   std::atomic<std::uint32_t> newest_period = 0;
   mutable std::mutex scope_mutex;  ///< the selection comes from one thread, the frames are read by another
   ScopeDecoder decoder;
+
+  ForceLaw read_force_law() {
+    std::vector<std::byte> report(protocol::force_law_report_maximum);
+    report[0] = static_cast<std::byte>(ReportId::force_law);
+    report.resize(transport->get_feature(report));
+    return parse_force_law(report);
+  }
 
   template <class Report>
   void get(Report& report, const char* what) {
@@ -128,6 +136,13 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
         fmt::format("Firmware {} has other parameters or signals than this companion, though both speak "
                     "version {} of the protocol. Build both from the same source and flash again.",
                     information.firmware_version, protocol::protocol_version));
+  auto law = device->implementation_->read_force_law();
+  if (!join_tables(law))
+    throw Error(
+        fmt::format("This device has the force law {}, but this program works with {} at the same time. Close that "
+                    "arm or recording, or use a program of its own for each of them.",
+                    law.name, joined_force_law()));
+  device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
   return device;
 }
 
@@ -153,6 +168,7 @@ Information Device::information() {
   information.firmware_version = fmt::format("{}.{}.{}", version[0], version[1], version[2]);
   information.protocol_version = information.report.version;
   information.serial_number = implementation_->transport->endpoint().serial_number;
+  information.force_law = implementation_->force_law;
   return information;
 }
 
@@ -234,8 +250,10 @@ protocol::ParameterSet Device::parameters() {
   protocol::ParametersReport report{};
   report.report_id = ReportId::parameters;
   const std::size_t length = implementation_->transport->get_feature(writable_bytes(report));
-  const bool is_whole = length >= protocol::parameters_report_size(protocol::parameter_count) &&
-                        report.version == protocol::protocol_version && report.count == protocol::parameter_count;
+  const auto& law = implementation_->force_law;
+  const std::size_t count = protocol::parameter_count + (law ? law->parameters.size() : 0);
+  const bool is_whole = length >= protocol::parameters_report_size(count) &&
+                        report.version == protocol::protocol_version && report.count == count;
   if (!is_whole)
     throw Incompatible("The device's parameters do not fit this companion. Flash the firmware that belongs to it.");
   protocol::ParameterSet set = protocol::default_parameters();

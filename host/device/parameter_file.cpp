@@ -34,12 +34,14 @@ std::string format_value(Parameter parameter, float value) {
   return text;
 }
 
-std::string_view nearest_parameter_name(std::string_view name) { return nearest_name(protocol::parameter_table, name); }
+std::string_view nearest_parameter_name(std::string_view name) {
+  return nearest_name(protocol::known_parameters(), name);
+}
 
 Parameter parameter_named(std::string_view name) {
   if (const auto parameter = protocol::find_parameter(name)) return *parameter;
-  throw Error(fmt::format("There is no parameter {}. Did you mean {}? `inkwell parameters` lists them all.", name,
-                          nearest_parameter_name(name)));
+  throw UnknownName(fmt::format("There is no parameter {}. Did you mean {}? `inkwell parameters` lists them all.", name,
+                                nearest_parameter_name(name)));
 }
 
 void check_value(Parameter parameter, float value) {
@@ -117,7 +119,7 @@ std::string format_parameters(const protocol::ParameterSet& parameters) {
       "protocol_version = {}\n\n[parameters]\n",
       protocol::protocol_version);
   std::string_view group;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
     const auto parameter = static_cast<Parameter>(i);
     const auto& row = info(parameter);
     if (row.group != group) text += fmt::format("\n# ---- {} ----\n", row.group);

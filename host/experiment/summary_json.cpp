@@ -81,8 +81,8 @@ ordered_json summary_json(const Circumstances& circumstances, const WallResult& 
   }
   if (!steps.empty()) summary["current_step"] = current_step_json(steps);
   ordered_json parameters;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    parameters[std::string(protocol::parameter_table[i].name)] = shortest(about.parameters.values[i]);
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
+    parameters[std::string(protocol::known_parameters()[i].name)] = shortest(about.parameters.values[i]);
   summary["parameters"] = parameters;
   return summary;
 }

@@ -1,5 +1,7 @@
 // What the C interface has by name: parameters, signals, and the scope and recordings that are made of these.
 #include <algorithm>
+#include <deque>
+#include <mutex>
 #include <string_view>
 #include <vector>
 
@@ -17,48 +19,42 @@ protocol::Parameter parameter_named(const char* name) {
   if (const auto parameter = protocol::find_parameter(std::string_view(required(name, "A parameter's name"))))
     return *parameter;
   throw BadArgument(fmt::format("There is no parameter {}. Did you mean {}?", name,
-                                device::nearest_name(protocol::parameter_table, name)));
+                                device::nearest_name(protocol::known_parameters(), name)));
 }
 
 protocol::Signal signal_named(const char* name) {
   if (const auto signal = protocol::find_signal(std::string_view(required(name, "A signal's name")))) return *signal;
-  throw BadArgument(
-      fmt::format("There is no signal {}. Did you mean {}?", name, device::nearest_name(protocol::signal_table, name)));
+  throw BadArgument(fmt::format("There is no signal {}. Did you mean {}?", name,
+                                device::nearest_name(protocol::known_signals(), name)));
 }
 
-/// The table as C has it. Its texts are literals, so they end in a zero.
-template <class Row, class Table, class Fill>
-std::vector<Row> rows(const Table& table, Fill fill) {
-  std::vector<Row> rows;
-  rows.reserve(std::size(table));
-  for (const auto& entry : table) rows.push_back(fill(entry));
-  return rows;
+// The texts of the tables, those of a force law included, end in a zero.
+inkwell_parameter row_of(const protocol::ParameterInfo& row) {
+  return {row.name.data(), row.unit.data(), row.help.data(), row.minimum, row.maximum, row.default_value};
 }
+inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data(), row.unit.data(), row.help.data()}; }
 
-const std::vector<inkwell_parameter>& parameter_rows() {
-  static const auto table = rows<inkwell_parameter>(protocol::parameter_table, [](const auto& row) {
-    return inkwell_parameter{row.name.data(), row.unit.data(), row.help.data(),
-                             row.minimum,     row.maximum,     row.default_value};
-  });
-  return table;
-}
-
-const std::vector<inkwell_signal>& signal_rows() {
-  static const auto table = rows<inkwell_signal>(protocol::signal_table, [](const auto& row) {
-    return inkwell_signal{row.name.data(), row.unit.data(), row.help.data()};
-  });
-  return table;
+/// A row as C knows it; null beyond the end. A row stays where it is: those of a force law come behind the table's.
+template <class Row, class Table>
+const Row* row_at(const Table& table, std::size_t index) {
+  static std::mutex mutex;
+  static std::deque<Row> rows;
+  const std::lock_guard lock(mutex);
+  if (index >= table.size()) return nullptr;
+  if (index >= rows.size()) rows.resize(index + 1);
+  rows[index] = row_of(table[index]);
+  return &rows[index];
 }
 
 }  // namespace
 
 // ---- parameters --------------------------------------------------------------------------------------------
 
-size_t inkwell_parameter_count(void) { return protocol::parameter_count; }
+size_t inkwell_parameter_count(void) { return protocol::known_parameters().size(); }
 
 const inkwell_parameter* inkwell_parameter_at(size_t index) {
   const inkwell_parameter* row = nullptr;
-  guarded([&] { row = index < parameter_rows().size() ? &parameter_rows()[index] : nullptr; });
+  guarded([&] { row = row_at<inkwell_parameter>(protocol::known_parameters(), index); });
   return row;
 }
 
@@ -82,11 +78,11 @@ inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names
 
 // ---- scope and recording -----------------------------------------------------------------------------------
 
-size_t inkwell_signal_count(void) { return protocol::signal_count; }
+size_t inkwell_signal_count(void) { return protocol::known_signals().size(); }
 
 const inkwell_signal* inkwell_signal_at(size_t index) {
   const inkwell_signal* row = nullptr;
-  guarded([&] { row = index < signal_rows().size() ? &signal_rows()[index] : nullptr; });
+  guarded([&] { row = row_at<inkwell_signal>(protocol::known_signals(), index); });
   return row;
 }
 

@@ -66,6 +66,8 @@ class CsvReader {
       about.arm = value;
     else if (key == "simulation")
       about.simulation = value == "1";
+    else if (key == "force_law")
+      take_force_law(recording_, value, name_);
     else if (key == "complete")
       recording_.complete = value == "1";
     else if (key.starts_with("mark "))

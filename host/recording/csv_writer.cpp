@@ -59,8 +59,9 @@ class CsvWriter final : public Writer {
                    format_name, format_version, about.created_utc, about.firmware_version, about.protocol_version);
     fmt::format_to(out, "# serial_number = {}\n# arm = {}\n# simulation = {}\n", about.serial_number, about.arm,
                    about.simulation ? 1 : 0);
-    for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-      fmt::format_to(out, "# parameter {} = {}\n", protocol::parameter_table[i].name, about.parameters.values[i]);
+    if (about.force_law) fmt::format_to(out, "# force_law = {}\n", force_law_digits(about));
+    for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
+      fmt::format_to(out, "# parameter {} = {}\n", protocol::known_parameters()[i].name, about.parameters.values[i]);
     fmt::format_to(out, "# unit time_s = s\n");
     for (const auto signal : about.signals)
       fmt::format_to(out, "# unit {} = {}\n", protocol::info(signal).name, protocol::info(signal).unit);

@@ -3,11 +3,19 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include <recording/recording.hpp>
 #include <recording/writer.hpp>
 
 namespace inkwell::recording {
+
+/// Information::force_law in hexadecimal digits; empty if there is none.
+std::string force_law_digits(const Information& information);
+/// Takes it from them, and puts the rows of the force law into the tables, before parameters and columns are looked up
+/// there. What is wrong with it becomes a remark, with the file's name.
+void take_force_law(Recording& recording, std::string_view digits, std::string_view file);
 
 std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information);
 Recording read_hdf5(const std::filesystem::path& file);

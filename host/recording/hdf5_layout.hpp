@@ -1,7 +1,8 @@
 // How a recording lies in an HDF5 file:
 //
 //   /                    attributes: format, format_version, created_utc, firmware_version, protocol_version,
-//                        serial_number, arm, simulation, servo_rate_Hz
+//                        serial_number, arm, force_law (as the device sent it, in hexadecimal digits), simulation,
+//                        servo_rate_Hz
 //   /parameters/NAME     scalar float, attributes unit and help
 //   /period              uint32[N], control period of each sample
 //   /time_s              float64[N]

@@ -109,12 +109,13 @@ class Hdf5Writer final : public Writer {
     write_attribute(file.id(), "protocol_version", std::int64_t{about.protocol_version});
     write_attribute(file.id(), "serial_number", about.serial_number);
     write_attribute(file.id(), "arm", about.arm);
+    write_attribute(file.id(), "force_law", force_law_digits(about));
     write_attribute(file.id(), "simulation", std::int64_t{about.simulation});
     write_attribute(file.id(), "servo_rate_Hz", std::int64_t{protocol::servo_rate_Hz});
 
     const Handle parameters = group(file.id(), "parameters");
-    for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
-      const auto& row = protocol::parameter_table[i];
+    for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
+      const auto& row = protocol::known_parameters()[i];
       const Handle value =
           scalar(parameters.id(), std::string(row.name), H5T_NATIVE_FLOAT, &about.parameters.values[i]);
       write_attribute(value.id(), "unit", std::string(row.unit));

@@ -11,8 +11,8 @@ namespace {
 
 /// Whether geometry, motors and gimbal are those of the arm that the defaults describe.
 bool is_default_arm(const protocol::ParameterSet& parameters) {
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
-    const auto& row = protocol::parameter_table[i];
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
+    const auto& row = protocol::known_parameters()[i];
     if ((row.group == "arm" || row.group == "gimbal") && parameters.values[i] != row.default_value) return false;
   }
   return true;
@@ -29,6 +29,7 @@ Information describe(const device::Information& device, const protocol::Paramete
           .serial_number = device.serial_number,
           .arm = arm.empty() && is_default_arm(parameters) ? arm_defaults::name : arm,
           .simulation = simulation,
+          .force_law = device.force_law ? device.force_law->report : nullptr,
           .parameters = parameters,
           .signals = std::move(signals),
           .simulated = {}};

@@ -54,8 +54,9 @@ std::vector<Signal> parse_signals(std::string_view names) {
   for (const auto name : split(names)) {
     const auto signal = protocol::find_signal(name);
     if (!signal)
-      throw device::Error(fmt::format("There is no signal `{}`. Did you mean {}? `inkwell signals` lists them all.",
-                                      name, device::nearest_name(protocol::signal_table, name)));
+      throw device::UnknownName(
+          fmt::format("There is no signal `{}`. Did you mean {}? `inkwell signals` lists them all.", name,
+                      device::nearest_name(protocol::known_signals(), name)));
     add_once(signals, *signal);
   }
   if (signals.size() > protocol::scope_signals_maximum)
@@ -69,7 +70,7 @@ std::vector<Quantity> parse_quantities(std::string_view names) {
     std::string_view name;
   };
   std::vector<Named> known;
-  for (const auto& row : protocol::signal_table) known.push_back({row.name});
+  for (const auto& row : protocol::known_signals()) known.push_back({row.name});
   for (const auto& row : protocol::simulated_quantity_table) known.push_back({row.name});
   std::vector<Quantity> quantities;
   for (const auto name : split(names)) {

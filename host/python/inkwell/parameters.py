@@ -45,28 +45,27 @@ class Parameters:
         self._arm.set_parameters(list(values.items()))
 
     def __iter__(self) -> Iterator[str]:
-        return iter(TABLE)
+        return (row[0] for row in _native.parameters())
 
     def __getattr__(self, name: str) -> float:
-        # Only what has no property below comes here.
-        raise self._unknown(name)
+        # Only what has no property below comes here: a parameter of the arm's own force law, or none.
+        if name.startswith("_"):  # what Python and notebooks ask every object
+            raise AttributeError(name)
+        try:
+            return self._arm.parameter(name)
+        except errors.BadArgument as error:
+            raise AttributeError(str(error), name=name) from None
 
     def __setattr__(self, name: str, value: float) -> None:
-        if name not in TABLE:
-            raise self._unknown(name)
-        super().__setattr__(name, value)
-
-    def _unknown(self, name: str) -> Exception:
-        if name.startswith("_"):  # what Python and notebooks ask every object
-            return AttributeError(name)
-        try:
-            self._arm.parameter(name)
-        except errors.BadArgument as error:
-            return AttributeError(str(error), name=name)
-        return AttributeError(name)
+        if name in TABLE:
+            super().__setattr__(name, value)
+        else:
+            getattr(self, name)  # which knows whether there is such a parameter
+            self._arm.set_parameters([(name, float(value))])
 
     def __repr__(self) -> str:
-        rows = (f"{row.name:38} {getattr(self, row.name):12g} {row.unit}" for row in TABLE.values())
+        known = (Parameter(*row) for row in _native.parameters())
+        rows = (f"{row.name:38} {getattr(self, row.name):12g} {row.unit}" for row in known)
         return "\n".join(row.rstrip() for row in rows)
 
 

@@ -32,7 +32,7 @@ void put(std::vector<ParameterChange>& changes, Parameter parameter, float value
 void ParameterEditor::device_holds(const protocol::ParameterSet& held) {
   held_ = held;
   bool all_confirmed = true;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
     if (!wanted_[i]) continue;
     if (wanted_[i]->value == held.values[i]) {
       wanted_[i].reset();
@@ -74,7 +74,8 @@ float ParameterEditor::shown(Parameter parameter) const {
 
 protocol::ParameterSet ParameterEditor::shown() const {
   protocol::ParameterSet set{};
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i) set.values[i] = shown(static_cast<Parameter>(i));
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
+    set.values[i] = shown(static_cast<Parameter>(i));
   return set;
 }
 

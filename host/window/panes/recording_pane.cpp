@@ -43,7 +43,7 @@ void number(const char* name, const std::string& value, Colour colour, const Sty
 /// "wall_stiffness_N_per_m = 600", for each parameter that differs.
 std::vector<std::string> describe_changes(const protocol::ParameterSet& before, const protocol::ParameterSet& now) {
   std::vector<std::string> changes;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i) {
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
     if (before.values[i] == now.values[i]) continue;
     const auto parameter = static_cast<protocol::Parameter>(i);
     changes.push_back(fmt::format("{} = {}", info(parameter).name, device::format_value(parameter, now.values[i])));

@@ -167,8 +167,8 @@ void TuningPane::draw_presets(const PaneFrame& frame) {
   }
   if (button("Defaults", {width, 0})) {
     std::vector<ParameterChange> changes;
-    for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-      changes.emplace_back(static_cast<Parameter>(i), protocol::parameter_table[i].default_value);
+    for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
+      changes.emplace_back(static_cast<Parameter>(i), protocol::known_parameters()[i].default_value);
     editor.apply("all defaults", changes, frame.now_s);
   }
   help_on_hover("Defaults", "Gives every parameter its default. It can be undone.", style);
@@ -256,10 +256,10 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
   ParameterEditor& editor = frame.editor;
   std::string title{group};
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  const bool often_used = group == "box" || group == "contact" || group == "current loop";
+  const bool often_used = group == "box" || group == "contact" || group == "current loop" || group == "force law";
   int changed = 0;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    if (protocol::parameter_table[i].group == group && editor.known() &&
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
+    if (protocol::known_parameters()[i].group == group && editor.known() &&
         editor.differs_from_default(static_cast<Parameter>(i)))
       ++changed;
   ImGui::Dummy({0, style.points(1)});
@@ -279,8 +279,8 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
   ImGui::Indent(style.points(12));
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(3)});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(4)});
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    if (protocol::parameter_table[i].group == group) draw_row(static_cast<Parameter>(i), frame);
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
+    if (protocol::known_parameters()[i].group == group) draw_row(static_cast<Parameter>(i), frame);
   ImGui::PopStyleVar(2);
   ImGui::Unindent(style.points(12));
 }
@@ -313,7 +313,7 @@ void TuningPane::draw(const PaneFrame& frame) {
   draw_messages(frame);
   if (ImGui::BeginChild("parameters")) {
     std::string_view group;
-    for (const protocol::ParameterInfo& info : protocol::parameter_table) {
+    for (const protocol::ParameterInfo& info : protocol::known_parameters()) {
       if (info.group == group) continue;
       group = info.group;
       draw_group(group, frame);

@@ -11,7 +11,7 @@ namespace inkwell::window {
 namespace {
 
 void choose_signals(ScopePlot& plot, const Style& style) {
-  for (const protocol::SignalInfo& info : protocol::signal_table) {
+  for (const protocol::SignalInfo& info : protocol::known_signals()) {
     const auto signal = static_cast<protocol::Signal>(info.id);
     const auto found = std::ranges::find(plot.signals, signal);
     bool on = found != plot.signals.end();

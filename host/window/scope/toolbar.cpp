@@ -20,7 +20,7 @@ std::string span_label(double span_s) {
 void choose_signal(const char* label, protocol::Signal& signal, float width) {
   ImGui::SetNextItemWidth(width);
   if (!ImGui::BeginCombo(label, protocol::info(signal).name.data(), ImGuiComboFlags_HeightLarge)) return;
-  for (const protocol::SignalInfo& info : protocol::signal_table) {
+  for (const protocol::SignalInfo& info : protocol::known_signals()) {
     const auto offered = static_cast<protocol::Signal>(info.id);
     if (ImGui::Selectable(info.name.data(), offered == signal)) signal = offered;
   }

@@ -8,6 +8,8 @@
 // again. `name` ends in its unit, as it does in files and on the command line. A row whose default is
 // arm_defaults::name belongs to the arm: every description in boards/arms/ sets it, and the one that the
 // build names gives the default, through the generated header <arm/defaults.hpp>.
+//
+// Behind these rows stand those of the force law that the image was built with (docs/force-laws.md).
 #pragma once
 
 #include <array>
@@ -18,6 +20,7 @@
 #include <string_view>
 
 #include <arm/defaults.hpp>
+#include <protocol/added_rows.hpp>
 #include <protocol/each_axis.hpp>
 
 namespace inkwell::protocol {
@@ -98,7 +101,7 @@ enum class ParameterKind : std::uint8_t {
   X(608, gimbal_3_offset_rad, real, "rad", -20.0f, 20.0f, arm_defaults::gimbal_3_offset_rad, "gimbal", "Offset of the roll potentiometer.")
 // clang-format on
 
-/// Index of a parameter in the table; not what goes over the wire.
+/// Index of a parameter in the table; not what goes over the wire. Values behind the last are rows of a force law.
 enum class Parameter : std::uint8_t {
 #define X(id, name, ...) name,
   INKWELL_PARAMETERS(X)
@@ -140,8 +143,15 @@ inline constexpr auto parameter_table = std::to_array<ParameterInfo>({
 
 inline constexpr std::size_t parameter_count = parameter_table.size();
 
+/// Of a force law: as many parameters it may have, and the id of its first on the wire.
+inline constexpr std::size_t force_law_parameters_maximum = 12;
+inline constexpr std::uint16_t force_law_first_id = 1000;
+
+/// The table, and the parameters of the force law as far as it is known.
+constexpr KnownRows<ParameterInfo, parameter_count> known_parameters() { return KnownRows(parameter_table); }
+
 constexpr const ParameterInfo& info(Parameter parameter) {
-  return parameter_table[static_cast<std::size_t>(parameter)];
+  return known_parameters()[static_cast<std::size_t>(parameter)];
 }
 constexpr std::size_t row_count(Parameter) { return parameter_count; }
 constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {
@@ -178,9 +188,9 @@ inline constexpr Bounds parameter_bounds[] = {
     {Parameter::elbow_minimum_rad, Parameter::elbow_maximum_rad, false},
 };
 
-/// A value for every parameter, in the table's order.
+/// A value for every parameter, in the table's order, and for those of a force law; 0 where it has none.
 struct ParameterSet {
-  std::array<float, parameter_count> values;
+  std::array<float, parameter_count + force_law_parameters_maximum> values;
 
   constexpr float& operator[](Parameter parameter) { return values[static_cast<std::size_t>(parameter)]; }
   constexpr float operator[](Parameter parameter) const { return values[static_cast<std::size_t>(parameter)]; }
@@ -192,19 +202,22 @@ struct ParameterSet {
 
 constexpr ParameterSet default_parameters() {
   ParameterSet set{};
-  for (std::size_t i = 0; i < parameter_count; ++i) set.values[i] = parameter_table[i].default_value;
+  const auto rows = known_parameters();
+  for (std::size_t i = 0; i < rows.size(); ++i) set.values[i] = rows[i].default_value;
   return set;
 }
 
 constexpr std::optional<Parameter> find_parameter(std::uint16_t id) {
-  for (std::size_t i = 0; i < parameter_count; ++i)
-    if (parameter_table[i].id == id) return static_cast<Parameter>(i);
+  const auto rows = known_parameters();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].id == id) return static_cast<Parameter>(i);
   return std::nullopt;
 }
 
 constexpr std::optional<Parameter> find_parameter(std::string_view name) {
-  for (std::size_t i = 0; i < parameter_count; ++i)
-    if (parameter_table[i].name == name) return static_cast<Parameter>(i);
+  const auto rows = known_parameters();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].name == name) return static_cast<Parameter>(i);
   return std::nullopt;
 }
 
@@ -226,6 +239,7 @@ constexpr bool stands_with_its_group(const Table& table, std::size_t row) {
 }
 }  // namespace detail
 #define X(id, name, kind, unit, minimum, maximum, default_value, group, help)                                       \
+  static_assert(id < force_law_first_id, #name ": its id is one of those of a force law's parameters");             \
   static_assert(detail::id_rises(parameter_table, static_cast<std::size_t>(Parameter::name)),                       \
                 #name ": its id is not above that of the row before; ids rise from row to row");                    \
   static_assert(detail::default_is_in_range(parameter_table, static_cast<std::size_t>(Parameter::name)),            \

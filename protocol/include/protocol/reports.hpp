@@ -3,7 +3,7 @@
 //   device -> host   input report    PoseReport, one for each frame of the bus, a millisecond by the host's clock
 //   host -> device   output report   CommandReport, ForceReport; any of them counts as a sign of life
 //   host <- device   feature report  InformationReport, ParametersReport (get), TransactionReport,
-//                                    FrameReport
+//                                    FrameReport, ForceLawReport
 //   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all; ShapesReport,
 //                                    likewise
 #pragma once
@@ -22,7 +22,7 @@ namespace inkwell::protocol {
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 4;
+inline constexpr std::uint16_t protocol_version = 5;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -39,6 +39,7 @@ enum class ReportId : std::uint8_t {
   transaction = 0x12,  ///< feature, get
   frame = 0x13,        ///< feature, get
   shapes = 0x14,       ///< feature, set
+  force_law = 0x15,    ///< feature, get
 };
 
 /// Bits of PoseReport::switches.
@@ -47,7 +48,7 @@ enum class Switch : std::uint8_t { button_1 = 1, button_2 = 2, inkwell = 4 };
 // clang-format off
 /// X(bit, name, meaning)
 #define INKWELL_FORCE_SOURCES(X)                                   \
-  X(1, walls, "The walls of the box are felt.")                    \
+  X(1, walls, "The force law of the board is felt: the walls of the box, unless it was built with another.") \
   X(2, shapes, "Planes or a sphere that a program placed are felt.") \
   X(4, program, "A program on the PC sends forces.")
 // clang-format on
@@ -75,7 +76,8 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
   return (force_sources & static_cast<std::uint8_t>(source)) != 0;
 }
 
-/// What a program's force has to do with the walls of the box. Shapes are felt in every mode.
+/// What a program's force has to do with that of the board's own force law, the walls of the box. Shapes are felt in
+/// every mode.
 enum class ForceMode : std::uint8_t {
   none = 0,              ///< the program has ended: its force fades
   beside_walls = 1,      ///< both are felt
@@ -190,9 +192,9 @@ struct ParameterEntry {
 };
 
 inline constexpr std::size_t parameter_entries_maximum = 96;
-static_assert(parameter_count <= parameter_entries_maximum);
+static_assert(parameter_count + force_law_parameters_maximum <= parameter_entries_maximum);
 
-/// Feature report. On get, `count` is parameter_count and the entries are in the table's order. On set,
+/// Feature report. On get, the entries are those of the table in its order, then those of the force law. On set,
 /// only the used part is sent: parameters_report_size(count) bytes.
 struct ParametersReport {
   ReportId report_id = ReportId::parameters;
@@ -262,7 +264,22 @@ struct ShapesReport {
   PlaneEntry planes[shape_planes_maximum];
 };
 
+/// Feature report: the rows that the image's force law adds to the tables. Behind this head stand, each text with a
+/// zero at its end: the law's name and what it is; of each parameter three floats (minimum, maximum, default), then
+/// name, unit and help; of each signal name, unit and help. Its parameters' ids rise by one from force_law_first_id,
+/// and they are real numbers; its signals follow the table's last and are floats.
+struct ForceLawReport {
+  ReportId report_id = ReportId::force_law;
+  std::uint8_t parameter_count;  ///< 0..force_law_parameters_maximum
+  std::uint8_t signal_count;     ///< 0..force_law_signals_maximum
+  std::uint8_t reserved = 0;
+  std::uint16_t size;  ///< of all of it, up to force_law_report_maximum
+};
+
 #pragma pack(pop)
+
+/// Some kernels take no report that is longer.
+inline constexpr std::size_t force_law_report_maximum = 2048;
 
 constexpr std::size_t shapes_report_size(std::size_t plane_count) {
   return offsetof(ShapesReport, planes) + plane_count * sizeof(PlaneEntry);
@@ -280,6 +297,7 @@ static_assert(sizeof(ParameterEntry) == 8);
 static_assert(sizeof(ParametersReport) == 8 + 8 * parameter_entries_maximum);
 static_assert(sizeof(TransactionReport) == 16);
 static_assert(sizeof(FrameReport) == 16);
+static_assert(sizeof(ForceLawReport) == 6);
 static_assert(sizeof(SurfaceEntry) == 20 && sizeof(PlaneEntry) == 44 && sizeof(SphereEntry) == 36);
 static_assert(std::is_trivially_copyable_v<PoseReport> && std::is_trivially_copyable_v<ParametersReport>);
 

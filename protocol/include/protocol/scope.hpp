@@ -49,7 +49,8 @@ static_assert(sizeof(ScopeFrameHeader) == 24);
 /// Bytes of one sample of the signals when all of them are written, without a mask.
 constexpr std::size_t full_sample_size(const SignalSelection& selection) {
   std::size_t size = 0;
-  for (std::size_t i = 0; i < selection.count; ++i) size += wire_size(signal_table[selection.signals[i]].wire);
+  for (std::size_t i = 0; i < selection.count; ++i)
+    size += wire_size(info(static_cast<Signal>(selection.signals[i])).wire);
   return size;
 }
 

@@ -2,6 +2,8 @@
 //
 // The names are also the columns of recordings. A signal goes over the wire as a float, or, where it
 // changes in every period and its source has few bits anyway, as a scaled 16-bit number.
+//
+// Behind these rows stand those of the force law that the image was built with (docs/force-laws.md).
 #pragma once
 
 #include <array>
@@ -10,6 +12,7 @@
 #include <optional>
 #include <string_view>
 
+#include <protocol/added_rows.hpp>
 #include <protocol/each_axis.hpp>
 
 namespace inkwell::protocol {
@@ -80,7 +83,7 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
   X(51, force_sources, "", float32, "Whose force it is: 1 the walls, 2 shapes, 4 a program; their sum.")
 // clang-format on
 
-/// Index of a signal in the table, which is also its id on the wire.
+/// Index of a signal in the table, which is also its id on the wire. Values behind the last are rows of a force law.
 enum class Signal : std::uint8_t {
 #define X(id, name, ...) name = id,
   INKWELL_SIGNALS(X)
@@ -103,7 +106,13 @@ inline constexpr auto signal_table = std::to_array<SignalInfo>({
 
 inline constexpr std::size_t signal_count = signal_table.size();
 
-constexpr const SignalInfo& info(Signal signal) { return signal_table[static_cast<std::size_t>(signal)]; }
+inline constexpr std::size_t force_law_signals_maximum = 8;
+static_assert(signal_count + force_law_signals_maximum <= 256, "a signal's id has eight bits");
+
+/// The table, and the signals of the force law as far as it is known.
+constexpr KnownRows<SignalInfo, signal_count> known_signals() { return KnownRows(signal_table); }
+
+constexpr const SignalInfo& info(Signal signal) { return known_signals()[static_cast<std::size_t>(signal)]; }
 constexpr std::size_t row_count(Signal) { return signal_count; }
 constexpr bool alike(const SignalInfo& a, const SignalInfo& b) { return a.unit == b.unit && a.wire == b.wire; }
 
@@ -112,9 +121,9 @@ constexpr Signal of_axis(EachAxis<Signal> rows, std::size_t axis) { return rows[
 /// The same for a `number` 1, 2 or 3, as in the rows' names.
 constexpr Signal of_number(EachAxis<Signal> rows, int number) { return rows[static_cast<std::size_t>(number) - 1]; }
 
-/// The value of every signal in one control period, in the table's order.
+/// The value of every signal in one control period, in the table's order, and of those of a force law.
 struct SignalValues {
-  std::array<float, signal_count> values;
+  std::array<float, signal_count + force_law_signals_maximum> values;
 
   constexpr float& operator[](Signal signal) { return values[static_cast<std::size_t>(signal)]; }
   constexpr float operator[](Signal signal) const { return values[static_cast<std::size_t>(signal)]; }
@@ -123,7 +132,7 @@ struct SignalValues {
 constexpr std::size_t wire_size(SignalWire wire) { return wire == SignalWire::float32 ? 4 : 2; }
 
 constexpr std::optional<Signal> find_signal(std::string_view name) {
-  for (const auto& row : signal_table)
+  for (const auto& row : known_signals())
     if (row.name == name) return static_cast<Signal>(row.id);
   return std::nullopt;
 }

@@ -42,12 +42,12 @@ TEST_CASE("device and configuration, byte for byte") {
   CHECK(bench.get_descriptor(0x0200, 512).data ==
         bytes({9, 2,    57,   0,    2,  1,    0,    0xC0, 0,  // takes nothing from the bus
                9, 4,    0,    0,    2,  0x03, 0,    0,    4,  // HID
-               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 87,   0,  //
+               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 96,   0,  //
                7, 5,    0x81, 3,    64, 0,    1,              //
                7, 5,    0x01, 3,    64, 0,    1,              //
                9, 4,    1,    0,    1,  0xFF, 0,    0,    5,  // scope
                7, 5,    0x82, 2,    64, 0,    0}));
-  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 87, 0}));
+  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 96, 0}));
 }
 
 TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes") {
@@ -57,7 +57,8 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
   using namespace protocol;
   const std::size_t pose = sizeof(PoseReport), command = sizeof(CommandReport), information = sizeof(InformationReport),
                     parameters = sizeof(ParametersReport), transaction = sizeof(TransactionReport),
-                    frame = sizeof(FrameReport), force = sizeof(ForceReport), shapes = sizeof(ShapesReport);
+                    frame = sizeof(FrameReport), force = sizeof(ForceReport), shapes = sizeof(ShapesReport),
+                    law = force_law_report_maximum;
   CHECK(bench.get_descriptor(0x2200, 4096, 1).data == bytes({0x06,
                                                              0x00,
                                                              0xFF,
@@ -142,6 +143,15 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
                                                              0x96,
                                                              low(shapes),
                                                              high(shapes),
+                                                             0xB1,
+                                                             0x02,  //
+                                                             0x85,
+                                                             0x15,
+                                                             0x09,
+                                                             10,
+                                                             0x96,
+                                                             low(law),
+                                                             high(law),
                                                              0xB1,
                                                              0x02,  //
                                                              0xC0}));

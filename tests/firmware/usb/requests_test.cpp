@@ -1,6 +1,10 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
+#include <span>
+
+#include <control/installed_force_law.hpp>
 
 #include "../link/transaction.hpp"
 #include "device_bench.hpp"
@@ -183,6 +187,11 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   CHECK(report.firmware_version[2] == 3);
   CHECK(report.parameter_table_hash == protocol::parameter_table_hash);
   CHECK(report.signal_table_hash == protocol::signal_table_hash);
+
+  // What stands behind it is in tests/host/device/force_law_test.cpp.
+  const auto law = bench.get_report(3, static_cast<std::uint8_t>(protocol::ReportId::force_law), 2048).data;
+  const auto& installed = control::installed_force_law;
+  CHECK(std::ranges::equal(law, std::span(installed.report, installed.report_size)));
   CHECK(report.servo_rate_Hz == 20'000);
   CHECK(report.processor_clock_Hz == 168'000'000);
   CHECK(report.servo_cycles_longest == 4321);
@@ -345,7 +354,9 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
   for (unsigned type = 0; type < 5; ++type)
     for (unsigned id = 0; id < 256; ++id) {
       const unsigned value = type << 8 | id;
-      if (value == 0x0101 || value == 0x0310 || value == 0x0311 || value == 0x0312 || value == 0x0313) continue;
+      if (value == 0x0101 || value == 0x0310 || value == 0x0311 || value == 0x0312 || value == 0x0313 ||
+          value == 0x0315)
+        continue;
       CHECK(bench.get_report(static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(id), 64) == stall_result);
     }
   CHECK(bench.control(request(0xA1, 1, 0x0310, 1, 64)) == stall_result);

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <span>
 
+#include <control/installed_force_law.hpp>
 #include <usbip/messages.hpp>
 
 namespace inkwell::tests {
@@ -249,6 +250,9 @@ std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)
     switch (static_cast<protocol::ReportId>(setup[2])) {
       case protocol::ReportId::information: return limited(bytes_of(information));
       case protocol::ReportId::transaction: return limited(bytes_of(transaction_));
+      case protocol::ReportId::force_law:
+        return limited(Bytes(control::installed_force_law.report,
+                             control::installed_force_law.report + control::installed_force_law.report_size));
       case protocol::ReportId::parameters: {
         protocol::ParametersReport report{};
         report.report_id = protocol::ReportId::parameters;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 
+#include <control/installed_force_law.hpp>
 #include <device/device.hpp>
 #include <device/session.hpp>
 #include <failure.hpp>
@@ -30,6 +31,9 @@ void answer_as_inkwell(FakeUsbDevice& arm) {
   information.parameter_table_hash = protocol::parameter_table_hash;
   information.signal_table_hash = protocol::signal_table_hash;
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::information)] = bytes_of(information);
+  const auto& law = control::installed_force_law;
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::force_law)] =
+      Bytes(law.report, law.report + law.report_size);
   protocol::ParametersReport parameters{};
   parameters.report_id = protocol::ReportId::parameters;
   parameters.version = protocol::protocol_version;

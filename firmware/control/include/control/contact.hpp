@@ -29,9 +29,21 @@ struct Force {
 /// Clamps the probe to the free space, axis by axis: an edge or a corner is contact on two or three axes.
 Contact find_contact(const Vector3& probe_m, const Box& box);
 
+/// k d + c d' along one axis, signed; `penetration_m` points out of the wall.
+constexpr float axis_force_N(float penetration_m, float velocity_m_per_s, Wall wall) {
+  if (penetration_m == 0.0f) return 0.0f;
+  const float force_N = wall.stiffness_N_per_m * penetration_m - wall.damping_Ns_per_m * velocity_m_per_s;
+  const bool pulls = force_N * penetration_m < 0.0f;
+  return pulls ? 0.0f : force_N;
+}
+
 /// F = k d e + c d' e on each axis in contact, d' the rate of the penetration. A wall never pulls: where
 /// the damper would outweigh the spring on leaving, that axis gives nothing.
-Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m_per_s, const Wall& wall);
+constexpr Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m_per_s, Wall wall) {
+  const Vector3& out_m = contact.penetration_m;
+  return {axis_force_N(out_m.x, velocity_m_per_s.x, wall), axis_force_N(out_m.y, velocity_m_per_s.y, wall),
+          axis_force_N(out_m.z, velocity_m_per_s.z, wall)};
+}
 
 /// A force of at most `limit_N`, in its direction.
 Force bounded(const Vector3& force_N, float limit_N);

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <control/conditioning.hpp>
+#include <control/felt_force_law.hpp>
 #include <control/program_force.hpp>
 #include <control/samples.hpp>
 #include <control/settings.hpp>
@@ -107,10 +108,9 @@ class Controller {
   Requests requests_;
   float force_gain_ = 0.0f;
   ProgramForce program_;
-  TouchedShapes shapes_;
   bool shapes_replaced_ = false;
-  bool walls_rendered_ = true;
-  Vector3 touched_N_;  ///< of walls, shapes and transition, in the period before
+  bool law_rendered_ = true;  ///< not while a program asked for its force instead
+  Vector3 touched_N_;         ///< of law, shapes and transition, in the period before
   Transition transition_;
   std::uint32_t late_force_reports_ = 0;
   std::uint32_t host_silence_periods_ = 0;
@@ -119,12 +119,9 @@ class Controller {
   std::array<std::int32_t, 3> encoder_counts_{};  ///< since power-up
   std::array<std::int32_t, 3> counts_since_inkwell_{};
   Triple current_A_{};
-  Triple gimbal_rad_{};
-  Triple joint_rad_{};
+  Probe probe_;  ///< what the force law is given
   Triple joint_speed_rad_per_s_{};
-  Pose pose_{};
-  Vector3 velocity_m_per_s_;
-  Contact contact_;
+  Jacobian jacobian_{};
   Force force_{};
   std::uint8_t force_sources_ = 0;
   Triple torque_Nm_{};
@@ -133,6 +130,10 @@ class Controller {
 
   std::array<std::uint32_t, stage_count> cycles_{};
   std::uint32_t servo_cycles_ = 0;
+
+  // The large ones at the end, so that an instruction reaches all that is before them.
+  TouchedShapes shapes_;
+  FeltForceLaw law_;
 };
 
 }  // namespace inkwell::control

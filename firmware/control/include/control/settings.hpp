@@ -6,6 +6,7 @@
 #include <control/contact.hpp>
 #include <control/current_loop.hpp>
 #include <control/encoders.hpp>
+#include <control/installed_force_law.hpp>
 #include <control/kinematics.hpp>
 #include <control/motor_heat.hpp>
 #include <control/program_force.hpp>
@@ -36,6 +37,7 @@ struct Settings {
   std::array<GimbalCurve, 3> gimbal;
   Box box;  ///< already smaller by the sphere's radius
   Wall wall;
+  ForceLawValues force_law;
   float force_limit_N;          ///< bound of the magnitude of all that is rendered together
   float recovery_N_per_period;  ///< how fast a force gets over a jump of what it is made of (Transition)
   ProgramForceLimits program_force;

@@ -15,6 +15,7 @@
 //   fault                | looked for in                      | cause is gone when
 //   ---------------------+------------------------------------+-----------------------------------------
 //   processor_fault, watchdog, servo_overrun, crystal_failed | every state | at once: raised by the application
+//   force_law            | active                             | at once: raised where the law is called
 //   not_finite           | every state                        | the values are finite
 //   current_sensor       | once the offsets are measured      | never: the board must be reset
 //   supply_low, _high    | unreferenced, ready, active        | the supply is within its bounds

@@ -9,6 +9,12 @@
 
 namespace inkwell::link {
 
+/// Parameters of this image: those of the table, then those of its force law.
+std::size_t image_parameter_count();
+/// On the wire, of one of them.
+std::uint16_t image_parameter_id(std::size_t index);
+protocol::ParameterSet image_defaults();
+
 /// What became of a transaction: `set` is valid if `refusal` is accepted.
 struct ParameterCheck {
   protocol::Refusal refusal = protocol::Refusal::accepted;

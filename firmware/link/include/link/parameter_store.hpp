@@ -16,7 +16,7 @@ namespace inkwell::link {
 /// Holds the parameters, and hands the settings prepared from them over to the interrupt.
 class ParameterStore {
  public:
-  /// Starts with the defaults of the table.
+  /// Starts with the defaults of the table and of the force law.
   ParameterStore();
 
   // ---- main loop ----
@@ -25,7 +25,7 @@ class ParameterStore {
   /// changes nothing but result(). `busy` while the transaction before has not been taken yet.
   protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on);
 
-  /// Every parameter in the table's order; returns the bytes of the report that are used.
+  /// Every parameter of the table and of the force law, in this order; returns the bytes of the report that are used.
   std::size_t read(protocol::ParametersReport& report) const;
 
   /// What became of the last transaction.

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <device/force_law.hpp>
 #include <device/program_force.hpp>
 #include <device/scope_decoder.hpp>
 #include <device/transport.hpp>
@@ -23,6 +24,7 @@ struct Information {
   std::uint16_t protocol_version;
   std::string serial_number;
   protocol::InformationReport report;
+  std::shared_ptr<const ForceLaw> force_law;  ///< of its image; null only where no device told it
 };
 
 /// The device speaks another version of the protocol than this program.
@@ -43,7 +45,8 @@ using ParameterChange = std::pair<protocol::Parameter, float>;
 /// May be used by several threads, but poses are read by one of them and the scope by one.
 class Device {
  public:
-  /// Opens the device and checks the protocol version first. Throws Error with the remedy if it differs.
+  /// Opens the device and checks the protocol version first. Throws Error with the remedy if it differs. The rows of
+  /// its force law join the tables; if those of another law are there already, it throws Error as well.
   static std::unique_ptr<Device> open(const Endpoint& endpoint);
   explicit Device(std::unique_ptr<Transport> transport);
   ~Device();

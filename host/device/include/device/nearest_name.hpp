@@ -5,7 +5,15 @@
 #include <cstddef>
 #include <string_view>
 
+#include <device/error.hpp>
+
 namespace inkwell::device {
+
+/// A name that no table has. It may be one of a device's own force law, if none was opened yet.
+class UnknownName : public Error {
+ public:
+  using Error::Error;
+};
 
 /// Levenshtein's distance: how many characters must be inserted, removed or exchanged.
 std::size_t edit_distance(std::string_view a, std::string_view b);

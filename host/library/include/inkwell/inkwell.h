@@ -132,7 +132,8 @@ typedef enum inkwell_fault INKWELL_AS_INT {
   INKWELL_FAULT_PROCESSOR_FAULT = 11,
   INKWELL_FAULT_NOT_FINITE = 12,
   INKWELL_FAULT_SAMPLES_STALE = 13,
-  INKWELL_FAULT_CRYSTAL_FAILED = 14
+  INKWELL_FAULT_CRYSTAL_FAILED = 14,
+  INKWELL_FAULT_FORCE_LAW = 15
 } inkwell_fault;
 
 enum inkwell_force_source {
@@ -244,6 +245,7 @@ typedef struct inkwell_parameter {
   double minimum, maximum, default_value;
 } inkwell_parameter;
 
+/* Once an arm is open, with those of its own force law. */
 INKWELL_API size_t inkwell_parameter_count(void);
 /* Row `index` of the table; NULL beyond its end. */
 INKWELL_API const inkwell_parameter* inkwell_parameter_at(size_t index);
@@ -273,6 +275,7 @@ typedef struct inkwell_signal {
   const char* help;
 } inkwell_signal;
 
+/* Once an arm is open, with those of its own force law. */
 INKWELL_API size_t inkwell_signal_count(void);
 INKWELL_API const inkwell_signal* inkwell_signal_at(size_t index);
 

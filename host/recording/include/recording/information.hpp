@@ -1,7 +1,9 @@
 // What a recording says about itself: device, firmware, arm, parameters, and what its columns hold.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,8 @@ struct Information {
   std::string serial_number;
   std::string arm;          ///< its name, as far as it is known
   bool simulation = false;  ///< recorded from a virtual board
+  /// The device's protocol::ForceLawReport: rows of parameters and signals beside the tables'. Null if none is known.
+  std::shared_ptr<const std::vector<std::byte>> force_law;
   protocol::ParameterSet parameters{};
   std::vector<protocol::Signal> signals;
   /// What a simulation knew beside them. No device tells these, so a replay passes them over.

@@ -52,7 +52,7 @@ class Replay {
   std::size_t present_sample() const;  ///< the newest at or before the position
 
   Recording recording_;
-  std::array<std::optional<std::size_t>, protocol::signal_count> columns_;
+  std::array<std::optional<std::size_t>, protocol::signal_count + protocol::force_law_signals_maximum> columns_;
   double position_s_ = 0;
   double speed_ = 1;
   bool is_playing_ = false;

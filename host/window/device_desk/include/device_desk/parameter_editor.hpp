@@ -65,7 +65,7 @@ class ParameterEditor {
   void want(protocol::Parameter parameter, float value, double now_s);
 
   std::optional<protocol::ParameterSet> held_;
-  std::array<std::optional<Wanted>, protocol::parameter_count> wanted_{};
+  std::array<std::optional<Wanted>, std::tuple_size_v<decltype(protocol::ParameterSet::values)>> wanted_{};
   std::vector<device::ParameterChange> outgoing_;
   std::vector<Step> steps_;  // done: [0, position_), undone: [position_, end)
   std::size_t position_ = 0;

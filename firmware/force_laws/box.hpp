@@ -1,0 +1,19 @@
+// The paper's box: six walls with a spring and a damper (sections 3.2 and 3.3). The default.
+#pragma once
+
+#include <control/force_law.hpp>
+
+namespace inkwell::force_laws {
+
+struct box {
+  static constexpr std::string_view help = "The walls of the box, and nothing else.";
+
+  // The box belongs to the arm and is in the table of every image: its bounds, the sphere, stiffness and damping.
+  struct Parameters {};
+  struct Signals {};
+  struct State {};
+
+  static Vector3 force_N(const Probe& probe, const Parameters&, State&, Signals&) { return wall_force_N(probe); }
+};
+
+}  // namespace inkwell::force_laws

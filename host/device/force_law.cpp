@@ -1,0 +1,121 @@
+#include <device/force_law.hpp>
+
+#include <cstring>
+#include <list>
+#include <mutex>
+#include <string_view>
+
+#include <device/error.hpp>
+
+namespace inkwell::device {
+namespace {
+
+/// Takes a report apart from its begin on.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> left) : left_(left) {}
+
+  float number() {
+    float value = 0;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  /// With a zero behind its end.
+  std::string_view text() {
+    const auto* begin = reinterpret_cast<const char*>(left_.data());
+    const std::size_t length = strnlen(begin, left_.size());
+    take(length + 1);
+    return {begin, length};
+  }
+
+ private:
+  std::span<const std::byte> take(std::size_t size) {
+    if (size > left_.size())
+      throw Error("The device's description of its force law is damaged. Build its firmware anew and flash it.");
+    const auto taken = left_.first(size);
+    left_ = left_.subspan(size);
+    return taken;
+  }
+
+  std::span<const std::byte> left_;
+};
+
+/// What other threads may read at any time, and so stays until the program ends.
+struct Joined {
+  ForceLaw law;
+  std::span<const protocol::ParameterInfo> parameters;
+  std::span<const protocol::SignalInfo> signals;
+};
+
+std::mutex joined_mutex;
+std::list<Joined> joined;                                        // the last one is in the tables
+std::vector<std::weak_ptr<const std::vector<std::byte>>> users;  // of the law that is in the tables
+
+/// Puts the rows of a law into the tables, or takes those that are there away.
+void show(const Joined* law) {
+  protocol::added_rows<protocol::ParameterInfo>.store(law ? &law->parameters : nullptr, std::memory_order_release);
+  protocol::added_rows<protocol::SignalInfo>.store(law ? &law->signals : nullptr, std::memory_order_release);
+}
+
+}  // namespace
+
+ForceLaw parse_force_law(std::span<const std::byte> report) {
+  protocol::ForceLawReport head{};
+  if (report.size() >= sizeof head) std::memcpy(&head, report.data(), sizeof head);
+  if (head.size < sizeof head || head.size > report.size() ||
+      head.parameter_count > protocol::force_law_parameters_maximum ||
+      head.signal_count > protocol::force_law_signals_maximum)
+    throw Error("The device's description of its force law is damaged. Build its firmware anew and flash it.");
+  const auto bytes = std::make_shared<const std::vector<std::byte>>(report.begin(), report.begin() + head.size);
+  Reader reader{std::span(*bytes).subspan(sizeof head)};
+  ForceLaw law{.report = bytes, .name = reader.text(), .help = reader.text(), .parameters = {}, .signals = {}};
+  for (std::size_t i = 0; i < head.parameter_count; ++i) {
+    protocol::ParameterInfo row{};
+    row.id = static_cast<std::uint16_t>(protocol::force_law_first_id + i);
+    row.kind = protocol::ParameterKind::real;
+    row.minimum = reader.number();
+    row.maximum = reader.number();
+    row.default_value = reader.number();
+    row.name = reader.text();
+    row.unit = reader.text();
+    row.help = reader.text();
+    row.group = "force law";
+    law.parameters.push_back(row);
+  }
+  for (std::size_t i = 0; i < head.signal_count; ++i) {
+    protocol::SignalInfo row{};
+    row.id = static_cast<std::uint8_t>(protocol::signal_count + i);
+    row.wire = protocol::SignalWire::float32;
+    row.name = reader.text();
+    row.unit = reader.text();
+    row.help = reader.text();
+    law.signals.push_back(row);
+  }
+  return law;
+}
+
+bool join_tables(const ForceLaw& law) {
+  const std::lock_guard lock(joined_mutex);
+  std::erase_if(users, [](const auto& user) { return user.expired(); });
+  if (law.parameters.empty() && law.signals.empty()) {
+    if (users.empty()) show(nullptr);
+    return true;
+  }
+  if (joined.empty() || *joined.back().law.report != *law.report) {
+    if (!users.empty()) return false;
+    // Read once more, so that the texts in the tables are nobody else's.
+    auto& fresh = joined.emplace_back(Joined{parse_force_law(*law.report), {}, {}});
+    fresh.parameters = fresh.law.parameters;
+    fresh.signals = fresh.law.signals;
+  }
+  show(&joined.back());
+  users.emplace_back(law.report);
+  return true;
+}
+
+std::string joined_force_law() {
+  const std::lock_guard lock(joined_mutex);
+  return joined.empty() ? std::string() : std::string(joined.back().law.name);
+}
+
+}  // namespace inkwell::device

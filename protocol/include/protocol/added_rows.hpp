@@ -1,0 +1,73 @@
+// Rows that the force law of a device adds to the tables of parameters and signals, behind their last.
+//
+// The firmware knows its own law. A PC program learns of it from the device that it opens, and from then on the rows
+// are in the tables like all others: in the window, in files, on the command line.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <type_traits>
+
+namespace inkwell::protocol {
+
+/// Set whenever a PC program meets a force law. What it points at stays as it is for ever, since another thread may
+/// still read it.
+template <class Info>
+inline constinit std::atomic<const std::span<const Info>*> added_rows = nullptr;
+
+template <class Info>
+inline constexpr Info nameless_row{};
+
+/// A table with the rows that are added to it; `own` is the number of its own. Rows may be asked for by place.
+template <class Info, std::size_t own>
+class KnownRows {
+ public:
+  constexpr explicit KnownRows(const std::array<Info, own>& table) : table_(&table) {
+    if (!std::is_constant_evaluated()) added_ = known();
+  }
+
+  constexpr std::size_t size() const { return own + added_.size(); }
+  /// A row without a name for a place that no row has.
+  constexpr const Info& operator[](std::size_t place) const {
+    return place < own ? (*table_)[place] : place < size() ? added_[place - own] : nameless_row<Info>;
+  }
+
+  class Iterator {
+   public:
+    using iterator_category = std::forward_iterator_tag;
+    using value_type = Info;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const Info*;
+    using reference = const Info&;
+
+    constexpr Iterator(const KnownRows& rows, std::size_t place) : rows_(&rows), place_(place) {}
+    constexpr const Info& operator*() const { return (*rows_)[place_]; }
+    constexpr const Info* operator->() const { return &(*rows_)[place_]; }
+    constexpr Iterator& operator++() {
+      ++place_;
+      return *this;
+    }
+    constexpr Iterator operator++(int) { return {*rows_, place_++}; }
+    constexpr bool operator==(const Iterator&) const = default;
+
+   private:
+    const KnownRows* rows_;
+    std::size_t place_;
+  };
+  constexpr Iterator begin() const { return {*this, 0}; }
+  constexpr Iterator end() const { return {*this, size()}; }
+
+ private:
+  static std::span<const Info> known() {
+    const auto* rows = added_rows<Info>.load(std::memory_order_acquire);
+    return rows != nullptr ? *rows : std::span<const Info>{};
+  }
+
+  const std::array<Info, own>* table_;
+  std::span<const Info> added_;
+};
+
+}  // namespace inkwell::protocol
