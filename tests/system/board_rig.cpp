@@ -8,6 +8,8 @@
 #include <doctest/doctest.h>
 #include <stepped_board.hpp>
 
+#include "program.hpp"
+
 namespace inkwell::tests {
 namespace {
 
@@ -20,13 +22,23 @@ device::VirtualBoardOptions options(device::SimulationMode mode, std::uint64_t s
   return options;
 }
 
+device::VirtualBoardOptions with_image(device::VirtualBoardOptions options, const std::string& image) {
+  options.elf = build_directory() + "/../board/" + image;
+  return options;
+}
+
 constexpr double slice_s = 0.01;
 constexpr double sign_of_life_s = 0.5;
 
 }  // namespace
 
 BoardRig::BoardRig(device::SimulationMode mode, std::uint64_t seed, device::CyclePricing pricing)
-    : board(options(mode, seed, pricing)), control(board.control()) {
+    : BoardRig(options(mode, seed, pricing)) {}
+
+BoardRig::BoardRig(const std::string& image)
+    : BoardRig(with_image(options(device::SimulationMode::fast, 1, device::CyclePricing::likely), image)) {}
+
+BoardRig::BoardRig(const device::VirtualBoardOptions& options) : board(options), control(board.control()) {
   control.stand_by();
   connect();
   run(0.05);

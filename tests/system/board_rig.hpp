@@ -7,6 +7,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <device/control_client.hpp>
@@ -20,6 +21,8 @@ class BoardRig {
   /// Starts the board, docked in its inkwell, and opens the device.
   explicit BoardRig(device::SimulationMode mode = device::SimulationMode::fast, std::uint64_t seed = 1,
                     device::CyclePricing pricing = device::CyclePricing::likely);
+  /// With another image, build/board/`image`.
+  explicit BoardRig(const std::string& image);
 
   /// Lets board time pass in slices of 10 ms, collects every pose report, keeps the host's sign of life.
   void run(double time_s);
@@ -47,6 +50,7 @@ class BoardRig {
   std::unique_ptr<device::Device> device;
 
  private:
+  explicit BoardRig(const device::VirtualBoardOptions& options);
   void pass_slice();
   double since_sign_of_life_s_ = 0;
   std::vector<protocol::PoseReport> poses_;

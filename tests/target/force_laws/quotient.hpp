@@ -1,0 +1,37 @@
+// A law that divides by what the user gives it, to see what becomes of a division by zero.
+#pragma once
+
+#include <control/force_law.hpp>
+
+namespace inkwell::force_laws {
+
+struct quotient {
+  static constexpr std::string_view help = "A force up, divided by a parameter that may be zero.";
+
+  struct Parameters {
+    float dividend_N, divisor;
+  };
+  static constexpr ForceParameter<Parameters> parameters[] = {
+      {&Parameters::dividend_N, "quotient_dividend_N", "N", -1.0f, 1.0f, 0.5f, "What is divided."},
+      {&Parameters::divisor, "quotient_divisor", "", 0.0f, 1.0f, 1.0f, "What it is divided by."},
+  };
+
+  struct Signals {
+    float periods;
+  };
+  static constexpr ForceSignal<Signals> signals[] = {
+      {&Signals::periods, "quotient_periods", "", "Control periods since the state was new."},
+  };
+
+  struct State {
+    float periods = 0.0f;
+  };
+
+  static Vector3 force_N(const Probe&, const Parameters& parameters, State& state, Signals& signals) {
+    signals.periods = state.periods;
+    state.periods += 1.0f;
+    return {0.0f, 0.0f, parameters.dividend_N / parameters.divisor};
+  }
+};
+
+}  // namespace inkwell::force_laws
