@@ -18,7 +18,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto reply_timeout = 3s;
-constexpr auto control_timeout = 3s;
+// A request takes some milliseconds of board time, but on a busy computer a virtual board's seconds are long.
+constexpr auto control_timeout = 15s;
 
 template <class Message>
 Message receive(Socket& socket) {
@@ -143,7 +144,9 @@ UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction,
   if (!waiting->changed.wait_for(lock, control_timeout, [&] { return waiting->completion.has_value(); })) {
     lock.unlock();
     unlink(sequence);
-    throw Error("The device did not answer a request in 3 s. Reset the board, or let a paused virtual board run.");
+    throw Error(
+        fmt::format("The device did not answer a request in {} s. Reset the board, or let a paused virtual board run.",
+                    control_timeout.count()));
   }
   Completion completion = std::move(*waiting->completion);
   if (completion.status == -EPIPE)

@@ -29,7 +29,7 @@ arms::Motor simulated_motor() { return arms::read(INKWELL_SOURCE_DIRECTORY "/boa
 
 nlohmann::json guide(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--virtual", "--yes", "--json"});
-  const auto result = run_program("inkwell", arguments, 240s);
+  const auto result = run_program("inkwell", arguments);
   INFO("output: ", result.out, result.err);
   REQUIRE(result.exit_code == 0);
   return nlohmann::json::parse(result.out);
@@ -109,13 +109,11 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
   device::VirtualBoardOptions options;
   device::VirtualBoard board(options);
   auto control = board.control();
-  for (int i = 0; i < 1000 && !board.find(); ++i) std::this_thread::sleep_for(10ms);
+  while (!board.find()) std::this_thread::sleep_for(10ms);
   std::optional<ProgramResult> result;
   std::thread guide([&] {
-    result = run_program(
-        "inkwell",
-        {"tune", "current-loop", "--yes", "--json", "--usbip", "127.0.0.1:" + std::to_string(board.usbip_port())},
-        120s);
+    result = run_program("inkwell", {"tune", "current-loop", "--yes", "--json", "--usbip",
+                                     "127.0.0.1:" + std::to_string(board.usbip_port())});
   });
   // Until a motor has current, which is in the first pulses. Each of them takes several of these steps.
   constexpr double step_s = 0.002, limit_s = 60;
@@ -138,7 +136,7 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
 }
 
 TEST_CASE("without consent nothing is powered") {
-  const auto result = run_program("inkwell", {"tune", "current-loop", "--virtual", "--json"}, 60s);
+  const auto result = run_program("inkwell", {"tune", "current-loop", "--virtual", "--json"});
   CHECK(result.exit_code == 2);
   CHECK(result.err.find("--yes") != std::string::npos);
   CHECK(result.err.find("Motor 1 gets 8 pulses") != std::string::npos);

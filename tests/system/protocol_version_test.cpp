@@ -40,7 +40,7 @@ TEST_CASE("the companion refuses firmware with another version of the protocol, 
   options.elf = build_directory() + "/../board/next-protocol.elf";
   const device::VirtualBoard board(options);
   auto control = board.control();
-  for (int i = 0; i < 1000 && !board.find(); ++i) std::this_thread::sleep_for(10ms);
+  while (!board.find()) std::this_thread::sleep_for(10ms);
   REQUIRE(board.find().has_value());
   control.trace_start();
 

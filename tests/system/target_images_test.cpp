@@ -14,7 +14,7 @@ namespace {
 void check_images(const std::string& mode) {
   for (const char* name : {"target-tests-control", "target-tests-link", "target-tests-usb", "target-tests-streams"}) {
     const std::string image = build_directory() + "/../board/" + name + ".elf";
-    const auto result = run_program("virtual-board", {"--elf", image, "--mode", mode}, std::chrono::seconds(280));
+    const auto result = run_program("virtual-board", {"--elf", image, "--mode", mode});
     const std::size_t shown = std::min<std::size_t>(result.err.size(), 2000);
     INFO(name, " in ", mode, " mode, the end of its log: ", result.err.substr(result.err.size() - shown));
     CHECK(result.exit_code == 0);
