@@ -72,7 +72,6 @@ Answer Device::get_report(const SetupPacket& setup) {
     }
     case report_value(feature_report, ReportId::transaction): return send(link_.parameters.result());
     case report_value(feature_report, ReportId::parameters): {
-      static_assert(alignof(protocol::ParametersReport) == 1);
       auto* report = new (buffer.data()) protocol::ParametersReport;
       return Answer::send(buffer.first(link_.parameters.read(*report)));
     }

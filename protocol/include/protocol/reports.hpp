@@ -1,4 +1,5 @@
-// What goes over the HID interface. All structures are packed and little-endian, as both ends are.
+// What goes over the HID interface. All structures are little-endian, as both ends are, and without gaps:
+// only the command is packed, every other number lies where its type wants it.
 //
 //   device -> host   input report    PoseReport, one for each frame of the bus, a millisecond by the host's clock
 //   host -> device   output report   CommandReport, ForceReport; any of them counts as a sign of life
@@ -84,8 +85,6 @@ enum class ForceMode : std::uint8_t {
   instead_of_walls = 2,  ///< the walls are not felt
 };
 
-#pragma pack(push, 1)
-
 /// Input report, the newest pose that there is just before the host asks: taken from the last control period that ends
 /// before the start of the frame. What the host did not fetch is replaced, never sent late.
 struct PoseReport {
@@ -118,6 +117,8 @@ enum class Command : std::uint8_t {
 inline constexpr std::size_t scope_signals_maximum = 32;
 inline constexpr float test_duration_maximum_s = 0.5f;
 
+#pragma pack(push, 1)
+
 struct SignalSelection {
   std::uint8_t count;  ///< 0..scope_signals_maximum
   std::uint8_t signals[scope_signals_maximum];
@@ -141,6 +142,8 @@ struct CommandReport {
     TestPulse test;             ///< test_current, test_voltage
   };
 };
+
+#pragma pack(pop)
 
 /// The longest interval between two reports of a program that the board interpolates.
 inline constexpr std::uint8_t force_interval_maximum_ms = 50;
@@ -275,8 +278,6 @@ struct ForceLawReport {
   std::uint8_t reserved = 0;
   std::uint16_t size;  ///< of all of it, up to force_law_report_maximum
 };
-
-#pragma pack(pop)
 
 /// Some kernels take no report that is longer.
 inline constexpr std::size_t force_law_report_maximum = 2048;

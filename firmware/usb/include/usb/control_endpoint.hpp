@@ -57,6 +57,7 @@ class ControlEndpoint {
  public:
   /// Room for the longest report that goes over endpoint 0.
   static constexpr std::size_t buffer_size = sizeof(protocol::ParametersReport);
+  static constexpr std::size_t buffer_alignment = alignof(protocol::ParametersReport);
 
   ControlEndpoint(Port& port, ControlRequests& requests) : port_(port), requests_(requests) {}
 
@@ -90,7 +91,7 @@ class ControlEndpoint {
   std::span<const std::byte> remaining_{};
   bool end_with_empty_packet_ = false;
   std::size_t collected_ = 0;
-  alignas(4) std::array<std::byte, buffer_size> buffer_{};
+  alignas(buffer_alignment) std::array<std::byte, buffer_size> buffer_{};
 };
 
 }  // namespace inkwell::usb
