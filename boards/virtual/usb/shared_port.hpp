@@ -22,13 +22,8 @@ namespace inkwell::virtual_board {
 
 class SharedPort final : private RootPort::Client {
  public:
-  /// Called on the simulation's thread.
-  class Client {
+  class Client : public PortObserver {
    public:
-    virtual ~Client() = default;
-    virtual void between_transactions() = 0;
-    virtual void enumerated(const DeviceDescription& description) = 0;
-    virtual void detached() = 0;
     virtual void completed(std::uint32_t session, Urb&& urb, std::int32_t status) = 0;
   };
 

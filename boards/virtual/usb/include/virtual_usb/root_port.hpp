@@ -16,15 +16,20 @@
 
 namespace inkwell::virtual_board {
 
+/// What happens on a port. Called on the simulation's thread.
+class PortObserver {
+ public:
+  virtual ~PortObserver() = default;
+  virtual void between_transactions() = 0;
+  virtual void enumerated(const DeviceDescription& description) = 0;
+  virtual void detached() = 0;
+};
+
 class RootPort final : private HostController::Client {
  public:
-  /// Who uses the device on this port. Called on the simulation's thread.
-  class Client {
+  /// Who uses the device on this port.
+  class Client : public PortObserver {
    public:
-    virtual ~Client() = default;
-    virtual void between_transactions() = 0;
-    virtual void enumerated(const DeviceDescription& description) = 0;
-    virtual void detached() = 0;
     virtual void completed(Urb&& urb, std::int32_t status) = 0;
   };
 

@@ -3,8 +3,6 @@
 
 namespace {
 
-constexpr std::uint32_t dma2 = 0x40026400, common_data = 0x40012308;
-
 void convert(std::uint32_t sampling_code, std::uint32_t items, volatile std::uint32_t* to) {
   for (unsigned i = 0; i < 3; ++i) {
     const std::uint32_t converter = adc::adc1 + 0x100 * i;
@@ -14,17 +12,11 @@ void convert(std::uint32_t sampling_code, std::uint32_t items, volatile std::uin
     word(converter + adc::sqr3) = 10;
     word(converter + adc::cr2) = 1 | 1 << 1;
   }
-  word(dma2 + 0x10) = 0;
-  word(dma2 + 8) = 0x3D;
-  word(dma2 + 0x18) = common_data;
-  word(dma2 + 0x1C) = reinterpret_cast<std::uint32_t>(to);
-  word(dma2 + 0x14) = items;
-  word(dma2 + 0x10) = 1 << 10 | 2 << 11 | 2 << 13 | 1;
+  adc::collect_common_data(2, items, to);
   word(adc::ccr) = 1 << 16 | 2 << 14 | 0x17;
   for (unsigned i = 0; i < 100; ++i) asm volatile("nop");
   word(adc::adc1 + adc::cr2) |= 1u << 30;
-  for (unsigned i = 0; i < 10'000 && (word(dma2) & 1 << 5) == 0; ++i) {
-  }
+  adc::wait_for_items();
 }
 
 }  // namespace
@@ -36,7 +28,7 @@ void run() {
   convert(0, 6, results + 1);
   while ((word(adc::adc1 + adc::sr) & 1 << 5) == 0) {
   }
-  results[7] = word(dma2 + 0x14);
+  results[7] = adc::items_left();
   results[8] = 1;  // the second run begins
   convert(1, 3, results + 9);
   results[0] = finished;

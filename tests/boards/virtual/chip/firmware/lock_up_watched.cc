@@ -6,11 +6,7 @@ void run() {
     results[0] = finished;
     return;
   }
-  word(0x40003000) = 0xCCCC;
-  word(0x40003000) = 0x5555;
-  word(0x40003004) = 0;
-  word(0x40003008) = 499;
-  word(0x40003000) = 0xAAAA;
+  watchdog::start();
   set_handler(3, [] { asm volatile("bkpt #0"); });
   word(0x60000000) = 0;
 }

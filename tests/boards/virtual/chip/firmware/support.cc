@@ -63,3 +63,32 @@ void gpio::alternate(std::uint32_t port, unsigned pin, unsigned function) {
   word(afr) = (word(afr) & ~(0xFu << 4 * (pin % 8))) | function << 4 * (pin % 8);
   word(port + moder) = (word(port + moder) & ~(3u << 2 * pin)) | 2u << 2 * pin;
 }
+
+namespace adc {
+namespace {
+constexpr std::uint32_t dma2 = 0x40026400, common_data = 0x40012308;
+}
+
+void collect_common_data(std::uint32_t size, std::uint32_t items, volatile std::uint32_t* to) {
+  word(dma2 + 0x10) = 0;
+  word(dma2 + 0x08) = 0x3D;  // the flags of the last run
+  word(dma2 + 0x18) = common_data;
+  word(dma2 + 0x1C) = reinterpret_cast<std::uint32_t>(to);
+  word(dma2 + 0x14) = items;
+  word(dma2 + 0x10) = 1 << 10 | size << 11 | size << 13 | 1;
+}
+std::uint32_t items_left() { return word(dma2 + 0x14); }
+void wait_for_items() {
+  for (unsigned i = 0; i < 10'000 && (word(dma2) & 1 << 5) == 0; ++i) {
+  }
+}
+}  // namespace adc
+
+void watchdog::start() {
+  constexpr std::uint32_t kr = 0x40003000, pr = 0x40003004, rlr = 0x40003008;
+  word(kr) = 0xCCCC;
+  word(kr) = 0x5555;
+  word(pr) = 0;
+  word(rlr) = 499;
+  word(kr) = 0xAAAA;
+}

@@ -3,21 +3,13 @@
 
 namespace {
 
-constexpr std::uint32_t dma2 = 0x40026400, common_data = 0x40012308;
-
 /// Two conversions of each converter by one command, as the DMA stream leaves them at `to`.
 void convert(std::uint32_t mode, std::uint32_t size, std::uint32_t items, volatile std::uint32_t* to) {
-  word(dma2 + 0x10) = 0;
-  word(dma2 + 8) = 0x3D;
-  word(dma2 + 0x18) = common_data;
-  word(dma2 + 0x1C) = reinterpret_cast<std::uint32_t>(to);
-  word(dma2 + 0x14) = items;
-  word(dma2 + 0x10) = 1 << 10 | size << 11 | size << 13 | 1;
+  adc::collect_common_data(size, items, to);
   word(adc::ccr) = 1 << 16 | mode << 14 | 0x16;  // regular simultaneous, all three
   for (unsigned i = 0; i < 3; ++i) word(adc::adc1 + 0x100 * i + adc::sr) = 0;
   word(adc::adc1 + adc::cr2) |= 1u << 30;
-  for (unsigned i = 0; i < 10'000 && (word(dma2) & 1 << 5) == 0; ++i) {
-  }
+  adc::wait_for_items();
 }
 
 }  // namespace
@@ -37,7 +29,7 @@ void run() {
   convert(1, 1, 6, results + 1);
   convert(2, 2, 3, results + 4);
   convert(3, 1, 3, results + 7);
-  results[9] = word(dma2 + 0x14);
+  results[9] = adc::items_left();
   results[0] = finished;
   for (;;) wait_for_interrupt();
 }
