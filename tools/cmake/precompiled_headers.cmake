@@ -13,26 +13,29 @@ function(inkwell_add_precompiled_headers name)
 endfunction()
 
 # Lets every compiled target of a directory and of those below it use the precompiled headers of `name`, if it links to
-# fmt: without fmt's definitions the compiler refuses them.
-function(inkwell_use_precompiled_headers name directory)
+# `library` and has none yet: without fmt's definitions the compiler refuses headers that have fmt's.
+function(inkwell_use_precompiled_headers name directory library)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(type ${target} TYPE)
     get_target_property(own ${target} PRECOMPILE_HEADERS_REUSE_FROM)
     get_target_property(libraries ${target} LINK_LIBRARIES)
-    if(type MATCHES "STATIC_LIBRARY|EXECUTABLE" AND NOT own AND "fmt::fmt" IN_LIST libraries)
+    if(type MATCHES "STATIC_LIBRARY|EXECUTABLE" AND NOT own AND library IN_LIST libraries)
       target_precompile_headers(${target} REUSE_FROM ${name})
     endif()
   endforeach()
   get_property(subdirectories DIRECTORY ${directory} PROPERTY SUBDIRECTORIES)
   foreach(subdirectory IN LISTS subdirectories)
-    inkwell_use_precompiled_headers(${name} ${subdirectory})
+    inkwell_use_precompiled_headers(${name} ${subdirectory} ${library})
   endforeach()
 endfunction()
 
 find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
+inkwell_add_precompiled_headers(inkwell_standard_headers
+                                HEADERS <algorithm> <array> <cmath> <deque> <functional> <map> <optional> <span> <stdexcept>
+                                        <string> <vector>)
 set(headers <algorithm> <chrono> <filesystem> <functional> <map> <memory> <mutex> <optional> <string> <thread> <vector>
             <fmt/format.h> <nlohmann/json.hpp>)
 inkwell_add_precompiled_headers(inkwell_host_headers HEADERS ${headers}
@@ -41,8 +44,12 @@ inkwell_add_precompiled_headers(inkwell_host_headers HEADERS ${headers}
 inkwell_add_precompiled_headers(inkwell_command_headers HEADERS ${headers} <CLI/CLI.hpp>
                                 LIBRARIES fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11)
 # They are also what takes longest to optimise, in code that waits for people; both sides have to agree on it.
-foreach(target inkwell_command_headers inkwell_command_line inkwell)
+foreach(target inkwell_command_headers inkwell_command_line inkwell inkwell_virtual_options)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()
-inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/host/command_line)
-inkwell_use_precompiled_headers(inkwell_host_headers ${PROJECT_SOURCE_DIR}/host)
+inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/host/command_line fmt::fmt)
+foreach(directory host boards)
+  inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/${directory} CLI11::CLI11)
+  inkwell_use_precompiled_headers(inkwell_host_headers ${PROJECT_SOURCE_DIR}/${directory} fmt::fmt)
+endforeach()
+inkwell_use_precompiled_headers(inkwell_standard_headers ${PROJECT_SOURCE_DIR}/boards inkwell_warnings)
