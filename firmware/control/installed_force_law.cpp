@@ -106,7 +106,7 @@ constexpr bool have_sound_ranges(const Rows& rows) {
 
 /// What the rest of this file works with while the law itself is not sound, so that only the sentence is shown.
 struct NoLaw {
-  static constexpr std::string_view help = "";
+  [[maybe_unused]] static constexpr std::string_view help = "";
   struct Parameters {};
   struct Signals {};
   struct State {};

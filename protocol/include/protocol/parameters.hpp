@@ -239,7 +239,7 @@ constexpr bool stands_with_its_group(const Table& table, std::size_t row) {
 }
 }  // namespace detail
 #define X(id, name, kind, unit, minimum, maximum, default_value, group, help)                                       \
-  static_assert(id < force_law_first_id, #name ": its id is one of those of a force law's parameters");             \
+  static_assert((id) < force_law_first_id, #name ": its id is one of those of a force law's parameters");           \
   static_assert(detail::id_rises(parameter_table, static_cast<std::size_t>(Parameter::name)),                       \
                 #name ": its id is not above that of the row before; ids rise from row to row");                    \
   static_assert(detail::default_is_in_range(parameter_table, static_cast<std::size_t>(Parameter::name)),            \

@@ -32,7 +32,7 @@ void reset_force_law(ForceLawMemory& memory);
 void step_force_law(const Probe& probe, const ForceLawValues& values, ForceLawMemory& memory, Vector3& force_N);
 
 /// Entries of ForceLawMemory::signals that the law has.
-extern const std::size_t force_law_signal_count;
+extern constinit const std::size_t force_law_signal_count;
 
 // ---- main loop ----
 
@@ -50,6 +50,6 @@ struct InstalledForceLaw {
   const std::byte* report;  ///< a protocol::ForceLawReport with all that follows it
   std::size_t report_size;
 };
-extern const InstalledForceLaw installed_force_law;
+extern constinit const InstalledForceLaw installed_force_law;
 
 }  // namespace inkwell::control
