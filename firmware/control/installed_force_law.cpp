@@ -53,15 +53,15 @@ concept HasSmallState = HasParts<Law> && std::is_trivially_copyable_v<typename L
 /// The rows, or none where the law has none.
 template <class Law>
 constexpr auto parameter_rows() {
-  if constexpr (requires { std::span<const ForceParameter<typename Law::Parameters>>(Law::parameters); })
-    return std::span<const ForceParameter<typename Law::Parameters>>(Law::parameters);
+  if constexpr (requires { std::span<const ForceParameter<typename Law::Parameters>>(Law::parameter_rows); })
+    return std::span<const ForceParameter<typename Law::Parameters>>(Law::parameter_rows);
   else
     return std::array<ForceParameter<typename Law::Parameters>, 0>{};
 }
 template <class Law>
 constexpr auto signal_rows() {
-  if constexpr (requires { std::span<const ForceSignal<typename Law::Signals>>(Law::signals); })
-    return std::span<const ForceSignal<typename Law::Signals>>(Law::signals);
+  if constexpr (requires { std::span<const ForceSignal<typename Law::Signals>>(Law::signal_rows); })
+    return std::span<const ForceSignal<typename Law::Signals>>(Law::signal_rows);
   else
     return std::array<ForceSignal<typename Law::Signals>, 0>{};
 }
@@ -137,9 +137,9 @@ constexpr auto parameters = parameter_rows<Law>();
 constexpr auto signals = signal_rows<Law>();
 
 static_assert(fit_rows<Parameters>(parameters),
-              "each member of the force law's Parameters must be a float with one row in `parameters`");
+              "each member of the force law's Parameters must be a float with one row in `parameter_rows`");
 static_assert(fit_rows<Signals>(signals),
-              "each member of the force law's Signals must be a float with one row in `signals`");
+              "each member of the force law's Signals must be a float with one row in `signal_rows`");
 static_assert(parameters.size() <= protocol::force_law_parameters_maximum, "a force law may have 12 parameters");
 static_assert(signals.size() <= protocol::force_law_signals_maximum, "a force law may have 8 signals");
 static_assert(have_sound_ranges(parameters), "the default of a force law's parameter is outside of its range");

@@ -14,7 +14,7 @@ struct detent_dial {
     float notch_m;
     float force_N;
   };
-  static constexpr ForceParameter<Parameters> parameters[] = {
+  static constexpr ForceParameter<Parameters> parameter_rows[] = {
       {&Parameters::x_m, "dial_x_m", "m", -0.3f, 0.3f, 0.0f, "Axis of the dial, x; it is parallel to z."},
       {&Parameters::y_m, "dial_y_m", "m", -0.3f, 0.3f, -0.05f, "Axis of the dial, y."},
       {&Parameters::notch_m, "dial_notch_m", "m", 0.002f, 0.05f, 0.01f,
@@ -26,7 +26,7 @@ struct detent_dial {
     float passed_notches;
     float way_m;
   };
-  static constexpr ForceSignal<Signals> signals[] = {
+  static constexpr ForceSignal<Signals> signal_rows[] = {
       {&Signals::passed_notches, "dial_passed_notches", "",
        "Notches passed since the force is on, backward ones negative."},
       {&Signals::way_m, "dial_way_m", "m", "From the middle of the present notch, along the way of the probe."},

@@ -13,7 +13,7 @@ struct magnet {
     float strength_N;
     float reach_m;
   };
-  static constexpr ForceParameter<Parameters> parameters[] = {
+  static constexpr ForceParameter<Parameters> parameter_rows[] = {
       {&Parameters::x_m, "magnet_x_m", "m", -0.3f, 0.3f, 0.0f, "Where the magnet is, x."},
       {&Parameters::y_m, "magnet_y_m", "m", -0.3f, 0.3f, 0.0f, "Where the magnet is, y."},
       {&Parameters::z_m, "magnet_z_m", "m", -0.3f, 0.3f, -0.03f, "Where the magnet is, z."},
@@ -26,7 +26,7 @@ struct magnet {
   struct Signals {
     float distance_m;
   };
-  static constexpr ForceSignal<Signals> signals[] = {
+  static constexpr ForceSignal<Signals> signal_rows[] = {
       {&Signals::distance_m, "magnet_distance_m", "m", "From the probe to the magnet."},
   };
 

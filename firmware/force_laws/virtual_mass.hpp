@@ -17,7 +17,7 @@ struct virtual_mass {
   struct Parameters {
     float mass_kg, stiffness_N_per_m, damping_Ns_per_m;
   };
-  static constexpr ForceParameter<Parameters> parameters[] = {
+  static constexpr ForceParameter<Parameters> parameter_rows[] = {
       {&Parameters::mass_kg, "mass_kg", "kg", 0.01f, 2.0f, 0.2f, "Mass that the probe carries."},
       {&Parameters::stiffness_N_per_m, "mass_stiffness_N_per_m", "N/m", 0.0f, 1000.0f, 200.0f,
        "Spring that carries it."},
@@ -27,7 +27,7 @@ struct virtual_mass {
   struct Signals {
     float speed_m_per_s;
   };
-  static constexpr ForceSignal<Signals> signals[] = {
+  static constexpr ForceSignal<Signals> signal_rows[] = {
       {&Signals::speed_m_per_s, "mass_speed_m_per_s", "m/s", "Speed of the mass."},
   };
 

@@ -13,7 +13,7 @@ struct viscous_sphere {
     float radius_m;
     float damping_Ns_per_m;
   };
-  static constexpr ForceParameter<Parameters> parameters[] = {
+  static constexpr ForceParameter<Parameters> parameter_rows[] = {
       {&Parameters::x_m, "fluid_x_m", "m", -0.3f, 0.3f, 0.0f, "Centre of the sphere, x."},
       {&Parameters::y_m, "fluid_y_m", "m", -0.3f, 0.3f, 0.0f, "Centre of the sphere, y."},
       {&Parameters::z_m, "fluid_z_m", "m", -0.3f, 0.3f, -0.03f, "Centre of the sphere, z."},
@@ -25,7 +25,7 @@ struct viscous_sphere {
   struct Signals {
     float part;
   };
-  static constexpr ForceSignal<Signals> signals[] = {
+  static constexpr ForceSignal<Signals> signal_rows[] = {
       {&Signals::part, "fluid_part", "", "How much of the damping is felt: 0 outside, 1 deep in the fluid."},
   };
 

@@ -30,7 +30,7 @@ using protocol::State;
 control::Vector3 magnet_force_N(const protocol::ParameterSet& held, const control::Vector3& position_m,
                                 float& distance_m) {
   magnet::Parameters parameters{};
-  for (const auto& row : magnet::parameters) parameters.*row.value = held[device::parameter_named(row.name)];
+  for (const auto& row : magnet::parameter_rows) parameters.*row.value = held[device::parameter_named(row.name)];
   control::Probe probe;
   probe.position_m = position_m;
   magnet::State state;

@@ -133,10 +133,10 @@ Push push_against_wall(protocol::ParameterSet parameters) {
 }
 
 TEST_CASE("a push against a wall: the law holds, the current follows, and a steady hand rests within two counts") {
-  for (const auto& [name, parameters] : tests::all_arms()) {
-    CAPTURE(name);
-    const Push push = push_against_wall(parameters);
-    const control::Settings settings = control::prepare(parameters);
+  for (const tests::Arm& arm : tests::all_arms()) {
+    CAPTURE(arm.name);
+    const Push push = push_against_wall(arm.parameters);
+    const control::Settings settings = control::prepare(arm.parameters);
     const float reach_m = settings.arm.link_2_m + settings.arm.link_3_m;
     const float two_counts_m = 2.0f * reach_m * std::abs(settings.encoders.rad_per_count[0]);
     MESSAGE("deepest " << push.deepest_m * 1e3f << " mm, largest force " << push.largest_force_N << " N, rests within "

@@ -21,7 +21,7 @@ struct Stepped {
   Probe probe;
 
   Stepped() {
-    for (const auto& row : Law::parameters) parameters.*row.value = row.default_value;
+    for (const auto& row : Law::parameter_rows) parameters.*row.value = row.default_value;
     probe.wall = {800.0f, 2.0f};
   }
   Vector3 step() { return Law::force_N(probe, parameters, state, signals); }

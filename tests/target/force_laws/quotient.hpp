@@ -11,7 +11,7 @@ struct quotient {
   struct Parameters {
     float dividend_N, divisor;
   };
-  static constexpr ForceParameter<Parameters> parameters[] = {
+  static constexpr ForceParameter<Parameters> parameter_rows[] = {
       {&Parameters::dividend_N, "quotient_dividend_N", "N", -1.0f, 1.0f, 0.5f, "What is divided."},
       {&Parameters::divisor, "quotient_divisor", "", 0.0f, 1.0f, 1.0f, "What it is divided by."},
   };
@@ -19,7 +19,7 @@ struct quotient {
   struct Signals {
     float periods;
   };
-  static constexpr ForceSignal<Signals> signals[] = {
+  static constexpr ForceSignal<Signals> signal_rows[] = {
       {&Signals::periods, "quotient_periods", "", "Control periods since the state was new."},
   };
 

@@ -3,7 +3,7 @@
 //
 // A law is a struct named like its file, in inkwell::force_laws, with
 //
-//   Parameters, Signals   structs of floats, whose rows are in `parameters` and `signals`; both may be empty
+//   Parameters, Signals   structs of floats, whose rows are in `parameter_rows` and `signal_rows`; both may be empty
 //   State                 what it remembers from one control period to the next
 //   force_N               the function: the force on the hand, 20 000 times a second while the force is on
 //
@@ -36,7 +36,7 @@ struct Probe {
   constexpr float time_s() const { return protocol::servo_period_s * static_cast<float>(periods); }
 };
 
-/// A row of a law's `parameters`: what moves the slider, and where the law finds its value.
+/// A row of a law's `parameter_rows`: what moves the slider, and where the law finds its value.
 template <class Parameters>
 struct ForceParameter {
   float Parameters::*value;
@@ -48,7 +48,7 @@ struct ForceParameter {
   std::string_view help;
 };
 
-/// A row of a law's `signals`: what the scope and recordings take from it.
+/// A row of a law's `signal_rows`: what the scope and recordings take from it.
 template <class Signals>
 struct ForceSignal {
   float Signals::*value;

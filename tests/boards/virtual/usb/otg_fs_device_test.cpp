@@ -75,9 +75,9 @@ TEST_CASE("reset values") {
                                                                           {0x82C, 0x05B8},
                                                                           {0x900, 0x8000},
                                                                           {0xB00, 0x8000}}};
-  for (const auto& [offset, value] : expected) {
-    CAPTURE(offset);
-    CHECK(core.read(offset, 4) == value);
+  for (const auto& row : expected) {
+    CAPTURE(row.first);
+    CHECK(core.read(row.first, 4) == row.second);
   }
   CHECK(log.sentences.empty());
   core.read(0x440, 4);

@@ -140,9 +140,10 @@ TEST_CASE("every preset lies in its parameters' ranges") {
   REQUIRE(window::presets().size() == 3);
   for (const window::Preset& preset : window::presets())
     for (const auto& [parameter, value] : preset.changes) {
-      CAPTURE(protocol::info(parameter).name);
-      CHECK(value >= protocol::info(parameter).minimum);
-      CHECK(value <= protocol::info(parameter).maximum);
-      CHECK(value != protocol::info(parameter).default_value);
+      const auto& info = protocol::info(parameter);
+      CAPTURE(info.name);
+      CHECK(value >= info.minimum);
+      CHECK(value <= info.maximum);
+      CHECK(value != info.default_value);
     }
 }
