@@ -126,7 +126,8 @@ static_assert(
     !HasParts<Given> || HasFunction<Given>,
     "the force law lacks its function: static Vector3 force_N(const Probe&, const Parameters&, State&, Signals&)");
 static_assert(!HasParts<Given> || HasSmallState<Given>,
-              "the State of the force law must be made of plain numbers with initial values, 256 bytes at most");
+              "the State of the force law must be made of plain numbers with initial values, no larger than "
+              "ForceLawMemory::state_bytes");
 
 using Law = std::conditional_t<HasFunction<Given> && HasSmallState<Given> && HasHelp<Given>, Given, NoLaw>;
 using Parameters = Law::Parameters;
@@ -140,8 +141,10 @@ static_assert(fit_rows<Parameters>(parameters),
               "each member of the force law's Parameters must be a float with one row in `parameter_rows`");
 static_assert(fit_rows<Signals>(signals),
               "each member of the force law's Signals must be a float with one row in `signal_rows`");
-static_assert(parameters.size() <= protocol::force_law_parameters_maximum, "a force law may have 12 parameters");
-static_assert(signals.size() <= protocol::force_law_signals_maximum, "a force law may have 8 signals");
+static_assert(parameters.size() <= protocol::force_law_parameters_maximum,
+              "the force law has more parameters than protocol::force_law_parameters_maximum");
+static_assert(signals.size() <= protocol::force_law_signals_maximum,
+              "the force law has more signals than protocol::force_law_signals_maximum");
 static_assert(have_sound_ranges(parameters), "the default of a force law's parameter is outside of its range");
 static_assert(
     have_names_of_their_own(parameters, [](auto name) { return protocol::find_parameter(name).has_value(); }),
@@ -201,7 +204,7 @@ constexpr std::size_t write_report(std::byte* to, std::size_t size) {
 
 constexpr std::size_t report_size = write_report(nullptr, 0);
 static_assert(report_size <= protocol::force_law_report_maximum,
-              "the texts of the force law are too long: 2048 bytes for all names, units and helps");
+              "names, units and helps of the force law are longer than protocol::force_law_report_maximum");
 
 // What the main loop alone reads; the rest of firmware/control lies in the RAM of the interrupts.
 #if defined(__arm__)
@@ -252,12 +255,9 @@ void step_force_law(const Probe& probe, const ForceLawValues& values, ForceLawMe
   Parameters given{};
   Signals seen{};
   auto& state = *std::launder(reinterpret_cast<State*>(memory.state.data()));
-  // Written out by the compiler, row by row: no loop, and no pointer to a member, is left.
-  [&]<std::size_t... i>(std::index_sequence<i...>) { ((given.*parameters[i].value = values[i]), ...); }
-  (std::make_index_sequence<parameters.size()>());
+  for_each_place<parameters.size()>([&](auto i) { given.*parameters[i].value = values[i]; });
   force_N = Law::force_N(probe, given, state, seen);
-  [&]<std::size_t... i>(std::index_sequence<i...>) { ((memory.signals[i] = seen.*signals[i].value), ...); }
-  (std::make_index_sequence<signals.size()>());
+  for_each_place<signals.size()>([&](auto i) { memory.signals[i] = seen.*signals[i].value; });
 }
 
 }  // namespace inkwell::control

@@ -44,7 +44,7 @@ struct detent_dial {
     if (radius_m < 0.005f) return wall_force_N(probe);  // on its axis a dial has no direction to turn
     const Vector3 along{-y_m / radius_m, x_m / radius_m, 0.0f};
 
-    state.way_m += force_law_period_s * dot(along, probe.velocity_m_per_s);
+    state.way_m += protocol::servo_period_s * dot(along, probe.velocity_m_per_s);
     const float change_at_m = 0.6f * parameters.notch_m;  // half a notch would chatter
     const float step = state.way_m > change_at_m ? 1.0f : state.way_m < -change_at_m ? -1.0f : 0.0f;
     state.passed_notches += step;

@@ -35,7 +35,7 @@ struct virtual_mass {
 
   static Vector3 force_N(const Probe& probe, const Parameters& parameters, State& state, Signals& signals) {
     const virtual_mass_inputs inputs = {{probe.position_m.x, probe.position_m.y, probe.position_m.z},
-                                        force_law_period_s};
+                                        protocol::servo_period_s};
     const virtual_mass_parameters given = {parameters.mass_kg, parameters.stiffness_N_per_m,
                                            parameters.damping_Ns_per_m};
     virtual_mass_outputs outputs = {};

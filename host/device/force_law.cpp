@@ -10,6 +10,10 @@
 namespace inkwell::device {
 namespace {
 
+Error damaged() {
+  return Error("The device's description of its force law is damaged. Build its firmware anew and flash it.");
+}
+
 /// Takes a report apart from its begin on.
 class Reader {
  public:
@@ -27,11 +31,16 @@ class Reader {
     take(length + 1);
     return {begin, length};
   }
+  template <class Row>
+  void texts_of(Row& row) {
+    row.name = text();
+    row.unit = text();
+    row.help = text();
+  }
 
  private:
   std::span<const std::byte> take(std::size_t size) {
-    if (size > left_.size())
-      throw Error("The device's description of its force law is damaged. Build its firmware anew and flash it.");
+    if (size > left_.size()) throw damaged();
     const auto taken = left_.first(size);
     left_ = left_.subspan(size);
     return taken;
@@ -65,7 +74,7 @@ ForceLaw parse_force_law(std::span<const std::byte> report) {
   if (head.size < sizeof head || head.size > report.size() ||
       head.parameter_count > protocol::force_law_parameters_maximum ||
       head.signal_count > protocol::force_law_signals_maximum)
-    throw Error("The device's description of its force law is damaged. Build its firmware anew and flash it.");
+    throw damaged();
   const auto bytes = std::make_shared<const std::vector<std::byte>>(report.begin(), report.begin() + head.size);
   Reader reader{std::span(*bytes).subspan(sizeof head)};
   ForceLaw law{.report = bytes, .name = reader.text(), .help = reader.text(), .parameters = {}, .signals = {}};
@@ -76,9 +85,7 @@ ForceLaw parse_force_law(std::span<const std::byte> report) {
     row.minimum = reader.number();
     row.maximum = reader.number();
     row.default_value = reader.number();
-    row.name = reader.text();
-    row.unit = reader.text();
-    row.help = reader.text();
+    reader.texts_of(row);
     row.group = "force law";
     law.parameters.push_back(row);
   }
@@ -86,9 +93,7 @@ ForceLaw parse_force_law(std::span<const std::byte> report) {
     protocol::SignalInfo row{};
     row.id = static_cast<std::uint8_t>(protocol::signal_count + i);
     row.wire = protocol::SignalWire::float32;
-    row.name = reader.text();
-    row.unit = reader.text();
-    row.help = reader.text();
+    reader.texts_of(row);
     law.signals.push_back(row);
   }
   return law;

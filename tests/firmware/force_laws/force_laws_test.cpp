@@ -29,7 +29,7 @@ struct Stepped {
   Vector3 move(const Vector3& to_m, int periods) {
     const Vector3 way_m = to_m - probe.position_m;
     const Vector3 begin_m = probe.position_m;
-    probe.velocity_m_per_s = (1.0f / (static_cast<float>(periods) * force_law_period_s)) * way_m;
+    probe.velocity_m_per_s = (1.0f / (static_cast<float>(periods) * protocol::servo_period_s)) * way_m;
     Vector3 force_N;
     for (int i = 1; i <= periods; ++i) {
       probe.position_m = begin_m + (static_cast<float>(i) / static_cast<float>(periods)) * way_m;

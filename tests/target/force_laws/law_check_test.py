@@ -62,7 +62,7 @@ class LawCheck(unittest.TestCase):
         self.assert_refused("0, 500, 100", "0, 50, 100", "is outside of its range")
 
     def test_a_large_state(self):
-        self.assert_refused("struct State {};", "struct State { float all[100]; };", "256 bytes at most")
+        self.assert_refused("struct State {};", "struct State { float all[100]; };", "no larger than ForceLawMemory::state_bytes")
 
 
 if __name__ == "__main__":

@@ -57,9 +57,6 @@ struct ForceSignal {
   std::string_view help;
 };
 
-/// Between two calls of a law, in seconds: for a law that integrates.
-inline constexpr float force_law_period_s = protocol::servo_period_s;
-
 /// What the walls of the box give: for a law that keeps them.
 inline Vector3 wall_force_N(const Probe& probe) {
   return wall_force_N(probe.contact, probe.velocity_m_per_s, probe.wall);
