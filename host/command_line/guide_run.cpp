@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 using guides::Guide;
 using guides::Phase;
 
-constexpr auto silence_limit = 5s, transaction_limit = 5s;
+constexpr auto silence_limit = 5s;
 
 /// A line that the user typed, if there is one; none while he has not. Throws UsageError when no one can type.
 std::optional<std::string> typed_line() {

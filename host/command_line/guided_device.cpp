@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto connection_limit = 15s, transaction_limit = 5s;
+constexpr auto connection_limit = 15s;
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 // The device that guides run on, kept by a session, with its scope's frames on their way to the guide.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,6 +13,9 @@
 #include "connection.hpp"
 
 namespace inkwell::command_line {
+
+/// How long an answer to a change of parameters may take.
+inline constexpr std::chrono::seconds transaction_limit{5};
 
 class GuidedDevice {
  public:

@@ -1,12 +1,21 @@
 // The two kinds of transport; open_transport chooses.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
 #include <device/transport.hpp>
+#include <protocol/scope.hpp>
 
 namespace inkwell::device {
+
+inline constexpr char unplugged[] = "The device was unplugged. Connect it again.";
+
+/// Transfers of the scope under way: 128 KiB are more than 100 ms of a full-speed bus.
+inline constexpr int bulk_transfers = 128 * 1024 / protocol::scope_frame_maximum;
+/// Frames of the scope that nobody has read yet: 4 MiB.
+inline constexpr std::size_t bulk_kept = 4 * 1024 * 1024 / protocol::scope_frame_maximum;
 
 inline constexpr char scope_in_use[] =
     "The arm's scope is in use. Close the other program that records it or shows its signals.";

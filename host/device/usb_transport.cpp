@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include <protocol/scope.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "transfer_queue.hpp"
@@ -22,12 +21,6 @@ namespace inkwell::device {
 namespace {
 
 namespace identity = protocol::usb;
-
-/// 128 KiB are more than 100 ms of a full-speed bus.
-constexpr int bulk_transfers = 128 * 1024 / protocol::scope_frame_maximum;
-/// Then the oldest go, and the sequence of the frames shows it.
-constexpr std::size_t bulk_kept = 4 * 1024 * 1024 / protocol::scope_frame_maximum;
-constexpr char unplugged[] = "The device was unplugged. Connect it again.";
 
 std::string narrow(const wchar_t* text) {
   std::string result;
@@ -139,7 +132,7 @@ class BulkReader {
     if (transfer.status == LIBUSB_TRANSFER_COMPLETED && transfer.actual_length > 0) {
       const auto* begin = reinterpret_cast<const std::byte*>(transfer.buffer);
       queue_.push({begin, begin + transfer.actual_length});
-      if (queue_.size() > bulk_kept) queue_.drop_oldest();
+      if (queue_.size() > bulk_kept) queue_.drop_oldest();  // the sequence of the frames shows it
     }
     const bool goes_on = transfer.status == LIBUSB_TRANSFER_COMPLETED && !stopping_;
     if (goes_on && libusb_submit_transfer(&transfer) == 0) return;

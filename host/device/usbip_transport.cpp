@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <protocol/scope.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "transfer_queue.hpp"
@@ -19,14 +18,9 @@ namespace {
 using namespace std::chrono_literals;
 namespace identity = protocol::usb;
 
-constexpr char unplugged[] = "The device was unplugged. Connect it again.";
 constexpr int report_transfers = 32;
 constexpr std::size_t reports_kept = 1024;  // a second; then the oldest go, and the sequence shows it
 constexpr std::size_t writes_under_way = 16;
-/// 128 KiB are more than 100 ms of a full-speed bus.
-constexpr int bulk_transfers = 128 * 1024 / protocol::scope_frame_maximum;
-/// Then no more is asked for, and the device counts what it drops.
-constexpr std::size_t bulk_kept = 4 * 1024 * 1024 / protocol::scope_frame_maximum;
 
 class UsbipTransport : public Transport {
  public:

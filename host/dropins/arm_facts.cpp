@@ -11,10 +11,6 @@ namespace {
 
 constexpr int reach_steps = 12;  ///< of each joint from stop to stop
 
-void require(inkwell_result result) {
-  if (result != INKWELL_OK) throw std::runtime_error(inkwell_error_text());
-}
-
 double parameter(inkwell_arm* arm, const std::string& name) {
   double value = 0;
   require(inkwell_get_parameter(arm, name.c_str(), &value));
@@ -67,6 +63,10 @@ double determinant(const std::array<double, 9>& m) {
 }
 
 }  // namespace
+
+void require(inkwell_result result) {
+  if (result != INKWELL_OK) throw std::runtime_error(inkwell_error_text());
+}
 
 ArmFacts read_facts(inkwell_arm* arm) {
   ArmFacts facts{};

@@ -24,6 +24,9 @@ struct ArmFacts {
   Workspace box;                  ///< inside of which the arm is to be used
 };
 
+/// Throws std::runtime_error with the library's sentence if it could not do what it was asked.
+void require(inkwell_result result);
+
 /// Throws std::runtime_error with the reason if the arm does not answer.
 ArmFacts read_facts(inkwell_arm* arm);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "errors.hpp"
@@ -37,10 +36,6 @@ Vector turn_rad(const double (&from)[9], const double (&to)[9]) {
     return sum;
   };
   return {0.5 * (turn(2, 1) - turn(1, 2)), 0.5 * (turn(0, 2) - turn(2, 0)), 0.5 * (turn(1, 0) - turn(0, 1))};
-}
-
-void require(inkwell_result result) {
-  if (result != INKWELL_OK) throw std::runtime_error(inkwell_error_text());
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 using protocol::Parameter;
 using protocol::State;
 
-constexpr double turn_rad = 0.15;  // enough to be meant, and far from any stop
+constexpr double least_turn_rad = 0.15;  // enough to be meant, and far from any stop
 constexpr double resting_s = 0.2;
 
 double joint_rad(const protocol::PoseReport& pose, int joint) { return static_cast<double>(pose.joint_rad[joint - 1]); }
@@ -116,8 +116,8 @@ bool TurnJointForward::advance(const Observation& now, DevicePort&) {
     throw device::Error(
         fmt::format("Joint {} did not turn by {} rad. If you turned it, check the plug and the supply of "
                     "encoder {}.",
-                    joint_, turn_rad, joint_));
-  if (std::abs(turned_rad_) < turn_rad) return false;
+                    joint_, least_turn_rad, joint_));
+  if (std::abs(turned_rad_) < least_turn_rad) return false;
   const auto parameter = of_number(Parameter::encoder_1_reversed, joint_);
   const bool wrong = turned_rad_ < 0;
   (*reversed_)[static_cast<std::size_t>(joint_ - 1)] = wrong;
@@ -131,8 +131,8 @@ bool TurnJointForward::advance(const Observation& now, DevicePort&) {
 }
 
 std::vector<Check> TurnJointForward::checks() const {
-  return {{fmt::format("joint {} turned by", joint_), turned_rad_, "rad", fmt::format("{} or more", turn_rad),
-           turned_rad_ >= turn_rad}};
+  return {{fmt::format("joint {} turned by", joint_), turned_rad_, "rad", fmt::format("{} or more", least_turn_rad),
+           turned_rad_ >= least_turn_rad}};
 }
 
 }  // namespace inkwell::guides

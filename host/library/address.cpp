@@ -4,7 +4,8 @@
 
 #include <atomic>
 #include <cstdlib>
-#include <cstring>
+
+#include "text_copy.hpp"
 
 namespace inkwell::library {
 namespace {
@@ -20,16 +21,11 @@ std::uint64_t next_seed() {
   return static_cast<std::uint64_t>(getpid()) << 16 | ++boards;
 }
 
-template <std::size_t size>
-void copy(const std::string& text, char (&to)[size]) {
-  std::strncpy(to, text.c_str(), size - 1);
-}
-
 inkwell_device entry(const std::string& address, const device::Endpoint& endpoint) {
   inkwell_device device{};
-  copy(address, device.address);
-  copy(endpoint.serial_number, device.serial_number);
-  copy(endpoint.product, device.product);
+  copy_text(address, device.address);
+  copy_text(endpoint.serial_number, device.serial_number);
+  copy_text(endpoint.product, device.product);
   device.is_virtual = endpoint.is_virtual ? 1 : 0;
   return device;
 }

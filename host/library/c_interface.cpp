@@ -1,7 +1,6 @@
 // Devices, pose, force and shapes of the C interface. Parameters, signals and the scope are in c_tables.cpp.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <string>
 
@@ -10,6 +9,7 @@
 
 #include "address.hpp"
 #include "c_guard.hpp"
+#include "text_copy.hpp"
 
 using namespace inkwell::library;
 namespace control = inkwell::control;
@@ -20,12 +20,6 @@ namespace {
 
 /// The newest pose that this thread has waited for, for each arm.
 thread_local std::map<const inkwell_arm*, std::uint32_t> seen_sequences;
-
-template <std::size_t size>
-void copy(const std::string& text, char (&to)[size]) {
-  std::strncpy(to, text.c_str(), size - 1);
-  to[size - 1] = '\0';
-}
 
 std::array<float, 3> floats(const double (&values)[3]) {
   return {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
@@ -91,9 +85,9 @@ inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_information* in
     const auto& endpoint = arm_of(arm).endpoint();
     const auto told = arm_of(arm).device().information();
     *information = {};
-    copy(told.serial_number, information->serial_number);
-    copy(endpoint.product, information->product);
-    copy(told.firmware_version, information->firmware_version);
+    copy_text(told.serial_number, information->serial_number);
+    copy_text(endpoint.product, information->product);
+    copy_text(told.firmware_version, information->firmware_version);
     information->is_virtual = endpoint.is_virtual ? 1 : 0;
     information->servo_rate_Hz = told.report.servo_rate_Hz;
     information->servo_cycles_longest = told.report.servo_cycles_longest;

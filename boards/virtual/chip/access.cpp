@@ -6,8 +6,6 @@
 namespace inkwell::virtual_board {
 namespace {
 
-constexpr std::uint32_t private_bus = 0xE000'0000, private_bus_end = 0xE010'0000;
-
 /// Devices and the system's own region: the default memory map executes nothing there, and wants every access aligned.
 bool is_of_devices(std::uint32_t address) {
   return (address >= 0x4000'0000 && address < 0x6000'0000) || address >= 0xA000'0000;
@@ -18,7 +16,7 @@ bool is_of_devices(std::uint32_t address) {
 std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, bool privileged) const {
   const bool fetch = access == Access::fetch;
   if (fetch && is_of_devices(address)) return Outcome::execute_never;
-  const bool on_private_bus = address >= private_bus && address < private_bus_end;
+  const bool on_private_bus = address - private_bus_base < private_bus_bytes;
   if (on_private_bus) return privileged ? std::nullopt : std::optional(Outcome::data_fault);
   if (protects_ && !machine_.memory_protection.allows(address, access == Access::store, fetch, privileged))
     return fetch ? Outcome::execute_never : Outcome::protected_data;

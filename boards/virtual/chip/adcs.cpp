@@ -38,7 +38,7 @@ void Adcs::reset() {
 }
 
 bool Adcs::is_clocked(unsigned index) const {
-  if (rcc_registers.apb2enr.adcen.in(*enable_register_, index)) return true;
+  if (rcc_map.apb2enr.adcen.in(*enable_register_, index)) return true;
   machine_.violations.violate(Rule::clock_off, adcs_[index].name());
   return false;
 }

@@ -11,14 +11,13 @@
 namespace inkwell::virtual_board {
 namespace {
 
-constexpr std::uint32_t private_bus = 0xE000'0000;
-
 /// Registers of peripherals and of the core (RM0090, memory map).
 bool are_registers(std::uint32_t address, std::size_t bytes) {
   struct Window {
     std::uint32_t base, bytes;
   };
-  for (const auto& window : {Window{0x4000'0000, 0x8'0000}, {0x5000'0000, 0x6'1000}, {private_bus, 0x10'0000}})
+  for (const auto& window :
+       {Window{0x4000'0000, 0x8'0000}, {0x5000'0000, 0x6'1000}, {private_bus_base, private_bus_bytes}})
     if (address - window.base < window.bytes && bytes <= window.bytes - (address - window.base)) return true;
   return false;
 }
@@ -61,7 +60,7 @@ bool ChipDebugPort::read(std::uint32_t address, std::span<std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const unsigned size = access_size(address, bytes.size());
     const std::uint32_t value =
-        address >= private_bus ? system_control_.read(address, size) : bus_.read_register(address, size);
+        address >= private_bus_base ? system_control_.read(address, size) : bus_.read_register(address, size);
     std::memcpy(bytes.data(), &value, size);
     bytes = bytes.subspan(size);
     address += size;
@@ -81,7 +80,7 @@ bool ChipDebugPort::write(std::uint32_t address, std::span<const std::uint8_t> b
     const unsigned width = access_size(address, bytes.size());
     std::uint32_t value = 0;
     std::memcpy(&value, bytes.data(), width);
-    if (address >= private_bus)
+    if (address >= private_bus_base)
       system_control_.write(address, value, width);
     else
       bus_.write_register(address, value, width);

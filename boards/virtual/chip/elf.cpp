@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chip/chip.hpp>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 
@@ -11,12 +10,6 @@
 
 namespace inkwell::virtual_board {
 namespace {
-
-std::string hexadecimal(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08X", static_cast<unsigned>(value));
-  return text;
-}
 
 template <class T>
 T record_at(const std::vector<char>& file, std::size_t offset, const std::string& name) {

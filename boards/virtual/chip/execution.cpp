@@ -11,12 +11,6 @@ namespace {
 
 constexpr std::uint16_t semihosting_breakpoint = 0xBEAB;
 
-std::string hexadecimal(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08X", static_cast<unsigned>(value));
-  return text;
-}
-
 std::string name_of(unsigned exception) {
   switch (exception) {
     case exception_nmi: return "NMI";

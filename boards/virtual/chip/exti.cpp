@@ -5,8 +5,7 @@
 
 namespace inkwell::virtual_board {
 namespace {
-constexpr auto& map = exti_registers;
-constexpr unsigned lines = map.imr.mr.count;
+constexpr unsigned lines = exti_map.imr.mr.count;
 
 /// Position in the vector table of each line (RM0090, table "Vector table").
 constexpr unsigned position_of(unsigned line) {
@@ -50,40 +49,40 @@ void Exti::internal_line(unsigned line, bool high) {
 
 std::uint32_t Exti::stored(std::uint32_t offset) const {
   switch (offset) {
-    case map.imr: return interrupt_mask_;
-    case map.emr: return event_mask_;
-    case map.rtsr: return rising_;
-    case map.ftsr: return falling_;
-    case map.swier: return software_;
+    case exti_map.imr: return interrupt_mask_;
+    case exti_map.emr: return event_mask_;
+    case exti_map.rtsr: return rising_;
+    case exti_map.ftsr: return falling_;
+    case exti_map.swier: return software_;
     default: return 0;  // PR: ones clear
   }
 }
 
 std::uint32_t Exti::read_word(std::uint32_t offset) {
-  if (offset == map.pr) {
+  if (offset == exti_map.pr) {
     machine_.advance_circuit(Machine::input_age_limit);
     return pending_;
   }
-  if (offset < map.pr) return stored(offset);
+  if (offset < exti_map.pr) return stored(offset);
   machine_.log.note("EXTI", offset, false, 0);
   return 0;
 }
 
 void Exti::write_word(std::uint32_t offset, std::uint32_t value) {
-  value &= map.imr.mr.masks();
+  value &= exti_map.imr.mr.masks();
   switch (offset) {
-    case map.imr: interrupt_mask_ = value; break;
-    case map.emr: event_mask_ = value; break;
-    case map.rtsr: rising_ = value; break;
-    case map.ftsr: falling_ = value; break;
-    case map.swier: {
+    case exti_map.imr: interrupt_mask_ = value; break;
+    case exti_map.emr: event_mask_ = value; break;
+    case exti_map.rtsr: rising_ = value; break;
+    case exti_map.ftsr: falling_ = value; break;
+    case exti_map.swier: {
       const std::uint32_t risen = value & ~software_;
       software_ = value;
       for (unsigned line = 0; line < lines; ++line)
         if ((risen >> line & 1) != 0) edge(line);
       break;
     }
-    case map.pr:
+    case exti_map.pr:
       pending_ &= ~value;
       software_ &= ~value;
       break;

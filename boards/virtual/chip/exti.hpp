@@ -22,7 +22,7 @@ struct ExtiRegisters {
     Field pr{"PR#", 0, 1, Access::rc_w1, {23, 1}};
   } pr{{"PR", 0x14}};
 };
-inline constexpr ExtiRegisters exti_registers;
+inline constexpr ExtiRegisters exti_map;
 
 template <unsigned lowest>
 struct ExtiPorts : Register {
@@ -58,7 +58,7 @@ class Exti final : public RegisterBlock {
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
-  std::span<const MapEntry> registers() const override { return shown<exti_registers>(); }
+  std::span<const MapEntry> registers() const override { return shown<exti_map>(); }
 
  private:
   class Syscfg final : public RegisterBlock {

@@ -34,7 +34,7 @@ struct FlashRegisters {
         nwrp{"nWRP", 16, 12};
   } optcr{{"OPTCR", 0x14, 0x0FFF'AAED}};
 };
-inline constexpr FlashRegisters flash_registers;
+inline constexpr FlashRegisters flash_map;
 
 class FlashController final : public RegisterBlock, public TimedPart, public ClockUser {
  public:
@@ -57,7 +57,7 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
-  std::span<const MapEntry> registers() const override { return shown<flash_registers>(); }
+  std::span<const MapEntry> registers() const override { return shown<flash_map>(); }
 
  private:
   void erase();

@@ -1,6 +1,14 @@
 #include "memory.hpp"
 
+#include <cstdio>
+
 namespace inkwell::virtual_board {
+
+std::string hexadecimal(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%08X", static_cast<unsigned>(value));
+  return text;
+}
 
 Memory::Memory() : flash_(flash_bytes, 0xFF), sram_(sram_bytes), ccm_(ccm_bytes), system_(system_bytes, 0xFF) {}
 

@@ -15,8 +15,6 @@
 namespace inkwell::virtual_board {
 namespace {
 
-constexpr const auto& map = rcc_registers;
-
 template <class EnableRegister>
 constexpr ClockGate gate(const EnableRegister& enable, const Field& field, unsigned index = 0) {
   return {enable, field.mask(index)};
@@ -24,7 +22,7 @@ constexpr ClockGate gate(const EnableRegister& enable, const Field& field, unsig
 
 /// Reset register that belongs to an enable register (RM0090, "RCC register map").
 constexpr std::uint32_t reset_register_of(std::uint32_t enable_register) {
-  return enable_register - (map.ahb1enr - map.ahb1rstr);
+  return enable_register - (rcc_map.ahb1enr - rcc_map.ahb1rstr);
 }
 
 struct Place {
@@ -32,13 +30,20 @@ struct Place {
   ClockGate clock;
 };
 constexpr Place timer_places[14] = {
-    {0x4001'0000, gate(map.apb2enr, map.apb2enr.tim1en)},  {0x4000'0000, gate(map.apb1enr, map.apb1enr.tim2en)},
-    {0x4000'0400, gate(map.apb1enr, map.apb1enr.tim3en)},  {0x4000'0800, gate(map.apb1enr, map.apb1enr.tim4en)},
-    {0x4000'0C00, gate(map.apb1enr, map.apb1enr.tim5en)},  {0x4000'1000, gate(map.apb1enr, map.apb1enr.tim6en)},
-    {0x4000'1400, gate(map.apb1enr, map.apb1enr.tim7en)},  {0x4001'0400, gate(map.apb2enr, map.apb2enr.tim8en)},
-    {0x4001'4000, gate(map.apb2enr, map.apb2enr.tim9en)},  {0x4001'4400, gate(map.apb2enr, map.apb2enr.tim10en)},
-    {0x4001'4800, gate(map.apb2enr, map.apb2enr.tim11en)}, {0x4000'1800, gate(map.apb1enr, map.apb1enr.tim12en)},
-    {0x4000'1C00, gate(map.apb1enr, map.apb1enr.tim13en)}, {0x4000'2000, gate(map.apb1enr, map.apb1enr.tim14en)},
+    {0x4001'0000, gate(rcc_map.apb2enr, rcc_map.apb2enr.tim1en)},
+    {0x4000'0000, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim2en)},
+    {0x4000'0400, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim3en)},
+    {0x4000'0800, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim4en)},
+    {0x4000'0C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim5en)},
+    {0x4000'1000, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim6en)},
+    {0x4000'1400, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim7en)},
+    {0x4001'0400, gate(rcc_map.apb2enr, rcc_map.apb2enr.tim8en)},
+    {0x4001'4000, gate(rcc_map.apb2enr, rcc_map.apb2enr.tim9en)},
+    {0x4001'4400, gate(rcc_map.apb2enr, rcc_map.apb2enr.tim10en)},
+    {0x4001'4800, gate(rcc_map.apb2enr, rcc_map.apb2enr.tim11en)},
+    {0x4000'1800, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim12en)},
+    {0x4000'1C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim13en)},
+    {0x4000'2000, gate(rcc_map.apb1enr, rcc_map.apb1enr.tim14en)},
 };
 struct UsartPlace {
   const char* name;
@@ -46,29 +51,29 @@ struct UsartPlace {
   unsigned position;  ///< in the vector table
 };
 constexpr UsartPlace usart_places[6] = {
-    {"USART1", {0x4001'1000, gate(map.apb2enr, map.apb2enr.usart1en)}, 37},
-    {"USART2", {0x4000'4400, gate(map.apb1enr, map.apb1enr.usart2en)}, 38},
-    {"USART3", {0x4000'4800, gate(map.apb1enr, map.apb1enr.usart3en)}, 39},
-    {"UART4", {0x4000'4C00, gate(map.apb1enr, map.apb1enr.uart4en)}, 52},
-    {"UART5", {0x4000'5000, gate(map.apb1enr, map.apb1enr.uart5en)}, 53},
-    {"USART6", {0x4001'1400, gate(map.apb2enr, map.apb2enr.usart6en)}, 71},
+    {"USART1", {0x4001'1000, gate(rcc_map.apb2enr, rcc_map.apb2enr.usart1en)}, 37},
+    {"USART2", {0x4000'4400, gate(rcc_map.apb1enr, rcc_map.apb1enr.usart2en)}, 38},
+    {"USART3", {0x4000'4800, gate(rcc_map.apb1enr, rcc_map.apb1enr.usart3en)}, 39},
+    {"UART4", {0x4000'4C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.uart4en)}, 52},
+    {"UART5", {0x4000'5000, gate(rcc_map.apb1enr, rcc_map.apb1enr.uart5en)}, 53},
+    {"USART6", {0x4001'1400, gate(rcc_map.apb2enr, rcc_map.apb2enr.usart6en)}, 71},
 };
 struct InterruptPlace {
   Place place;
   unsigned position;  ///< in the vector table, of the first interrupt
 };
-constexpr InterruptPlace spi_places[3] = {{{0x4001'3000, gate(map.apb2enr, map.apb2enr.spi1en)}, 35},
-                                          {{0x4000'3800, gate(map.apb1enr, map.apb1enr.spi2en)}, 36},
-                                          {{0x4000'3C00, gate(map.apb1enr, map.apb1enr.spi3en)}, 51}};
-constexpr InterruptPlace i2c_places[3] = {{{0x4000'5400, gate(map.apb1enr, map.apb1enr.i2cen, 0)}, 31},
-                                          {{0x4000'5800, gate(map.apb1enr, map.apb1enr.i2cen, 1)}, 33},
-                                          {{0x4000'5C00, gate(map.apb1enr, map.apb1enr.i2cen, 2)}, 72}};
-constexpr InterruptPlace can_places[2] = {{{0x4000'6400, gate(map.apb1enr, map.apb1enr.canen, 0)}, 19},
-                                          {{0x4000'6800, gate(map.apb1enr, map.apb1enr.canen, 1)}, 63}};
+constexpr InterruptPlace spi_places[3] = {{{0x4001'3000, gate(rcc_map.apb2enr, rcc_map.apb2enr.spi1en)}, 35},
+                                          {{0x4000'3800, gate(rcc_map.apb1enr, rcc_map.apb1enr.spi2en)}, 36},
+                                          {{0x4000'3C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.spi3en)}, 51}};
+constexpr InterruptPlace i2c_places[3] = {{{0x4000'5400, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 0)}, 31},
+                                          {{0x4000'5800, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 1)}, 33},
+                                          {{0x4000'5C00, gate(rcc_map.apb1enr, rcc_map.apb1enr.i2cen, 2)}, 72}};
+constexpr InterruptPlace can_places[2] = {{{0x4000'6400, gate(rcc_map.apb1enr, rcc_map.apb1enr.canen, 0)}, 19},
+                                          {{0x4000'6800, gate(rcc_map.apb1enr, rcc_map.apb1enr.canen, 1)}, 63}};
 /// Clocks of blocks that come from outside of this library.
 constexpr Place outside_places[] = {
-    {0x5000'0000, gate(map.ahb2enr, map.ahb2enr.otgfsen)},
-    {0x5005'0000, gate(map.ahb2enr, map.ahb2enr.dcmien)},
+    {0x5000'0000, gate(rcc_map.ahb2enr, rcc_map.ahb2enr.otgfsen)},
+    {0x5005'0000, gate(rcc_map.ahb2enr, rcc_map.ahb2enr.dcmien)},
 };
 
 }  // namespace
@@ -95,10 +100,10 @@ ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(cir
   };
   for (unsigned i = 0; i < std::size(usart_places); ++i)
     usarts.emplace_back(machine, i + 1, usart_places[i].position,
-                        usart_places[i].place.clock.enable_register == map.apb2enr);
+                        usart_places[i].place.clock.enable_register == rcc_map.apb2enr);
   for (unsigned i = 0; i < std::size(spi_places); ++i)
     spis.emplace_back(machine, events, i + 1, spi_places[i].position,
-                      spi_places[i].place.clock.enable_register == map.apb2enr);
+                      spi_places[i].place.clock.enable_register == rcc_map.apb2enr);
   for (unsigned number : {1u, 2u})
     dma.controller(number).on_enabled = [this] {
       for (auto& usart : usarts) usart.serve_dma();
@@ -118,20 +123,21 @@ void ChipParts::put_peripherals() {
   put(0x4002'3800, "RCC", rcc);
   put(0x4002'3C00, "FLASH", flash);
   put(0x4001'3C00, "EXTI", exti);
-  put(0x4001'3800, "SYSCFG", exti.syscfg(), gate(map.apb2enr, map.apb2enr.syscfgen));
-  put(0x4000'7000, "PWR", make<PowerControl>(machine), gate(map.apb1enr, map.apb1enr.pwren));
-  put(0x4002'3000, "CRC", make<CrcUnit>(), gate(map.ahb1enr, map.ahb1enr.crcen));
-  put(0x5006'0800, "RNG", make<RandomNumbers>(machine.options.random_seed), gate(map.ahb2enr, map.ahb2enr.rngen));
+  put(0x4001'3800, "SYSCFG", exti.syscfg(), gate(rcc_map.apb2enr, rcc_map.apb2enr.syscfgen));
+  put(0x4000'7000, "PWR", make<PowerControl>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.pwren));
+  put(0x4002'3000, "CRC", make<CrcUnit>(), gate(rcc_map.ahb1enr, rcc_map.ahb1enr.crcen));
+  put(0x5006'0800, "RNG", make<RandomNumbers>(machine.options.random_seed),
+      gate(rcc_map.ahb2enr, rcc_map.ahb2enr.rngen));
   put(0x4000'3000, "IWDG", make<IndependentWatchdog>(machine));
-  put(0x4000'2C00, "WWDG", make<WindowWatchdog>(machine), gate(map.apb1enr, map.apb1enr.wwdgen));
+  put(0x4000'2C00, "WWDG", make<WindowWatchdog>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.wwdgen));
   for (unsigned i = 0; i < std::size(timer_places); ++i)
     put(timer_places[i].base, "TIM" + std::to_string(i + 1), timers.timer(i + 1), timer_places[i].clock);
   // The three converters share a block; each has an enable bit, one bit resets them all.
-  bus.add(0x4001'2000, 1024, "ADC", adcs, rcc.enable_register(map.apb2enr), map.apb2enr.adcen.masks());
-  adcs.clock_by(rcc.enable_register(map.apb2enr));
-  rcc.add_reset(map.apb2rstr, map.apb2enr.adcen.mask(), adcs);
-  put(0x4002'6000, "DMA1", dma.controller(1), gate(map.ahb1enr, map.ahb1enr.dmaen, 0));
-  put(0x4002'6400, "DMA2", dma.controller(2), gate(map.ahb1enr, map.ahb1enr.dmaen, 1));
+  bus.add(0x4001'2000, 1024, "ADC", adcs, rcc.enable_register(rcc_map.apb2enr), rcc_map.apb2enr.adcen.masks());
+  adcs.clock_by(rcc.enable_register(rcc_map.apb2enr));
+  rcc.add_reset(rcc_map.apb2rstr, rcc_map.apb2enr.adcen.mask(), adcs);
+  put(0x4002'6000, "DMA1", dma.controller(1), gate(rcc_map.ahb1enr, rcc_map.ahb1enr.dmaen, 0));
+  put(0x4002'6400, "DMA2", dma.controller(2), gate(rcc_map.ahb1enr, rcc_map.ahb1enr.dmaen, 1));
   for (unsigned i = 0; i < std::size(usart_places); ++i)
     put(usart_places[i].place.base, usart_places[i].name, usarts[i], usart_places[i].place.clock);
   for (unsigned i = 0; i < std::size(spi_places); ++i)
@@ -145,11 +151,11 @@ void ChipParts::put_peripherals() {
     put(can_places[i].place.base, "CAN" + std::to_string(i + 1), one, can_places[i].place.clock);
     if (first_can == nullptr) first_can = &one;
   }
-  put(0x4000'7400, "DAC", make<Dac>(machine), gate(map.apb1enr, map.apb1enr.dacen));
+  put(0x4000'7400, "DAC", make<Dac>(machine), gate(rcc_map.apb1enr, rcc_map.apb1enr.dacen));
   put(0x4000'2800, "RTC", make<RealTimeClock>(machine, events));
   for (unsigned i = 0; i < Pins::ports; ++i)
     put(0x4002'0000 + 0x400 * i, "GPIO" + std::string(1, static_cast<char>('A' + i)), pins.port(i),
-        gate(map.ahb1enr, map.ahb1enr.gpioen, i));
+        gate(rcc_map.ahb1enr, rcc_map.ahb1enr.gpioen, i));
 }
 
 void ChipParts::add_outside_peripheral(std::uint32_t base, std::uint32_t size, const std::string& name,

@@ -9,7 +9,6 @@ namespace inkwell::virtual_board {
 namespace {
 
 constexpr std::uint32_t internal_Hz = 16'000'000;
-constexpr auto& map = rcc_registers;
 constexpr Ticks microsecond = ticks_per_s / 1'000'000;
 
 struct OscillatorBits {
@@ -18,12 +17,12 @@ struct OscillatorBits {
   Ticks start_up;  ///< typical values of the data sheet
 };
 constexpr OscillatorBits oscillator_bits[] = {
-    {map.cr, map.cr.hsion, map.cr.hsirdy, 2 * microsecond},
-    {map.cr, map.cr.hseon, map.cr.hserdy, 500 * microsecond},
-    {map.cr, map.cr.pllon, map.cr.pllrdy, 100 * microsecond},
-    {map.cr, map.cr.plli2son, map.cr.plli2srdy, 100 * microsecond},
-    {map.csr, map.csr.lsion, map.csr.lsirdy, 15 * microsecond},
-    {map.bdcr, map.bdcr.lseon, map.bdcr.lserdy, 2'000'000 * microsecond},
+    {rcc_map.cr, rcc_map.cr.hsion, rcc_map.cr.hsirdy, 2 * microsecond},
+    {rcc_map.cr, rcc_map.cr.hseon, rcc_map.cr.hserdy, 500 * microsecond},
+    {rcc_map.cr, rcc_map.cr.pllon, rcc_map.cr.pllrdy, 100 * microsecond},
+    {rcc_map.cr, rcc_map.cr.plli2son, rcc_map.cr.plli2srdy, 100 * microsecond},
+    {rcc_map.csr, rcc_map.csr.lsion, rcc_map.csr.lsirdy, 15 * microsecond},
+    {rcc_map.bdcr, rcc_map.bdcr.lseon, rcc_map.bdcr.lserdy, 2'000'000 * microsecond},
 };
 
 constexpr unsigned ahb_divider(std::uint32_t field) {
@@ -38,10 +37,10 @@ Rcc::Rcc(Machine& machine) : machine_(machine), slot_(machine.timeline.add(*this
 
 void Rcc::reset() {
   words_.fill(0);
-  words_[map.cr / 4] = map.cr.reset_value & writable(map.cr);
-  words_[map.pllcfgr / 4] = map.pllcfgr.reset_value;
-  words_[map.ahb1enr / 4] = map.ahb1enr.reset_value;
-  words_[map.plli2scfgr / 4] = map.plli2scfgr.reset_value;
+  words_[rcc_map.cr / 4] = rcc_map.cr.reset_value & writable(rcc_map.cr);
+  words_[rcc_map.pllcfgr / 4] = rcc_map.pllcfgr.reset_value;
+  words_[rcc_map.ahb1enr / 4] = rcc_map.ahb1enr.reset_value;
+  words_[rcc_map.plli2scfgr / 4] = rcc_map.plli2scfgr.reset_value;
   ready_at_.fill(never);
   ready_at_[hsi] = 0;
   system_clock_ = 0;
@@ -54,12 +53,12 @@ void Rcc::reset() {
 
 void Rcc::record_reset(ResetCause cause) {
   if (cause == ResetCause::brown_out)
-    reset_flags_ |= map.csr.borrstf.mask();
+    reset_flags_ |= rcc_map.csr.borrstf.mask();
   else
-    reset_flags_ |= map.csr.pinrstf.mask() << static_cast<unsigned>(cause);
+    reset_flags_ |= rcc_map.csr.pinrstf.mask() << static_cast<unsigned>(cause);
   // Every internal reset pulls the pin NRST too; power-on comes with a brown-out reset (RM0090, "System reset").
-  reset_flags_ |= map.csr.pinrstf.mask();
-  if (cause == ResetCause::power_on) reset_flags_ |= map.csr.borrstf.mask();
+  reset_flags_ |= rcc_map.csr.pinrstf.mask();
+  if (cause == ResetCause::power_on) reset_flags_ |= rcc_map.csr.borrstf.mask();
 }
 
 bool Rcc::is_on(unsigned oscillator) const {
@@ -68,13 +67,14 @@ bool Rcc::is_on(unsigned oscillator) const {
 }
 
 bool Rcc::is_ready(unsigned oscillator) const {
-  const bool needs_crystal = oscillator == hse || (oscillator == pll && map.pllcfgr.pllsrc.in(words_[map.pllcfgr / 4]));
+  const bool needs_crystal =
+      oscillator == hse || (oscillator == pll && rcc_map.pllcfgr.pllsrc.in(words_[rcc_map.pllcfgr / 4]));
   if (needs_crystal && !crystal_swings_) return false;
   return is_on(oscillator) && ready_at_[oscillator] <= machine_.timeline.now();
 }
 
 bool Rcc::runs_from_crystal() const {
-  return system_clock_ == 1 || (system_clock_ == 2 && map.pllcfgr.pllsrc.in(words_[map.pllcfgr / 4]));
+  return system_clock_ == 1 || (system_clock_ == 2 && rcc_map.pllcfgr.pllsrc.in(words_[rcc_map.pllcfgr / 4]));
 }
 
 void Rcc::let_crystal_swing(bool swings) {
@@ -88,22 +88,22 @@ void Rcc::let_crystal_swing(bool swings) {
 }
 
 void Rcc::lose_crystal() {
-  auto& control = words_[map.cr / 4];
+  auto& control = words_[rcc_map.cr / 4];
   if (runs_from_crystal())
     machine_.log.say(
-        map.cr.csson.in(control)
+        rcc_map.cr.csson.in(control)
             ? "The crystal has stopped: the clock security system goes over to HSI and raises the NMI."
             : "The crystal has stopped: without the clock security system (RCC_CR.CSSON) the chip stands.");
-  if (!map.cr.csson.in(control) || !map.cr.hseon.in(control)) {
+  if (!rcc_map.cr.csson.in(control) || !rcc_map.cr.hseon.in(control)) {
     machine_.clock_is_lost = runs_from_crystal();
     return update_tree();
   }
-  control &= ~map.cr.hseon.mask();
+  control &= ~rcc_map.cr.hseon.mask();
   if (runs_from_crystal()) {
-    if (system_clock_ == 2) control &= ~map.cr.pllon.mask();
-    control |= map.cr.hsion.mask();
-    auto& configuration = words_[map.cfgr / 4];
-    configuration &= ~map.cfgr.sw.mask();
+    if (system_clock_ == 2) control &= ~rcc_map.cr.pllon.mask();
+    control |= rcc_map.cr.hsion.mask();
+    auto& configuration = words_[rcc_map.cfgr / 4];
+    configuration &= ~rcc_map.cfgr.sw.mask();
     system_clock_ = 0;
   }
   start_oscillators();
@@ -114,9 +114,9 @@ void Rcc::lose_crystal() {
 }
 
 std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
-  const std::uint32_t value = words_[map.pllcfgr / 4];
-  const std::uint32_t source_Hz = map.pllcfgr.pllsrc.in(value) ? machine_.options.crystal_Hz : internal_Hz;
-  const std::uint32_t m = map.pllcfgr.pllm.of(value), n = map.pllcfgr.plln.of(value);
+  const std::uint32_t value = words_[rcc_map.pllcfgr / 4];
+  const std::uint32_t source_Hz = rcc_map.pllcfgr.pllsrc.in(value) ? machine_.options.crystal_Hz : internal_Hz;
+  const std::uint32_t m = rcc_map.pllcfgr.pllm.of(value), n = rcc_map.pllcfgr.plln.of(value);
   if (m < 2 || n < 2) return 0;
   const std::uint64_t oscillator_Hz = std::uint64_t{source_Hz} / m * n;
   if (source_Hz / m < 1'000'000 || source_Hz / m > 2'000'000)
@@ -124,7 +124,7 @@ std::uint32_t Rcc::pll_output_Hz(PllOutput output) const {
   if (oscillator_Hz < 100'000'000 || oscillator_Hz > 432'000'000)
     machine_.violations.violate(Rule::pll_output, std::to_string(oscillator_Hz) + " Hz");
   const std::uint32_t divider =
-      output == PllOutput::system ? 2 * (map.pllcfgr.pllp.of(value) + 1) : map.pllcfgr.pllq.of(value);
+      output == PllOutput::system ? 2 * (rcc_map.pllcfgr.pllp.of(value) + 1) : rcc_map.pllcfgr.pllq.of(value);
   return divider < 2 ? 0 : static_cast<std::uint32_t>(oscillator_Hz / divider);
 }
 
@@ -135,14 +135,14 @@ std::uint32_t Rcc::real_Hz(std::uint32_t nominal_Hz) const {
 }
 
 std::uint32_t Rcc::real_time_clock_Hz() const {
-  const std::uint32_t domain = words_[map.bdcr / 4];
-  if (!map.bdcr.rtcen.in(domain)) return 0;
+  const std::uint32_t domain = words_[rcc_map.bdcr / 4];
+  if (!rcc_map.bdcr.rtcen.in(domain)) return 0;
   constexpr std::uint32_t low_speed_external_Hz = 32'768;
-  switch (map.bdcr.rtcsel.of(domain)) {
+  switch (rcc_map.bdcr.rtcsel.of(domain)) {
     case 1: return is_ready(lse) ? low_speed_external_Hz : 0;
     case 2: return is_ready(lsi) ? machine_.options.low_speed_internal_Hz : 0;
     case 3: {
-      const std::uint32_t divider = map.cfgr.rtcpre.of(words_[map.cfgr / 4]);
+      const std::uint32_t divider = rcc_map.cfgr.rtcpre.of(words_[rcc_map.cfgr / 4]);
       return is_ready(hse) && divider >= 2 ? real_Hz(machine_.options.crystal_Hz) / divider : 0;
     }
     default: return 0;
@@ -174,8 +174,8 @@ void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
   if (risen == 0 || machine_.options.mode != Mode::exact) return;
   const auto& clocks = machine_.clocks.frequencies;
   std::uint32_t cycles = 2;
-  if (offset == map.apb1enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk1_Hz;
-  if (offset == map.apb2enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk2_Hz;
+  if (offset == rcc_map.apb1enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk1_Hz;
+  if (offset == rcc_map.apb2enr) cycles = 1 + clocks.hclk_Hz / clocks.pclk2_Hz;
   fresh_until_ = machine_.processor->cycles() + cycles;
   fresh_offset_ = offset;
   fresh_mask_ = risen;
@@ -183,7 +183,7 @@ void Rcc::note_enabled(std::uint32_t offset, std::uint32_t risen) {
 
 void Rcc::switch_system_clock() {
   constexpr unsigned oscillator_of[] = {hsi, hse, pll};
-  const unsigned wanted = map.cfgr.sw.of(words_[map.cfgr / 4]);
+  const unsigned wanted = rcc_map.cfgr.sw.of(words_[rcc_map.cfgr / 4]);
   // A switch to a clock that is not ready happens once it is (RM0090, "System clock (SYSCLK) selection").
   if (wanted < 3 && is_ready(oscillator_of[wanted])) system_clock_ = wanted;
   update_tree();
@@ -206,14 +206,14 @@ void Rcc::set_voltage_scale(bool scale_1) {
 }
 
 void Rcc::update_tree() {
-  const std::uint32_t configuration = words_[map.cfgr / 4];
+  const std::uint32_t configuration = words_[rcc_map.cfgr / 4];
   Clocks f{};
   f.system_Hz = system_clock_ == 0   ? internal_Hz
                 : system_clock_ == 1 ? machine_.options.crystal_Hz
                                      : pll_output_Hz(PllOutput::system);
-  f.hclk_Hz = f.system_Hz / ahb_divider(map.cfgr.hpre.of(configuration));
-  const unsigned divider1 = apb_divider(map.cfgr.ppre1.of(configuration)),
-                 divider2 = apb_divider(map.cfgr.ppre2.of(configuration));
+  f.hclk_Hz = f.system_Hz / ahb_divider(rcc_map.cfgr.hpre.of(configuration));
+  const unsigned divider1 = apb_divider(rcc_map.cfgr.ppre1.of(configuration)),
+                 divider2 = apb_divider(rcc_map.cfgr.ppre2.of(configuration));
   f.pclk1_Hz = f.hclk_Hz / divider1;
   f.pclk2_Hz = f.hclk_Hz / divider2;
   f.timer1_Hz = f.pclk1_Hz * (divider1 == 1 ? 1 : 2);
@@ -225,7 +225,7 @@ void Rcc::update_tree() {
   if (runs_from_crystal())
     for (auto* clock_Hz : {&f.system_Hz, &f.hclk_Hz, &f.pclk1_Hz, &f.pclk2_Hz, &f.timer1_Hz, &f.timer2_Hz})
       *clock_Hz = real_Hz(*clock_Hz);
-  if (map.pllcfgr.pllsrc.in(words_[map.pllcfgr / 4])) f.usb_Hz = real_Hz(f.usb_Hz);
+  if (rcc_map.pllcfgr.pllsrc.in(words_[rcc_map.pllcfgr / 4])) f.usb_Hz = real_Hz(f.usb_Hz);
 
   ClockTree tree{Clock::of(f.hclk_Hz),
                  Clock::of(f.pclk1_Hz),
@@ -253,9 +253,9 @@ std::uint32_t Rcc::read_word(std::uint32_t offset) {
   std::uint32_t value = words_[offset / 4];
   for (unsigned i = 0; i < oscillators; ++i)
     if (oscillator_bits[i].offset == offset && is_ready(i)) value |= oscillator_bits[i].ready.mask();
-  if (offset == map.cfgr) value = (value & ~map.cfgr.sws.mask()) | map.cfgr.sws.with(system_clock_);
-  if (offset == map.csr) value |= reset_flags_;
-  if (offset == map.cir) value |= map.cir.cssf.with(crystal_failed_);
+  if (offset == rcc_map.cfgr) value = (value & ~rcc_map.cfgr.sws.mask()) | rcc_map.cfgr.sws.with(system_clock_);
+  if (offset == rcc_map.csr) value |= reset_flags_;
+  if (offset == rcc_map.cir) value |= rcc_map.cir.cssf.with(crystal_failed_);
   return value;
 }
 
@@ -264,47 +264,47 @@ void Rcc::write_word(std::uint32_t offset, std::uint32_t value) {
   std::uint32_t& word = words_[offset / 4];
   const std::uint32_t risen = value & ~word;
   switch (offset) {
-    case map.cr:
-      word = value & writable(map.cr);
+    case rcc_map.cr:
+      word = value & writable(rcc_map.cr);
       // The oscillator that is in use can not be stopped.
-      if (system_clock_ == 0) word |= map.cr.hsion.mask();
-      if (system_clock_ == 1) word |= map.cr.hseon.mask();
-      if (system_clock_ == 2) word |= map.cr.pllon.mask();
+      if (system_clock_ == 0) word |= rcc_map.cr.hsion.mask();
+      if (system_clock_ == 1) word |= rcc_map.cr.hseon.mask();
+      if (system_clock_ == 2) word |= rcc_map.cr.pllon.mask();
       start_oscillators();
       switch_system_clock();
       return;
-    case map.pllcfgr:
-      if (map.cr.pllon.in(words_[map.cr / 4])) return machine_.violations.violate(Rule::pll_written_while_on);
+    case rcc_map.pllcfgr:
+      if (rcc_map.cr.pllon.in(words_[rcc_map.cr / 4])) return machine_.violations.violate(Rule::pll_written_while_on);
       word = value;
       return;
-    case map.cfgr:
+    case rcc_map.cfgr:
       word = value;
       switch_system_clock();
       return;
-    case map.cir:
-      if (map.cir.cssc.in(value)) {
+    case rcc_map.cir:
+      if (rcc_map.cir.cssc.in(value)) {
         crystal_failed_ = false;
         machine_.nvic.set_non_maskable(false);
       }
-      if ((value & writable(map.cir)) != 0) machine_.log.note("RCC interrupts, RCC", offset, true, value);
+      if ((value & writable(rcc_map.cir)) != 0) machine_.log.note("RCC interrupts, RCC", offset, true, value);
       return;
-    case map.csr:
-      if (map.csr.rmvf.in(value)) reset_flags_ = 0;
-      word = (value | word) & map.csr.lsion.mask();
+    case rcc_map.csr:
+      if (rcc_map.csr.rmvf.in(value)) reset_flags_ = 0;
+      word = (value | word) & rcc_map.csr.lsion.mask();
       start_oscillators();
       return;
-    case map.bdcr:
-      word = value & writable(map.bdcr);
+    case rcc_map.bdcr:
+      word = value & writable(rcc_map.bdcr);
       start_oscillators();
       return;
-    case map.ahb1enr:
+    case rcc_map.ahb1enr:
       word = value;
-      machine_.processor->set_core_coupled_memory(map.ahb1enr.ccmdataramen.in(word));
+      machine_.processor->set_core_coupled_memory(rcc_map.ahb1enr.ccmdataramen.in(word));
       break;
     default: word = value; break;
   }
-  if (offset >= map.ahb1enr && offset <= map.apb2enr) note_enabled(offset, risen);
-  if (offset >= map.ahb1rstr && offset <= map.apb2rstr)
+  if (offset >= rcc_map.ahb1enr && offset <= rcc_map.apb2enr) note_enabled(offset, risen);
+  if (offset >= rcc_map.ahb1rstr && offset <= rcc_map.apb2rstr)
     for (const auto& line : resets_)
       if (line.offset == offset && (risen & line.mask) != 0) line.peripheral->reset();
 }

@@ -26,7 +26,7 @@ class Rcc final : public RegisterBlock, public TimedPart {
     resets_.push_back({offset, mask, &peripheral});
   }
   /// The watchdog starts the low-speed oscillator by itself.
-  void start_low_speed_internal() { words_[rcc_registers.csr / 4] |= rcc_registers.csr.lsion.mask(); }
+  void start_low_speed_internal() { words_[rcc_map.csr / 4] |= rcc_map.csr.lsion.mask(); }
   /// The clock of a peripheral has been switched on so lately that it has not arrived there.
   bool is_fresh(const std::uint32_t* enable, std::uint32_t mask, std::uint64_t cycle) const {
     return cycle < fresh_until_ && enable == &words_[fresh_offset_ / 4] && (fresh_mask_ & mask) != 0;
@@ -43,7 +43,7 @@ class Rcc final : public RegisterBlock, public TimedPart {
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override { return offset < bytes ? words_[offset / 4] : 0; }
-  std::span<const MapEntry> registers() const override { return shown<rcc_registers>(); }
+  std::span<const MapEntry> registers() const override { return shown<rcc_map>(); }
 
  private:
   static constexpr std::uint32_t bytes = 0x90;

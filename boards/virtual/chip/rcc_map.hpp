@@ -64,6 +64,6 @@ struct RccRegisters {
     Field plli2sn{"PLLI2SN", 6, 9}, plli2sr{"PLLI2SR", 28, 3};
   } plli2scfgr{{"PLLI2SCFGR", 0x84, 0x2000'3000}};
 };
-inline constexpr RccRegisters rcc_registers;
+inline constexpr RccRegisters rcc_map;
 
 }  // namespace inkwell::virtual_board

@@ -39,7 +39,7 @@ struct UsartRegisters {
     Field psc{"PSC", 0, 8}, gt{"GT", 8, 8};
   } gtpr{{"GTPR", 0x18}};
 };
-inline constexpr UsartRegisters usart_registers;
+inline constexpr UsartRegisters usart_map;
 
 class Usart final : public RegisterBlock, public TimedPart {
  public:
@@ -56,7 +56,7 @@ class Usart final : public RegisterBlock, public TimedPart {
   std::uint32_t read_word(std::uint32_t offset) override;
   void write_word(std::uint32_t offset, std::uint32_t value) override;
   std::uint32_t stored(std::uint32_t offset) const override;
-  std::span<const MapEntry> registers() const override { return shown<usart_registers>(); }
+  std::span<const MapEntry> registers() const override { return shown<usart_map>(); }
 
  private:
   Ticks frame_duration() const;
@@ -68,8 +68,7 @@ class Usart final : public RegisterBlock, public TimedPart {
   unsigned number_, position_;
   bool on_apb2_;
   Timeline::Slot slot_;
-  std::uint32_t status_ = usart_registers.sr.reset_value, baud_ = 0, control1_ = 0, control2_ = 0, control3_ = 0,
-                guard_ = 0;
+  std::uint32_t status_ = usart_map.sr.reset_value, baud_ = 0, control1_ = 0, control2_ = 0, control3_ = 0, guard_ = 0;
   std::uint8_t shift_ = 0, holding_ = 0, received_ = 0;
   bool holding_full_ = false;
   Ticks sent_at_ = never, received_at_ = never;

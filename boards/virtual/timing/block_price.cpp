@@ -9,7 +9,6 @@ namespace {
 
 using Kind = Instruction::Kind;
 constexpr std::uint32_t line_bytes = 16;
-constexpr unsigned stack_pointer = 13;
 /// Words of instructions that the core fetches ahead.
 constexpr std::uint32_t fetch_buffer_bytes = 12;
 
@@ -172,7 +171,8 @@ class Walk {
       block.uses_float = true;
       block.first_float_cycles = now;
     }
-    if (it.reads_memory && it.base != Instruction::no_register && it.base != stack_pointer && !it.has_literal)
+    if (it.reads_memory && it.base != Instruction::no_register && it.base != Instruction::stack_pointer &&
+        !it.has_literal)
       note_read(block, it, at, now);
     follow_constants(it);
     written_ |= it.written;

@@ -5,7 +5,7 @@ namespace inkwell::virtual_board {
 namespace {
 
 using Kind = Instruction::Kind;
-constexpr unsigned stack_pointer = 13, link_register = 14, program_counter = 15;
+constexpr unsigned stack_pointer = Instruction::stack_pointer, link_register = 14, program_counter = 15;
 
 constexpr std::uint32_t bits(std::uint32_t word, unsigned high, unsigned low) {
   return word >> low & ((1u << (high - low + 1)) - 1);

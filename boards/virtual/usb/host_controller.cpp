@@ -8,7 +8,6 @@ namespace inkwell::virtual_board {
 
 namespace {
 constexpr double nominal_frame_s = 0.001;
-constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
 constexpr Ticks byte_ticks = 8 * bit_ticks;
 // Bytes of bus time beside the payload (USB 2.0, tables 5-8 to 5-10): token, handshake, synchronisation,
 // turn-around. 19 bulk packets of 64 bytes fit a frame. The bits that are stuffed into data come on top.

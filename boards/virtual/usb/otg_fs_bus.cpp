@@ -16,7 +16,6 @@ constexpr std::size_t reserved_receive_words = 11;
 constexpr Ticks frame_ticks = ticks_per_s / 1000;
 /// So long a device may take to see that VBUS has gone (USB 2.0, section 7.1.5).
 constexpr Ticks pull_up_release = 10 * ticks_per_s;
-constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
 /// From an IN token to the end of the time in which the handshake may come, without the data and what is stuffed into
 /// it.
 constexpr Ticks in_transaction_bits = 8 * 14;

@@ -12,11 +12,11 @@ using protocol::State;
 
 namespace {
 
-constexpr float margin_points = 12.0f;
+constexpr float banner_margin_points = 12.0f;
 constexpr float button_points = 118.0f;
 
 float banner_text_width(float width, const Style& style, const Banner& banner) {
-  return width - style.points(44 + (banner.is_fault ? button_points + 2 * margin_points : margin_points));
+  return width - style.points(44 + (banner.is_fault ? button_points + 2 * banner_margin_points : banner_margin_points));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& ba
   ImGui::EndGroup();
   bool pressed = false;
   if (banner.is_fault) {
-    ImGui::SetCursorPos({size.x - style.points(button_points + margin_points), style.points(14)});
+    ImGui::SetCursorPos({size.x - style.points(button_points + banner_margin_points), style.points(14)});
     pressed = coloured_button("Clear fault", palette.danger, palette.on_danger,
                               {style.points(button_points), style.points(34)});
   }

@@ -49,6 +49,7 @@ struct Instruction {
   enum class Constant : std::uint8_t { none, whole, high_half } constant = Constant::none;
   std::uint32_t literal = 0;
   // Where a load reads: base + (index << shift) + offset.
+  static constexpr std::uint8_t stack_pointer = 13;
   static constexpr std::uint8_t no_register = 0xFF;
   std::uint8_t base = no_register, index = no_register, shift = 0;
   std::int32_t offset = 0;

@@ -6,7 +6,11 @@
 #include <cstdint>
 #include <span>
 
+#include <chip/interfaces.hpp>
+
 namespace inkwell::virtual_board {
+
+inline constexpr Ticks bit_ticks = ticks_per_s / 12'000'000;
 
 /// Largest data packet of a full-speed device (isochronous; other types stop at 64).
 inline constexpr std::size_t full_speed_packet_maximum = 1023;
