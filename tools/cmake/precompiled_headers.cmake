@@ -2,16 +2,6 @@
 # set its sloppiness to "pch_defines,time_macros".)
 # CMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows whether every file includes what it uses; the clang preset has it.
 
-# Makes `name`, which holds the precompiled HEADERS as targets that link to LIBRARIES see them.
-function(inkwell_add_precompiled_headers name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES")
-  set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
-  file(CONFIGURE OUTPUT ${source} CONTENT "// A target needs a source.\n" @ONLY)
-  add_library(${name} OBJECT ${source})
-  target_link_libraries(${name} PRIVATE inkwell_warnings ${arg_LIBRARIES})
-  target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
-endfunction()
-
 # Lets every compiled target of a directory and of those below it use the precompiled headers of `name`, if it links to
 # `library` and has none yet: without fmt's definitions the compiler refuses headers that have fmt's.
 function(inkwell_use_precompiled_headers name directory library)
@@ -44,7 +34,7 @@ inkwell_add_precompiled_headers(inkwell_host_headers HEADERS ${headers}
 inkwell_add_precompiled_headers(inkwell_command_headers HEADERS ${headers} <CLI/CLI.hpp>
                                 LIBRARIES fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11)
 # They are also what takes longest to optimise, in code that waits for people; both sides have to agree on it.
-foreach(target inkwell_command_headers inkwell_command_line inkwell inkwell_virtual_options)
+foreach(target inkwell_command_headers inkwell_command_line inkwell_virtual_options)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()
 inkwell_use_precompiled_headers(inkwell_command_headers ${PROJECT_SOURCE_DIR}/host/command_line fmt::fmt)

@@ -1,0 +1,70 @@
+#include "program.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+#include "help.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+constexpr int success = 0, failure = 1, wrong_usage = 2;
+
+int complain(const std::exception& error, int exit_code) {
+  fmt::print(stderr, "inkwell: {}\n", error.what());
+  return exit_code;
+}
+
+}  // namespace
+
+int run(int argument_count, char** arguments) {
+  CLI::App program(
+      "Companion of an Inkwell haptic arm: a robot arm whose stylus you hold and whose motors let you feel walls.\n"
+      "Alone it opens the window; its commands do the same work for scripts and terminals.",
+      "inkwell");
+  set_help_style(program);
+  program.set_version_flag("--version", INKWELL_VERSION, "Print the version");
+  program.set_help_flag("-h,--help", "Print this help");
+  program.footer(
+      "Examples:\n"
+      "  inkwell --virtual                            the window, on a simulated board, arm and hand\n"
+      "  inkwell info                                 is an arm there, and is it well?\n"
+      "  inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
+      "  inkwell experiment wall --virtual --out results\n\n"
+      "`inkwell COMMAND --help` explains a command. The options above may stand before or behind it.\n"
+      "Lengths are in metres, angles in radians, forces in newtons, times in seconds of the board; names of\n"
+      "parameters and signals end in their unit.\n"
+      "Exit code: 0 done, 1 the device or the work failed (the reason is on standard error), 2 wrong usage.");
+  program.require_subcommand(0, 1);
+  program.fallthrough();  // the device's options may stand behind the command as well
+
+  DeviceOptions options;
+  Action action;
+  options.add_to(program);
+  const Place place{program, options, action, add_window_options(program, options, action)};
+#define X(name) add_##name##_command(place);
+  INKWELL_COMMANDS(X)
+#undef X
+
+  try {
+    program.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    const bool is_help = error.get_exit_code() == 0;
+    program.exit(error);
+    return is_help ? success : wrong_usage;
+  }
+  try {
+    return action();
+  } catch (const UsageError& error) {
+    return complain(error, wrong_usage);
+  } catch (const std::exception& error) {
+    return complain(error, failure);
+  }
+}
+
+}  // namespace inkwell::command_line
