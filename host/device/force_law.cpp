@@ -120,7 +120,8 @@ bool join_tables(const ForceLaw& law) {
 
 std::string joined_force_law() {
   const std::lock_guard lock(joined_mutex);
-  return joined.empty() ? std::string() : std::string(joined.back().law.name);
+  const bool is_shown = protocol::added_rows<protocol::ParameterInfo>.load(std::memory_order_acquire) != nullptr;
+  return is_shown ? std::string(joined.back().law.name) : std::string();
 }
 
 }  // namespace inkwell::device

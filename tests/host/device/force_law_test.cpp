@@ -104,6 +104,7 @@ TEST_CASE("after a law that nobody uses any more, one without rows has the table
   CHECK(device::join_tables(device::parse_force_law(std::span(installed.report, installed.report_size))));
   CHECK(protocol::known_parameters().size() == protocol::parameter_count);
   CHECK(protocol::known_signals().size() == protocol::signal_count);
+  CHECK(device::joined_force_law().empty());
 }
 
 }  // namespace

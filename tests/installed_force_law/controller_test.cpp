@@ -1,0 +1,111 @@
+// What the controller makes of a force law: when it is felt, when it begins anew, and what a number that is none does.
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include <control/felt_force_law.hpp>
+#include <firmware/control/arms.hpp>
+#include <firmware/control/simulated_arm.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::Controller;
+using control::Samples;
+using control::Settings;
+using protocol::Command;
+using protocol::Fault;
+using protocol::ForceMode;
+using protocol::Signal;
+using protocol::State;
+
+/// Up with 0.5 N, at once and with the largest force far away.
+Settings settings_with_law() {
+  protocol::ParameterSet set = tests::paper_parameters();
+  set[protocol::Parameter::force_ramp_s] = 0.0f;
+  Settings settings = control::prepare(set);
+  settings.force_law = {0.5f, 1.0f};
+  return settings;
+}
+
+constexpr std::size_t dividend = 0, divisor = 1;
+constexpr std::size_t periods_signal = protocol::signal_count;
+
+struct LawRig {
+  Settings settings = settings_with_law();
+  Controller controller = tests::active_controller(settings);
+  Samples samples = tests::samples_at_rest();
+
+  void run(std::uint32_t periods) {
+    for (std::uint32_t i = 0; i < periods; ++i) {
+      controller.host_alive();
+      tests::run(controller, samples, settings, 1);
+    }
+  }
+  void enable() {
+    controller.carry_out(tests::command(Command::enable_force));
+    run(1);
+    REQUIRE(controller.state() == State::active);
+  }
+  float law_periods() const { return controller.signals().values[periods_signal]; }
+  float force_z_N() const { return controller.signals().values[static_cast<std::size_t>(Signal::force_x_N) + 2]; }
+};
+
+TEST_CASE("the law is told the periods since it is felt, from zero, and again from zero after a rest") {
+  control::FeltForceLaw law;
+  control::Probe probe;
+  for (int round = 0; round < 2; ++round) {
+    for (std::uint32_t period = 0; period < 3; ++period) {
+      probe.periods = 77;
+      CHECK(law.force_N(probe, {0.5f, 1.0f}).z == 0.5f);
+      CHECK(probe.periods == period);
+      CHECK(law.signal(0) == static_cast<float>(period));
+    }
+    law.rest();
+    CHECK(law.signal(0) == 0.0f);
+  }
+}
+
+TEST_CASE("a law is felt while the force is on, and begins anew each time that it is switched on") {
+  LawRig rig;
+  rig.run(100);
+  CHECK(rig.force_z_N() == 0.5f);
+  CHECK(rig.law_periods() == 99.0f);
+  rig.controller.carry_out(tests::command(Command::disable_force));
+  rig.run(10);
+  CHECK(rig.force_z_N() == 0.0f);
+  CHECK(rig.law_periods() == 0.0f);
+  rig.enable();
+  rig.run(5);
+  CHECK(rig.law_periods() == 4.0f);
+}
+
+TEST_CASE("a law rests while a program's force stands instead of it") {
+  LawRig rig;
+  rig.run(100);
+  control::ForceTarget target{};
+  target.mode = ForceMode::instead_of_walls;
+  rig.controller.drive(target, rig.settings);
+  rig.run(10);
+  CHECK(rig.law_periods() == 0.0f);
+  target.mode = ForceMode::beside_walls;
+  rig.controller.drive(target, rig.settings);
+  rig.run(5);
+  CHECK(rig.law_periods() == 4.0f);
+}
+
+TEST_CASE("a force that is infinite or no number is not felt, and the fault is the law's") {
+  for (const float dividend_N : {0.5f, 0.0f, std::numeric_limits<float>::max()}) {
+    LawRig rig;
+    rig.run(10);
+    rig.settings.force_law[dividend] = dividend_N;
+    // The largest number is one, but its square is none, and so it has no direction that could be kept.
+    rig.settings.force_law[divisor] = dividend_N > 1.0f ? 1.0f : 0.0f;
+    rig.run(1);
+    CHECK(rig.controller.state() == State::fault);
+    CHECK(rig.controller.fault() == Fault::force_law);
+    CHECK(rig.force_z_N() == 0.0f);
+  }
+}
+
+}  // namespace
