@@ -18,8 +18,8 @@ from call_graph import Image, Unreadable, read_image
 # Pushed by the processor on entry to an exception: 26 words with the floating-point registers, and one to align.
 EXCEPTION_FRAME_BYTES = 27 * 4
 
-# Sets the stack pointer on purpose: the interrupted stack may be what is broken.
-MAY_SET_STACK = {"fault_handler"}
+# Set the stack pointer on purpose: the interrupted stack may be what is broken, and the boot loader has its own.
+MAY_SET_STACK = {"fault_handler", "enter_boot_loader"}
 
 
 def find_direct_cycle(image: Image, start: str) -> list[str]:

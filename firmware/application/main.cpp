@@ -1,5 +1,6 @@
 // The driver board's firmware: what it is made of, in the order in which it comes to life.
 #include <board/omni_driver.hpp>
+#include <drivers/boot_loader.hpp>
 #include <drivers/clocks.hpp>
 #include <drivers/crash_record.hpp>
 #include <drivers/cycle_counter.hpp>
@@ -81,6 +82,7 @@ int main() {
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
     usb_device.poll();
+    if (usb_device.leaves_for_update()) drivers::start_boot_loader();
     host_link.scope.pack();
     feed_watchdog();
     show_state();

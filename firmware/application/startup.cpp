@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include <drivers/boot_loader.hpp>
 #include <registers/clock.hpp>
 #include <registers/processor.hpp>
 
@@ -36,6 +37,7 @@ extern "C" [[gnu::naked]] void reset_handler() {
 extern "C" [[noreturn, gnu::used]] void start() {
   using registers::FPU_CPACR;
   using registers::SCB;
+  if (drivers::take_boot_loader_wish()) drivers::enter_boot_loader();
   // Before any instruction on a float, among them those that save registers on entry to an interrupt. That the
   // processor saves them lazily is its default (FPCCR) and stays.
   constexpr std::uint32_t full_access_to_both = 0b1111;

@@ -1,4 +1,5 @@
-// Requests of the HID class (HID 1.11, section 7.2) and of Windows.
+// Requests of the HID class (HID 1.11, section 7.2), of the class for firmware updates (DFU 1.1) and of Windows.
+#include <algorithm>
 #include <cstring>
 #include <new>
 
@@ -6,6 +7,7 @@
 #include <protocol/usb_identity.hpp>
 #include <usb/device.hpp>
 
+#include "controller_report.hpp"
 #include "descriptors.hpp"
 
 namespace inkwell::usb {
@@ -20,6 +22,11 @@ enum HidRequest : std::uint8_t {
   set_report_request = 9,
   set_idle_request = 10,
 };
+enum FirmwareUpdateRequest : std::uint8_t {
+  detach_request = 0,
+  get_update_status_request = 3,
+  get_state_request = 5,
+};
 enum ReportType : std::uint8_t { input_report = 1, output_report_type = 2, feature_report = 3 };
 
 constexpr std::uint8_t class_interface_out = 0x21, class_interface_in = 0xA1, vendor_device_in = 0xC0;
@@ -31,13 +38,23 @@ constexpr std::uint16_t report_value(ReportType type, ReportId id) {
 
 }  // namespace
 
+Answer Device::class_request(const SetupPacket& setup) {
+  if (!configured()) return Answer::stall();
+  switch (setup.index) {
+    case protocol::usb::hid_interface:
+    case protocol::usb::controller_interface: return hid_request(setup);
+    case protocol::usb::firmware_update_interface: return firmware_update_request(setup);
+    default: return Answer::stall();
+  }
+}
+
 Answer Device::hid_request(const SetupPacket& setup) {
-  if (!configured() || setup.index != protocol::usb::hid_interface) return Answer::stall();
+  const bool is_controller = setup.index == protocol::usb::controller_interface;
   if (setup.request_type == class_interface_in) {
-    if (setup.request == get_report_request) return get_report(setup);
-    if (setup.request == get_idle_request) return send_byte(idle_rate_);
+    if (setup.request == get_report_request) return is_controller ? get_controller_report(setup) : get_report(setup);
+    if (setup.request == get_idle_request) return send_byte(idle_rates_[setup.index]);
   } else if (setup.request_type == class_interface_out) {
-    if (setup.request == set_report_request) {
+    if (setup.request == set_report_request && !is_controller) {
       const bool known = setup.value == report_value(output_report_type, ReportId::command) ||
                          setup.value == report_value(output_report_type, ReportId::force) ||
                          setup.value == report_value(feature_report, ReportId::parameters) ||
@@ -45,7 +62,7 @@ Answer Device::hid_request(const SetupPacket& setup) {
       return known && setup.length != 0 ? Answer::receive() : Answer::stall();
     }
     if (setup.request == set_idle_request && setup.length == 0) {
-      idle_rate_ = setup.value_high();  // poses come every millisecond, so there is never an idle time to fill
+      idle_rates_[setup.index] = setup.value_high();  // reports are always new: there is never an idle time to fill
       return Answer::done();
     }
   }
@@ -81,6 +98,14 @@ Answer Device::get_report(const SetupPacket& setup) {
   }
 }
 
+Answer Device::get_controller_report(const SetupPacket& setup) {
+  protocol::PoseReport pose;
+  if (setup.value != input_report << 8 || !link_.poses.read(pose)) return Answer::stall();
+  const auto report = controller_report(pose);
+  std::memcpy(control_.buffer().data(), &report, sizeof report);
+  return Answer::send(control_.buffer().first(sizeof report));
+}
+
 bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> data) {
   if (data[0] != static_cast<std::byte>(setup.value_low())) return false;  // the report's id, once more
   if (setup.value == report_value(output_report_type, ReportId::command)) {
@@ -92,11 +117,38 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
   }
   if (setup.value == report_value(feature_report, ReportId::shapes)) return link_.program.accept_shapes(data);
   // What is wrong with a transaction is told by the TransactionReport, not by a stall.
-  // In this order: were the state read first, the interrupt could take the command in between.
-  const bool force_is_on =
-      link_.commands.waiting(protocol::Command::enable_force) || link_.status.state() == protocol::State::active;
-  link_.parameters.accept(data, force_is_on);
+  link_.parameters.accept(data, force_is_on());
   return true;
+}
+
+bool Device::force_is_on() const {
+  // In this order: were the state read first, the interrupt could take the command in between.
+  return link_.commands.waiting(protocol::Command::enable_force) || link_.status.state() == protocol::State::active;
+}
+
+// DFU 1.1, section 5.1 and appendix A.2: idle, then detaching as soon as the status stage is over. Not while the hand
+// feels a force: it would go without the user having asked for that.
+Answer Device::firmware_update_request(const SetupPacket& setup) {
+  constexpr std::byte application_idle{0}, application_detach{1};
+  const std::byte state = detach_asked_ ? application_detach : application_idle;
+  if (setup.request_type == class_interface_out && setup.request == detach_request && setup.length == 0) {
+    if (force_is_on()) return Answer::stall();
+    detach_asked_ = true;
+    return Answer::done();
+  }
+  if (setup.request_type != class_interface_in) return Answer::stall();
+  const auto buffer = control_.buffer();
+  if (setup.request == get_state_request) {
+    buffer[0] = state;
+    return Answer::send(buffer.first(1));
+  }
+  if (setup.request == get_update_status_request) {
+    const auto status = buffer.first<6>();  // no error, no time to wait, the state, no text
+    std::ranges::fill(status, std::byte{0});
+    status[4] = state;
+    return Answer::send(status);
+  }
+  return Answer::stall();
 }
 
 protocol::InformationReport Device::information() const {

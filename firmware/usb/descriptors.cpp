@@ -81,6 +81,34 @@ constexpr auto report_descriptor =
          report(ReportId::force_law, 10, feature_item, protocol::force_law_report_maximum),
          bytes(0xC0));  // end of the collection
 
+// ---- and that of the controller (HID usage tables 1.12, section 4) ------------------------------------
+
+/// Three axes of 16 bits. What an axis counts is `unit` times ten to the power of `exponent`.
+constexpr auto three_axes(std::uint8_t first_usage, std::uint8_t unit, std::uint8_t exponent) {
+  return bytes(0x65, unit, 0x55, exponent & 0x0F,                                //
+               0x09, first_usage, 0x09, first_usage + 1, 0x09, first_usage + 2,  // usages
+               0x75, 16, 0x95, 3, input_item, data_variable_absolute);
+}
+
+constexpr std::uint8_t usage_x = 0x30, usage_rx = 0x33;
+constexpr std::uint8_t centimetre = 0x11, radian = 0x12;
+// The table of the reports says it in metres and radians.
+constexpr std::uint8_t thousandths = 0xFD, ten_thousandths = 0xFC;
+static_assert(protocol::controller_position_step_m == 1e-5f && protocol::controller_angle_step_rad == 1e-4f);
+
+constexpr auto controller_report_descriptor = join(
+    bytes(0x05, 0x01,                           // usage page: generic desktop
+          0x09, 0x08,                           // usage: multi-axis controller
+          0xA1, 0x01,                           // application collection
+          0x16, 0x01, 0x80, 0x26, 0xFF, 0x7F,   // logical -32767 to 32767
+          0x36, 0x01, 0x80, 0x46, 0xFF, 0x7F),  // physical as well
+    three_axes(usage_x, centimetre, thousandths), three_axes(usage_rx, radian, ten_thousandths),
+    bytes(0x65, 0, 0x55, 0, 0x35, 0, 0x45, 0,  // no unit any more
+          0x05, 0x09, 0x19, 1, 0x29, 2,        // usage page: buttons 1 and 2
+          0x15, 0, 0x25, 1,                    // logical 0 to 1
+          0x75, 1, 0x95, 2, input_item, data_variable_absolute, 0x95, 14, input_item, 0x03,  // constant: fills the word
+          0xC0));
+
 // ---- device and configuration (USB 2.0, section 9.6) -----------------------------------------------
 
 /// 2.01 tells that there is a binary object store.
@@ -95,13 +123,17 @@ constexpr auto device =
           high(identity::product_id), 0, 0, string(StringIndex::manufacturer), string(StringIndex::product),
           string(StringIndex::serial_number), 1);
 
-constexpr auto hid =
-    bytes(9, type(DescriptorType::hid), 0x11, 0x01,  // HID 1.11
-          0, 1,                                      // no country; one descriptor follows
-          type(DescriptorType::hid_report), low(report_descriptor.size()), high(report_descriptor.size()));
+constexpr auto hid_with(std::size_t report_descriptor_size) {
+  return bytes(9, type(DescriptorType::hid), 0x11, 0x01,  // HID 1.11
+               0, 1,                                      // no country; one descriptor follows
+               type(DescriptorType::hid_report), low(report_descriptor_size), high(report_descriptor_size));
+}
+constexpr auto hid = hid_with(report_descriptor.size());
+constexpr auto controller_hid = hid_with(controller_report_descriptor.size());
 
-constexpr auto interface(std::uint8_t number, std::uint8_t endpoints, std::uint8_t class_code, StringIndex name) {
-  return bytes(9, type(DescriptorType::interface), number, 0, endpoints, class_code, 0, 0, string(name));
+constexpr auto interface(std::uint8_t number, std::uint8_t endpoints, std::uint8_t class_code, StringIndex name,
+                         std::uint8_t subclass = 0, std::uint8_t protocol = 0) {
+  return bytes(9, type(DescriptorType::interface), number, 0, endpoints, class_code, subclass, protocol, string(name));
 }
 
 constexpr auto endpoint(std::uint8_t address, EndpointType endpoint_type, std::uint8_t interval_ms) {
@@ -109,13 +141,28 @@ constexpr auto endpoint(std::uint8_t address, EndpointType endpoint_type, std::u
                low(identity::packet_size), high(identity::packet_size), interval_ms);
 }
 
-constexpr std::uint8_t hid_class = 0x03, vendor_class = 0xFF;
+constexpr std::uint8_t hid_class = 0x03, application_class = 0xFE, vendor_class = 0xFF;
+constexpr std::uint8_t firmware_update_subclass = 1, run_time_protocol = 1;
 
-constexpr auto interfaces = join(interface(identity::hid_interface, 2, hid_class, StringIndex::hid), hid,
-                                 endpoint(identity::hid_in_endpoint, EndpointType::interrupt, 1),
-                                 endpoint(identity::hid_out_endpoint, EndpointType::interrupt, 1),
-                                 interface(identity::scope_interface, 1, vendor_class, StringIndex::scope),
-                                 endpoint(identity::scope_in_endpoint, EndpointType::bulk, 0));
+/// DFU 1.1, section 4.1.3: the board leaves the bus by itself; the boot loader that then comes says how much it takes.
+constexpr auto firmware_update = [] {
+  constexpr std::uint8_t can_download = 1, can_upload = 2, will_detach = 8;
+  constexpr std::size_t detach_timeout_ms = 255, transfer_size = 2048;
+  return bytes(9, type(DescriptorType::firmware_update), can_download | can_upload | will_detach,
+               low(detach_timeout_ms), high(detach_timeout_ms), low(transfer_size), high(transfer_size), 0x1A, 0x01);
+}();
+
+constexpr auto interfaces =
+    join(interface(identity::hid_interface, 2, hid_class, StringIndex::hid), hid,
+         endpoint(identity::hid_in_endpoint, EndpointType::interrupt, 1),
+         endpoint(identity::hid_out_endpoint, EndpointType::interrupt, 1),
+         interface(identity::scope_interface, 1, vendor_class, StringIndex::scope),
+         endpoint(identity::scope_in_endpoint, EndpointType::bulk, 0),
+         interface(identity::controller_interface, 1, hid_class, StringIndex::controller), controller_hid,
+         endpoint(identity::controller_in_endpoint, EndpointType::interrupt, identity::controller_interval_ms),
+         interface(identity::firmware_update_interface, 0, application_class, StringIndex::firmware_update,
+                   firmware_update_subclass, run_time_protocol),
+         firmware_update);
 
 constexpr std::size_t configuration_size = 9 + interfaces.size();
 constexpr std::uint8_t self_powered = 0xC0;
@@ -123,7 +170,7 @@ constexpr std::uint8_t bus_current_2mA = 0;  ///< the board has a supply of its 
 
 constexpr auto configuration =
     join(bytes(9, type(DescriptorType::configuration), low(configuration_size), high(configuration_size),
-               interface_count, configuration_value, 0, self_powered, bus_current_2mA),
+               identity::interface_count, configuration_value, 0, self_powered, bus_current_2mA),
          interfaces);
 
 // ---- Microsoft OS 2.0 descriptors: Windows binds WinUSB to the scope's interface by itself -----------
@@ -175,8 +222,20 @@ std::span<const std::byte> device_descriptor(std::span<std::byte> buffer,
 }
 std::span<const std::byte> configuration_descriptor() { return std::as_bytes(std::span(configuration)); }
 std::span<const std::byte> binary_object_store() { return std::as_bytes(std::span(object_store)); }
-std::span<const std::byte> hid_descriptor() { return std::as_bytes(std::span(hid)); }
-std::span<const std::byte> hid_report_descriptor() { return std::as_bytes(std::span(report_descriptor)); }
+std::span<const std::byte> hid_descriptor(std::uint8_t interface_number) {
+  switch (interface_number) {
+    case identity::hid_interface: return std::as_bytes(std::span(hid));
+    case identity::controller_interface: return std::as_bytes(std::span(controller_hid));
+    default: return {};
+  }
+}
+std::span<const std::byte> hid_report_descriptor(std::uint8_t interface_number) {
+  switch (interface_number) {
+    case identity::hid_interface: return std::as_bytes(std::span(report_descriptor));
+    case identity::controller_interface: return std::as_bytes(std::span(controller_report_descriptor));
+    default: return {};
+  }
+}
 std::span<const std::byte> microsoft_descriptor_set() { return std::as_bytes(std::span(microsoft_set)); }
 
 }  // namespace inkwell::usb

@@ -16,13 +16,13 @@ enum class DescriptorType : std::uint8_t {
   binary_object_store = 15,
   device_capability = 16,
   hid = 0x21,
+  firmware_update = 0x21,  ///< of an interface of the other class
   hid_report = 0x22,
 };
 
-enum class StringIndex : std::uint8_t { languages = 0, manufacturer, product, serial_number, hid, scope };
+enum class StringIndex : std::uint8_t { languages = 0, manufacturer, product, serial_number, hid, scope, controller, firmware_update };
 
 inline constexpr std::uint8_t configuration_value = 1;
-inline constexpr std::uint8_t interface_count = 2;
 
 /// bRequest with which Windows asks for the Microsoft OS 2.0 descriptor set; ours to choose.
 inline constexpr std::uint8_t microsoft_request = 0x20;
@@ -35,8 +35,9 @@ std::span<const std::byte> device_descriptor(std::span<std::byte> buffer,
                                              const std::array<std::uint8_t, 3>& firmware_version);
 std::span<const std::byte> configuration_descriptor();
 std::span<const std::byte> binary_object_store();
-std::span<const std::byte> hid_descriptor();
-std::span<const std::byte> hid_report_descriptor();
+/// Empty for an interface that is no HID.
+std::span<const std::byte> hid_descriptor(std::uint8_t interface_number);
+std::span<const std::byte> hid_report_descriptor(std::uint8_t interface_number);
 std::span<const std::byte> microsoft_descriptor_set();
 
 }  // namespace inkwell::usb

@@ -1,7 +1,6 @@
 #include <usb/device.hpp>
 
-#include <protocol/usb_identity.hpp>
-
+#include "controller_report.hpp"
 #include "descriptors.hpp"
 
 namespace inkwell::usb {
@@ -13,7 +12,7 @@ namespace identity = protocol::usb;
 /// More than the bus can bring in 50 us, so that nothing is left behind, yet a bound.
 constexpr int events_per_poll = 8;
 
-constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2;  // places in endpoints_
+constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // places in endpoints_
 
 /// How long before the next start of frame a report is made ready: a control period, because the main loop gets to see
 /// a new pose once in that time; and what it takes then, while it also fills the scope's FIFO, to load the report.
@@ -31,9 +30,10 @@ Device::Device(Port& port, link::Link& link, const Identity& identity)
       identity_(identity),
       pose_lead_cycles_(static_cast<std::uint32_t>(pose_lead_s * static_cast<float>(identity.processor_clock_Hz))),
       control_(port, *this),
-      endpoints_{{{identity::hid_in_endpoint, EndpointType::interrupt},
-                  {identity::hid_out_endpoint, EndpointType::interrupt},
-                  {identity::scope_in_endpoint, EndpointType::bulk}}} {}
+      endpoints_{{{identity::hid_in_endpoint, EndpointType::interrupt, identity::hid_interface},
+                  {identity::hid_out_endpoint, EndpointType::interrupt, identity::hid_interface},
+                  {identity::scope_in_endpoint, EndpointType::bulk, identity::scope_interface},
+                  {identity::controller_in_endpoint, EndpointType::interrupt, identity::controller_interface}}} {}
 
 void Device::poll() {
   Event event;
@@ -51,7 +51,8 @@ void Device::handle(const Event& event) {
     case Event::Kind::reset: bus_reset(); break;
     case Event::Kind::suspend:
       suspended_ = true;
-      forget_pose();
+      forget(endpoints_[hid_in]);
+      forget(endpoints_[controller_in]);
       host_gone();
       break;
     case Event::Kind::resume: suspended_ = false; break;
@@ -66,9 +67,11 @@ void Device::handle(const Event& event) {
     case Event::Kind::sent:
       if (event.endpoint == 0) {
         control_.sent();
+        leaves_for_update_ = detach_asked_;
       } else if (Endpoint* endpoint = find_endpoint(0x80u | event.endpoint)) {
         endpoint->busy = false;
         if (endpoint == &endpoints_[hid_in]) note_pose_taken();
+        if (endpoint == &endpoints_[controller_in]) controller_taken_at_ = pose_sequence_;
       }
       break;
   }
@@ -78,7 +81,8 @@ void Device::bus_reset() {
   for (Endpoint& endpoint : endpoints_) endpoint.busy = endpoint.halted = false;
   scope_frame_open_ = scope_wants_end_ = false;
   configuration_ = 0;  // before host_gone(): no endpoint but 0 takes anything any more
-  idle_rate_ = 0;
+  idle_rates_ = {};
+  detach_asked_ = false;
   suspended_ = false;
   control_.reset();
   host_gone();
@@ -128,8 +132,10 @@ void Device::restart(Endpoint& endpoint) {
   } else if (&endpoint == &endpoints_[scope_in]) {
     scope_frame_open_ = scope_wants_end_ = false;  // the frame starts again from its first byte
   } else if (was_busy) {
-    endpoint.busy = true;
-    port_.send(endpoint.address, std::as_bytes(std::span(&pose_, 1)));
+    if (&endpoint == &endpoints_[hid_in])
+      send(endpoint, pose_);
+    else
+      send(endpoint, controller_);
   }
 }
 
@@ -147,8 +153,18 @@ void Device::send_pose() {
   }
   if (!link_.poses.take(pose_)) return;
   pose_.sequence = pose_sequence_ = frame->count + 1;
-  endpoint.busy = true;
-  port_.send(endpoint.address, std::as_bytes(std::span(&pose_, 1)));
+  send(endpoint, pose_);
+  offer_controller_report();
+}
+
+// Every millisecond anew from the one before the host's turn on, so it is as fresh as the pose.
+void Device::offer_controller_report() {
+  Endpoint& endpoint = endpoints_[controller_in];
+  const bool is_early = pose_sequence_ - controller_taken_at_ < identity::controller_interval_ms;
+  if (endpoint.halted || (is_early && endpoint.busy)) return;
+  forget(endpoint);
+  controller_ = controller_report(pose_);
+  send(endpoint, controller_);
 }
 
 void Device::note_pose_taken() {
@@ -156,8 +172,7 @@ void Device::note_pose_taken() {
   poses_replaced_ = 0;
 }
 
-void Device::forget_pose() {
-  Endpoint& endpoint = endpoints_[hid_in];
+void Device::forget(Endpoint& endpoint) {
   if (!endpoint.busy) return;
   port_.cancel(endpoint.address);
   endpoint.busy = false;

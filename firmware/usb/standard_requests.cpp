@@ -34,7 +34,7 @@ constexpr std::byte self_powered_status{1};
 Answer Device::request(const SetupPacket& setup) {
   switch (setup.request_type & 0x60u) {
     case 0x00: return standard_request(setup);
-    case 0x20: return hid_request(setup);
+    case 0x20: return class_request(setup);
     case 0x40: return vendor_request(setup);
     default: return Answer::stall();
   }
@@ -63,12 +63,13 @@ Answer Device::standard_request(const SetupPacket& setup) {
     if (is(get_configuration_request, true)) return send_byte(configuration_);
     if (is(set_configuration_request, false)) return set_configuration(setup);
   }
-  if (recipient == interface_recipient && configured() && setup.index < interface_count && setup.value == 0) {
+  if (recipient == interface_recipient && configured() && setup.index < protocol::usb::interface_count &&
+      setup.value == 0) {
     if (is(get_interface_request, true)) return send_byte(0);
     if (is(set_interface_request, false)) {
       // The one setting there is: its endpoints start again (USB 2.0, section 9.1.1.5).
       for (Endpoint& endpoint : endpoints_)
-        if ((endpoint.type == EndpointType::bulk) == (setup.index == protocol::usb::scope_interface)) restart(endpoint);
+        if (endpoint.interface_number == setup.index) restart(endpoint);
       return Answer::done();
     }
   }
@@ -89,7 +90,7 @@ Answer Device::get_status(const SetupPacket& setup) {
       status[0] = self_powered_status;
       return setup.index == 0 ? Answer::send(status) : Answer::stall();
     case interface_recipient:
-      return configured() && setup.index < interface_count ? Answer::send(status) : Answer::stall();
+      return configured() && setup.index < protocol::usb::interface_count ? Answer::send(status) : Answer::stall();
     case endpoint_recipient: {
       if ((setup.index & 0xFF7Fu) == 0) return Answer::send(status);  // endpoint 0 in either direction
       const Endpoint* endpoint = find_endpoint(setup.index);
@@ -134,10 +135,12 @@ Answer Device::get_descriptor(const SetupPacket& setup) {
   const auto type = static_cast<DescriptorType>(setup.value_high());
   const std::uint8_t index = setup.value_low();
   if ((setup.request_type & 0x1Fu) == interface_recipient) {
-    if (setup.index != protocol::usb::hid_interface || index != 0) return Answer::stall();
-    if (type == DescriptorType::hid) return Answer::send(hid_descriptor());
-    if (type == DescriptorType::hid_report) return Answer::send(hid_report_descriptor());
-    return Answer::stall();
+    if (setup.index >= protocol::usb::interface_count || index != 0) return Answer::stall();
+    const auto interface_number = static_cast<std::uint8_t>(setup.index);
+    std::span<const std::byte> descriptor;
+    if (type == DescriptorType::hid) descriptor = hid_descriptor(interface_number);
+    if (type == DescriptorType::hid_report) descriptor = hid_report_descriptor(interface_number);
+    return descriptor.empty() ? Answer::stall() : Answer::send(descriptor);
   }
   if (type == DescriptorType::string) return string_descriptor(index);
   if (index != 0) return Answer::stall();
@@ -163,6 +166,8 @@ Answer Device::string_descriptor(std::uint8_t index) {
     case StringIndex::serial_number: text = {identity_.serial_number.data(), identity_.serial_number.size()}; break;
     case StringIndex::hid: text = "Pose, commands and parameters"; break;
     case StringIndex::scope: text = "Scope"; break;
+    case StringIndex::controller: text = "Six axes and two buttons"; break;
+    case StringIndex::firmware_update: text = "Firmware update"; break;
     default: return Answer::stall();
   }
   const std::size_t size = 2 + 2 * text.size();

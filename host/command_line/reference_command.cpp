@@ -41,13 +41,19 @@ constexpr ReportRow reports[] = {
 
 void print_reports() {
   fmt::print(
-      "## Reports of the HID interface\n\nPacked, little-endian; their fields are in "
+      "## Reports of the HID interface\n\nLittle-endian and without gaps; their fields are in "
       "`protocol/include/protocol/reports.hpp`. The scope's frames go over interface {}, endpoint 0x{:02x}: "
       "`protocol/scope.hpp`.\n\n| id | report | way | bytes | what it is |\n| --- | --- | --- | --- | --- |\n",
       protocol::usb::scope_interface, protocol::usb::scope_in_endpoint);
   for (const auto& row : reports)
     fmt::print("| 0x{:02x} | {} | {} | {} | {} |\n", static_cast<unsigned>(row.id), row.name, row.way, row.bytes,
                row.what);
+  fmt::print(
+      "\nInterface {}, endpoint 0x{:02x}, is a HID multi-axis controller of its own: a ControllerReport of {} bytes "
+      "every "
+      "{} ms, without an id. Interface {} is the run-time part of USB's class for firmware updates.\n",
+      protocol::usb::controller_interface, protocol::usb::controller_in_endpoint, sizeof(protocol::ControllerReport),
+      protocol::usb::controller_interval_ms, protocol::usb::firmware_update_interface);
 }
 
 void print_codes() {

@@ -22,6 +22,9 @@ namespace {
 
 namespace identity = protocol::usb;
 
+/// Of the interface for poses and commands; that of the controller has another.
+constexpr unsigned short vendor_usage_page = 0xFF00;
+
 std::string narrow(const wchar_t* text) {
   std::string result;
   for (; text != nullptr && *text != 0; ++text) result += *text < 0x7F ? static_cast<char>(*text) : '?';
@@ -215,7 +218,7 @@ std::vector<Endpoint> find_usb_devices() {
   for (const hid_device_info* device = list.get(); device != nullptr; device = device->next) {
     // The identifiers are shared by private tests of other people, so the product's name decides.
     const std::string product = narrow(device->product_string);
-    if (product != identity::product) continue;
+    if (product != identity::product || device->usage_page != vendor_usage_page) continue;
     endpoints.push_back({Endpoint::Kind::usb, narrow(device->serial_number), product, device->path, "", 0});
   }
   return endpoints;

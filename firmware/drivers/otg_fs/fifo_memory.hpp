@@ -13,7 +13,9 @@
 //            | endpoint 2 IN, scope 128         |  8 packets, 0.4 ms of the bus: the core counts the packets in a
 //            |                                  |  FIFO with three bits, and a ninth would be lost to the count
 //        216 +----------------------------------+
-//            | not used            104          |
+//            | endpoint 3 IN       16           |  controller: one report
+//        232 +----------------------------------+
+//            | not used             88          |
 //        320 +----------------------------------+
 #pragma once
 
@@ -35,9 +37,11 @@ inline constexpr std::uint32_t scope_start = hid_start + hid_words;
 inline constexpr std::uint32_t packets_in_fifo_maximum = 8;
 inline constexpr std::uint32_t packet_words = usb::packet_size_maximum / 4;
 inline constexpr std::uint32_t scope_words = packets_in_fifo_maximum * packet_words;
+inline constexpr std::uint32_t controller_start = scope_start + scope_words;
+inline constexpr std::uint32_t controller_words = 16;  ///< the least there may be
 static_assert(control_words == packet_words && hid_words == packet_words);
 static_assert(scope_words / packet_words <= packets_in_fifo_maximum, "the core's count of packets would wrap");
-static_assert(scope_start + scope_words <= memory_words);
+static_assert(controller_start + controller_words <= memory_words);
 
 /// TXFNUM that means every transmit FIFO.
 inline constexpr std::uint32_t all_transmit_fifos = 0x10;

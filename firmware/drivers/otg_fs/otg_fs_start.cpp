@@ -78,6 +78,7 @@ void lay_out() {
   Core::DIEPTXF0::write(Core::DIEPTXF0::TX0FSA(control_start), Core::DIEPTXF0::TX0FD(control_words));
   Core::DIEPTXF1::write(Core::DIEPTXF1::INEPTXSA(hid_start), Core::DIEPTXF1::INEPTXFD(hid_words));
   Core::DIEPTXF2::write(Core::DIEPTXF2::INEPTXSA(scope_start), Core::DIEPTXF2::INEPTXFD(scope_words));
+  Core::DIEPTXF3::write(Core::DIEPTXF3::INEPTXSA(controller_start), Core::DIEPTXF3::INEPTXFD(controller_words));
 }
 
 void flush_transmit(std::uint32_t number) {

@@ -7,6 +7,8 @@
 //                                    FrameReport, ForceLawReport
 //   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all; ShapesReport,
 //                                    likewise
+//
+// And, over an interface of its own, ControllerReport: what any program reads that knows joysticks.
 #pragma once
 
 #include <bit>
@@ -23,7 +25,7 @@ namespace inkwell::protocol {
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 5;
+inline constexpr std::uint16_t protocol_version = 6;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -102,6 +104,19 @@ struct PoseReport {
   std::uint8_t servo_load;         ///< longest control interrupt since the last report, 255 is the whole period
   std::uint8_t command_token;      ///< token of the last command carried out
   std::uint8_t supply_dV;          ///< supply of the bridges in tenths of a volt
+};
+
+/// A step of ControllerReport: positions to 327 mm, angles to 3.2767 rad, further ones as these.
+inline constexpr float controller_position_step_m = 1e-5f;
+inline constexpr float controller_angle_step_rad = 1e-4f;
+inline constexpr float controller_steps_maximum = 32767.0f;
+
+/// Input report of the controller's interface, the only one there and so without an id: a multi-axis controller of the
+/// HID usage tables, every controller_interval_ms if the host asks.
+struct ControllerReport {
+  std::int16_t position[3];  ///< x, y and z of the workspace
+  std::int16_t angle[3];     ///< Rx, Ry and Rz: yaw, pitch and roll of the gimbal
+  std::uint16_t buttons;     ///< bits button_1 and button_2 of Switch
 };
 
 enum class Command : std::uint8_t {
@@ -290,6 +305,7 @@ constexpr std::size_t parameters_report_size(std::size_t count) {
 }
 
 static_assert(sizeof(PoseReport) == 64);
+static_assert(sizeof(ControllerReport) == 14);
 static_assert(sizeof(SignalSelection) == 33 && sizeof(TestPulse) == 9);
 static_assert(sizeof(CommandReport) == 37);
 static_assert(sizeof(ForceReport) == 20);

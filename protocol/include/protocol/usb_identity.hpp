@@ -17,6 +17,16 @@ inline constexpr std::uint8_t hid_out_endpoint = 0x01;  ///< interrupt, 64 bytes
 inline constexpr std::uint8_t scope_interface = 1;
 inline constexpr std::uint8_t scope_in_endpoint = 0x82;  ///< bulk, 64 bytes
 
+/// An input device for every program, apart from the HID interface above: two collections of one interface share its
+/// endpoint, and poses would be lost to it.
+inline constexpr std::uint8_t controller_interface = 2;
+inline constexpr std::uint8_t controller_in_endpoint = 0x83;  ///< interrupt, 64 bytes
+inline constexpr std::uint8_t controller_interval_ms = 8;
+
+/// USB device firmware upgrade 1.1, run-time part: DFU_DETACH starts the boot loader in the chip.
+inline constexpr std::uint8_t firmware_update_interface = 3;
+
+inline constexpr std::uint8_t interface_count = 4;
 inline constexpr std::uint16_t packet_size = 64;
 
 }  // namespace inkwell::protocol::usb

@@ -40,14 +40,20 @@ TEST_CASE("device and configuration, byte for byte") {
   CHECK(bench.get_descriptor(0x0100, 18).data ==
         bytes({18, 1, 0x01, 0x02, 0, 0, 0, 64, 0x09, 0x12, 0x01, 0x00, 0x23, 0x01, 1, 2, 3, 1}));
   CHECK(bench.get_descriptor(0x0200, 512).data ==
-        bytes({9, 2,    57,   0,    2,  1,    0,    0xC0, 0,  // takes nothing from the bus
+        bytes({9, 2,    100,  0,    4,  1,    0,    0xC0, 0,  // takes nothing from the bus
                9, 4,    0,    0,    2,  0x03, 0,    0,    4,  // HID
                9, 0x21, 0x11, 0x01, 0,  1,    0x22, 96,   0,  //
                7, 5,    0x81, 3,    64, 0,    1,              //
                7, 5,    0x01, 3,    64, 0,    1,              //
                9, 4,    1,    0,    1,  0xFF, 0,    0,    5,  // scope
-               7, 5,    0x82, 2,    64, 0,    0}));
+               7, 5,    0x82, 2,    64, 0,    0,              //
+               9, 4,    2,    0,    1,  0x03, 0,    0,    6,  // controller
+               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 79,   0,  //
+               7, 5,    0x83, 3,    64, 0,    8,              //
+               9, 4,    3,    0,    0,  0xFE, 1,    1,    7,  // firmware update
+               9, 0x21, 0x0B, 0xFF, 0,  0,    0x08, 0x1A, 0x01}));
   CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 96, 0}));
+  CHECK(bench.get_descriptor(0x2100, 64, 1, 2).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 79, 0}));
 }
 
 TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes") {
@@ -157,6 +163,19 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
                                                              0xC0}));
 }
 
+TEST_CASE("the controller's report descriptor, byte for byte: a multi-axis controller with units") {
+  DeviceBench bench;
+  CHECK(bench.get_descriptor(0x2200, 4096, 1, 2).data ==
+        bytes({0x05, 0x01, 0x09, 0x08, 0xA1, 0x01,                                      //
+               0x16, 0x01, 0x80, 0x26, 0xFF, 0x7F, 0x36, 0x01, 0x80, 0x46, 0xFF, 0x7F,  //
+               0x65, 0x11, 0x55, 0x0D, 0x09, 0x30, 0x09, 0x31, 0x09, 0x32, 0x75, 16,   0x95, 3,    0x81,
+               0x02,  // x, y, z
+               0x65, 0x12, 0x55, 0x0C, 0x09, 0x33, 0x09, 0x34, 0x09, 0x35, 0x75, 16,   0x95, 3,    0x81,
+               0x02,                                                                             // Rx, Ry, Rz
+               0x65, 0,    0x55, 0,    0x35, 0,    0x45, 0,    0x05, 0x09, 0x19, 1,    0x29, 2,  //
+               0x15, 0,    0x25, 1,    0x75, 1,    0x95, 2,    0x81, 0x02, 0x95, 14,   0x81, 0x03, 0xC0}));
+}
+
 TEST_CASE("the descriptors by which Windows finds WinUSB, byte for byte") {
   DeviceBench bench;
   CHECK(bench.get_descriptor(0x0F00, 255).data ==
@@ -189,7 +208,9 @@ TEST_CASE("strings: language, names and serial number; no others") {
   CHECK(text(bench.get_descriptor(0x0303, 255).data) == "0123456789ABCDEF01234567");
   CHECK(!text(bench.get_descriptor(0x0304, 255).data).empty());
   CHECK(!text(bench.get_descriptor(0x0305, 255).data).empty());
-  for (unsigned index = 6; index < 256; ++index)
+  CHECK(!text(bench.get_descriptor(0x0306, 255).data).empty());
+  CHECK(!text(bench.get_descriptor(0x0307, 255).data).empty());
+  for (unsigned index = 8; index < 256; ++index)
     CHECK(bench.get_descriptor(static_cast<std::uint16_t>(0x0300 | index), 255) == stall_result);
   for (const unsigned index : {0u, 3u}) {
     const Bytes string = bench.get_descriptor(static_cast<std::uint16_t>(0x0300 | index), 255).data;
@@ -208,7 +229,8 @@ TEST_CASE("descriptors that are not there are refused") {
   CHECK(bench.get_descriptor(0xFF00, 9) == stall_result);
   CHECK(bench.get_descriptor(0x2201, 9, 1) == stall_result);
   CHECK(bench.get_descriptor(0x2200, 9, 1, 1) == stall_result);  // the scope's interface has no reports
-  CHECK(bench.get_descriptor(0x2200, 9, 1, 2) == stall_result);
+  CHECK(bench.get_descriptor(0x2200, 9, 1, 3) == stall_result);
+  CHECK(bench.get_descriptor(0x2201, 9, 1, 2) == stall_result);
   CHECK(bench.get_descriptor(0x2300, 9, 1, 0) == stall_result);
   CHECK(bench.get_descriptor(0x0100, 18, 2) == stall_result);  // an endpoint has none
   // After all this the device still answers.

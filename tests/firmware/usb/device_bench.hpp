@@ -126,6 +126,7 @@ struct DeviceBench {
       if (const protocol::CommandReport* command = link.commands.take()) last_command = *command;
       protocol::SignalValues signals{};
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
+      signals[protocol::Signal::gimbal_1_rad] = 1e-4f * static_cast<float>(periods % 30'000);
       link.poses.record(signals,
                         {state, protocol::Fault::none, 0, 0, link.commands.last_token(), periods, periods * 8400, 100});
       port.pass_period();

@@ -81,7 +81,10 @@ class FakePort final : public usb::Port {
     endpoint.offset = 0;
   }
 
-  void cancel(std::uint8_t endpoint_address) override { forget_transfer(endpoint_address); }
+  void cancel(std::uint8_t endpoint_address) override {
+    ++at(endpoint_address).cancels;
+    forget_transfer(endpoint_address);
+  }
 
   void receive(std::uint8_t endpoint_address) override {
     if (is_stale(endpoint_address)) return;
@@ -154,6 +157,8 @@ class FakePort final : public usb::Port {
   bool is_open(std::uint8_t endpoint_address) { return at(endpoint_address).open; }
   bool is_stalled(std::uint8_t endpoint_address) { return at(endpoint_address).stalled; }
   bool data_toggle(std::uint8_t endpoint_address) { return at(endpoint_address).data1; }
+  /// Since it was opened.
+  unsigned cancels(std::uint8_t endpoint_address) { return at(endpoint_address).cancels; }
   bool idle() const { return events_.empty(); }
 
  private:
@@ -167,6 +172,7 @@ class FakePort final : public usb::Port {
     std::span<const std::byte> data{};
     Bytes data_at_start{};
     std::size_t offset = 0;
+    unsigned cancels = 0;
   };
 
   Endpoint& at(std::uint8_t endpoint_address) {

@@ -91,11 +91,13 @@ TEST_CASE("status of device, interfaces and endpoints") {
   bench.configure();
   CHECK(bench.control(request(0x81, 0, 0, 0, 2)) == answer({0, 0}));
   CHECK(bench.control(request(0x81, 0, 0, 1, 2)) == answer({0, 0}));
-  for (const int endpoint : {0x00, 0x80, 0x81, 0x01, 0x82})
+  for (const int endpoint : {0x00, 0x80, 0x81, 0x01, 0x82, 0x83})
     CHECK(bench.control(request(0x82, 0, 0, static_cast<std::uint16_t>(endpoint), 2)) == answer({0, 0}));
   CHECK(bench.control(request(0x80, 0, 1, 0, 2)) == stall_result);
-  CHECK(bench.control(request(0x81, 0, 0, 2, 2)) == stall_result);
-  for (const int endpoint : {0x02, 0x83, 0x03, 0x8F, 0x0181, 0xFF81})
+  CHECK(bench.control(request(0x81, 0, 0, 2, 2)) == answer({0, 0}));
+  CHECK(bench.control(request(0x81, 0, 0, 3, 2)) == answer({0, 0}));
+  CHECK(bench.control(request(0x81, 0, 0, 4, 2)) == stall_result);
+  for (const int endpoint : {0x02, 0x84, 0x03, 0x8F, 0x0181, 0xFF81})
     CHECK(bench.control(request(0x82, 0, 0, static_cast<std::uint16_t>(endpoint), 2)) == stall_result);
   CHECK(bench.control(request(0x83, 0, 0, 0, 2)) == stall_result);
 }
@@ -103,7 +105,7 @@ TEST_CASE("status of device, interfaces and endpoints") {
 TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
   DeviceBench bench;
   bench.configure();
-  for (const int address : {0x81, 0x01, 0x82}) {
+  for (const int address : {0x81, 0x01, 0x82, 0x83}) {
     const auto endpoint = static_cast<std::uint8_t>(address);
     CHECK(bench.control(request(0x02, 3, 0, endpoint, 0)) == done_result);
     CHECK(bench.port.is_stalled(endpoint));
@@ -120,7 +122,7 @@ TEST_CASE("an endpoint is halted and let go, and starts with toggle 0") {
   CHECK(bench.port.in(1).handshake == Handshake::ack);
   CHECK(bench.port.out(1, bytes_of(command(protocol::Command::heartbeat, 1))) == Handshake::ack);
 
-  CHECK(bench.control(request(0x02, 3, 0, 0x83, 0)) == stall_result);
+  CHECK(bench.control(request(0x02, 3, 0, 0x84, 0)) == stall_result);
   CHECK(bench.control(request(0x02, 3, 1, 0x81, 0)) == stall_result);
   CHECK(bench.control(request(0x00, 3, 1, 0, 0)) == stall_result);       // remote wake-up
   CHECK(bench.control(request(0x00, 3, 2, 0x0100, 0)) == stall_result);  // test modes are for high speed
@@ -130,13 +132,27 @@ TEST_CASE("the one setting of each interface is taken, others are refused") {
   DeviceBench bench;
   CHECK(bench.control(request(0x01, 11, 0, 0, 0)) == stall_result);
   bench.configure();
-  for (const std::uint16_t index : {0, 1}) {
+  for (const std::uint16_t index : {0, 1, 2, 3}) {
     CHECK(bench.control(request(0x01, 11, 0, index, 0)) == done_result);
     CHECK(bench.control(request(0x81, 10, 0, index, 1)) == answer({0}));
     CHECK(bench.control(request(0x01, 11, 1, index, 0)) == stall_result);
   }
-  CHECK(bench.control(request(0x01, 11, 0, 2, 0)) == stall_result);
-  CHECK(bench.control(request(0x81, 10, 0, 2, 1)) == stall_result);
+  CHECK(bench.control(request(0x01, 11, 0, 4, 0)) == stall_result);
+  CHECK(bench.control(request(0x81, 10, 0, 4, 1)) == stall_result);
+}
+
+TEST_CASE("the setting of an interface starts its endpoints again and no others") {
+  DeviceBench bench;
+  bench.configure();
+  bench.run(20);
+  bench.device.poll();
+  CHECK(bench.port.in(1).handshake == Handshake::ack);
+  CHECK(bench.port.in(3).handshake == Handshake::ack);
+  CHECK(bench.control(request(0x01, 11, 0, 2, 0)) == done_result);
+  CHECK_FALSE(bench.port.data_toggle(0x83));
+  CHECK(bench.port.data_toggle(0x81));
+  CHECK(bench.control(request(0x01, 11, 0, 0, 0)) == done_result);
+  CHECK_FALSE(bench.port.data_toggle(0x81));
 }
 
 TEST_CASE("requests that do not exist are refused, whatever their type") {
@@ -158,9 +174,77 @@ TEST_CASE("HID: idle rate is kept, boot protocol is refused") {
   bench.configure();
   CHECK(bench.control(request(0x21, 10, 0x0400, 0, 0)) == done_result);
   CHECK(bench.control(request(0xA1, 2, 0, 0, 1)) == answer({4}));
-  CHECK(bench.control(request(0x21, 11, 0, 0, 0)) == stall_result);
-  CHECK(bench.control(request(0xA1, 3, 0, 0, 1)) == stall_result);
+  CHECK(bench.control(request(0xA1, 2, 0, 2, 1)) == answer({0}));  // each interface has its own
+  CHECK(bench.control(request(0x21, 10, 0x0700, 2, 0)) == done_result);
+  CHECK(bench.control(request(0xA1, 2, 0, 2, 1)) == answer({7}));
+  CHECK(bench.control(request(0xA1, 2, 0, 0, 1)) == answer({4}));
+  for (const std::uint16_t index : {0, 2}) {
+    CHECK(bench.control(request(0x21, 11, 0, index, 0)) == stall_result);
+    CHECK(bench.control(request(0xA1, 3, 0, index, 1)) == stall_result);
+  }
   CHECK(bench.control(request(0x21, 10, 0, 1, 0)) == stall_result);  // the scope is no HID interface
+}
+
+TEST_CASE("HID: the controller's report can be asked for, and takes none") {
+  DeviceBench bench;
+  bench.configure();
+  const auto ask = [&](std::uint16_t value) { return bench.control(request(0xA1, 1, value, 2, 64)); };
+  CHECK(ask(0x0100) == stall_result);  // there is none yet
+  bench.run(101);
+  CHECK(ask(0x0100) == answer({0xFF, 0x7F, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 0, 0}));
+  for (const unsigned value : {0x0101u, 0x0300u, 0x0200u})
+    CHECK(ask(static_cast<std::uint16_t>(value)) == stall_result);
+  CHECK(bench.control(request(0x21, 9, 0x0202, 2, sizeof(protocol::CommandReport))) == stall_result);
+}
+
+TEST_CASE("firmware update: the device leaves when the host has its answer, not before") {
+  DeviceBench bench;
+  const auto detach = request(0x21, 0, 1000, 3, 0);
+  CHECK(bench.control(detach) == stall_result);  // not configured
+  bench.configure();
+  bench.run(1);
+  CHECK(bench.control(request(0xA1, 5, 0, 3, 1)) == answer({0}));
+  CHECK(bench.control(request(0xA1, 3, 0, 3, 6)) == answer({0, 0, 0, 0, 0, 0}));
+  CHECK_FALSE(bench.device.leaves_for_update());
+  bench.setup(detach);
+  CHECK_FALSE(bench.device.leaves_for_update());
+  CHECK(bench.status_in() == done_result);
+  CHECK(bench.device.leaves_for_update());
+  CHECK(bench.control(request(0xA1, 5, 0, 3, 1)) == answer({1}));
+  CHECK(bench.control(request(0xA1, 3, 0, 3, 6)) == answer({0, 0, 0, 0, 1, 0}));
+}
+
+TEST_CASE(
+    "firmware update: not while the hand feels a force, nor when it is about to, and a reset of the bus forgets it") {
+  DeviceBench bench;
+  bench.configure();
+  const auto detach = request(0x21, 0, 1000, 3, 0);
+  bench.run(1, protocol::State::active);
+  CHECK(bench.control(detach) == stall_result);
+  bench.run(1);
+  CHECK(bench.port.out(1, bytes_of(command(protocol::Command::enable_force, 1))) == Handshake::ack);
+  bench.device.poll();
+  CHECK(bench.control(detach) == stall_result);
+  CHECK_FALSE(bench.device.leaves_for_update());
+  bench.run(1);
+  bench.setup(detach);
+  bench.port.reset();
+  bench.device.poll();
+  bench.configure();
+  CHECK_FALSE(bench.device.leaves_for_update());
+}
+
+TEST_CASE("firmware update: other requests, directions and lengths are refused") {
+  DeviceBench bench;
+  bench.configure();
+  bench.run(1);
+  for (const unsigned number : {1u, 2u, 4u, 6u})
+    CHECK(bench.control(request(0xA1, static_cast<std::uint8_t>(number), 0, 3, 6)) == stall_result);
+  CHECK(bench.control(request(0xA1, 0, 0, 3, 1)) == stall_result);
+  CHECK(bench.control(request(0x21, 5, 0, 3, 0)) == stall_result);
+  CHECK(bench.control(request(0x21, 0, 0, 4, 0)) == stall_result);
+  CHECK(bench.control(request(0x21, 0, 0, 1, 0)) == stall_result);
+  CHECK_FALSE(bench.device.leaves_for_update());
 }
 
 TEST_CASE("HID: the newest pose can be asked for") {

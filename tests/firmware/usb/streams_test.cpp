@@ -27,6 +27,16 @@ std::optional<PoseReport> read_pose(DeviceBench& bench) {
   return pose;
 }
 
+std::optional<protocol::ControllerReport> read_controller(DeviceBench& bench) {
+  const InPacket packet = bench.port.in(3);
+  if (packet.handshake != Handshake::ack) return std::nullopt;
+  REQUIRE(packet.data.size() == 14);
+  protocol::ControllerReport report;
+  std::memcpy(&report, packet.data.data(), sizeof report);
+  bench.device.poll();
+  return report;
+}
+
 void select_scope(DeviceBench& bench, std::uint8_t count, std::uint8_t token) {
   protocol::CommandReport report = command(protocol::Command::select_signals, token);
   report.selection.count = count;
@@ -126,6 +136,64 @@ TEST_CASE("nothing is sent while the bus is silent") {
   pass_frame(bench);
   CHECK_FALSE(read_pose(bench).has_value());
   CHECK(bench.get_report(3, static_cast<std::uint8_t>(protocol::ReportId::frame), 16) == test::stall_result);
+}
+
+TEST_CASE("the controller's report is as new as the pose whenever the host's turn has come") {
+  DeviceBench bench;
+  bench.configure();
+  CHECK(bench.port.in(3).handshake == Handshake::nak);
+  unsigned cancels = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (int frame = 0; frame < 8; ++frame) pass_frame(bench);
+    const auto report = read_controller(bench);
+    REQUIRE(report.has_value());
+    // The bench's x is the number of the period, in metres: far beyond the range.
+    CHECK(report->position[0] == 32767);
+    CHECK(report->angle[0] == static_cast<std::int16_t>(bench.periods - 1));
+    // Which takes one replacement after the first time, not one in each frame.
+    if (i == 0) cancels = bench.port.cancels(0x83);
+    CHECK(bench.port.cancels(0x83) == cancels + static_cast<unsigned>(i));
+  }
+}
+
+TEST_CASE("a host that asks the controller early gets a report as well, and one that never asks loses no pose") {
+  DeviceBench bench;
+  bench.configure();
+  for (int i = 0; i < 10; ++i) {
+    pass_frame(bench);
+    REQUIRE(read_pose(bench).has_value());
+    CHECK(read_controller(bench).has_value());
+    CHECK_FALSE(read_controller(bench).has_value());
+  }
+  for (int i = 0; i < 300; ++i) {
+    pass_frame(bench);
+    REQUIRE(read_pose(bench).has_value());
+  }
+  CHECK(poses_dropped(bench) == 0);
+}
+
+TEST_CASE("a sleeping host finds no old report of the controller, and a halt of it leaves the poses alone") {
+  DeviceBench bench;
+  bench.configure();
+  pass_frame(bench);
+  bench.port.suspend();
+  bench.device.poll();
+  CHECK_FALSE(read_controller(bench).has_value());
+  bench.port.resume();
+  pass_frame(bench);
+  CHECK(read_controller(bench).has_value());
+  CHECK(bench.control(request(0x02, 3, 0, 0x83, 0)) == done_result);
+  pass_frame(bench);
+  CHECK(bench.port.in(3).handshake == Handshake::stall);
+  CHECK(read_pose(bench).has_value());
+  CHECK(bench.control(request(0x02, 1, 0, 0x83, 0)) == done_result);
+  pass_frame(bench);
+  CHECK(read_controller(bench).has_value());
+  // Its interface by itself starts again; a report that was under way stays whole.
+  pass_frame(bench);
+  CHECK(bench.control(request(0x01, 11, 0, 2, 0)) == done_result);
+  CHECK(read_controller(bench).has_value());
+  CHECK(read_pose(bench).has_value());
 }
 
 TEST_CASE("the frame report says when the frame began") {

@@ -210,13 +210,17 @@ hid_device_info* hid_enumerate(unsigned short vendor_id, unsigned short product_
   if (usb == nullptr) return list;
   for (FakeUsbDevice& device : usb->devices) {
     if (device.vendor_id != vendor_id || device.product_id != product_id) continue;
-    auto* info = new hid_device_info{};
-    info->path = strdup(device.path().c_str());
-    info->serial_number = wcsdup(std::wstring(device.serial_number.begin(), device.serial_number.end()).c_str());
-    info->product_string = wcsdup(device.product.c_str());
-    info->next = list;
-    list = info;
-    ++usb->open_things;
+    const std::wstring serial_number(device.serial_number.begin(), device.serial_number.end());
+    for (const bool is_controller : {false, true}) {
+      auto* info = new hid_device_info{};
+      info->path = strdup((device.path() + (is_controller ? "-controller" : "")).c_str());
+      info->serial_number = wcsdup(serial_number.c_str());
+      info->product_string = wcsdup(device.product.c_str());
+      info->usage_page = is_controller ? 0x0001 : 0xFF00;
+      info->next = list;
+      list = info;
+      ++usb->open_things;
+    }
   }
   return list;
 }

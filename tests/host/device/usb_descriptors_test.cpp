@@ -54,7 +54,9 @@ TEST_CASE("the layout is the one of the descriptors, in whatever order and with 
                               hid_interface_1,
                               {7, 5, 0x8B, 2, 64, 0, 0},  // bulk IN, of no vendor interface
                               hid_out,
-                              hid_in});
+                              hid_in,
+                              {9, 4, 6, 0, 1, 3, 0, 0, 0},  // a second HID interface, of the controller
+                              {7, 5, 0x8C, 3, 64, 0, 8}});
   for (const auto& descriptor : {in_order, turned}) {
     const auto layout = parse_configuration(descriptor);
     CHECK(layout.configuration == 7);

@@ -62,6 +62,10 @@ struct UsbGlobal {
     using INEPTXSA = Field<DIEPTXF2, 0, 16>;
     using INEPTXFD = Field<DIEPTXF2, 16, 16>;
   };
+  struct DIEPTXF3 : Register<base + 0x10C> {
+    using INEPTXSA = Field<DIEPTXF3, 0, 16>;
+    using INEPTXFD = Field<DIEPTXF3, 16, 16>;
+  };
 };
 using OTG_FS_GLOBAL = UsbGlobal<0x50000000>;
 

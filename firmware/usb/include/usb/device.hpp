@@ -13,6 +13,7 @@
 
 #include <link/link.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/usb_identity.hpp>
 #include <usb/control_endpoint.hpp>
 #include <usb/port.hpp>
 
@@ -37,6 +38,8 @@ class Device final : private ControlRequests {
 
   bool configured() const { return configuration_ != 0; }
   bool suspended() const { return suspended_; }
+  /// The host asked for the boot loader, and has its answer.
+  bool leaves_for_update() const { return leaves_for_update_; }
 
  private:
   // Requests on endpoint 0, called by control_.
@@ -50,10 +53,14 @@ class Device final : private ControlRequests {
   Answer set_configuration(const SetupPacket& setup);
   Answer string_descriptor(std::uint8_t index);
   Answer send_byte(std::uint8_t value);
+  Answer class_request(const SetupPacket& setup);
   Answer hid_request(const SetupPacket& setup);
+  Answer firmware_update_request(const SetupPacket& setup);
   Answer get_report(const SetupPacket& setup);
+  Answer get_controller_report(const SetupPacket& setup);
   Answer vendor_request(const SetupPacket& setup);
 
+  bool force_is_on() const;
   void handle(const Event& event);
   void bus_reset();
   void host_gone();
@@ -69,17 +76,16 @@ class Device final : private ControlRequests {
   void pass_on_held_command();
   void send_pose();
   void note_pose_taken();
+  void offer_controller_report();
   void send_scope();
   protocol::InformationReport information() const;
   /// None while the bus is silent.
   std::optional<protocol::FrameReport> frame_report();
-  /// What the host was to fetch is out of date.
-  void forget_pose();
-
   /// One of the endpoints beside endpoint 0.
   struct Endpoint {
     std::uint8_t address;
     EndpointType type;
+    std::uint8_t interface_number;
     bool busy = false;  ///< a transfer is running
     bool halted = false;
   };
@@ -87,6 +93,14 @@ class Device final : private ControlRequests {
   Endpoint* find_endpoint(std::uint16_t address);
   /// Data toggle 0, no halt, and the report or frame that was on its way from its first byte.
   void restart(Endpoint& endpoint);
+  /// What the host was to fetch is out of date.
+  void forget(Endpoint& endpoint);
+  /// `report` stays as it is until the endpoint is not busy any more.
+  template <class Report>
+  void send(Endpoint& endpoint, const Report& report) {
+    endpoint.busy = true;
+    port_.send(endpoint.address, std::as_bytes(std::span(&report, 1)));
+  }
 
   Port& port_;
   link::Link& link_;
@@ -94,16 +108,20 @@ class Device final : private ControlRequests {
   const std::uint32_t pose_lead_cycles_;
   ControlEndpoint control_;
   std::uint8_t configuration_ = 0;
-  std::uint8_t idle_rate_ = 0;
+  std::array<std::uint8_t, protocol::usb::interface_count> idle_rates_{};
   bool suspended_ = false;
-  std::array<Endpoint, 3> endpoints_;
+  bool detach_asked_ = false;
+  bool leaves_for_update_ = false;
+  std::array<Endpoint, 4> endpoints_;
   std::optional<protocol::CommandReport> held_command_;  ///< found the queue full
   bool scope_frame_open_ = false;                        ///< the scope's oldest frame is being sent
   bool scope_wants_end_ = false;      ///< the frame's length is a multiple of 64: an empty packet ends it
   std::uint32_t pose_sequence_ = 0;   ///< of the newest report given to the port
   std::uint32_t poses_replaced_ = 0;  ///< since the host took one
   std::uint32_t poses_dropped_ = 0;
+  std::uint32_t controller_taken_at_ = 0;  ///< pose_sequence_ when the host took its last report
   alignas(4) protocol::PoseReport pose_{};
+  alignas(4) protocol::ControllerReport controller_{};
 };
 
 }  // namespace inkwell::usb

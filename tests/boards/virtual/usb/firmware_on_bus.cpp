@@ -13,7 +13,7 @@ namespace inkwell::virtual_usb_test {
 using namespace virtual_board;
 
 namespace {
-constexpr std::uint8_t pose_endpoint = 1, report_endpoint = 1, scope_endpoint = 2;
+constexpr std::uint8_t pose_endpoint = 1, report_endpoint = 1, scope_endpoint = 2, controller_endpoint = 3;
 }  // namespace
 
 std::filesystem::path flashed_image(const std::filesystem::path& build_directory) {
@@ -80,6 +80,8 @@ void FirmwareOnBus::keep_asking_for_poses() {
   for (int i = 0; i < requests_under_way; ++i) ask(pose_endpoint, sizeof(protocol::PoseReport));
 }
 
+void FirmwareOnBus::keep_asking_the_controller() { ask(controller_endpoint, sizeof(protocol::ControllerReport)); }
+
 void FirmwareOnBus::stream_scope(std::span<const protocol::Signal> signals) {
   protocol::CommandReport report{};
   report.command = protocol::Command::select_signals;
@@ -119,9 +121,11 @@ void FirmwareOnBus::completed(Urb&& urb, std::int32_t status) {
     if (on_report_sent) on_report_sent();
     return;
   }
-  if (urb.endpoint == scope_endpoint || asks_for_poses_) ask(urb.endpoint, urb.length);
+  if (urb.endpoint != pose_endpoint || asks_for_poses_) ask(urb.endpoint, urb.length);
   if (urb.endpoint == scope_endpoint) {
     if (on_scope_frame) on_scope_frame(urb.data);
+  } else if (urb.endpoint == controller_endpoint) {
+    if (on_controller_report) on_controller_report(urb.data);
   } else if (on_pose && urb.data.size() == sizeof(protocol::PoseReport)) {
     protocol::PoseReport pose;
     std::memcpy(&pose, urb.data.data(), sizeof pose);

@@ -118,6 +118,8 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
                  std::uint16_t length, std::vector<std::byte> data = {});
   /// From now on there is always a request for the next pose.
   void keep_asking_for_poses();
+  /// And one for the next report of the controller.
+  void keep_asking_the_controller();
   /// Selects signals for the scope and reads it from now on.
   void stream_scope(std::span<const protocol::Signal> signals);
   /// An output report on the interrupt endpoint.
@@ -130,6 +132,7 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   std::vector<std::string> violations() const;
 
   std::function<void(const protocol::PoseReport&)> on_pose;
+  std::function<void(std::span<const std::byte> report)> on_controller_report;
   std::function<void(std::span<const std::byte> frame)> on_scope_frame;
   std::function<void()> on_report_sent;
 

@@ -55,7 +55,7 @@ class OtgFs final : public usb::Port {
   std::optional<usb::Frame> frame() override { return frame_clock_.newest(); }
 
  private:
-  static constexpr unsigned in_endpoints = 3;   ///< 0 control, 1 HID, 2 scope
+  static constexpr unsigned in_endpoints = 4;   ///< 0 control, 1 HID, 2 scope, 3 controller
   static constexpr unsigned out_endpoints = 2;  ///< 0 control, 1 HID
 
   struct InTransfer {

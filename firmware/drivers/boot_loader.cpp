@@ -1,0 +1,46 @@
+#include <drivers/boot_loader.hpp>
+
+#include <cstdint>
+
+#include <drivers/system.hpp>
+
+namespace inkwell::drivers {
+namespace {
+
+constexpr std::uint32_t mark = 0x64667521;
+
+/// Memory after power-up holds anything, so it is written twice.
+struct Wish {
+  std::uint32_t mark;
+  std::uint32_t inverted;
+};
+
+[[gnu::noinit]] Wish wish;
+
+/// Begins like every image, with its stack pointer and its first instruction.
+constexpr std::uint32_t system_memory = 0x1FFF'0000;
+
+}  // namespace
+
+void start_boot_loader() {
+  wish = {mark, ~mark};
+  reset_chip();
+}
+
+bool take_boot_loader_wish() {
+  const bool is_wanted = wish.mark == mark && wish.inverted == ~mark;
+  wish = {};
+  return is_wanted;
+}
+
+extern "C" void enter_boot_loader() {
+  asm volatile(
+      "ldr r1, [%0] \n"
+      "ldr r0, [%0, #4] \n"
+      "msr msp, r1 \n"
+      "bx r0 \n" ::"r"(system_memory)
+      : "r0", "r1");
+  __builtin_unreachable();
+}
+
+}  // namespace inkwell::drivers

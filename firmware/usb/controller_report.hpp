@@ -1,0 +1,10 @@
+// The pose as a multi-axis controller reports it.
+#pragma once
+
+#include <protocol/reports.hpp>
+
+namespace inkwell::usb {
+
+protocol::ControllerReport controller_report(const protocol::PoseReport& pose);
+
+}  // namespace inkwell::usb

@@ -1,0 +1,53 @@
+// The flashed firmware as a multi-axis controller, beside poses and scope.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "firmware_on_bus.hpp"
+
+namespace inkwell::virtual_usb_test {
+namespace {
+
+TEST_CASE("the controller reports every 8 ms what the poses say, and costs neither a pose nor a sample") {
+  using protocol::Signal;
+  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+  bus.connect();
+  bus.run_for(0.01);
+  std::optional<protocol::PoseReport> pose;
+  std::uint32_t poses = 0, poses_lost = 0, reports = 0;
+  bus.on_pose = [&](const protocol::PoseReport& newest) {
+    if (pose) poses_lost += newest.sequence - pose->sequence - 1;
+    pose = newest;
+    ++poses;
+  };
+  bus.on_controller_report = [&](std::span<const std::byte> bytes) {
+    protocol::ControllerReport report;
+    REQUIRE(bytes.size() == sizeof report);
+    std::memcpy(&report, bytes.data(), sizeof report);
+    ++reports;
+    if (!pose) return;
+    for (int i = 0; i < 3; ++i) {
+      CHECK(report.position[i] == std::lround(std::clamp(pose->position_m[i] * 1e5f, -32767.0f, 32767.0f)));
+      CHECK(report.angle[i] == std::lround(std::clamp(pose->gimbal_rad[i] * 1e4f, -32767.0f, 32767.0f)));
+    }
+  };
+  std::uint32_t frames = 0;
+  bus.on_scope_frame = [&](std::span<const std::byte>) { ++frames; };
+  bus.keep_asking_for_poses();
+  bus.keep_asking_the_controller();
+  bus.stream_scope(std::array{Signal::position_x_m, Signal::force_N});
+  bus.run_for(0.8);
+  CHECK(poses >= 795);
+  CHECK(poses_lost == 0);
+  CHECK(reports >= 99);
+  CHECK(reports <= 101);
+  CHECK(frames > 20);
+  CHECK(bus.violations().empty());
+}
+
+}  // namespace
+}  // namespace inkwell::virtual_usb_test

@@ -1,0 +1,45 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "usb/controller_report.hpp"
+
+namespace {
+
+using namespace inkwell;
+
+TEST_CASE("the controller counts hundredths of a millimetre and tenths of a milliradian, to the nearest") {
+  protocol::PoseReport pose{};
+  const float position_m[] = {0.123456f, -0.000004f, -0.1f}, gimbal_rad[] = {1.00006f, -0.5f, 0.00004f};
+  std::copy_n(position_m, 3, pose.position_m);
+  std::copy_n(gimbal_rad, 3, pose.gimbal_rad);
+  const auto report = usb::controller_report(pose);
+  CHECK(report.position[0] == 12346);
+  CHECK(report.position[1] == 0);
+  CHECK(report.position[2] == -10000);
+  CHECK(report.angle[0] == 10001);
+  CHECK(report.angle[1] == -5000);
+  CHECK(report.angle[2] == 0);
+}
+
+TEST_CASE("what is beyond the range, or no number, stays within it") {
+  protocol::PoseReport pose{};
+  pose.position_m[0] = 1.0f;
+  pose.position_m[1] = -std::numeric_limits<float>::infinity();
+  pose.position_m[2] = std::numeric_limits<float>::quiet_NaN();
+  const auto report = usb::controller_report(pose);
+  CHECK(report.position[0] == 32767);
+  CHECK(report.position[1] == -32767);
+  CHECK(report.position[2] == 32767);
+}
+
+TEST_CASE("of the switches it has the two buttons, not the inkwell") {
+  protocol::PoseReport pose{};
+  for (unsigned switches = 0; switches < 8; ++switches) {
+    pose.switches = switches & 7;
+    CHECK(usb::controller_report(pose).buttons == (switches & 3));
+  }
+}
+
+}  // namespace
