@@ -20,7 +20,16 @@ enum class DescriptorType : std::uint8_t {
   hid_report = 0x22,
 };
 
-enum class StringIndex : std::uint8_t { languages = 0, manufacturer, product, serial_number, hid, scope, controller, firmware_update };
+enum class StringIndex : std::uint8_t {
+  languages = 0,
+  manufacturer,
+  product,
+  serial_number,
+  hid,
+  scope,
+  controller,
+  firmware_update
+};
 
 inline constexpr std::uint8_t configuration_value = 1;
 
