@@ -31,6 +31,7 @@ extern "C" {
 #define INKWELL_AS_INT
 #endif
 
+/* How a function ended. */
 typedef enum inkwell_result INKWELL_AS_INT {
   INKWELL_OK = 0,
   INKWELL_NO_DEVICE = 1,     /* no arm there, or more than one and none was named */
@@ -53,6 +54,7 @@ INKWELL_API const char* inkwell_error_text(void);
 
 /* ---- devices ------------------------------------------------------------------------------------------------ */
 
+/* An arm that can be opened. */
 typedef struct inkwell_device {
   char address[128];      /* for inkwell_open() */
   char serial_number[32]; /* empty where it is not known before the device is opened */
@@ -64,8 +66,10 @@ typedef struct inkwell_device {
  * `capacity` of them and tells in `count` how many there are. */
 INKWELL_API inkwell_result inkwell_list_devices(inkwell_device* devices, size_t capacity, size_t* count);
 
+/* An open arm. */
 typedef struct inkwell_arm inkwell_arm;
 
+/* What an address leads to. */
 typedef enum inkwell_address_kind INKWELL_AS_INT {
   INKWELL_ON_USB = 0,    /* any text that is none of the others: a serial number, if it is one */
   INKWELL_AT_SERVER = 1, /* "usbip:HOST:PORT" */
@@ -89,6 +93,7 @@ INKWELL_API inkwell_result inkwell_open(const char* address, inkwell_arm** arm);
  * INKWELL_REFUSED, and the arm stays open. */
 INKWELL_API inkwell_result inkwell_close(inkwell_arm* arm);
 
+/* Who the device is, and what it has counted. */
 typedef struct inkwell_information {
   char serial_number[32];
   char product[64];
@@ -108,6 +113,7 @@ INKWELL_API inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_inf
 
 /* ---- pose --------------------------------------------------------------------------------------------------- */
 
+/* What the board is doing. */
 typedef enum inkwell_state INKWELL_AS_INT {
   INKWELL_STARTING = 0,
   INKWELL_UNREFERENCED = 1, /* the stylus has to rest in the inkwell once */
@@ -136,12 +142,14 @@ typedef enum inkwell_fault INKWELL_AS_INT {
   INKWELL_FAULT_FORCE_LAW = 15
 } inkwell_fault;
 
+/* Whose force the hand feels: bits of inkwell_pose::force_sources. */
 enum inkwell_force_source {
   INKWELL_WALLS = 1,  /* the walls of the board's own box are felt */
   INKWELL_SHAPES = 2, /* planes or a sphere that a program placed */
   INKWELL_PROGRAM = 4 /* forces of a program */
 };
 
+/* What the board reports in a millisecond of the bus. */
 typedef struct inkwell_pose {
   double time_s;     /* board time */
   uint32_t sequence; /* one more for each millisecond of the bus; a gap is a pose that this program missed */
@@ -180,10 +188,12 @@ INKWELL_API const char* inkwell_fault_name(int fault);
 /* Switches the force on: this is where the program says that a hand may feel it. Waits until the device is active. In
  * a fault or before the stylus was in the inkwell it is INKWELL_REFUSED. */
 INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout_s);
+/* At once. */
 INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
 /* Clears a fault whose cause is gone. */
 INKWELL_API inkwell_result inkwell_clear_fault(inkwell_arm* arm);
 
+/* What becomes of the walls while a program sends forces. */
 typedef enum inkwell_force_mode INKWELL_AS_INT {
   INKWELL_BESIDE_WALLS = 1,    /* the walls of the board's box are felt too */
   INKWELL_INSTEAD_OF_WALLS = 2 /* only what programs ask for */
@@ -200,6 +210,7 @@ INKWELL_API inkwell_result inkwell_set_force(inkwell_arm* arm, const double forc
 /* Called at each pose, a thousand times a second, in a thread of the library. Writes the force on the hand, which is
  * 0 before. Returns 0 to go on, anything else to end the servo. Another program that drives the arm ends it. */
 typedef int (*inkwell_servo)(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user);
+/* Has `servo` called from now on, with `user` as it was given. */
 INKWELL_API inkwell_result inkwell_start_servo(inkwell_arm* arm, inkwell_servo servo, void* user);
 /* Waits until the servo is not called any more, except when called by the servo itself. */
 INKWELL_API inkwell_result inkwell_stop_servo(inkwell_arm* arm);
@@ -208,6 +219,7 @@ INKWELL_API int inkwell_servo_is_running(inkwell_arm* arm);
 
 /* ---- shapes ------------------------------------------------------------------------------------------------- */
 
+/* Planes that the board renders at most. */
 #define INKWELL_PLANES_MAXIMUM 8
 
 /* How a shape feels. A shape whose life is 0 is not there. */
@@ -219,12 +231,14 @@ typedef struct inkwell_surface {
   double life_s;           /* then the board forgets the shape, unless it is placed anew; at most 10 s */
 } inkwell_surface;
 
+/* Keeps the probe on one side. */
 typedef struct inkwell_plane {
   double point_m[3];
   double normal[3]; /* into the free space, of any length but 0 */
   inkwell_surface surface;
 } inkwell_plane;
 
+/* Keeps the probe out of a ball. */
 typedef struct inkwell_sphere {
   double centre_m[3];
   double radius_m; /* the free space is outside */
@@ -238,6 +252,7 @@ INKWELL_API inkwell_result inkwell_place_shapes(inkwell_arm* arm, const inkwell_
 
 /* ---- parameters --------------------------------------------------------------------------------------------- */
 
+/* A row of the table of parameters. */
 typedef struct inkwell_parameter {
   const char* name; /* ends in its unit */
   const char* unit; /* "" for a pure number */
@@ -249,6 +264,7 @@ typedef struct inkwell_parameter {
 INKWELL_API size_t inkwell_parameter_count(void);
 /* Row `index` of the table; NULL beyond its end. */
 INKWELL_API const inkwell_parameter* inkwell_parameter_at(size_t index);
+/* Asks the device. An unknown name is INKWELL_BAD_ARGUMENT. */
 INKWELL_API inkwell_result inkwell_get_parameter(inkwell_arm* arm, const char* name, double* value);
 /* All of them take effect at one control period, or none does. */
 INKWELL_API inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names, const double* values,
@@ -256,10 +272,9 @@ INKWELL_API inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* 
 
 /* ---- the hand of a virtual board ------------------------------------------------------------------------------ */
 
-/* Only on an arm that was opened as "virtual"; INKWELL_REFUSED on any other. */
-
 /* The simulated hand takes the stylus out of the inkwell and pulls the probe to `target_m` as a spring of
- * `stiffness_N_per_m` with a hundredth of that as damping would. */
+ * `stiffness_N_per_m` with a hundredth of that as damping would. Only on an arm that was opened as "virtual", as the
+ * next two; INKWELL_REFUSED on any other. */
 INKWELL_API inkwell_result inkwell_move_virtual_hand(inkwell_arm* arm, const double target_m[3],
                                                      double stiffness_N_per_m);
 /* It lets go, so that the arm falls as a real one would. */
@@ -269,6 +284,7 @@ INKWELL_API inkwell_result inkwell_press_virtual_buttons(inkwell_arm* arm, int b
 
 /* ---- scope and recording ------------------------------------------------------------------------------------ */
 
+/* A row of the table of signals. */
 typedef struct inkwell_signal {
   const char* name; /* ends in its unit */
   const char* unit;
@@ -277,6 +293,7 @@ typedef struct inkwell_signal {
 
 /* Once an arm is open, with those of its own force law. */
 INKWELL_API size_t inkwell_signal_count(void);
+/* Row `index` of the table; NULL beyond its end. */
 INKWELL_API const inkwell_signal* inkwell_signal_at(size_t index);
 
 /* Streams these signals at every control period from now on; none stops it. Only one program can have the scope. */

@@ -24,18 +24,21 @@ namespace inkwell {
 using Pose = inkwell_pose;
 using Plane = inkwell_plane;
 using Sphere = inkwell_sphere;
-using Vector = std::array<double, 3>;
+using Vector = std::array<double, 3>;  ///< in the workspace's axes
 
+/// A function of the library did not end with INKWELL_OK; what() is its sentence.
 class Failure : public std::runtime_error {
  public:
   explicit Failure(inkwell_result failed) : std::runtime_error(inkwell_error_text()), result(failed) {}
   inkwell_result result;
 };
 
+/// Throws Failure unless it is INKWELL_OK.
 inline void require(inkwell_result result) {
   if (result != INKWELL_OK) throw Failure(result);
 }
 
+/// See inkwell_list_devices().
 inline std::vector<inkwell_device> devices() {
   std::size_t count = 0;
   require(inkwell_list_devices(nullptr, 0, &count));
@@ -45,18 +48,21 @@ inline std::vector<inkwell_device> devices() {
   return list;
 }
 
-/// An open arm; addresses as inkwell_open() takes them. Not to be destroyed by its own servo.
+/// An open arm, which ends with this object. Each function does what the one of the C interface does that is named like
+/// it, and throws Failure where that does not end with INKWELL_OK. Not to be destroyed by its own servo.
 class Arm {
  public:
   /// Returns the force on the hand. What it throws ends the servo, and comes out of stop_servo().
   using Servo = std::function<Vector(const Pose&)>;
 
+  /// Addresses as inkwell_open() takes them.
   explicit Arm(const std::string& address = "") {
     inkwell_arm* opened = nullptr;
     require(inkwell_open(address.c_str(), &opened));
     arm_.reset(opened);
   }
 
+  /// For the C interface; stays this object's.
   inkwell_arm* get() const { return arm_.get(); }
 
   Pose pose() const {
@@ -89,6 +95,7 @@ class Arm {
     require(inkwell_start_servo(get(), &Arm::call_servo, next.get()));
     servo_ = std::move(next);
   }
+  /// Throws what the servo threw.
   void stop_servo() {
     require(inkwell_stop_servo(get()));
     if (!servo_) return;
