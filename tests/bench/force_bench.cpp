@@ -1,0 +1,91 @@
+// What the board's force law takes of a PC, beside what is known of CHAI3D on such a machine.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include <benchmark/benchmark.h>
+
+#include <control/contact.hpp>
+#include <control/shapes.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::Vector3;
+
+constexpr control::Box box{{-0.05f, -0.05f, -0.05f}, {0.05f, 0.05f, 0.05f}};
+constexpr control::Wall wall{800.0f, 2.0f};
+
+/// A probe that goes in and out of walls, edges and corners, so that no branch is always the same.
+struct Path {
+  struct Moment {
+    Vector3 position_m, velocity_m_per_s;
+  };
+  std::array<Moment, 1024> moments{};
+
+  Path() {
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      const float turn_rad = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / moments.size();
+      const auto swing = [&](float times) { return 0.055f * std::sin(times * turn_rad); };
+      moments[i] = {{swing(3), swing(4), swing(5)}, {swing(7), swing(8), swing(9)}};
+    }
+  }
+  const Moment& next() { return moments[++at_ % moments.size()]; }
+
+ private:
+  std::size_t at_ = 0;
+};
+
+Vector3 walls_force_N(const Path::Moment& moment) {
+  return wall_force_N(control::find_contact(moment.position_m, box), moment.velocity_m_per_s, wall);
+}
+
+void walls(benchmark::State& state) {
+  Path path;
+  for (auto _ : state) benchmark::DoNotOptimize(walls_force_N(path.next()));
+}
+
+/// Eight planes, which make the box rounder, and a ball in its middle, all with friction.
+control::Shapes nine_shapes() {
+  const control::Surface surface{.stiffness_N_per_m = 800.0f,
+                                 .m_per_N = 1.0f / 800.0f,
+                                 .damping_Ns_per_m = 1.0f,
+                                 .static_friction = 0.4f,
+                                 .dynamic_friction = 0.3f};
+  const float diagonal = 1.0f / std::numbers::sqrt3_v<float>;
+  control::Shapes shapes;
+  shapes.sphere = {{}, 0.02f, 0.0004f};
+  for (unsigned i = 0; i < shapes.planes.size(); ++i) {
+    const auto sign = [&](unsigned axis) { return (i >> axis & 1) != 0 ? diagonal : -diagonal; };
+    shapes.planes[i] = {{sign(0), sign(1), sign(2)}, -0.06f};
+  }
+  shapes.surfaces.fill(surface);
+  shapes.life_periods.fill(std::numeric_limits<std::uint32_t>::max());
+  return shapes;
+}
+
+void walls_and_shapes(benchmark::State& state) {
+  Path path;
+  const auto shapes = nine_shapes();
+  control::TouchedShapes touched;
+  touched.replace(shapes);
+  for (auto _ : state) {
+    const auto& moment = path.next();
+    benchmark::DoNotOptimize(walls_force_N(moment) + touched.force_N(moment.position_m, moment.velocity_m_per_s));
+  }
+}
+
+BENCHMARK(walls)->Name("force: the walls of a box")->Unit(benchmark::kMicrosecond);
+BENCHMARK(walls_and_shapes)->Name("force: walls, eight planes, sphere")->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  benchmark::Initialize(&argument_count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  std::puts("Not measured here, as published for CHAI3D: implicit box 0.48 to 0.64 us, mesh 0.9 to 1.15 us.");
+}
