@@ -28,6 +28,10 @@ protocol::Signal signal_named(const char* name) {
                                 device::nearest_name(protocol::known_signals(), name)));
 }
 
+void require_at_most(std::size_t maximum, std::size_t count, const char* what) {
+  if (count > maximum) throw BadArgument(fmt::format("{} {} are too many. Give at most {}.", count, what, maximum));
+}
+
 // The texts of the tables, those of a force law included, end in a zero.
 inkwell_parameter row_of(const protocol::ParameterInfo& row) {
   return {row.name.data(), row.unit.data(), row.help.data(), row.minimum, row.maximum, row.default_value};
@@ -69,6 +73,7 @@ inkwell_result inkwell_get_parameter(inkwell_arm* arm, const char* name, double*
 inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names, const double* values, size_t count) {
   return guarded([&] {
     if (count > 0) required(names, "The list of names"), required(values, "The list of values");
+    require_at_most(protocol::parameter_entries_maximum, count, "parameters");
     std::vector<device::ParameterChange> changes;
     for (std::size_t i = 0; i < count; ++i)
       changes.emplace_back(parameter_named(names[i]), static_cast<float>(values[i]));
@@ -89,6 +94,7 @@ const inkwell_signal* inkwell_signal_at(size_t index) {
 inkwell_result inkwell_select_signals(inkwell_arm* arm, const char* const* names, size_t count) {
   return guarded([&] {
     if (count > 0) required(names, "The list of names");
+    require_at_most(protocol::scope_signals_maximum, count, "signals");
     std::vector<protocol::Signal> signals;
     for (std::size_t i = 0; i < count; ++i) signals.push_back(signal_named(names[i]));
     arm_of(arm).scope().select(signals);

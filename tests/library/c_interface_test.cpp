@@ -221,6 +221,10 @@ TEST_CASE("parameters by name: read, set together, refused whole") {
   CHECK(value == 500);
   CHECK(inkwell_get_parameter(virtual_arm.arm, "wall_stifness_N_per_m", &value) == INKWELL_BAD_ARGUMENT);
   CHECK(says("Did you mean wall_stiffness_N_per_m?"));
+  const std::vector<const char*> many(97, names[0]);
+  const std::vector<double> many_values(97, 500.0);
+  CHECK(inkwell_set_parameters(virtual_arm.arm, many.data(), many_values.data(), 97) == INKWELL_BAD_ARGUMENT);
+  CHECK(says("97 parameters are too many. Give at most 96."));
   bool found = false;
   for (std::size_t i = 0; i < inkwell_parameter_count(); ++i)
     found |= std::string(inkwell_parameter_at(i)->name) == "force_limit_N" && inkwell_parameter_at(i)->maximum == 8;
@@ -238,6 +242,9 @@ TEST_CASE("the scope gives every control period, and a recording keeps them") {
         INKWELL_REFUSED);
   const char* wrong[]{"position_x_mm"};
   CHECK(inkwell_select_signals(virtual_arm.arm, wrong, 1) == INKWELL_BAD_ARGUMENT);
+  const std::vector<const char*> many(33, "supply_V");
+  CHECK(inkwell_select_signals(virtual_arm.arm, many.data(), many.size()) == INKWELL_BAD_ARGUMENT);
+  CHECK(says("33 signals are too many. Give at most 32."));
   const char* names[]{"position_z_m", "supply_V"};
   REQUIRE_MESSAGE(inkwell_select_signals(virtual_arm.arm, names, 2) == INKWELL_OK, inkwell_error_text());
   std::uint32_t next = 0;
