@@ -34,10 +34,12 @@ def command(name: str) -> list[str]:
 
 @contextlib.contextmanager
 def running(name: str, *arguments: str) -> Iterator[subprocess.Popen]:
-    """Runs an example until its Enter, which it obeys without a complaint."""
+    """Runs an example from its first line, when it has the arm, until its Enter, which it obeys without a complaint."""
     program = subprocess.Popen([*command(name), *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
     try:
+        said = program.stdout.readline()
+        assert said in ("Press Enter to end.\n", "Move the stylus.\n"), said + program.stderr.read()
         yield program
         output, errors = program.communicate("\n")
     except BaseException:
@@ -95,8 +97,7 @@ class Examples(unittest.TestCase):
             return tuple(np.mean(seen, axis=0)) if seen else (0.0, 1.0)
 
         friction_N, _ = stroke()
-        with running(name, board.address) as program:
-            self.assertEqual(program.stdout.readline(), "Press Enter to end.\n")
+        with running(name, board.address):
             board.let_pass(0.5)  # in which the force rises
             damping_Ns_per_m = []
             # A computer that is busy may not let the program keep up through a stroke, but through one of some.
@@ -108,8 +109,7 @@ class Examples(unittest.TestCase):
     @in_each_language("sphere.cpp", "sphere.py")
     def test_sphere(self, name, board):
         board.take_to(beside(0.03), 600)
-        with running(name, board.address) as program:
-            self.assertEqual(program.stdout.readline(), "Press Enter to end.\n")
+        with running(name, board.address):
             board.let_pass(0.5)
             board.hold(beside(0.015), 600)
             # Between springs of 800 and 600 N/m, 5 mm apart; gravity and friction have their part.
@@ -139,7 +139,6 @@ class Examples(unittest.TestCase):
                                             for i in range(1, 200)])
             file = pathlib.Path(folder, "movement.npz")
             with running("recording.py", str(file), board.address) as program:
-                self.assertEqual(program.stdout.readline(), "Move the stylus.\n")
                 said = program.stdout.readline()
             movement = np.load(file)
             self.assertEqual(movement["position_m"].shape, (40_000, len(AXES)))
