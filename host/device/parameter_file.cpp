@@ -54,19 +54,30 @@ void check_value(Parameter parameter, float value) {
                             range_text(parameter)));
 }
 
+std::optional<float> parse_number(std::string_view text) {
+  float value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+float parse_value(Parameter parameter, std::string_view number) {
+  const auto value = parse_number(number);
+  if (!value) {
+    const bool has_comma = number.find(',') != std::string_view::npos;
+    throw Error(fmt::format("`{}` is not a number. Give {} a number from {}{}.", number, info(parameter).name,
+                            range_text(parameter), has_comma ? ", with a decimal point and without commas" : ""));
+  }
+  check_value(parameter, *value);
+  return *value;
+}
+
 ParameterChange parse_change(std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos)
     throw Error(fmt::format("`{}` is not of the form NAME=VALUE. Write for example wall_stiffness_N_per_m=900.", text));
   const Parameter parameter = parameter_named(text.substr(0, equals));
-  const std::string_view number = text.substr(equals + 1);
-  float value = 0;
-  const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (code != std::errc{} || end != number.data() + number.size())
-    throw Error(fmt::format("`{}` is not a number. Give {} a number from {}.", number, info(parameter).name,
-                            range_text(parameter)));
-  check_value(parameter, value);
-  return {parameter, value};
+  return {parameter, parse_value(parameter, text.substr(equals + 1))};
 }
 
 ParameterFile parse_parameters(std::string_view toml_text, const std::string& file_name) {

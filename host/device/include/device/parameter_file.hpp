@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,10 @@ std::vector<ParameterDifference> compare(const ParameterFile& file, const protoc
 
 /// The shortest text that reads back as exactly this value.
 std::string format_value(protocol::Parameter parameter, float value);
+/// None if the text is anything but a number, such as one with a comma.
+std::optional<float> parse_number(std::string_view text);
+/// A value as a person types it, with a decimal point. Throws Error with a sentence if it is no number or not in range.
+float parse_value(protocol::Parameter parameter, std::string_view number);
 /// "NAME=VALUE". Throws Error with the nearest name, or the range, if it cannot be meant.
 ParameterChange parse_change(std::string_view text);
 /// Throws Error with the nearest name if there is none of this name.
