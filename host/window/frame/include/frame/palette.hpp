@@ -5,6 +5,7 @@
 // have exactly these colours on the screen, so a test can look for them. They are the same in both themes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -47,11 +48,14 @@ struct Palette {
   Colour line;  ///< between panes, around fields
   Colour text;
   Colour text_quiet;  ///< units, captions
-  Colour accent;      ///< what is on, what is selected
+  Colour accent;      ///< what is on, what is selected; text on it has the panes' colour
   Colour good;
+  Colour on_good;  ///< text on good
   Colour caution;
-  Colour danger;     ///< stop, faults
-  Colour on_danger;  ///< text on danger
+  Colour on_caution;
+  Colour danger;  ///< stop, faults
+  Colour on_danger;
+  Colour danger_text;  ///< the same as a text on a pane
   Colour plot_grid;
   Colour sky_top;  ///< background of the scene
   Colour sky_bottom;
@@ -70,12 +74,15 @@ inline constexpr Palette dark_palette{
     .raised_active = {58, 68, 82},
     .line = {44, 51, 61},
     .text = {230, 234, 240},
-    .text_quiet = {147, 158, 173},
-    .accent = {86, 160, 220},
-    .good = {0, 168, 122},
+    .text_quiet = {156, 167, 182},
+    .accent = {98, 170, 228},
+    .good = {0, 190, 138},
+    .on_good = {16, 20, 26},
     .caution = {230, 159, 0},
-    .danger = {201, 62, 48},
+    .on_caution = {16, 20, 26},
+    .danger = {190, 52, 40},
     .on_danger = {255, 255, 255},
+    .danger_text = {245, 125, 110},
     .plot_grid = {38, 44, 53},
     .sky_top = {30, 35, 43},
     .sky_bottom = {44, 51, 61},
@@ -94,12 +101,15 @@ inline constexpr Palette light_palette{
     .raised_active = {203, 211, 220},
     .line = {208, 214, 221},
     .text = {27, 33, 41},
-    .text_quiet = {92, 103, 117},
-    .accent = {24, 105, 172},
-    .good = {0, 128, 92},
-    .caution = {176, 104, 0},
-    .danger = {196, 50, 36},
+    .text_quiet = {80, 90, 103},
+    .accent = {14, 88, 150},
+    .good = {0, 100, 72},
+    .on_good = {255, 255, 255},
+    .caution = {128, 74, 0},
+    .on_caution = {255, 255, 255},
+    .danger = {184, 44, 30},
     .on_danger = {255, 255, 255},
+    .danger_text = {176, 38, 26},
     .plot_grid = {229, 233, 238},
     .sky_top = {240, 243, 246},
     .sky_bottom = {216, 222, 229},
@@ -109,6 +119,13 @@ inline constexpr Palette light_palette{
     .metal_dark = {92, 101, 113},
     .lines = line_colours_light,
 };
+
+/// Under the mouse a coloured button is a little lighter, pressed a little darker.
+constexpr Colour lighter(Colour colour, int by) {
+  const auto up = [by](std::uint8_t part) { return static_cast<std::uint8_t>(std::clamp(part + by, 0, 255)); };
+  return {up(colour.red), up(colour.green), up(colour.blue), colour.alpha};
+}
+inline constexpr int hover_lightening = 12;
 
 constexpr const Palette& palette(Theme theme) { return theme == Theme::dark ? dark_palette : light_palette; }
 
