@@ -1,7 +1,6 @@
 #include <frame/widgets.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 #include <imgui_internal.h>
 
@@ -81,13 +80,9 @@ bool quiet_button(const char* label, const Style& style) {
 }
 
 bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec2 size) {
-  const auto lighter = [](Colour c, int by) {
-    const auto up = [by](std::uint8_t part) { return static_cast<std::uint8_t>(std::clamp(part + by, 0, 255)); };
-    return Colour{up(c.red), up(c.green), up(c.blue), c.alpha};
-  };
   ImGui::PushStyleColor(ImGuiCol_Button, packed(colour));
-  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, packed(lighter(colour, 16)));
-  ImGui::PushStyleColor(ImGuiCol_ButtonActive, packed(lighter(colour, -16)));
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, packed(lighter(colour, hover_lightening)));
+  ImGui::PushStyleColor(ImGuiCol_ButtonActive, packed(lighter(colour, -hover_lightening)));
   ImGui::PushStyleColor(ImGuiCol_Text, packed(text_colour));
   const bool pressed = button(label, size);
   ImGui::PopStyleColor(4);
@@ -97,40 +92,6 @@ bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec
 bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size) {
   if (on) return coloured_button(label, style.palette->accent, style.palette->pane, size);
   return button(label, size);
-}
-
-bool bar_slider(const char* label, float& value, float minimum, float maximum, const char* format,
-                ImGuiSliderFlags flags, float width, const Style& style) {
-  const Palette& palette = *style.palette;
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ImVec2 end{corner.x + width, corner.y + ImGui::GetFrameHeight()};
-  const bool hovered = ImGui::IsMouseHoveringRect(corner, end) && ImGui::IsWindowHovered();
-  const float linear = (value - minimum) / (maximum - minimum);
-  const float part =
-      (flags & ImGuiSliderFlags_Logarithmic) != 0 ? std::log(value / minimum) / std::log(maximum / minimum) : linear;
-  const float edge = corner.x + std::clamp(part, 0.0f, 1.0f) * width;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float rounding = ImGui::GetStyle().FrameRounding;
-  list.AddRectFilled(corner, end, packed(hovered ? palette.raised_hover : palette.raised), rounding);
-  if (edge - corner.x > 1.0f) {
-    list.PushClipRect(corner, {edge, end.y}, true);
-    list.AddRectFilled(corner, end, packed(palette.accent.with_alpha(hovered ? 105 : 78)), rounding);
-    list.PopClipRect();
-  }
-  // Low, so that it does not cross the number.
-  list.AddLine({edge, end.y - style.points(4)}, {edge, end.y}, packed(palette.accent), style.points(2));
-  const ImU32 nothing = packed(palette.raised.with_alpha(0));
-  const bool typing = ImGui::TempInputIsActive(ImGui::GetID(label));
-  if (!typing)
-    for (ImGuiCol slot : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_SliderGrab,
-                          ImGuiCol_SliderGrabActive})
-      ImGui::PushStyleColor(slot, nothing);
-  ImGui::SetNextItemWidth(width);
-  ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 1.0f);  // the bar's edge is the grab, and stays under the mouse
-  const bool edited = ImGui::SliderFloat(label, &value, minimum, maximum, format, flags);
-  ImGui::PopStyleVar();
-  if (!typing) ImGui::PopStyleColor(5);
-  return edited;
 }
 
 bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags) {

@@ -12,6 +12,7 @@
 
 #include <device/parameter_file.hpp>
 #include <frame/inspection.hpp>
+#include <frame/value_field.hpp>
 #include <frame/widgets.hpp>
 #include <guides/guides.hpp>
 #include <guides/session_port.hpp>
@@ -27,7 +28,7 @@ using guides::Phase;
 Colour outcome_colour(Phase phase, const Palette& palette) {
   switch (phase) {
     case Phase::finished: return palette.good;
-    case Phase::failed: return palette.danger;
+    case Phase::failed: return palette.danger_text;
     default: return palette.caution;
   }
 }
@@ -52,6 +53,7 @@ class GuidesPane final : public Pane {
   void start(guides::Guide guide);
   bool is_running() const { return guide_ && !guide_->is_over(); }
   void draw_offers(const Style& style);
+  void draw_bandwidth(const Style& style);
   void draw_step(const Style& style);
   void draw_checks(const Style& style);
   void draw_result(const Style& style);
@@ -64,6 +66,7 @@ class GuidesPane final : public Pane {
   std::uint16_t control_port_;
   std::optional<protocol::ParameterSet> simulated_arm_;
   bool hand_helps_ = true;
+  ValueFields fields_;
   float bandwidth_Hz_ = static_cast<float>(guides::bandwidth_default_Hz);
   std::optional<guides::Guide> guide_;
   std::optional<guides::SimulatedUser> user_;
@@ -153,14 +156,24 @@ void GuidesPane::draw_offers(const Style& style) {
     ImGui::Dummy({0, style.points(4)});
   }
   ImGui::EndDisabled();
-  text(style.palette->text_quiet, "Bandwidth of the current loops");
-  bar_slider("##bandwidth", bandwidth_Hz_, static_cast<float>(guides::bandwidth_minimum_Hz),
-             static_cast<float>(guides::bandwidth_maximum_Hz), "%.0f Hz", ImGuiSliderFlags_AlwaysClamp,
-             ImGui::GetContentRegionAvail().x, style);
+  draw_bandwidth(style);
   if (control_port_ == 0) return;
   ImGui::Dummy({0, style.points(4)});
   ImGui::Checkbox("The simulated hand does my part", &hand_helps_);
   note_item("hand helps");
+}
+
+void GuidesPane::draw_bandwidth(const Style& style) {
+  static constexpr ValueRange range{.minimum = static_cast<float>(guides::bandwidth_minimum_Hz),
+                                    .maximum = static_cast<float>(guides::bandwidth_maximum_Hz),
+                                    .decimals = 0};
+  text(style.palette->text_quiet, "Bandwidth of the current loops / Hz");
+  const ValueEdit edit =
+      fields_.draw("##bandwidth", "bandwidth", bandwidth_Hz_, range, ImGui::GetContentRegionAvail().x, style);
+  if (edit.dragged_to) bandwidth_Hz_ = *edit.dragged_to;
+  if (!edit.typed) return;
+  if (const auto typed_Hz = device::parse_number(*edit.typed); typed_Hz && range.contains(*typed_Hz))
+    bandwidth_Hz_ = *typed_Hz;
 }
 
 void GuidesPane::draw_step(const Style& style) {
@@ -175,7 +188,7 @@ void GuidesPane::draw_step(const Style& style) {
   text(style.fonts.strong, palette.text, step.title());
   wrapped_text(palette.text, step.text());
   if (guide_->phase() == Phase::asks) wrapped_text(palette.caution, "Nothing happens before you confirm.");
-  if (!user_problem_.empty()) wrapped_text(palette.danger, user_problem_);
+  if (!user_problem_.empty()) wrapped_text(palette.danger_text, user_problem_);
   ImGui::Dummy({0, style.points(4)});
   if (guide_->phase() == Phase::working) draw_checks(style);
 }
@@ -215,7 +228,7 @@ void GuidesPane::draw_result(const Style& style) {
                  fmt::format("{} instead of {}, {}", device::format_value(proposal.parameter, proposal.proposed),
                              device::format_value(proposal.parameter, proposal.held), proposal.reason));
   }
-  if (!guide_->refusal().empty()) wrapped_text(palette.danger, guide_->refusal());
+  if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
 }
 
 void GuidesPane::draw_curves(const Style& style) {
@@ -253,7 +266,7 @@ void GuidesPane::draw_buttons(const Style& style) {
   const ImVec2 half{0.5f * (ImGui::GetContentRegionAvail().x - gap), 0};
   if (!guide_->is_over()) {
     ImGui::BeginDisabled(!guide_->takes_confirmation());
-    if (coloured_button("Confirm", style.palette->accent, style.palette->on_danger, half)) guide_->confirm();
+    if (coloured_button("Confirm", style.palette->accent, style.palette->pane, half)) guide_->confirm();
     ImGui::EndDisabled();
     ImGui::SameLine();
     if (button("Cancel", half)) cancel();
@@ -262,7 +275,7 @@ void GuidesPane::draw_buttons(const Style& style) {
   const bool applicable = guide_->phase() == Phase::finished && !guide_->findings().proposals.empty() &&
                           (guide_->applied() == guides::Applied::no || guide_->applied() == guides::Applied::refused);
   ImGui::BeginDisabled(!applicable || !desk_.view().connected());
-  if (coloured_button("Apply", style.palette->accent, style.palette->on_danger, half)) {
+  if (coloured_button("Apply", style.palette->accent, style.palette->pane, half)) {
     auto to_device = port();
     guide_->apply(to_device);
   }

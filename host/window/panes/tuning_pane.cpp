@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,6 +13,7 @@
 #include <device/parameter_file.hpp>
 #include <frame/file_chooser.hpp>
 #include <frame/inspection.hpp>
+#include <frame/value_field.hpp>
 #include <frame/widgets.hpp>
 #include <panes/pane.hpp>
 
@@ -35,9 +35,20 @@ std::array<const char*, 2> choice_names(Parameter parameter) {
 }
 
 std::string help_of(const protocol::ParameterInfo& info) {
-  return fmt::format("{}\n\nRange {} to {}{}{}, default {}.\nCtrl and click to type a value.\nIn files: {}", info.help,
-                     info.minimum, info.maximum, info.unit.empty() ? "" : " ", info.unit, info.default_value,
-                     info.name);
+  return fmt::format("{}\n\nRange {} to {}{}{}, default {}.\nIn files: {}", info.help, info.minimum, info.maximum,
+                     info.unit.empty() ? "" : " ", info.unit, info.default_value, info.name);
+}
+
+constexpr std::string_view editing_help =
+    "Click the number to type one: Enter sends it, Escape keeps the old one. Drag the dots to change it, with Shift "
+    "ten "
+    "times as fast, with Alt a tenth.";
+
+ValueRange range_of(const protocol::ParameterInfo& info) {
+  return {.minimum = info.minimum,
+          .maximum = info.maximum,
+          .decimals = decimals_of(info),
+          .logarithmic = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f};
 }
 
 // Two arrows that turn back: drawn, because not every font has them.
@@ -75,6 +86,10 @@ class TuningPane final : public Pane {
   void draw_messages(const PaneFrame& frame);
   void draw_group(std::string_view group, const PaneFrame& frame);
   void draw_row(Parameter parameter, const PaneFrame& frame);
+  void draw_choice(Parameter parameter, const std::string& label, float width, const PaneFrame& frame);
+  void draw_number(Parameter parameter, const std::string& label, float width, const PaneFrame& frame);
+  /// Sends what was typed, or says why not.
+  void take_typed(Parameter parameter, const std::string& label, const std::string& typed, const PaneFrame& frame);
   void draw_file_dialog(const PaneFrame& frame);
   void ask_for_file(FileTask task);
   /// Loads a file as one undo step; says in the pane what became of it.
@@ -84,9 +99,10 @@ class TuningPane final : public Pane {
   DeviceDesk& desk_;
   std::filesystem::path& file_;    ///< loaded or saved last
   std::filesystem::path to_send_;  ///< once a device is connected; empty: none any more
+  ValueFields fields_;
   FileTask task_ = FileTask::load;
   FileChooser chooser_;
-  std::vector<std::string> messages_;  ///< about the file loaded or saved last
+  std::vector<std::string> messages_;  ///< about the file loaded or saved, or the value typed last
   bool message_is_error_ = false;
 };
 
@@ -185,6 +201,44 @@ void TuningPane::draw_messages(const PaneFrame& frame) {
   ImGui::PopFont();
 }
 
+void TuningPane::draw_choice(Parameter parameter, const std::string& label, float width, const PaneFrame& frame) {
+  int choice = frame.editor.shown(parameter) >= 0.5f ? 1 : 0;
+  const auto names = choice_names(parameter);
+  ImGui::SetNextItemWidth(width);
+  if (ImGui::Combo("##value", &choice, names.data(), static_cast<int>(names.size()))) {
+    const ParameterChange change{parameter, static_cast<float>(choice)};
+    frame.editor.apply(label, {&change, 1}, frame.now_s);
+  }
+  help_on_hover(label, help_of(protocol::info(parameter)), frame.style);
+}
+
+void TuningPane::draw_number(Parameter parameter, const std::string& label, float width, const PaneFrame& frame) {
+  ParameterEditor& editor = frame.editor;
+  const protocol::ParameterInfo& info = protocol::info(parameter);
+  const ValueEdit edit =
+      fields_.draw("##value", std::string(info.name), editor.shown(parameter), range_of(info), width, frame.style);
+  if (edit.drag_begins) editor.begin_step(label);
+  if (edit.dragged_to) {
+    const ParameterChange change{parameter, *edit.dragged_to};
+    editor.edit({&change, 1}, frame.now_s);
+  }
+  if (edit.drag_ends) editor.end_step();
+  if (edit.typed) take_typed(parameter, label, *edit.typed, frame);
+  help_on_hover(label, fmt::format("{}\n\n{}", help_of(info), editing_help), frame.style);
+}
+
+void TuningPane::take_typed(Parameter parameter, const std::string& label, const std::string& typed,
+                            const PaneFrame& frame) {
+  messages_.clear();
+  try {
+    const ParameterChange change{parameter, device::parse_value(parameter, typed)};
+    frame.editor.apply(label, {&change, 1}, frame.now_s);
+  } catch (const device::Error& error) {
+    messages_ = {fmt::format("{} {} stays as it was.", error.what(), label)};
+    message_is_error_ = true;
+  }
+}
+
 void TuningPane::draw_row(Parameter parameter, const PaneFrame& frame) {
   const Style& style = frame.style;
   ParameterEditor& editor = frame.editor;
@@ -210,31 +264,10 @@ void TuningPane::draw_row(Parameter parameter, const PaneFrame& frame) {
   ImGui::SameLine();
   ImGui::SetCursorPosX(left + label_width);
   const float field_width = width - label_width - style.points(unit_points + reset_points);
-  ImGui::SetNextItemWidth(field_width);
-  float value = editor.shown(parameter);
-  bool edited = false;
-  if (info.kind == ParameterKind::choice) {
-    int choice = value >= 0.5f ? 1 : 0;
-    const auto names = choice_names(parameter);
-    edited = ImGui::Combo("##value", &choice, names.data(), static_cast<int>(names.size()));
-    if (edited) {
-      const ParameterChange change{parameter, static_cast<float>(choice)};
-      editor.apply(label, {&change, 1}, frame.now_s);
-    }
-  } else {
-    const bool wide = info.minimum > 0.0f && info.maximum / info.minimum > 500.0f;
-    const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
-    edited = bar_slider("##value", value, info.minimum, info.maximum, fmt::format("%.{}f", decimals_of(info)).c_str(),
-                        flags, field_width, style);
-    note_item(info.name);
-    if (ImGui::IsItemActivated()) editor.begin_step(label);
-    if (edited) {
-      const ParameterChange change{parameter, info.kind == ParameterKind::whole ? std::round(value) : value};
-      editor.edit({&change, 1}, frame.now_s);
-    }
-    if (ImGui::IsItemDeactivated()) editor.end_step();
-  }
-  help_on_hover(label, help_of(info), style);
+  if (info.kind == ParameterKind::choice)
+    draw_choice(parameter, label, field_width, frame);
+  else
+    draw_number(parameter, label, field_width, frame);
 
   ImGui::SameLine(0, style.points(6));
   ImGui::AlignTextToFramePadding();

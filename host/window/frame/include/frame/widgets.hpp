@@ -35,10 +35,6 @@ bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec
 /// A button that shows that it is on.
 bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size = {0, 0});
 
-/// A slider whose field fills up to its value, with the value written in it. Ctrl and click types a value.
-bool bar_slider(const char* label, float& value, float minimum, float maximum, const char* format,
-                ImGuiSliderFlags flags, float width, const Style& style);
-
 /// A window that fills a rectangle and can be neither moved nor closed. It has no ground of its own: the frame is
 /// cleared to the panes' colour, which is cheaper than painting every pixel.
 bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
