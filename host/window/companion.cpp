@@ -49,8 +49,10 @@ void Companion::stop() {
 }
 
 void Companion::key(int key, bool down) {
-  if (key == GLFW_KEY_SPACE && down) stop();
-  if (!hand_ || (down && ImGui::GetIO().WantTextInput)) return;
+  const bool types = ImGui::GetIO().WantTextInput;
+  if (down && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_F12 || (key == GLFW_KEY_SPACE && !types))) stop();
+  if (down && key == GLFW_KEY_F1) key_help_.open();
+  if (!hand_ || (down && types)) return;
   if (key == GLFW_KEY_1) button_1_ = down;
   if (key == GLFW_KEY_2) button_2_ = down;
   if (key == GLFW_KEY_1 || key == GLFW_KEY_2) hand_->press_buttons(button_1_, button_2_);
@@ -58,15 +60,17 @@ void Companion::key(int key, bool down) {
 
 void Companion::take_keyboard_shortcuts(double now_s) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (!io.KeyCtrl || io.WantTextInput) return;
-  if (ImGui::IsKeyPressed(GLFW_KEY_Z)) {
+  if (io.WantTextInput) return;
+  if (io.InputQueueCharacters.contains('?')) key_help_.open();
+  if (!io.KeyCtrl) return;
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Z))) {
     if (io.KeyShift) {
       editor_.redo(now_s);
     } else {
       editor_.undo(now_s);
     }
   }
-  if (ImGui::IsKeyPressed(GLFW_KEY_Y)) editor_.redo(now_s);
+  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Y))) editor_.redo(now_s);
 }
 
 void Companion::lay_out(ImVec2 size, double now_s) {
@@ -76,17 +80,18 @@ void Companion::lay_out(ImVec2 size, double now_s) {
   take_keyboard_shortcuts(now_s);
   pose_ = replay_bar_.is_open() ? replay_bar_.pose() : desk_.view().pose;
 
-  const std::optional<Banner> banner = banner_of(desk_.view());
+  const std::optional<Banner> banner = banner_of(desk_.view(), replay_bar_.is_open());
   const WindowLayout layout =
       layout_of(size,
                 {.status_height = status_bar_.height(size.x, style_),
                  .banner_height = banner ? banner_height(size.x, style_, *banner) : 0.0f,
                  .replay_height = replay_bar_.is_open() ? style_.points(replay_bar_points) : 0.0f},
                 settings_, style_.scale);
-  const StatusBarOutcome outcome = draw_bars(layout, banner);
-  draw_scene(layout, now_s);
+  StatusBarOutcome outcome = draw_bars(layout, banner);
+  if (draw_scene(layout, now_s)) outcome.switch_force_on = true;
   draw_column(layout, size, now_s);
   draw_scope(layout);
+  key_help_.draw(style_);
   judge_motion();
   carry_out(outcome);  // what it changes shows in the next frame
   if (auto changes = editor_.take_changes(); !changes.empty()) desk_.session().set_parameters(std::move(changes));
@@ -122,7 +127,8 @@ void Companion::follow_parameters(const DeviceView& view, double now_s) {
 
 StatusBarOutcome Companion::draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner) {
   StatusBarOutcome outcome =
-      status_bar_.draw(layout.status.place, layout.status.size, style_, desk_, settings_.scope_is_shown);
+      status_bar_.draw(layout.status.place, layout.status.size, style_, desk_,
+                       {.scope_is_shown = settings_.scope_is_shown, .is_replay = replay_bar_.is_open()});
   if (banner) outcome.clear_fault = draw_banner(layout.banner.place, layout.banner.size, style_, *banner);
   return outcome;
 }
@@ -131,20 +137,23 @@ void Companion::carry_out(const StatusBarOutcome& outcome) {
   if (outcome.stop) stop();
   if (outcome.switch_force_on) desk_.session().send(protocol::Command::enable_force);
   if (outcome.clear_fault) desk_.session().send(protocol::Command::clear_fault);
+  if (outcome.help) key_help_.open();
   if (outcome.toggle_scope) settings_.scope_is_shown = !settings_.scope_is_shown;
   if (outcome.toggle_theme) use_theme(settings_.theme == Theme::dark ? Theme::light : Theme::dark);
 }
 
-void Companion::draw_scene(const WindowLayout& layout, double now_s) {
+bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
   const bool replays = replay_bar_.is_open();
   scene_ = layout.scene;
-  scene_pane_.draw(scene_.place, scene_.size,
-                   {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr, now_s});
+  const bool asks_for_force =
+      scene_pane_.draw(scene_.place, scene_.size,
+                       {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr, now_s, replays});
   if (replays) {
     replay_bar_.draw(layout.replay.place, layout.replay.size, style_, scope_pane_);
   } else if (!desk_.view().connected()) {
     draw_connection_card(layout.middle_of_scene(), style_, desk_.view());
   }
+  return asks_for_force;
 }
 
 void Companion::draw_column(const WindowLayout& layout, ImVec2 window, double now_s) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <bars/banner.hpp>
+#include <bars/key_help.hpp>
 #include <bars/replay_bar.hpp>
 #include <bars/status_bar.hpp>
 #include <device_desk/device_desk.hpp>
@@ -26,7 +27,7 @@ class Companion final : public FrameContent {
  public:
   Companion(const WindowOptions& options, const WindowSettings& settings, float scale);
 
-  /// The space bar stops at once.
+  /// Escape, F12 and the space bar stop at once; the space bar not while a text is typed.
   void key(int key, bool down) override;
   bool asks_for_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;
@@ -46,7 +47,8 @@ class Companion final : public FrameContent {
   void take_keyboard_shortcuts(double now_s);
 
   StatusBarOutcome draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner);
-  void draw_scene(const WindowLayout& layout, double now_s);
+  /// True if the user asks there for the force.
+  bool draw_scene(const WindowLayout& layout, double now_s);
   void draw_column(const WindowLayout& layout, ImVec2 window, double now_s);
   void draw_scope(const WindowLayout& layout);
   void judge_motion();
@@ -67,6 +69,7 @@ class Companion final : public FrameContent {
   ParameterEditor editor_;
   StatusBar status_bar_;
   ReplayBar replay_bar_;
+  KeyHelp key_help_;
   ScenePane scene_pane_;
   ScopePane scope_pane_;
   PaneColumn column_;

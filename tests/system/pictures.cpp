@@ -20,7 +20,7 @@ std::string picture_file(const std::string& name) {
 }
 
 /// Where the mouse hides nothing and asks for no help.
-constexpr Point aside{840, 40};
+constexpr Point aside{700, 60};
 
 /// The hand presses the sphere into the right wall and the floor, and moves it along the edge between them.
 void push_into_two_walls(WindowRig& rig) {
@@ -88,6 +88,17 @@ TEST_CASE("pictures: the scope with statistics and cursors" * doctest::skip()) {
   rig.picture(picture_file("scope"));
 }
 
+TEST_CASE("pictures: before the force is on, a number that is typed, and the keys" * doctest::skip()) {
+  WindowRig rig({"--layout", "paper"});
+  rig.enter("tuning/wall_stiffness_N_per_m", "1,5");
+  rig.press_key("Return");
+  rig.enter("tuning/wall_damping_Ns_per_m", "3.5");
+  rig.move_to(aside);
+  rig.picture(picture_file("typing"));
+  rig.click("status/?");
+  rig.picture(picture_file("keys"));
+}
+
 TEST_CASE("pictures: a guide with its result" * doctest::skip()) {
   WindowRig rig({"--layout", "paper"});
   rig.click("tabs/Guides");
@@ -116,6 +127,10 @@ TEST_CASE("pictures: recording and replay" * doctest::skip()) {
   rig.picture(picture_file("recording"));
   rig.click("recording/Stop recording");
   rig.click("recording/Replay the last one");
+  rig.look_until("it asks", [](const Sight& now) { return now.has("force before replay/Cancel"); });
+  rig.picture(picture_file("question"));
+  rig.click("force before replay/Switch off and replay");
+  rig.look_until("it plays", [](const Sight& now) { return now.says("REPLAY"); });
   rig.move_to(aside);
   rig.control.run(2.0);
   rig.control.resume();

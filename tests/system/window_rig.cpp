@@ -150,7 +150,14 @@ void WindowRig::enter(const std::string& field, const std::string& text) {
   play({"keydown", "ctrl"});
   press_key("a");
   play({"keyup", "ctrl"});
-  play({"type", "--delay", "30", text});
+  type(text);
+}
+
+void WindowRig::type(const std::string& text) { play({"type", "--delay", "30", "--", text}); }
+
+void WindowRig::set_keyboard_layout(const std::string& layout) {
+  const auto result = run_program("/usr/bin/env", {display_name_, "setxkbmap", layout});
+  if (result.exit_code != 0) throw std::runtime_error("setxkbmap: " + result.err);
 }
 
 void WindowRig::switch_force_on() {

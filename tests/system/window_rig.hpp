@@ -68,7 +68,11 @@ class WindowRig {
   void drag(Point from, Point to, int steps = 8);
   void scroll_down(Point over, int steps);
   void scroll_up(Point over, int steps);
+  /// As xdotool names it, with others that are held: "ctrl+z".
   void press_key(const std::string& key);
+  void type(const std::string& text);
+  /// As setxkbmap names it: "de".
+  void set_keyboard_layout(const std::string& layout);
   /// Takes the place of what the text field held.
   void enter(const std::string& field, const std::string& text);
 

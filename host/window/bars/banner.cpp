@@ -21,12 +21,17 @@ float banner_text_width(float width, const Style& style, const Banner& banner) {
 
 }  // namespace
 
-std::optional<Banner> banner_of(const DeviceView& view) {
+std::optional<Banner> banner_of(const DeviceView& view, bool is_replay) {
   if (view.pose && view.pose->state == State::fault) {
     const auto [cause, remedy] = device::fault_text(view.pose->fault);
     return Banner{cause, remedy, true};
   }
   if (!view.connected() || !view.status.information) return std::nullopt;
+  if (is_replay && view.state() == State::active)
+    return Banner{
+        "The arm's force is on, and what you see is a recording.",
+        "Something else has switched it on, such as a program. STOP switches it off; close the replay to see the arm.",
+        false};
   const MotorHeatView heat = motor_heat_view(view.status.information->report);
   if (heat.level != HeatLevel::hot) return std::nullopt;
   return Banner{fmt::format("Motor {} is hot: {:.0f} %.", heat.motor, 100.0f * heat.hottest), heat_advice(heat), false};

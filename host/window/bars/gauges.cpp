@@ -14,7 +14,7 @@ namespace {
 Colour colour_of(State state, const Palette& palette) {
   switch (state) {
     case State::active: return palette.good;
-    case State::fault: return palette.danger;
+    case State::fault: return palette.danger_text;
     case State::ready: return palette.accent;
     default: return palette.caution;
   }
@@ -36,7 +36,7 @@ std::string state_help(const protocol::PoseReport& pose) {
 }
 
 Colour colour_of(HeatLevel level, const Palette& palette) {
-  return level == HeatLevel::hot ? palette.danger : level == HeatLevel::warm ? palette.caution : palette.text;
+  return level == HeatLevel::hot ? palette.danger_text : level == HeatLevel::warm ? palette.caution : palette.text;
 }
 
 }  // namespace

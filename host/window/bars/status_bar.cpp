@@ -25,7 +25,14 @@ constexpr float margin_points = 12.0f;
 constexpr float item_points = 38.0f;  // height of the buttons and of a row of gauges
 constexpr float row_points = 46.0f;
 constexpr float gap_points = 8.0f;
-constexpr float buttons_points = 398.0f;  // what the buttons at the right end take
+// The buttons at the right end.
+constexpr float stop_points = 100.0f;
+constexpr float force_points = 114.0f;
+constexpr float scope_points = 60.0f;
+constexpr float theme_points = 94.0f;
+constexpr float help_points = 28.0f;
+constexpr float buttons_points =
+    stop_points + force_points + scope_points + theme_points + help_points + 5 * gap_points + margin_points;
 
 /// Device, gauges, switches: from left to right.
 enum Item : std::size_t {
@@ -144,7 +151,45 @@ float StatusBar::height(float width, const Style& style) const {
   return style.points(gap_points + row_points * static_cast<float>(rows));
 }
 
-StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk, bool scope_is_shown) {
+/// Right-aligned at `corner`, STOP outermost.
+void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView& view, const StatusBarInput& input,
+                             StatusBarOutcome& outcome) const {
+  const Palette& palette = *style.palette;
+  float x = corner.x;
+  const auto make_room = [&](float points) {
+    x -= style.points(points);
+    ImGui::SetCursorScreenPos({x, corner.y});
+    x -= style.points(gap_points);
+    return ImVec2{style.points(points), style.points(item_points)};
+  };
+  ImGui::PushFont(style.fonts.strong);
+  outcome.stop = stop_button(make_room(stop_points), style);
+  ImGui::PopFont();
+  help_on_hover("Stop", "Switches the force off at once. Escape and F12 do the same, whatever has the focus.", style);
+
+  const bool alive = view.connected() && view.pose.has_value();
+  const bool active = alive && view.state() == State::active;
+  const bool can_switch_on = alive && view.state() == State::ready && !input.is_replay;
+  const ImVec2 force_size = make_room(force_points);
+  ImGui::BeginDisabled(!active && !can_switch_on);
+  if (active ? coloured_button("Force is on", palette.good, palette.on_good, force_size)
+             : toggle_button("Switch force on", can_switch_on, style, force_size)) {
+    outcome.switch_force_on = !active;
+    outcome.stop |= active;
+  }
+  ImGui::EndDisabled();
+  help_on_hover("Force",
+                input.is_replay ? "Close the replay first: what you see is a recording, not the arm."
+                                : "While it is on, walls and programs push back. It rises gently and goes off at once.",
+                style);
+  outcome.toggle_scope = toggle_button("Scope", input.scope_is_shown, style, make_room(scope_points));
+  outcome.toggle_theme = button(style.palette == &dark_palette ? "Light theme" : "Dark theme", make_room(theme_points));
+  outcome.help = button("?", make_room(help_points));
+  help_on_hover("Keys and mouse", "What every key does. F1 opens it too.", style);
+}
+
+StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, DeviceDesk& desk,
+                                 const StatusBarInput& input) {
   const Palette& palette = *style.palette;
   const DeviceView& view = desk.view();
   StatusBarOutcome outcome;
@@ -157,8 +202,7 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   ground.PopClipRect();
 
   const float height = style.points(item_points);
-  const float gap = style.points(gap_points);
-  const float y = place.y + gap;
+  const float y = place.y + style.points(gap_points);
   const bool alive = view.connected() && view.pose.has_value();
   const std::vector<FlowPlace> places = places_of(size.x, style);
   const auto corner = [&](Item item) {
@@ -173,30 +217,7 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
   }
   if (alive) draw_switches(corner(switches_item), style, view.pose->switches);
 
-  float x = place.x + size.x - style.points(12);
-  const auto make_room = [&](float width) {
-    x -= width;
-    ImGui::SetCursorScreenPos({x, y});
-    x -= gap;
-    return ImVec2{width, height};
-  };
-  ImGui::PushFont(style.fonts.strong);
-  outcome.stop = stop_button(make_room(style.points(118)), style);
-  ImGui::PopFont();
-  help_on_hover("Stop", "Switches the force off at once. The space bar does the same, whatever has the focus.", style);
-
-  const bool active = alive && view.state() == State::active;
-  const ImVec2 force_size = make_room(style.points(116));
-  ImGui::BeginDisabled(!alive || (view.state() != State::ready && !active));
-  if (active ? coloured_button("Force is on", palette.good, palette.on_danger, force_size)
-             : button("Switch force on", force_size)) {
-    outcome.switch_force_on = !active;
-    outcome.stop = active;
-  }
-  ImGui::EndDisabled();
-  help_on_hover("Force", "While it is on, walls and programs push back. It rises gently and goes off at once.", style);
-  outcome.toggle_scope = toggle_button("Scope", scope_is_shown, style, make_room(style.points(60)));
-  outcome.toggle_theme = button(style.palette == &dark_palette ? "Light" : "Dark", make_room(style.points(60)));
+  draw_buttons({place.x + size.x - style.points(margin_points), y}, style, view, input, outcome);
   end_pane();
   return outcome;
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 #include <panes/pane_stream.hpp>
 
@@ -25,9 +26,39 @@ std::string name_of(const Pane& pane) {
   return name;
 }
 
-float title_width(const Pane& pane) {
+constexpr float dot_points = 12.0f;  // beside what a pane has running
+
+float title_width(const Pane& pane, const Style& style) {
   const std::string_view title = pane.title();
-  return ImGui::CalcTextSize(title.data(), title.data() + title.size()).x;
+  const std::string running = pane.running();
+  const float title_taken = ImGui::CalcTextSize(title.data(), title.data() + title.size()).x;
+  return running.empty() ? title_taken
+                         : std::max(title_taken, style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x);
+}
+
+// In the title's place, so that it is seen whichever pane is shown.
+void draw_running(const std::string& running, ImVec2 corner, ImVec2 end, bool is_shown, const Style& style) {
+  const Palette& palette = *style.palette;
+  const float width = style.points(dot_points) + ImGui::CalcTextSize(running.c_str()).x;
+  const ImVec2 left{0.5f * (corner.x + end.x - width), 0.5f * (corner.y + end.y)};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddCircleFilled({left.x + style.points(4), left.y}, style.points(4),
+                       packed(is_shown ? palette.pane : palette.danger_text));
+  list.AddText({left.x + style.points(dot_points), left.y - 0.5f * ImGui::GetFontSize()},
+               packed(is_shown ? palette.pane : palette.text), running.c_str());
+  note_text(running);
+}
+
+bool draw_tab(const Pane& pane, bool is_shown, float width, const Style& style) {
+  const std::string label = fmt::format("{}##tab", pane.title());
+  const std::string running = pane.running();
+  if (running.empty()) return toggle_button(label.c_str(), is_shown, style, {width, 0});
+  const Palette& palette = *style.palette;
+  const bool pressed = coloured_button(label.c_str(), is_shown ? palette.accent : palette.raised,
+                                       palette.pane.with_alpha(0), {width, 0});
+  draw_running(running, ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), is_shown, style);
+  help_on_hover(pane.title(), "It goes on while another pane is shown.", style);
+  return pressed;
 }
 
 }  // namespace
@@ -64,11 +95,10 @@ float PaneColumn::draw_tabs(ImVec2 place, float width, const Style& style) {
   // legible.
   const auto count = static_cast<float>(panes_.size());
   float spare = ImGui::GetContentRegionAvail().x - (count - 1.0f) * ImGui::GetStyle().ItemSpacing.x;
-  for (const auto& pane : panes_) spare -= title_width(*pane);
+  for (const auto& pane : panes_) spare -= title_width(*pane, style);
   for (std::size_t i = 0; i < panes_.size(); ++i) {
     if (i > 0) ImGui::SameLine();
-    const std::string label = fmt::format("{}##tab", panes_[i]->title());
-    if (toggle_button(label.c_str(), i == shown_, style, {title_width(*panes_[i]) + spare / count, 0})) shown_ = i;
+    if (draw_tab(*panes_[i], i == shown_, title_width(*panes_[i], style) + spare / count, style)) shown_ = i;
   }
   end_pane();
   return height;

@@ -61,6 +61,23 @@ std::string time_left(const RecorderStatus& status) {
   return left_s < 48 * 3600.0 ? fmt::format("room for {:.0f} h", left_s / 3600) : "room for days";
 }
 
+// Red means STOP in this window, so the button is not red, and only its dot says what it does.
+bool record_button(const Style& style) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float height = style.points(34);
+  const float middle = corner.x + 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize("Start recording").x);
+  const bool pressed = button("Start recording", {-1, height});
+  ImGui::GetWindowDrawList()->AddCircleFilled({middle - style.points(14), corner.y + 0.5f * height}, style.points(5),
+                                              packed(style.palette->danger_text));
+  return pressed;
+}
+
+/// "2:05"
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<int>(seconds);
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
 class RecordingPane final : public Pane {
  public:
   explicit RecordingPane(const PaneSurroundings& around)
@@ -72,6 +89,9 @@ class RecordingPane final : public Pane {
   void draw(const PaneFrame& frame) override;
   /// What the scope shows goes on being streamed, and is recorded with the rest.
   PaneStream stream() const override { return recorder_ ? PaneStream{signals_, true} : PaneStream{}; }
+  std::string running() const override {
+    return recorder_ ? clock_text(recorder_->status().duration_s) : std::string();
+  }
   bool is_shown_at_start() const override { return starts_with_replay_; }
 
  private:
@@ -86,6 +106,8 @@ class RecordingPane final : public Pane {
   void draw_progress(const Style& style);
   void draw_numbers(const Style& style, const RecorderStatus& status);
   void draw_replay(const Style& style);
+  /// Asks whether the force may go before a recording takes the arm's place.
+  void draw_question(const Style& style);
 
   DeviceDesk& desk_;
   std::function<void(const std::filesystem::path&)> replay_;
@@ -103,7 +125,8 @@ class RecordingPane final : public Pane {
   FileChooser chooser_;
   std::optional<std::filesystem::path> may_be_replaced_;
   std::string replay_error_;
-  std::optional<std::filesystem::path> replay_wish_;  ///< of the user, until the next frame
+  std::optional<std::filesystem::path> replay_wish_;  ///< of the user, until it is followed
+  bool force_may_go_ = false;                         ///< the user agreed that the force ends for it
 };
 
 void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
@@ -160,8 +183,13 @@ void RecordingPane::follow_recording(const std::vector<device::ScopeSamples>& sa
 }
 
 void RecordingPane::follow_replay_wish() {
+  if (!replay_wish_) return;
+  if (desk_.view().state() == protocol::State::active) {
+    if (force_may_go_) desk_.session().send(protocol::Command::disable_force);
+    return;
+  }
+  force_may_go_ = false;
   const auto file = std::exchange(replay_wish_, std::nullopt);
-  if (!file) return;
   try {
     replay_(*file);
   } catch (const device::Error& error) {
@@ -215,16 +243,15 @@ void RecordingPane::draw_choice(const PaneFrame& frame) {
   if (ImGui::Combo("##signals", &chosen, choices, 3)) choice_ = static_cast<Choice>(chosen);
   help_on_hover("Signals", "What the scope shows is recorded with them in any case.", style);
   ImGui::BeginDisabled(!connected || !frame.scope_is_free);
-  if (coloured_button("Start recording", palette.danger, palette.on_danger, {-1, style.points(34)}))
-    start(frame.scope_signals);
+  if (record_button(style)) start(frame.scope_signals);
   ImGui::EndDisabled();
-  if (!start_error_.empty()) wrapped_text(palette.danger, start_error_);
+  if (!start_error_.empty()) wrapped_text(palette.danger_text, start_error_);
   if (!last_status_) return;
   ImGui::Dummy({0, style.points(4)});
   if (last_status_->error.empty())
     wrapped_text(palette.good, fmt::format("{} is complete.", written_file_));
   else
-    wrapped_text(palette.danger, last_status_->error);
+    wrapped_text(palette.danger_text, last_status_->error);
   draw_numbers(style, *last_status_);
 }
 
@@ -273,12 +300,31 @@ void RecordingPane::draw_replay(const Style& style) {
                   .suggestion = written_file_});
   }
   if (!recorder_ && last_status_ && button("Replay the last one", {-1, style.points(30)})) replay(written_file_);
-  if (!replay_error_.empty()) wrapped_text(style.palette->danger, replay_error_);
+  draw_question(style);
+  if (!replay_error_.empty()) wrapped_text(style.palette->danger_text, replay_error_);
   const auto chosen = chooser_.draw(style);
   if (!chosen) return;
   if (task_ == FileTask::replay) return replay(*chosen);
   file_ = chosen->string();
   may_be_replaced_ = *chosen;  // the chooser asked, if there is such a file
+}
+
+void RecordingPane::draw_question(const Style& style) {
+  constexpr const char* question = "force before replay";
+  const bool asks = replay_wish_ && !force_may_go_ && desk_.view().state() == protocol::State::active;
+  if (asks && !ImGui::IsPopupOpen(question)) ImGui::OpenPopup(question);
+  ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({style.points(440), 0});
+  if (!ImGui::BeginPopupModal(question, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove)) return;
+  text(style.fonts.strong, style.palette->text, "The force is on");
+  wrapped_text(style.palette->text_quiet,
+               "The recording takes the arm's place in this window. An arm with force must not be out of sight.");
+  if (coloured_button("Switch off and replay", style.palette->accent, style.palette->pane, {style.points(180), 0}))
+    force_may_go_ = true;
+  ImGui::SameLine();
+  if (button("Cancel", {style.points(100), 0})) replay_wish_.reset();
+  if (!asks || force_may_go_ || !replay_wish_) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
 }
 
 }  // namespace

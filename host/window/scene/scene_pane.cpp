@@ -225,7 +225,7 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
           : "Drag the sphere to move the hand (wheel: depth), drag elsewhere to turn, right drag to move";
   const float help_x = origin_.x + style.points(88);
   if (help_x + ImGui::CalcTextSize(help).x < room_x)
-    list.AddText({help_x, origin_.y + size_.y - style.points(27)}, packed(palette.text_quiet.with_alpha(170)), help);
+    list.AddText({help_x, origin_.y + size_.y - style.points(27)}, packed(palette.text_quiet), help);
   ImGui::PopFont();
 }
 
@@ -253,7 +253,48 @@ void ScenePane::draw_tools(const ScenePaneInput& input) {
   }
 }
 
-void ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
+bool ScenePane::draw_force_offer(const ScenePaneInput& input) const {
+  if (input.is_replay || !input.pose || input.pose->state != protocol::State::ready) return false;
+  const Style& style = input.style;
+  const Palette& palette = *style.palette;
+  constexpr const char* why = "The force is off: walls do not push back.";
+  const float pad = style.points(12), gap = style.points(14), button_width = style.points(126);
+  const float text_width = ImGui::CalcTextSize(why).x;
+  const ImVec2 size{text_width + gap + button_width + 2 * pad, ImGui::GetFrameHeight() + 2 * style.points(8)};
+  const ImVec2 corner{origin_.x + 0.5f * (size_.x - size.x), origin_.y + size_.y - size.y - style.points(44)};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 end{corner.x + size.x, corner.y + size.y};
+  list.AddRectFilled(corner, end, packed(palette.pane.with_alpha(235)), style.points(8));
+  list.AddRect(corner, end, packed(scene_.in_contact ? palette.accent : palette.line), style.points(8), 0,
+               style.points(scene_.in_contact ? 2.0f : 1.0f));
+  ImGui::SetCursorScreenPos({corner.x + pad, corner.y + style.points(8)});
+  ImGui::AlignTextToFramePadding();
+  text(palette.text, why);
+  ImGui::SetCursorScreenPos({corner.x + pad + text_width + gap, corner.y + style.points(8)});
+  return coloured_button("Switch force on", palette.accent, palette.pane, {button_width, 0});
+}
+
+void ScenePane::draw_replay_frame(const Style& style) const {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 colour = packed(style.palette->caution);
+  const float line = style.points(3);
+  list.PushClipRectFullScreen();
+  list.AddRect({origin_.x + 0.5f * line, origin_.y + 0.5f * line},
+               {origin_.x + size_.x - 0.5f * line, origin_.y + size_.y - 0.5f * line}, colour, 0, 0, line);
+  constexpr std::string_view label = "REPLAY: a recording, not the arm";
+  ImGui::PushFont(style.fonts.strong);
+  const ImVec2 taken = ImGui::CalcTextSize(label.data());
+  const ImVec2 pad{style.points(12), style.points(6)};
+  const ImVec2 corner{origin_.x + 0.5f * (size_.x - taken.x) - pad.x, origin_.y};
+  list.AddRectFilled(corner, {corner.x + taken.x + 2 * pad.x, corner.y + taken.y + 2 * pad.y}, colour, style.points(6),
+                     ImDrawFlags_RoundCornersBottom);
+  list.PopClipRect();
+  ImGui::SetCursorScreenPos({corner.x + pad.x, corner.y + pad.y});
+  text(style.palette->on_caution, label);
+  ImGui::PopFont();
+}
+
+bool ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
   origin_ = to_glm(place);
   size_ = glm::max(to_glm(size), glm::vec2{1.0f});
   scene_ = build_scene(input.pose, input.editor.shown());
@@ -271,7 +312,10 @@ void ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
   note_handles();
   draw_labels(input);
   draw_tools(input);
+  const bool asks_for_force = draw_force_offer(input);
+  if (input.is_replay) draw_replay_frame(input.style);
   end_pane();
+  return asks_for_force;
 }
 
 void ScenePane::add_to(PictureDigest& digest) const {

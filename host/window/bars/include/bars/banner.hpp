@@ -9,13 +9,14 @@
 
 namespace inkwell::window {
 
-/// What has to be said over the whole width: a fault with its cause and remedy, or a motor that is hot.
+/// What has to be said over the whole width: a fault with its cause and remedy, an arm with force that is out of sight
+/// behind a replay, or a motor that is hot.
 struct Banner {
   std::string what;
   std::string remedy;
   bool is_fault;
 };
-std::optional<Banner> banner_of(const DeviceView& view);
+std::optional<Banner> banner_of(const DeviceView& view, bool is_replay);
 float banner_height(float width, const Style& style, const Banner& banner);
 /// True when "Clear fault" was pressed.
 bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);

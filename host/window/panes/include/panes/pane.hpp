@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -70,6 +71,8 @@ class Pane {
   virtual std::vector<protocol::Signal> shown_signals() const { return {}; }
   /// For a pane that takes the stream for a while, as a guide or a recording does.
   virtual PaneStream stream() const { return {}; }
+  /// What goes on in it, in a few characters that stand on its tab; empty: nothing.
+  virtual std::string running() const { return {}; }
   /// Its picture changes by itself.
   virtual bool is_moving() const { return false; }
   /// The first pane of which this is true is shown at the start; the first of all if it is true of none.

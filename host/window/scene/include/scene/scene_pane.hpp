@@ -21,6 +21,7 @@ struct ScenePaneInput {
   ParameterEditor& editor;
   MouseHand* hand;  ///< null without a virtual board
   double now_s;
+  bool is_replay = false;  ///< pose and parameters are a recording's
 };
 
 class Renderer;
@@ -31,8 +32,9 @@ class ScenePane {
   ScenePane();
   ~ScenePane();
 
-  /// Handles the mouse and draws the labels; the picture below them comes from draw_scene.
-  void draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input);
+  /// Handles the mouse and draws the labels; the picture below them comes from draw_scene. True if the user asks for
+  /// the force.
+  bool draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input);
   void draw_scene(const Viewport& viewport, SceneLook look) const;
   /// What of the picture depends on the mouse and the hand.
   void add_to(PictureDigest& digest) const;
@@ -52,6 +54,9 @@ class ScenePane {
   void draw_labels(const ScenePaneInput& input) const;
   void draw_axes(ImDrawList& list, const Style& style) const;
   void draw_tools(const ScenePaneInput& input);
+  /// Why nothing pushes back, and the button for it; true if that is pressed.
+  bool draw_force_offer(const ScenePaneInput& input) const;
+  void draw_replay_frame(const Style& style) const;
   ImVec2 on_screen(glm::vec3 workspace_point_m) const;
 
   std::unique_ptr<Renderer> renderer_;

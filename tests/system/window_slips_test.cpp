@@ -1,0 +1,174 @@
+// What a slip of the hand does to the arm: numbers that are half typed, commas, the wrong key, a replay over a live
+// arm.
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include <frame/value_range.hpp>
+
+#include "window_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using protocol::Parameter;
+
+namespace {
+
+const std::string stiffness = "tuning/wall_stiffness_N_per_m";
+const float stiffness_at_start = protocol::info(Parameter::wall_stiffness_N_per_m).default_value;
+
+const auto force_is_on = [](const Sight& now) { return now.state() == "active"; };
+const auto force_is_off = [](const Sight& now) { return now.state() == "ready"; };
+
+/// After a frame in which nothing more can be on its way, the value that the device holds at the end of the test.
+float stiffness_held_at_the_end(WindowRig& rig) {
+  rig.control.run(0.1);
+  rig.control.resume();
+  return rig.close_and_read_parameters()[Parameter::wall_stiffness_N_per_m];
+}
+
+}  // namespace
+
+TEST_CASE("a number is not sent while it is typed, but when Enter ends it") {
+  WindowRig rig;
+  const auto before = rig.look().applied_at_periods();
+  rig.enter(stiffness, "1500");
+  rig.control.run(0.2);  // in which a half-typed number would arrive
+  rig.control.resume();
+  CHECK(rig.look().applied_at_periods() == before);
+  rig.press_key("Return");
+  rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
+}
+
+TEST_CASE("a click selects the whole number and sends nothing") {
+  WindowRig rig;
+  rig.click(stiffness);
+  rig.type("900");  // takes the place of what was selected
+  rig.click("tabs/Tuning");
+  CHECK(stiffness_held_at_the_end(rig) == 900.0f);
+}
+
+TEST_CASE("a number is sent when a click goes elsewhere, also to a field above it") {
+  WindowRig rig;
+  rig.enter(stiffness, "1500");
+  SUBCASE("beside all fields") { rig.click("tabs/Tuning"); }
+  SUBCASE("a field above") { rig.click("tuning/sphere_radius_m"); }
+  SUBCASE("a field below") { rig.click("tuning/wall_damping_Ns_per_m"); }
+  SUBCASE("the next by Tab") { rig.press_key("Tab"); }
+  CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
+}
+
+TEST_CASE("Escape gives back the value that was there, sends nothing, and switches the force off") {
+  WindowRig rig;
+  rig.switch_force_on();
+  rig.enter(stiffness, "1500");
+  rig.press_key("Escape");
+  rig.look_until("the force is off", force_is_off);
+  CHECK(stiffness_held_at_the_end(rig) == stiffness_at_start);
+}
+
+TEST_CASE("what is no number, or out of range, leaves the old value and is told") {
+  WindowRig rig;
+  std::string typed, told;
+  SUBCASE("a comma") { typed = "1,35", told = "with a decimal point and without commas"; }
+  SUBCASE("letters") { typed = "12abc", told = "is not a number"; }
+  SUBCASE("nothing") { typed = " ", told = "is not a number"; }
+  SUBCASE("too much") { typed = "3000.5", told = "outside its range"; }
+  SUBCASE("below zero") { typed = "-1", told = "outside its range"; }
+  SUBCASE("infinite") { typed = "inf", told = "outside its range"; }
+  rig.enter(stiffness, typed);
+  rig.press_key("Return");
+  rig.look_until("it is told", [&](const Sight& now) { return now.says(told) && now.says("stays as it was"); });
+  CHECK(stiffness_held_at_the_end(rig) == stiffness_at_start);
+}
+
+TEST_CASE("a value that the device refuses leaves the old one") {
+  WindowRig rig;
+  const auto upper_m = WindowRig::parameters_at_start()[Parameter::box_maximum_x_m];
+  rig.enter("tuning/box_minimum_x_m", std::to_string(upper_m + 0.1f));
+  rig.press_key("Return");
+  rig.look_until("it is told", [](const Sight& now) { return now.says("box_minimum_x_m"); });
+  rig.control.run(0.1);
+  rig.control.resume();
+  CHECK(rig.close_and_read_parameters() == WindowRig::parameters_at_start());
+}
+
+TEST_CASE("space is a space while a text is typed; Escape and F12 switch the force off, also then") {
+  WindowRig rig;
+  rig.switch_force_on();
+  rig.click("tabs/Recording");
+  rig.enter("recording/file", "two words");
+  rig.control.run(0.1);  // for a command on its way
+  rig.control.resume();
+  CHECK(rig.look().state() == "active");
+  SUBCASE("Escape") { rig.press_key("Escape"); }
+  SUBCASE("F12") { rig.press_key("F12"); }
+  rig.look_until("the force is off", force_is_off);
+}
+
+TEST_CASE("Ctrl+Z goes by the character, wherever the keyboard has it") {
+  WindowRig rig;
+  rig.set_keyboard_layout("de");
+  const auto press_with_ctrl = [&](const char* key) {
+    const auto before = rig.look().applied_at_periods();
+    rig.press_key(std::string("ctrl+") + key);
+    rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  };
+  rig.enter(stiffness, "1500");
+  rig.press_key("Return");
+  rig.look_until("it was sent", [](const Sight& now) { return now.can_click("tuning/Undo"); });
+  press_with_ctrl("z");
+  CHECK(rig.look().can_click("tuning/Redo"));
+  press_with_ctrl("y");
+  CHECK_FALSE(rig.look().can_click("tuning/Redo"));
+  CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
+}
+
+TEST_CASE("a page lists the keys") {
+  WindowRig rig;
+  SUBCASE("F1") { rig.press_key("F1"); }
+  SUBCASE("?") { rig.press_key("question"); }
+  SUBCASE("its button") { rig.click("status/?"); }
+  rig.look_until("it is there", [](const Sight& now) { return now.says("Switch the force off, always"); });
+  rig.click("Keys and mouse/Close");
+  rig.look_until("it is gone", [](const Sight& now) { return !now.says("Switch the force off, always"); });
+}
+
+TEST_CASE("the scene says why no wall pushes back, and has the button for it") {
+  WindowRig rig;
+  REQUIRE(rig.look().says("The force is off: walls do not push back."));
+  rig.click("scene/Switch force on");
+  rig.look_until("the force is on", force_is_on);
+  CHECK_FALSE(rig.look().says("The force is off"));
+}
+
+TEST_CASE("a recording is seen from every pane, and is replayed only when the force is off") {
+  const TemporaryDirectory directory;
+  WindowRig rig;
+  rig.click("tabs/Recording");
+  rig.enter("recording/file", directory.file("push.h5"));
+  rig.click("recording/Start recording");
+  rig.click("tabs/Tuning");
+  rig.look_until("the tab shows its time", [](const Sight& now) { return now.says("0:0"); });
+  rig.click("tabs/Recording");
+  rig.click("recording/Stop recording");
+  rig.look_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
+
+  rig.switch_force_on();
+  rig.click("recording/Replay the last one");
+  rig.click("force before replay/Cancel");
+  rig.look_until("the question is gone", [](const Sight& now) { return !now.has("force before replay/Cancel"); });
+  CHECK(rig.look().state() == "active");
+  CHECK_FALSE(rig.look().says("REPLAY"));
+
+  rig.click("recording/Replay the last one");
+  rig.click("force before replay/Switch off and replay");
+  const auto replay = rig.look_until("the replay says what it is", [](const Sight& now) { return now.says("REPLAY"); });
+  CHECK(replay.state() == "ready");
+  CHECK_FALSE(replay.can_click("status/Switch force on"));  // not while the arm is out of sight
+  CHECK_FALSE(replay.has("scene/Switch force on"));
+  rig.control.run(0.1);
+  rig.control.resume();
+  CHECK(rig.look().state() == "ready");
+}
