@@ -110,6 +110,11 @@ int Scheduler::rate_Hz() const {
   return static_cast<int>(pose_rate_Hz / poses_in_tick_);
 }
 
+double Scheduler::measured_rate_Hz() const {
+  const double measured_Hz = measured_rate_Hz_;
+  return measured_Hz > 0.0 ? measured_Hz : rate_Hz();
+}
+
 double Scheduler::time_since_tick_s() const {
   if (ticks_ == 0) return 0.0;
   return std::chrono::duration<double>(Clock::now() - tick_began_.load()).count();

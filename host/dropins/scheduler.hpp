@@ -34,8 +34,8 @@ class Scheduler {
   /// False for a rate at which no device sends poses.
   bool set_rate(unsigned long rate_Hz);
   int rate_Hz() const;
-  /// Of the last tick, by the clock of the device that paces; 0 if there is none.
-  double measured_rate_Hz() const { return measured_rate_Hz_; }
+  /// Of the last tick, by the clock of the device that paces, and the rate that is set while that is not known.
+  double measured_rate_Hz() const;
 
   /// invalid_handle if there are as many as it takes. By the servo thread it is called at once, before it is listed.
   TaskHandle add(Callback callback, void* user, unsigned short priority);
@@ -76,7 +76,7 @@ class Scheduler {
   std::atomic<std::thread::id> servo_thread_id_{};
   std::atomic<std::uint64_t> ticks_ = 0;
   std::atomic<std::chrono::steady_clock::time_point> tick_began_{};
-  std::atomic<double> measured_rate_Hz_ = 0.0;
+  std::atomic<double> measured_rate_Hz_ = 0.0;  ///< 0 if it is not known
   std::thread thread_;
 };
 

@@ -1,6 +1,7 @@
 // libHD.so: callbacks, their order and their time.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -105,6 +106,38 @@ TEST_CASE("a tick is a millisecond of the board, or two") {
   CHECK(only_error() == HD_INVALID_VALUE);
   hdSetSchedulerRate(1000);
   CHECK(hdGetSchedulerTimeStamp() >= 0.0);
+}
+
+TEST_CASE("the measured rate is never nought: programs make time of it by 1 / rate, from the first tick on") {
+  struct Rates {
+    double lowest_Hz = 1e9;
+    int ticks = 0;
+  };
+  const auto look = [](void* user) {
+    auto& rates = *static_cast<Rates*>(user);
+    double rate_Hz = 0;
+    hdGetDoublev(HD_INSTANTANEOUS_UPDATE_RATE, &rate_Hz);
+    rates.lowest_Hz = std::min(rates.lowest_Hz, rate_Hz);
+    return ++rates.ticks < 20 ? HD_CALLBACK_CONTINUE : HD_CALLBACK_DONE;
+  };
+  Board board;
+  forget_errors();
+  const HHD device = hdInitDevice(nullptr);
+  REQUIRE(device == 0);
+  Rates rates;
+  look(&rates);
+  for (const double pause_s : {0.0, 2.5}) {  // the tick after the second is of 0.4 Hz
+    const double begin_s = board.time_s();
+    while (board.time_s() - begin_s < pause_s) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    rates.ticks = 0;
+    const auto task = hdScheduleAsynchronous(look, &rates, HD_DEFAULT_SCHEDULER_PRIORITY);
+    hdStartScheduler();
+    CHECK(hdWaitForCompletion(task, HD_WAIT_INFINITE) == 1);
+    hdStopScheduler();
+  }
+  CHECK(rates.lowest_Hz >= 1.0);
+  hdDisableDevice(device);
+  CHECK(only_error() == HD_SUCCESS);
 }
 
 }  // namespace
