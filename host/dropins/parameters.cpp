@@ -103,8 +103,8 @@ std::string simulation_mark(const Source& source) {
 const Parameter table[] = {
     {0x2000, 0x2200, "CURRENT_BUTTONS", "bits", 1, type_integer, "1 and 2 for the stylus's buttons",
      [](const Source& s, double* v) { *v = (pose(s).button_1 ? button_1 : 0) | (pose(s).button_2 ? button_2 : 0); }},
-    {0x2001, 0x2201, "CURRENT_SAFETY_SWITCH", "", 1, type_boolean, "always 1: the arm has none",
-     [](const Source&, double* v) { *v = 1; }},
+    {0x2001, 0x2201, "CURRENT_SAFETY_SWITCH", "", 1, type_boolean, "always 0: the arm has none",
+     [](const Source&, double* v) { *v = 0; }},
     {0x2002, 0x2202, "CURRENT_INKWELL_SWITCH", "", 1, type_boolean, "0 while the stylus is in the inkwell",
      [](const Source& s, double* v) { *v = pose(s).in_inkwell == 0; }},
     {0x2010, 0x2210, "CURRENT_ENCODER_VALUES", "counts", 6, type_long,

@@ -165,6 +165,9 @@ TEST_CASE("what a frame sees: the stylus's place, attitude and switches, in HDAP
   HDboolean inkwell = 7;
   hdGetBooleanv(HD_CURRENT_INKWELL_SWITCH, &inkwell);
   CHECK(inkwell == 1);
+  HDboolean safety = 7;
+  hdGetBooleanv(HD_CURRENT_SAFETY_SWITCH, &safety);
+  CHECK(safety == 0);  // on, the force would be off
   held.control.buttons(false, true);
   int buttons = 0, before = 0;
   CHECK(until([&] {
