@@ -192,12 +192,21 @@ void FakeUsbipServer::serve_transfers(int client) {
       waiting_[endpoint].push_back(sequence);
       match(endpoint);
     } else {
-      protocol::CommandReport report{};
-      std::memcpy(&report, data.data(), std::min(data.size(), sizeof report));
-      commands_.push_back(report);
+      take_output(data);
       answer(client, sequence, 0, {}, static_cast<std::uint32_t>(data.size()));
     }
   }
+}
+
+void FakeUsbipServer::take_output(const Bytes& data) {
+  const auto take = [&](auto report, auto& into) {
+    std::memcpy(&report, data.data(), std::min(data.size(), sizeof report));
+    into.push_back(report);
+  };
+  if (data[0] == std::byte{static_cast<std::uint8_t>(protocol::ReportId::force)})
+    take(protocol::ForceReport{}, forces_);
+  else
+    take(protocol::CommandReport{}, commands_);
 }
 
 void FakeUsbipServer::take_back(int client, std::uint32_t sequence, std::uint32_t unlinked_sequence) {
@@ -247,23 +256,18 @@ std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)
   }
   if (setup[0] == 0x00 && setup[1] == 9) return Bytes{};
   if (setup[0] == 0xA1 && setup[1] == 1 && setup[3] == 3) {
-    switch (static_cast<protocol::ReportId>(setup[2])) {
-      case protocol::ReportId::information: return limited(bytes_of(information));
-      case protocol::ReportId::transaction: return limited(bytes_of(transaction_));
-      case protocol::ReportId::force_law:
-        return limited(Bytes(control::installed_force_law.report,
-                             control::installed_force_law.report + control::installed_force_law.report_size));
-      case protocol::ReportId::parameters: {
-        protocol::ParametersReport report{};
-        report.report_id = protocol::ReportId::parameters;
-        report.version = protocol::protocol_version;
-        report.count = protocol::parameter_count;
-        for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-          report.entries[i] = {protocol::parameter_table[i].id, 0, parameters.values[i]};
-        return limited(bytes_of(report));
-      }
-      default: return std::nullopt;
+    const auto id = static_cast<protocol::ReportId>(setup[2]);
+    auto report = feature_report(id);
+    if (report && spoil.contains(id)) spoil[id](*report);
+    return report ? std::optional(limited(*report)) : std::nullopt;
+  }
+  if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x14) {
+    if (shapes_stalls > 0) {
+      --shapes_stalls;
+      return std::nullopt;
     }
+    shapes_placed_.push_back(data);
+    return Bytes{};
   }
   if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x11) {
     protocol::ParametersReport report{};
@@ -279,9 +283,30 @@ std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)
     for (std::size_t i = 0; i < report.count; ++i)
       if (const auto parameter = protocol::find_parameter(report.entries[i].id))
         parameters[*parameter] = report.entries[i].value;
-    return Bytes{};
+    return stalls_accepted ? std::nullopt : std::optional(Bytes{});
   }
   return std::nullopt;
+}
+
+std::optional<Bytes> FakeUsbipServer::feature_report(protocol::ReportId id) {
+  switch (id) {
+    case protocol::ReportId::information: return bytes_of(information);
+    case protocol::ReportId::transaction: return bytes_of(transaction_);
+    case protocol::ReportId::frame: return bytes_of(frame);
+    case protocol::ReportId::force_law:
+      return Bytes(control::installed_force_law.report,
+                   control::installed_force_law.report + control::installed_force_law.report_size);
+    case protocol::ReportId::parameters: {
+      protocol::ParametersReport report{};
+      report.report_id = protocol::ReportId::parameters;
+      report.version = protocol::protocol_version;
+      report.count = protocol::parameter_count;
+      for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+        report.entries[i] = {protocol::parameter_table[i].id, 0, parameters.values[i]};
+      return bytes_of(report);
+    }
+    default: return std::nullopt;
+  }
 }
 
 void FakeUsbipServer::send(std::uint8_t endpoint, Bytes data) {
@@ -298,6 +323,16 @@ void FakeUsbipServer::hang_up() {
 std::vector<protocol::CommandReport> FakeUsbipServer::commands() {
   const std::lock_guard lock(mutex_);
   return commands_;
+}
+
+std::vector<protocol::ForceReport> FakeUsbipServer::forces() {
+  const std::lock_guard lock(mutex_);
+  return forces_;
+}
+
+std::vector<Bytes> FakeUsbipServer::shapes_placed() {
+  const std::lock_guard lock(mutex_);
+  return shapes_placed_;
 }
 
 std::size_t FakeUsbipServer::waiting_transfers(std::uint8_t endpoint) {

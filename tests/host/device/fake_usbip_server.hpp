@@ -38,12 +38,19 @@ class FakeUsbipServer {
   bool refuses_import = false;
   Bytes configuration;  ///< descriptor
   protocol::InformationReport information{};
+  protocol::FrameReport frame{};
   protocol::ParameterSet parameters = protocol::default_parameters();
   /// What becomes of a transaction; called with its entries.
   std::function<protocol::Refusal(const protocol::ParametersReport&)> judge = [](const protocol::ParametersReport&) {
     return protocol::Refusal::accepted;
   };
   bool stalls_refusals = false;
+  /// A transaction that was accepted ends in a stall all the same.
+  bool stalls_accepted = false;
+  /// Stalls this many reports of shapes, before it takes them in.
+  std::atomic<int> shapes_stalls = 0;
+  /// Changes what a feature report says on its way to the client.
+  std::map<protocol::ReportId, std::function<void(Bytes&)>> spoil;
   /// Cuts the connection at this many transactions, before it takes them in.
   std::atomic<int> transactions_to_break_at = 0;
   /// Called just before that.
@@ -57,6 +64,9 @@ class FakeUsbipServer {
   void hang_up();
 
   std::vector<protocol::CommandReport> commands();
+  std::vector<protocol::ForceReport> forces();
+  /// The reports of shapes that were taken in, each as long as it came.
+  std::vector<Bytes> shapes_placed();
   std::size_t waiting_transfers(std::uint8_t endpoint);
   /// How often the client took a transfer back.
   std::size_t transfers_taken_back();
@@ -69,8 +79,10 @@ class FakeUsbipServer {
   void serve_transfers(int client);
   void take_back(int client, std::uint32_t sequence, std::uint32_t unlinked_sequence);
   void match(std::uint8_t endpoint);
+  void take_output(const Bytes& data);
   void answer(int client, std::uint32_t sequence, std::int32_t status, const Bytes& data, std::uint32_t length);
   std::optional<Bytes> answer_control(const std::uint8_t (&setup)[8], const Bytes& data);
+  std::optional<Bytes> feature_report(protocol::ReportId id);
 
   int listener_ = -1;
   std::uint16_t port_ = 0;
@@ -81,6 +93,8 @@ class FakeUsbipServer {
   std::map<std::uint8_t, std::deque<std::uint32_t>> waiting_;
   std::map<std::uint8_t, std::deque<Bytes>> ready_;
   std::vector<protocol::CommandReport> commands_;
+  std::vector<protocol::ForceReport> forces_;
+  std::vector<Bytes> shapes_placed_;
   protocol::TransactionReport transaction_{};
   std::size_t taken_back_ = 0;
   std::size_t imports_ = 0;

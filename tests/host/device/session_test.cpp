@@ -146,6 +146,63 @@ TEST_CASE("what is asked for while a change is on its way in vain comes after it
   CHECK(server.transactions() == 1);
 }
 
+TEST_CASE("defaults that were restored are not restored again when the change after them did not get through") {
+  FakeUsbipServer server;
+  std::atomic<int> restorations = 0;
+  server.judge = [&](const protocol::ParametersReport& report) {
+    if (report.operation == protocol::ParameterOperation::restore_defaults) {
+      ++restorations;
+      server.transactions_to_break_at = 1;
+    }
+    return protocol::Refusal::accepted;
+  };
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  session.restore_default_parameters();
+  session.set_parameters({{Parameter::force_limit_N, 2.5f}});
+  REQUIRE(eventually([&] { return server.imports() == 2 && is_connected(session); }));
+  CHECK(eventually([&] { return (*session.parameters())[Parameter::force_limit_N] == 2.5f; }));
+  CHECK(restorations == 1);
+  CHECK(server.transactions() == 2);
+}
+
+TEST_CASE("what is asked for while a transaction is under way follows it") {
+  FakeUsbipServer server;
+  std::optional<device::Session> session;
+  server.judge = [&](const protocol::ParametersReport& report) {
+    if (report.entries[0].id == info(Parameter::force_limit_N).id) {
+      session->set_parameters({{Parameter::sphere_radius_m, 0.004f}});
+      session->send(protocol::Command::clear_fault);
+      session->select_signals({protocol::Signal::force_N});
+    }
+    return protocol::Refusal::accepted;
+  };
+  session.emplace([&] { return std::optional(server.endpoint()); });
+  REQUIRE(eventually([&] { return is_connected(*session); }));
+  session->set_parameters({{Parameter::force_limit_N, 2.5f}});
+  CHECK(eventually([&] { return (*session->parameters())[Parameter::sphere_radius_m] == 0.004f; }));
+  CHECK((*session->parameters())[Parameter::force_limit_N] == 2.5f);
+  CHECK(count_of(server, protocol::Command::clear_fault) == 1);
+  CHECK(count_of(server, protocol::Command::select_signals) == 1);
+  CHECK(server.transactions() == 2);
+}
+
+TEST_CASE("a transaction that the device stalls is not sent again by the connection after it") {
+  FakeUsbipServer server;
+  server.stalls_accepted = true;
+  std::atomic<int> limits = 0, radii = 0;
+  server.judge = [&](const protocol::ParametersReport& report) {
+    for (std::size_t i = 0; i < report.count; ++i)
+      ++(report.entries[i].id == info(Parameter::force_limit_N).id ? limits : radii);
+    return protocol::Refusal::accepted;
+  };
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  session.set_parameters({{Parameter::force_limit_N, 2.5f}});
+  REQUIRE(eventually([&] { return server.imports() == 2 && is_connected(session); }));
+  session.set_parameters({{Parameter::sphere_radius_m, 0.004f}});  // a repetition would go out before it, or with it
+  REQUIRE(eventually([&] { return radii == 1; }));
+  CHECK(limits == 1);
+}
+
 TEST_CASE("while there is no device it is looked for five times a second, not without a break") {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
