@@ -70,7 +70,7 @@ bool complete_one() {
           ended->actual_length =
               give(device.ready.front(), transfer->buffer, static_cast<std::size_t>(transfer->length));
           device.ready.pop_front();
-        } else if (device.unplugged) {
+        } else if (device.unplugged || device.bulk_fails) {
           ended = transfer;
           ended->status = LIBUSB_TRANSFER_NO_DEVICE;
         }
@@ -149,12 +149,15 @@ int LIBUSB_CALL libusb_control_transfer(libusb_device_handle* handle, std::uint8
                                         std::uint16_t value, std::uint16_t, unsigned char* data, std::uint16_t length,
                                         unsigned int) {
   constexpr std::uint8_t get_descriptor = 6;
+  const auto lock = lock_usb();
+  if (handle->device->bulk_fails) return LIBUSB_ERROR_IO;
   if (type != 0x80 || request != get_descriptor || value != 0x0200) return LIBUSB_ERROR_PIPE;
   return give(handle->device->configuration, data, length);
 }
 
 int LIBUSB_CALL libusb_claim_interface(libusb_device_handle* handle, int number) {
   const auto lock = lock_usb();
+  if (handle->device->claim_result != 0) return handle->device->claim_result;
   if (handle->device->taken.contains(number) || !handle->device->claimed.insert(number).second)
     return LIBUSB_ERROR_BUSY;
   ++usb->open_things;
@@ -263,6 +266,7 @@ int hid_read_timeout(hid_device* hid, unsigned char* data, std::size_t length, i
     }
     if (device.unplugged) return fail(ENODEV);
   }
+  if (timeout_ms < 0) return fail(EDEADLK);  // it would wait for ever
   std::this_thread::sleep_for(std::chrono::milliseconds(std::min(timeout_ms, 1)));
   return 0;
 }
@@ -333,6 +337,11 @@ void FakeUsb::send_report(FakeUsbDevice& device, Bytes report) {
 void FakeUsb::unplug(FakeUsbDevice& device) {
   const std::lock_guard lock(mutex);
   device.unplugged = true;
+}
+
+void FakeUsb::set_bulk_fails(FakeUsbDevice& device, bool fails) {
+  const std::lock_guard lock(mutex);
+  device.bulk_fails = fails;
 }
 
 std::size_t FakeUsb::bulk_left(const FakeUsbDevice& device) {

@@ -27,6 +27,8 @@ struct FakeUsbDevice {
   std::string serial_number;
   Bytes configuration;      ///< descriptor
   int open_result = 0;      ///< of libusb_open
+  int claim_result = 0;     ///< of libusb_claim_interface
+  bool bulk_fails = false;  ///< every transfer of the scope, and reading the configuration
   std::set<int> taken{};    ///< interfaces that another program has claimed
   std::set<int> claimed{};  ///< interfaces that this program has claimed
   bool unplugged = false;
@@ -57,6 +59,8 @@ class FakeUsb {
   void send_bulk(FakeUsbDevice& device, Bytes data);
   void send_report(FakeUsbDevice& device, Bytes report);
   void unplug(FakeUsbDevice& device);
+  /// From now on or no more.
+  void set_bulk_fails(FakeUsbDevice& device, bool fails);
   /// Bulk data that no transfer has taken yet.
   std::size_t bulk_left(const FakeUsbDevice& device);
 

@@ -14,6 +14,7 @@
 #include <span>
 
 #include <control/installed_force_law.hpp>
+#include <protocol/scope.hpp>
 #include <usbip/messages.hpp>
 
 namespace inkwell::tests {
@@ -42,6 +43,9 @@ Bytes bytes(std::initializer_list<int> values) {
   return result;
 }
 
+constexpr std::uint32_t bus_number = 1, device_number = 2;
+constexpr std::uint8_t hid_interface = 0, hid_out_endpoint = 1, scope_endpoint = 2;
+
 /// HID with two interrupt endpoints, then a vendor interface with one bulk endpoint.
 Bytes default_configuration() {
   return bytes({9, 2,    57,   0, 2,  1,    0,    0x80, 50,                       //
@@ -60,9 +64,18 @@ Bytes string_descriptor(const std::string& text) {
   return descriptor;
 }
 
+/// As much of a reply as was asked for.
+Bytes limited(const std::uint8_t (&setup)[8], Bytes reply) {
+  const std::size_t length = setup[6] | static_cast<std::size_t>(setup[7]) << 8;
+  reply.resize(std::min(reply.size(), length));
+  return reply;
+}
+
 }  // namespace
 
-FakeUsbipServer::FakeUsbipServer() : configuration(default_configuration()) {
+FakeUsbipServer::FakeUsbipServer()
+    : device_descriptor(bytes({18, 1, 0, 2, 0, 0, 0, 64, 0x09, 0x12, 1, 0, 0, 1, 1, 2, 3, 1})),
+      configuration(default_configuration()) {
   information.report_id = protocol::ReportId::information;
   information.version = protocol::protocol_version;
   information.parameter_table_hash = protocol::parameter_table_hash;
@@ -111,6 +124,7 @@ void FakeUsbipServer::accept_clients() {
     const std::lock_guard lock(mutex_);
     close(client);
     client_ = -1;
+    is_configured_ = false;
     waiting_.clear();
     ready_.clear();
   }
@@ -128,11 +142,12 @@ void FakeUsbipServer::serve(int client) {
   std::optional<usbip::BusId> bus_id;
   if (imports_device && !(bus_id = receive<usbip::BusId>(client))) return;
 
-  const usbip::Device device{.bus_id = {"1-1"},
-                             .bus_number = 1,
-                             .device_number = 2,
+  const usbip::Device device{.path = {path},
+                             .bus_id = {"1-1"},
+                             .bus_number = bus_number,
+                             .device_number = device_number,
                              .speed = usbip::Speed::full,
-                             .vendor_id = 0x1209,
+                             .vendor_id = vendor_id,
                              .product_id = product_id,
                              .device_release = 0x0100,
                              .configuration = 1,
@@ -150,6 +165,7 @@ void FakeUsbipServer::serve(int client) {
                                   .status = refused ? usbip::OperationStatus::busy : usbip::OperationStatus::success});
     if (!refused) append(reply, device);
   }
+  spoil_reply(reply);
   ::send(client, reply.data(), reply.size(), MSG_NOSIGNAL);
   if (imports_device && !refused) {
     {
@@ -163,6 +179,7 @@ void FakeUsbipServer::serve(int client) {
 void FakeUsbipServer::serve_transfers(int client) {
   while (const auto submit = receive<usbip::Submit>(client)) {
     const std::uint32_t sequence = submit->header.sequence;
+    if (submit->header.device != usbip::device_of(bus_number, device_number)) return;  // as Linux' server does
     if (submit->header.command == usbip::Command::unlink) {
       const std::lock_guard lock(mutex_);
       take_back(client, sequence, std::bit_cast<usbip::Unlink>(*submit).unlinked_sequence);
@@ -188,12 +205,14 @@ void FakeUsbipServer::serve_transfers(int client) {
       const Bytes empty;
       answer(client, sequence, result ? 0 : -EPIPE, result && is_in ? *result : empty,
              is_in ? 0 : static_cast<std::uint32_t>(data.size()));
+    } else if (is_in && endpoint == scope_endpoint && scope_is_taken) {
+      answer(client, sequence, -EBUSY, {}, 0);
     } else if (is_in) {
       waiting_[endpoint].push_back(sequence);
       match(endpoint);
-    } else {
+    } else if (endpoint == hid_out_endpoint) {
       take_output(data);
-      answer(client, sequence, 0, {}, static_cast<std::uint32_t>(data.size()));
+      if (!holds_outputs) answer(client, sequence, output_status, {}, static_cast<std::uint32_t>(data.size()));
     }
   }
 }
@@ -237,29 +256,34 @@ void FakeUsbipServer::answer(int client, std::uint32_t sequence, std::int32_t st
   Bytes reply;
   append(reply, header);
   reply.insert(reply.end(), data.begin(), data.end());
-  ::send(client, reply.data(), reply.size(), MSG_NOSIGNAL);
+  constexpr std::size_t first = 10;  // a stream may bring it in pieces
+  ::send(client, reply.data(), first, MSG_NOSIGNAL);
+  ::send(client, reply.data() + first, reply.size() - first, MSG_NOSIGNAL);
 }
 
 std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)[8], const Bytes& data) {
-  const auto limited = [&](Bytes reply) {
-    const std::size_t length = setup[6] | static_cast<std::size_t>(setup[7]) << 8;
-    reply.resize(std::min(reply.size(), length));
-    return reply;
-  };
   if (setup[0] == 0x80 && setup[1] == 6) {
     switch (setup[3]) {
-      case 1: return limited(bytes({18, 1, 0, 2, 0, 0, 0, 64, 0x09, 0x12, 1, 0, 0, 1, 1, 2, 3, 1}));
-      case 2: return limited(configuration);
-      case 3: return limited(string_descriptor(setup[2] == 3 ? "0123456789ABCDEF01234567" : "Inkwell haptic arm"));
+      case 1: return limited(setup, device_descriptor);
+      case 2: return limited(setup, configuration);
+      case 3:
+        return limited(setup, string_descriptor(setup[2] == 3 ? "0123456789ABCDEF01234567" : "Inkwell haptic arm"));
       default: return std::nullopt;
     }
   }
-  if (setup[0] == 0x00 && setup[1] == 9) return Bytes{};
+  if (setup[0] == 0x00 && setup[1] == 9) {
+    is_configured_ = std::byte{setup[2]} == configuration[5];
+    return Bytes{};
+  }
+  return is_configured_ && setup[4] == hid_interface ? answer_report_request(setup, data) : std::nullopt;
+}
+
+std::optional<Bytes> FakeUsbipServer::answer_report_request(const std::uint8_t (&setup)[8], const Bytes& data) {
   if (setup[0] == 0xA1 && setup[1] == 1 && setup[3] == 3) {
     const auto id = static_cast<protocol::ReportId>(setup[2]);
     auto report = feature_report(id);
     if (report && spoil.contains(id)) spoil[id](*report);
-    return report ? std::optional(limited(*report)) : std::nullopt;
+    return report ? std::optional(limited(setup, *report)) : std::nullopt;
   }
   if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x14) {
     if (shapes_stalls > 0) {
@@ -277,6 +301,8 @@ std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)
         transaction_.refusal == protocol::Refusal::accepted ? std::uint16_t{0} : report.entries[0].id;
     transaction_.value = report.entries[0].value;
     ++transaction_.transactions;
+    if (transaction_.refusal == protocol::Refusal::accepted)
+      transaction_.applied_at_periods = 100 * transaction_.transactions;
     if (transaction_.refusal != protocol::Refusal::accepted)
       return stalls_refusals ? std::nullopt : std::optional(Bytes{});
     if (report.operation == protocol::ParameterOperation::restore_defaults) parameters = protocol::default_parameters();
@@ -313,6 +339,17 @@ void FakeUsbipServer::send(std::uint8_t endpoint, Bytes data) {
   const std::lock_guard lock(mutex_);
   ready_[endpoint].push_back(std::move(data));
   match(endpoint);
+}
+
+void FakeUsbipServer::fail(std::uint8_t endpoint, std::int32_t status) {
+  const std::lock_guard lock(mutex_);
+  answer(client_, waiting_[endpoint].front(), status, {}, 0);
+  waiting_[endpoint].pop_front();
+}
+
+void FakeUsbipServer::send_unasked(std::span<const std::byte> bytes) {
+  const std::lock_guard lock(mutex_);
+  ::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
 void FakeUsbipServer::hang_up() {
@@ -353,6 +390,19 @@ std::size_t FakeUsbipServer::transactions() {
 std::size_t FakeUsbipServer::imports() {
   const std::lock_guard lock(mutex_);
   return imports_;
+}
+
+Bytes scope_frame(std::uint8_t token, std::uint32_t first_period, float value) {
+  protocol::ScopeFrameHeader header{};
+  header.first_period = first_period;
+  header.sample_count = 1;
+  header.signal_count = 1;
+  header.selection_token = token;
+  header.length = sizeof header + sizeof value;
+  Bytes frame = bytes_of(header);
+  const Bytes sample = bytes_of(value);
+  frame.insert(frame.end(), sample.begin(), sample.end());
+  return frame;
 }
 
 bool eventually(const std::function<bool()>& condition) {

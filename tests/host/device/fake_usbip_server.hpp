@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -34,8 +35,13 @@ class FakeUsbipServer {
   device::Endpoint endpoint() const;
 
   // Set before a client comes.
+  std::string path;  ///< of the device on the server
+  std::uint16_t vendor_id = 0x1209;
   std::uint16_t product_id = 0x0001;
   bool refuses_import = false;
+  /// Changes the reply to the first request of a client.
+  std::function<void(Bytes&)> spoil_reply = [](Bytes&) {};
+  Bytes device_descriptor;
   Bytes configuration;  ///< descriptor
   protocol::InformationReport information{};
   protocol::FrameReport frame{};
@@ -55,11 +61,21 @@ class FakeUsbipServer {
   std::atomic<int> transactions_to_break_at = 0;
   /// Called just before that.
   std::function<void()> on_break = [] {};
+  /// Another program has the scope: its transfers end at once, and say so.
+  std::atomic<bool> scope_is_taken = false;
+  /// Output reports are taken in but not answered.
+  std::atomic<bool> holds_outputs = false;
+  /// What the answer to an output report says: 0 or a negative errno.
+  std::atomic<std::int32_t> output_status = 0;
   /// Takes connections and answers nothing.
   bool silent = false;
 
   /// Answers the oldest waiting transfer of this IN endpoint (1 pose, 2 scope), now or when it comes.
   void send(std::uint8_t endpoint, Bytes data);
+  /// Ends the oldest waiting transfer of this IN endpoint with a negative errno.
+  void fail(std::uint8_t endpoint, std::int32_t status);
+  /// Sends bytes that are no answer to anything.
+  void send_unasked(std::span<const std::byte> bytes);
   /// Cuts the connection, as a board that was stopped would.
   void hang_up();
 
@@ -81,6 +97,7 @@ class FakeUsbipServer {
   void match(std::uint8_t endpoint);
   void take_output(const Bytes& data);
   void answer(int client, std::uint32_t sequence, std::int32_t status, const Bytes& data, std::uint32_t length);
+  std::optional<Bytes> answer_report_request(const std::uint8_t (&setup)[8], const Bytes& data);
   std::optional<Bytes> answer_control(const std::uint8_t (&setup)[8], const Bytes& data);
   std::optional<Bytes> feature_report(protocol::ReportId id);
 
@@ -89,6 +106,7 @@ class FakeUsbipServer {
   std::thread thread_;
   std::mutex mutex_;
   int client_ = -1;
+  bool is_configured_ = false;
   bool stopping_ = false;
   std::map<std::uint8_t, std::deque<std::uint32_t>> waiting_;
   std::map<std::uint8_t, std::deque<Bytes>> ready_;
@@ -99,6 +117,9 @@ class FakeUsbipServer {
   std::size_t taken_back_ = 0;
   std::size_t imports_ = 0;
 };
+
+/// A scope frame of one sample of one signal that is a float.
+Bytes scope_frame(std::uint8_t token, std::uint32_t first_period, float value);
 
 /// Waits, at most a minute, until the condition holds.
 bool eventually(const std::function<bool()>& condition);

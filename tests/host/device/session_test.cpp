@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <cstring>
+#include <optional>
 #include <thread>
 
 #include <device/session.hpp>
@@ -25,6 +28,13 @@ std::size_t count_of(FakeUsbipServer& server, protocol::Command command) {
   const auto commands = server.commands();
   return static_cast<std::size_t>(
       std::count_if(commands.begin(), commands.end(), [&](const auto& report) { return report.command == command; }));
+}
+
+protocol::PoseReport pose_at(std::uint32_t time_periods) {
+  protocol::PoseReport pose{};
+  pose.report_id = protocol::ReportId::pose;
+  pose.time_periods = time_periods;
+  return pose;
 }
 
 bool is_connected(const device::Session& session) { return session.status().connection == Connection::connected; }
@@ -54,15 +64,22 @@ TEST_CASE("a session connects, shows pose and parameters, and gives its sign of 
 
 TEST_CASE("changes asked for in a burst go out together, the last value of each parameter") {
   FakeUsbipServer server;
-  device::Session session([&] { return std::optional(server.endpoint()); });
+  std::atomic<int> entries = 0;
+  server.judge = [&](const protocol::ParametersReport& report) {
+    entries += report.count;
+    return protocol::Refusal::accepted;
+  };
+  std::atomic<bool> is_there = false;
+  device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });
   // Queued before there is a device, so all of them are merged into one transaction.
   session.set_parameters({{Parameter::force_limit_N, 1.0f}});
   session.set_parameters({{Parameter::force_limit_N, 2.0f}, {Parameter::sphere_radius_m, 0.004f}});
-  REQUIRE(eventually([&] { return server.transactions() > 0; }));
+  is_there = true;
   REQUIRE(eventually([&] { return session.parameters_revision() >= 2; }));
   CHECK((*session.parameters())[Parameter::force_limit_N] == 2.0f);
   CHECK((*session.parameters())[Parameter::sphere_radius_m] == 0.004f);
-  CHECK(server.transactions() <= 2);
+  CHECK(server.transactions() == 1);
+  CHECK(entries == 2);
   CHECK_FALSE(session.refusal());
 }
 
@@ -201,6 +218,143 @@ TEST_CASE("a transaction that the device stalls is not sent again by the connect
   session.set_parameters({{Parameter::sphere_radius_m, 0.004f}});  // a repetition would go out before it, or with it
   REQUIRE(eventually([&] { return radii == 1; }));
   CHECK(limits == 1);
+}
+
+TEST_CASE("the defaults take the place of changes that were asked for before") {
+  FakeUsbipServer server;
+  std::atomic<bool> is_there = false;
+  device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });
+  session.set_parameters({{Parameter::force_limit_N, 2.5f}});
+  session.restore_default_parameters();
+  is_there = true;
+  REQUIRE(eventually([&] { return server.transactions() > 0; }));
+  session.set_parameters({{Parameter::sphere_radius_m, 0.004f}});
+  REQUIRE(eventually([&] { return (*session.parameters())[Parameter::sphere_radius_m] == 0.004f; }));
+  CHECK((*session.parameters())[Parameter::force_limit_N] == info(Parameter::force_limit_N).default_value);
+  CHECK(server.transactions() == 2);
+}
+
+TEST_CASE("a command for an arm that is not there does not reach the one that comes") {
+  FakeUsbipServer server;
+  std::atomic<bool> is_there = false;
+  device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });
+  session.send(protocol::Command::enable_force);
+  is_there = true;
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  session.send(protocol::Command::clear_fault);
+  REQUIRE(eventually([&] { return was_sent(server, protocol::Command::clear_fault); }));
+  CHECK_FALSE(was_sent(server, protocol::Command::enable_force));
+}
+
+TEST_CASE("parameters and counters are read anew every second of the device's time") {
+  FakeUsbipServer server;
+  std::atomic<int> readings = 0;
+  std::atomic<float> radius_m = 0.0f;  // that another program has set
+  server.spoil[protocol::ReportId::information] = [&](Bytes& report) {
+    report[offsetof(protocol::InformationReport, servo_overruns)] = static_cast<std::byte>(++readings);
+  };
+  server.spoil[protocol::ReportId::parameters] = [&](Bytes& report) {
+    if (radius_m == 0.0f) return;
+    protocol::ParametersReport changed;
+    std::memcpy(&changed, report.data(), sizeof changed);
+    changed.entries[static_cast<std::size_t>(Parameter::sphere_radius_m)].value = radius_m;
+    report = bytes_of(changed);
+  };
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  const int before = readings;
+  const auto revision = session.parameters_revision();
+  std::uint64_t poses = 0;
+  const auto pass = [&](std::uint32_t time_periods) {  // what the first pose brings about is done when the second comes
+    for (int i = 0; i < 2; ++i) {
+      server.send(1, bytes_of(pose_at(time_periods)));
+      REQUIRE(eventually([&, wanted = ++poses] { return session.status().poses_received == wanted; }));
+    }
+  };
+  constexpr std::uint32_t begin = 1000, second = protocol::servo_rate_Hz;
+  pass(begin);
+  pass(begin + second - 1);
+  CHECK(readings == before);
+  pass(begin + second);
+  pass(begin + second + 1);
+  CHECK(readings == before + 1);
+  CHECK(session.parameters_revision() == revision);
+  radius_m = 0.004f;
+  pass(begin + 2 * second);
+  CHECK(readings == before + 2);
+  CHECK(session.status().information->report.servo_overruns == static_cast<std::uint32_t>(before + 2));
+  CHECK((*session.parameters())[Parameter::sphere_radius_m] == 0.004f);
+  CHECK(session.parameters_revision() == revision + 1);
+}
+
+TEST_CASE("a transaction that took effect says when") {
+  FakeUsbipServer server;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  CHECK_FALSE(session.status().applied_at_periods);
+  for (const float limit_N : {1.0f, 2.0f}) {
+    session.set_parameters({{Parameter::force_limit_N, limit_N}});
+    REQUIRE(eventually([&] { return (*session.parameters())[Parameter::force_limit_N] == limit_N; }));
+    CHECK(session.status().applied_at_periods == 100 * server.transactions());
+  }
+}
+
+TEST_CASE("scope frames reach the one who asked for them, counted with those that were lost or malformed") {
+  FakeUsbipServer server;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  std::atomic<std::uint32_t> newest_period = 0;
+  session.on_scope([&](const device::ScopeSamples& samples) { newest_period = samples.first_period; });
+  session.select_signals({protocol::Signal::force_N});
+  REQUIRE(eventually([&] { return was_sent(server, protocol::Command::select_signals); }));
+  for (const auto& command : server.commands()) {
+    if (command.command != protocol::Command::select_signals) continue;
+    server.send(2, scope_frame(command.token, 10, 0.5f));
+    server.send(2, Bytes(64));
+    server.send(2, scope_frame(command.token, 14, 0.5f));
+  }
+  CHECK(eventually([&] { return newest_period == 14; }));
+  CHECK(session.status().scope_samples_received == 2);
+  CHECK(session.status().scope_samples_lost == 3);
+  CHECK(eventually([&] { return session.status().scope_frames_malformed == 1; }));
+}
+
+TEST_CASE("an arm that falls silent is said to be so, and its rate of poses falls to zero") {
+  FakeUsbipServer server;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  for (std::uint32_t i = 0; session.status().pose_rate_Hz == 0.0; ++i) {
+    REQUIRE(i < 60'000);
+    server.send(1, bytes_of(pose_at(i)));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  CHECK(eventually([&] { return session.status().message.find("silent") != std::string::npos; }));
+  CHECK(session.status().pose_rate_Hz == 0.0);
+  CHECK(is_connected(session));
+}
+
+TEST_CASE("nothing is left of an arm that went away, but its parameters") {
+  FakeUsbipServer server;
+  std::atomic<bool> is_there = true;
+  auto endpoint = server.endpoint();
+  endpoint.is_virtual = true;
+  device::Session session([&] { return is_there ? std::optional(endpoint) : std::nullopt; });
+  session.set_parameters({{Parameter::force_limit_N, 2.5f}});
+  REQUIRE(eventually([&] { return session.status().applied_at_periods.has_value(); }));
+  CHECK(session.status().is_simulation);
+  for (std::uint32_t i = 0; session.status().pose_rate_Hz == 0.0; ++i) {
+    REQUIRE(i < 60'000);
+    server.send(1, bytes_of(pose_at(i)));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  is_there = false;
+  server.hang_up();
+  REQUIRE(eventually([&] { return !session.status().information; }));
+  const auto status = session.status();
+  CHECK(status.connection == Connection::searching);
+  CHECK(status.pose_rate_Hz == 0.0);
+  CHECK_FALSE(status.applied_at_periods);
+  CHECK_FALSE(session.newest_pose());
+  CHECK((*session.parameters())[Parameter::force_limit_N] == 2.5f);
 }
 
 TEST_CASE("while there is no device it is looked for five times a second, not without a break") {

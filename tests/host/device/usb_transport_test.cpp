@@ -4,7 +4,9 @@
 #include <libusb-1.0/libusb.h>
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
+#include <optional>
 
 #include <control/installed_force_law.hpp>
 #include <device/device.hpp>
@@ -79,6 +81,7 @@ TEST_CASE("the scope is read from the arm with this serial number, where its des
     transport->claim_scope();  // once is enough
     CHECK(arm.claimed == std::set<int>{0});
     CHECK(usb.endpoints_under_way(arm) == std::vector<std::uint8_t>(21, 0x83));
+    usb.send_bulk(arm, {});  // nothing
     for (int i = 0; i < 100; ++i) usb.send_bulk(arm, bulk_number(i));
     for (int i = 0; i < 100; ++i) {
       REQUIRE(transport->read_bulk(buffer, 5s) == 100);
@@ -187,6 +190,54 @@ TEST_CASE("an arm that went away before its scope is claimed is disconnected") {
     usb.unplug(arm);
     CHECK_THROWS_AS(transport->claim_scope(), device::Disconnected);
   }
+}
+
+TEST_CASE("an interface that can not be had for another reason than its use is a device that went away") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  {
+    const auto transport = device::open_transport(arm.endpoint());
+    SUBCASE("the claim fails") { arm.claim_result = LIBUSB_ERROR_NO_DEVICE; }
+    SUBCASE("its configuration can not be read") { arm.bulk_fails = true; }
+    CHECK_THROWS_AS(transport->claim_scope(), device::Disconnected);
+    CHECK(usb.endpoints_under_way(arm).empty());
+  }
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("a session whose scope breaks connects anew, and goes on with it") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  answer_as_inkwell(arm);
+  std::atomic<int> searches = 0;
+  std::atomic<bool> is_mended = false;
+  {
+    device::Session session([&]() -> std::optional<device::Endpoint> {
+      ++searches;
+      if (searches > 1 && !is_mended) return std::nullopt;
+      return arm.endpoint();
+    });
+    session.select_signals({protocol::Signal::force_N});
+    REQUIRE(eventually([&] { return !usb.endpoints_under_way(arm).empty(); }));
+    usb.set_bulk_fails(arm, true);
+    REQUIRE(eventually([&] { return searches > 1; }));
+    CHECK(usb.endpoints_under_way(arm).empty());
+    usb.set_bulk_fails(arm, false);
+    is_mended = true;
+    CHECK(eventually([&] { return !usb.endpoints_under_way(arm).empty(); }));
+    CHECK(eventually([&] { return session.status().connection == device::Connection::connected; }));
+    const int searches_before = searches;
+    usb.send_bulk(arm, bulk_number(1));  // malformed, so it is counted half a second later
+    CHECK(eventually([&] { return session.status().scope_frames_malformed == 1; }));
+    CHECK(searches == searches_before);
+  }
+  CHECK(usb.open_things == 0);
+}
+
+TEST_CASE("a wait that is over before it begins is none, never one without an end") {
+  FakeUsb usb;
+  device::Device arm(device::open_transport(usb.add_arm("A").endpoint()));
+  CHECK_FALSE(arm.read_pose(-1ms));
 }
 
 TEST_CASE("a reader who stops reading the scope loses the oldest, and what is kept is bounded") {

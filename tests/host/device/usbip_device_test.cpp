@@ -2,6 +2,7 @@
 // which the other end can fail.
 #include <doctest/doctest.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include <device/device.hpp>
 #include <failure.hpp>
+#include <usbip/messages.hpp>
 
 #include "fake_usbip_server.hpp"
 
@@ -36,8 +38,18 @@ TEST_CASE("a USB/IP server is asked for arms, and other devices are passed over"
   const auto found = device::find_usbip_devices("127.0.0.1", server.port());
   REQUIRE(found.size() == 1);
   CHECK(found[0].path == "1-1");
-  server.product_id = 0x0BAD;
+  CHECK_FALSE(found[0].is_virtual);
+  SUBCASE("another product") { server.product_id = 0x0BAD; }
+  SUBCASE("another vendor") { server.vendor_id = 0x0BAD; }
   CHECK(device::find_usbip_devices("127.0.0.1", server.port()).empty());
+}
+
+TEST_CASE("a server tells by its device's path that it is a virtual board") {
+  FakeUsbipServer server;
+  server.path = "/inkwell_virtual_board/usb1/1-1";
+  const auto found = device::find_usbip_devices("127.0.0.1", server.port());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].is_virtual);
 }
 
 TEST_CASE("an arm on USB/IP tells who it is and streams its pose") {
@@ -47,8 +59,11 @@ TEST_CASE("an arm on USB/IP tells who it is and streams its pose") {
   const auto information = arm->information();
   CHECK(information.firmware_version == "0.3.0");
   CHECK(information.serial_number == "0123456789ABCDEF01234567");
+  CHECK(information.force_law->name == "box");
   CHECK_FALSE(arm->read_pose(1ms));
   server.send(1, Bytes(5, std::byte{1}));  // not a pose: passed over
+  server.send(1, Bytes(sizeof(protocol::PoseReport), std::byte{2}));
+  server.send(1, {});
   for (std::uint32_t i = 0; i < 100; ++i) server.send(1, bytes_of(pose_number(i)));
   for (std::uint32_t i = 0; i < 100; ++i) {
     const auto pose = arm->read_pose(60s);
@@ -63,8 +78,156 @@ TEST_CASE("enough transfers are under way that a late reader loses nothing; the 
   const auto arm = device::Device::open(server.endpoint());
   CHECK(eventually([&] { return server.waiting_transfers(1) >= 16; }));
   CHECK(server.waiting_transfers(2) == 0);
-  arm->select_signals(std::vector{protocol::Signal::force_N});
+  arm->select_signals({});
+  arm->information();
+  CHECK(server.waiting_transfers(2) == 0);
+  for (int i = 0; i < 2; ++i) arm->select_signals(std::vector{protocol::Signal::force_N});
   CHECK(eventually([&] { return server.waiting_transfers(2) >= 20; }));  // 20 frames of 6 KiB are 100 ms
+  arm->information();
+  CHECK(server.waiting_transfers(2) == 21);
+}
+
+TEST_CASE("a reader who does not come for a second loses the oldest poses, and what is kept is bounded") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  constexpr std::uint32_t kept = 1024, lost = 76, under_way = 32;
+  for (std::uint32_t i = 0; i < kept + lost; ++i) server.send(1, bytes_of(pose_number(i)));
+  REQUIRE(eventually([&] { return server.waiting_transfers(1) == under_way; }));
+  for (std::uint32_t i = lost; i < kept + lost; ++i) {
+    const auto pose = arm->read_pose(60s);
+    REQUIRE(pose);
+    CHECK(pose->sequence == i);
+  }
+}
+
+TEST_CASE("more signals than the scope carries are refused before anything is sent") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  std::vector<protocol::Signal> signals(protocol::scope_signals_maximum, protocol::Signal::force_N);
+  arm->select_signals(signals);
+  signals.push_back(protocol::Signal::force_N);
+  CHECK(contains(message_of<device::Error>([&] { arm->select_signals(signals); }), "33 signals are more"));
+  arm->send(protocol::Command::heartbeat);
+  CHECK(eventually([&] { return server.commands().size() == 2; }));
+}
+
+TEST_CASE("a scope that another program has costs only the scope, until it is free") {
+  FakeUsbipServer server;
+  server.scope_is_taken = true;
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<protocol::Signal> signals{protocol::Signal::force_N};
+  CHECK(contains(message_of<device::InUse>([&] { arm->select_signals(signals); }), "other program"));
+  arm->select_signals({});
+  CHECK(arm->information().serial_number == "0123456789ABCDEF01234567");
+  server.scope_is_taken = false;
+  const auto token = arm->select_signals(signals);
+  server.send(2, scope_frame(token, 5, 2.5f));
+  CHECK(arm->read_scope(60s)->first_period == 5);
+}
+
+TEST_CASE("a device that takes no more commands is told, and not sent ever more of them") {
+  FakeUsbipServer server;
+  server.holds_outputs = true;
+  const auto arm = device::Device::open(server.endpoint());
+  constexpr std::size_t under_way = 16;
+  for (std::size_t i = 0; i < under_way; ++i) arm->send(protocol::Command::heartbeat);
+  const auto message = message_of<device::Error>([&] { arm->send(protocol::Command::heartbeat); });
+  CHECK(contains(message, "takes no commands"));
+  arm->information();
+  CHECK(server.commands().size() == under_way);
+}
+
+TEST_CASE("a device that its server has lost is Disconnected, whichever transfer says so") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  arm->select_signals(std::vector{protocol::Signal::force_N});
+  REQUIRE(eventually([&] { return server.waiting_transfers(1) > 0 && server.waiting_transfers(2) > 0; }));
+  SUBCASE("of a pose") { server.fail(1, -ENODEV); }
+  SUBCASE("of the scope") { server.fail(2, -ENODEV); }
+  SUBCASE("of a command") {
+    server.output_status = -ENODEV;
+    CHECK(eventually([&] {
+      try {
+        arm->send(protocol::Command::heartbeat);
+        return false;
+      } catch (const device::Disconnected&) {
+        return true;
+      }
+    }));
+    return;
+  }
+  CHECK_THROWS_AS(arm->read_pose(60s), device::Disconnected);
+  CHECK_THROWS_AS(arm->read_scope(60s), device::Disconnected);
+}
+
+TEST_CASE("a request that is under way when the connection breaks is not taken for carried out") {
+  FakeUsbipServer server;
+  server.transactions_to_break_at = 1;
+  const auto arm = device::Device::open(server.endpoint());
+  CHECK_THROWS_AS(arm->place_shapes({}), device::Disconnected);
+}
+
+TEST_CASE("a server that breaks the rules of USB/IP is left with a sentence") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  std::string words;
+  SUBCASE("more data than there is room for") {
+    server.send(1, Bytes(sizeof(protocol::PoseReport) + 1));
+    words = "was not asked for";
+  }
+  SUBCASE("an answer to nothing") {
+    usbip::ReturnSubmit answer{.status = 0};
+    answer.header.sequence = 0xFFFF;
+    server.send_unasked(bytes_of(answer));
+    words = "was not asked for";
+  }
+  SUBCASE("no answer at all") {
+    server.send_unasked(bytes_of(usbip::Submit{}));
+    words = "not of the protocol";
+  }
+  SUBCASE("an end") {
+    server.hang_up();
+    words = "127.0.0.1:" + std::to_string(server.port());
+  }
+  CHECK(contains(message_of<device::Disconnected>([&] { arm->read_pose(60s); }), words));
+}
+
+TEST_CASE("what answers but does not speak USB/IP 1.1.1 is told so") {
+  FakeUsbipServer server;
+  std::size_t at = 0;
+  SUBCASE("another version") { at = 1; }
+  SUBCASE("a reply to something else") { at = 3; }
+  server.spoil_reply = [=](Bytes& reply) { reply[at] ^= std::byte{0x40}; };
+  const auto list = [&] { device::find_usbip_devices("127.0.0.1", server.port()); };
+  CHECK(contains(message_of<device::Error>(list), "does not speak USB/IP"));
+  CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "does not speak USB/IP"));
+}
+
+TEST_CASE("one program works with one force law at a time, and says which is in its way") {
+  const auto report_of = [](const std::string& name) {  // one parameter without unit and help
+    Bytes report{std::byte{0x15}, std::byte{1}, {}, {}, {}, {}};
+    const auto text = [&](const std::string& characters) {
+      for (const char c : characters + '\0') report.push_back(static_cast<std::byte>(c));
+    };
+    text(name);
+    text("");
+    report.resize(report.size() + 3 * sizeof(float));
+    for (const char* column : {"gain", "", ""}) text(column);
+    report[4] = static_cast<std::byte>(report.size());
+    return report;
+  };
+  FakeUsbipServer server, other;
+  server.spoil[protocol::ReportId::force_law] = [&](Bytes& report) { report = report_of("spring"); };
+  other.spoil[protocol::ReportId::force_law] = [&](Bytes& report) { report = report_of("magnet"); };
+  auto arm = device::Device::open(server.endpoint());
+  CHECK(arm->information().force_law->name == "spring");
+  CHECK_THROWS_AS(arm->parameters(), device::Incompatible);  // it tells those of the table only
+  const auto message = message_of<device::Error>([&] { device::Device::open(other.endpoint()); });
+  CHECK(contains(message, "force law magnet, but this program works with spring"));
+  arm.reset();
+  CHECK_NOTHROW(device::Device::open(other.endpoint()));
+  FakeUsbipServer without_rows;
+  CHECK_NOTHROW(device::Device::open(without_rows.endpoint()));  // the tables are as they were
 }
 
 TEST_CASE("commands carry version and a token that is never 0") {
@@ -187,6 +350,14 @@ TEST_CASE("a transaction that meets a busy device is tried again") {
   const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 2.0f}};
   CHECK(arm->set_parameters(changes).refusal == protocol::Refusal::accepted);
   CHECK(server.transactions() == 3);
+}
+
+TEST_CASE("a transaction that meets a busy device for seconds is refused") {
+  FakeUsbipServer server;
+  server.judge = [](const auto&) { return protocol::Refusal::busy; };
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 2.0f}};
+  CHECK(contains(message_of<device::Refused>([&] { arm->set_parameters(changes); }), "force_limit_N = 2"));
 }
 
 TEST_CASE("a stall of what the device says it accepted is an error, and the transaction is not repeated") {
@@ -324,7 +495,8 @@ TEST_CASE("firmware of another protocol version is refused with the remedy") {
     CHECK(contains(message, "Flash"));
   }
   SUBCASE("tables") {
-    server.information.parameter_table_hash ^= 1u;
+    SUBCASE("of parameters") { server.information.parameter_table_hash ^= 1u; }
+    SUBCASE("of signals") { server.information.signal_table_hash ^= 1u; }
     CHECK(contains(message_of<device::Incompatible>([&] { device::Device::open(server.endpoint()); }), "parameters"));
   }
 }
@@ -334,24 +506,22 @@ TEST_CASE("scope frames arrive decoded; empty transfers between them are nothing
   const auto arm = device::Device::open(server.endpoint());
   const std::vector<protocol::Signal> signals{protocol::Signal::force_N};
   const auto token = arm->select_signals(signals);
-  protocol::ScopeFrameHeader header{};
-  header.first_period = 77;
-  header.sample_count = 1;
-  header.signal_count = 1;
-  header.selection_token = token;
-  header.length = sizeof header + 4;
-  Bytes frame = bytes_of(header);
-  const Bytes value = bytes_of(2.5f);
-  frame.insert(frame.end(), value.begin(), value.end());
   server.send(2, {});
   server.send(2, Bytes(64, std::byte{0xAA}));
-  server.send(2, frame);
+  server.send(2, scope_frame(token, 77, 2.5f));
   const auto samples = arm->read_scope(60s);
   REQUIRE(samples);
   CHECK(samples->first_period == 77);
   CHECK(samples->values == std::vector<float>{2.5f});
   CHECK(arm->malformed_scope_frames() == 1);
   CHECK_FALSE(arm->read_scope(1ms));
+}
+
+TEST_CASE("a transport knows the product and serial number that its device tells") {
+  FakeUsbipServer server;
+  const auto transport = device::open_transport(server.endpoint());
+  CHECK(transport->endpoint().product == "Inkwell haptic arm");
+  CHECK(transport->endpoint().serial_number == "0123456789ABCDEF01234567");
 }
 
 TEST_CASE("a reader who stops reading the scope says so by taking a transfer back, and is served when he goes on") {
@@ -399,8 +569,16 @@ TEST_CASE("a device that is in use, or is none of ours, is refused") {
     server.configuration[9] = std::byte{0};
     CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "damaged"));
   }
+  SUBCASE("damaged descriptor of the device") {
+    server.device_descriptor.pop_back();
+    CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "damaged"));
+  }
   SUBCASE("nobody there") {
     CHECK(contains(message_of<device::Error>([] { device::find_usbip_devices("127.0.0.1", 1); }), "Nothing answers"));
+  }
+  SUBCASE("a name that is none") {
+    CHECK(
+        contains(message_of<device::Error>([] { device::find_usbip_devices("not a name", 1); }), "not a name is not"));
   }
 }
 
