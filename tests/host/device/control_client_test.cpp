@@ -1,0 +1,102 @@
+// The client of a virtual board's control socket: what it asks, and what it makes of each kind of answer.
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include <device/control_client.hpp>
+#include <failure.hpp>
+
+#include "fake_control_server.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using device::ControlClient;
+using nlohmann::json;
+
+namespace {
+
+ControlClient client_of(const FakeControlServer& server) { return {"127.0.0.1", server.port()}; }
+
+/// The message with which a call fails whose answer is this line.
+std::string failure_at(const std::string& line) {
+  FakeControlServer server([&](const json&) { return line + "\n"; });
+  auto client = client_of(server);
+  return message_of<device::Error>([&] { client.trace_read(10); });
+}
+
+}  // namespace
+
+TEST_CASE("a board's status is taken from its answer, and what it leaves out is nothing") {
+  std::string line = R"({"ok": true, "board_time_s": 1.5, "mode": "exact", "paused": true, "unmodelled": ["x"]})";
+  FakeControlServer server([&](const json&) { return line + "\n"; });
+  auto client = client_of(server);
+  const auto status = client.status();
+  CHECK(status.board_time_s == 1.5);
+  CHECK(status.mode == "exact");
+  CHECK(status.paused);
+  CHECK(status.unmodelled == std::vector<std::string>{"x"});
+  line = R"({"ok": true})";
+  CHECK(client.status().board_time_s == 0.0);
+}
+
+TEST_CASE("a refusal tells the command and the board's reason") {
+  const auto message = failure_at(R"({"ok": false, "error": "No trace runs."})");
+  CHECK(contains(message, "refused \"trace\""));
+  CHECK(contains(message, "No trace runs."));
+  CHECK(contains(failure_at(R"({"ok": false})"), "it gave no reason"));
+}
+
+TEST_CASE("what answers but is no virtual board is told so") {
+  for (const auto line : {"HTTP/1.1 400 Bad Request", "{}", "[]", R"({"ok": 1})"})
+    CHECK(contains(failure_at(line), "is not a virtual board"));
+}
+
+TEST_CASE("a trace is read row by row, however long; a damaged one is refused") {
+  json rows = json::array();
+  for (int i = 0; i < 20'000; ++i) rows.push_back({i, 0.5});
+  const json reply{{"ok", true}, {"columns", {"time_s", "force_N"}}, {"rows", rows}};
+  FakeControlServer server([&](const json&) { return reply.dump() + "\n"; });
+  auto client = client_of(server);
+  const auto trace = client.trace_read(20'000);
+  REQUIRE(trace.row_count() == 20'000);
+  CHECK(trace.values[2 * 19'999] == 19'999.0);
+  CHECK(server.requests().back() == json{{"command", "trace"}, {"action", "read"}, {"maximum", 20'000}});
+  for (const auto damaged : {R"({"ok": true, "columns": ["a", "b"], "rows": [[1]]})",
+                             R"({"ok": true, "columns": ["a"], "rows": [["x"]]})", R"({"ok": true, "rows": []})"})
+    CHECK(contains(failure_at(damaged), "damaged trace"));
+}
+
+TEST_CASE("an answer that comes together with the one before is kept for its own call") {
+  bool is_first = true;
+  FakeControlServer server([&](const json&) {
+    return std::exchange(is_first, false)
+               ? std::string("{\"ok\": true, \"mode\": \"fast\"}\n{\"ok\": true, ") + "\"mode\": \"exact\"}\n"
+               : std::string();
+  });
+  auto client = client_of(server);
+  CHECK(client.status().mode == "fast");
+  CHECK(client.status().mode == "exact");
+}
+
+TEST_CASE("a hand that holds says how, one that lets go says nothing else") {
+  FakeControlServer server([](const json&) { return "{\"ok\": true}\n"; });
+  auto client = client_of(server);
+  client.hand({.holds = true, .target_m = {0.01, 0.02, 0.03}, .stiffness_N_per_m = 200, .damping_Ns_per_m = 4});
+  client.hand({});
+  const auto requests = server.requests();
+  REQUIRE(requests.size() == 2);
+  CHECK(requests[0] == json{{"command", "hand"},
+                            {"holds", true},
+                            {"target_m", {0.01, 0.02, 0.03}},
+                            {"stiffness_N_per_m", 200.0},
+                            {"damping_Ns_per_m", 4.0}});
+  CHECK(requests[1] == json{{"command", "hand"}, {"holds", false}});
+}
+
+TEST_CASE("a board that is gone is Disconnected") {
+  FakeControlServer server([](const json&) { return "{\"ok\": true}\n"; });
+  auto client = client_of(server);
+  client.pause();
+  server.hang_up();
+  for (int i = 0; i < 10; ++i) CHECK_THROWS_AS(client.resume(), device::Disconnected);
+}
