@@ -1,6 +1,9 @@
 // Addresses as people write them, and the arms that they lead to.
 #include <doctest/doctest.h>
 
+#include <filesystem>
+#include <iterator>
+
 #include <device/address.hpp>
 #include <failure.hpp>
 
@@ -73,4 +76,15 @@ TEST_CASE("a server's arm is found, and found again by the address of what was f
   CHECK(device::address_of(found) == address);
   server.product_id = 0x0BAD;
   CHECK(contains(refusal(parse_address(address)), "exports no arm"));
+}
+
+TEST_CASE("looking for arms leaves no connection open, whether anybody answers or not") {
+  const auto open_files = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
+  };
+  FakeUsbipServer server;
+  const auto open_before = open_files();
+  CHECK(device::find_usbip_devices("127.0.0.1", server.port()).size() == 1);
+  CHECK_THROWS_AS(device::find_usbip_devices("127.0.0.1", 1), device::Error);
+  CHECK(eventually([&] { return open_files() == open_before; }));
 }

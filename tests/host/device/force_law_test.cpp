@@ -72,6 +72,12 @@ TEST_CASE("a description that ends too early, or counts more than there can be, 
   auto many = whole;
   many[1] = std::byte{protocol::force_law_parameters_maximum + 1};
   CHECK_THROWS_AS(device::parse_force_law(many), device::Error);
+  many = whole;
+  many[2] = std::byte{protocol::force_law_signals_maximum + 1};
+  for (std::size_t i = 0; i < protocol::force_law_signals_maximum; ++i) many.insert(many.end(), 3, std::byte{});
+  many[4] = static_cast<std::byte>(many.size() & 0xFF);
+  many[5] = static_cast<std::byte>(many.size() >> 8);
+  CHECK_THROWS_AS(device::parse_force_law(many), device::Error);
 }
 
 TEST_CASE("rows join the tables, and another law's only when nobody uses them any more") {

@@ -1,6 +1,13 @@
 #include <doctest/doctest.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <device/parameter_file.hpp>
@@ -65,6 +72,39 @@ TEST_CASE("a file that cannot be written leaves the old one alone") {
                  "cannot be written"));
 }
 
+TEST_CASE("a file that can not be written whole, or not put in its place, leaves the old one as it was") {
+  const TemporaryDirectory directory;
+  const auto save = [&](const char* name) {
+    return message_of<device::Error>(
+        [&] { device::save_parameters(directory / name, protocol::default_parameters()); });
+  };
+  std::ofstream(directory / "soft.toml") << "old";
+  std::filesystem::create_symlink("/dev/full", directory / "soft.toml.unfinished");
+  CHECK(contains(save("soft.toml"), "cannot be written"));
+  std::string text;
+  std::ifstream(directory / "soft.toml") >> text;
+  CHECK(text == "old");
+  std::filesystem::create_directory(directory / "folder");
+  CHECK(contains(save("folder"), "cannot be replaced"));
+}
+
+TEST_CASE("what is no file of bytes is refused, not waited for") {
+  const TemporaryDirectory directory;
+  REQUIRE(mkfifo(directory.file("pipe").c_str(), 0600) == 0);
+  const int held_open = open(directory.file("pipe").c_str(), O_RDWR | O_CLOEXEC);
+  CHECK(contains(message_of<device::Error>([&] { device::load_parameters(directory / "pipe"); }), "cannot be read"));
+  close(held_open);
+}
+
+TEST_CASE("changes come in the table's order, in whichever order a file has them") {
+  const auto file = device::parse_parameters(
+      "[parameters]\nwall_stiffness_N_per_m = 500\nbox_minimum_x_m = 0.0\n"
+      "force_limit_N = 2\nencoder_1_counts_per_turn = 1440\n",
+      "mixed.toml");
+  REQUIRE(file.changes.size() == 4);
+  CHECK(std::is_sorted(file.changes.begin(), file.changes.end()));
+}
+
 TEST_CASE("a mistyped name gets the nearest one suggested") {
   CHECK(device::nearest_parameter_name("wall_stifness_N_per_m") == "wall_stiffness_N_per_m");
   CHECK(device::nearest_parameter_name("box_minimum_x") == "box_minimum_x_m");
@@ -81,6 +121,7 @@ TEST_CASE("NAME=VALUE is read, and refused with what would be right") {
   CHECK(contains(refusal("wall_damping_Ns_per_m=2,5"), "without commas"));
   CHECK_FALSE(contains(refusal("wall_damping_Ns_per_m=2.5x"), "commas"));
   CHECK(contains(refusal("wall_damping_Ns_per_m=20.5"), "0.0 to 20.0 Ns/m"));
+  CHECK(contains(refusal("wall_damping_Ns_per_m=-0.5"), "0.0 to 20.0 Ns/m"));
   CHECK(contains(refusal("wall_damping_Ns_per_m=inf"), "range"));
   CHECK(contains(refusal("encoder_1_counts_per_turn=1440.5"), "whole number"));
 }

@@ -52,6 +52,9 @@ TEST_CASE("shapes keep their places, those that are not there have no life, and 
   CHECK(shapes.planes[5].normal == control::Vector3{0, -1, 0});
   CHECK(shapes.planes[5].offset_m == doctest::Approx(-0.02f));
   CHECK(shapes.life_periods[0] != 0);
+  CHECK(shapes.sphere.centre_m == control::Vector3{0, 0, -0.05f});
+  CHECK(shapes.sphere.radius_m == 0.02f);
+  CHECK(shapes.surfaces[0].stiffness_N_per_m == 800.0f);
   CHECK(device::shapes_report({}).plane_count == 0);
 }
 
@@ -73,6 +76,7 @@ TEST_CASE("whatever the firmware would refuse is refused here, with the value an
       {[](auto& shapes) { shapes.planes[0]->normal[2] = not_a_number; }, "normal of plane 0"},
       {[](auto& shapes) { shapes.planes[0]->normal = {}; }, "has no length"},
       {[](auto& shapes) { shapes.sphere->radius_m = 0; }, "radius is not above 0"},
+      {[](auto& shapes) { shapes.sphere->radius_m = 11; }, "sphere's radius is 11 m"},
       {[](auto& shapes) { shapes.sphere->centre_m[0] = not_a_number; }, "coordinate of the sphere"},
       {[](auto& shapes) { shapes.sphere->surface.damping_Ns_per_m = 21; }, "damping of the sphere is 21 Ns/m"},
   };
@@ -87,5 +91,8 @@ TEST_CASE("whatever the firmware would refuse is refused here, with the value an
       CHECK_MESSAGE(std::string(error.what()).find(one.words) != std::string::npos, error.what());
     }
   }
-  CHECK_THROWS_AS(device::force_report({.interval_ms = 0}), device::Error);
+  for (const int interval_ms : {0, 51})
+    CHECK_THROWS_AS(device::force_report({.interval_ms = interval_ms}), device::Error);
+  for (const float force_N : {not_a_number, std::numeric_limits<float>::infinity()})
+    CHECK_THROWS_AS(device::force_report({.force_N = {0, 0, force_N}}), device::Error);
 }

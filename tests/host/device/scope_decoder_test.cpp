@@ -123,6 +123,24 @@ TEST_CASE("frames of another selection are left out without being an error") {
   CHECK(decoder.malformed_frames() == 0);
 }
 
+TEST_CASE("a new selection begins its count of periods anew") {
+  auto decoder = decoder_for(few);
+  REQUIRE(decoder.decode(full_frame(0, 1000)));
+  decoder.expect(token, few);
+  const auto samples = decoder.decode(full_frame(0, 500));
+  REQUIRE(samples);
+  CHECK(samples->lost_before == 0);
+}
+
+TEST_CASE("no frame is longer than there are, and none belongs to a selection of nothing") {
+  auto decoder = decoder_for(few);
+  CHECK(decoder.decode(full_frame(0, 1000, 760)));
+  CHECK_FALSE(decoder.decode(full_frame(0, 2000, 800)));
+  decoder.expect(token, {});
+  CHECK_FALSE(decoder.decode(FrameBuilder(token, 0, protocol::ScopeEncoding::full).build(0, 0, 1)));
+  CHECK(decoder.malformed_frames() == 2);
+}
+
 TEST_CASE("malformed frames are refused, counted, and do not spoil the next one") {
   auto decoder = decoder_for(few);
   auto frame = full_frame(0, 1000);

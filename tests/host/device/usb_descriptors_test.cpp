@@ -54,8 +54,8 @@ TEST_CASE("the layout is the one of the descriptors, in whatever order and with 
                               hid_interface_1,
                               {7, 5, 0x8B, 2, 64, 0, 0},  // bulk IN, of no vendor interface
                               hid_out,
-                              hid_in,
-                              {9, 4, 6, 0, 1, 3, 0, 0, 0},  // a second HID interface, of the controller
+                              {7, 5, 0x84, 0x13, 64, 0, 1},  // interrupt IN that says more of its use
+                              {9, 4, 6, 0, 1, 3, 0, 0, 0},   // a second HID interface, of the controller
                               {7, 5, 0x8C, 3, 64, 0, 8}});
   for (const auto& descriptor : {in_order, turned}) {
     const auto layout = parse_configuration(descriptor);

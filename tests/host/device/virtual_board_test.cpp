@@ -104,3 +104,42 @@ TEST_CASE("a virtual board gets its options") {
         "--elf " + options.elf.string() +
             " --mode exact --pricing conservative --seed 42 --arm arm.toml --real-time --paused");
 }
+
+TEST_CASE("a virtual board gets the options that are seldom given, and no others") {
+  const Script script(std::string("echo \"$@\" > arguments\n") + run_until_told);
+  auto options = script.options();
+  options.host_clock_ppm = -500.0;
+  options.real_time = false;
+  options.strict = true;
+  options.profile = "longest.txt";
+  const device::VirtualBoard board(options);
+  CHECK(script.file("arguments") ==
+        "--elf " + options.elf.string() +
+            " --mode fast --pricing likely --seed 1 --host-clock-ppm -500.000000 --strict --profile longest.txt");
+}
+
+TEST_CASE("of all that a virtual board said before it failed the end is told") {
+  const Script script(
+      "i=0\nwhile [ $i -lt 500 ]; do echo some of the many lines >&2; i=$((i + 1)); done\n"
+      "echo the last one >&2\nexit 1\n");
+  const auto message = failure_of(script.options());
+  CHECK(message.ends_with("the last one"));
+  CHECK(message.size() < 4200);
+}
+
+TEST_CASE("a terminal's Ctrl-C does not reach a virtual board, and no file but its own does") {
+  const Script script(
+      "read -r words < /proc/$$/stat\nset -- $words\necho $5 > group\n"
+      "for file in /proc/$$/fd/*; do readlink $file; done | grep pipe | sort | uniq -d > twice\n" +
+      std::string(run_until_told));
+  const auto open_files = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), std::filesystem::directory_iterator());
+  };
+  const auto open_before = open_files();
+  {
+    const device::VirtualBoard board(script.options());
+    CHECK(script.file("group") == script.file("process"));
+    CHECK(script.file("twice").empty());
+  }
+  CHECK(open_files() == open_before);
+}
