@@ -18,8 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto reply_timeout = 3s;
-// A request takes some milliseconds of board time, but on a busy computer a virtual board's seconds are long.
-constexpr auto control_timeout = 15s;
 
 template <class Message>
 Message receive(Socket& socket) {
@@ -55,8 +53,9 @@ std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16
   return devices;
 }
 
-UsbipConnection::UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id)
-    : socket_(host, port) {
+UsbipConnection::UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id,
+                                 std::chrono::milliseconds timeout)
+    : timeout_(timeout), socket_(host, port) {
   socket_.send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));
   const auto reply = receive_reply(socket_, usbip::Operation::reply_import);
   if (reply.status != usbip::OperationStatus::success)
@@ -141,12 +140,12 @@ UsbipConnection::Completion UsbipConnection::control(usbip::Direction direction,
     waiting->changed.notify_one();
   });
   std::unique_lock lock(waiting->mutex);
-  if (!waiting->changed.wait_for(lock, control_timeout, [&] { return waiting->completion.has_value(); })) {
+  if (!waiting->changed.wait_for(lock, timeout_, [&] { return waiting->completion.has_value(); })) {
     lock.unlock();
     unlink(sequence);
     throw Error(
         fmt::format("The device did not answer a request in {} s. Reset the board, or let a paused virtual board run.",
-                    control_timeout.count()));
+                    std::chrono::duration<double>(timeout_).count()));
   }
   Completion completion = std::move(*waiting->completion);
   if (completion.status == -EPIPE)

@@ -31,6 +31,9 @@ std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16
 
 class UsbipConnection {
  public:
+  /// A request takes some milliseconds of board time, but on a busy computer a virtual board's seconds are long.
+  static constexpr auto control_timeout = std::chrono::seconds(15);
+
   struct Completion {
     std::int32_t status = 0;      ///< 0 or a negative errno
     std::uint32_t length = 0;     ///< bytes that were transferred
@@ -39,8 +42,9 @@ class UsbipConnection {
   using OnCompletion = std::function<void(Completion)>;
 
   /// Imports the device. Throws Error if it is in use or gone, or as list_usbip_devices does. Call `start` before the
-  /// first transfer.
-  UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id);
+  /// first transfer. A control transfer is taken back after `timeout`.
+  UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id,
+                  std::chrono::milliseconds timeout = control_timeout);
   ~UsbipConnection();
 
   /// `on_disconnect` is called once, from the receiving thread, with a sentence.
@@ -72,6 +76,7 @@ class UsbipConnection {
   void receive_answers();
   void receive_answer();
 
+  std::chrono::milliseconds timeout_;  ///< of a control transfer
   Socket socket_;
   std::uint32_t device_ = 0;
   std::mutex mutex_;  ///< guards sending, the sequence and what is pending

@@ -198,7 +198,9 @@ void FakeUsbipServer::serve_transfers(int client) {
       on_break();
       return;
     }
-    if (endpoint == 0) {
+    if (endpoint == 0 && holds_requests) {
+      waiting_[endpoint].push_back(sequence);
+    } else if (endpoint == 0) {
       std::uint8_t setup[8];
       std::memcpy(setup, submit->setup.data(), sizeof setup);
       const auto result = answer_control(setup, data);

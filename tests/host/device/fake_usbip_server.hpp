@@ -63,6 +63,8 @@ class FakeUsbipServer {
   std::function<void()> on_break = [] {};
   /// Another program has the scope: its transfers end at once, and say so.
   std::atomic<bool> scope_is_taken = false;
+  /// Control requests are taken in but not answered, as by a board whose time stands still.
+  std::atomic<bool> holds_requests = false;
   /// Output reports are taken in but not answered.
   std::atomic<bool> holds_outputs = false;
   /// What the answer to an output report says: 0 or a negative errno.

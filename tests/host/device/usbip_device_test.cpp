@@ -44,6 +44,19 @@ TEST_CASE("a USB/IP server is asked for arms, and other devices are passed over"
   CHECK(device::find_usbip_devices("127.0.0.1", server.port()).empty());
 }
 
+TEST_CASE("a server may export several arms") {
+  FakeUsbipServer server;
+  server.spoil_reply = [](Bytes& reply) {
+    constexpr std::size_t count_at = 11, device_at = 12;
+    const Bytes device(reply.begin() + device_at, reply.end());
+    reply.insert(reply.end(), device.begin(), device.end());
+    reply[count_at] = std::byte{2};
+  };
+  const auto found = device::find_usbip_devices("127.0.0.1", server.port());
+  REQUIRE(found.size() == 2);
+  CHECK(found[1].path == "1-1");
+}
+
 TEST_CASE("a server tells by its device's path that it is a virtual board") {
   FakeUsbipServer server;
   server.path = "/inkwell_virtual_board/usb1/1-1";

@@ -1,0 +1,34 @@
+// What the device's tests would have to wait long for.
+#include <doctest/doctest.h>
+
+#include <chrono>
+
+#include <failure.hpp>
+#include "device/usbip_connection.hpp"
+
+#include "fake_usbip_server.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using namespace std::chrono_literals;
+
+TEST_CASE("a request that is not answered in time is taken back, and the connection goes on") {
+  FakeUsbipServer server;
+  device::UsbipConnection connection("127.0.0.1", server.port(), "1-1", 50ms);
+  connection.start([](const std::string&) {});
+  const auto device_descriptor = [&] {
+    return connection.control_in(device::setup::get_descriptor(device::setup::DescriptorType::device, 0, 18));
+  };
+  server.holds_requests = true;
+  CHECK(contains(message_of<device::Error>(device_descriptor), "did not answer a request in 0.05 s"));
+  CHECK(eventually([&] { return server.transfers_taken_back() == 1; }));
+  CHECK(server.waiting_transfers(0) == 0);
+  server.holds_requests = false;
+  CHECK(eventually([&] {  // on a busy computer 50 ms are short
+    try {
+      return device_descriptor().size() == 18;
+    } catch (const device::Error&) {
+      return false;
+    }
+  }));
+}
