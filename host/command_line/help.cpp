@@ -1,8 +1,11 @@
 #include "help.hpp"
 
+#include <cmath>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace inkwell::command_line {
 namespace {
@@ -52,6 +55,42 @@ std::string indented(const std::string& lines) {
 }  // namespace
 
 void set_help_style(CLI::App& program) { program.formatter(std::make_shared<HelpStyle>()); }
+
+namespace {
+
+CLI::Validator number_that(bool (*fits)(double), const char* what) {
+  return CLI::Validator(
+      [fits, what](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && fits(value)
+                   ? std::string()
+                   : fmt::format("{} does not do. Give a number that is {}.", text, what);
+      },
+      "");
+}
+
+}  // namespace
+
+CLI::Validator zero_or_more() {
+  return number_that([](double value) { return value >= 0 && std::isfinite(value); }, "0 or more");
+}
+
+CLI::Validator more_than_zero() {
+  return number_that([](double value) { return value > 0 && std::isfinite(value); }, "more than 0");
+}
+
+std::optional<std::string> missing_command(const CLI::App& program) {
+  const auto given = program.get_subcommands();
+  if (given.empty() || !given.front()->get_subcommands().empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const CLI::App* each : given.front()->get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(each->get_name());
+  if (names.empty()) return std::nullopt;
+  const std::string command = given.front()->get_name();
+  const auto words = program.remaining(true);
+  const std::string unknown = words.empty() ? "" : fmt::format("There is no `{} {}`. ", command, words.front());
+  return fmt::format("{}Say which of these: inkwell {} {}.", unknown, command, fmt::join(names, ", "));
+}
 
 void add_examples(CLI::App& command, const std::string& examples) {
   command.footer(fmt::format(

@@ -1,6 +1,7 @@
 // How `--help` looks: what a newcomer needs, in the words of the options and commands themselves.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -12,5 +13,12 @@ void set_help_style(CLI::App& program);
 
 /// What stands below a command's options: examples, one a line, and what all commands have in common.
 void add_examples(CLI::App& command, const std::string& examples);
+
+/// Checks of a number that name the range as a person would.
+CLI::Validator zero_or_more();
+CLI::Validator more_than_zero();
+
+/// Says which commands there are, if one was given that needs one of its own and there is none or another word.
+std::optional<std::string> missing_command(const CLI::App& program);
 
 }  // namespace inkwell::command_line

@@ -122,6 +122,10 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
 
 int save(const DeviceOptions& options, const std::string& file) {
   const auto connection = connect(options);
+  if (file == "-") {
+    fmt::print("{}", device::format_parameters(connection.device->parameters()));
+    return 0;
+  }
   device::save_parameters(file, connection.device->parameters());
   if (options.json)
     fmt::print("{}\n", ordered_json{{"file", file}, {"parameters", protocol::known_parameters().size()}}.dump());
@@ -194,7 +198,7 @@ void add_parameters_command(const Place& place) {
       ->required();
   add("save", "Write the device's parameters to a TOML file", "inkwell parameters save soft.toml",
       [&options, file] { return save(options, *file); })
-      ->add_option("FILE", *file, "It is replaced if it exists")
+      ->add_option("FILE", *file, "It is replaced if it exists; - is standard output")
       ->required();
   add("diff", "Show where a TOML file and the device differ", "inkwell parameters diff soft.toml",
       [&options, file] { return show_differences(options, *file); })

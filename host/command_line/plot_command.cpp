@@ -37,6 +37,8 @@ std::vector<std::string> draw_as_in_paper(const recording::Recording& recording,
 }
 
 std::string draw(const recording::Recording& recording, const PlotOptions& options) {
+  if (!options.place.empty() && std::filesystem::path(options.place).extension() != ".png")
+    throw UsageError(fmt::format("{} does not end in .png, and a figure is a PNG.", options.place));
   recording::FigureOptions figure{.quantities = {}, .from_s = options.from_s.value_or(0), .to_s = options.to_s};
   try {
     if (!options.signals.empty()) figure.quantities = recording::parse_quantities(options.signals);
@@ -76,10 +78,10 @@ void add_plot_command(const Place& place) {
       ->excludes(signals);
   command->add_option("--from", plot_options->from_s, "Start, since the first sample")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more());
   command->add_option("--to", plot_options->to_s, "End, since the first sample")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(more_than_zero());
   command->add_option("--out", plot_options->place, "The PNG, or the folder for --paper; beside FILE unless given")
       ->type_name("PLACE");
   add_examples(*command,

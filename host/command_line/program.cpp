@@ -53,6 +53,8 @@ int run(int argument_count, char** arguments) {
 
   try {
     program.parse(argument_count, arguments);
+  } catch (const CLI::RequiredError& error) {
+    return complain(UsageError(missing_command(program).value_or(error.what())), wrong_usage);
   } catch (const CLI::ParseError& error) {
     const bool is_help = error.get_exit_code() == 0;
     program.exit(error);

@@ -194,7 +194,7 @@ void add_record_command(const Place& place) {
       ->excludes(signals);
   command->add_option("--seconds", record_options->seconds, "End after this time of the board")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(more_than_zero());
   command->add_flag("--mark-key", record_options->mark_key,
                     "The space bar sets a mark; from a pipe, each line does, with its text");
   add_examples(*command,

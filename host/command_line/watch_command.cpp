@@ -111,7 +111,7 @@ void add_watch_command(const Place& place) {
   const auto watch_options = std::make_shared<WatchOptions>();
   command->add_option("--seconds", watch_options->seconds, "End after this time of the board; without it, at Ctrl+C")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(more_than_zero());
   command->add_option("--rate", watch_options->rate_Hz, "Lines a second, 0.1 to 1000")
       ->type_name("HZ")
       ->check(CLI::Range(0.1, 1000.0))

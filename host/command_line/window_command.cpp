@@ -4,6 +4,8 @@
 
 #include <window/window.hpp>
 
+#include "help.hpp"
+
 namespace inkwell::command_line {
 namespace {
 
@@ -70,7 +72,7 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
       ->group(group);
   program.add_option("--after-seconds", window.after_seconds, "When the picture is taken")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber)
+      ->check(zero_or_more())
       ->capture_default_str()
       ->group(group);
   program.add_flag("--frames-report", window.frames_report, "Print the frames a second when the window closes")

@@ -144,14 +144,15 @@ std::string format_parameters(const protocol::ParameterSet& parameters) {
 void save_parameters(const std::filesystem::path& file, const protocol::ParameterSet& parameters) {
   std::filesystem::path unfinished = file;
   unfinished += ".unfinished";
-  {
-    std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
-    stream << format_parameters(parameters) << std::flush;
-    if (!stream)
-      throw Error(fmt::format("The file {} cannot be written. Check the folder, your permission and the space left.",
-                              file.string()));
-  }
+  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+  stream << format_parameters(parameters);
+  stream.close();
   std::error_code code;
+  if (!stream) {
+    std::filesystem::remove(unfinished, code);
+    throw Error(fmt::format("The file {} cannot be written. Check the folder, your permission and the space left.",
+                            file.string()));
+  }
   std::filesystem::rename(unfinished, file, code);
   if (code) throw Error(fmt::format("The file {} cannot be replaced: {}.", file.string(), code.message()));
 }

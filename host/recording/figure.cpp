@@ -197,12 +197,17 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
   data_of(recording, quantities, shown, from_s, to_s).write(work.path() / "data.csv");
   write_text(work.path() / "figure.gnuplot", script(recording, figure_panes(quantities), recording.name, from_s, to_s));
   run_gnuplot(work.path() / "figure.gnuplot");
-  std::error_code error;
-  std::filesystem::copy_file(work.path() / "figure.png", picture, std::filesystem::copy_options::overwrite_existing,
+  // Beside it first, so that a full disk does not cost an older picture.
+  std::filesystem::path unfinished = picture;
+  unfinished += ".unfinished";
+  std::error_code error, ignored;
+  std::filesystem::copy_file(work.path() / "figure.png", unfinished, std::filesystem::copy_options::overwrite_existing,
                              error);
-  if (error)
-    throw device::Error(
-        fmt::format("{} cannot be written: {}. Give another place with --out.", picture.string(), error.message()));
+  if (!error) std::filesystem::rename(unfinished, picture, error);
+  if (!error) return;
+  std::filesystem::remove(unfinished, ignored);
+  throw device::Error(
+      fmt::format("{} cannot be written: {}. Give another place with --out.", picture.string(), error.message()));
 }
 
 }  // namespace inkwell::recording

@@ -7,6 +7,9 @@ namespace {
 
 std::recursive_mutex& hdf5_mutex() {
   static std::recursive_mutex mutex;
+  // Every file is closed by its owner. At the end of the program the library would try again to write what a full disk
+  // has refused, and complain in words of its own. Works only before the first use of the library, which is here.
+  [[maybe_unused]] static const herr_t stays_quiet = H5dont_atexit();
   return mutex;
 }
 

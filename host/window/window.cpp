@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -21,7 +22,11 @@ WindowSettings settings_at_start(const WindowOptions& options) {
   WindowSettings settings;
   if (options.persist_settings) settings = read_settings(window_settings_path());
   if (options.theme) settings.theme = *options.theme;
-  if (!options.layout.empty()) settings.scope.layout = layout_named(options.layout, settings.scope.own_layouts);
+  if (options.layout.empty()) return settings;
+  if (!is_layout(options.layout, settings.scope.own_layouts))
+    throw std::runtime_error(fmt::format("There is no layout {}. Give one of these with --layout: {}.", options.layout,
+                                         layout_names(settings.scope.own_layouts)));
+  settings.scope.layout = layout_named(options.layout, settings.scope.own_layouts);
   return settings;
 }
 
@@ -32,11 +37,12 @@ void keep(const WindowSettings& settings) {
 }
 
 void run(const WindowOptions& options) {
+  const WindowSettings settings = settings_at_start(options);
   end_loop_at_signals();
   Display display(options.width, options.height, "Inkwell");
   ImGuiFrames imgui(display.handle());
   const float scale = options.scale > 0.0f ? options.scale : display.content_scale();
-  Companion companion(options, settings_at_start(options), scale);
+  Companion companion(options, settings, scale);
   FrameLoop(display, imgui, companion,
             {.screenshot = options.screenshot,
              .after_seconds = options.after_seconds,

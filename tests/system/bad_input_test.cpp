@@ -141,6 +141,25 @@ TEST_CASE("the companion refuses what it does not know") {
                   {"stiff"});
   }
   SUBCASE("command") { check_refused(run_program("inkwell", {"dance"}), {"dance"}); }
+  SUBCASE("command of a command") {
+    check_refused(run_program("inkwell", {"experiment", "hall"}), {"no `experiment hall`", "inkwell experiment wall"});
+    check_refused(run_program("inkwell", {"experiment"}), {"inkwell experiment wall"});
+  }
+  SUBCASE("negative time") {
+    const auto result = run_program("inkwell", {"--virtual", "watch", "--seconds", "-1"});
+    check_refused(result, {"--seconds", "-1", "more than 0"});
+    CHECK(result.err.size() < 200);  // a range to the largest number there is helps nobody
+  }
+  SUBCASE("layout") {
+    check_refused(run_program("inkwell", {"--virtual", "--layout", "nonsense"}), {"nonsense", "--layout", "paper"});
+  }
+  SUBCASE("kind of picture") {
+    const TemporaryDirectory directory;
+    const auto file = directory.file("push.csv");
+    REQUIRE(run_program("inkwell", {"--virtual", "record", file, "--seconds", "0.1"}).exit_code == 0);
+    check_refused(run_program("inkwell", {"plot", file, "--out", directory.file("push.pdf")}), {"push.pdf", ".png"});
+    CHECK_FALSE(std::filesystem::exists(directory.file("push.pdf")));
+  }
   SUBCASE("ELF") {
     check_refused(run_program("inkwell", {"--virtual", "--elf", "nowhere.elf", "info"}), {"nowhere.elf"});
   }
@@ -156,6 +175,28 @@ TEST_CASE("saving parameters with --json says what was written") {
   CHECK(json.at("file") == file);
   CHECK(json.at("parameters") == protocol::parameter_count);
   CHECK(std::filesystem::file_size(file) > 1000);
+}
+
+TEST_CASE("parameters are saved to standard output, and come back from there") {
+  const TemporaryDirectory directory;
+  const auto result = run_program("inkwell", {"--virtual", "parameters", "save", "-"});
+  REQUIRE(result.exit_code == 0);
+  const auto file = directory.file("saved.toml");
+  write_file(file, result.out);
+  CHECK(run_program("inkwell", {"--virtual", "parameters", "load", file}).exit_code == 0);
+  CHECK_FALSE(std::filesystem::exists("-"));
+}
+
+// /dev/full refuses every write as a full disk does.
+TEST_CASE("a full disk is told in our words, and nothing half written is left") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("push.csv");
+  REQUIRE(run_program("inkwell", {"--virtual", "record", file, "--seconds", "0.1"}).exit_code == 0);
+  std::filesystem::create_symlink("/dev/full", directory.file("full.toml.unfinished"));
+  check_refused(run_program("inkwell", {"--virtual", "parameters", "save", directory.file("full.toml")}),
+                {"full.toml cannot be written", "space left"});
+  CHECK_FALSE(std::filesystem::is_symlink(directory.file("full.toml.unfinished")));
+  CHECK_FALSE(std::filesystem::exists(directory.file("full.toml")));
 }
 
 TEST_CASE("the window says what a computer without a display or without OpenGL 3.3 lacks") {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <protocol/reports.hpp>
 
@@ -80,6 +81,18 @@ std::string OwnLayouts::rename(std::string_view from, std::string_view to) {
 
 void OwnLayouts::remove(std::string_view name) {
   std::erase_if(layouts_, [name](const ScopeLayout& layout) { return layout.name == name; });
+}
+
+bool is_layout(std::string_view name, const OwnLayouts& own) {
+  return own.find(name) != nullptr ||
+         std::ranges::find(built_in_layouts(), name, &ScopeLayout::name) != built_in_layouts().end();
+}
+
+std::string layout_names(const OwnLayouts& own) {
+  std::vector<std::string_view> names;
+  for (const ScopeLayout& layout : built_in_layouts()) names.push_back(layout.name);
+  for (const ScopeLayout& layout : own.all()) names.push_back(layout.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own) {

@@ -107,6 +107,7 @@ TEST_CASE("changes come in the table's order, in whichever order a file has them
 
 TEST_CASE("a mistyped name gets the nearest one suggested") {
   CHECK(device::nearest_parameter_name("wall_stifness_N_per_m") == "wall_stiffness_N_per_m");
+  CHECK(device::nearest_parameter_name("stiffness") == "wall_stiffness_N_per_m");  // not "frame"
   CHECK(device::nearest_parameter_name("box_minimum_x") == "box_minimum_x_m");
   CHECK(contains(message_of<device::Error>([] { device::parameter_named("force_limit"); }), "force_limit_N"));
 }

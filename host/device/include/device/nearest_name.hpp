@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string_view>
+#include <utility>
 
 #include <device/error.hpp>
 
@@ -18,12 +19,16 @@ class UnknownName : public Error {
 /// Levenshtein's distance: how many characters must be inserted, removed or exchanged.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The name in a table of rows with a `name` that takes the fewest edits. The table must not be empty.
+/// The name in a table of rows with a `name` that was probably meant: one that has the typed text in it, else one that
+/// takes few edits. The table must not be empty.
 template <class Table>
 std::string_view nearest_name(const Table& table, std::string_view name) {
-  return std::min_element(
-             std::begin(table), std::end(table),
-             [&](const auto& a, const auto& b) { return edit_distance(name, a.name) < edit_distance(name, b.name); })
+  const auto distance = [name](const auto& row) {
+    const bool holds_it = !name.empty() && std::string_view(row.name).find(name) != std::string_view::npos;
+    return std::pair(!holds_it, edit_distance(name, row.name));
+  };
+  return std::min_element(std::begin(table), std::end(table),
+                          [&](const auto& a, const auto& b) { return distance(a) < distance(b); })
       ->name;
 }
 
