@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -19,6 +21,9 @@ constexpr std::size_t points_maximum = 1200;  ///< about one for each pixel of t
 constexpr int width_pixels = 1600;
 constexpr int titles_pixels = 120, time_axis_pixels = 120;
 constexpr int pane_pixels = 320, pane_gap_pixels = 40;
+constexpr int names_gap_pixels = 85, names_margin_pixels = 25;        // before a name, its line included, and behind it
+constexpr double character_pixels = 11.5, names_parts_maximum = 0.3;  // as wide as names of signals mostly are
+constexpr double tics_maximum = 6;                                    // of the numbers that a pane has room for
 
 constexpr std::array colours = {"blue", "vermilion", "green", "purple", "orange", "sky", "ink"};
 
@@ -75,15 +80,21 @@ FigureData data_of(const Recording& recording, const std::vector<Quantity>& quan
   return data;
 }
 
+/// "2026-11-22T04:27:47Z" as "2026-11-22 04:27 UTC"; what does not look like this, as it is.
+std::string minute_of(const std::string& utc) {
+  constexpr std::size_t date_length = 10, minute_length = 16;
+  if (utc.size() <= minute_length || utc[date_length] != 'T' || utc.back() != 'Z') return utc;
+  return utc.substr(0, date_length) + " " + utc.substr(date_length + 1, minute_length - date_length - 1) + " UTC";
+}
+
 std::string subtitle(const Recording& recording) {
   const auto& about = recording.information;
   std::vector<std::string> parts;
-  if (about.simulation) parts.push_back("simulation");
   if (!about.arm.empty()) parts.push_back(about.arm);
-  parts.push_back(fmt::format("k = {} N/m, c = {} Ns/m", about.parameters[Parameter::wall_stiffness_N_per_m],
+  parts.push_back(fmt::format("walls of {} N/m, {} Ns/m", about.parameters[Parameter::wall_stiffness_N_per_m],
                               about.parameters[Parameter::wall_damping_Ns_per_m]));
   parts.push_back("firmware " + about.firmware_version);
-  parts.push_back(about.created_utc);
+  parts.push_back(minute_of(about.created_utc));
   if (recording.lost() > 0) parts.push_back(fmt::format("{} samples lost", recording.lost()));
   if (!recording.complete) parts.push_back("cut short");
   return fmt::format("{}", fmt::join(parts, "  ·  "));
@@ -115,17 +126,48 @@ std::string marks(const Recording& recording, double from_s, double to_s, bool w
   return text;
 }
 
-std::string script(const Recording& recording, const std::vector<FigurePane>& panes, const std::string& title,
+/// How far from left to right the panes go: the longest name has room beside them.
+double right_edge(const std::vector<FigurePane>& panes) {
+  std::size_t longest = 0;
+  for (const auto& pane : panes)
+    for (const auto quantity : pane.quantities) longest = std::max(longest, name_of(quantity).size());
+  const double names_pixels = names_gap_pixels + character_pixels * static_cast<double>(longest) + names_margin_pixels;
+  return 1 - std::min(names_parts_maximum, names_pixels / width_pixels);
+}
+
+/// The command for numbers at round steps of the axis, so far apart that they are read with ease. gnuplot would take up
+/// to twice as many.
+std::string tics_of(const FigurePane& pane, const FigureData& data) {
+  double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
+  for (std::size_t i = 0; i < data.names.size(); ++i) {
+    const auto is_drawn = [&](Quantity quantity) { return name_of(quantity) == data.names[i]; };
+    if (std::none_of(pane.quantities.begin(), pane.quantities.end(), is_drawn)) continue;
+    for (const auto& row : data.rows) {
+      smallest = std::fmin(smallest, row.bands[i].minimum);
+      largest = std::fmax(largest, row.bands[i].maximum);
+    }
+  }
+  if (!(largest > smallest)) return "set ytics autofreq\n";
+  const double least_step = (largest - smallest) / tics_maximum;
+  const double decade = std::pow(10, std::floor(std::log10(least_step)));
+  double step = 10 * decade;
+  for (const double part : {5.0, 2.0, 1.0})
+    if (part * decade >= least_step) step = part * decade;
+  return fmt::format("set ytics {:g}\n", step);
+}
+
+std::string script(const Recording& recording, const std::vector<FigurePane>& panes, const FigureData& data,
                    double from_s, double to_s) {
   const auto count = static_cast<int>(panes.size());
   const int height = titles_pixels + count * pane_pixels + (count - 1) * pane_gap_pixels + time_axis_pixels;
   std::string text = figure_head("data.csv", width_pixels, height);
   text += fmt::format(
-      "set output 'figure.png'\nset multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.77\n"
-      "set xrange [{:.6f}:{:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
-      "set key at screen 0.785, graph 1 left top font 'Inter,16' spacing 1.1\n",
-      from_s, to_s);
-  text += figure_titles(title + (recording.information.simulation ? " (simulation)" : ""), subtitle(recording), height);
+      "set output 'figure.png'\nset multiplot\nset lmargin at screen 0.115\nset rmargin at screen {0:.4f}\n"
+      "set xrange [{1:.6f}:{2:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
+      "set key at screen {3:.4f}, graph 1 left top font 'Inter,16' spacing 1.1\n",
+      right_edge(panes), from_s, to_s, right_edge(panes) + 0.015);
+  text += figure_titles(recording.name + (recording.information.simulation ? " (simulation)" : ""), subtitle(recording),
+                        height);
   text += marks(recording, from_s, to_s, true);
   text += "set format x ''\nunset xlabel\n";
   int top = height - titles_pixels;
@@ -143,6 +185,7 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
     // A label instead of ylabel, which would stand elsewhere in each pane, as far out as the numbers push it.
     text += fmt::format("set label 3 {} at screen 0.018, graph 0.5 center rotate textcolor rgb ink noenhanced\n",
                         gnuplot_text(pane.label));
+    text += tics_of(pane, data);
     std::vector<Curve> curves;
     for (std::size_t j = 0; j < pane.quantities.size(); ++j) {
       const std::string colour = colours[j % colours.size()];
@@ -194,8 +237,9 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
                                     options.from_s, options.to_s.value_or(end_s), end_s));
 
   const WorkDirectory work;
-  data_of(recording, quantities, shown, from_s, to_s).write(work.path() / "data.csv");
-  write_text(work.path() / "figure.gnuplot", script(recording, figure_panes(quantities), recording.name, from_s, to_s));
+  const FigureData data = data_of(recording, quantities, shown, from_s, to_s);
+  data.write(work.path() / "data.csv");
+  write_text(work.path() / "figure.gnuplot", script(recording, figure_panes(quantities), data, from_s, to_s));
   run_gnuplot(work.path() / "figure.gnuplot");
   // Beside it first, so that a full disk does not cost an older picture.
   std::filesystem::path unfinished = picture;
