@@ -104,6 +104,17 @@ Answers close(const Arguments& arguments) {
   return {};
 }
 
+Answers information(const Arguments& arguments) {
+  inkwell_information told;
+  require(inkwell_get_information(find(arguments)->second, &told));
+  const char* names[] = {"product", "serial_number", "firmware_version", "is_virtual"};
+  mxArray* values[] = {mxCreateString(told.product), mxCreateString(told.serial_number),
+                       mxCreateString(told.firmware_version), mxCreateLogicalScalar(told.is_virtual != 0)};
+  mxArray* all = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(all, 0, names[i], values[i]);
+  return {all};
+}
+
 Answers pose(const Arguments& arguments) {
   inkwell_pose pose;
   require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));
@@ -222,9 +233,19 @@ Answers hand(const Arguments& arguments) {
 }
 
 const std::map<std::string, Answers (*)(const Arguments&)> commands{
-    {"open", open}, {"close", close}, {"pose", pose},     {"enable", enable},         {"force", force},
-    {"get", get},   {"set", set},     {"select", select}, {"parameters", parameters}, {"signals", signals},
-    {"read", read}, {"hand", hand},
+    {"open", open},
+    {"close", close},
+    {"pose", pose},
+    {"enable", enable},
+    {"force", force},
+    {"get", get},
+    {"set", set},
+    {"select", select},
+    {"parameters", parameters},
+    {"signals", signals},
+    {"read", read},
+    {"hand", hand},
+    {"information", information},
 };
 
 Answers run(const Arguments& arguments) {

@@ -25,6 +25,10 @@ assert(pose.state, 'ready');
 assert(size(pose.position_m), [3 1]);
 assert(pose.rotation * pose.rotation', eye(3), 1e-5);
 
+information = inkwell_information(arm);
+assert(information.is_virtual);
+assert(isempty(information.serial_number), false);
+
 % Parameters: one, several, all, unknown, out of range.
 assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 800);
 inkwell_parameters(arm, {'wall_stiffness_N_per_m', 'wall_damping_Ns_per_m'}, [500 1.5]);

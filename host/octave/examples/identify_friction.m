@@ -37,11 +37,20 @@ function fit = identify_friction(arm, picture)
   found = terms \ force_N;
   fit = struct('coulomb_N', found(1), 'viscous_Ns_per_m', found(2), 'stiffness_N_per_m', found(3), 'offset_N', found(4));
 
-  elastic_N = terms(:, 3:4) * found(3:4);
-  figure('visible', 'off');
-  plot(velocity_m_s, force_N - elastic_N, '.', velocity_m_s, terms * found - elastic_N, '.');
-  xlabel('velocity / (m/s)');
-  ylabel('force against the movement / N');
-  legend('measured', 'fitted', 'location', 'northwest');
-  print(picture, '-dpng');
+  % What is left without the elastic part belongs to the velocity alone.
+  from_velocity_N = force_N - terms(:, 3:4) * found(3:4);
+  line_m_s = [min(velocity_m_s), 0, 0, max(velocity_m_s)];
+  line_N = found(1) * [-1, -1, 1, 1] + found(2) * line_m_s;
+  figure('visible', 'off', 'paperunits', 'inches', 'paperposition', [0 0 8 4.6]);
+  plot(velocity_m_s, from_velocity_N, '.', 'color', [0.34 0.71 0.91], 'markersize', 4, ...
+       line_m_s, line_N, '-', 'color', [0.84 0.37 0], 'linewidth', 2.5);
+  names = {'', ' (simulation)'};
+  title(['Friction of the stylus along x', names{1 + inkwell_information(arm).is_virtual}]);
+  xlabel('velocity  /  (m/s)');
+  ylabel('force against the movement  /  N');
+  fitted = sprintf('fitted: %.2f N dry, %.1f Ns/m viscous', fit.coulomb_N, fit.viscous_Ns_per_m);
+  legend({'measured, each millisecond', fitted}, 'location', 'southoutside', 'orientation', 'horizontal', 'box', 'off');
+  set(gca, 'fontsize', 12, 'box', 'off', 'tickdir', 'out');
+  set(gca, 'xgrid', 'on', 'ygrid', 'on', 'gridcolor', [0.9 0.9 0.9]);
+  print(picture, '-dpng', '-r180');
 end

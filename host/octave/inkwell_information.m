@@ -1,0 +1,7 @@
+function information = inkwell_information(arm)
+% information = inkwell_information(arm)  Who the device is.
+%
+%   information.product, information.serial_number, information.firmware_version    text
+%   information.is_virtual    true or false: what comes from a virtual board is a simulation
+  information = inkwell_mex('information', arm);
+end
