@@ -122,6 +122,20 @@ TEST_CASE("two programs that both drive: the second is told of the first, and ma
   hdDisableDevice(device);
 }
 
+TEST_CASE("the page's program pulls the hand to the middle of the box until Enter") {
+  Board board;
+  board.hold();
+  RunningProgram well({program("inkwell"), "run", "--usbip", board.address.substr(6), program("drop-in-well")});
+  CHECK(well.read_line() == "Press Enter to end.");
+  // Springs of 300 and 100 N/m, 20 mm apart.
+  const double asked_s = board.time_s();
+  while (board.pulled_m(0) > -0.004 && board.time_s() < asked_s + 5.0) {
+  }
+  CHECK(board.pulled_m(0) < -0.004);
+  well.write_line("");
+  CHECK(well.wait() == 0);
+}
+
 TEST_CASE("a program that ends between the beginning and the end of a frame: its force fades") {
   Board board;
   board.hold();

@@ -49,6 +49,23 @@ TEST_CASE("pictures: the whole window, dark and light" * doctest::skip()) {
   }
 }
 
+TEST_CASE("pictures: a program for an Omni drives" * doctest::skip()) {
+  WindowRig rig({"--layout", "contact"});
+  const auto sphere = rig.look().item("scene/sphere").centre();
+  rig.drag(sphere, {sphere.x + 30, sphere.y - 50}, 12);
+  RunningProgram program({build_directory() + "/inkwell", "run", "--usbip",
+                          "127.0.0.1:" + std::to_string(rig.board.usbip_port()), build_directory() + "/drop-in-well"});
+  program.read_line();
+  rig.look_until("the program drives", [](const Sight& now) { return now.state() == "active"; });
+  // Slower and slower, so that the hand rests at last.
+  for (int step = 1; step <= 60; ++step) {
+    const double part = step / 60.0, angle_rad = 3 * std::numbers::pi * part * (2 - part);
+    rig.move_to({sphere.x + 30 + 60 * std::sin(angle_rad), sphere.y - 50 + 35 * (1 - std::cos(angle_rad))});
+  }
+  rig.picture(picture_file("dropins"));
+  program.write_line("");
+}
+
 TEST_CASE("pictures: the sliders of every group of parameters" * doctest::skip()) {
   WindowRig rig;
   constexpr int rows_that_fit = 18, wheel_steps_over_all = 12;
