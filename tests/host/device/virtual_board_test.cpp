@@ -140,6 +140,7 @@ TEST_CASE("a terminal's Ctrl-C does not reach a virtual board, and no file but i
     const device::VirtualBoard board(script.options());
     CHECK(script.file("group") == script.file("process"));
     CHECK(script.file("twice").empty());
+    CHECK(open_files() == open_before + 2);  // to read from; if one to write to were left, its end would not be seen
   }
   CHECK(open_files() == open_before);
 }
