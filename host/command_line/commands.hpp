@@ -25,6 +25,8 @@ struct Place {
 /// add_NAME_command.
 #define INKWELL_COMMANDS(X) \
   X(info)                   \
+  X(devices)                \
+  X(fault)                  \
   X(watch)                  \
   X(parameters)             \
   X(signals)                \
