@@ -29,7 +29,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto start_timeout = 30s;
-constexpr auto stop_timeout = 10s;
+constexpr auto stop_timeout = 5s;
 constexpr std::size_t log_kept = 4096;
 
 struct Pipe {
