@@ -190,7 +190,8 @@ class Hdf5Writer final : public Writer {
   [[noreturn]] void fail() const {
     std::error_code error;
     const auto space = std::filesystem::space(std::filesystem::absolute(name_).parent_path(), error);
-    const bool full = !error && space.available < 1'000'000;
+    // What is no disk, such as /proc, has no room at all and is not full.
+    const bool full = !error && space.capacity > 0 && space.available < 1'000'000;
     throw device::Error(fmt::format("{} cannot be written: {}.", name_,
                                     full ? "the disk is full. Free some space or choose another place"
                                          : "the system refused it. Check that the folder exists and may be written"));

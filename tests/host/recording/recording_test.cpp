@@ -276,6 +276,9 @@ TEST_CASE("an existing file is not overwritten, an unknown ending not guessed") 
   CHECK_THROWS_AS(Recorder(directory / "a.h5", about()), device::Error);
   CHECK_THROWS_AS(Recorder(directory / "a.mat", about()), device::Error);
   CHECK_THROWS_AS(Recorder(directory / "missing" / "a.h5", about()), device::Error);
+  // What is no disk is not called a full one.
+  const auto refusal = message_of<device::Error>([] { Recorder("/proc/a.h5", about()); });
+  CHECK(refusal.find("the system refused it") != std::string::npos);
   CHECK(fs::file_size(directory / "a.h5") == 8);
 }
 
