@@ -27,7 +27,7 @@ void check_left_safe(const FakeArm& arm) {
   REQUIRE(arm.commands.size() >= 2);
   CHECK(arm.commands[arm.commands.size() - 2] == Command::disable_force);
   CHECK(arm.commands.back() == Command::test_voltage);
-  CHECK(arm.pulses.back().amplitude == 0.0f);
+  CHECK(float{arm.pulses.back().amplitude} == 0.0f);  // a copy: in the report it may lie anywhere
   CHECK(arm.selected.empty());
 }
 
