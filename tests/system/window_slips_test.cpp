@@ -157,6 +157,24 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
 
   rig.switch_force_on();
   rig.click("recording/Replay the last one");
+  SUBCASE("a STOP is no answer") {
+    rig.look_until("it asks", [](const Sight& now) { return now.has("force before replay/Cancel"); });
+    rig.click("status/STOP");
+    rig.look_until("the force is off", force_is_off);
+    rig.control.run(0.1);  // in which the replay would begin
+    rig.control.resume();
+    CHECK_FALSE(rig.look().says("REPLAY"));
+    return;
+  }
+  SUBCASE("Escape is no") {
+    rig.look_until("it asks", [](const Sight& now) { return now.has("force before replay/Cancel"); });
+    rig.press_key("Escape");
+    rig.look_until("the force is off", force_is_off);
+    CHECK_FALSE(rig.look().has("force before replay/Cancel"));
+    CHECK_FALSE(rig.look().says("REPLAY"));
+    return;
+  }
+  SUBCASE("the buttons") {}
   rig.click("force before replay/Cancel");
   rig.look_until("the question is gone", [](const Sight& now) { return !now.has("force before replay/Cancel"); });
   CHECK(rig.look().state() == "active");

@@ -106,6 +106,7 @@ class RecordingPane final : public Pane {
   void draw_progress(const Style& style);
   void draw_numbers(const Style& style, const RecorderStatus& status);
   void draw_replay(const Style& style);
+  bool force_is_on() const { return desk_.view().state() == protocol::State::active; }
   /// Asks whether the force may go before a recording takes the arm's place.
   void draw_question(const Style& style);
 
@@ -125,8 +126,11 @@ class RecordingPane final : public Pane {
   FileChooser chooser_;
   std::optional<std::filesystem::path> may_be_replaced_;
   std::string replay_error_;
-  std::optional<std::filesystem::path> replay_wish_;  ///< of the user, until it is followed
-  bool force_may_go_ = false;                         ///< the user agreed that the force ends for it
+  struct ReplayWish {
+    std::filesystem::path file;
+    bool asks;  ///< whether the force may go for it; the user has not answered yet
+  };
+  std::optional<ReplayWish> replay_wish_;  ///< until it is followed
 };
 
 void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
@@ -183,15 +187,10 @@ void RecordingPane::follow_recording(const std::vector<device::ScopeSamples>& sa
 }
 
 void RecordingPane::follow_replay_wish() {
-  if (!replay_wish_) return;
-  if (desk_.view().state() == protocol::State::active) {
-    if (force_may_go_) desk_.session().send(protocol::Command::disable_force);
-    return;
-  }
-  force_may_go_ = false;
-  const auto file = std::exchange(replay_wish_, std::nullopt);
+  if (!replay_wish_ || replay_wish_->asks || force_is_on()) return;
+  const auto wish = std::exchange(replay_wish_, std::nullopt);
   try {
-    replay_(*file);
+    replay_(wish->file);
   } catch (const device::Error& error) {
     replay_error_ = error.what();
   }
@@ -289,7 +288,7 @@ void RecordingPane::draw_numbers(const Style& style, const RecorderStatus& statu
 void RecordingPane::draw_replay(const Style& style) {
   const auto replay = [this](const std::filesystem::path& file) {
     replay_error_.clear();
-    replay_wish_ = file;
+    replay_wish_ = {file, force_is_on()};
   };
   if (button("Open a recording", {-1, style.points(30)})) {
     task_ = FileTask::replay;
@@ -311,19 +310,26 @@ void RecordingPane::draw_replay(const Style& style) {
 
 void RecordingPane::draw_question(const Style& style) {
   constexpr const char* question = "force before replay";
-  const bool asks = replay_wish_ && !force_may_go_ && desk_.view().state() == protocol::State::active;
-  if (asks && !ImGui::IsPopupOpen(question)) ImGui::OpenPopup(question);
+  if (!replay_wish_ || !replay_wish_->asks) return;
+  if (!ImGui::IsPopupOpen(question)) ImGui::OpenPopup(question);
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({style.points(440), 0});
   if (!ImGui::BeginPopupModal(question, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove)) return;
   text(style.fonts.strong, style.palette->text, "The force is on");
   wrapped_text(style.palette->text_quiet,
                "The recording takes the arm's place in this window. An arm with force must not be out of sight.");
-  if (coloured_button("Switch off and replay", style.palette->accent, style.palette->pane, {style.points(180), 0}))
-    force_may_go_ = true;
+  const bool agrees =
+      coloured_button("Switch off and replay", style.palette->accent, style.palette->pane, {style.points(180), 0});
   ImGui::SameLine();
-  if (button("Cancel", {style.points(100), 0})) replay_wish_.reset();
-  if (!asks || force_may_go_ || !replay_wish_) ImGui::CloseCurrentPopup();
+  const bool cancels =
+      button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  if (agrees) {
+    desk_.session().send(protocol::Command::disable_force);
+    replay_wish_->asks = false;
+  } else if (cancels) {
+    replay_wish_.reset();
+  }
+  if (agrees || cancels) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }
 
