@@ -140,16 +140,17 @@ void WindowRig::turn_wheel(Point over, int steps, const char* button) {
 void WindowRig::scroll_down(Point over, int steps) { turn_wheel(over, steps, "5"); }
 void WindowRig::scroll_up(Point over, int steps) { turn_wheel(over, steps, "4"); }
 
+void WindowRig::hold_key(const std::string& key) { play({"keydown", key}); }
+void WindowRig::release_key(const std::string& key) { play({"keyup", key}); }
+
 void WindowRig::press_key(const std::string& key) {
-  play({"keydown", key});
-  play({"keyup", key});
+  hold_key(key);
+  release_key(key);
 }
 
 void WindowRig::enter(const std::string& field, const std::string& text) {
   click(field);
-  play({"keydown", "ctrl"});
-  press_key("a");
-  play({"keyup", "ctrl"});
+  press_key("ctrl+a");
   type(text);
 }
 

@@ -68,6 +68,8 @@ class WindowRig {
   void drag(Point from, Point to, int steps = 8);
   void scroll_down(Point over, int steps);
   void scroll_up(Point over, int steps);
+  void hold_key(const std::string& key);
+  void release_key(const std::string& key);
   /// As xdotool names it, with others that are held: "ctrl+z".
   void press_key(const std::string& key);
   void type(const std::string& text);

@@ -23,7 +23,7 @@ constexpr Row rows[] = {
     {"Enter, or a click elsewhere", "Send what was typed"},
     {"Escape", "Keep the value that was there before"},
     {"Tab", "Send it and go to the next number"},
-    {"Drag the dots beside a number", "Change it; with Shift ten times as fast, with Alt a tenth"},
+    {"Drag the dots beside a number", "Change it; with Shift ten times as fast, with Ctrl a tenth"},
     {"Ctrl+Z", "Take the last change back"},
     {"Ctrl+Y, Ctrl+Shift+Z", "Do it again"},
     {"Scene", ""},

@@ -56,7 +56,7 @@ void ValueFields::follow_drag(float value, const ValueRange& range, const Style&
     dragged_points_ = 0;
   }
   if (ImGui::IsItemActive() && io.MouseDelta.x != 0) {
-    dragged_points_ += io.MouseDelta.x / style.scale * (io.KeyShift ? fast : io.KeyAlt ? fine : 1.0f);
+    dragged_points_ += io.MouseDelta.x / style.scale * (io.KeyShift ? fast : io.KeyCtrl ? fine : 1.0f);
     edit.dragged_to = range.dragged(drag_start_, dragged_points_);
   }
   edit.drag_ends = ImGui::IsItemDeactivated();

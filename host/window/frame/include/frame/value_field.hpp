@@ -23,7 +23,7 @@ struct ValueEdit {
 class ValueFields {
  public:
   /// A field with a handle at its left and a number that a click selects. Its ground fills up to the value's place in
-  /// the range. Dragging the handle changes the value, with Shift ten times as fast and with Alt a tenth; Escape gives
+  /// the range. Dragging the handle changes the value, with Shift ten times as fast and with Ctrl a tenth; Escape gives
   /// back what was there before typing. `name`: for inspections, which know the handle as "<name> handle".
   ValueEdit draw(const char* id, const std::string& name, float value, const ValueRange& range, float width,
                  const Style& style);
