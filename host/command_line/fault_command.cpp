@@ -48,13 +48,12 @@ int clear_fault(const DeviceOptions& options) {
   const auto connection = connect(options);
   device::Device& device = *connection.device;
   PoseReport pose = newest_pose(device);
-  const Fault fault = pose.fault;
   const bool was_fault = pose.state == State::fault;
   device.send(protocol::Command::clear_fault);
   const std::uint32_t begin_periods = pose.time_periods;
   while (was_fault && pose.time_periods - begin_periods < patience_periods) pose = newest_pose(device);
   if (pose.state == State::fault)
-    throw device::Error(fmt::format("The fault is there again. {}", device::fault_line(fault)));
+    throw device::Error(fmt::format("The fault is there again. {}", device::fault_line(pose.fault)));
   tell_fault(options, pose);
   return 0;
 }
