@@ -5,10 +5,12 @@
 #include <functional>
 #include <mutex>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "local_server.hpp"
 
 namespace inkwell::tests {
 
@@ -17,26 +19,20 @@ class FakeControlServer {
   /// What it sends for a request, with the end of the line.
   using Answer = std::function<std::string(const nlohmann::json&)>;
 
-  explicit FakeControlServer(Answer answer);
-  ~FakeControlServer();
+  explicit FakeControlServer(Answer answer) : answer_(std::move(answer)) {}
 
-  std::uint16_t port() const { return port_; }
+  std::uint16_t port() const { return server_.port(); }
   std::vector<nlohmann::json> requests();
   /// Cuts the connection, as a board that was stopped would.
-  void hang_up();
+  void hang_up() { server_.hang_up(); }
 
  private:
-  void accept_clients();
   void serve(int client);
 
   Answer answer_;
-  int listener_ = -1;
-  std::uint16_t port_ = 0;
   std::mutex mutex_;
-  int client_ = -1;
-  bool stopping_ = false;
   std::vector<nlohmann::json> requests_;
-  std::thread thread_;  ///< last: it uses all of the above
+  LocalServer server_{[this](int client) { serve(client); }};
 };
 
 }  // namespace inkwell::tests

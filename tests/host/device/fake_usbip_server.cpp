@@ -1,10 +1,6 @@
 #include "fake_usbip_server.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -82,55 +78,26 @@ FakeUsbipServer::FakeUsbipServer()
   information.signal_table_hash = protocol::signal_table_hash;
   information.servo_rate_Hz = protocol::servo_rate_Hz;
   transaction_.report_id = protocol::ReportId::transaction;
-  listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  bind(listener_, reinterpret_cast<sockaddr*>(&address), size);
-  listen(listener_, 4);
-  getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
-  port_ = ntohs(address.sin_port);
-  thread_ = std::thread([this] { accept_clients(); });
-}
-
-FakeUsbipServer::~FakeUsbipServer() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-    if (client_ >= 0) shutdown(client_, SHUT_RDWR);
-  }
-  shutdown(listener_, SHUT_RDWR);
-  thread_.join();
-  close(listener_);
 }
 
 device::Endpoint FakeUsbipServer::endpoint() const {
-  return {device::Endpoint::Kind::usbip, "", "", "1-1", "127.0.0.1", port_};
-}
-
-void FakeUsbipServer::accept_clients() {
-  for (;;) {
-    const int client = accept(listener_, nullptr, nullptr);
-    if (client < 0) return;
-    const int yes = 1;
-    setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // a pose follows an answer at once
-    {
-      const std::lock_guard lock(mutex_);
-      client_ = client;
-      if (stopping_) shutdown(client, SHUT_RDWR);
-    }
-    serve(client);
-    const std::lock_guard lock(mutex_);
-    close(client);
-    client_ = -1;
-    is_configured_ = false;
-    waiting_.clear();
-    ready_.clear();
-  }
+  return {device::Endpoint::Kind::usbip, "", "", "1-1", "127.0.0.1", port()};
 }
 
 void FakeUsbipServer::serve(int client) {
+  {
+    const std::lock_guard lock(mutex_);
+    client_ = client;
+  }
+  serve_requests(client);
+  const std::lock_guard lock(mutex_);
+  client_ = -1;
+  is_configured_ = false;
+  waiting_.clear();
+  ready_.clear();
+}
+
+void FakeUsbipServer::serve_requests(int client) {
   const auto request = receive<usbip::OperationHeader>(client);
   if (!request) return;
   if (silent) {
@@ -352,11 +319,6 @@ void FakeUsbipServer::fail(std::uint8_t endpoint, std::int32_t status) {
 void FakeUsbipServer::send_unasked(std::span<const std::byte> bytes) {
   const std::lock_guard lock(mutex_);
   ::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-}
-
-void FakeUsbipServer::hang_up() {
-  const std::lock_guard lock(mutex_);
-  if (client_ >= 0) shutdown(client_, SHUT_RDWR);
 }
 
 std::vector<protocol::CommandReport> FakeUsbipServer::commands() {

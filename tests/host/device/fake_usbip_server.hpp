@@ -10,11 +10,12 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <device/transport.hpp>
 #include <protocol/reports.hpp>
+
+#include "local_server.hpp"
 
 namespace inkwell::tests {
 
@@ -29,9 +30,8 @@ Bytes bytes_of(const Report& report) {
 class FakeUsbipServer {
  public:
   FakeUsbipServer();
-  ~FakeUsbipServer();
 
-  std::uint16_t port() const { return port_; }
+  std::uint16_t port() const { return server_.port(); }
   device::Endpoint endpoint() const;
 
   // Set before a client comes.
@@ -79,7 +79,7 @@ class FakeUsbipServer {
   /// Sends bytes that are no answer to anything.
   void send_unasked(std::span<const std::byte> bytes);
   /// Cuts the connection, as a board that was stopped would.
-  void hang_up();
+  void hang_up() { server_.hang_up(); }
 
   std::vector<protocol::CommandReport> commands();
   std::vector<protocol::ForceReport> forces();
@@ -92,8 +92,8 @@ class FakeUsbipServer {
   std::size_t imports();
 
  private:
-  void accept_clients();
   void serve(int client);
+  void serve_requests(int client);
   void serve_transfers(int client);
   void take_back(int client, std::uint32_t sequence, std::uint32_t unlinked_sequence);
   void match(std::uint8_t endpoint);
@@ -103,13 +103,9 @@ class FakeUsbipServer {
   std::optional<Bytes> answer_control(const std::uint8_t (&setup)[8], const Bytes& data);
   std::optional<Bytes> feature_report(protocol::ReportId id);
 
-  int listener_ = -1;
-  std::uint16_t port_ = 0;
-  std::thread thread_;
   std::mutex mutex_;
   int client_ = -1;
   bool is_configured_ = false;
-  bool stopping_ = false;
   std::map<std::uint8_t, std::deque<std::uint32_t>> waiting_;
   std::map<std::uint8_t, std::deque<Bytes>> ready_;
   std::vector<protocol::CommandReport> commands_;
@@ -118,6 +114,7 @@ class FakeUsbipServer {
   protocol::TransactionReport transaction_{};
   std::size_t taken_back_ = 0;
   std::size_t imports_ = 0;
+  LocalServer server_{[this](int client) { serve(client); }};
 };
 
 /// A scope frame of one sample of one signal that is a float.

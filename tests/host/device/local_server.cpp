@@ -1,0 +1,60 @@
+#include "local_server.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <utility>
+
+namespace inkwell::tests {
+
+LocalServer::LocalServer(std::function<void(int client)> serve) : serve_(std::move(serve)) {
+  listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  bind(listener_, reinterpret_cast<sockaddr*>(&address), size);
+  listen(listener_, 4);
+  getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
+  port_ = ntohs(address.sin_port);
+  thread_ = std::thread([this] { accept_clients(); });
+}
+
+LocalServer::~LocalServer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    if (client_ >= 0) shutdown(client_, SHUT_RDWR);
+  }
+  shutdown(listener_, SHUT_RDWR);
+  thread_.join();
+  close(listener_);
+}
+
+void LocalServer::hang_up() {
+  const std::lock_guard lock(mutex_);
+  if (client_ >= 0) shutdown(client_, SHUT_RDWR);
+}
+
+void LocalServer::accept_clients() {
+  for (;;) {
+    const int client = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    if (client < 0) return;
+    const int yes = 1;
+    setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // a pose follows an answer at once
+    {
+      const std::lock_guard lock(mutex_);
+      client_ = client;
+      if (stopping_) shutdown(client, SHUT_RDWR);
+    }
+    serve_(client);
+    const std::lock_guard lock(mutex_);
+    close(client);
+    client_ = -1;
+  }
+}
+
+}  // namespace inkwell::tests

@@ -1,0 +1,178 @@
+// What a program asks of a device over USB/IP: parameters as transactions, forces and shapes; and every way in which
+// the device may refuse.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include <device/device.hpp>
+#include <failure.hpp>
+
+#include "fake_usbip_server.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using namespace std::chrono_literals;
+using protocol::Parameter;
+
+TEST_CASE("parameters are read, set as one transaction, and restored") {
+  FakeUsbipServer server;
+  server.parameters[Parameter::force_limit_N] = 1.25f;
+  const auto arm = device::Device::open(server.endpoint());
+  CHECK(arm->parameters() == server.parameters);
+  const std::vector<device::ParameterChange> changes{{Parameter::box_minimum_x_m, -0.01f},
+                                                     {Parameter::box_maximum_x_m, 0.02f}};
+  CHECK(arm->set_parameters(changes).transactions == 1);
+  CHECK(server.transactions() == 1);
+  CHECK(arm->parameters()[Parameter::box_maximum_x_m] == 0.02f);
+  arm->restore_default_parameters();
+  CHECK(arm->parameters() == protocol::default_parameters());
+}
+
+TEST_CASE("a refusal names the parameter, the reason and the range, whether the device stalls or not") {
+  FakeUsbipServer server;
+  server.judge = [](const auto&) { return protocol::Refusal::out_of_range; };
+  SUBCASE("with a stall") { server.stalls_refusals = true; }
+  SUBCASE("without") {}
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 9.0f}};
+  const auto message = message_of<device::Refused>([&] { arm->set_parameters(changes); });
+  CHECK(contains(message, "force_limit_N = 9"));
+  CHECK(contains(message, "0 to 8 N"));
+}
+
+TEST_CASE("a transaction that meets a busy device is tried again") {
+  FakeUsbipServer server;
+  int attempts = 0;
+  server.judge = [&](const auto&) { return ++attempts < 3 ? protocol::Refusal::busy : protocol::Refusal::accepted; };
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 2.0f}};
+  CHECK(arm->set_parameters(changes).refusal == protocol::Refusal::accepted);
+  CHECK(server.transactions() == 3);
+}
+
+TEST_CASE("a transaction that meets a busy device for seconds is refused") {
+  FakeUsbipServer server;
+  server.judge = [](const auto&) { return protocol::Refusal::busy; };
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 2.0f}};
+  CHECK(contains(message_of<device::Refused>([&] { arm->set_parameters(changes); }), "force_limit_N = 2"));
+}
+
+TEST_CASE("a stall of what the device says it accepted is an error, and the transaction is not repeated") {
+  FakeUsbipServer server;
+  server.stalls_accepted = true;
+  const auto arm = device::Device::open(server.endpoint());
+  const std::vector<device::ParameterChange> changes{{Parameter::force_limit_N, 2.0f}};
+  CHECK(contains(message_of<device::Stalled>([&] { arm->set_parameters(changes); }), "refused a USB request"));
+  CHECK(server.transactions() == 1);
+}
+
+TEST_CASE("more changes than a report holds are refused before they are sent") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  std::vector<device::ParameterChange> changes(protocol::parameter_entries_maximum, {Parameter::force_limit_N, 2.0f});
+  arm->set_parameters(changes);
+  changes.push_back(changes[0]);
+  CHECK(contains(message_of<device::Error>([&] { arm->set_parameters(changes); }), "too many"));
+  CHECK(server.transactions() == 1);
+}
+
+TEST_CASE("parameters that are not whole, of another version or of another number are refused") {
+  FakeUsbipServer server;
+  auto& spoil = server.spoil[protocol::ReportId::parameters];
+  const auto change = [](auto member, auto by) {
+    return [=](Bytes& report) {
+      protocol::ParametersReport changed;
+      std::memcpy(&changed, report.data(), sizeof changed);
+      changed.*member = static_cast<std::uint16_t>(changed.*member + by);
+      report = bytes_of(changed);
+    };
+  };
+  constexpr auto whole = protocol::parameters_report_size(protocol::parameter_count);
+  bool is_refused = true;
+  SUBCASE("cut short") {
+    spoil = [](Bytes& report) { report.resize(whole - 1); };
+  }
+  SUBCASE("one less") { spoil = change(&protocol::ParametersReport::count, -1); }
+  SUBCASE("one more") { spoil = change(&protocol::ParametersReport::count, 1); }
+  SUBCASE("version") { spoil = change(&protocol::ParametersReport::version, 1); }
+  SUBCASE("as long as its entries") {
+    spoil = [](Bytes& report) { report.resize(whole); };
+    is_refused = false;
+  }
+  const auto arm = device::Device::open(server.endpoint());
+  const auto message = message_of<device::Incompatible>([&] { arm->parameters(); });
+  CHECK(contains(message, "do not fit this companion") == is_refused);
+}
+
+TEST_CASE("a feature report that is too short is refused with both lengths") {
+  FakeUsbipServer server;
+  const auto cut = [](Bytes& report) { report.pop_back(); };
+  std::string message;
+  SUBCASE("information") {
+    server.spoil[protocol::ReportId::information] = cut;
+    message = message_of<device::Incompatible>([&] { device::Device::open(server.endpoint()); });
+    CHECK(contains(message, "information report has 71 bytes instead of 72"));
+  }
+  SUBCASE("transaction") {
+    server.spoil[protocol::ReportId::transaction] = cut;
+    const auto arm = device::Device::open(server.endpoint());
+    message = message_of<device::Incompatible>([&] { arm->restore_default_parameters(); });
+    CHECK(contains(message, "transaction report has 15 bytes instead of 16"));
+  }
+  SUBCASE("frame") {
+    server.spoil[protocol::ReportId::frame] = cut;
+    const auto arm = device::Device::open(server.endpoint());
+    message = message_of<device::Incompatible>([&] { arm->frame(); });
+    CHECK(contains(message, "frame report has 15 bytes instead of 16"));
+  }
+  CHECK(contains(message, "Flash"));
+}
+
+TEST_CASE("forces reach the device as they were asked, numbered from 0, beside the commands") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  const device::ForceRequest request{
+      .force_N = {1.0f, -2.0f, 3.0f}, .mode = protocol::ForceMode::instead_of_walls, .interval_ms = 4};
+  for (int i = 0; i < 3; ++i) arm->send_force(request);
+  arm->send(protocol::Command::heartbeat);
+  REQUIRE(eventually([&] { return server.commands().size() == 1; }));
+  const auto forces = server.forces();
+  REQUIRE(forces.size() == 3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    auto expected = device::force_report(request);
+    expected.sequence = i;
+    CHECK(bytes_of(forces[i]) == bytes_of(expected));
+  }
+  CHECK_THROWS_AS(arm->send_force({.interval_ms = 0}), device::Error);
+}
+
+TEST_CASE("shapes reach the device as one report, as long as its planes are many") {
+  FakeUsbipServer server;
+  server.shapes_stalls = 2;  // as long as the interrupt has not taken those before
+  const auto arm = device::Device::open(server.endpoint());
+  device::Shapes shapes;
+  shapes.planes[1] = device::Plane{.point_m = {0.01f, 0.02f, 0.03f}};
+  shapes.sphere = device::Sphere{.centre_m = {0, 0, -0.05f}};
+  arm->place_shapes(shapes);
+  arm->place_shapes({});
+  auto expected = bytes_of(device::shapes_report(shapes));
+  expected.resize(protocol::shapes_report_size(2));
+  const auto placed = server.shapes_placed();
+  REQUIRE(placed.size() == 2);
+  CHECK(placed[0] == expected);
+  CHECK(placed[1].size() == protocol::shapes_report_size(0));
+  CHECK(server.shapes_stalls == 0);
+}
+
+TEST_CASE("shapes that the device goes on to stall are given up with a sentence") {
+  FakeUsbipServer server;
+  server.shapes_stalls = std::numeric_limits<int>::max();
+  const auto arm = device::Device::open(server.endpoint());
+  CHECK(contains(message_of<device::Stalled>([&] { arm->place_shapes({}); }), "refused a USB request"));
+  CHECK(server.shapes_placed().empty());
+  CHECK_NOTHROW(arm->information());
+}
