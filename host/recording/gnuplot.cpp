@@ -14,15 +14,12 @@
 namespace inkwell::recording {
 namespace {
 
-// Colours of Okabe and Ito: told apart with every kind of colour blindness.
-constexpr char style[] = R"(set datafile separator comma
+constexpr char look[] =
+#include <figure_style.inc>
+    ;
+
+constexpr char layout[] = R"(set datafile separator comma
 set datafile columnheaders
-set encoding utf8
-ink = '#24292f'; grey = '#6b7280'; pale = '#e5e7eb'
-blue = '#0072b2'; vermilion = '#d55e00'; green = '#009e73'; purple = '#cc79a7'; orange = '#e69f00'; sky = '#56b4e9'
-set border 3 linecolor rgb grey linewidth 1
-set tics nomirror out scale 0.6 textcolor rgb ink
-set grid linecolor rgb pale linewidth 0.8 linetype 1
 set key outside right top vertical Left reverse samplen 1.6 spacing 1.25 textcolor rgb ink noenhanced
 set xlabel 'time  /  s' textcolor rgb ink
 set style fill transparent solid 0.22 noborder
@@ -58,8 +55,8 @@ void FigureData::write(const std::filesystem::path& file) const {
 
 std::string figure_head(const std::string& data_file, int width, int height) {
   return fmt::format(
-      "data = {}\nset terminal pngcairo size {},{} font 'Inter,20' background '#ffffff' linewidth 1.4\n{}",
-      gnuplot_text(data_file), width, height, style);
+      "data = {}\nset terminal pngcairo size {},{} font 'Inter,20' background '#ffffff' linewidth 1.4\n{}{}",
+      gnuplot_text(data_file), width, height, look, layout);
 }
 
 std::string figure_titles(std::string_view title, std::string_view subtitle, int height) {
