@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <device/parameter_file.hpp>
+
 namespace inkwell::command_line {
 namespace {
 
@@ -58,11 +60,11 @@ void set_help_style(CLI::App& program) { program.formatter(std::make_shared<Help
 
 namespace {
 
-CLI::Validator number_that(bool (*fits)(double), const char* what) {
+CLI::Validator number_that(bool (*fits)(float), const char* what) {
   return CLI::Validator(
       [fits, what](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && fits(value)
+        const auto value = device::parse_number(text);
+        return value && std::isfinite(*value) && fits(*value)
                    ? std::string()
                    : fmt::format("{} does not do. Give a number that is {}.", text, what);
       },
@@ -72,11 +74,11 @@ CLI::Validator number_that(bool (*fits)(double), const char* what) {
 }  // namespace
 
 CLI::Validator zero_or_more() {
-  return number_that([](double value) { return value >= 0 && std::isfinite(value); }, "0 or more");
+  return number_that([](float value) { return value >= 0; }, "0 or more");
 }
 
 CLI::Validator more_than_zero() {
-  return number_that([](double value) { return value > 0 && std::isfinite(value); }, "more than 0");
+  return number_that([](float value) { return value > 0; }, "more than 0");
 }
 
 std::optional<std::string> missing_command(const CLI::App& program) {

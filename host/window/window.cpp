@@ -23,10 +23,11 @@ WindowSettings settings_at_start(const WindowOptions& options) {
   if (options.persist_settings) settings = read_settings(window_settings_path());
   if (options.theme) settings.theme = *options.theme;
   if (options.layout.empty()) return settings;
-  if (!is_layout(options.layout, settings.scope.own_layouts))
+  const ScopeLayout* layout = find_layout(options.layout, settings.scope.own_layouts);
+  if (layout == nullptr)
     throw std::runtime_error(fmt::format("There is no layout {}. Give one of these with --layout: {}.", options.layout,
                                          layout_names(settings.scope.own_layouts)));
-  settings.scope.layout = layout_named(options.layout, settings.scope.own_layouts);
+  settings.scope.layout = *layout;
   return settings;
 }
 

@@ -42,7 +42,7 @@ Colour colour_of(HeatLevel level, const Palette& palette) {
 }  // namespace
 
 std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette) {
-  const bool alive = view.connected() && view.pose.has_value() && view.status.information.has_value();
+  const bool alive = view.pose.has_value() && view.status.information.has_value();
   const protocol::PoseReport pose = view.pose.value_or(protocol::PoseReport{});
   const device::SessionStatus& status = view.status;
   const MotorHeatView heat = alive ? motor_heat_view(status.information->report) : MotorHeatView{};

@@ -167,7 +167,7 @@ void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView
   ImGui::PopFont();
   help_on_hover("Stop", "Switches the force off at once. Escape and F12 do the same, whatever has the focus.", style);
 
-  const bool alive = view.connected() && view.pose.has_value();
+  const bool alive = view.pose.has_value();
   const bool active = alive && view.state() == State::active;
   const bool can_switch_on = alive && view.state() == State::ready && !input.is_replay;
   const ImVec2 force_size = make_room(force_points);
@@ -203,7 +203,7 @@ StatusBarOutcome StatusBar::draw(ImVec2 place, ImVec2 size, const Style& style, 
 
   const float height = style.points(item_points);
   const float y = place.y + style.points(gap_points);
-  const bool alive = view.connected() && view.pose.has_value();
+  const bool alive = view.pose.has_value();
   const std::vector<FlowPlace> places = places_of(size.x, style);
   const auto corner = [&](Item item) {
     return ImVec2{place.x + style.points(margin_points) + places[item].x,

@@ -39,10 +39,19 @@ std::span<const ScopeLayout> built_in_layouts() {
   return layouts;
 }
 
-const ScopeLayout& built_in_layout(std::string_view name) {
+namespace {
+
+const ScopeLayout* find_built_in(std::string_view name) {
   const auto layouts = built_in_layouts();
   const auto found = std::ranges::find(layouts, name, &ScopeLayout::name);
-  return found == layouts.end() ? layouts.front() : *found;
+  return found == layouts.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+const ScopeLayout& built_in_layout(std::string_view name) {
+  const ScopeLayout* found = find_built_in(name);
+  return found == nullptr ? built_in_layouts().front() : *found;
 }
 
 OwnLayouts::OwnLayouts(std::vector<ScopeLayout> layouts) {
@@ -57,7 +66,7 @@ const ScopeLayout* OwnLayouts::find(std::string_view name) const {
 
 std::string OwnLayouts::refusal(std::string_view name) {
   if (name.find_first_not_of(' ') == std::string_view::npos) return "Give the layout a name.";
-  if (std::ranges::find(built_in_layouts(), name, &ScopeLayout::name) != built_in_layouts().end())
+  if (find_built_in(name) != nullptr)
     return fmt::format("\"{}\" comes with the window and stays as it is. Choose another name.", name);
   return {};
 }
@@ -83,9 +92,9 @@ void OwnLayouts::remove(std::string_view name) {
   std::erase_if(layouts_, [name](const ScopeLayout& layout) { return layout.name == name; });
 }
 
-bool is_layout(std::string_view name, const OwnLayouts& own) {
-  return own.find(name) != nullptr ||
-         std::ranges::find(built_in_layouts(), name, &ScopeLayout::name) != built_in_layouts().end();
+const ScopeLayout* find_layout(std::string_view name, const OwnLayouts& own) {
+  const ScopeLayout* found = own.find(name);
+  return found == nullptr ? find_built_in(name) : found;
 }
 
 std::string layout_names(const OwnLayouts& own) {
@@ -96,8 +105,8 @@ std::string layout_names(const OwnLayouts& own) {
 }
 
 const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own) {
-  const ScopeLayout* found = own.find(name);
-  return found == nullptr ? built_in_layout(name) : *found;
+  const ScopeLayout* found = find_layout(name, own);
+  return found == nullptr ? built_in_layouts().front() : *found;
 }
 
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout) {

@@ -58,11 +58,11 @@ class OwnLayouts {
   std::vector<ScopeLayout> layouts_;
 };
 
-/// The layout of that name, one's own or built in; the first of the built-in ones if there is none.
-/// Whether there is one of this name.
-bool is_layout(std::string_view name, const OwnLayouts& own);
+/// The layout of that name, one's own or built in; null if there is none.
+const ScopeLayout* find_layout(std::string_view name, const OwnLayouts& own);
 /// The names of all, with commas between them.
 std::string layout_names(const OwnLayouts& own);
+/// The layout of that name, one's own or built in; the first of the built-in ones if there is none.
 const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own);
 
 /// Every signal of the layout once, at most as many as the scope can stream; those beyond are left out.
