@@ -262,7 +262,8 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   if (exact) {
     self.block_ = &block;
     self.block_start_ = self.cycles_;
-    self.next_request_ = 0;
+    self.next_request_ = self.next_divide_ = self.next_read_ = 0;
+    self.block_is_plain_ = self.is_plain(block);
     return;
   }
   if (self.machine_.traps_zero_division && self.has_new_divides(block)) return self.stop();
@@ -274,36 +275,56 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
     self.cycles_ += divide.known_at_entry ? self.divide_wait(divide) : divide_mean(self.timing_.costs());
 }
 
+// Most blocks are, and the code hook, which costs more than the instructions themselves, then has little to ask.
+bool Processor::is_plain(const BlockPrice& block) const {
+  const bool asks_flash = !timing_.flash().is_free() && !(block.requests.empty() && block.reads.empty());
+  return !asks_flash && block.divides.empty() && !machine_.debugging.attached && !machine_.options.on_instruction;
+}
+
 void Processor::code_hook(uc_engine*, std::uint64_t address, std::uint32_t bytes, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
+  const auto at = static_cast<std::uint32_t>(address);
   const auto& starts = self.block_->starts;
-  const std::size_t half_word =
-      std::min<std::size_t>((static_cast<std::uint32_t>(address) - self.block_->address) / 2, starts.size() - 1);
-  self.cycles_ = self.block_start_ + starts[half_word];
-  const bool due = self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open());
-  if (due && !self.in_if_then_block(static_cast<std::uint32_t>(address))) return self.stop();
-  if (self.machine_.debugging.attached && self.stop_for_debugger(static_cast<std::uint32_t>(address))) return;
-  if (self.machine_.traps_zero_division && !self.block_->divides.empty() &&
-      self.divides_by_zero(static_cast<std::uint32_t>(address))) {
-    self.outcome_ = Outcome::division_by_zero;
-    return self.stop();
-  }
-  if (self.machine_.options.on_instruction)
-    self.machine_.options.on_instruction(static_cast<std::uint32_t>(address), self.cycles_);
+  const std::size_t half_word = std::min<std::size_t>((at - self.block_->address) / 2, starts.size() - 1);
   const std::size_t next = half_word + bytes / 2;
+  self.cycles_ = self.block_start_ + starts[half_word];
+  const bool may_stop = self.cycles_ >= self.stop_cycle_ || self.watch_masks_ || !self.block_is_plain_;
+  if (may_stop && !self.may_run(at)) return;
   self.instruction_end_ = self.block_start_ + (next < starts.size() ? starts[next] : self.block_->cycles);
-  const auto& requests = self.block_->requests;
-  for (auto& i = self.next_request_; i < requests.size() && requests[i].after_cycles <= starts[half_word]; ++i)
-    self.wait(self.timing_.wait_for(requests[i], self.cycles_));
-  self.last_code_address_ = static_cast<std::uint32_t>(address);
-  self.recent_addresses_[self.instructions_ % self.recent_addresses_.size()] = self.last_code_address_;
+  self.last_code_address_ = at;
+  self.recent_addresses_[self.instructions_ % self.recent_addresses_.size()] = at;
   ++self.instructions_;
-  for (const auto& divide : self.block_->divides)
-    if (divide.address == self.last_code_address_) self.wait(self.divide_wait(divide));
-  if (!self.timing_.flash().is_free())
-    for (const auto& read : self.block_->reads)
-      if (read.instruction == self.last_code_address_)
-        self.wait(self.timing_.wait_for(read, self.cycles_, self.register_reader()));
+  if (!self.block_is_plain_) self.wait_in_block(at, starts[half_word]);
+}
+
+// Exact mode: whether nothing stops before the instruction, be it time, an interrupt, a debugger or a division by zero.
+[[gnu::noinline]] bool Processor::may_run(std::uint32_t address) {
+  const bool due = cycles_ >= stop_cycle_ || (watch_masks_ && masks_open());
+  if (due && !in_if_then_block(address)) {
+    stop();
+    return false;
+  }
+  if (machine_.debugging.attached && stop_for_debugger(address)) return false;
+  if (machine_.traps_zero_division && !block_->divides.empty() && divides_by_zero(address)) {
+    outcome_ = Outcome::division_by_zero;
+    stop();
+    return false;
+  }
+  if (machine_.options.on_instruction) machine_.options.on_instruction(address, cycles_);
+  return true;
+}
+
+// Exact mode: what the instruction, which begins so many cycles after its block, waits for flash and operands.
+[[gnu::noinline]] void Processor::wait_in_block(std::uint32_t address, std::uint16_t after_cycles) {
+  const auto& requests = block_->requests;
+  const auto& divides = block_->divides;
+  const auto& reads = block_->reads;
+  for (auto& i = next_request_; i < requests.size() && requests[i].after_cycles <= after_cycles; ++i)
+    wait(timing_.wait_for(requests[i], cycles_));
+  for (auto& i = next_divide_; i < divides.size() && divides[i].address <= address; ++i)
+    if (divides[i].address == address) wait(divide_wait(divides[i]));
+  for (auto& i = next_read_; i < reads.size() && reads[i].instruction <= address; ++i)
+    if (reads[i].instruction == address) wait(timing_.wait_for(reads[i], cycles_, register_reader()));
 }
 
 bool Processor::if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const {

@@ -189,6 +189,10 @@ class Processor final : public ClockUser, private EngineCalls {
   bool must_be_aligned(std::uint16_t first, std::uint16_t second) const override;
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, bool privileged) const;
   void take_new_rights();
+  /// Exact mode: no instruction of the block waits, and nobody wants to know of it.
+  bool is_plain(const BlockPrice& block) const;
+  bool may_run(std::uint32_t address);
+  void wait_in_block(std::uint32_t address, std::uint16_t after_cycles);
   const BlockPrice& enter_block(std::uint32_t address, std::uint32_t bytes);
   /// R0 to R14 by number.
   auto register_reader() const {
@@ -225,7 +229,8 @@ class Processor final : public ClockUser, private EngineCalls {
   // Exact mode: the block that runs, when it began, and when its current instruction ends.
   const BlockPrice* block_ = nullptr;
   std::uint64_t block_start_ = 0, instruction_end_ = 0;
-  std::size_t next_request_ = 0;  ///< of the block to the flash
+  std::size_t next_request_ = 0, next_divide_ = 0, next_read_ = 0;  ///< of the block's
+  bool block_is_plain_ = false;
   PlainStores plain_stores_;
   /// Unicorn makes stores into the flash by itself; what the flash made of them is put right after the slice.
   struct FlashStore {

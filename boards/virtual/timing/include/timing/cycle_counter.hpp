@@ -23,6 +23,7 @@ class CycleCounter {
 
   const Costs& costs() const { return costs_; }
   FlashAccelerator& flash() { return flash_; }
+  const FlashAccelerator& flash() const { return flash_; }
 
   /// The price of the run of `code` that stands at `address`. The reference holds while the block runs.
   const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);

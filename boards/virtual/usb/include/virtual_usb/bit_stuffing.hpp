@@ -9,30 +9,59 @@
 
 namespace inkwell::virtual_board {
 
+/// What a byte does to a packet that has so many ones in a row before it.
+struct StuffedByte {
+  std::uint8_t stuffed, ones;  ///< zeros put into it, and ones in a row at its end
+};
+
+inline constexpr unsigned ones_before_stuffing = 6;
+
+/// By the ones before it, and by its value.
+inline constexpr auto stuffed_bytes = [] {
+  std::array<std::array<StuffedByte, 256>, ones_before_stuffing> table{};
+  for (unsigned before = 0; before < ones_before_stuffing; ++before)
+    for (unsigned value = 0; value < 256; ++value) {
+      unsigned ones = before, stuffed = 0;
+      for (unsigned bit = 0; bit < 8; ++bit) {
+        ones = (value >> bit & 1) != 0 ? ones + 1 : 0;
+        if (ones != ones_before_stuffing) continue;
+        ++stuffed;
+        ones = 0;
+      }
+      table[before][value] = {static_cast<std::uint8_t>(stuffed), static_cast<std::uint8_t>(ones)};
+    }
+  return table;
+}();
+
+/// CRC16 of one byte: x^16 + x^15 + x^2 + 1, least significant bit first (USB 2.0, section 8.3.5.2).
+inline constexpr auto data_checksums = [] {
+  constexpr std::uint16_t polynomial = 0xA001;
+  std::array<std::uint16_t, 256> table{};
+  for (unsigned value = 0; value < 256; ++value) {
+    unsigned rest = value;
+    for (unsigned bit = 0; bit < 8; ++bit) rest = (rest & 1) != 0 ? rest >> 1 ^ polynomial : rest >> 1;
+    table[value] = static_cast<std::uint16_t>(rest);
+  }
+  return table;
+}();
+
 /// Of a data packet: identifier, payload and checksum. The last bit of the synchronisation is a one and counts.
 inline unsigned stuffed_bits(bool data1, std::span<const std::byte> payload) {
-  constexpr unsigned ones_allowed = 6;
   constexpr std::uint8_t data0_identifier = 0xC3, data1_identifier = 0x4B;
-  constexpr std::uint16_t polynomial = 0xA001;  // x^16 + x^15 + x^2 + 1, least significant bit first
-  unsigned ones = 1, stuffed = 0;
-  std::uint16_t checksum = 0xFFFF;
-  const auto send = [&](unsigned value, unsigned bits) {
-    for (unsigned i = 0; i < bits; ++i) {
-      ones = (value >> i & 1) != 0 ? ones + 1 : 0;
-      if (ones != ones_allowed) continue;
-      ++stuffed;
-      ones = 0;
-    }
+  unsigned ones = 1, stuffed = 0, checksum = 0xFFFF;
+  const auto send = [&](unsigned value) {
+    const StuffedByte& byte = stuffed_bytes[ones][value & 0xFF];
+    stuffed += byte.stuffed;
+    ones = byte.ones;
   };
-  send(data1 ? data1_identifier : data0_identifier, 8);
+  send(data1 ? data1_identifier : data0_identifier);
   for (const std::byte one : payload) {
     const auto value = std::to_integer<std::uint8_t>(one);
-    send(value, 8);
-    checksum ^= value;
-    for (int i = 0; i < 8; ++i)
-      checksum = static_cast<std::uint16_t>((checksum & 1) != 0 ? checksum >> 1 ^ polynomial : checksum >> 1);
+    send(value);
+    checksum = checksum >> 8 ^ data_checksums[(checksum ^ value) & 0xFF];
   }
-  send(static_cast<std::uint16_t>(~checksum), 16);
+  send(~checksum);
+  send(~checksum >> 8);
   return stuffed;
 }
 
