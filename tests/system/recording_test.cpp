@@ -27,9 +27,10 @@ std::string read_file(const std::string& path) {
 }  // namespace
 
 TEST_CASE("a recording holds every control period, and says where it comes from") {
-  const TemporaryDirectory directory;
-  const auto file = directory.file("a.h5");
-  const auto run = run_program("inkwell", {"--virtual", "record", file, "--seconds", "1.5", "--json"});
+  // Recorded once for all subcases.
+  static const TemporaryDirectory directory;
+  static const auto file = directory.file("a.h5");
+  static const auto run = run_program("inkwell", {"--virtual", "record", file, "--seconds", "1.5", "--json"});
   INFO("standard error: ", run.err);
   REQUIRE(run.exit_code == 0);
   const auto status = json::parse(run.out);
