@@ -8,17 +8,20 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
-COMPILER = ["arm-none-eabi-g++", "-std=c++20", "-fsyntax-only", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16",
-            "-mfloat-abi=hard", "-fno-exceptions", "-fno-rtti", "-I", REPOSITORY / "firmware/application", "-x", "c++", "-"]
+COMPILER = ["arm-none-eabi-g++", "-std=c++20", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard",
+            "-fno-exceptions", "-fno-rtti", "-I", REPOSITORY / "firmware/application"]
 
 # The firmware's own parts, and a driver that comes to them.
-FRAME = """
+HEADERS = """
 #include <parts.hpp>
 #include <drivers/interrupts.hpp>
 #include <drivers/peripheral_clocks.hpp>
+"""
+FRAME = """
 using namespace inkwell;
 using namespace inkwell::drivers;
 using inkwell::drivers::pin;
@@ -34,18 +37,28 @@ WithNewcomer<application::Parts> all;
 Newcomer newcomer;
 """
 FREE_PIN = "pin(board::Pin{'C', 13})"
-TAKEN = "two drivers claim the same peripheral, pin, DMA stream or interrupt line"
-UNCLAIMED = "a driver uses what it does not claim"
+TAKEN = "static assertion failed: two drivers claim the same peripheral, pin, DMA stream or interrupt line"
+UNCLAIMED = "static assertion failed: a driver uses what it does not claim"
 
 
 class Claims(unittest.TestCase):
     includes: list[str] = []
+    command: list[str | pathlib.Path]
+
+    @classmethod
+    def setUpClass(cls):
+        """The headers are compiled once for all that follows."""
+        folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        compiler = [*COMPILER, *(part for directory in cls.includes for part in ("-I", directory))]
+        headers = folder / "headers.hpp"
+        headers.write_text(HEADERS)
+        subprocess.run([*compiler, "-x", "c++-header", headers], check=True)
+        cls.command = [*compiler, "-fsyntax-only", "-Winvalid-pch", "-include", headers, "-x", "c++", "-"]
 
     def compile(self, claims: str, start: str = "", more: str = "") -> str:
         """What the compiler complains about; nothing if the source is sound."""
-        directories = [part for directory in self.includes for part in ("-I", directory)]
-        result = subprocess.run([*COMPILER, *directories], input=FRAME % (claims, start) + more, capture_output=True,
-                                text=True, check=False)
+        result = subprocess.run(self.command, input=FRAME % (claims, start) + more, capture_output=True, text=True,
+                                check=False)
         self.assertEqual(result.returncode != 0, "error" in result.stderr, result.stderr)
         return result.stderr
 
