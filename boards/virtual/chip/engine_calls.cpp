@@ -152,6 +152,7 @@ std::uint32_t cpu_lduw_code_arm(void* state, std::uint32_t address) {
   using namespace inkwell::virtual_board;
   const std::uint32_t half_word = engine().fetch(state, address);
   translated.fetched(address, static_cast<std::uint16_t>(half_word));
+  if (in_use != nullptr) in_use->translates(address);
   return half_word;
 }
 

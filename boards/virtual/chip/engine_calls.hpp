@@ -31,6 +31,8 @@ class EngineCalls {
   virtual void misaligned(std::uint32_t address) = 0;
   /// Asked when a load or a store is translated: it must be aligned to its size.
   virtual bool must_be_aligned(std::uint16_t first, std::uint16_t second) const = 0;
+  /// The instruction at `address` is translated, for the first time or because it may have changed.
+  virtual void translates(std::uint32_t address) = 0;
 
   /// While it lives, the engine that runs on this thread asks these.
   class Use {

@@ -219,16 +219,24 @@ void Processor::finish_flash_stores() {
 }
 
 const BlockPrice& Processor::enter_block(std::uint32_t address, std::uint32_t bytes) {
-  if (address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes, *this);
-  const auto& block = timing_.block(address, {machine_.memory.at(address, bytes), bytes});
-  cycles_ += timing_.enter(block, cycles_);
-  return block;
+  const BlockPrice* block = timing_.known_block(address, bytes);
+  if (block == nullptr) {
+    if (address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes, *this);
+    block = &timing_.block(address, {machine_.memory.at(address, bytes), bytes});
+  }
+  cycles_ += timing_.enter(*block, cycles_);
+  return *block;
+}
+
+void Processor::after_clock_change() {
+  const auto& clocks = machine_.clocks.frequencies;
+  const auto ratio = [&](std::uint32_t bus_Hz) { return bus_Hz == 0 ? 1u : clocks.hclk_Hz / bus_Hz; };
+  register_bus_.set_ratios({ratio(clocks.pclk1_Hz), ratio(clocks.pclk2_Hz)});
+  end_slice();
 }
 
 void Processor::wait_for_register(std::uint32_t address, bool write) {
-  const auto& clocks = machine_.clocks.frequencies;
-  const auto ratio = [&](std::uint32_t bus_Hz) { return bus_Hz == 0 ? 1u : clocks.hclk_Hz / bus_Hz; };
-  wait(register_bus_.access(address, write, cycles_, {ratio(clocks.pclk1_Hz), ratio(clocks.pclk2_Hz)}));
+  wait(register_bus_.access(address, write, cycles_));
 }
 
 unsigned Processor::divide_wait(const BlockPrice::Divide& divide) const {

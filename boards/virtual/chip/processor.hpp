@@ -105,7 +105,7 @@ class Processor final : public ClockUser, private EngineCalls {
 
   // The cycles so far have lasted as long as they did; what is left of the slice is counted anew.
   void before_clock_change() override { anchor(now()); }
-  void after_clock_change() override { end_slice(); }
+  void after_clock_change() override;
 
   std::uint32_t read(int id) const {
     std::uint32_t value = 0;
@@ -187,6 +187,7 @@ class Processor final : public ClockUser, private EngineCalls {
   bool is_device(std::uint32_t address) const override;
   void misaligned(std::uint32_t address) override;
   bool must_be_aligned(std::uint16_t first, std::uint16_t second) const override;
+  void translates(std::uint32_t address) override { timing_.read_anew(address); }
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, bool privileged) const;
   void take_new_rights();
   /// Exact mode: no instruction of the block waits, and nobody wants to know of it.

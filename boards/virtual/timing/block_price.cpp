@@ -163,7 +163,7 @@ class Walk {
           line = needed;
           block.requests.push_back({line * line_bytes, now, false});
         }
-    if (it.has_literal) block.requests.push_back({it.literal, now, true});
+    if (it.has_literal && memory_ == CodeMemory::flash) block.requests.push_back({it.literal, now, true});
     if (it.kind == Kind::divide)
       block.divides.push_back(
           {at, it.dividend, it.divisor, it.is_signed, (written_ & (1u << it.dividend | 1u << it.divisor)) == 0});

@@ -9,36 +9,47 @@ CycleCounter::CycleCounter(Pricing pricing, const CodeMap& map, WordReader word)
     : costs_(pricing),
       map_(map),
       flash_(map.flash_bytes, costs_),
-      index_of_flash_(map.flash_bytes / 2),
-      index_of_sram_(map.sram_bytes / 2),
+      known_in_flash_(map.flash_bytes / 2),
+      known_in_sram_(map.sram_bytes / 2),
       word_(std::move(word)) {}
 
-const BlockPrice& CycleCounter::block(std::uint32_t address, std::span<const std::uint8_t> code) {
-  if (forgets_) forget_prices();
+CycleCounter::Place CycleCounter::place_of(std::uint32_t address) {
   // The flash shows at 0 too.
   const std::uint32_t in_flash = address < map_.flash_bytes ? address : address - map_.flash_base;
-  const bool is_flash = in_flash < map_.flash_bytes, is_sram = address - map_.sram_base < map_.sram_bytes;
-  std::uint32_t& index = is_flash  ? index_of_flash_[in_flash / 2]
-                         : is_sram ? index_of_sram_[(address - map_.sram_base) / 2]
-                                   : index_of_others_[address];
-  if (index != 0) {
-    const Known& known = known_[index - 1];
-    const bool same = known.price.bytes == code.size() && known.price.address == address &&
-                      (is_flash || std::memcmp(known.code.data(), code.data(), code.size()) == 0);
-    if (same) return known.price;
-  }
-  return remember(index, address, code, is_sram ? CodeMemory::sram : CodeMemory::flash);
+  if (in_flash < map_.flash_bytes) return {&known_in_flash_[in_flash / 2], CodeMemory::flash};
+  if (address - map_.sram_base < map_.sram_bytes)
+    return {&known_in_sram_[(address - map_.sram_base) / 2], CodeMemory::sram};
+  return {&known_elsewhere_[address], CodeMemory::flash};
 }
 
-const BlockPrice& CycleCounter::remember(std::uint32_t& index, std::uint32_t address,
-                                         std::span<const std::uint8_t> code, CodeMemory memory) {
-  if (index == 0) {
-    known_.emplace_back();
-    index = static_cast<std::uint32_t>(known_.size());
+const BlockPrice* CycleCounter::known_block(std::uint32_t address, std::uint32_t bytes) {
+  if (forgets_) forget_prices();
+  const Known* known = *place_of(address).known;
+  const bool fits =
+      known != nullptr && known->is_current && known->price.address == address && known->price.bytes == bytes;
+  return fits ? &known->price : nullptr;
+}
+
+const BlockPrice& CycleCounter::block(std::uint32_t address, std::span<const std::uint8_t> code) {
+  if (const auto* known = known_block(address, static_cast<std::uint32_t>(code.size()))) return *known;
+  const Place place = place_of(address);
+  if (Known* known = *place.known; known != nullptr && known->price.address == address) {
+    known->is_current = std::ranges::equal(known->code, code);
+    if (known->is_current) return known->price;
   }
-  Known& known = known_[index - 1];
-  known = {price(code, address, memory, costs_, word_), {code.begin(), code.end()}};
-  return known.price;
+  return remember(place, address, code);
+}
+
+const BlockPrice& CycleCounter::remember(const Place& place, std::uint32_t address,
+                                         std::span<const std::uint8_t> code) {
+  Known*& known = *place.known;
+  if (known == nullptr) known = &known_.emplace_back();
+  *known = {price(code, address, place.memory, costs_, word_), true, {code.begin(), code.end()}};
+  return known->price;
+}
+
+void CycleCounter::read_anew(std::uint32_t address) {
+  if (Known* known = *place_of(address).known) known->is_current = false;
 }
 
 unsigned CycleCounter::wait_for(const BlockPrice::Request& request, std::uint64_t now) {
@@ -70,9 +81,9 @@ unsigned CycleCounter::enter(const BlockPrice& block, std::uint64_t now) {
 
 void CycleCounter::forget_prices() {
   forgets_ = false;
-  std::fill(index_of_flash_.begin(), index_of_flash_.end(), 0u);
-  std::fill(index_of_sram_.begin(), index_of_sram_.end(), 0u);
-  index_of_others_.clear();
+  std::fill(known_in_flash_.begin(), known_in_flash_.end(), nullptr);
+  std::fill(known_in_sram_.begin(), known_in_sram_.end(), nullptr);
+  known_elsewhere_.clear();
   known_.clear();
 }
 

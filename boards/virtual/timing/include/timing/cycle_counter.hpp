@@ -25,6 +25,8 @@ class CycleCounter {
   FlashAccelerator& flash() { return flash_; }
   const FlashAccelerator& flash() const { return flash_; }
 
+  /// The price of the run of so many bytes at `address`, if it is known and nothing has changed there since; else null.
+  const BlockPrice* known_block(std::uint32_t address, std::uint32_t bytes);
   /// The price of the run of `code` that stands at `address`. The reference holds while the block runs.
   const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);
   /// The block begins at cycle `now`: what it waits for the refill after the last branch and for the FPU.
@@ -39,6 +41,8 @@ class CycleCounter {
   unsigned wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value);
   /// What one of its requests waits at cycle `now`.
   unsigned wait_for(const BlockPrice::Request& request, std::uint64_t now);
+  /// The emulator reads the instruction at `address` anew: it may have changed.
+  void read_anew(std::uint32_t address);
   /// Something else than a branch decides what runs next: exception entry and return, reset.
   void redirect() { redirected_ = true; }
   /// The next use of the FPU stacks the context of whom the exception has interrupted, or no longer does.
@@ -51,12 +55,18 @@ class CycleCounter {
   }
 
  private:
-  struct Known {
+  /// Of blocks hundreds run in each control period, so that what they need lies together.
+  struct alignas(64) Known {
     BlockPrice price;
-    std::vector<std::uint8_t> code;  ///< what it was priced from; in RAM it may have changed
+    bool is_current = false;         ///< nobody has read the code anew since it was priced
+    std::vector<std::uint8_t> code;  ///< what it was priced from
   };
-  const BlockPrice& remember(std::uint32_t& index, std::uint32_t address, std::span<const std::uint8_t> code,
-                             CodeMemory memory);
+  struct Place {
+    Known** known;  ///< null is none
+    CodeMemory memory;
+  };
+  Place place_of(std::uint32_t address);
+  const BlockPrice& remember(const Place& place, std::uint32_t address, std::span<const std::uint8_t> code);
   void forget_prices();
 
   bool in_flash(std::uint32_t address) const {
@@ -77,10 +87,10 @@ class CycleCounter {
   Costs costs_;
   CodeMap map_;
   FlashAccelerator flash_;
-  std::vector<std::uint32_t> index_of_flash_, index_of_sram_;  ///< by half word, from 1
-  std::unordered_map<std::uint32_t, std::uint32_t> index_of_others_;
-  WordReader word_;
   std::deque<Known> known_;
+  std::vector<Known*> known_in_flash_, known_in_sram_;  ///< by half word
+  std::unordered_map<std::uint32_t, Known*> known_elsewhere_;
+  WordReader word_;
   // Of the block that ran last.
   std::uint32_t last_end_ = 0;
   unsigned last_taken_cycles_ = 0;

@@ -14,16 +14,18 @@ class PeripheralBus {
  public:
   explicit PeripheralBus(const Costs& costs) : costs_(costs) {}
 
-  /// Cycles of HCLK that the access waits beyond one of RAM. `ratios` are HCLK over PCLK1 and PCLK2.
-  unsigned access(std::uint32_t address, bool write, std::uint64_t now, const std::array<unsigned, 2>& ratios) {
+  /// HCLK over PCLK1 and PCLK2: powers of two.
+  void set_ratios(const std::array<unsigned, 2>& ratios) { ratios_ = ratios; }
+  /// Cycles of HCLK that the access waits beyond one of RAM.
+  unsigned access(std::uint32_t address, bool write, std::uint64_t now) {
     constexpr std::uint32_t apb2_base = 0x4001'0000, ahb1_base = 0x4002'0000, private_base = 0xE000'0000;
     if (address >= private_base) return costs_[Cost::private_bus];
     if (address >= ahb1_base) return costs_[write ? Cost::ahb_write : Cost::ahb_read];
     const std::size_t bridge = address >= apb2_base ? 1 : 0;
-    const unsigned ratio = std::max(1u, ratios[bridge]);
+    const unsigned ratio = ratios_[bridge];
     const std::uint64_t begin = std::max(now, free_at_[bridge]);
     const unsigned to_edge =
-        costs_.pricing() == Pricing::conservative ? ratio - 1 : static_cast<unsigned>((ratio - begin % ratio) % ratio);
+        costs_.pricing() == Pricing::conservative ? ratio - 1 : static_cast<unsigned>(0 - begin) & (ratio - 1);
     const unsigned transfer = costs_[Cost::apb_cross] + to_edge + costs_[Cost::apb_peripheral_clocks] * ratio;
     free_at_[bridge] = begin + transfer;
     return static_cast<unsigned>(begin - now) + (write ? 0 : transfer);
@@ -31,6 +33,7 @@ class PeripheralBus {
 
  private:
   Costs costs_;
+  std::array<unsigned, 2> ratios_{1, 1};
   std::array<std::uint64_t, 2> free_at_{};
 };
 
