@@ -14,11 +14,11 @@ using protocol::Parameter;
 using Rows = protocol::EachAxis<Parameter>;
 
 constexpr double firm_N_per_m = 600, loose_N_per_m = 120, damping_Ns_per_m = 6;
-constexpr double joint_speed_rad_s = 1.0;
+constexpr double joint_speed_rad_s = 2.0;
 constexpr double chord_rad = 0.15;   // the hand goes straight between points, so they lie close together
 constexpr double turn_rad = 0.25;    // what "turn the joint" means
 constexpr double beyond_rad = 0.02;  // how far into a stop the hand aims
-constexpr double hold_s = 0.8;       // at a stop
+constexpr double hold_s = 0.6;       // at a stop
 constexpr double press_s = 0.1;
 
 }  // namespace

@@ -53,7 +53,7 @@ void check_bridges_off(BoardRig& rig) {
 }  // namespace
 
 TEST_CASE("a control interrupt that never ends leaves the motors without voltage until the watchdog bites") {
-  BoardRig rig(device::SimulationMode::exact);
+  BoardRig rig;
   press_into_wall(rig);
   REQUIRE(any_motor_driven(rig.control));
   run_into_control_interrupt(rig);
