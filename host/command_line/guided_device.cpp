@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto connection_limit = 15s;
+constexpr double connection_limit_s = 15;
 
 }  // namespace
 
@@ -38,13 +38,20 @@ GuidedDevice::GuidedDevice(const DeviceOptions& options) {
 }
 
 void GuidedDevice::wait_for_device() {
-  const auto give_up_at = Clock::now() + connection_limit;
+  const auto begin = Clock::now();
+  // Of board time if there is one to ask: on a busy computer a virtual board takes long to start.
+  std::optional<device::ControlClient> control;
+  if (board_) control.emplace(board_->control());
+  const auto waited_s = [&]() -> double {
+    if (control) return control->status().board_time_s;
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  };
   for (;;) {
     const auto status = session_->status();
     if (status.connection == device::Connection::connected && session_->newest_pose()) return;
     const bool hopeless =
         status.connection == device::Connection::incompatible || status.connection == device::Connection::no_permission;
-    if (hopeless || Clock::now() > give_up_at) throw device::Error(status.message);
+    if (hopeless || waited_s() > connection_limit_s) throw device::Error(status.message);
     std::this_thread::sleep_for(5ms);
   }
 }

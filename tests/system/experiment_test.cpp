@@ -312,10 +312,9 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
 
 TEST_CASE("the experiment runs with the paper's arm too") {
   const TemporaryDirectory directory;
-  const auto result = run_program("inkwell",
-                                  {"experiment", "wall", "--virtual", "--arm",
-                                   build_directory() + "/../../boards/arms/paper.toml", "--out", directory.path()},
-                                  std::chrono::seconds(300));
+  const auto result =
+      run_program("inkwell", {"experiment", "wall", "--virtual", "--arm",
+                              build_directory() + "/../../boards/arms/paper.toml", "--out", directory.path()});
   INFO("output: ", result.out, result.err);
   REQUIRE(result.exit_code == 0);
   const auto summary = nlohmann::json::parse(std::ifstream(directory.file("summary.json")));
