@@ -27,6 +27,7 @@ struct Place {
   X(info)                   \
   X(devices)                \
   X(fault)                  \
+  X(force)                  \
   X(watch)                  \
   X(parameters)             \
   X(signals)                \

@@ -1,7 +1,5 @@
 #include "commands.hpp"
 
-#include <chrono>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -9,20 +7,14 @@
 #include <protocol/reports.hpp>
 
 #include "help.hpp"
+#include "next_pose.hpp"
 
 namespace inkwell::command_line {
 namespace {
 
-using namespace std::chrono_literals;
 using protocol::Fault;
 using protocol::PoseReport;
 using protocol::State;
-
-PoseReport newest_pose(device::Device& device) {
-  const auto pose = device.read_pose(500ms);
-  if (!pose) throw device::Error("The device sends no pose. Unplug it, and plug it in again.");
-  return *pose;
-}
 
 void tell_fault(const DeviceOptions& options, const PoseReport& pose) {
   const bool is_fault = pose.state == State::fault;
@@ -38,7 +30,7 @@ void tell_fault(const DeviceOptions& options, const PoseReport& pose) {
 
 int show_fault(const DeviceOptions& options) {
   const auto connection = connect(options);
-  tell_fault(options, newest_pose(*connection.device));
+  tell_fault(options, next_pose(*connection.device));
   return 0;
 }
 
@@ -47,11 +39,11 @@ int clear_fault(const DeviceOptions& options) {
   constexpr std::uint32_t patience_periods = protocol::servo_rate_Hz / 5;
   const auto connection = connect(options);
   device::Device& device = *connection.device;
-  PoseReport pose = newest_pose(device);
+  PoseReport pose = next_pose(device);
   const bool was_fault = pose.state == State::fault;
   device.send(protocol::Command::clear_fault);
   const std::uint32_t begin_periods = pose.time_periods;
-  while (was_fault && pose.time_periods - begin_periods < patience_periods) pose = newest_pose(device);
+  while (was_fault && pose.time_periods - begin_periods < patience_periods) pose = next_pose(device);
   if (pose.state == State::fault)
     throw device::Error(fmt::format("The fault is there again. {}", device::fault_line(pose.fault)));
   tell_fault(options, pose);

@@ -14,6 +14,7 @@
 #include <recording/recorder.hpp>
 #include <recording/signals.hpp>
 
+#include "force_switch.hpp"
 #include "help.hpp"
 #include "interrupt.hpp"
 #include "mark_keys.hpp"
@@ -36,6 +37,7 @@ struct RecordOptions {
   bool all = false;
   double seconds = 0;  ///< 0: until interrupted
   bool mark_key = false;
+  bool force = false;
 };
 
 /// Reads the scope in a thread of its own, so that a slow terminal costs no samples, and ends by itself after a
@@ -100,8 +102,10 @@ std::string progress_text(const RecorderStatus& status) {
   return text;
 }
 
-void run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options) {
+/// Returns why the force went off, if it was to be on and did.
+std::optional<std::string> run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options) {
   const InterruptGuard interrupt;
+  std::optional<std::string> force_went_off;
   std::optional<MarkKeys> keys;
   if (options.mark_key) keys.emplace(STDIN_FILENO);
   RecordingThread scope(device, recorder, options.seconds);
@@ -117,7 +121,10 @@ void run(device::Device& device, recording::Recorder& recorder, const RecordOpti
   while (!scope.is_done() && !interrupt.was_asked_to_end() && recorder.status().running) {
     const auto now = std::chrono::steady_clock::now();
     device.keep_alive();
-    silent_reads = device.read_pose(read_timeout) ? 0 : silent_reads + 1;
+    const auto pose = device.read_pose(read_timeout);
+    silent_reads = pose ? 0 : silent_reads + 1;
+    if (options.force && pose && pose->state != protocol::State::active && !force_went_off)
+      force_went_off = why_force_went_off(*pose);
     if (silent_reads * read_timeout > silence_limit)
       throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
     while (keys) {
@@ -129,14 +136,18 @@ void run(device::Device& device, recording::Recorder& recorder, const RecordOpti
     next_shown = now + 100ms;
     show(recorder.status());
   }
+  if (options.force) switch_force_off(device);  // at once: without signs of life it would be a fault
   show(recorder.status());
   progress.end();
+  return force_went_off;
 }
 
-ordered_json to_json(const RecordOptions& options, const RecorderStatus& status) {
+ordered_json to_json(const RecordOptions& options, const RecorderStatus& status,
+                     const std::optional<std::string>& force_went_off) {
   ordered_json json{{"file", options.file},  {"duration_s", status.duration_s}, {"samples", status.samples},
                     {"lost", status.lost},   {"bytes", status.bytes},           {"free_bytes", status.free_bytes},
                     {"marks", status.marks}, {"complete", status.error.empty()}};
+  if (force_went_off) json["force_went_off"] = *force_went_off;
   if (!status.error.empty()) json["error"] = status.error;
   return json;
 }
@@ -154,10 +165,12 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   const auto information = recording::describe(device.information(), device.parameters(), signals,
                                                arm_name(device_options), connection.endpoint.is_virtual);
   recording::Recorder recorder(options.file, information);
+  if (options.force) switch_force_on(device);
   device.select_signals(signals);
   std::string failure;
+  std::optional<std::string> force_went_off;
   try {
-    run(device, recorder, options);
+    force_went_off = run(device, recorder, options);
     device.select_signals({});
   } catch (const device::Error& error) {
     failure = error.what();
@@ -165,10 +178,11 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   auto status = recorder.stop();
   if (status.error.empty() && !failure.empty()) status.error = failure + " The recording holds everything up to then.";
   if (device_options.json)
-    fmt::print("{}\n", to_json(options, status).dump());
+    fmt::print("{}\n", to_json(options, status, force_went_off).dump());
   else
     fmt::print("{}: {:.2f} s, {} samples of {} signals, {} lost, {:.1f} MB\n", options.file, status.duration_s,
                status.samples, signals.size(), status.lost, 1e-6 * static_cast<double>(status.bytes));
+  if (force_went_off && !device_options.json) fmt::print("{}\n", *force_went_off);
   if (!status.error.empty()) throw device::Error(status.error);
   return 0;
 }
@@ -197,8 +211,10 @@ void add_record_command(const Place& place) {
       ->check(more_than_zero());
   command->add_flag("--mark-key", record_options->mark_key,
                     "The space bar sets a mark; from a pipe, each line does, with its text");
+  command->add_flag("--force", record_options->force,
+                    "Switch the force on before and off after: the arm pushes back where there are walls");
   add_examples(*command,
-               "inkwell record push.h5 --mark-key\n"
+               "inkwell record push.h5 --mark-key --force\n"
                "inkwell record push.csv --signals force_N,position_z_m --seconds 10");
   command->callback([place, record_options] {
     place.action = [&options = place.device, record_options] { return record(options, *record_options); };

@@ -1,6 +1,10 @@
 // Commands that look at the arm from a terminal, beside a board that runs by itself.
 #include <doctest/doctest.h>
 
+#include <signal.h>
+
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,6 +13,9 @@
 
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
+#include <recording/recording.hpp>
+
+#include <stepped_board.hpp>
 
 #include "program.hpp"
 
@@ -22,10 +29,11 @@ struct BoardAndCompanion {
   device::VirtualBoard board{device::VirtualBoardOptions{}};
   device::ControlClient control = board.control();
 
-  ProgramResult run(std::vector<std::string> words) {
-    words.insert(words.end(), {"--usbip", fmt::format("127.0.0.1:{}", board.usbip_port())});
-    return run_program("inkwell", words);
+  std::vector<std::string> words(std::vector<std::string> command) const {
+    command.insert(command.end(), {"--usbip", fmt::format("127.0.0.1:{}", board.usbip_port())});
+    return command;
   }
+  ProgramResult run(const std::vector<std::string>& command) { return run_program("inkwell", words(command)); }
   /// Until the board has started, which takes it a part of a second.
   void wait_for_device() {
     while (!board.find()) control.run(0.1);
@@ -72,4 +80,67 @@ TEST_CASE("the arms that are there are listed by serial number") {
   CHECK(json[0].at("serial_number") == device::Device::open(*rig.board.find())->information().serial_number);
   CHECK(rig.run({"devices"}).out.find(json[0].at("serial_number").get<std::string>()) != std::string::npos);
   CHECK(run_program("inkwell", {"devices", "--virtual"}).exit_code == 2);
+}
+
+TEST_CASE("a command switches the force on for as long as it runs, and any other switches it off") {
+  BoardAndCompanion rig;
+  rig.wait_for_device();
+  CHECK(nlohmann::json::parse(rig.run({"force", "--json"}).out).at("force_is_on") == false);
+  auto words = rig.words({"force", "on"});
+  words.insert(words.begin(), build_directory() + "/inkwell");
+  RunningProgram on(words);
+  CHECK(on.read_line() == "The force is on. Ctrl-C switches it off.");
+  CHECK(rig.run({"force"}).out == "The force is on.\n");
+  SUBCASE("Ctrl-C") {
+    kill(on.process(), SIGINT);
+    CHECK(on.read_line() == "The force is off.");
+    CHECK(on.wait() == 0);
+  }
+  SUBCASE("another command") {
+    const auto off = rig.run({"force", "off"});
+    CHECK(off.exit_code == 0);
+    CHECK(off.out == "The force is off.\n");
+    CHECK(on.wait() == 1);
+  }
+  SUBCASE("a fault") {
+    rig.control.bridge_fault(true);
+    CHECK(on.wait() == 1);
+    const auto refused = rig.run({"force", "on"});
+    CHECK(refused.exit_code == 1);
+    CHECK(refused.err.find("The force is off. bridge_fault: A bridge reported") != std::string::npos);
+  }
+  CHECK(rig.run({"force"}).out.starts_with("The force is off."));
+}
+
+TEST_CASE("the force ends by itself after a time of the board") {
+  const auto run = run_program("inkwell", {"--virtual", "force", "on", "--seconds", "0.3"});
+  CHECK(run.exit_code == 0);
+  CHECK(run.out == "The force is on.\nThe force is off.\n");
+}
+
+TEST_CASE("a recording switches the force on if asked to, and off at its end") {
+  const TemporaryDirectory directory;
+  BoardAndCompanion rig;
+  rig.wait_for_device();
+  // The hand aims 15 mm into the floor of the box.
+  rig.control.run(bring_stylus(rig.control,
+                               {0.0, 0.0, protocol::info(protocol::Parameter::box_minimum_z_m).default_value - 0.015},
+                               0.6) +
+                  0.5);
+  rig.control.resume();
+  const auto largest_A = [&](const char* file, std::vector<std::string> more) {
+    std::vector<std::string> words{"record", directory.file(file), "--seconds", "0.5"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = rig.run(words);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    float largest = 0;
+    const auto recording = recording::read(directory.file(file));
+    for (const float current_A : recording.column(protocol::Signal::current_2_A))
+      largest = std::max(largest, std::abs(current_A));
+    return largest;
+  };
+  CHECK(largest_A("without.h5", {}) < 0.05f);  // noise of the converter
+  CHECK(largest_A("with.h5", {"--force"}) > 0.2f);
+  CHECK(rig.run({"force"}).out == "The force is off.\n");
 }

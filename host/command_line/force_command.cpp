@@ -1,0 +1,90 @@
+#include "commands.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <protocol/faults.hpp>
+#include <protocol/reports.hpp>
+
+#include "force_switch.hpp"
+#include "help.hpp"
+#include "interrupt.hpp"
+#include "next_pose.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+using protocol::PoseReport;
+using protocol::State;
+
+void tell_force(const DeviceOptions& options, const PoseReport& pose) {
+  if (options.json)
+    fmt::print(
+        "{}\n",
+        nlohmann::ordered_json{{"force_is_on", pose.state == State::active}, {"state", info(pose.state).name}}.dump());
+  else
+    fmt::print("{}\n", force_sentence(pose));
+}
+
+int show_force(const DeviceOptions& options) {
+  const auto connection = connect(options);
+  tell_force(options, next_pose(*connection.device));
+  return 0;
+}
+
+int switch_off(const DeviceOptions& options) {
+  const auto connection = connect(options);
+  tell_force(options, switch_force_off(*connection.device));
+  return 0;
+}
+
+/// The board switches the force off when nobody gives signs of life, so this goes on until it is told to end.
+int keep_on(const DeviceOptions& options, double seconds) {
+  const auto connection = connect(options, BoardTime::paced);
+  device::Device& device = *connection.device;
+  const InterruptGuard interrupt;
+  switch_force_on(device);
+  if (!options.json) {
+    fmt::print("The force is on.{}\n", seconds > 0 ? "" : " Ctrl-C switches it off.");
+    std::fflush(stdout);
+  }
+  PoseReport pose = next_pose(device);
+  const std::uint32_t begin_periods = pose.time_periods;
+  const auto is_over = [&] {
+    return seconds > 0 && pose.time_periods - begin_periods >= seconds * protocol::servo_rate_Hz;
+  };
+  while (pose.state == State::active && !is_over() && !interrupt.was_asked_to_end()) {
+    device.keep_alive();
+    pose = next_pose(device);
+  }
+  if (pose.state != State::active) throw device::Error(why_force_went_off(pose));
+  tell_force(options, switch_force_off(device));
+  return 0;
+}
+
+}  // namespace
+
+void add_force_command(const Place& place) {
+  auto* command = place.program.add_subcommand("force", "Whether the force is on; or `on`, `off`");
+  command->require_subcommand(0, 1);
+  add_examples(*command, "inkwell force\ninkwell force on\ninkwell force off");
+  command->callback([place, command] {
+    if (command->get_subcommands().empty()) place.action = [&options = place.device] { return show_force(options); };
+  });
+  auto* on = command->add_subcommand("on", "Switches it on and keeps it on until Ctrl-C: then the arm pushes back");
+  const auto seconds = std::make_shared<double>(0);
+  on->add_option("--seconds", *seconds, "Switch it off after this time of the board")
+      ->type_name("SECONDS")
+      ->check(more_than_zero());
+  add_examples(*on, "inkwell force on\ninkwell force on --seconds 10");
+  on->callback(
+      [place, seconds] { place.action = [&options = place.device, seconds] { return keep_on(options, *seconds); }; });
+  auto* off = command->add_subcommand("off", "Switches it off, whoever switched it on");
+  add_examples(*off, "inkwell force off");
+  off->callback([place] { place.action = [&options = place.device] { return switch_off(options); }; });
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,16 @@
+#include "next_pose.hpp"
+
+#include <chrono>
+
+namespace inkwell::command_line {
+
+// By waits that were in vain, not by the clock: time for which the computer stopped this program is none.
+protocol::PoseReport next_pose(device::Device& device) {
+  constexpr int waits = 10;
+  constexpr std::chrono::milliseconds wait{200};
+  for (int i = 0; i < waits; ++i)
+    if (const auto pose = device.read_pose(wait)) return *pose;
+  throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
+}
+
+}  // namespace inkwell::command_line
