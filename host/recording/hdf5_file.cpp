@@ -23,9 +23,14 @@ void write_attribute(hid_t object, const char* name, hid_t type, const void* val
 }  // namespace
 
 Handle text_type(std::size_t bytes) {
+  Handle type = byte_text_type(bytes);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  return type;
+}
+
+Handle byte_text_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), bytes == 0 ? 1 : bytes);
-  H5Tset_cset(type.id(), H5T_CSET_UTF8);
   // Padded, not ended, by zeros: the text may fill its place to the last byte.
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
   return type;

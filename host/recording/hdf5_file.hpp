@@ -49,6 +49,9 @@ class QuietHdf5 {
 
 /// Fixed-length UTF-8 text.
 Handle text_type(std::size_t bytes);
+/// The same for programs that know no UTF-8 and refuse the whole file for it, as Octave's `load` does: bytes of which
+/// HDF5 takes no notice.
+Handle byte_text_type(std::size_t bytes);
 
 void write_attribute(hid_t object, const char* name, const std::string& text);
 void write_attribute(hid_t object, const char* name, std::int64_t number);

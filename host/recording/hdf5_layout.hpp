@@ -1,4 +1,4 @@
-// How a recording lies in an HDF5 file:
+// How a recording lies in an HDF5 file; columns are compressed (shuffle and deflate, which every HDF5 has):
 //
 //   /                    attributes: format, format_version, created_utc, firmware_version, protocol_version,
 //                        serial_number, arm, force_law (as the device sent it, in hexadecimal digits), simulation,
@@ -9,7 +9,8 @@
 //   /signals/NAME        float32[N], attributes unit and help
 //   /simulated/NAME      float32[N], attributes unit and help: what a simulation knew beside the signals, if it did
 //   /marks/period        uint32[M]
-//   /marks/text          fixed-length UTF-8 text[M]
+//   /marks/text          text[M] of fixed length, the bytes of UTF-8
+//                        (called UTF-8 in files of earlier versions)
 //   /samples             uint64, how many samples are whole on the disk; a column may be longer after a crash
 //   /complete            int32, 1 once the end was written
 #pragma once

@@ -92,7 +92,10 @@ class Hdf5Reader {
     std::vector<std::uint32_t> periods(count);
     std::vector<char> texts(count * mark_text_bytes);
     read_values("/marks/period", H5T_NATIVE_UINT32, count, periods.data());
-    read_values("/marks/text", text_type(mark_text_bytes).id(), count, texts.data());
+    const Handle text_type(H5Dget_type(open("/marks/text").id()), H5Tclose);
+    if (H5Tget_class(text_type.id()) != H5T_STRING || H5Tget_size(text_type.id()) != mark_text_bytes)
+      fail("is damaged: /marks/text is no text");
+    read_values("/marks/text", text_type.id(), count, texts.data());
     for (std::size_t i = 0; i < count; ++i) {
       const std::string_view text(texts.data() + i * mark_text_bytes, mark_text_bytes);
       recording_.marks.push_back({periods[i], std::string(text.substr(0, text.find('\0')))});

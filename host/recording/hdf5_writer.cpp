@@ -16,6 +16,7 @@ namespace {
 
 constexpr hsize_t chunk_samples = 4096;
 constexpr hsize_t chunk_marks = 16;
+constexpr unsigned compression_level = 2;  // of 9: more costs time and gains little
 
 class Hdf5Writer final : public Writer {
  public:
@@ -51,7 +52,7 @@ class Hdf5Writer final : public Writer {
     std::array<char, mark_text_bytes> text{};
     std::copy_n(mark.text.begin(), std::min(mark.text.size(), mark_text_bytes), text.begin());
     extend(mark_period_, mark_count_, 1, H5T_NATIVE_UINT32, &mark.period);
-    extend(mark_text_, mark_count_, 1, text_type(mark_text_bytes).id(), text.data());
+    extend(mark_text_, mark_count_, 1, byte_text_type(mark_text_bytes).id(), text.data());
     ++mark_count_;
   }
   void flush() override {
@@ -87,6 +88,8 @@ class Hdf5Writer final : public Writer {
     const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_chunk(properties.id(), 1, &chunk);
+    H5Pset_shuffle(properties.id());  // bytes of the same weight together, which then resemble each other
+    H5Pset_deflate(properties.id(), compression_level);
     Handle made(H5Dcreate2(place, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), H5Dclose);
     if (!made) fail();
     return made;
@@ -129,7 +132,7 @@ class Hdf5Writer final : public Writer {
     for (const auto quantity : about.simulated) lay_out_column(simulated, protocol::info(quantity));
     const Handle marks = group(file.id(), "marks");
     growing(marks.id(), "period", H5T_STD_U32LE, chunk_marks);
-    growing(marks.id(), "text", text_type(mark_text_bytes).id(), chunk_marks);
+    growing(marks.id(), "text", byte_text_type(mark_text_bytes).id(), chunk_marks);
     const std::int32_t no = 0;
     scalar(file.id(), "complete", H5T_NATIVE_INT32, &no);
     const hsize_t none = 0;

@@ -6,7 +6,9 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -93,6 +95,7 @@ struct Recorder::Implementation {
   RecorderStatus status{.running = true};
   std::optional<std::uint32_t> first_period;
   std::uint32_t newest_period = 0;
+  std::vector<std::string> early_marks;  ///< set before the first sample came
 
   std::thread thread;  // last, so that it finds everything made
 };
@@ -118,21 +121,25 @@ void Recorder::push(const device::ScopeSamples& samples) {
   // Counted by their periods, so that those are counted too that were lost between the link and here.
   if (self.first_period) self.status.lost += static_cast<std::uint32_t>(step) - 1;
   if (self.queued_bytes + size_of(samples) > queue_bytes_maximum) return;  // the next block's step counts it as lost
-  if (!self.first_period) self.first_period = samples.first_period;
+  const bool is_first = !self.first_period;
+  if (is_first) self.first_period = samples.first_period;
   self.newest_period = samples.first_period + static_cast<std::uint32_t>(samples.count - 1);
   self.status.samples += samples.count;
   self.status.duration_s = static_cast<double>(self.newest_period - *self.first_period) / protocol::servo_rate_Hz;
   self.queued_bytes += size_of(samples);
   self.queue.emplace_back(samples);
+  if (is_first)
+    for (auto& text : self.early_marks) self.queue.emplace_back(Mark{samples.first_period, std::move(text)});
   self.wake.notify_one();
 }
 
 void Recorder::mark(const std::string& text) {
   auto& self = *implementation_;
   const std::lock_guard lock(self.mutex);
-  if (!self.status.running || self.stopping || !self.first_period) return;
-  self.queue.emplace_back(Mark{self.newest_period, text});
+  if (!self.status.running || self.stopping) return;
   ++self.status.marks;
+  if (!self.first_period) return self.early_marks.push_back(text);
+  self.queue.emplace_back(Mark{self.newest_period, text});
   self.wake.notify_one();
 }
 

@@ -67,6 +67,20 @@ end
 assert(pose.force_N(1), 1.5, 0.2);
 assert(pose.state, 'active');
 
+% A recording of the command line is loaded whole, and its marks are text.
+[programs, ~] = fileparts(fileparts(which('inkwell_mex')));
+file = [tempname() '.h5'];
+command = sprintf('echo touch | %s/inkwell --virtual record %s --seconds 0.2 --mark-key', programs, file);
+[status, said] = system([command ' 2>&1']);
+assert(status, 0, said);
+recording = load(file);
+delete(file);
+assert(numel(recording.signals.force_N), 4000);
+assert(recording.parameters.wall_stiffness_N_per_m, 800);
+assert(diff(recording.time_s), ones(1, 3999) / 20000, 1e-9);
+assert(strtrim(recording.marks.text), 'touch');
+assert(recording.marks.period, recording.period(1));
+
 % The example finds the friction of the simulated waist, 0.010 Nm at the lever of the probe, beside the hand's spring.
 graphics_toolkit('gnuplot');
 picture = [tempname() '.png'];

@@ -32,7 +32,7 @@ class Recorder {
   /// ends the recording. Never waits: if the disk falls behind by more than 64 MB, samples are dropped and counted as
   /// lost.
   void push(const device::ScopeSamples& samples);
-  /// Marks the newest sample. Without one yet there is nothing to mark.
+  /// Marks the newest sample; before there is one, the first.
   void mark(const std::string& text);
   RecorderStatus status() const;
   /// Writes what is left, closes the file, and tells how it went.
