@@ -313,7 +313,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
 TEST_CASE("the experiment runs with the paper's arm too") {
   const TemporaryDirectory directory;
   const auto result =
-      run_program("inkwell", {"experiment", "wall", "--virtual", "--arm",
+      run_program("inkwell", {"experiment", "wall", "--virtual", "--mode", "fast", "--arm",
                               build_directory() + "/../../boards/arms/paper.toml", "--out", directory.path()});
   INFO("output: ", result.out, result.err);
   REQUIRE(result.exit_code == 0);
