@@ -59,19 +59,19 @@ void FrameLoop::run() {
 }
 
 FrameLoop::Frame FrameLoop::next_frame() {
+  // Before the events are taken: who asks after an event is told what came of it.
+  const bool is_asked = inspection_ && inspection_->is_asked();
   const bool is_lively = rhythm_.is_lively(glfwGetTime());
-  if (is_lively) {
-    pacer_.wait();
+  is_lively ? pacer_.wait() : pacer_.rest();
+  if (is_lively || is_asked)
     display_.take_events();
-  } else {
-    pacer_.rest();
+  else
     display_.wait_for_events(look_period_s);
-  }
   const double now_s = glfwGetTime();
   return {.now_s = now_s,
           .size = display_.framebuffer_size(),
           .is_lively = is_lively,
-          .is_asked = inspection_ && inspection_->is_asked(),
+          .is_asked = is_asked,
           .is_last = !options_.screenshot.empty() && now_s - started_s_ >= options_.after_seconds,
           .evidence = {.input = display_.take_input()},
           .look = {}};
