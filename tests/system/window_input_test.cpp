@@ -73,16 +73,14 @@ TEST_CASE("a dragged value is in the interrupt within two USB frames of board ti
     rig.press_mouse();
     rig.move_to({handle.x + 20, handle.y});
     rig.look_until("the drag took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
-    // Board time stands still while the event is made and handled, each time in another part of a USB frame.
+    // Board time stands still while the event is made and handled, each time in another part of a USB frame, and
+    // passes while the transaction is under way: what a busy computer takes between is not counted.
     rig.control.run(2e-4 * (attempt + 1));
     const auto moved_at = clock.newest_period();
+    rig.control.stand_by();
     rig.move_to({handle.x + 40, handle.y});
-    auto now = rig.look();
-    while (now.applied_at_periods() <= moved_at) {
-      REQUIRE(clock.newest_period() < moved_at + 1000);
-      rig.control.run(1e-4);
-      now = rig.look();
-    }
+    const auto now =
+        rig.look_until("it took effect", [&](const Sight& sight) { return sight.applied_at_periods() > moved_at; });
     latencies.push_back(now.applied_at_periods() - moved_at);
     rig.control.resume();
     rig.release_mouse();
@@ -90,8 +88,7 @@ TEST_CASE("a dragged value is in the interrupt within two USB frames of board ti
   std::ranges::sort(latencies);
   MESSAGE("simulation: from the mouse's event to the interrupt in ", latencies.front(), " to ", latencies.back(),
           " control periods, ", latencies[latencies.size() / 2], " at the median");
-  // Not the longest: a busy host's heartbeats pile up while board time stands still, and then go first.
-  CHECK(latencies[latencies.size() / 2] <= 2 * periods_per_usb_frame);
+  CHECK(latencies.back() <= 2 * periods_per_usb_frame);
 }
 
 TEST_CASE("a frame shows the newest pose that had arrived when it began") {

@@ -51,11 +51,12 @@ bool Sight::says(const std::string& part) const {
                              [&](const json& text) { return text.get<std::string>().find(part) != std::string::npos; });
 }
 
-// The display says its number in a line of its own, once it is ready; what it says of numbers taken is no error.
+// The display says its number in a line of its own, once it is ready; what it says of numbers taken is no error. Its
+// keys do not repeat (-r): between press and release a busy computer may take longer than a finger.
 WindowRig::WindowRig(const std::vector<std::string>& options)
     : board(board_options()),
       control(board.control()),
-      display_({"sh", "-c", "exec Xvfb -displayfd 1 -screen 0 1280x800x24 -nolisten tcp 2>/dev/null"}),
+      display_({"sh", "-c", "exec Xvfb -r -displayfd 1 -screen 0 1280x800x24 -nolisten tcp 2>/dev/null"}),
       display_name_("DISPLAY=:" + display_.read_line()),
       window_(window_words(board, directory_.file("parameters.toml"), options),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {

@@ -127,17 +127,18 @@ TEST_CASE("space is a space while a text is typed; Escape and F12 switch the for
 TEST_CASE("Ctrl+Z goes by the character, wherever the keyboard has it") {
   WindowRig rig;
   rig.set_keyboard_layout("de");
-  const auto press_with_ctrl = [&](const char* key) {
+  const auto takes_effect = [&](const std::function<void()>& change) {
     const auto before = rig.look().applied_at_periods();
-    rig.press_key(std::string("ctrl+") + key);
+    change();
     rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
   };
-  rig.enter(stiffness, "1500");
-  rig.press_key("Return");
-  rig.look_until("it was sent", [](const Sight& now) { return now.can_click("tuning/Undo"); });
-  press_with_ctrl("z");
+  takes_effect([&] {
+    rig.enter(stiffness, "1500");
+    rig.press_key("Return");
+  });
+  takes_effect([&] { rig.press_key("ctrl+z"); });
   CHECK(rig.look().can_click("tuning/Redo"));
-  press_with_ctrl("y");
+  takes_effect([&] { rig.press_key("ctrl+y"); });
   CHECK_FALSE(rig.look().can_click("tuning/Redo"));
   CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
 }
