@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 #include <timing/cycle_counter.hpp>
 #include <utility>
 
