@@ -46,12 +46,11 @@ int keep_on(const DeviceOptions& options, double seconds) {
   const auto connection = connect(options, BoardTime::paced);
   device::Device& device = *connection.device;
   const InterruptGuard interrupt;
-  switch_force_on(device);
-  if (!options.json) {
-    fmt::print("The force is on.{}\n", seconds > 0 ? "" : " Ctrl-C switches it off.");
-    std::fflush(stdout);
-  }
+  ForceSwitch force(device);
   PoseReport pose = next_pose(device);
+  tell_force(options, pose);
+  if (!options.json && seconds == 0) fmt::print("Ctrl-C switches it off.\n");
+  std::fflush(stdout);
   const std::uint32_t begin_periods = pose.time_periods;
   const auto is_over = [&] {
     return seconds > 0 && pose.time_periods - begin_periods >= seconds * protocol::servo_rate_Hz;
@@ -61,7 +60,7 @@ int keep_on(const DeviceOptions& options, double seconds) {
     pose = next_pose(device);
   }
   if (pose.state != State::active) throw device::Error(why_force_went_off(pose));
-  tell_force(options, switch_force_off(device));
+  tell_force(options, force.switch_off());
   return 0;
 }
 

@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include <fmt/format.h>
-
 #include <device/fault_text.hpp>
 #include <protocol/faults.hpp>
 
@@ -38,14 +36,13 @@ PoseReport ask(device::Device& device, Command command, Wanted wanted) {
   return pose;
 }
 
-}  // namespace
-
-void switch_force_on(device::Device& device) {
-  const auto pose = ask(device, Command::enable_force, [](State state) { return state == State::active; });
-  if (pose.state == State::active) return;
-  if (pose.state == State::ready) throw device::Error("The device did not switch the force on in time. Try again.");
-  throw device::Error(force_sentence(pose));
+/// With a space before it; nothing if all that it needs is to be switched on.
+std::string what_keeps_it_off(const PoseReport& pose) {
+  if (pose.state == State::ready) return {};
+  return " " + (pose.state == State::fault ? device::fault_line(pose.fault) : std::string(info(pose.state).meaning));
 }
+
+}  // namespace
 
 PoseReport switch_force_off(device::Device& device) {
   const auto pose = ask(device, Command::disable_force, [](State state) { return state != State::active; });
@@ -54,20 +51,32 @@ PoseReport switch_force_off(device::Device& device) {
   return pose;
 }
 
-std::string force_sentence(const PoseReport& pose) {
-  switch (pose.state) {
-    case State::active: return "The force is on.";
-    case State::ready: return "The force is off.";
-    case State::fault: return "The force is off. " + device::fault_line(pose.fault);
-    default: return fmt::format("The force is off. {}", info(pose.state).meaning);
+ForceSwitch::ForceSwitch(device::Device& device) : device_(device) {
+  const auto pose = ask(device, Command::enable_force, [](State state) { return state == State::active; });
+  if (pose.state == State::active) return;
+  if (pose.state == State::ready) throw device::Error("The device did not switch the force on in time. Try again.");
+  throw device::Error(force_sentence(pose));
+}
+
+ForceSwitch::~ForceSwitch() {
+  try {
+    if (may_be_on_) switch_off();
+  } catch (const device::Error&) {  // the device is gone or silent, and switches it off by itself
   }
 }
 
+PoseReport ForceSwitch::switch_off() {
+  may_be_on_ = false;
+  return switch_force_off(device_);
+}
+
+std::string force_sentence(const PoseReport& pose) {
+  return pose.state == State::active ? "The force is on." : "The force is off." + what_keeps_it_off(pose);
+}
+
 std::string why_force_went_off(const PoseReport& pose) {
-  const std::string went_off = "The force went off. ";
-  if (pose.state == State::ready) return went_off + "Another program or a window has switched it off.";
-  if (pose.state == State::fault) return went_off + device::fault_line(pose.fault);
-  return went_off + std::string(info(pose.state).meaning);
+  return "The force went off." +
+         (pose.state == State::ready ? " Another program or a window has switched it off." : what_keeps_it_off(pose));
 }
 
 }  // namespace inkwell::command_line

@@ -8,11 +8,25 @@
 
 namespace inkwell::command_line {
 
-/// Switches the force on and waits until it is. Throws device::Error with the reason if the device does not.
-void switch_force_on(device::Device& device);
-
 /// Switches the force off, whoever switched it on, and returns the pose that tells so.
 protocol::PoseReport switch_force_off(device::Device& device);
+
+/// The force is on from its construction to its end, whatever ends it. Its owner gives signs of life between.
+class ForceSwitch {
+ public:
+  /// Waits until the force is on. Throws device::Error with the reason if it does not come on.
+  explicit ForceSwitch(device::Device& device);
+  ~ForceSwitch();
+  ForceSwitch(const ForceSwitch&) = delete;
+  ForceSwitch& operator=(const ForceSwitch&) = delete;
+
+  /// As switch_force_off(). Throws device::Error.
+  protocol::PoseReport switch_off();
+
+ private:
+  device::Device& device_;
+  bool may_be_on_ = true;
+};
 
 /// Whether the force is on, and what keeps it off: a sentence with the remedy.
 std::string force_sentence(const protocol::PoseReport& pose);

@@ -10,7 +10,7 @@ protocol::PoseReport next_pose(device::Device& device) {
   constexpr std::chrono::milliseconds wait{200};
   for (int i = 0; i < waits; ++i)
     if (const auto pose = device.read_pose(wait)) return *pose;
-  throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
+  throw device::Error(device_is_silent);
 }
 
 }  // namespace inkwell::command_line

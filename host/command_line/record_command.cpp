@@ -18,6 +18,7 @@
 #include "help.hpp"
 #include "interrupt.hpp"
 #include "mark_keys.hpp"
+#include "next_pose.hpp"
 #include "progress_bar.hpp"
 
 namespace inkwell::command_line {
@@ -103,7 +104,8 @@ std::string progress_text(const RecorderStatus& status) {
 }
 
 /// Returns why the force went off, if it was to be on and did.
-std::optional<std::string> run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options) {
+std::optional<std::string> run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options,
+                               std::optional<ForceSwitch>& force) {
   const InterruptGuard interrupt;
   std::optional<std::string> force_went_off;
   std::optional<MarkKeys> keys;
@@ -123,10 +125,9 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
     device.keep_alive();
     const auto pose = device.read_pose(read_timeout);
     silent_reads = pose ? 0 : silent_reads + 1;
-    if (options.force && pose && pose->state != protocol::State::active && !force_went_off)
+    if (force && pose && pose->state != protocol::State::active && !force_went_off)
       force_went_off = why_force_went_off(*pose);
-    if (silent_reads * read_timeout > silence_limit)
-      throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
+    if (silent_reads * read_timeout > silence_limit) throw device::Error(device_is_silent);
     while (keys) {
       const auto text = keys->next();
       if (!text) break;
@@ -136,7 +137,7 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
     next_shown = now + 100ms;
     show(recorder.status());
   }
-  if (options.force) switch_force_off(device);  // at once: without signs of life it would be a fault
+  if (force) force->switch_off();  // at once: without signs of life it would be a fault
   show(recorder.status());
   progress.end();
   return force_went_off;
@@ -164,13 +165,14 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   auto& device = *connection.device;
   const auto information = recording::describe(device.information(), device.parameters(), signals,
                                                arm_name(device_options), connection.endpoint.is_virtual);
+  std::optional<ForceSwitch> force;
+  if (options.force) force.emplace(device);
   recording::Recorder recorder(options.file, information);
-  if (options.force) switch_force_on(device);
   device.select_signals(signals);
   std::string failure;
   std::optional<std::string> force_went_off;
   try {
-    force_went_off = run(device, recorder, options);
+    force_went_off = run(device, recorder, options, force);
     device.select_signals({});
   } catch (const device::Error& error) {
     failure = error.what();

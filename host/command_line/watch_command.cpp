@@ -1,6 +1,5 @@
 #include "commands.hpp"
 
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string_view>
@@ -14,11 +13,11 @@
 #include <protocol/reports.hpp>
 
 #include "help.hpp"
+#include "next_pose.hpp"
 
 namespace inkwell::command_line {
 namespace {
 
-using namespace std::chrono_literals;
 using protocol::PoseReport;
 
 struct WatchOptions {
@@ -82,23 +81,22 @@ int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
   std::uint64_t lost = 0;
   const auto periods_shown = static_cast<std::uint32_t>(protocol::servo_rate_Hz / watch_options.rate_Hz);
   for (;;) {
-    const auto pose = connection.device->read_pose(2s);
-    if (!pose) throw device::Error("The device is silent. Reset the board, or let a paused virtual board run.");
-    if (sequence) lost += pose->sequence - *sequence - 1;
-    sequence = pose->sequence;
-    if (!first_period) first_period = pose->time_periods;
-    const std::uint32_t passed = pose->time_periods - *first_period;
+    const PoseReport pose = next_pose(*connection.device);
+    if (sequence) lost += pose.sequence - *sequence - 1;
+    sequence = pose.sequence;
+    if (!first_period) first_period = pose.time_periods;
+    const std::uint32_t passed = pose.time_periods - *first_period;
     if (watch_options.seconds > 0 && passed >= watch_options.seconds * protocol::servo_rate_Hz) return 0;
-    if (!clock_read_at || pose->time_periods - *clock_read_at >= protocol::servo_rate_Hz) {
+    if (!clock_read_at || pose.time_periods - *clock_read_at >= protocol::servo_rate_Hz) {
       clock.note(connection.device->frame());
-      clock_read_at = pose->time_periods;
+      clock_read_at = pose.time_periods;
     }
     if (passed < next_shown) continue;
     next_shown += periods_shown;
     if (options.json)
-      fmt::print("{}\n", to_json(*pose, *clock.host_time_s(pose->time_periods), lost).dump());
+      fmt::print("{}\n", to_json(pose, *clock.host_time_s(pose.time_periods), lost).dump());
     else
-      print_line(*pose, lost);
+      print_line(pose, lost);
     std::fflush(stdout);
   }
 }

@@ -25,6 +25,13 @@ const float stiffness_at_start = protocol::info(Parameter::wall_stiffness_N_per_
 const auto force_is_on = [](const Sight& now) { return now.state() == "active"; };
 const auto force_is_off = [](const Sight& now) { return now.state() == "ready"; };
 
+/// Changes something, and waits until the device holds it.
+void change_and_wait(WindowRig& rig, const std::function<void()>& change) {
+  const auto before = rig.look().applied_at_periods();
+  change();
+  rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+}
+
 /// After a frame in which nothing more can be on its way, the value that the device holds at the end of the test.
 float stiffness_held_at_the_end(WindowRig& rig) {
   rig.control.run(0.1);
@@ -57,11 +64,10 @@ TEST_CASE("a click selects the whole number and sends nothing") {
 TEST_CASE("a number is sent when a click goes elsewhere, also to a field above it") {
   WindowRig rig;
   const auto type_and_leave = [&](const char* number, const std::function<void()>& leave) {
-    const auto before = rig.look().applied_at_periods();
-    rig.enter(stiffness, number);
-    leave();
-    rig.look_until(fmt::format("{} took effect", number),
-                   [&](const Sight& now) { return now.applied_at_periods() != before; });
+    change_and_wait(rig, [&] {
+      rig.enter(stiffness, number);
+      leave();
+    });
   };
   type_and_leave("1500", [&] { rig.click("tabs/Tuning"); });
   type_and_leave("1400", [&] { rig.click("tuning/sphere_radius_m"); });
@@ -127,18 +133,13 @@ TEST_CASE("space is a space while a text is typed; Escape and F12 switch the for
 TEST_CASE("Ctrl+Z goes by the character, wherever the keyboard has it") {
   WindowRig rig;
   rig.set_keyboard_layout("de");
-  const auto takes_effect = [&](const std::function<void()>& change) {
-    const auto before = rig.look().applied_at_periods();
-    change();
-    rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
-  };
-  takes_effect([&] {
+  change_and_wait(rig, [&] {
     rig.enter(stiffness, "1500");
     rig.press_key("Return");
   });
-  takes_effect([&] { rig.press_key("ctrl+z"); });
+  change_and_wait(rig, [&] { rig.press_key("ctrl+z"); });
   CHECK(rig.look().can_click("tuning/Redo"));
-  takes_effect([&] { rig.press_key("ctrl+y"); });
+  change_and_wait(rig, [&] { rig.press_key("ctrl+y"); });
   CHECK_FALSE(rig.look().can_click("tuning/Redo"));
   CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
 }
