@@ -145,3 +145,15 @@ TEST_CASE("a recording switches the force on if asked to, and off at its end") {
   CHECK(largest_A("with.h5", {"--force"}) > 0.2f);
   CHECK(rig.run({"force"}).out == "The force is off.\n");
 }
+
+TEST_CASE("a recording that is refused leaves the force off") {
+  const TemporaryDirectory directory;
+  BoardAndCompanion rig;
+  rig.wait_for_device();
+  const auto other = device::Device::open(*rig.board.find());
+  other->select_signals(std::vector{protocol::Signal::current_1_A});
+  const auto refused = rig.run({"record", directory.file("refused.h5"), "--seconds", "0.1", "--force"});
+  CHECK(refused.exit_code == 1);
+  CHECK(refused.err.find("scope") != std::string::npos);
+  CHECK(rig.run({"force"}).out == "The force is off.\n");
+}
