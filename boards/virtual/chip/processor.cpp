@@ -230,9 +230,7 @@ const BlockPrice& Processor::enter_block(std::uint32_t address, std::uint32_t by
 
 void Processor::after_clock_change() {
   const auto& clocks = machine_.clocks.frequencies;
-  // To the nearest: with a crystal that is off, frequencies are rounded.
-  const auto ratio = [&](std::uint32_t bus_Hz) { return bus_Hz == 0 ? 1u : (clocks.hclk_Hz + bus_Hz / 2) / bus_Hz; };
-  register_bus_.set_ratios({ratio(clocks.pclk1_Hz), ratio(clocks.pclk2_Hz)});
+  register_bus_.set_clocks(clocks.hclk_Hz, clocks.pclk1_Hz, clocks.pclk2_Hz);
   end_slice();
 }
 

@@ -27,6 +27,34 @@ TEST_SUITE("virtual chip: cycles") {
     }
   }
 
+  TEST_CASE("a read of a register waits for its bus, two cycles of that bus and longer") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("cycles", mode);
+      test.run_for(0.1);
+      REQUIRE(test.result(0) == finished);
+      const double ahb = test.result(18), apb_at_full_rate = test.result(19), apb_at_a_quarter = test.result(20);
+      CHECK(ahb == doctest::Approx(32 * 4).epsilon(0.02));
+      CHECK(apb_at_full_rate == doctest::Approx(32 * (3 + 1 + 2)).epsilon(0.02));
+      // 3 + 1 + 2 * 4, and in exact mode none to align: 12 is a multiple of 4.
+      CHECK(apb_at_a_quarter >= 32 * 12);
+      CHECK(apb_at_a_quarter <= 32 * (12 + 3));
+    }
+  }
+
+  TEST_CASE("constants in flash: each read of another line waits unless the data cache holds it") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("cycles", mode);
+      test.run_for(0.1);
+      REQUIRE(test.result(0) == finished);
+      const double no_wait = test.result(21), waiting = test.result(22), cached = test.result(23);
+      CHECK(no_wait == doctest::Approx(32 * 4).epsilon(0.02));
+      CHECK(waiting == doctest::Approx(32 * (4 + 2 * 5)).epsilon(0.02));
+      CHECK(cached == doctest::Approx(32 * 4).epsilon(0.02));
+    }
+  }
+
   TEST_CASE("flash that waits: nothing helps, prefetch helps, the cache helps what fits") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
@@ -50,7 +78,7 @@ TEST_SUITE("virtual chip: cycles") {
     likely.run_for(0.1);
     conservative.run_for(0.1);
     REQUIRE(conservative.result(0) == finished);
-    for (unsigned i = 1; i < 18; ++i) {
+    for (unsigned i = 1; i < 24; ++i) {
       CAPTURE(i);
       // What the sources leave open about the cache can turn out either way for a single loop.
       CHECK(conservative.result(i) >= 0.99 * likely.result(i));

@@ -203,6 +203,9 @@ TEST_SUITE("virtual chip: processor") {
       CHECK(test.result(1) == 0);
       CHECK(test.result(2) == 7 + 1 + 16);
       CHECK(test.result(3) == 7 + 1 + 32);
+      // A push of twelve registers in place of an addition. In fast mode the counter is read at a block's price.
+      if (mode == Mode::exact) CHECK(test.result(5) == test.result(4) + 12);
+      CHECK(test.result(5) > test.result(4));
       CHECK(test.log.empty());
     }
   }

@@ -14,8 +14,12 @@ class PeripheralBus {
  public:
   explicit PeripheralBus(const Costs& costs) : costs_(costs) {}
 
-  /// HCLK over PCLK1 and PCLK2: powers of two.
-  void set_ratios(const std::array<unsigned, 2>& ratios) { ratios_ = ratios; }
+  /// Of HCLK, PCLK1 and PCLK2, whose ratios are powers of two; 0 for a clock that stands.
+  void set_clocks(std::uint32_t hclk_Hz, std::uint32_t pclk1_Hz, std::uint32_t pclk2_Hz) {
+    // To the nearest: with a crystal that is off, frequencies are rounded.
+    const auto ratio = [&](std::uint32_t bus_Hz) { return bus_Hz == 0 ? 1u : (hclk_Hz + bus_Hz / 2) / bus_Hz; };
+    ratios_ = {ratio(pclk1_Hz), ratio(pclk2_Hz)};
+  }
   /// Cycles of HCLK that the access waits beyond one of RAM.
   unsigned access(std::uint32_t address, bool write, std::uint64_t now) {
     constexpr std::uint32_t apb2_base = 0x4001'0000, ahb1_base = 0x4002'0000, private_base = 0xE000'0000;

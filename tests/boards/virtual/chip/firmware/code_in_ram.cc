@@ -1,4 +1,5 @@
-// Functions in RAM that are written, run, and written anew: in one page, and across the end of a page.
+// Functions in RAM that are written, run, and written anew: in one page, across the end of a page, and to another
+// price.
 #include "support.hpp"
 
 namespace {
@@ -15,6 +16,19 @@ std::uint32_t write_and_call(volatile std::uint16_t* place, std::uint32_t value)
   place[0] = static_cast<std::uint16_t>(0x2000 | value);  // movs r0, #value
   place[1] = 0x4770;                                      // bx lr
   return call(const_cast<const std::uint16_t*>(place));
+}
+
+/// Writes a wide and a narrow instruction; the cycles of their second run.
+std::uint32_t write_and_time(std::uint32_t wide, std::uint16_t narrow) {
+  volatile std::uint16_t* const place = code + 64;
+  place[0] = static_cast<std::uint16_t>(wide >> 16);
+  place[1] = static_cast<std::uint16_t>(wide);
+  place[2] = narrow;
+  place[3] = 0x4770;
+  call(code + 64);
+  const std::uint32_t before = cycles();
+  call(code + 64);
+  return cycles() - before;
 }
 
 }  // namespace
@@ -35,6 +49,12 @@ void run() {
   results[2] = call(code + 2046);
   across[2] = 0x3020;
   results[3] = call(code + 2046);
+  // The same place and length, at another price.
+  start_cycle_counter();
+  constexpr std::uint32_t add_r3 = 0xF1030301, push_r1_to_r12 = 0xE92D1FFE;
+  constexpr std::uint16_t keep_stack = 0xB000, drop_12_words = 0xB00C;
+  results[4] = write_and_time(add_r3, keep_stack);
+  results[5] = write_and_time(push_r1_to_r12, drop_12_words);
   results[0] = finished;
   for (;;) wait_for_interrupt();
 }

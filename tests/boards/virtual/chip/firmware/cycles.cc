@@ -5,7 +5,10 @@
 namespace {
 
 constexpr std::uint32_t flash_acr = 0x40023C00;
+constexpr std::uint32_t apb1_divided_by_4 = 5 << 10, gpio_clock = 1, tim2_clock = 1;
 std::uint32_t data[8];
+/// Two lines of the flash.
+alignas(16) constexpr std::uint32_t table[8] = {1, 2, 3, 4, 5, 6, 7, 8};
 
 #define REPEATED(name, count, text)                                                                        \
   [[gnu::naked, gnu::noinline, gnu::aligned(16)]] void name(std::uint32_t*) {                              \
@@ -24,15 +27,18 @@ PROGRAM(float_chain, "vadd.f32 s0, s0, s1\n")
 PROGRAM(float_pairs, "vadd.f32 s0, s0, s1\n vadd.f32 s2, s2, s3\n")
 PROGRAM(accumulations, "vfma.f32 s0, s1, s2\n")
 PROGRAM(divisions, "udiv r3, r0, r0\n")
+PROGRAM(reads_of_two_lines, "ldr r1, [r0]\n ldr r2, [r0, #16]\n adds r3, r3, #1")
+PROGRAM(reads, "ldr r1, [r0]\n adds r3, r3, #1")
 
-std::uint32_t time(void (*program)(std::uint32_t*)) {
-  program(data);  // what a cache may keep is there now
+std::uint32_t time(void (*program)(std::uint32_t*), std::uint32_t* at = data) {
+  program(at);  // what a cache may keep is there now
   const std::uint32_t before = cycles();
-  program(data);
+  program(at);
   return cycles() - before;
 }
 
-#define DIFFERENCE(name) (time(name##_48) - time(name##_16))
+#define DIFFERENCE_AT(name, at) (time(name##_48, at) - time(name##_16, at))
+#define DIFFERENCE(name) DIFFERENCE_AT(name, data)
 
 /// Loops over 1024 wide additions (256 lines of flash), which no cache holds, and over 32.
 [[gnu::naked, gnu::noinline, gnu::aligned(16)]] void long_loop(std::uint32_t*) {
@@ -58,6 +64,22 @@ void run() {
   results[7] = DIFFERENCE(float_pairs);
   results[8] = DIFFERENCE(accumulations);
   results[9] = DIFFERENCE(divisions);
+  auto* const tim2 = reinterpret_cast<std::uint32_t*>(timer::tim2);
+  auto* const gpio_a = reinterpret_cast<std::uint32_t*>(gpio::a);
+  word(rcc::ahb1enr) |= gpio_clock;
+  word(rcc::apb1enr) |= tim2_clock;
+  results[18] = DIFFERENCE_AT(reads, gpio_a);
+  results[19] = DIFFERENCE_AT(reads, tim2);
+  word(rcc::cfgr) |= apb1_divided_by_4;
+  results[20] = DIFFERENCE_AT(reads, tim2);
+  word(rcc::cfgr) &= ~apb1_divided_by_4;
+  // Five wait states with the cache of instructions, then with that of data too.
+  auto* const constants = const_cast<std::uint32_t*>(table);
+  results[21] = DIFFERENCE_AT(reads_of_two_lines, constants);
+  word(flash_acr) = 0x205;
+  results[22] = DIFFERENCE_AT(reads_of_two_lines, constants);
+  word(flash_acr) = 0x605;
+  results[23] = DIFFERENCE_AT(reads_of_two_lines, constants);
   // No wait states; five of them with nothing on, with prefetch, with all of the accelerator.
   const std::uint32_t access[] = {0, 5, 0x105, 0x705};
   for (unsigned i = 0; i < 4; ++i) {
