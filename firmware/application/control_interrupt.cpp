@@ -50,7 +50,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
 
   const std::uint32_t period = controller.periods();
   const control::Samples samples = read_samples();
-  const control::Settings& settings = host_link.parameters.take(period);
+  if (host_link.parameters.take(period)) controller.settings_changed();
+  const control::Settings& settings = host_link.parameters.settings();
   if (host_link.commands.take_sign_of_life()) controller.host_alive();
   if (const auto* command = host_link.commands.take()) controller.carry_out(*command);
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);

@@ -1,5 +1,6 @@
 #include <control/controller.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -75,7 +76,7 @@ void Controller::drive(const ForceTarget& target, const Settings& settings) {
 
 void Controller::replace_shapes(const Shapes& shapes) {
   shapes_.replace(shapes);
-  shapes_replaced_ = true;
+  world_changed_ = true;
 }
 
 void Controller::raise(Fault fault) {
@@ -120,7 +121,7 @@ void Controller::find_pose(const Settings& settings) {
 void Controller::render_force(const Settings& settings) {
   probe_.contact = find_contact(probe_.position_m, settings.box);
   advance(program_, settings.program_force);
-  const bool shapes_changed = shapes_.age() || std::exchange(shapes_replaced_, false);
+  const bool world_changed = std::exchange(world_changed_, false) | shapes_.age();
   const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
   const bool law_changed = std::exchange(law_rendered_, law_rendered) != law_rendered;
   force_sources_ = source_bits(ForceSource::walls, law_rendered) | source_bits(ForceSource::shapes, shapes_.any()) |
@@ -130,6 +131,7 @@ void Controller::render_force(const Settings& settings) {
   if (!force_is_on()) {
     force_ = {};
     force_gain_ = 0.0f;
+    force_limit_N_ = settings.force_limit_N;
     touched_N_ = {};
     transition_ = {};
     return;
@@ -145,11 +147,13 @@ void Controller::render_force(const Settings& settings) {
     else if (is_finite(sum(probe_.position_m) + sum(probe_.velocity_m_per_s)))
       raise(Fault::force_law);
   }
-  if (shapes_changed || law_changed) transition_ = over(touched_N_ - touched_N, settings.recovery_N_per_period);
+  if (world_changed || law_changed) transition_ = over(touched_N_ - touched_N, settings.recovery_N_per_period);
   touched_N_ = touched_N + transition_.force_N();
   advance(transition_);
-  force_gain_ = clamp(force_gain_ + settings.ramp_per_period, 0.0f, 1.0f);
-  force_ = scaled(bounded(touched_N_ + program_.force_N, settings.force_limit_N), force_gain_);
+  force_gain_ = std::min(force_gain_ + settings.ramp_per_period, 1.0f);
+  // A limit that is lowered holds at once.
+  force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
+  force_ = scaled(bounded(touched_N_ + program_.force_N, force_limit_N_), force_gain_);
 }
 
 void Controller::find_current_references(const Settings& settings) {

@@ -155,6 +155,47 @@ TEST_CASE("a shape whose life ends under a pressing hand lets go softly") {
   CHECK(arm.force_N().z == doctest::Approx(0.0f).epsilon(1e-6));
 }
 
+TEST_CASE("parameters that change under a pressing hand never kick") {
+  StillArm arm;
+  protocol::ParameterSet set = parameters_in_wall();
+  const auto change = [&](Parameter parameter, float value) {
+    set[parameter] = value;
+    arm.settings = control::prepare(set);
+    arm.controller.settings_changed();
+  };
+  const float limit_N = 0.05f * arm.settings.force_limit_N;
+  const float floor_m = set[Parameter::box_minimum_z_m];
+  change(Parameter::box_minimum_z_m, floor_m + 0.002f);
+  CHECK(arm.largest_step_N(40) <= limit_N);
+  CHECK(arm.force_N().z == doctest::Approx(3.0f).epsilon(2e-3));
+  change(Parameter::box_minimum_z_m, floor_m - 0.0005f);
+  CHECK(arm.largest_step_N(40) <= limit_N);
+  CHECK(arm.force_N().z == doctest::Approx(0.5f).epsilon(2e-3));
+  change(Parameter::wall_stiffness_N_per_m, 3000.0f);
+  CHECK(arm.largest_step_N(40) <= limit_N);
+  CHECK(arm.force_N().z == doctest::Approx(1.5f).epsilon(2e-3));
+}
+
+TEST_CASE("a force limit that is raised lets the force grow without a kick, and one that is lowered holds at once") {
+  StillArm arm;
+  protocol::ParameterSet set = parameters_in_wall();
+  const auto change_limit = [&](float limit_N) {
+    set[Parameter::force_limit_N] = limit_N;
+    arm.settings = control::prepare(set);
+    arm.controller.settings_changed();
+  };
+  change_limit(0.0f);
+  arm.run(1);
+  CHECK(arm.force_N().z == 0.0f);
+  arm.run(40);
+  change_limit(0.8f);
+  CHECK(arm.largest_step_N(40) <= 0.05f * 0.8f);
+  CHECK(arm.force_N().z == doctest::Approx(0.8f).epsilon(1e-3));
+  change_limit(0.3f);
+  arm.run(1);
+  CHECK(arm.force_N().z == doctest::Approx(0.3f).epsilon(1e-3));
+}
+
 TEST_CASE("all together stay below the force limit, in their direction") {
   StillArm arm;
   control::Shapes shapes = arm.floor(0.003f);

@@ -45,8 +45,8 @@ constexpr Vector3 wall_force_N(const Contact& contact, const Vector3& velocity_m
           axis_force_N(out_m.z, velocity_m_per_s.z, wall)};
 }
 
-/// A force of at most `limit_N`, in its direction.
-Force bounded(const Vector3& force_N, float limit_N);
+/// A force of at most `limit_N`, in its direction. By value, so that it comes in registers.
+Force bounded(Vector3 force_N, float limit_N);
 
 /// The force times a gain of 0..1, for ramping in.
 constexpr Force scaled(const Force& force, float gain) { return {gain * force.force_N, gain * force.magnitude_N}; }

@@ -20,7 +20,8 @@
 namespace inkwell::control {
 
 /// Everything between the samples and the duties. Single-threaded: all but the constructor is called in the
-/// control interrupt, in the order carry_out / host_alive / drive / replace_shapes / raise, step, finish.
+/// control interrupt, in the order settings_changed / carry_out / host_alive / drive / replace_shapes / raise, step,
+/// finish.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board) : board_(board) {}
@@ -52,6 +53,9 @@ class Controller {
     for (const std::uint32_t cycles : cycles_) servo_cycles_ += cycles;
   }
 
+  /// The next step's settings are others than the last one's: the hand gets over what that does to the force without a
+  /// kick, be it a wall that moved or one that grew stiffer.
+  void settings_changed() { world_changed_ = true; }
   /// Carries out a command that the link has validated, in the next step. Counts as a sign of life.
   void carry_out(const protocol::CommandReport& command);
   /// The host was heard: any output report came in.
@@ -107,10 +111,11 @@ class Controller {
   Supervisor supervisor_;
   Requests requests_;
   float force_gain_ = 0.0f;
+  float force_limit_N_ = 0.0f;
   ProgramForce program_;
-  bool shapes_replaced_ = false;
-  bool law_rendered_ = true;  ///< not while a program asked for its force instead
-  Vector3 touched_N_;         ///< of law, shapes and transition, in the period before
+  bool world_changed_ = false;  ///< other shapes or settings than in the period before
+  bool law_rendered_ = true;    ///< not while a program asked for its force instead
+  Vector3 touched_N_;           ///< of law, shapes and transition, in the period before
   Transition transition_;
   std::uint32_t late_force_reports_ = 0;
   std::uint32_t host_silence_periods_ = 0;

@@ -2,10 +2,10 @@
 //
 // Each part has one producer and one consumer and never makes the interrupt wait. In a control period:
 //
-//   settings = link.parameters.take(periods)
+//   if (link.parameters.take(periods)) controller.settings_changed()
 //   if (link.commands.take_sign_of_life()) controller.host_alive()
 //   if (command = link.commands.take()) controller.carry_out(*command)
-//   if (target = link.program.take_force()) controller.drive(*target, settings)
+//   if (target = link.program.take_force()) controller.drive(*target, link.parameters.settings())
 //   if (shapes = link.program.take_shapes()) controller.replace_shapes(*shapes)
 //   controller.step(...)
 //   controller.write_signals(link.scope.next())

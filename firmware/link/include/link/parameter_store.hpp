@@ -35,11 +35,13 @@ class ParameterStore {
 
   // ---- control interrupt ----
 
-  /// Called once at the start of a control period; swaps if there is a transaction to take.
-  const control::Settings& take(std::uint32_t periods) {
-    if (settings_.take()) applied_at_periods_.store(periods);
-    return settings_.used();
+  /// Called once at the start of a control period; swaps if there is a transaction to take, and tells whether it did.
+  bool take(std::uint32_t periods) {
+    const bool changed = settings_.take();
+    if (changed) applied_at_periods_.store(periods);
+    return changed;
   }
+  const control::Settings& settings() const { return settings_.used(); }
 
  private:
   protocol::ParameterSet values_;
