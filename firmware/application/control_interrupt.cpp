@@ -65,6 +65,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
                                    .fault = controller.fault(),
                                    .switches = controller.switches(),
                                    .force_sources = controller.force_sources(),
+                                   .limits = controller.limits(),
                                    .command_token = host_link.commands.last_token(),
                                    .periods = period,
                                    .begin_cycles = begin_cycles,

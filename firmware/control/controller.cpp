@@ -14,6 +14,7 @@ using protocol::Command;
 using protocol::Fault;
 using protocol::ForceMode;
 using protocol::ForceSource;
+using protocol::Limit;
 using protocol::Signal;
 using protocol::State;
 
@@ -21,8 +22,11 @@ bool is_closed(std::uint8_t switches, protocol::Switch which) {
   return (switches & static_cast<std::uint8_t>(which)) != 0;
 }
 
-std::uint8_t source_bits(ForceSource source, bool is_felt) {
+std::uint8_t bit(ForceSource source, bool is_felt) {
   return is_felt ? static_cast<std::uint8_t>(source) : std::uint8_t{0};
+}
+std::uint8_t bit(Limit limit, bool is_reached) {
+  return is_reached ? static_cast<std::uint8_t>(limit) : std::uint8_t{0};
 }
 
 /// Beyond its limit, or so near to a rail of its sensor that the true current may be any.
@@ -124,12 +128,13 @@ void Controller::render_force(const Settings& settings) {
   const bool world_changed = std::exchange(world_changed_, false) | shapes_.age();
   const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
   const bool law_changed = std::exchange(law_rendered_, law_rendered) != law_rendered;
-  force_sources_ = source_bits(ForceSource::walls, law_rendered) | source_bits(ForceSource::shapes, shapes_.any()) |
-                   source_bits(ForceSource::program, program_.is_driven());
+  force_sources_ = bit(ForceSource::walls, law_rendered) | bit(ForceSource::shapes, shapes_.any()) |
+                   bit(ForceSource::program, program_.is_driven());
   const bool law_is_felt = force_is_on() && law_rendered;
   if (!law_is_felt) law_.rest();
   if (!force_is_on()) {
     force_ = {};
+    limits_ = 0;
     force_gain_ = 0.0f;
     force_limit_N_ = settings.force_limit_N;
     touched_N_ = {};
@@ -153,12 +158,16 @@ void Controller::render_force(const Settings& settings) {
   force_gain_ = std::min(force_gain_ + settings.ramp_per_period, 1.0f);
   // A limit that is lowered holds at once.
   force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
-  force_ = scaled(bounded(touched_N_ + program_.force_N, force_limit_N_), force_gain_);
+  const Force force = bounded(touched_N_ + program_.force_N, force_limit_N_);
+  limits_ = bit(Limit::force, force.magnitude_N >= force_limit_N_);
+  force_ = scaled(force, force_gain_);
 }
 
 void Controller::find_current_references(const Settings& settings) {
   torque_Nm_ = joint_torques(jacobian_, force_.force_N);
-  reference_A_ = current_references(torque_Nm_, settings.motors);
+  const CurrentReferences references = current_references(torque_Nm_, settings.motors);
+  reference_A_ = references.reference_A;
+  limits_ |= bit(Limit::current, references.limited);
   if (!test_.runs() || test_.quantity != TestPulse::Quantity::current) return;
   const float limit_A = settings.motors.current_limit_A[test_.motor];
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
@@ -232,6 +241,7 @@ void Controller::write_signals(protocol::SignalValues& signals) const {
   put(signals, Signal::motor_heat_1, heat_.heat);
   put(signals, Signal::program_force_x_N, program_.force_N);
   signals[Signal::force_sources] = force_sources_;
+  signals[Signal::limits] = limits_;
   signals[Signal::supply_V] = supply_.supply_V;
   signals[Signal::servo_cycles] = static_cast<float>(servo_cycles_);
   static constexpr Signal cycles_of_stage[stage_count] = {Signal::stage_sample_cycles,  Signal::stage_pose_cycles,

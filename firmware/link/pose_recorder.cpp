@@ -64,8 +64,9 @@ bool PoseRecorder::read(protocol::PoseReport& report) const {
   std::copy(period.gimbal_rad.begin(), period.gimbal_rad.end(), report.gimbal_rad);
   std::copy(period.force_N.begin(), period.force_N.end(), report.force_N);
   std::copy(period.joint_rad.begin(), period.joint_rad.end(), report.joint_rad);
-  report.switches = period.summary.switches & 0xFu;
-  report.force_sources = period.summary.force_sources & 0xFu;
+  report.switches = period.summary.switches & 7u;
+  report.force_sources = period.summary.force_sources & 7u;
+  report.limits = period.summary.limits & 3u;
   report.servo_load = saturate_to_byte(static_cast<float>(period.longest_cycles) * load_per_cycle_);
   report.command_token = period.summary.command_token;
   report.supply_dV = saturate_to_byte(period.supply_V * 10.0f + 0.5f);

@@ -36,6 +36,20 @@ std::vector<std::string_view> force_sources(const PoseReport& pose) {
   return names;
 }
 
+std::vector<std::string_view> limits(const PoseReport& pose) {
+  std::vector<std::string_view> names;
+  for (const auto& row : protocol::limit_table)
+    if (protocol::is_reached(pose.limits, row.limit)) names.push_back(row.name);
+  return names;
+}
+
+std::string force_of(const PoseReport& pose) {
+  if (pose.state != protocol::State::active) return "-";
+  const auto reached = limits(pose);
+  return fmt::format("{}{}", fmt::join(force_sources(pose), ", "),
+                     reached.empty() ? "" : fmt::format("; limited by {}", fmt::join(reached, ", ")));
+}
+
 nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::uint64_t lost) {
   return {{"sequence", pose.sequence},
           {"time_s", static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz},
@@ -46,6 +60,7 @@ nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::
           {"gimbal_rad", {pose.gimbal_rad[0], pose.gimbal_rad[1], pose.gimbal_rad[2]}},
           {"force_N", {pose.force_N[0], pose.force_N[1], pose.force_N[2]}},
           {"force_sources", force_sources(pose)},
+          {"limits", limits(pose)},
           {"joint_rad", {pose.joint_rad[0], pose.joint_rad[1], pose.joint_rad[2]}},
           {"button_1", is_pressed(pose, protocol::Switch::button_1)},
           {"button_2", is_pressed(pose, protocol::Switch::button_2)},
@@ -67,8 +82,7 @@ void print_line(const PoseReport& pose, std::uint64_t lost) {
              pose.state == protocol::State::fault ? info(pose.fault).name : info(pose.state).name, 1e3f * p[0],
              1e3f * p[1], 1e3f * p[2], f[0], f[1], f[2], is_pressed(pose, protocol::Switch::button_1) ? "1 " : "- ",
              is_pressed(pose, protocol::Switch::button_2) ? "2 " : "- ",
-             is_pressed(pose, protocol::Switch::inkwell) ? "inkwell" : "-      ", lost,
-             pose.state == protocol::State::active ? fmt::format("{}", fmt::join(force_sources(pose), ", ")) : "-");
+             is_pressed(pose, protocol::Switch::inkwell) ? "inkwell" : "-      ", lost, force_of(pose));
 }
 
 int watch(const DeviceOptions& options, const WatchOptions& watch_options) {

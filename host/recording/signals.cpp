@@ -40,6 +40,7 @@ std::vector<Signal> standard_signals() {
   append_range(signals, Signal::penetration_x_m, Signal::torque_3_Nm);
   append_range(signals, Signal::current_1_A, Signal::gimbal_3_rad);
   signals.push_back(Signal::force_sources);
+  signals.push_back(Signal::limits);
   return signals;
 }
 

@@ -20,10 +20,12 @@ Colour colour_of(State state, const Palette& palette) {
   }
 }
 
-/// While a program takes part, it stands where the state does: the hand should know whose force it feels.
+/// What holds the force back, or that a program takes part, stands where the state does: the hand should know what it
+/// feels.
 std::string state_text(const protocol::PoseReport& pose) {
   const bool program = protocol::is_felt(pose.force_sources, protocol::ForceSource::program) ||
                        protocol::is_felt(pose.force_sources, protocol::ForceSource::shapes);
+  if (pose.state == State::active && pose.limits != 0) return "limited";
   return pose.state == State::active && program ? "program" : std::string(protocol::info(pose.state).name);
 }
 
@@ -32,6 +34,8 @@ std::string state_help(const protocol::PoseReport& pose) {
   if (pose.state != State::active) return help;
   for (const auto& row : protocol::force_source_table)
     if (protocol::is_felt(pose.force_sources, row.source)) help += fmt::format("\n{}", row.meaning);
+  for (const auto& row : protocol::limit_table)
+    if (protocol::is_reached(pose.limits, row.limit)) help += fmt::format("\n{}", row.meaning);
   return help;
 }
 

@@ -25,7 +25,7 @@ namespace inkwell::protocol {
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 6;
+inline constexpr std::uint16_t protocol_version = 7;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -79,6 +79,34 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
   return (force_sources & static_cast<std::uint8_t>(source)) != 0;
 }
 
+// clang-format off
+/// X(bit, name, meaning)
+#define INKWELL_LIMITS(X)                                          \
+  X(1, force, "The force is held at force_limit_N.")               \
+  X(2, current, "A motor can give no more current. All motors give way together, so the force is weaker but keeps its direction.")
+// clang-format on
+
+/// What makes the force smaller than what the hand touches: bits of PoseReport::limits. None of them is a fault.
+enum class Limit : std::uint8_t {
+#define X(bit, name, ...) name = bit,
+  INKWELL_LIMITS(X)
+#undef X
+};
+
+struct LimitInfo {
+  Limit limit;
+  std::string_view name;
+  std::string_view meaning;
+};
+
+inline constexpr auto limit_table = std::to_array<LimitInfo>({
+#define X(bit, name, meaning) {Limit::name, #name, meaning},
+    INKWELL_LIMITS(X)
+#undef X
+});
+
+constexpr bool is_reached(std::uint8_t limits, Limit limit) { return (limits & static_cast<std::uint8_t>(limit)) != 0; }
+
 /// What a program's force has to do with that of the board's own force law, the walls of the box. Shapes are felt in
 /// every mode.
 enum class ForceMode : std::uint8_t {
@@ -99,8 +127,9 @@ struct PoseReport {
   float gimbal_rad[3];
   float force_N[3];
   float joint_rad[3];
-  std::uint8_t switches : 4;       ///< bits of Switch, 1 is pressed
-  std::uint8_t force_sources : 4;  ///< bits of ForceSource
+  std::uint8_t switches : 3;       ///< bits of Switch, 1 is pressed
+  std::uint8_t force_sources : 3;  ///< bits of ForceSource
+  std::uint8_t limits : 2;         ///< bits of Limit
   std::uint8_t servo_load;         ///< longest control interrupt since the last report, 255 is the whole period
   std::uint8_t command_token;      ///< token of the last command carried out
   std::uint8_t supply_dV;          ///< supply of the bridges in tenths of a volt

@@ -80,7 +80,8 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
   X(48, program_force_x_N, "N", float32, "Force of a program on the PC, as the board has interpolated it, x.") \
   X(49, program_force_y_N, "N", float32, "Force of a program on the PC, y.")                                   \
   X(50, program_force_z_N, "N", float32, "Force of a program on the PC, z.")                                   \
-  X(51, force_sources, "", float32, "Whose force it is: 1 the walls, 2 shapes, 4 a program; their sum.")
+  X(51, force_sources, "", float32, "Whose force it is: 1 the walls, 2 shapes, 4 a program; their sum.")       \
+  X(52, limits, "", float32, "What holds the force back: 1 the force limit, 2 a motor's current; their sum.")
 // clang-format on
 
 /// Index of a signal in the table, which is also its id on the wire. Values behind the last are rows of a force law.

@@ -104,18 +104,44 @@ TEST_CASE("a motor with 30 % less inductance or half more resistance stays stabl
   }
 }
 
-TEST_CASE("torque becomes current through gear and torque constant, with direction and limit") {
+TEST_CASE("torque becomes current through gear and torque constant, with direction") {
   using enum protocol::Parameter;
   protocol::ParameterSet set = tests::omni_parameters();
   set[gear_ratio_1] = 10.0f;
   set[torque_constant_1_Nm_per_A] = 0.02f;
   set[motor_2_reversed] = 1.0f;
-  set[current_limit_3_A] = 0.5f;
   const control::Motors motors = control::prepare(set).motors;
-  const control::Triple reference_A = control::current_references({0.2f, 0.1f, -9.0f}, motors);
+  const auto [reference_A, limited] = control::current_references({0.2f, 0.1f, -0.1f}, motors);
+  CHECK(!limited);
   CHECK(reference_A[0] == doctest::Approx(1.0f));
   CHECK(reference_A[1] == doctest::Approx(-0.1f / (set[gear_ratio_2] * set[torque_constant_2_Nm_per_A])));
-  CHECK(reference_A[2] == -0.5f);
+  CHECK(reference_A[2] == doctest::Approx(-0.1f / (set[gear_ratio_3] * set[torque_constant_3_Nm_per_A])));
+}
+
+TEST_CASE("where a motor reaches its limit all give way together") {
+  control::Motors motors{{2.0f, -1.0f, 4.0f}, {1.0f, 2.0f, 0.5f}};
+  SUBCASE("one") {
+    const auto [reference_A, limited] = control::current_references({1.0f, 0.5f, 0.1f}, motors);
+    CHECK(limited);
+    CHECK(reference_A[0] == doctest::Approx(1.0f));
+    CHECK(reference_A[1] == doctest::Approx(-0.25f));
+    CHECK(reference_A[2] == doctest::Approx(0.2f));
+  }
+  SUBCASE("two: the one that is further beyond") {
+    const auto [reference_A, limited] = control::current_references({1.0f, 0.5f, -1.0f}, motors);
+    CHECK(limited);
+    CHECK(reference_A[0] == doctest::Approx(0.25f));
+    CHECK(reference_A[1] == doctest::Approx(-0.0625f));
+    CHECK(reference_A[2] == doctest::Approx(-0.5f));
+  }
+  SUBCASE("a motor whose limit is 0 takes no part") {
+    motors.current_limit_A[2] = 0.0f;
+    const auto [reference_A, limited] = control::current_references({0.5f, 0.5f, 9.0f}, motors);
+    CHECK(limited);
+    CHECK(reference_A[0] == doctest::Approx(1.0f));
+    CHECK(reference_A[1] == doctest::Approx(-0.5f));
+    CHECK(reference_A[2] == 0.0f);
+  }
 }
 
 }  // namespace

@@ -196,6 +196,29 @@ TEST_CASE("a force limit that is raised lets the force grow without a kick, and 
   CHECK(arm.force_N().z == doctest::Approx(0.3f).epsilon(1e-3));
 }
 
+TEST_CASE("what holds the force back is told") {
+  StillArm arm;
+  CHECK(arm.controller.limits() == 0);
+  protocol::ParameterSet set = parameters_in_wall();
+  const auto change = [&](Parameter parameter, float value) {
+    set[parameter] = value;
+    arm.settings = control::prepare(set);
+    arm.controller.settings_changed();
+    arm.run(1'000);
+    return arm.controller.limits();
+  };
+  const auto bit_of = [](protocol::Limit limit) { return static_cast<std::uint8_t>(limit); };
+  CHECK(change(Parameter::force_limit_N, 0.9f) == bit_of(protocol::Limit::force));
+  CHECK(arm.controller.signals()[Signal::limits] == 1.0f);
+  CHECK(change(Parameter::force_limit_N, 1.1f) == 0);
+  CHECK(change(Parameter::current_limit_2_A, 0.01f) == bit_of(protocol::Limit::current));
+  CHECK(arm.controller.signals()[Signal::limits] == 2.0f);
+  CHECK(std::fabs(arm.controller.signals()[Signal::current_reference_2_A]) == doctest::Approx(0.01f));
+  arm.controller.carry_out(tests::command(protocol::Command::disable_force));
+  arm.run(2);
+  CHECK(arm.controller.limits() == 0);
+}
+
 TEST_CASE("all together stay below the force limit, in their direction") {
   StillArm arm;
   control::Shapes shapes = arm.floor(0.003f);

@@ -21,7 +21,7 @@ protocol::SignalValues some_signals(float offset = 0.25f) {
 }
 
 link::PeriodSummary summary_of(std::uint32_t period, std::uint32_t servo_cycles = 100) {
-  return {protocol::State::ready, protocol::Fault::none, 5, 6, 42, period, period * cycles_per_period, servo_cycles};
+  return {protocol::State::ready, protocol::Fault::none, 5, 6, 2, 42, period, period * cycles_per_period, servo_cycles};
 }
 
 }  // namespace
@@ -49,6 +49,7 @@ TEST_CASE("a report shows the newest period and its signals") {
   equal(report.joint_rad, Signal::joint_1_rad);
   CHECK(int{report.switches} == 5);
   CHECK(int{report.force_sources} == 6);
+  CHECK(int{report.limits} == 2);
   CHECK(report.command_token == 42);
   CHECK(report.supply_dV == 180);
   CHECK(report.servo_load == 3);  // 100 of 8400 cycles

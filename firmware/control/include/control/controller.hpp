@@ -79,6 +79,7 @@ class Controller {
   protocol::Fault fault() const { return supervisor_.fault; }
   std::uint8_t switches() const { return switches_.closed; }                ///< bits of protocol::Switch, debounced
   std::uint8_t force_sources() const { return force_sources_; }             ///< bits of protocol::ForceSource
+  std::uint8_t limits() const { return limits_; }                           ///< bits of protocol::Limit
   std::uint32_t late_force_reports() const { return late_force_reports_; }  ///< since the start
   std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
@@ -129,6 +130,7 @@ class Controller {
   Jacobian jacobian_{};
   Force force_{};
   std::uint8_t force_sources_ = 0;
+  std::uint8_t limits_ = 0;
   Triple torque_Nm_{};
   Triple reference_A_{};
   Drive drive_;

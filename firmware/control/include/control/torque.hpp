@@ -1,22 +1,43 @@
 // From joint torques to current references (paper, section 3.5).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
+#include <control/trigonometry.hpp>
 #include <control/vector.hpp>
 
 namespace inkwell::control {
 
 struct Motors {
   Triple ampere_per_Nm;    ///< 1 / (gear ratio * torque constant), negative for a reversed motor
-  Triple current_limit_A;  ///< bound of each reference
+  Triple current_limit_A;  ///< bound of each reference; a motor with 0 takes no part
 };
 
-/// Currents that give the joint torques, each within its limit.
-constexpr Triple current_references(const Triple& torque_Nm, const Motors& motors) {
+struct CurrentReferences {
   Triple reference_A{};
-  for (std::size_t i = 0; i < 3; ++i)
-    reference_A[i] =
-        clamp(torque_Nm[i] * motors.ampere_per_Nm[i], -motors.current_limit_A[i], motors.current_limit_A[i]);
-  return reference_A;
+  bool limited = false;  ///< less than was asked for
+};
+
+/// Currents that give the joint torques. Where one would be above its limit all give way together, so that the force
+/// becomes smaller but keeps its direction.
+inline CurrentReferences current_references(const Triple& torque_Nm, const Motors& motors) {
+  CurrentReferences references;
+  float part = 1.0f;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float asked_A = torque_Nm[i] * motors.ampere_per_Nm[i];
+    const float limit_A = motors.current_limit_A[i];
+    references.reference_A[i] = asked_A;
+    if (std::fabs(asked_A) <= limit_A) continue;
+    references.limited = true;
+    if (limit_A == 0.0f)
+      references.reference_A[i] = 0.0f;
+    else
+      part = std::min(part, limit_A * reciprocal_square_root(asked_A * asked_A));
+  }
+  if (references.limited)
+    for (float& reference_A : references.reference_A) reference_A *= part;
+  return references;
 }
 
 }  // namespace inkwell::control
