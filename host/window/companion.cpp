@@ -63,14 +63,16 @@ void Companion::take_keyboard_shortcuts(double now_s) {
   if (io.WantTextInput) return;
   if (io.InputQueueCharacters.contains('?')) key_help_.open();
   if (!io.KeyCtrl) return;
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Z))) {
+  // A key that is held acts once: what each step changes may move a motor, and a frame can take longer than a finger.
+  const auto is_tapped = [](ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false); };
+  if (is_tapped(ImGuiKey_Z)) {
     if (io.KeyShift) {
       editor_.redo(now_s);
     } else {
       editor_.undo(now_s);
     }
   }
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Y))) editor_.redo(now_s);
+  if (is_tapped(ImGuiKey_Y)) editor_.redo(now_s);
 }
 
 void Companion::lay_out(ImVec2 size, double now_s) {

@@ -144,6 +144,20 @@ TEST_CASE("Ctrl+Z goes by the character, wherever the keyboard has it") {
   CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
 }
 
+TEST_CASE("a key that is held takes back one change, not one after the other") {
+  WindowRig rig;
+  for (const char* value : {"1500", "1600"})
+    change_and_wait(rig, [&] {
+      rig.enter(stiffness, value);
+      rig.press_key("Return");
+    });
+  change_and_wait(rig, [&] { rig.hold_key("ctrl+z"); });
+  rig.control.run(1.0);
+  rig.control.resume();
+  rig.release_key("ctrl+z");
+  CHECK(stiffness_held_at_the_end(rig) == 1500.0f);
+}
+
 TEST_CASE("a page lists the keys") {
   WindowRig rig;
   SUBCASE("F1") { rig.press_key("F1"); }
