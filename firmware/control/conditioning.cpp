@@ -4,18 +4,23 @@
 
 namespace inkwell::control {
 
+namespace {
+
+bool plausible(const Triple& offset_A) {
+  for (const float each_A : offset_A)
+    if (!(each_A > -CurrentOffsets::plausible_A && each_A < CurrentOffsets::plausible_A)) return false;
+  return true;
+}
+
+}  // namespace
+
 void measure_offsets(CurrentOffsets& offsets, const Triple& current_A) {
   constexpr float per_reading = 1.0f / static_cast<float>(CurrentOffsets::duration_periods);
   ++offsets.periods;
   for (std::size_t i = 0; i < 3; ++i) offsets.sum_A[i] += current_A[i];
   if (!offsets.measured()) return;
   for (std::size_t i = 0; i < 3; ++i) offsets.offset_A[i] = offsets.sum_A[i] * per_reading;
-}
-
-bool plausible(const CurrentOffsets& offsets) {
-  for (const float offset_A : offsets.offset_A)
-    if (!(offset_A > -CurrentOffsets::plausible_A && offset_A < CurrentOffsets::plausible_A)) return false;
-  return true;
+  offsets.plausible = plausible(offsets.offset_A);
 }
 
 void filter_supply(SupplyFilter& filter, float sample_V) {

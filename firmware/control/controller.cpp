@@ -95,12 +95,10 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   debounce(switches_, samples.switches);
   filter_supply(supply_, samples.supply_V);
   encoder_counts_ = samples.encoder_counts;
-  for (std::size_t i = 0; i < 3; ++i) {
-    current_A_[i] = samples.current_A[i] - offsets_.offset_A[i];
-    const float ratio = samples.gimbal_ratio[i];
-    const GimbalCurve& curve = settings.gimbal[i];
-    probe_.gimbal_rad[i] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
-  }
+  for (std::size_t i = 0; i < 3; ++i) current_A_[i] = samples.current_A[i] - offsets_.offset_A[i];
+  const float ratio = samples.gimbal_ratio[turn_];
+  const GimbalCurve& curve = settings.gimbal[turn_];
+  probe_.gimbal_rad[turn_] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
   update_heat(heat_, turn_, current_A_[turn_], settings.heat);
   // While walls push, a new reference would move the probe under the hand.
   if (!force_is_on())
@@ -193,11 +191,12 @@ void Controller::regulate_currents(const Settings& settings) {
 
 void Controller::supervise(const Samples& samples, const Settings& settings) {
   ++host_silence_periods_;
-  const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(force_.force_N) +
-                           sum(torque_Nm_) + sum(reference_A_) + sum(current_A_) + sum(drive_.duty) + supply_.supply_V;
+  // Force and torques are in the references.
+  const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(reference_A_) + sum(current_A_) +
+                           sum(drive_.duty) + supply_.supply_V;
   const Conditions conditions{
       .offsets_measured = offsets_.measured(),
-      .offsets_plausible = plausible(offsets_),
+      .offsets_plausible = offsets_.plausible,
       .referenced = reference_.valid,
       .not_finite = !is_finite(sum_of_all),
       .supply_low = (supply_.supply_V < board_.supply_minimum_V),

@@ -289,7 +289,6 @@ TEST_CASE("every signal of the table is written, stage times of this period and 
   const Settings settings = settings_near_wall();
   Controller controller = tests::ready_controller(settings);
   Samples samples = tests::samples_at_rest();
-  samples.gimbal_ratio = {0.25f, 0.5f, 1.0f};
   tests::FakeClock clock;
   controller.step(samples, settings, clock);
   controller.finish(clock);
@@ -301,6 +300,15 @@ TEST_CASE("every signal of the table is written, stage times of this period and 
   CHECK(signals[Signal::stage_current_cycles] == 11.0f);
   CHECK(signals[Signal::stage_report_cycles] == 6.0f);
   CHECK(signals[Signal::supply_V] == doctest::Approx(board::supply_nominal_V));
+}
+
+TEST_CASE("the angles of the gimbal, one a period in turn") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  samples.gimbal_ratio = {0.25f, 0.5f, 1.0f};
+  tests::run(controller, samples, settings, 3);
+  const protocol::SignalValues signals = controller.signals();
   for (std::size_t i = 0; i < 3; ++i) {
     const control::GimbalCurve& curve = settings.gimbal[i];
     const float r = samples.gimbal_ratio[i];

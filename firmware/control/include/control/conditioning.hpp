@@ -24,13 +24,13 @@ struct CurrentOffsets {
   Triple sum_A{};
   Triple offset_A{};
   std::uint32_t periods = 0;
+  bool plausible = false;
 
   bool measured() const { return periods >= duration_periods; }
 };
 
-/// Adds one reading; the offsets are valid once measured() is true.
+/// Adds one reading; the offsets, and whether they are plausible, are valid once measured() is true.
 void measure_offsets(CurrentOffsets& offsets, const Triple& current_A);
-bool plausible(const CurrentOffsets& offsets);
 
 // ---- supply --------------------------------------------------------------------------------------------
 

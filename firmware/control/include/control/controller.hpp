@@ -105,7 +105,7 @@ class Controller {
   SwitchFilter switches_;
   InkwellReference reference_;
   std::array<SpeedEstimate, 3> speeds_{};
-  std::size_t turn_ = 0;  ///< of the joints and motors, where one a period is enough
+  std::size_t turn_ = 0;  ///< of the joints, motors and gimbal angles, where one a period is enough
   std::array<CurrentLoop, 3> loops_{};
   MotorHeat heat_;
   TestPulse test_;
