@@ -163,7 +163,7 @@ void Controller::render_force(const Settings& settings) {
 
 void Controller::find_current_references(const Settings& settings) {
   torque_Nm_ = joint_torques(jacobian_, force_.force_N);
-  const CurrentReferences references = current_references(torque_Nm_, settings.motors);
+  const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.held_back_A);
   reference_A_ = references.reference_A;
   limits_ |= bit(Limit::current, references.limited);
   if (!test_.runs() || test_.quantity != TestPulse::Quantity::current) return;
@@ -203,6 +203,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       .supply_high = (supply_.supply_V > board_.supply_maximum_V),
       .bridge_fault = samples.bridge_fault,
       .samples_stale = samples.slow_age_periods > SupplyFilter::stale_periods,
+      .motor_hot = heat_.too_hot,
       .over_current =
           over_current(current_A_, settings.limits.over_current_A, samples.current_A, board_.current_measurable_A),
       .encoder_implausible = joints_implausible(probe_.joint_rad, settings.arm.transmission, settings.limits),

@@ -61,10 +61,19 @@ Motors motors(const ParameterSet& set) {
 
 HeatScale heat(const ParameterSet& set) {
   const Triple continuous_A = set.of_each(Parameter::continuous_current_1_A);
+  const Triple limit_A = set.of_each(Parameter::current_limit_1_A);
   constexpr auto readings = static_cast<float>(MotorHeat::readings_per_update);
   constexpr float update_period_s = MotorHeat::periods_per_update * protocol::servo_period_s;
-  HeatScale scale{{}, update_period_s / set[Parameter::winding_time_constant_s]};
-  for (std::size_t i = 0; i < 3; ++i) scale.per_square_sum[i] = 1.0f / (readings * continuous_A[i] * continuous_A[i]);
+  HeatScale scale{{},
+                  {},
+                  set[Parameter::winding_heat_part],
+                  update_period_s / set[Parameter::winding_time_constant_s],
+                  update_period_s / set[Parameter::housing_time_constant_s]};
+  for (std::size_t i = 0; i < 3; ++i) {
+    scale.per_square_sum[i] = 1.0f / (readings * continuous_A[i] * continuous_A[i]);
+    const float beyond_A = limit_A[i] - continuous_A[i];
+    scale.held_back_A[i] = beyond_A > 0.0f ? beyond_A / (1.0f - protocol::motor_heat_holds_back_from) : 0.0f;
+  }
   return scale;
 }
 

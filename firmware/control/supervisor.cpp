@@ -20,6 +20,7 @@ Fault find_fault(State state, const Conditions& conditions, Fault raised) {
   if (started && conditions.supply_high) return Fault::supply_high;
   if (started && conditions.bridge_fault) return Fault::bridge_fault;
   if (started && conditions.over_current) return Fault::over_current;
+  if (started && conditions.motor_hot) return Fault::motor_hot;
   if (moving && conditions.encoder_implausible) return Fault::encoder_implausible;
   if (active && conditions.over_speed) return Fault::over_speed;
   if (active && conditions.host_silent) return Fault::host_silent;
@@ -35,6 +36,7 @@ bool cause_is_gone(Fault fault, const Conditions& conditions) {
     case Fault::bridge_fault: return !conditions.bridge_fault;
     case Fault::samples_stale: return !conditions.samples_stale;
     case Fault::over_current: return !conditions.over_current;
+    case Fault::motor_hot: return !conditions.motor_hot;
     default: return true;
   }
 }

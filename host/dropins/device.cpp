@@ -119,7 +119,8 @@ void Device::note_condition() {
   const int fault = now_.pose.state == INKWELL_FAULT ? now_.pose.fault : 0;
   if (std::exchange(fault_, fault) != fault && fault != 0)
     raise(fault == INKWELL_FAULT_OVER_SPEED ? exceeded_max_velocity : force_error, inkwell_fault_text(fault), fault);
-  const bool is_warm = *std::max_element(std::begin(motor_heat_), std::end(motor_heat_)) >= 1.0;
+  const bool is_warm =
+      *std::max_element(std::begin(motor_heat_), std::end(motor_heat_)) >= INKWELL_MOTOR_HEAT_HOLDS_BACK;
   if (!std::exchange(was_warm_, is_warm) && is_warm) raise(warm_motors);
 }
 

@@ -27,7 +27,7 @@ constexpr Text texts[] = {
     {invalid_operation, "HD_INVALID_OPERATION", "This can not be done now. Check the order of the calls."},
     {invalid_input_type, "HD_INVALID_INPUT_TYPE", "The parameter has another type. Use the call for its type."},
     {bad_handle, "HD_BAD_HANDLE", "No device is open under this handle. Use what hdInitDevice() returned."},
-    {warm_motors, "HD_WARM_MOTORS", "The motors are as warm as they may become. Ask for less force for a while."},
+    {warm_motors, "HD_WARM_MOTORS", "The motors are warm, and the force is held back. Ask for less force for a while."},
     {exceeded_max_force, "HD_EXCEEDED_MAX_FORCE", "The force is larger than the arm's. It is off and comes back."},
     {exceeded_max_force_impulse, "HD_EXCEEDED_MAX_FORCE_IMPULSE", "The force changes faster than is allowed."},
     {exceeded_max_velocity, "HD_EXCEEDED_MAX_VELOCITY", "The stylus is too fast. The force is off and comes back."},

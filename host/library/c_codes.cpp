@@ -31,7 +31,8 @@ constexpr Code faults[] = {
     CODE(FAULT_NONE),           CODE(FAULT_BRIDGE_FAULT),  CODE(FAULT_SUPPLY_LOW),     CODE(FAULT_SUPPLY_HIGH),
     CODE(FAULT_CURRENT_SENSOR), CODE(FAULT_OVER_CURRENT),  CODE(FAULT_OVER_SPEED),     CODE(FAULT_ENCODER_IMPLAUSIBLE),
     CODE(FAULT_HOST_SILENT),    CODE(FAULT_SERVO_OVERRUN), CODE(FAULT_WATCHDOG),       CODE(FAULT_PROCESSOR_FAULT),
-    CODE(FAULT_NOT_FINITE),     CODE(FAULT_SAMPLES_STALE), CODE(FAULT_CRYSTAL_FAILED), CODE(FAULT_FORCE_LAW)};
+    CODE(FAULT_NOT_FINITE),     CODE(FAULT_SAMPLES_STALE), CODE(FAULT_CRYSTAL_FAILED), CODE(FAULT_FORCE_LAW),
+    CODE(FAULT_MOTOR_HOT)};
 static_assert(std::ranges::equal(faults, protocol::fault_table, [](const Code& c, const protocol::CodeInfo& row) {
   return c.value == row.code && is_capital_of(c.name, "FAULT_", row.name);
 }));
@@ -41,6 +42,7 @@ static_assert(std::ranges::equal(sources, protocol::force_source_table, [](const
   return c.value == static_cast<int>(row.source) && is_capital_of(c.name, "", row.name);
 }));
 
+static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_holds_back_from);
 static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));
 static_assert(INKWELL_INSTEAD_OF_WALLS == static_cast<int>(protocol::ForceMode::instead_of_walls));
 

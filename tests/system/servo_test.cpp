@@ -105,7 +105,9 @@ TEST_CASE("a motor that holds against a wall warms as its true current says") {
   BoardRig rig;
   rig.make_active();
   rig.take_to(free_point_m);
-  rig.set({{Parameter::box_maximum_z_m, -0.04f}, {Parameter::winding_time_constant_s, 0.25f}});
+  rig.set({{Parameter::box_maximum_z_m, -0.04f},
+           {Parameter::winding_time_constant_s, 0.25f},
+           {Parameter::winding_heat_part, 1.0f}});
   rig.run(2.0);
   rig.control.trace_start();
   rig.run(0.1);
@@ -122,4 +124,31 @@ TEST_CASE("a motor that holds against a wall warms as its true current says") {
   }
   MESSAGE("simulation: heat of the hottest motor ", hottest, " of what its continuous current leads to");
   CHECK(hottest > 0.1);
+}
+
+TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way together, and nothing trips") {
+  BoardRig rig;
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.set({{Parameter::winding_time_constant_s, 0.5f},
+           {Parameter::housing_time_constant_s, 2.0f},
+           {Parameter::continuous_current_1_A, 0.5f},
+           {Parameter::continuous_current_2_A, 0.5f},
+           {Parameter::continuous_current_3_A, 0.5f},
+           {Parameter::box_maximum_z_m, -0.04f}});
+  rig.run(0.15);
+  CHECK(largest_current_A(rig.control) > 1.0);
+  float heat = 0, hottest = 0;
+  for (int i = 0; i < 100; ++i) {
+    rig.run(0.1);
+    const auto report = rig.device->information().report;
+    heat = *std::max_element(std::begin(report.motor_heat), std::end(report.motor_heat));
+    hottest = std::max(hottest, heat);
+  }
+  MESSAGE("simulation: at most ", hottest, " of the heat that the motors bear, ", heat, " in the end");
+  CHECK(heat > 0.9f);
+  CHECK(hottest < 1.1f);
+  CHECK(rig.pose().state == protocol::State::active);
+  CHECK(protocol::is_reached(rig.pose().limits, protocol::Limit::current));
+  CHECK(largest_current_A(rig.control) == doctest::Approx(0.5).epsilon(0.1));
 }

@@ -5,7 +5,7 @@
 namespace inkwell::window {
 
 namespace {
-constexpr float warm_from = 0.8f;
+constexpr float warm_from = protocol::motor_heat_holds_back_from;
 constexpr float hot_from = 1.0f;
 }  // namespace
 
@@ -25,11 +25,12 @@ std::string heat_advice(const MotorHeatView& heat) {
   switch (heat.level) {
     case HeatLevel::cool: return {};
     case HeatLevel::warm:
-      return fmt::format("Motor {} is getting warm. Push less or pause before it reaches 100 %.", heat.motor);
+      return fmt::format("Motor {} is warm, so it gets less current and the force is weaker. Push less or pause.",
+                         heat.motor);
     case HeatLevel::hot:
       return fmt::format(
-          "Motor {} has carried more than its continuous current for too long. Switch the force off "
-          "until it has cooled, or lower the force limit.",
+          "Motor {} has all the heat that it bears: it gets its continuous current at most. Switch the force off until "
+          "it has cooled, or lower the force limit.",
           heat.motor);
   }
   return {};

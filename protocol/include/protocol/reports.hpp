@@ -83,7 +83,7 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
 /// X(bit, name, meaning)
 #define INKWELL_LIMITS(X)                                          \
   X(1, force, "The force is held at force_limit_N.")               \
-  X(2, current, "A motor can give no more current. All motors give way together, so the force is weaker but keeps its direction.")
+  X(2, current, "A motor gives all the current that it may; a hot one may give less. All motors give way together, so the force is weaker but keeps its direction.")
 // clang-format on
 
 /// What makes the force smaller than what the hand touches: bits of PoseReport::limits. None of them is a fault.
@@ -204,6 +204,11 @@ struct ForceReport {
   std::uint32_t sequence;    ///< one more each time; a gap is counted as lost
   float force_N[3];          ///< on the hand, workspace axes
 };
+
+/// From this heat on a motor's current limit falls, to its continuous current where the heat is 1.
+inline constexpr float motor_heat_holds_back_from = 0.85f;
+/// At this heat, which holding back should never let come, the force goes off.
+inline constexpr float motor_heat_fault = 1.25f;
 
 /// Feature report: who the device is, and what it has counted since it started.
 struct InformationReport {

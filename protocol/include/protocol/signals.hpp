@@ -74,7 +74,7 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
   X(42, stage_torque_cycles, "cycles", float32, "Cycles of stage 4: torques and current references.")          \
   X(43, stage_current_cycles, "cycles", float32, "Cycles of stage 5: current loops, duty, bridges.")           \
   X(44, stage_report_cycles, "cycles", float32, "Cycles of stage 6: supervisor, pose and scope records.") \
-  X(45, motor_heat_1, "", float32, "Heat of motor 1's winding: 1 is what its continuous current leads to.")    \
+  X(45, motor_heat_1, "", float32, "Heat of motor 1's winding over the room: 1 is what its continuous current leads to.")    \
   X(46, motor_heat_2, "", float32, "Heat of motor 2's winding.")                                               \
   X(47, motor_heat_3, "", float32, "Heat of motor 3's winding.")                                               \
   X(48, program_force_x_N, "N", float32, "Force of a program on the PC, as the board has interpolated it, x.") \

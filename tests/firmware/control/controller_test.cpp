@@ -268,6 +268,27 @@ TEST_CASE("a raised fault is shown, and one from before the start leads back to 
   CHECK(controller.state() == State::starting);
 }
 
+TEST_CASE("a motor that gets hot although nothing is asked of it is a fault until it has cooled") {
+  protocol::ParameterSet set = tests::omni_parameters();
+  set[protocol::Parameter::winding_time_constant_s] = 0.1f;
+  set[protocol::Parameter::winding_heat_part] = 1.0f;
+  const Settings settings = control::prepare(set);
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  const float offset_A = samples.current_A[1];
+  samples.current_A[1] = offset_A + 1.3f * set[protocol::Parameter::continuous_current_2_A];
+  tests::run(controller, samples, settings, 10'000);
+  CHECK(controller.fault() == Fault::motor_hot);
+  controller.carry_out(tests::command(Command::clear_fault));
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.fault() == Fault::motor_hot);
+  samples.current_A[1] = offset_A;
+  tests::run(controller, samples, settings, 5'000);
+  controller.carry_out(tests::command(Command::clear_fault));
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.state() == State::ready);
+}
+
 TEST_CASE("a reading near a rail of its sensor is an over-current whatever the offset is") {
   const Settings settings = settings_near_wall();
   for (const float offset_A : {-0.2f, 0.2f}) {

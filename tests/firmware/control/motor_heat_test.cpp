@@ -1,5 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <control/settings.hpp>
 #include <firmware/control/arms.hpp>
 #include <protocol/reports.hpp>
@@ -12,12 +15,17 @@ namespace {
 
 constexpr float continuous_A = 1.24f;
 
-control::HeatScale scale(float time_constant_s) {
+using protocol::Parameter;
+
+/// A motor whose heat is all the winding's.
+protocol::ParameterSet winding_only(float time_constant_s) {
   protocol::ParameterSet set = tests::omni_parameters();
-  set[protocol::Parameter::continuous_current_1_A] = continuous_A;
-  set[protocol::Parameter::winding_time_constant_s] = time_constant_s;
-  return control::prepare(set).heat;
+  set[Parameter::continuous_current_1_A] = continuous_A;
+  set[Parameter::winding_time_constant_s] = time_constant_s;
+  set[Parameter::winding_heat_part] = 1.0f;
+  return set;
 }
+control::HeatScale scale(float time_constant_s) { return control::prepare(winding_only(time_constant_s)).heat; }
 
 void run(MotorHeat& motors, const Triple& current_A, const control::HeatScale& scale, float time_s) {
   const auto periods = static_cast<int>(time_s * protocol::servo_rate_Hz);
@@ -51,6 +59,58 @@ TEST_CASE("a slow winding still warms by the little that one update adds") {
   motors.heat[0] = 0.99f;
   run(motors, {continuous_A, 0.0f, 0.0f}, scale(1000.0f), 5.0f);
   CHECK(motors.heat[0] == doctest::Approx(0.99f + 0.01f * 0.005f).epsilon(5e-6));
+}
+
+TEST_CASE("the winding warms quickly over its housing, the housing slowly over the room") {
+  protocol::ParameterSet set = winding_only(0.05f);
+  set[Parameter::housing_time_constant_s] = 2.0f;
+  set[Parameter::winding_heat_part] = 0.2f;
+  const control::HeatScale both = control::prepare(set).heat;
+  MotorHeat motors;
+  run(motors, {2.0f * continuous_A, 0.0f, 0.0f}, both, 0.5f);
+  // 4 times the heat: 0.2 of it at once, 0.8 of it with the housing.
+  const float housing = 4.0f * 0.8f * (1.0f - std::exp(-0.5f / 2.0f));
+  CHECK(motors.heat[0] == doctest::Approx(4.0f * 0.2f + housing).epsilon(0.02));
+  run(motors, {}, both, 0.5f);
+  CHECK(motors.heat[0] == doctest::Approx(housing * std::exp(-0.5f / 2.0f)).epsilon(0.02));
+}
+
+TEST_CASE("a hot motor may carry less: its limit when cool, its continuous current at a heat of one") {
+  protocol::ParameterSet set = winding_only(0.1f);
+  const float limit_A = set[Parameter::current_limit_1_A] = 2.5f;
+  const control::HeatScale hold_back = control::prepare(set).heat;
+  MotorHeat motors;
+  run(motors, {0.9f * continuous_A, 0.0f, 0.0f}, hold_back, 1.0f);
+  CHECK(motors.heat[0] == doctest::Approx(0.81f).epsilon(0.001));
+  CHECK(motors.held_back_A[0] == 0.0f);
+  run(motors, {continuous_A, 0.0f, 0.0f}, hold_back, 1.0f);
+  CHECK(limit_A - motors.held_back_A[0] == doctest::Approx(continuous_A).epsilon(0.01));
+
+  // Who asks for the limit gets what is allowed, and the motor settles just below what it bears.
+  set[Parameter::winding_time_constant_s] = 1.0f;
+  const control::HeatScale slower = control::prepare(set).heat;
+  motors = {};
+  float hottest = 0.0f;
+  for (int update = 0; update < 500; ++update) {
+    run(motors, {limit_A - motors.held_back_A[0], 0.0f, 0.0f}, slower, 0.0192f);
+    hottest = std::max(hottest, motors.heat[0]);
+  }
+  CHECK(motors.heat[0] > 0.95f);
+  CHECK(hottest < 1.1f);
+}
+
+TEST_CASE("a motor that grows hot all the same is told until it has cooled") {
+  const control::HeatScale quick = scale(0.1f);
+  MotorHeat motors;
+  run(motors, {0.0f, 0.0f, 1.1f * continuous_A}, quick, 1.0f);
+  CHECK(!motors.too_hot);
+  run(motors, {0.0f, 0.0f, 1.2f * continuous_A}, quick, 1.0f);
+  CHECK(motors.too_hot);
+  run(motors, {0.0f, 0.0f, 0.95f * continuous_A}, quick, 1.0f);
+  CHECK(motors.heat[2] < 1.0f);
+  CHECK(motors.too_hot);
+  run(motors, {}, quick, 0.1f);
+  CHECK(!motors.too_hot);
 }
 
 }  // namespace

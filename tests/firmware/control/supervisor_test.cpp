@@ -57,6 +57,7 @@ std::vector<FaultCase> fault_cases() {
           {Fault::samples_stale, &Conditions::samples_stale, started, false},
           {Fault::bridge_fault, &Conditions::bridge_fault, started, false},
           {Fault::over_current, &Conditions::over_current, started, false},
+          {Fault::motor_hot, &Conditions::motor_hot, started, false},
           {Fault::encoder_implausible, &Conditions::encoder_implausible, {State::ready, State::active}, true},
           {Fault::over_speed, &Conditions::over_speed, {State::active}, true},
           {Fault::host_silent, &Conditions::host_silent, {State::active}, true}};

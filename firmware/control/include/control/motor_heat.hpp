@@ -1,4 +1,4 @@
-// How warm the windings are, from the currents that were measured in them.
+// How warm the motors are, from the currents that were measured in them, and how much less they may carry for it.
 #pragma once
 
 #include <cstddef>
@@ -8,21 +8,27 @@
 
 namespace inkwell::control {
 
-/// Temperature rise of each winding over its housing, in parts of the rise that its continuous current leads
-/// to. A winding warms with the square of its current and cools with one time constant; the housing's own,
-/// fifty times longer, is left out, so a motor that has been hot for minutes is warmer than this says.
+/// Temperature rise of each winding over the room, in parts of the rise that its continuous current leads to: that of
+/// the winding over its housing, quick, and that of the housing over the room, slow. Both warm with the square of the
+/// current and cool with a time constant of their own. A board that restarts takes its motors for cold.
 struct MotorHeat {
   /// Squares are gathered over so many readings: in a single one the heat grows by less than a float resolves.
   static constexpr std::uint32_t readings_per_update = 128;
   static constexpr std::uint32_t periods_per_update = 3 * readings_per_update;
   Triple heat{};
+  Triple held_back_A{};  ///< by how much a motor's limit is lower than where it is cold
+  bool too_hot = false;  ///< one has reached motor_heat_fault, and not all have cooled since
+  Triple housing{};      ///< part of the heat
   Triple square_sum_A2{};
   std::uint32_t readings = 0;  ///< in each sum
 };
 
 struct HeatScale {
-  Triple per_square_sum;  ///< makes the heat of a lasting current from the sum of its squares
-  float weight;           ///< part of the way to it that the heat goes in one update
+  Triple per_square_sum;     ///< makes the heat of a lasting current from the sum of its squares
+  Triple held_back_A;        ///< for each 1 of heat above motor_heat_holds_back_from
+  float winding_part;        ///< of the whole rise; the rest is the housing's
+  float winding_per_update;  ///< part of the way to its lasting rise that the winding goes in one update
+  float housing_per_update;
 };
 
 /// One control period. The motors take turns: `motor` is 0, 1, 2, 0 and so on.

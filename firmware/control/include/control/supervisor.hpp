@@ -22,6 +22,7 @@
 //   bridge_fault         | unreferenced, ready, active        | the fault line is released
 //   samples_stale        | unreferenced, ready, active        | supply and gimbal are measured again
 //   over_current         | unreferenced, ready, active        | the currents are within their bounds
+//   motor_hot            | unreferenced, ready, active        | every motor has cooled
 //   encoder_implausible  | ready, active                      | at once: the reference is given up with it
 //   over_speed           | active                             | at once
 //   host_silent          | active                             | at once
@@ -42,6 +43,7 @@ struct Conditions {
   bool supply_high = false;
   bool bridge_fault = false;
   bool samples_stale = false;
+  bool motor_hot = false;
   bool over_current = false;
   bool encoder_implausible = false;
   bool over_speed = false;

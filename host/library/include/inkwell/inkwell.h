@@ -105,8 +105,11 @@ typedef struct inkwell_information {
   uint32_t force_reports_lost;
   uint32_t force_reports_late;
   uint32_t force_reports_refused;
-  double motor_heat[3]; /* 1 is what the continuous current leads to */
+  double motor_heat[3]; /* 1 is what the continuous current leads to; see INKWELL_MOTOR_HEAT_HOLDS_BACK */
 } inkwell_information;
+
+/* From this heat on a motor gets less current than its limit, and the force is weaker. */
+#define INKWELL_MOTOR_HEAT_HOLDS_BACK 0.85f
 
 /* Asks the device. */
 INKWELL_API inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_information* information);
@@ -139,7 +142,8 @@ typedef enum inkwell_fault INKWELL_AS_INT {
   INKWELL_FAULT_NOT_FINITE = 12,
   INKWELL_FAULT_SAMPLES_STALE = 13,
   INKWELL_FAULT_CRYSTAL_FAILED = 14,
-  INKWELL_FAULT_FORCE_LAW = 15
+  INKWELL_FAULT_FORCE_LAW = 15,
+  INKWELL_FAULT_MOTOR_HOT = 16
 } inkwell_fault;
 
 /* Whose force the hand feels: bits of inkwell_pose::force_sources. */
