@@ -150,24 +150,26 @@ void Controller::render_force(const Settings& settings) {
     else if (is_finite(sum(probe_.position_m) + sum(probe_.velocity_m_per_s)))
       raise(Fault::force_law);
   }
-  if (world_changed || law_changed) transition_ = over(touched_N_ - touched_N, settings.recovery_N_per_period);
+  // Only what was felt is got over.
+  if (world_changed || law_changed)
+    transition_ = over(bounded(touched_N_, force_limit_N_).force_N - touched_N, settings.recovery_N_per_period);
   touched_N_ = touched_N + transition_.force_N();
   advance(transition_);
   force_gain_ = std::min(force_gain_ + settings.ramp_per_period, 1.0f);
   // A limit that is lowered holds at once.
   force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
   const Force force = bounded(touched_N_ + program_.force_N, force_limit_N_);
-  limits_ = bit(Limit::force, force.magnitude_N >= force_limit_N_);
+  limits_ = bit(Limit::force, force.magnitude_N >= force_limit_N_ && force.magnitude_N > 0.0f);
   force_ = scaled(force, force_gain_);
 }
 
 void Controller::find_current_references(const Settings& settings) {
   torque_Nm_ = joint_torques(jacobian_, force_.force_N);
-  const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.held_back_A);
+  const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.beyond);
   reference_A_ = references.reference_A;
   limits_ |= bit(Limit::current, references.limited);
   if (!test_.runs() || test_.quantity != TestPulse::Quantity::current) return;
-  const float limit_A = settings.motors.current_limit_A[test_.motor];
+  const float limit_A = settings.motors.allowed_A(test_.motor, heat_.beyond);
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
 }
 
@@ -191,7 +193,7 @@ void Controller::regulate_currents(const Settings& settings) {
 
 void Controller::supervise(const Samples& samples, const Settings& settings) {
   ++host_silence_periods_;
-  // Force and torques are in the references.
+  // Force and torques are in the references, as far as a motor takes part.
   const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
   const Conditions conditions{

@@ -15,9 +15,9 @@ void warm(MotorHeat& motors, std::size_t motor, const HeatScale& scale) {
   motors.heat[motor] = housing + winding + scale.winding_per_update * (lasting_winding - winding);
 }
 
-void hold_back(MotorHeat& motors, std::size_t motor, const HeatScale& scale) {
+void hold_back(MotorHeat& motors, std::size_t motor) {
   const float beyond = motors.heat[motor] - protocol::motor_heat_holds_back_from;
-  motors.held_back_A[motor] = beyond > 0.0f ? scale.held_back_A[motor] * beyond : 0.0f;
+  motors.beyond[motor] = beyond > 0.0f ? beyond : 0.0f;
 }
 
 void judge(MotorHeat& motors) {
@@ -31,7 +31,7 @@ void update_heat(MotorHeat& motors, std::size_t motor, float current_A, const He
   motors.square_sum_A2[motor] += current_A * current_A;
   // One thing in a period: what is not in the longest control interrupt costs nothing.
   switch (motors.readings) {
-    case 0: hold_back(motors, motor, scale); break;
+    case 0: hold_back(motors, motor); break;
     case 1:
       if (motor == 0) judge(motors);
       break;

@@ -54,25 +54,26 @@ Motors motors(const ParameterSet& set) {
   const Triple ratio = set.of_each(Parameter::gear_ratio_1);
   const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
   const Triple reversed = set.of_each(Parameter::motor_1_reversed);
-  Motors motors{{}, set.of_each(Parameter::current_limit_1_A)};
-  for (std::size_t i = 0; i < 3; ++i) motors.ampere_per_Nm[i] = sign(reversed[i]) / (ratio[i] * constant_Nm_per_A[i]);
+  const Triple continuous_A = set.of_each(Parameter::continuous_current_1_A);
+  Motors motors{{}, set.of_each(Parameter::current_limit_1_A), {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    motors.ampere_per_Nm[i] = sign(reversed[i]) / (ratio[i] * constant_Nm_per_A[i]);
+    const float more_A = motors.current_limit_A[i] - continuous_A[i];
+    motors.ampere_per_heat[i] = more_A > 0.0f ? more_A / (1.0f - protocol::motor_heat_holds_back_from) : 0.0f;
+  }
   return motors;
 }
 
 HeatScale heat(const ParameterSet& set) {
   const Triple continuous_A = set.of_each(Parameter::continuous_current_1_A);
-  const Triple limit_A = set.of_each(Parameter::current_limit_1_A);
   constexpr auto readings = static_cast<float>(MotorHeat::readings_per_update);
   constexpr float update_period_s = MotorHeat::periods_per_update * protocol::servo_period_s;
   HeatScale scale{{},
-                  {},
                   set[Parameter::winding_heat_part],
                   update_period_s / set[Parameter::winding_time_constant_s],
                   update_period_s / set[Parameter::housing_time_constant_s]};
   for (std::size_t i = 0; i < 3; ++i) {
     scale.per_square_sum[i] = 1.0f / (readings * continuous_A[i] * continuous_A[i]);
-    const float beyond_A = limit_A[i] - continuous_A[i];
-    scale.held_back_A[i] = beyond_A > 0.0f ? beyond_A / (1.0f - protocol::motor_heat_holds_back_from) : 0.0f;
   }
   return scale;
 }
@@ -110,7 +111,8 @@ ProgramForceLimits program_force(const ParameterSet& set) {
           periods_in(set[Parameter::program_force_expiry_s])};
 }
 
-/// A jump goes by 4 % of the force limit in a millisecond: the skin takes no kick from it, and it is over in 25 ms.
+/// A jump goes by 4 % of the force limit in a millisecond: the skin takes no kick from it, and one as large as the
+/// limit is over in 25 ms.
 constexpr float recovery_per_s = 0.04f * 1000.0f;
 
 /// Rise of the force's gain in one period; a ramp of less than a period is a step.

@@ -63,6 +63,9 @@ void print_codes() {
   fmt::print("\n## Whose force is felt\n\n| bit | source | meaning |\n| --- | --- | --- |\n");
   for (const auto& row : protocol::force_source_table)
     fmt::print("| {} | {} | {} |\n", static_cast<unsigned>(row.source), row.name, row.meaning);
+  fmt::print("\n## What holds the force back\n\n| bit | limit | meaning |\n| --- | --- | --- |\n");
+  for (const auto& row : protocol::limit_table)
+    fmt::print("| {} | {} | {} |\n", static_cast<unsigned>(row.limit), row.name, row.meaning);
   fmt::print("\n## Faults\n\n| code | fault | cause | remedy |\n| --- | --- | --- | --- |\n");
   for (const auto& row : protocol::fault_table) {
     const auto text = device::fault_text(static_cast<protocol::Fault>(row.code));

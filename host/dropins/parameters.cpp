@@ -168,7 +168,8 @@ const Parameter table[] = {
     {0x2604, 0, "NOMINAL_MAX_CONTINUOUS_FORCE", "N", 1, type_real,
      "what every motor bears for ever, the arm stretched out",
      [](const Source& s, double* v) { *v = facts(s).force_continuous_N; }},
-    {0x2605, 0, "MOTOR_TEMPERATURE", "", 3, type_real, "0 cold to 1 warm, asked for twice a second",
+    {0x2605, 0, "MOTOR_TEMPERATURE", "", 3, type_real,
+     "0 cold to 1 all that it bears, warm from 0.85; asked for twice a second",
      [](const Source& s, double* v) {
        for (std::size_t i = 0; i < 3; ++i) v[i] = std::clamp(s.device->motor_heat(i), 0.0, 1.0);
      }},

@@ -125,6 +125,7 @@ class Driving(unittest.TestCase):
             thread.join()
         # On a busy computer all of them are given before one goes over the wire.
         wait_until(self.arm, lambda _: self.arm.information.force_reports > before.force_reports)
+        wait_until(self.arm, lambda pose: not pose.feels_program)
         after = self.arm.information
         self.assertEqual((after.force_reports_refused, after.force_reports_lost),
                          (before.force_reports_refused, before.force_reports_lost))

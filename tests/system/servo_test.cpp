@@ -5,6 +5,10 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include <board/omni_driver.hpp>
 
@@ -136,19 +140,33 @@ TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way t
            {Parameter::continuous_current_2_A, 0.5f},
            {Parameter::continuous_current_3_A, 0.5f},
            {Parameter::box_maximum_z_m, -0.04f}});
+  const auto currents_A = [&] {
+    const auto truth = rig.control.truth();
+    std::array<double, 3> currents{};
+    for (std::size_t i = 0; i < 3; ++i) currents[i] = truth.at(fmt::format("true_current_{}_A", i + 1)).get<double>();
+    return currents;
+  };
   rig.run(0.15);
+  const auto while_cool_A = currents_A();
   CHECK(largest_current_A(rig.control) > 1.0);
-  float heat = 0, hottest = 0;
+  rig.device->select_signals(std::vector{Signal::motor_heat_1, Signal::motor_heat_2, Signal::motor_heat_3});
+  float hottest = 0;
   for (int i = 0; i < 100; ++i) {
     rig.run(0.1);
-    const auto report = rig.device->information().report;
-    heat = *std::max_element(std::begin(report.motor_heat), std::end(report.motor_heat));
-    hottest = std::max(hottest, heat);
+    while (const auto samples = rig.device->read_scope(std::chrono::milliseconds(0)))
+      if (!samples->values.empty()) hottest = std::max(hottest, std::ranges::max(samples->values));
   }
+  const auto report = rig.device->information().report;
+  const float heat = *std::ranges::max_element(report.motor_heat);
   MESSAGE("simulation: at most ", hottest, " of the heat that the motors bear, ", heat, " in the end");
   CHECK(heat > 0.9f);
   CHECK(hottest < 1.1f);
   CHECK(rig.pose().state == protocol::State::active);
   CHECK(protocol::is_reached(rig.pose().limits, protocol::Limit::current));
   CHECK(largest_current_A(rig.control) == doctest::Approx(0.5).epsilon(0.1));
+  // The force has kept its direction. The hand has moved a little.
+  const auto now_A = currents_A();
+  const double along = std::inner_product(now_A.begin(), now_A.end(), while_cool_A.begin(), 0.0);
+  const auto length = [](const auto& v) { return std::hypot(v[0], v[1], v[2]); };
+  CHECK(along / (length(now_A) * length(while_cool_A)) > 0.999);
 }

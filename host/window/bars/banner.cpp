@@ -33,9 +33,10 @@ std::optional<Banner> banner_of(const DeviceView& view, bool is_replay) {
         "Something else has switched it on, such as a program. STOP switches it off; close the replay to see the arm.",
         false};
   const MotorHeatView heat = motor_heat_view(view.status.information->report);
-  const bool is_felt = view.pose && protocol::is_reached(view.pose->limits, protocol::Limit::current);
-  if (heat.level == HeatLevel::cool || (heat.level == HeatLevel::warm && !is_felt)) return std::nullopt;
-  return Banner{fmt::format("Motor {} is hot: {:.0f} %.", heat.motor, 100.0f * heat.hottest), heat_advice(heat), false};
+  if (heat.level == HeatLevel::cool) return std::nullopt;
+  return Banner{fmt::format("Motor {} is {}: {:.0f} %.", heat.motor, heat.level == HeatLevel::hot ? "hot" : "warm",
+                            100.0f * heat.hottest),
+                heat_advice(heat), false};
 }
 
 float banner_height(float width, const Style& style, const Banner& banner) {

@@ -11,21 +11,19 @@ using protocol::State;
 
 namespace {
 
-Colour colour_of(State state, const Palette& palette) {
-  switch (state) {
-    case State::active: return palette.good;
+Colour colour_of(const protocol::PoseReport& pose, const Palette& palette) {
+  switch (pose.state) {
+    case State::active: return pose.limits == 0 ? palette.good : palette.caution;
     case State::fault: return palette.danger_text;
     case State::ready: return palette.accent;
     default: return palette.caution;
   }
 }
 
-/// What holds the force back, or that a program takes part, stands where the state does: the hand should know what it
-/// feels.
+/// While a program takes part, it stands where the state does: the hand should know whose force it feels.
 std::string state_text(const protocol::PoseReport& pose) {
   const bool program = protocol::is_felt(pose.force_sources, protocol::ForceSource::program) ||
                        protocol::is_felt(pose.force_sources, protocol::ForceSource::shapes);
-  if (pose.state == State::active && pose.limits != 0) return "limited";
   return pose.state == State::active && program ? "program" : std::string(protocol::info(pose.state).name);
 }
 
@@ -54,7 +52,7 @@ std::vector<Gauge> gauges_of(const DeviceView& view, const Palette& palette) {
   const std::uint64_t lost = status.poses_lost + status.scope_samples_lost;
   const std::string advice = heat_advice(heat);
   std::vector<Gauge> gauges{
-      {"State", state_text(pose), colour_of(pose.state, palette), alive ? state_help(pose) : "No device is connected.",
+      {"State", state_text(pose), colour_of(pose, palette), alive ? state_help(pose) : "No device is connected.",
        pose.state == State::fault},
       {"Servo load", fmt::format("{:.0f} %", load_percent), load_percent > 80 ? palette.caution : palette.text,
        "The longest control interrupt since the pose report before, as a part of its period.", load_percent > 80},

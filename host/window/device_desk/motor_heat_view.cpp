@@ -25,8 +25,9 @@ std::string heat_advice(const MotorHeatView& heat) {
   switch (heat.level) {
     case HeatLevel::cool: return {};
     case HeatLevel::warm:
-      return fmt::format("Motor {} is warm, so it gets less current and the force is weaker. Push less or pause.",
-                         heat.motor);
+      return fmt::format(
+          "From {:.0f} % on motor {} gets less current, and the force may be weaker. Push less or pause.",
+          100.0f * protocol::motor_heat_holds_back_from, heat.motor);
     case HeatLevel::hot:
       return fmt::format(
           "Motor {} has all the heat that it bears: it gets its continuous current at most. Switch the force off until "

@@ -54,11 +54,11 @@ enum class ParameterKind : std::uint8_t {
   X(402, current_limit_3_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_3_A, "limits", "Largest current asked of motor 3.") \
   X(403, speed_limit_m_per_s, real, "m/s", 0.1f, 10.0f, 3.0f, "limits", "Speed of the probe above which the force is switched off with a fault.") \
   X(404, host_timeout_s, real, "s", 0.01f, 2.0f, 0.05f, "limits", "Silence of the host after which the force is switched off.")    \
-  X(405, continuous_current_1_A, real, "A", 0.05f, 3.0f, arm_defaults::continuous_current_1_A, "limits", "Current that motor 1 bears for ever; its heat is told in parts of what this current leads to. From 85 % on its current limit falls, to this current at 100 %.") \
-  X(406, continuous_current_2_A, real, "A", 0.05f, 3.0f, arm_defaults::continuous_current_2_A, "limits", "Current that motor 2 bears for ever.") \
-  X(407, continuous_current_3_A, real, "A", 0.05f, 3.0f, arm_defaults::continuous_current_3_A, "limits", "Current that motor 3 bears for ever.") \
-  X(408, winding_time_constant_s, real, "s", 0.1f, 1000.0f, arm_defaults::winding_time_constant_s, "limits", "Time in which a winding goes 63 % of the way to its new temperature over its housing.") \
-  X(409, housing_time_constant_s, real, "s", 0.1f, 10000.0f, arm_defaults::housing_time_constant_s, "limits", "Time in which a motor's housing goes 63 % of the way to its new temperature over the room.") \
+  X(405, continuous_current_1_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_1_A, "limits", "Current that motor 1 bears for ever; its heat is told in parts of what this current leads to. From 85 % on its current limit falls, to this current at 100 % and further beyond. A change leaves the heat as it is told.") \
+  X(406, continuous_current_2_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_2_A, "limits", "Current that motor 2 bears for ever.") \
+  X(407, continuous_current_3_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_3_A, "limits", "Current that motor 3 bears for ever.") \
+  X(408, winding_time_constant_s, real, "s", 0.25f, 1000.0f, arm_defaults::winding_time_constant_s, "limits", "Time in which a winding goes 63 % of the way to its new temperature over its housing.") \
+  X(409, housing_time_constant_s, real, "s", 0.25f, 2000.0f, arm_defaults::housing_time_constant_s, "limits", "Time in which a motor's housing goes 63 % of the way to its new temperature over the room.") \
   X(410, winding_heat_part, real, "", 0.01f, 1.0f, arm_defaults::winding_heat_part, "limits", "Part of a lasting rise over the room that is the winding's over its housing: the thermal resistance from winding to housing over that from winding to room.") \
   X(500, transmission, choice, "", 0.0f, 1.0f, arm_defaults::transmission, "arm", "How motor 3 turns link 3: 0 serial (joint 3 is relative to link 2), 1 parallelogram (joint 3 is absolute).") \
   X(501, frame, choice, "", 0.0f, 1.0f, arm_defaults::frame, "arm", "Axes of the workspace: 0 as in the paper (x forward, y left, z up), 1 as on the Omni (x right, y up, z to the user).") \

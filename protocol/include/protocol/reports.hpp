@@ -82,7 +82,7 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
 // clang-format off
 /// X(bit, name, meaning)
 #define INKWELL_LIMITS(X)                                          \
-  X(1, force, "The force is held at force_limit_N.")               \
+  X(1, force, "The force is held at force_limit_N, or on its way up to it.")               \
   X(2, current, "A motor gives all the current that it may; a hot one may give less. All motors give way together, so the force is weaker but keeps its direction.")
 // clang-format on
 
@@ -207,7 +207,7 @@ struct ForceReport {
 
 /// From this heat on a motor's current limit falls, to its continuous current where the heat is 1.
 inline constexpr float motor_heat_holds_back_from = 0.85f;
-/// At this heat, which holding back should never let come, the force goes off.
+/// At this heat, which holding back should not let come, the force goes off.
 inline constexpr float motor_heat_fault = 1.25f;
 
 /// Feature report: who the device is, and what it has counted since it started.

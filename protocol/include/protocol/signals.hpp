@@ -44,7 +44,7 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
   X(12, penetration_x_m, "m", float32, "Proxy minus probe, x: points out of the wall.")                        \
   X(13, penetration_y_m, "m", float32, "Proxy minus probe, y.")                                                \
   X(14, penetration_z_m, "m", float32, "Proxy minus probe, z.")                                                \
-  X(15, force_x_N, "N", float32, "Force on the hand that is asked of the motors, x.")                          \
+  X(15, force_x_N, "N", float32, "Force on the hand that is asked of the motors, x; what limits it further is in limits.")                          \
   X(16, force_y_N, "N", float32, "Force on the hand that is asked of the motors, y.")                          \
   X(17, force_z_N, "N", float32, "Force on the hand that is asked of the motors, z.")                          \
   X(18, force_N, "N", float32, "Magnitude of the force.")                                                      \
@@ -60,7 +60,7 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
   X(28, duty_1, "", duty_int16, "Duty of bridge 1, -1 to 1 of the supply.")                                    \
   X(29, duty_2, "", duty_int16, "Duty of bridge 2, -1 to 1 of the supply.")                                    \
   X(30, duty_3, "", duty_int16, "Duty of bridge 3, -1 to 1 of the supply.")                                    \
-  X(31, gimbal_1_rad, "rad", float32, "Yaw of the gimbal.")                                                    \
+  X(31, gimbal_1_rad, "rad", float32, "Yaw of the gimbal; the three take turns, one a period.")                                                    \
   X(32, gimbal_2_rad, "rad", float32, "Pitch of the gimbal.")                                                  \
   X(33, gimbal_3_rad, "rad", float32, "Roll of the gimbal.")                                                   \
   X(34, joint_speed_1_rad_s, "rad/s", float32, "Speed of joint 1 from the adaptive window.")                   \
@@ -73,8 +73,8 @@ inline constexpr float duty_step = 1.0f / 32767.0f;  ///< +-1, finer than the ti
   X(41, stage_contact_cycles, "cycles", float32, "Cycles of stage 3: proxy, penetration, force.")              \
   X(42, stage_torque_cycles, "cycles", float32, "Cycles of stage 4: torques and current references.")          \
   X(43, stage_current_cycles, "cycles", float32, "Cycles of stage 5: current loops, duty, bridges.")           \
-  X(44, stage_report_cycles, "cycles", float32, "Cycles of stage 6: supervisor, pose and scope records.") \
-  X(45, motor_heat_1, "", float32, "Heat of motor 1's winding over the room: 1 is what its continuous current leads to.")    \
+  X(44, stage_report_cycles, "cycles", float32, "Cycles of stage 6: supervisor, pose and scope records.")       \
+  X(45, motor_heat_1, "", float32, "Heat of motor 1's winding over the room: 1 is what its continuous current leads to.") \
   X(46, motor_heat_2, "", float32, "Heat of motor 2's winding.")                                               \
   X(47, motor_heat_3, "", float32, "Heat of motor 3's winding.")                                               \
   X(48, program_force_x_N, "N", float32, "Force of a program on the PC, as the board has interpolated it, x.") \

@@ -119,7 +119,7 @@ TEST_CASE("torque becomes current through gear and torque constant, with directi
 }
 
 TEST_CASE("where a motor reaches its limit all give way together") {
-  control::Motors motors{{2.0f, -1.0f, 4.0f}, {1.0f, 2.0f, 0.5f}};
+  control::Motors motors{{2.0f, -1.0f, 4.0f}, {1.0f, 2.0f, 0.5f}, {10.0f, 0.0f, 0.0f}};
   SUBCASE("one") {
     const auto [reference_A, limited] = control::current_references({1.0f, 0.5f, 0.1f}, motors, {});
     CHECK(limited);
@@ -135,16 +135,17 @@ TEST_CASE("where a motor reaches its limit all give way together") {
     CHECK(reference_A[2] == doctest::Approx(-0.5f));
   }
   SUBCASE("a hot motor: as if its limit were lower, down to nothing") {
-    const auto [reference_A, limited] = control::current_references({0.5f, 0.5f, 0.1f}, motors, {0.5f, 0.0f, 0.0f});
+    const auto [reference_A, limited] = control::current_references({0.5f, 0.5f, 0.1f}, motors, {0.05f, 0.0f, 0.0f});
     CHECK(limited);
     CHECK(reference_A[0] == doctest::Approx(0.5f));
     CHECK(reference_A[1] == doctest::Approx(-0.25f));
-    CHECK(control::current_references({0.5f, 0.5f, 0.1f}, motors, {9.0f, 0.0f, 0.0f}).reference_A[1] == 0.0f);
+    CHECK(control::current_references({0.5f, 0.5f, 0.1f}, motors, {0.2f, 0.0f, 0.0f}).reference_A[1] == 0.0f);
+    CHECK(!control::current_references({}, motors, {0.2f, 0.0f, 0.0f}).limited);
   }
   SUBCASE("a motor whose limit is 0 takes no part") {
     motors.current_limit_A[2] = 0.0f;
     const auto [reference_A, limited] = control::current_references({0.5f, 0.5f, 9.0f}, motors, {});
-    CHECK(limited);
+    CHECK(!limited);
     CHECK(reference_A[0] == doctest::Approx(1.0f));
     CHECK(reference_A[1] == doctest::Approx(-0.5f));
     CHECK(reference_A[2] == 0.0f);

@@ -28,7 +28,7 @@ protocol::ParameterSet winding_only(float time_constant_s) {
 control::HeatScale scale(float time_constant_s) { return control::prepare(winding_only(time_constant_s)).heat; }
 
 void run(MotorHeat& motors, const Triple& current_A, const control::HeatScale& scale, float time_s) {
-  const auto periods = static_cast<int>(time_s * protocol::servo_rate_Hz);
+  const auto periods = static_cast<int>(time_s * protocol::servo_rate_Hz) / 3 * 3;  // whole rounds of the motors
   for (int period = 0; period < periods; ++period) {
     const auto motor = static_cast<std::size_t>(period % 3);
     control::update_heat(motors, motor, current_A[motor], scale);
@@ -78,13 +78,17 @@ TEST_CASE("the winding warms quickly over its housing, the housing slowly over t
 TEST_CASE("a hot motor may carry less: its limit when cool, its continuous current at a heat of one") {
   protocol::ParameterSet set = winding_only(0.1f);
   const float limit_A = set[Parameter::current_limit_1_A] = 2.5f;
-  const control::HeatScale hold_back = control::prepare(set).heat;
+  const control::HeatScale quick = control::prepare(set).heat;
+  const control::Motors limits = control::prepare(set).motors;
   MotorHeat motors;
-  run(motors, {0.9f * continuous_A, 0.0f, 0.0f}, hold_back, 1.0f);
+  run(motors, {0.9f * continuous_A, 0.0f, 0.0f}, quick, 1.0f);
   CHECK(motors.heat[0] == doctest::Approx(0.81f).epsilon(0.001));
-  CHECK(motors.held_back_A[0] == 0.0f);
-  run(motors, {continuous_A, 0.0f, 0.0f}, hold_back, 1.0f);
-  CHECK(limit_A - motors.held_back_A[0] == doctest::Approx(continuous_A).epsilon(0.01));
+  CHECK(limits.allowed_A(0, motors.beyond) == limit_A);
+  run(motors, {continuous_A, 0.0f, 0.0f}, quick, 1.0f);
+  CHECK(limits.allowed_A(0, motors.beyond) == doctest::Approx(continuous_A).epsilon(0.01));
+  CHECK(limits.allowed_A(0, {0.5f, 0.0f, 0.0f}) == 0.0f);
+  set[Parameter::current_limit_1_A] = 0.9f * continuous_A;
+  CHECK(control::prepare(set).motors.allowed_A(0, motors.beyond) == 0.9f * continuous_A);
 
   // Who asks for the limit gets what is allowed, and the motor settles just below what it bears.
   set[Parameter::winding_time_constant_s] = 1.0f;
@@ -92,7 +96,7 @@ TEST_CASE("a hot motor may carry less: its limit when cool, its continuous curre
   motors = {};
   float hottest = 0.0f;
   for (int update = 0; update < 500; ++update) {
-    run(motors, {limit_A - motors.held_back_A[0], 0.0f, 0.0f}, slower, 0.0192f);
+    run(motors, {limits.allowed_A(0, motors.beyond), 0.0f, 0.0f}, slower, 0.0192f);
     hottest = std::max(hottest, motors.heat[0]);
   }
   CHECK(motors.heat[0] > 0.95f);

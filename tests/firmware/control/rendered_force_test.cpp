@@ -219,6 +219,39 @@ TEST_CASE("what holds the force back is told") {
   CHECK(arm.controller.limits() == 0);
 }
 
+TEST_CASE("a wall that went while no force was allowed is not felt when one is") {
+  StillArm arm;
+  protocol::ParameterSet set = parameters_in_wall();
+  const auto change = [&](Parameter parameter, float value) {
+    set[parameter] = value;
+    arm.settings = control::prepare(set);
+    arm.controller.settings_changed();
+  };
+  change(Parameter::force_limit_N, 0.0f);
+  change(Parameter::wall_stiffness_N_per_m, 3000.0f);
+  arm.run(100);
+  change(Parameter::box_minimum_z_m, set[Parameter::box_minimum_z_m] - 0.01f);
+  arm.run(100);
+  change(Parameter::force_limit_N, 3.3f);
+  CHECK(arm.largest_step_N(40) == 0.0f);
+  CHECK(arm.force_N().z == 0.0f);
+}
+
+TEST_CASE("of a force that was cut to its limit only what was felt is got over") {
+  StillArm arm;
+  protocol::ParameterSet set = parameters_in_wall();
+  set[Parameter::box_minimum_z_m] += 0.03f;  // 31 N
+  arm.settings = control::prepare(set);
+  arm.controller.settings_changed();
+  arm.run(6'000);
+  CHECK(arm.force_N().z == doctest::Approx(arm.settings.force_limit_N));
+  set[Parameter::box_minimum_z_m] = -0.5f;
+  arm.settings = control::prepare(set);
+  arm.controller.settings_changed();
+  CHECK(arm.largest_step_N(26) <= 0.05f * arm.settings.force_limit_N);
+  CHECK(arm.force_N().z == 0.0f);
+}
+
 TEST_CASE("all together stay below the force limit, in their direction") {
   StillArm arm;
   control::Shapes shapes = arm.floor(0.003f);

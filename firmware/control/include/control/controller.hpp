@@ -53,8 +53,8 @@ class Controller {
     for (const std::uint32_t cycles : cycles_) servo_cycles_ += cycles;
   }
 
-  /// The next step's settings are others than the last one's: the hand gets over what that does to the force without a
-  /// kick, be it a wall that moved or one that grew stiffer.
+  /// The next step's settings are others than the last one's. What they do to walls, force law, shapes and force limit
+  /// is got over without a kick; a motor's own current limit holds at once.
   void settings_changed() { world_changed_ = true; }
   /// Carries out a command that the link has validated, in the next step. Counts as a sign of life.
   void carry_out(const protocol::CommandReport& command);

@@ -27,7 +27,7 @@ struct Probe {
   Vector3 position_m;        ///< workspace axes
   Vector3 velocity_m_per_s;  ///< from the adaptive window
   Triple joint_rad{};
-  Triple gimbal_rad{};        ///< yaw, pitch and roll of the stylus
+  Triple gimbal_rad{};        ///< yaw, pitch and roll of the stylus; one of them new in each period
   std::uint8_t switches = 0;  ///< bits of protocol::Switch
   Contact contact{};          ///< with the walls of the box, by the parameters of the table
   Wall wall{};                ///< how these walls feel

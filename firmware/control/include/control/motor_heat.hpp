@@ -1,4 +1,5 @@
-// How warm the motors are, from the currents that were measured in them, and how much less they may carry for it.
+// How warm the motors are, from the currents that were measured in them, and how much too warm for all of their current
+// limit.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +17,16 @@ struct MotorHeat {
   static constexpr std::uint32_t readings_per_update = 128;
   static constexpr std::uint32_t periods_per_update = 3 * readings_per_update;
   Triple heat{};
-  Triple held_back_A{};  ///< by how much a motor's limit is lower than where it is cold
-  bool too_hot = false;  ///< one has reached motor_heat_fault, and not all have cooled since
-  Triple housing{};      ///< part of the heat
+  Triple beyond{};  ///< of the heat above motor_heat_holds_back_from
+  bool too_hot =
+      false;         ///< one has reached motor_heat_fault, and not all have cooled to motor_heat_holds_back_from since
+  Triple housing{};  ///< part of the heat
   Triple square_sum_A2{};
   std::uint32_t readings = 0;  ///< in each sum
 };
 
 struct HeatScale {
   Triple per_square_sum;     ///< makes the heat of a lasting current from the sum of its squares
-  Triple held_back_A;        ///< for each 1 of heat above motor_heat_holds_back_from
   float winding_part;        ///< of the whole rise; the rest is the housing's
   float winding_per_update;  ///< part of the way to its lasting rise that the winding goes in one update
   float housing_per_update;

@@ -108,7 +108,7 @@ typedef struct inkwell_information {
   double motor_heat[3]; /* 1 is what the continuous current leads to; see INKWELL_MOTOR_HEAT_HOLDS_BACK */
 } inkwell_information;
 
-/* From this heat on a motor gets less current than its limit, and the force is weaker. */
+/* From this heat on a motor may get less current, and the force be weaker. */
 #define INKWELL_MOTOR_HEAT_HOLDS_BACK 0.85f
 
 /* Asks the device. */
