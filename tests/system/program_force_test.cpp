@@ -126,7 +126,9 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
   ProgramRig rig;
   constexpr float stiffness_N_per_m = 800;
   std::function<void(double)> move_floor;  // to where the middle of the probe touches it
+  auto whose = ForceSource::walls;
   SUBCASE("a program's plane") {
+    whose = ForceSource::shapes;
     move_floor = [&](double z_m) {
       device::Shapes shapes;
       shapes.planes[0] =
@@ -151,6 +153,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
   rig.control.hand_path({{0.0, free_point_m}, {0.3, target_m}});
   rig.run(0.8);
   CHECK(rig.pose().force_N[2] == doctest::Approx(1.0).epsilon(0.1));
+  CHECK(protocol::is_felt(rig.pose().force_sources, whose));
   // Into the hand for as long as it takes; away from under it until the hand has fallen onto it.
   struct Move {
     double by_m;

@@ -33,7 +33,8 @@ protocol::ParameterSet parameters_in_wall() {
 
 /// A board whose arm stands still, the force on and ramped in.
 struct StillArm {
-  control::Settings settings = control::prepare(parameters_in_wall());
+  protocol::ParameterSet parameters = parameters_in_wall();
+  control::Settings settings = control::prepare(parameters);
   control::Controller controller = tests::active_controller(settings);
   Vector3 probe_m;
 
@@ -48,6 +49,12 @@ struct StillArm {
       controller.host_alive();
       tests::run(controller, tests::samples_at_rest(), settings, 1);
     }
+  }
+
+  void change(Parameter parameter, float value) {
+    parameters[parameter] = value;
+    settings = control::prepare(parameters);
+    controller.settings_changed();
   }
 
   Vector3 force_N() const {
@@ -157,41 +164,29 @@ TEST_CASE("a shape whose life ends under a pressing hand lets go softly") {
 
 TEST_CASE("parameters that change under a pressing hand never kick") {
   StillArm arm;
-  protocol::ParameterSet set = parameters_in_wall();
-  const auto change = [&](Parameter parameter, float value) {
-    set[parameter] = value;
-    arm.settings = control::prepare(set);
-    arm.controller.settings_changed();
-  };
   const float limit_N = 0.05f * arm.settings.force_limit_N;
-  const float floor_m = set[Parameter::box_minimum_z_m];
-  change(Parameter::box_minimum_z_m, floor_m + 0.002f);
+  const float floor_m = arm.parameters[Parameter::box_minimum_z_m];
+  arm.change(Parameter::box_minimum_z_m, floor_m + 0.002f);
   CHECK(arm.largest_step_N(40) <= limit_N);
   CHECK(arm.force_N().z == doctest::Approx(3.0f).epsilon(2e-3));
-  change(Parameter::box_minimum_z_m, floor_m - 0.0005f);
+  arm.change(Parameter::box_minimum_z_m, floor_m - 0.0005f);
   CHECK(arm.largest_step_N(40) <= limit_N);
   CHECK(arm.force_N().z == doctest::Approx(0.5f).epsilon(2e-3));
-  change(Parameter::wall_stiffness_N_per_m, 3000.0f);
+  arm.change(Parameter::wall_stiffness_N_per_m, 3000.0f);
   CHECK(arm.largest_step_N(40) <= limit_N);
   CHECK(arm.force_N().z == doctest::Approx(1.5f).epsilon(2e-3));
 }
 
 TEST_CASE("a force limit that is raised lets the force grow without a kick, and one that is lowered holds at once") {
   StillArm arm;
-  protocol::ParameterSet set = parameters_in_wall();
-  const auto change_limit = [&](float limit_N) {
-    set[Parameter::force_limit_N] = limit_N;
-    arm.settings = control::prepare(set);
-    arm.controller.settings_changed();
-  };
-  change_limit(0.0f);
+  arm.change(Parameter::force_limit_N, 0.0f);
   arm.run(1);
   CHECK(arm.force_N().z == 0.0f);
   arm.run(40);
-  change_limit(0.8f);
+  arm.change(Parameter::force_limit_N, 0.8f);
   CHECK(arm.largest_step_N(40) <= 0.05f * 0.8f);
   CHECK(arm.force_N().z == doctest::Approx(0.8f).epsilon(1e-3));
-  change_limit(0.3f);
+  arm.change(Parameter::force_limit_N, 0.3f);
   arm.run(1);
   CHECK(arm.force_N().z == doctest::Approx(0.3f).epsilon(1e-3));
 }
@@ -199,19 +194,16 @@ TEST_CASE("a force limit that is raised lets the force grow without a kick, and 
 TEST_CASE("what holds the force back is told") {
   StillArm arm;
   CHECK(arm.controller.limits() == 0);
-  protocol::ParameterSet set = parameters_in_wall();
-  const auto change = [&](Parameter parameter, float value) {
-    set[parameter] = value;
-    arm.settings = control::prepare(set);
-    arm.controller.settings_changed();
+  const auto limits_with = [&](Parameter parameter, float value) {
+    arm.change(parameter, value);
     arm.run(1'000);
     return arm.controller.limits();
   };
   const auto bit_of = [](protocol::Limit limit) { return static_cast<std::uint8_t>(limit); };
-  CHECK(change(Parameter::force_limit_N, 0.9f) == bit_of(protocol::Limit::force));
+  CHECK(limits_with(Parameter::force_limit_N, 0.9f) == bit_of(protocol::Limit::force));
   CHECK(arm.controller.signals()[Signal::limits] == 1.0f);
-  CHECK(change(Parameter::force_limit_N, 1.1f) == 0);
-  CHECK(change(Parameter::current_limit_2_A, 0.01f) == bit_of(protocol::Limit::current));
+  CHECK(limits_with(Parameter::force_limit_N, 1.1f) == 0);
+  CHECK(limits_with(Parameter::current_limit_2_A, 0.01f) == bit_of(protocol::Limit::current));
   CHECK(arm.controller.signals()[Signal::limits] == 2.0f);
   CHECK(std::fabs(arm.controller.signals()[Signal::current_reference_2_A]) == doctest::Approx(0.01f));
   arm.controller.carry_out(tests::command(protocol::Command::disable_force));
@@ -221,33 +213,22 @@ TEST_CASE("what holds the force back is told") {
 
 TEST_CASE("a wall that went while no force was allowed is not felt when one is") {
   StillArm arm;
-  protocol::ParameterSet set = parameters_in_wall();
-  const auto change = [&](Parameter parameter, float value) {
-    set[parameter] = value;
-    arm.settings = control::prepare(set);
-    arm.controller.settings_changed();
-  };
-  change(Parameter::force_limit_N, 0.0f);
-  change(Parameter::wall_stiffness_N_per_m, 3000.0f);
+  arm.change(Parameter::force_limit_N, 0.0f);
+  arm.change(Parameter::wall_stiffness_N_per_m, 3000.0f);
   arm.run(100);
-  change(Parameter::box_minimum_z_m, set[Parameter::box_minimum_z_m] - 0.01f);
+  arm.change(Parameter::box_minimum_z_m, arm.parameters[Parameter::box_minimum_z_m] - 0.01f);
   arm.run(100);
-  change(Parameter::force_limit_N, 3.3f);
+  arm.change(Parameter::force_limit_N, 3.3f);
   CHECK(arm.largest_step_N(40) == 0.0f);
   CHECK(arm.force_N().z == 0.0f);
 }
 
 TEST_CASE("of a force that was cut to its limit only what was felt is got over") {
   StillArm arm;
-  protocol::ParameterSet set = parameters_in_wall();
-  set[Parameter::box_minimum_z_m] += 0.03f;  // 31 N
-  arm.settings = control::prepare(set);
-  arm.controller.settings_changed();
+  arm.change(Parameter::box_minimum_z_m, arm.parameters[Parameter::box_minimum_z_m] + 0.03f);  // 31 N
   arm.run(6'000);
   CHECK(arm.force_N().z == doctest::Approx(arm.settings.force_limit_N));
-  set[Parameter::box_minimum_z_m] = -0.5f;
-  arm.settings = control::prepare(set);
-  arm.controller.settings_changed();
+  arm.change(Parameter::box_minimum_z_m, -0.5f);
   CHECK(arm.largest_step_N(26) <= 0.05f * arm.settings.force_limit_N);
   CHECK(arm.force_N().z == 0.0f);
 }

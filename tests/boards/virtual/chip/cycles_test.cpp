@@ -6,13 +6,23 @@
 using namespace inkwell::virtual_board;
 using namespace inkwell::virtual_board::test;
 
+namespace {
+
+/// What the micro-programs have counted.
+struct Measured : ChipUnderTest {
+  explicit Measured(Mode mode, Pricing pricing = Pricing::likely) : ChipUnderTest("cycles", mode, pricing) {
+    run_for(0.1);
+    REQUIRE(result(0) == finished);
+  }
+};
+
+}  // namespace
+
 TEST_SUITE("virtual chip: cycles") {
   TEST_CASE("32 repetitions cost what the manuals say where memory does not wait") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
-      ChipUnderTest test("cycles", mode);
-      test.run_for(0.1);
-      REQUIRE(test.result(0) == finished);
+      const Measured test(mode);
       // A slice of exact mode may end between two loads that would have gone in a row.
       const auto about = [](double cycles) { return doctest::Approx(cycles).epsilon(0.02); };
       CHECK(test.result(1) == about(32));      // additions
@@ -30,9 +40,7 @@ TEST_SUITE("virtual chip: cycles") {
   TEST_CASE("a read of a register waits for its bus, two cycles of that bus and longer") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
-      ChipUnderTest test("cycles", mode);
-      test.run_for(0.1);
-      REQUIRE(test.result(0) == finished);
+      const Measured test(mode);
       const double ahb = test.result(18), apb_at_full_rate = test.result(19), apb_at_a_quarter = test.result(20);
       CHECK(ahb == doctest::Approx(32 * 4).epsilon(0.02));
       CHECK(apb_at_full_rate == doctest::Approx(32 * (3 + 1 + 2)).epsilon(0.02));
@@ -45,9 +53,7 @@ TEST_SUITE("virtual chip: cycles") {
   TEST_CASE("constants in flash: each read of another line waits unless the data cache holds it") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
-      ChipUnderTest test("cycles", mode);
-      test.run_for(0.1);
-      REQUIRE(test.result(0) == finished);
+      const Measured test(mode);
       const double no_wait = test.result(21), waiting = test.result(22), cached = test.result(23);
       CHECK(no_wait == doctest::Approx(32 * 4).epsilon(0.02));
       CHECK(waiting == doctest::Approx(32 * (4 + 2 * 5)).epsilon(0.02));
@@ -58,9 +64,7 @@ TEST_SUITE("virtual chip: cycles") {
   TEST_CASE("flash that waits: nothing helps, prefetch helps, the cache helps what fits") {
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
-      ChipUnderTest test("cycles", mode);
-      test.run_for(0.1);
-      REQUIRE(test.result(0) == finished);
+      const Measured test(mode);
       const double no_wait = test.result(10), off = test.result(11), prefetch = test.result(12), all = test.result(13);
       // Four wide instructions a line: 4 cycles, or 5 more for a line that waits, or 6 behind a prefetch.
       CHECK(no_wait == doctest::Approx(3 * 1024).epsilon(0.01));
@@ -74,10 +78,7 @@ TEST_SUITE("virtual chip: cycles") {
   }
 
   TEST_CASE("the conservative pricing never counts noticeably less") {
-    ChipUnderTest likely("cycles", Mode::fast), conservative("cycles", Mode::fast, Pricing::conservative);
-    likely.run_for(0.1);
-    conservative.run_for(0.1);
-    REQUIRE(conservative.result(0) == finished);
+    const Measured likely(Mode::fast), conservative(Mode::fast, Pricing::conservative);
     for (unsigned i = 1; i < 24; ++i) {
       CAPTURE(i);
       // What the sources leave open about the cache can turn out either way for a single loop.
