@@ -8,8 +8,7 @@ Transition over(const Vector3& jump_N, float N_per_period) {
   // What nobody feels is not worth a transition, and a reciprocal root needs a normal number.
   constexpr float smallest_squared_N2 = 1e-12f;
   const float squared_N2 = dot(jump_N, jump_N);
-  // A rate of nothing, where the force limit is nothing, would never get over it.
-  if (squared_N2 < smallest_squared_N2 || N_per_period <= 0.0f) return {};
+  if (squared_N2 < smallest_squared_N2) return {};
   return {jump_N, 1.0f, N_per_period * reciprocal_square_root(squared_N2)};
 }
 

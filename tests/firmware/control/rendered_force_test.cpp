@@ -191,6 +191,17 @@ TEST_CASE("a force limit that is raised lets the force grow without a kick, and 
   CHECK(arm.force_N().z == doctest::Approx(0.3f).epsilon(1e-3));
 }
 
+TEST_CASE("a force limit that is raised over walls and a program together lets the force grow without a kick") {
+  StillArm arm;
+  arm.change(Parameter::force_limit_N, 2.0f);
+  arm.drive({0.0f, 0.0f, 2.0f}, ForceMode::beside_walls);
+  arm.run(100);
+  CHECK(arm.force_N().z == doctest::Approx(2.0f).epsilon(1e-3));
+  arm.change(Parameter::force_limit_N, 8.0f);
+  CHECK(arm.largest_step_N(20) <= 0.05f * 8.0f);
+  CHECK(arm.force_N().z == doctest::Approx(3.0f).epsilon(1e-3));
+}
+
 TEST_CASE("what holds the force back is told") {
   StillArm arm;
   CHECK(arm.controller.limits() == 0);
@@ -209,6 +220,12 @@ TEST_CASE("what holds the force back is told") {
   arm.controller.carry_out(tests::command(protocol::Command::disable_force));
   arm.run(2);
   CHECK(arm.controller.limits() == 0);
+
+  StillArm free;
+  free.change(Parameter::box_minimum_z_m, -0.5f);
+  free.change(Parameter::force_limit_N, 0.0f);
+  free.run(1'000);
+  CHECK(free.controller.limits() == 0);
 }
 
 TEST_CASE("a wall that went while no force was allowed is not felt when one is") {

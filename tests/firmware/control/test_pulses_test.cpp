@@ -107,4 +107,19 @@ TEST_CASE("test pulses run in `ready` only, and not for motors or times that mak
   CHECK_FALSE(enabled_after(tests::ready_controller(settings), pulse(Command::test_current, 1, 1.0f, -1.0f)));
 }
 
+TEST_CASE("a hot motor's pulse is held back") {
+  protocol::ParameterSet set = tests::paper_parameters();
+  set[protocol::Parameter::winding_time_constant_s] = 0.25f;
+  set[protocol::Parameter::winding_heat_part] = 1.0f;
+  const float bears_A = set[protocol::Parameter::continuous_current_2_A];
+  const Settings settings = control::prepare(set);
+  Controller controller = tests::ready_controller(settings);
+  auto warm = tests::samples_at_rest();
+  warm.current_A[1] += bears_A;
+  tests::run(controller, warm, settings, 40'000);
+  controller.carry_out(pulse(Command::test_current, 2, 99.0f, 0.01f));
+  tests::run(controller, warm, settings, 1);
+  CHECK(controller.signals()[Signal::current_reference_2_A] == doctest::Approx(bears_A).epsilon(0.02));
+}
+
 }  // namespace

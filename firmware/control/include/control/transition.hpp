@@ -15,8 +15,7 @@ struct Transition {
   Vector3 force_N() const { return part * jump_N; }
 };
 
-/// Starts anew over `jump_N`, the force before minus the force after; its magnitude then falls by `N_per_period`, at
-/// once if that is 0.
+/// Starts anew over `jump_N`, the force before minus the force after; its magnitude then falls by `N_per_period`.
 Transition over(const Vector3& jump_N, float N_per_period);
 
 /// One control period further.
