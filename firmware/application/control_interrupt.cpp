@@ -36,8 +36,12 @@ INKWELL_INTERRUPT control::Samples read_samples() {
 }
 
 INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
-  if (!drive.enabled) return bridges.disable();
-  bridges.write(drive.duty);
+  if (drive.enabled)
+    bridges.write(drive.duty);
+  else if (drive.brake)
+    bridges.write_brake();
+  else
+    return bridges.disable();
   bridges.enable();
 }
 
@@ -56,6 +60,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   if (const auto* command = host_link.commands.take()) controller.carry_out(*command);
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
+  if (host_link.update_asked.load()) controller.leave_for_update();
 
   write_bridges(controller.step(samples, settings, clock));
 

@@ -82,7 +82,8 @@ int main() {
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
     usb_device.poll();
-    if (usb_device.leaves_for_update()) drivers::start_boot_loader();
+    if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update)
+      drivers::start_boot_loader();
     host_link.scope.pack();
     feed_watchdog();
     show_state();

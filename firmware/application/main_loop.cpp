@@ -9,11 +9,9 @@ drivers::LedPattern led_pattern(protocol::State state) {
   switch (state) {
     case protocol::State::starting:
     case protocol::State::unreferenced: return drivers::LedPattern::slow_blink;
-    case protocol::State::ready:
-    case protocol::State::active: return drivers::LedPattern::steady;
-    case protocol::State::fault: break;
+    case protocol::State::fault: return drivers::LedPattern::fast_blink;
+    default: return drivers::LedPattern::steady;
   }
-  return drivers::LedPattern::fast_blink;
 }
 
 }  // namespace

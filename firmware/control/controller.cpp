@@ -11,12 +11,16 @@ namespace inkwell::control {
 namespace {
 
 using protocol::Command;
+using protocol::Event;
+using protocol::events;
 using protocol::Fault;
 using protocol::ForceMode;
 using protocol::ForceSource;
 using protocol::Limit;
 using protocol::Signal;
 using protocol::State;
+using protocol::watch;
+using protocol::when;
 
 bool is_closed(std::uint8_t switches, protocol::Switch which) {
   return (switches & static_cast<std::uint8_t>(which)) != 0;
@@ -60,9 +64,9 @@ void put(protocol::SignalValues& signals, Rows rows, const Vector3& vector) {
 void Controller::carry_out(const protocol::CommandReport& command) {
   host_alive();
   switch (command.command) {
-    case Command::enable_force: requests_.enable_force = true; break;
-    case Command::disable_force: requests_.disable_force = true; break;
-    case Command::clear_fault: requests_.clear_fault = true; break;
+    case Command::enable_force: asked_.events |= events(Event::enable); break;
+    case Command::disable_force: asked_.events |= events(Event::disable); break;
+    case Command::clear_fault: asked_.events |= events(Event::clear); break;
     case Command::test_current:
     case Command::test_voltage:
       if (supervisor_.state == State::ready)
@@ -83,9 +87,7 @@ void Controller::replace_shapes(const Shapes& shapes) {
   world_changed_ = true;
 }
 
-void Controller::raise(Fault fault) {
-  if (requests_.raised == Fault::none) requests_.raised = fault;
-}
+void Controller::raise(Fault fault) { asked_.found |= watch(fault); }
 
 void Controller::condition_samples(const Samples& samples, const Settings& settings) {
   if (periods_ == 0)
@@ -196,32 +198,47 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   // Force and torques are in the references, as far as a motor takes part.
   const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
-  const Conditions conditions{
-      .offsets_measured = offsets_.measured(),
-      .offsets_plausible = offsets_.plausible,
-      .referenced = reference_.valid,
-      .not_finite = !is_finite(sum_of_all),
-      .supply_low = (supply_.supply_V < board_.supply_minimum_V),
-      .supply_high = (supply_.supply_V > board_.supply_maximum_V),
-      .bridge_fault = samples.bridge_fault,
-      .samples_stale = samples.slow_age_periods > SupplyFilter::stale_periods,
-      .motor_hot = heat_.too_hot,
-      .over_current =
-          over_current(current_A_, settings.limits.over_current_A, samples.current_A, board_.current_measurable_A),
-      .encoder_implausible = joints_implausible(probe_.joint_rad, settings.arm.transmission, settings.limits),
-      .over_speed =
-          dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s) > settings.limits.speed_limit_squared_m2_per_s2,
-      .host_silent = host_silence_periods_ > settings.limits.host_timeout_periods};
-  const Supervisor before = supervisor_;
-  supervisor_ = advance(before, conditions, requests_);
-  requests_ = {};
-
-  // Counts were lost, so the reference is void: only the inkwell can tell again where the arm is.
-  if (supervisor_.fault == Fault::encoder_implausible && before.fault != supervisor_.fault) forget(reference_);
-  if (supervisor_.state != State::ready) test_ = {};
+  const float speed_squared = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
+  const protocol::Watches found =
+      asked_.found | watch(Fault::not_finite, !is_finite(sum_of_all)) |
+      watch(Fault::current_sensor, offsets_.measured() && !offsets_.plausible) |
+      watch(Fault::samples_stale, samples.slow_age_periods > SupplyFilter::stale_periods) |
+      watch(Fault::supply_low, supply_.supply_V < board_.supply_minimum_V) |
+      watch(Fault::supply_high, supply_.supply_V > board_.supply_maximum_V) |
+      watch(Fault::bridge_fault, samples.bridge_fault) |
+      watch(Fault::over_current,
+            over_current(current_A_, settings.limits.over_current_A, samples.current_A, board_.current_measurable_A)) |
+      watch(Fault::motor_hot, heat_.too_hot) |
+      watch(Fault::encoder_implausible,
+            joints_implausible(probe_.joint_rad, settings.arm.transmission, settings.limits)) |
+      watch(Fault::over_speed, speed_squared > settings.limits.speed_limit_squared_m2_per_s2) |
+      watch(Fault::host_silent, host_silence_periods_ > settings.limits.host_timeout_periods);
+  const protocol::Events now = asked_.events | when(Event::measured, offsets_.measured()) |
+                               when(Event::referenced, reference_.valid) | when(Event::risen, force_gain_ == 1.0f) |
+                               when(Event::held_back, limits_ != 0);
+  asked_ = {};
+  if (!surely_stays(supervisor_.state, {now, found})) [[unlikely]]
+    change_state(advance(supervisor_, {now, found}));
   if (test_.runs()) --test_.remaining_periods;
+  if (brake_.is_on()) [[unlikely]] {
+    advance(brake_, speed_squared, found);
+    drive_.brake = brake_.is_on();
+  }
+}
+
+void Controller::change_state(const Supervisor& next) {
+  const Supervisor before = std::exchange(supervisor_, next);
+  if (next == before) return;
+  const bool force_was_on = std::exchange(force_is_on_, protocol::force_is_on(next.state));
   // A change of state switches off in the period in which it is decided, not one later.
-  if (supervisor_.state != before.state) drive_ = {};
+  if (!(force_was_on && force_is_on_)) drive_ = {};
+  if (next.state != State::ready) test_ = {};
+  if (force_was_on && next.state == State::fault)
+    brake_.begin();
+  else
+    brake_ = {};
+  // Counts were lost, so the reference is void: only the inkwell can tell again where the arm is.
+  if (next.fault == Fault::encoder_implausible) forget(reference_);
 }
 
 void Controller::write_signals(protocol::SignalValues& signals) const {

@@ -1,65 +1,89 @@
 #include <control/supervisor.hpp>
 
+#include <array>
+#include <bit>
+#include <cstddef>
+
 namespace inkwell::control {
 
 namespace {
 
+using protocol::Event;
 using protocol::Fault;
 using protocol::State;
+using protocol::Watches;
+using protocol::Way;
 
-/// The fault to show for these conditions in this state, the one that explains the others first.
-Fault find_fault(State state, const Conditions& conditions, Fault raised) {
-  const bool started = state != State::starting;
-  const bool moving = state == State::ready || state == State::active;
-  const bool active = state == State::active;
-  if (raised != Fault::none) return raised;
-  if (conditions.not_finite) return Fault::not_finite;
-  if (conditions.offsets_measured && !conditions.offsets_plausible) return Fault::current_sensor;
-  if (started && conditions.samples_stale) return Fault::samples_stale;
-  if (started && conditions.supply_low) return Fault::supply_low;
-  if (started && conditions.supply_high) return Fault::supply_high;
-  if (started && conditions.bridge_fault) return Fault::bridge_fault;
-  if (started && conditions.over_current) return Fault::over_current;
-  if (started && conditions.motor_hot) return Fault::motor_hot;
-  if (moving && conditions.encoder_implausible) return Fault::encoder_implausible;
-  if (active && conditions.over_speed) return Fault::over_speed;
-  if (active && conditions.host_silent) return Fault::host_silent;
-  return Fault::none;
-}
+/// Of its own, because a header's table may lie in the flash.
+constexpr auto ways = protocol::way_table;
 
-bool cause_is_gone(Fault fault, const Conditions& conditions) {
-  switch (fault) {
-    case Fault::not_finite: return !conditions.not_finite;
-    case Fault::current_sensor: return conditions.offsets_plausible;
-    case Fault::supply_low: return !conditions.supply_low;
-    case Fault::supply_high: return !conditions.supply_high;
-    case Fault::bridge_fault: return !conditions.bridge_fault;
-    case Fault::samples_stale: return !conditions.samples_stale;
-    case Fault::over_current: return !conditions.over_current;
-    case Fault::motor_hot: return !conditions.motor_hot;
-    default: return true;
+/// The tables, turned so that an interrupt reads one entry of each.
+struct OfState {
+  Watches watched = 0;
+  protocol::Events rest = 0;  ///< while these of `moved_by` are there and the others are not, every way is closed
+  protocol::Events moved_by = 0;
+  const Way* ways_begin = nullptr;
+  const Way* ways_end = nullptr;
+};
+
+constexpr auto of_state = [] {
+  std::array<OfState, protocol::state_count> result{};
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto state = static_cast<State>(i);
+    OfState& here = result[i];
+    here.watched = protocol::watches([state](const auto& row) { return row.watched_in.contains(state); });
+    for (const Way& way : ways) {
+      if (way.from != state) continue;
+      if (here.ways_begin == nullptr) here.ways_begin = &way;
+      here.ways_end = &way + 1;
+      // One of its needs, or of what it must not have, is enough to keep it closed: the last, the rarest.
+      const protocol::Events key = std::bit_floor(way.needs != 0 ? way.needs : way.unless);
+      here.moved_by |= key;
+      if (way.needs == 0) here.rest |= key;
+    }
   }
-}
+  return result;
+}();
 
-/// Where the device stands by what it has measured so far, with the force off.
-State resting_state(const Conditions& conditions) {
-  if (!conditions.offsets_measured) return State::starting;
-  return conditions.referenced ? State::ready : State::unreferenced;
+constexpr bool every_way_is_closed_at_rest() {
+  for (const Way& way : ways)
+    if (way.is_open(of_state[static_cast<std::size_t>(way.from)].rest)) return false;
+  return true;
 }
+static_assert(every_way_is_closed_at_rest());
+
+constexpr auto faults = [] {
+  std::array<Fault, protocol::watch_table.size()> result{};
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = protocol::watch_table[i].fault;
+  return result;
+}();
+
+/// By the fault's code: what hinders it from being cleared.
+constexpr auto hindrance = [] {
+  std::array<Watches, protocol::fault_table.size()> result{};
+  for (const auto& row : protocol::watch_table)
+    if (row.clearing != protocol::Clearing::at_once)
+      result[static_cast<std::size_t>(row.fault)] = protocol::watch(row.fault);
+  return result;
+}();
 
 }  // namespace
 
-Supervisor advance(const Supervisor& supervisor, const Conditions& conditions, const Requests& requests) {
-  if (supervisor.state == State::fault) {
-    const bool cleared = requests.clear_fault && cause_is_gone(supervisor.fault, conditions);
-    return cleared ? Supervisor{resting_state(conditions), Fault::none} : supervisor;
-  }
-  const Fault fault = find_fault(supervisor.state, conditions, requests.raised);
-  if (fault != Fault::none) return {State::fault, fault};
-  if (supervisor.state == State::active) return {requests.disable_force ? State::ready : State::active, Fault::none};
-  if (supervisor.state == State::ready && requests.enable_force && !requests.disable_force)
-    return {State::active, Fault::none};
-  return {resting_state(conditions), Fault::none};
+bool surely_stays(State state, const Situation& situation) {
+  const OfState& here = of_state[static_cast<std::size_t>(state)];
+  return ((situation.found & here.watched) | ((situation.events ^ here.rest) & here.moved_by)) == 0;
+}
+
+Supervisor advance(const Supervisor& supervisor, const Situation& situation) {
+  const OfState& here = of_state[static_cast<std::size_t>(supervisor.state)];
+  if (const Watches found = situation.found & here.watched; found != 0) [[unlikely]]
+    return {State::fault, faults[static_cast<std::size_t>(std::countr_zero(found))]};
+  protocol::Events now = situation.events;
+  if (supervisor.state == State::fault) [[unlikely]]
+    now |= protocol::when(Event::cause, (situation.found & hindrance[static_cast<std::size_t>(supervisor.fault)]) != 0);
+  for (const Way* way = here.ways_begin; way != here.ways_end; ++way)
+    if (way->is_open(now)) return {way->to, Fault::none};
+  return supervisor;
 }
 
 }  // namespace inkwell::control

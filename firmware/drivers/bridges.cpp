@@ -109,6 +109,12 @@ INKWELL_INTERRUPT void Bridges::write(const std::array<float, 3>& duty) {
   write_legs<2>(leg_compares(duty[2]));
 }
 
+INKWELL_INTERRUPT void Bridges::write_brake() {
+  write_legs<0>(low_legs);
+  write_legs<1>(low_legs);
+  write_legs<2>(low_legs);
+}
+
 INKWELL_INTERRUPT void Bridges::enable() {
   if (enabled_) return;
   enabled_ = true;

@@ -123,7 +123,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
 
 bool Device::force_is_on() const {
   // In this order: were the state read first, the interrupt could take the command in between.
-  return link_.commands.waiting(protocol::Command::enable_force) || link_.status.state() == protocol::State::active;
+  return link_.commands.waiting(protocol::Command::enable_force) || protocol::force_is_on(link_.status.state());
 }
 
 // DFU 1.1, section 5.1 and appendix A.2: idle, then detaching as soon as the status stage is over. Not while the hand
@@ -134,6 +134,7 @@ Answer Device::firmware_update_request(const SetupPacket& setup) {
   if (setup.request_type == class_interface_out && setup.request == detach_request && setup.length == 0) {
     if (force_is_on()) return Answer::stall();
     detach_asked_ = true;
+    link_.update_asked.store(true);
     return Answer::done();
   }
   if (setup.request_type != class_interface_in) return Answer::stall();

@@ -83,6 +83,7 @@ void Device::bus_reset() {
   configuration_ = 0;  // before host_gone(): no endpoint but 0 takes anything any more
   idle_rates_ = {};
   detach_asked_ = false;
+  link_.update_asked.store(false);
   suspended_ = false;
   control_.reset();
   host_gone();

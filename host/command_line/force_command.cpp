@@ -22,9 +22,9 @@ using protocol::State;
 
 void tell_force(const DeviceOptions& options, const PoseReport& pose) {
   if (options.json)
-    fmt::print(
-        "{}\n",
-        nlohmann::ordered_json{{"force_is_on", pose.state == State::active}, {"state", info(pose.state).name}}.dump());
+    fmt::print("{}\n", nlohmann::ordered_json{{"force_is_on", protocol::force_is_on(pose.state)},
+                                              {"state", info(pose.state).name}}
+                           .dump());
   else
     fmt::print("{}\n", force_sentence(pose));
 }
@@ -55,11 +55,11 @@ int keep_on(const DeviceOptions& options, double seconds) {
   const auto is_over = [&] {
     return seconds > 0 && pose.time_periods - begin_periods >= seconds * protocol::servo_rate_Hz;
   };
-  while (pose.state == State::active && !is_over() && !interrupt.was_asked_to_end()) {
+  while (protocol::force_is_on(pose.state) && !is_over() && !interrupt.was_asked_to_end()) {
     device.keep_alive();
     pose = next_pose(device);
   }
-  if (pose.state != State::active) throw device::Error(why_force_went_off(pose));
+  if (!protocol::force_is_on(pose.state)) throw device::Error(why_force_went_off(pose));
   tell_force(options, force.switch_off());
   return 0;
 }

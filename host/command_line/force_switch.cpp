@@ -45,15 +45,15 @@ std::string what_keeps_it_off(const PoseReport& pose) {
 }  // namespace
 
 PoseReport switch_force_off(device::Device& device) {
-  const auto pose = ask(device, Command::disable_force, [](State state) { return state != State::active; });
-  if (pose.state == State::active)
+  const auto pose = ask(device, Command::disable_force, [](State state) { return !protocol::force_is_on(state); });
+  if (protocol::force_is_on(pose.state))
     throw device::Error("The force is still on: another program switches it on again. End that first.");
   return pose;
 }
 
 ForceSwitch::ForceSwitch(device::Device& device) : device_(device) {
-  const auto pose = ask(device, Command::enable_force, [](State state) { return state == State::active; });
-  if (pose.state == State::active) return;
+  const auto pose = ask(device, Command::enable_force, [](State state) { return protocol::force_is_on(state); });
+  if (protocol::force_is_on(pose.state)) return;
   if (pose.state == State::ready) throw device::Error("The device did not switch the force on in time. Try again.");
   throw device::Error(force_sentence(pose));
 }
@@ -71,7 +71,7 @@ PoseReport ForceSwitch::switch_off() {
 }
 
 std::string force_sentence(const PoseReport& pose) {
-  return pose.state == State::active ? "The force is on." : "The force is off." + what_keeps_it_off(pose);
+  return protocol::force_is_on(pose.state) ? "The force is on." : "The force is off." + what_keeps_it_off(pose);
 }
 
 std::string why_force_went_off(const PoseReport& pose) {

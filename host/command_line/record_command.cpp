@@ -125,7 +125,7 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
     device.keep_alive();
     const auto pose = device.read_pose(read_timeout);
     silent_reads = pose ? 0 : silent_reads + 1;
-    if (force && pose && pose->state != protocol::State::active && !force_went_off)
+    if (force && pose && !protocol::force_is_on(pose->state) && !force_went_off)
       force_went_off = why_force_went_off(*pose);
     if (silent_reads * read_timeout > silence_limit) throw device::Error(device_is_silent);
     while (keys) {

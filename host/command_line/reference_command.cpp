@@ -1,9 +1,15 @@
 #include "commands.hpp"
 
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <device/fault_text.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/supervision.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "help.hpp"
@@ -56,10 +62,53 @@ void print_reports() {
       protocol::usb::controller_interval_ms, protocol::usb::firmware_update_interface);
 }
 
+std::string names_of(protocol::Events events) {
+  std::vector<std::string_view> names;
+  for (const auto& row : protocol::event_table)
+    if ((events & static_cast<protocol::Events>(row.event)) != 0) names.push_back(row.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string names_of(protocol::States states) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < protocol::state_count; ++i)
+    if (states.contains(static_cast<protocol::State>(i))) names.push_back(protocol::state_table[i].name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string_view text(protocol::Clearing clearing) {
+  switch (clearing) {
+    case protocol::Clearing::when_gone: return "when its cause is gone";
+    case protocol::Clearing::at_once: return "at once";
+    case protocol::Clearing::by_reset: return "by a reset of the board only";
+  }
+  return "";
+}
+
+void print_supervision() {
+  fmt::print("\n## States\n\n| code | state | force | meaning |\n| --- | --- | --- | --- |\n");
+  for (std::size_t i = 0; i < protocol::state_count; ++i) {
+    const auto& row = protocol::state_table[i];
+    fmt::print("| {} | {} | {} | {} |\n", i, row.name, row.force_is_on ? "on" : "off", row.meaning);
+  }
+  fmt::print(
+      "\nIn every control period the first way that is open is taken; a fault that is found goes before them.\n\n"
+      "| from | to | needs | unless |\n| --- | --- | --- | --- |\n");
+  for (const auto& way : protocol::way_table)
+    fmt::print("| {} | {} | {} | {} |\n", info(way.from).name, info(way.to).name, names_of(way.needs),
+               names_of(way.unless));
+  fmt::print("\n| event | meaning |\n| --- | --- |\n");
+  for (const auto& row : protocol::event_table) fmt::print("| {} | {} |\n", row.name, row.meaning);
+  fmt::print(
+      "\n## What is watched\n\nOf several faults in one period the first in this list is told. A motor that brakes is "
+      "shorted through the low sides of its bridge until the arm is slow.\n\n"
+      "| fault | watched while | can be cleared | an arm that moves |\n| --- | --- | --- | --- |\n");
+  for (const auto& row : protocol::watch_table)
+    fmt::print("| {} | {} | {} | {} |\n", info(row.fault).name, names_of(row.watched_in), text(row.clearing),
+               row.off == protocol::Off::brake ? "is braked" : "coasts");
+}
+
 void print_codes() {
-  fmt::print("\n## States\n\n| code | state | meaning |\n| --- | --- | --- |\n");
-  for (std::size_t i = 0; i < protocol::state_table.size(); ++i)
-    fmt::print("| {} | {} | {} |\n", i, protocol::state_table[i].name, protocol::state_table[i].meaning);
   fmt::print("\n## Whose force is felt\n\n| bit | source | meaning |\n| --- | --- | --- |\n");
   for (const auto& row : protocol::force_source_table)
     fmt::print("| {} | {} | {} |\n", static_cast<unsigned>(row.source), row.name, row.meaning);
@@ -93,7 +142,7 @@ void print_tables() {
 
 void add_reference_command(const Place& place) {
   auto* command = place.program.add_subcommand(
-      "reference", "The protocol as Markdown: reports, codes, parameters and signals; needs no device");
+      "reference", "The protocol as Markdown: reports, supervision, codes, parameters and signals; needs no device");
   add_examples(*command, "inkwell reference > protocol.md");
   command->callback([place] {
     place.action = [] {
@@ -102,6 +151,7 @@ void add_reference_command(const Place& place) {
           "and companion share.\n\n",
           protocol::protocol_version, protocol::usb::vendor_id, protocol::usb::product_id);
       print_reports();
+      print_supervision();
       print_codes();
       print_tables();
       return 0;

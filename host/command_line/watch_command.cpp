@@ -44,7 +44,7 @@ std::vector<std::string_view> limits(const PoseReport& pose) {
 }
 
 std::string force_of(const PoseReport& pose) {
-  if (pose.state != protocol::State::active) return "-";
+  if (!protocol::force_is_on(pose.state)) return "-";
   const auto reached = limits(pose);
   return fmt::format("{}{}", fmt::join(force_sources(pose), ", "),
                      reached.empty() ? "" : fmt::format("; limited by {}", fmt::join(reached, ", ")));

@@ -111,7 +111,7 @@ std::vector<CurrentStep> current_steps(const Recording& recording) {
 
 void switch_force_on(PacedDevice& device, const ParameterSet& parameters) {
   device.command(Command::enable_force);
-  device.wait_for_pose([](const auto& pose) { return pose.state == State::active; }, 1.0,
+  device.wait_for_pose([](const auto& pose) { return protocol::force_is_on(pose.state); }, 1.0,
                        "The device did not switch the force on. Look at its state with `inkwell watch`.");
   device.pass(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
 }
@@ -238,10 +238,10 @@ nlohmann::ordered_json run_wall_experiment(device::Device& device, device::Contr
   PacedDevice paced(device, hand);
   progress("Waiting for the stylus to rest in the inkwell.", 0.1);
   paced.wait_for_pose(
-      [](const auto& pose) { return pose.state == State::ready || pose.state == State::active; },
+      [](const auto& pose) { return pose.state == State::ready || protocol::force_is_on(pose.state); },
       hand != nullptr ? 3.0 : user_limit_s,
       "The arm was not put into its inkwell, so the board does not know where it is. Put the stylus in.");
-  if (paced.pose().state == State::active) paced.command(Command::disable_force);
+  if (protocol::force_is_on(paced.pose().state)) paced.command(Command::disable_force);
 
   progress("The current loops are tested with a pulse in each motor. Leave the stylus in the inkwell.", 0.15);
   const auto steps_recording = record_current_steps(paced, about);

@@ -46,9 +46,10 @@ static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_holds_back_f
 static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));
 static_assert(INKWELL_INSTEAD_OF_WALLS == static_cast<int>(protocol::ForceMode::instead_of_walls));
 
+// What came later, a program of before has no case for: pose_reader.cpp says which of these it is told.
 constexpr Code states[] = {CODE(STARTING), CODE(UNREFERENCED), CODE(READY), CODE(ACTIVE), CODE(FAULT)};
-static_assert(std::ranges::equal(states, protocol::state_table, [](const Code& c, const protocol::StateInfo& row) {
-  return c.value == &row - protocol::state_table.data() && is_capital_of(c.name, "", row.name);
+static_assert(std::ranges::all_of(states, [](const Code& c) {
+  return is_capital_of(c.name, "", info(static_cast<protocol::State>(c.value)).name);
 }));
 
 }  // namespace

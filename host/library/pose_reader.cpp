@@ -3,6 +3,17 @@
 #include <kinematics/stylus.hpp>
 
 namespace inkwell::library {
+namespace {
+
+/// The states that a program knows which was built before there were more.
+inkwell_state state_of(protocol::State state) {
+  if (protocol::force_is_on(state)) return INKWELL_ACTIVE;
+  // Not to be used for now, and nobody has to do anything about it.
+  if (state == protocol::State::update) return INKWELL_STARTING;
+  return static_cast<inkwell_state>(state);
+}
+
+}  // namespace
 
 inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control::Arm& geometry) {
   // The report's counter wraps after 59 hours.
@@ -10,7 +21,7 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control:
   inkwell_pose pose{};
   pose.time_s = static_cast<double>(periods_) / protocol::servo_rate_Hz;
   pose.sequence = report.sequence;
-  pose.state = static_cast<inkwell_state>(report.state);
+  pose.state = state_of(report.state);
   pose.fault = static_cast<int>(report.fault);
   std::array<float, 3> joint_rad{}, gimbal_rad{};
   std::array<double, 3> position_m{};

@@ -45,7 +45,7 @@ struct LawRig {
   void enable() {
     controller.carry_out(tests::command(Command::enable_force));
     run(1);
-    REQUIRE(controller.state() == State::active);
+    REQUIRE(protocol::force_is_on(controller.state()));
   }
   float law_periods() const { return controller.signals().values[periods_signal]; }
   float force_z_N() const { return controller.signals().values[static_cast<std::size_t>(Signal::force_x_N) + 2]; }

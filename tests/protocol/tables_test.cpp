@@ -100,12 +100,15 @@ TEST_CASE("every fault and refusal has a cause and a remedy") {
   CHECK(info(static_cast<Refusal>(200)).name == "unknown");
 }
 
-TEST_CASE("every state has a meaning, and one from another version reads as fault") {
-  CHECK(state_table.size() == static_cast<std::size_t>(State::fault) + 1);
+TEST_CASE("every state and event has a meaning, and a state of another version has no force") {
+  CHECK(state_table.size() == static_cast<std::size_t>(State::update) + 1);
+  for (const EventInfo& row : event_table) CHECK_FALSE(row.meaning.empty());
   for (const StateInfo& row : state_table) CHECK(row.meaning.ends_with('.'));
   CHECK(info(State::active).name == "active");
-  CHECK(info(static_cast<State>(77)).name == "fault");
-  CHECK(info(static_cast<State>(state_table.size())).name == "fault");
+  CHECK(info(State::limited).name == "limited");
+  CHECK(info(static_cast<State>(200)).name == "unknown");
+  CHECK_FALSE(force_is_on(static_cast<State>(200)));
+  CHECK(info(static_cast<State>(state_table.size())).name == "unknown");
 }
 
 template <class Table, class Hash>

@@ -48,7 +48,7 @@ void press_into_wall(BoardRig& rig) {
   rig.take_to(free_point_m);
   rig.set({{Parameter::box_minimum_z_m, -0.015f}});
   rig.run(0.1);
-  REQUIRE(rig.pose().state == State::active);
+  REQUIRE(protocol::force_is_on(rig.pose().state));
   REQUIRE(largest_current_A(rig.control) > 0.1);
   REQUIRE(bridges_enabled(rig.control));
   REQUIRE(any_leg_high_within(rig.control, control_period_s));

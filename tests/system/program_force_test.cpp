@@ -85,7 +85,7 @@ TEST_CASE("a program's force is felt, shown as its own, and gone within its expi
   CHECK(gone->time_periods - last_heard >= 50 * periods_per_ms);
   CHECK(std::all_of(gone, silence.end(), is_gone));
   CHECK(!protocol::is_felt(silence.back().force_sources, ForceSource::program));
-  CHECK(silence.back().state == protocol::State::active);
+  CHECK(protocol::force_is_on(silence.back().state));
 
   const auto counted = rig.device->information().report;
   CHECK(counted.force_reports == 200);

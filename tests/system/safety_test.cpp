@@ -98,6 +98,35 @@ TEST_CASE("a bridge that reports a fault stops all of them at the next control p
   check_tells(told_by_info(rig), protocol::Fault::bridge_fault);
 }
 
+TEST_CASE("an arm that is too fast is braked by its motors' own voltage until it is slow, and then let go") {
+  BoardRig rig;
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.set({{Parameter::speed_limit_m_per_s, 0.2f}});
+  rig.control.hand_path({{0.2, {0.0, 0.06, -0.03}}, {0.4, {0.0, 0.06, -0.03}}});
+  rig.run_until([](const auto& pose) { return pose.state == State::fault; });
+  CHECK(rig.pose().fault == protocol::Fault::over_speed);
+  CHECK(bridges_enabled(rig.control));
+  CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
+  CHECK(largest_current_A(rig.control) > 0.05);
+  rig.run(0.3);
+  CHECK_FALSE(bridges_enabled(rig.control));
+  CHECK(largest_current_A(rig.control) < 0.02);
+}
+
+TEST_CASE("where a bridge tells of a fault meanwhile the arm is not braked any more") {
+  BoardRig rig;
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.set({{Parameter::speed_limit_m_per_s, 0.2f}});
+  rig.control.hand_path({{0.2, {0.0, 0.06, -0.03}}, {0.4, {0.0, 0.06, -0.03}}});
+  rig.run_until([](const auto& pose) { return pose.state == State::fault; });
+  REQUIRE(bridges_enabled(rig.control));
+  rig.control.bridge_fault(true);
+  rig.control.run(1.5 * control_period_s);
+  CHECK_FALSE(bridges_enabled(rig.control));
+}
+
 TEST_CASE("a processor fault with the bridges on switches them off first, and is told after the restart") {
   BoardRig rig(device::SimulationMode::exact);
   press_into_wall(rig);

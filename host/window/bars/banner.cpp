@@ -27,7 +27,7 @@ std::optional<Banner> banner_of(const DeviceView& view, bool is_replay) {
     return Banner{cause, remedy, true};
   }
   if (!view.connected() || !view.status.information) return std::nullopt;
-  if (is_replay && view.state() == State::active)
+  if (is_replay && protocol::force_is_on(view.state()))
     return Banner{
         "The arm's force is on, and what you see is a recording.",
         "Something else has switched it on, such as a program. STOP switches it off; close the replay to see the arm.",

@@ -13,7 +13,8 @@ namespace {
 
 Colour colour_of(const protocol::PoseReport& pose, const Palette& palette) {
   switch (pose.state) {
-    case State::active: return pose.limits == 0 ? palette.good : palette.caution;
+    case State::ramping:
+    case State::active: return palette.good;
     case State::fault: return palette.danger_text;
     case State::ready: return palette.accent;
     default: return palette.caution;
@@ -24,12 +25,12 @@ Colour colour_of(const protocol::PoseReport& pose, const Palette& palette) {
 std::string state_text(const protocol::PoseReport& pose) {
   const bool program = protocol::is_felt(pose.force_sources, protocol::ForceSource::program) ||
                        protocol::is_felt(pose.force_sources, protocol::ForceSource::shapes);
-  return pose.state == State::active && program ? "program" : std::string(protocol::info(pose.state).name);
+  return protocol::force_is_on(pose.state) && program ? "program" : std::string(protocol::info(pose.state).name);
 }
 
 std::string state_help(const protocol::PoseReport& pose) {
   std::string help(protocol::info(pose.state).meaning);
-  if (pose.state != State::active) return help;
+  if (!protocol::force_is_on(pose.state)) return help;
   for (const auto& row : protocol::force_source_table)
     if (protocol::is_felt(pose.force_sources, row.source)) help += fmt::format("\n{}", row.meaning);
   for (const auto& row : protocol::limit_table)

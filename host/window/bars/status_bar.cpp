@@ -168,7 +168,7 @@ void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView
   help_on_hover("Stop", "Switches the force off at once. Escape and F12 do the same, whatever has the focus.", style);
 
   const bool alive = view.pose.has_value();
-  const bool active = alive && view.state() == State::active;
+  const bool active = alive && protocol::force_is_on(view.state());
   const bool can_switch_on = alive && view.state() == State::ready && !input.is_replay;
   const ImVec2 force_size = make_room(force_points);
   ImGui::BeginDisabled(!active && !can_switch_on);

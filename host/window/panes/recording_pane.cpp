@@ -106,7 +106,7 @@ class RecordingPane final : public Pane {
   void draw_progress(const Style& style);
   void draw_numbers(const Style& style, const RecorderStatus& status);
   void draw_replay(const Style& style);
-  bool force_is_on() const { return desk_.view().state() == protocol::State::active; }
+  bool force_is_on() const { return protocol::force_is_on(desk_.view().state()); }
   /// Asks whether the force may go before a recording takes the arm's place.
   void draw_question(const Style& style);
 

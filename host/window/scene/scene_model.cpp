@@ -26,7 +26,7 @@ glm::vec3 up_of(control::Frame frame) {
 }  // namespace
 
 bool is_referenced(const protocol::PoseReport& pose) {
-  return pose.state == protocol::State::ready || pose.state == protocol::State::active ||
+  return pose.state == protocol::State::ready || protocol::force_is_on(pose.state) ||
          (pose.state == protocol::State::fault && pose.fault != protocol::Fault::encoder_implausible);
 }
 
@@ -60,7 +60,7 @@ SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const pr
 
   const glm::vec3 penetration_m = to_glm(contact.penetration_m);
   scene.in_contact = posed && glm::length(penetration_m) > 0.0f;
-  const bool force_is_on = posed && pose->state == protocol::State::active;
+  const bool force_is_on = posed && protocol::force_is_on(pose->state);
   for (int axis = 0; axis < 3; ++axis) {
     scene.box_minimum_m[axis] = parameters[wall_parameter(axis, false)];
     scene.box_maximum_m[axis] = parameters[wall_parameter(axis, true)];

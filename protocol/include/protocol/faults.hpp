@@ -1,4 +1,4 @@
-// States, faults and refusals: every code with its cause and its remedy, in the words a user sees.
+// Faults and refusals: every code with its cause and its remedy, in the words a user sees.
 #pragma once
 
 #include <array>
@@ -6,28 +6,6 @@
 #include <string_view>
 
 namespace inkwell::protocol {
-
-/// What the device is doing. The supervisor in firmware/control moves between these states.
-enum class State : std::uint8_t {
-  starting,      ///< measures the offsets of the current sensors; bridges off
-  unreferenced,  ///< waits for the stylus to rest in the inkwell once; no force
-  ready,         ///< pose is valid, force is off
-  active,        ///< pose is valid, force is on
-  fault,         ///< bridges off until the fault is cleared
-};
-
-struct StateInfo {
-  std::string_view name;
-  std::string_view meaning;
-};
-
-inline constexpr auto state_table = std::to_array<StateInfo>({
-    {"starting", "The board measures its current sensors. This takes a tenth of a second."},
-    {"unreferenced", "Put the stylus into the inkwell once, so that the board knows where the arm is."},
-    {"ready", "The pose is valid. The force is off."},
-    {"active", "The pose is valid. The force is on."},
-    {"fault", "The motors are off because of the fault shown."},
-});
 
 // clang-format off
 /// X(code, name, cause, remedy). A name in braces stands for that figure of the board: device::fault_text() writes it.
@@ -112,10 +90,6 @@ constexpr const CodeInfo& look_up(const Table& table, std::uint16_t code) {
 constexpr const CodeInfo& info(Fault fault) { return detail::look_up(fault_table, static_cast<std::uint16_t>(fault)); }
 constexpr const CodeInfo& info(Refusal refusal) {
   return detail::look_up(refusal_table, static_cast<std::uint16_t>(refusal));
-}
-constexpr const StateInfo& info(State state) {
-  const auto index = static_cast<std::size_t>(state);
-  return state_table[index < state_table.size() ? index : state_table.size() - 1];
 }
 
 }  // namespace inkwell::protocol

@@ -19,13 +19,14 @@
 #include <protocol/faults.hpp>
 #include <protocol/parameters.hpp>
 #include <protocol/signals.hpp>
+#include <protocol/supervision.hpp>
 
 namespace inkwell::protocol {
 
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 7;
+inline constexpr std::uint16_t protocol_version = 8;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -150,9 +151,9 @@ struct ControllerReport {
 
 enum class Command : std::uint8_t {
   heartbeat = 0,       ///< nothing but a sign of life
-  enable_force = 1,    ///< ready -> active
-  disable_force = 2,   ///< active -> ready, at once
-  clear_fault = 3,     ///< fault -> ready or unreferenced, if its cause is gone
+  enable_force = 1,    ///< from ready on, by a ramp
+  disable_force = 2,   ///< at once
+  clear_fault = 3,     ///< if its cause is gone
   select_signals = 4,  ///< starts the scope with these signals; none stops it
   test_current = 5,    ///< in `ready`: one pulse of current in one motor, then zero for as long
   test_voltage = 6,    ///< in `ready`: one pulse of voltage on one motor, then zero volts for as long

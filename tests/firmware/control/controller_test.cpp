@@ -72,7 +72,7 @@ TEST_CASE("from power-up through the inkwell to force, with the bridges off unti
   CHECK(controller.switches() == samples.switches);
   controller.carry_out(tests::command(Command::enable_force));
   CHECK_FALSE(tests::run(controller, samples, settings, 1).enabled);
-  CHECK(controller.state() == State::active);
+  CHECK(protocol::force_is_on(controller.state()));
   CHECK(tests::run(controller, samples, settings, 1).enabled);
   CHECK(controller.periods() == 4'312);
 }
@@ -104,7 +104,7 @@ TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, an
   run_with_host(controller, samples, settings, 12'000);  // at rest, speed zero
 
   const protocol::SignalValues& signals = controller.signals();
-  REQUIRE(controller.state() == State::active);
+  REQUIRE(protocol::force_is_on(controller.state()));
   const float depth_m = -signals[Signal::penetration_x_m];
   CHECK(depth_m > 0.0005f);
   CHECK(signals[Signal::force_x_N] == doctest::Approx(-800.0f * depth_m).epsilon(1e-4));
@@ -176,9 +176,9 @@ TEST_CASE("a silent host switches the force off after host_timeout_s, and not wh
     tests::run(controller, tests::samples_at_rest(), settings, 900);
     controller.host_alive();
   }
-  CHECK(controller.state() == State::active);
+  CHECK(protocol::force_is_on(controller.state()));
   tests::run(controller, tests::samples_at_rest(), settings, 1'000);
-  CHECK(controller.state() == State::active);
+  CHECK(protocol::force_is_on(controller.state()));
   CHECK_FALSE(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
   CHECK(controller.fault() == Fault::host_silent);
   controller.carry_out(tests::command(Command::clear_fault));
@@ -230,7 +230,7 @@ TEST_CASE("a probe beyond its speed limit is let go") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::active_controller(settings);
   Samples samples = tests::samples_at_rest();
-  for (int i = 0; i < 60 && controller.state() == State::active; ++i) {
+  for (int i = 0; i < 60 && protocol::force_is_on(controller.state()); ++i) {
     samples.encoder_counts[0] += 80;  // 0.5 rad/ms at the waist
     tests::run(controller, samples, settings, 1);
   }

@@ -1,7 +1,6 @@
-// Every cell of the supervisor's tables.
+// Every cell of the supervisor's tables, against what is written down here once more.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <vector>
 
 #include <control/supervisor.hpp>
@@ -10,110 +9,144 @@ namespace {
 
 using namespace inkwell;
 using control::advance;
-using control::Conditions;
-using control::Requests;
+using control::Situation;
 using control::Supervisor;
+using protocol::Event;
+using protocol::Events;
+using protocol::events;
 using protocol::Fault;
 using protocol::State;
+using protocol::watch;
 
-constexpr Conditions good{.offsets_measured = true, .referenced = true};
+constexpr Events good = events(Event::measured, Event::referenced);
 
 Supervisor in(State state) { return {state, Fault::none}; }
+State next(State state, Events now) { return advance(in(state), {now, 0}).state; }
+Supervisor faulty(Fault fault) { return {State::fault, fault}; }
 
 TEST_CASE("the way from power-up to force") {
-  Conditions conditions;
-  Requests enable{.enable_force = true};
-  CHECK(advance(in(State::starting), conditions, enable) == in(State::starting));
-  conditions.offsets_measured = true;
-  CHECK(advance(in(State::starting), conditions, enable) == in(State::unreferenced));
-  CHECK(advance(in(State::unreferenced), conditions, enable) == in(State::unreferenced));
-  conditions.referenced = true;
-  CHECK(advance(in(State::unreferenced), conditions, enable) == in(State::ready));
-  CHECK(advance(in(State::ready), conditions, {}) == in(State::ready));
-  CHECK(advance(in(State::ready), conditions, enable) == in(State::active));
-  CHECK(advance(in(State::active), conditions, {}) == in(State::active));
-  CHECK(advance(in(State::active), conditions, {.disable_force = true}) == in(State::ready));
+  CHECK(next(State::starting, events(Event::enable)) == State::starting);
+  CHECK(next(State::starting, events(Event::enable, Event::measured)) == State::unreferenced);
+  CHECK(next(State::unreferenced, events(Event::enable, Event::measured)) == State::unreferenced);
+  CHECK(next(State::unreferenced, good) == State::ready);
+  CHECK(next(State::ready, good) == State::ready);
+  CHECK(next(State::ready, good | events(Event::enable)) == State::ramping);
+  CHECK(next(State::ramping, good) == State::ramping);
+  CHECK(next(State::ramping, good | events(Event::risen)) == State::active);
+  CHECK(next(State::active, good | events(Event::risen)) == State::active);
 }
 
-TEST_CASE("to disable wins over to enable") {
-  const Requests both{.enable_force = true, .disable_force = true};
-  CHECK(advance(in(State::ready), good, both) == in(State::ready));
-  CHECK(advance(in(State::active), good, both) == in(State::ready));
+TEST_CASE("a limit is told once the force has risen, for as long as it holds") {
+  CHECK(next(State::ramping, good | events(Event::held_back)) == State::ramping);
+  CHECK(next(State::active, good | events(Event::risen, Event::held_back)) == State::limited);
+  CHECK(next(State::limited, good | events(Event::risen, Event::held_back)) == State::limited);
+  CHECK(next(State::limited, good | events(Event::risen)) == State::active);
+}
+
+TEST_CASE("from every state with force to disable leads to ready, whatever else was asked") {
+  for (const State state : {State::ready, State::ramping, State::active, State::limited})
+    for (const Events also : {0u, events(Event::enable), events(Event::risen), events(Event::risen, Event::held_back)})
+      CHECK(next(state, good | events(Event::disable) | also) == State::ready);
+}
+
+TEST_CASE("a reference that is lost has to be taken anew") {
+  CHECK(next(State::ready, events(Event::measured, Event::enable)) == State::unreferenced);
+}
+
+TEST_CASE("for the boot loader every state is left, and the device is where it was if the host thinks better of it") {
+  for (const State state : {State::starting, State::unreferenced, State::ready, State::ramping, State::active,
+                            State::limited, State::fault, State::update}) {
+    CHECK(next(state, good | events(Event::update)) == State::update);
+    CHECK(next(state, good | events(Event::update, Event::enable, Event::clear)) == State::update);
+  }
+  CHECK(next(State::update, 0) == State::starting);
+  CHECK(next(State::update, events(Event::measured)) == State::unreferenced);
+  CHECK(next(State::update, good) == State::ready);
 }
 
 struct FaultCase {
   Fault fault;
-  bool Conditions::*condition;
-  std::vector<State> looked_for_in;
+  std::vector<State> watched_in;
   bool clears_at_once;
 };
 
 std::vector<FaultCase> fault_cases() {
-  const std::vector<State> started{State::unreferenced, State::ready, State::active};
-  const std::vector<State> all{State::starting, State::unreferenced, State::ready, State::active};
-  return {{Fault::not_finite, &Conditions::not_finite, all, false},
-          {Fault::supply_low, &Conditions::supply_low, started, false},
-          {Fault::supply_high, &Conditions::supply_high, started, false},
-          {Fault::samples_stale, &Conditions::samples_stale, started, false},
-          {Fault::bridge_fault, &Conditions::bridge_fault, started, false},
-          {Fault::over_current, &Conditions::over_current, started, false},
-          {Fault::motor_hot, &Conditions::motor_hot, started, false},
-          {Fault::encoder_implausible, &Conditions::encoder_implausible, {State::ready, State::active}, true},
-          {Fault::over_speed, &Conditions::over_speed, {State::active}, true},
-          {Fault::host_silent, &Conditions::host_silent, {State::active}, true}};
+  const std::vector<State> force{State::ramping, State::active, State::limited};
+  const std::vector<State> moving{State::ready, State::ramping, State::active, State::limited};
+  const std::vector<State> started{State::unreferenced, State::ready, State::ramping, State::active, State::limited};
+  const std::vector<State> all{State::starting, State::unreferenced, State::ready,
+                               State::ramping,  State::active,       State::limited};
+  return {{Fault::crystal_failed, all, true},    {Fault::processor_fault, all, true},
+          {Fault::watchdog, all, true},          {Fault::servo_overrun, all, true},
+          {Fault::not_finite, all, false},       {Fault::force_law, all, true},
+          {Fault::current_sensor, all, false},   {Fault::samples_stale, started, false},
+          {Fault::supply_low, started, false},   {Fault::supply_high, started, false},
+          {Fault::bridge_fault, started, false}, {Fault::over_current, started, false},
+          {Fault::motor_hot, started, false},    {Fault::encoder_implausible, moving, true},
+          {Fault::over_speed, force, true},      {Fault::host_silent, force, true}};
 }
 
 TEST_CASE("each fault is looked for in its states and in no other") {
+  CHECK(fault_cases().size() + 1 == protocol::fault_table.size());
   for (const FaultCase& row : fault_cases())
-    for (const State state : {State::starting, State::unreferenced, State::ready, State::active}) {
+    for (const State state : {State::starting, State::unreferenced, State::ready, State::active, State::ramping,
+                              State::limited, State::update}) {
       CAPTURE(static_cast<int>(row.fault));
       CAPTURE(static_cast<int>(state));
-      Conditions conditions{.offsets_measured = state != State::starting,
-                            .referenced = state == State::ready || state == State::active};
-      conditions.*row.condition = true;
-      const bool expected =
-          std::find(row.looked_for_in.begin(), row.looked_for_in.end(), state) != row.looked_for_in.end();
-      CHECK(advance(in(state), conditions, {}) == (expected ? Supervisor{State::fault, row.fault} : in(state)));
+      Events now = state == State::starting ? 0 : state == State::unreferenced ? events(Event::measured) : good;
+      if (state == State::limited) now |= events(Event::held_back);
+      if (state == State::update) now |= events(Event::update);
+      bool expected = false;
+      for (const State watched : row.watched_in) expected |= watched == state;
+      CHECK(advance(in(state), {now, watch(row.fault)}) == (expected ? faulty(row.fault) : in(state)));
     }
 }
 
 TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause is gone") {
+  const Events clear = good | events(Event::clear);
   for (const FaultCase& row : fault_cases()) {
     CAPTURE(static_cast<int>(row.fault));
-    const Supervisor faulty{State::fault, row.fault};
-    CHECK(advance(faulty, good, {}) == faulty);
-    CHECK(advance(faulty, good, {.enable_force = true}) == faulty);
-    CHECK(advance(faulty, good, {.clear_fault = true}) == in(State::ready));
-    Conditions present = good;
-    present.*row.condition = true;
-    CHECK(advance(faulty, present, {.clear_fault = true}) == (row.clears_at_once ? in(State::ready) : faulty));
+    const Supervisor found = faulty(row.fault);
+    CHECK(advance(found, {good, 0}) == found);
+    CHECK(advance(found, {good | events(Event::enable), 0}) == found);
+    CHECK(advance(found, {clear, 0}) == in(State::ready));
+    CHECK(advance(found, {clear, watch(row.fault)}) == (row.clears_at_once ? in(State::ready) : found));
+    // Another one's cause does not hold it; it becomes a fault of its own afterwards.
+    const Fault other = row.fault == Fault::supply_low ? Fault::supply_high : Fault::supply_low;
+    CHECK(advance(found, {clear, watch(other)}) == in(State::ready));
   }
 }
 
-TEST_CASE("a broken current sensor is found when the offsets are known and can not be cleared") {
-  const Conditions broken{.offsets_measured = true, .offsets_plausible = false, .referenced = true};
-  const Supervisor faulty{State::fault, Fault::current_sensor};
-  CHECK(advance(in(State::starting), broken, {}) == faulty);
-  CHECK(advance(faulty, broken, {.clear_fault = true}) == faulty);
-  const Conditions not_yet_known{.offsets_measured = false, .offsets_plausible = false};
-  CHECK(advance(in(State::starting), not_yet_known, {}) == in(State::starting));
-}
-
 TEST_CASE("where a cleared fault leads to") {
-  const Supervisor faulty{State::fault, Fault::processor_fault};
-  const Requests clear{.clear_fault = true};
-  CHECK(advance(faulty, {}, clear) == in(State::starting));
-  CHECK(advance(faulty, {.offsets_measured = true}, clear) == in(State::unreferenced));
-  CHECK(advance(faulty, good, clear) == in(State::ready));
+  const Supervisor found = faulty(Fault::processor_fault);
+  CHECK(advance(found, {events(Event::clear), 0}) == in(State::starting));
+  CHECK(advance(found, {events(Event::clear, Event::measured), 0}) == in(State::unreferenced));
+  CHECK(advance(found, {good | events(Event::clear), 0}) == in(State::ready));
 }
 
 TEST_CASE("of several faults the one that explains the others is shown, and the first one stays") {
-  Conditions several = good;
-  several.supply_low = several.bridge_fault = several.over_current = several.host_silent = true;
-  CHECK(advance(in(State::active), several, {}).fault == Fault::supply_low);
-  CHECK(advance(in(State::active), several, {.raised = Fault::servo_overrun}).fault == Fault::servo_overrun);
-  const Supervisor first{State::fault, Fault::over_speed};
-  CHECK(advance(first, several, {.raised = Fault::servo_overrun}) == first);
+  const auto several =
+      watch(Fault::supply_low) | watch(Fault::bridge_fault) | watch(Fault::over_current) | watch(Fault::host_silent);
+  CHECK(advance(in(State::active), {good, several}).fault == Fault::supply_low);
+  CHECK(advance(in(State::active), {good, several | watch(Fault::servo_overrun)}).fault == Fault::servo_overrun);
+  CHECK(advance(in(State::active), {good | events(Event::update, Event::disable), several}).fault == Fault::supply_low);
+  const Supervisor first = faulty(Fault::over_speed);
+  CHECK(advance(first, {good, several | watch(Fault::servo_overrun)}) == first);
+}
+
+TEST_CASE("the short look never says that a state stays which the tables leave") {
+  int stays = 0;
+  for (std::size_t i = 0; i < protocol::state_count; ++i)
+    for (Events now = 0; now < 2u * events(Event::update); ++now)
+      for (const auto found : {0u, watch(Fault::over_speed), watch(Fault::supply_low), watch(Fault::crystal_failed)}) {
+        const Supervisor here{static_cast<State>(i), Fault::none};
+        if (!control::surely_stays(here.state, {now, found})) continue;
+        ++stays;
+        CHECK(advance(here, {now, found}) == here);
+      }
+  CHECK(stays > 1'000);
+  CHECK(control::surely_stays(State::active, {good | events(Event::risen), 0}));
+  CHECK(control::surely_stays(State::limited, {good | events(Event::risen, Event::held_back), 0}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include <control/brake.hpp>
 #include <control/conditioning.hpp>
 #include <control/felt_force_law.hpp>
 #include <control/program_force.hpp>
@@ -20,8 +21,8 @@
 namespace inkwell::control {
 
 /// Everything between the samples and the duties. Single-threaded: all but the constructor is called in the
-/// control interrupt, in the order settings_changed / carry_out / host_alive / drive / replace_shapes / raise, step,
-/// finish.
+/// control interrupt, in the order settings_changed / carry_out / host_alive / drive / replace_shapes /
+/// leave_for_update / raise, step, finish.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board) : board_(board) {}
@@ -64,6 +65,8 @@ class Controller {
   void drive(const ForceTarget& target, const Settings& settings);
   /// A program on the PC has placed other shapes; they must stay as they are until the next call.
   void replace_shapes(const Shapes& shapes);
+  /// The board is about to start its boot loader; called in each period in which it is.
+  void leave_for_update() { asked_.events |= protocol::events(protocol::Event::update); }
   /// Reports a fault found outside the signal path; it switches the bridges off in the next step.
   void raise(protocol::Fault fault);
 
@@ -84,7 +87,7 @@ class Controller {
   std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
   const Triple& motor_heat() const { return heat_.heat; }       ///< 1 is what the continuous current leads to
-  bool force_is_on() const { return supervisor_.state == protocol::State::active; }
+  bool force_is_on() const { return force_is_on_; }             ///< whether the state says so
 
  private:
   enum Stage : std::uint8_t { sample, pose, contact, torque, current, report, stage_count };
@@ -95,6 +98,7 @@ class Controller {
   void find_current_references(const Settings& settings);
   void regulate_currents(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
+  void change_state(const Supervisor& next);
 
   BoardLimits board_;
 
@@ -110,7 +114,9 @@ class Controller {
   MotorHeat heat_;
   TestPulse test_;
   Supervisor supervisor_;
-  Requests requests_;
+  Situation asked_;  ///< requests and faults from outside, since the period before
+  bool force_is_on_ = false;
+  Brake brake_;
   float force_gain_ = 0.0f;
   float force_limit_N_ = 0.0f;
   ProgramForce program_;

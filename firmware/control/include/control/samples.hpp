@@ -23,6 +23,7 @@ struct Samples {
 struct Drive {
   Triple duty{};         ///< mean voltage as a part of the supply, -1..1, positive drives leg A
   bool enabled = false;  ///< false switches all bridges off
+  bool brake = false;    ///< not enabled, but all low sides on: the motors brake the arm (control/brake.hpp)
 };
 
 /// What the board can bear and do. A fact of the board, so the application hands it in.

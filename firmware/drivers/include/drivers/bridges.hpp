@@ -36,6 +36,9 @@ class Bridges {
   /// Preloads duties of -1..1, which become active with the next update.
   void write(const std::array<float, 3>& duty);
 
+  /// Preloads all low sides on: a motor that turns is braked by its own voltage.
+  void write_brake();
+
   /// Lets the bridges switch. Does nothing if they do already, so that a fault cannot be cleared by accident.
   void enable();
 

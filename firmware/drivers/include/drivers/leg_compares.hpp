@@ -28,6 +28,7 @@ constexpr LegCompares leg_compares(float duty) {
 }
 
 inline constexpr LegCompares neutral_legs = leg_compares(0.0f);
+inline constexpr LegCompares low_legs{0, 0};  ///< both low sides are on throughout
 
 static_assert(neutral_legs == LegCompares{board::pwm_top / 2, board::pwm_top / 2});
 static_assert(leg_compares(0.5f) == LegCompares{board::pwm_top * 3 / 4, board::pwm_top / 4});

@@ -7,6 +7,7 @@
 //   if (command = link.commands.take()) controller.carry_out(*command)
 //   if (target = link.program.take_force()) controller.drive(*target, link.parameters.settings())
 //   if (shapes = link.program.take_shapes()) controller.replace_shapes(*shapes)
+//   if (link.update_asked) controller.leave_for_update()
 //   controller.step(...)
 //   controller.write_signals(link.scope.next())
 //   link.poses.record(link.scope.next(), {...}); link.scope.record(periods)
@@ -24,6 +25,7 @@
 #include <link/program_requests.hpp>
 #include <link/scope_recorder.hpp>
 #include <link/servo_status.hpp>
+#include <link/shared.hpp>
 
 namespace inkwell::link {
 
@@ -37,6 +39,7 @@ struct Link {
   PoseRecorder poses;
   ScopeRecorder scope;
   ServoStatus status;
+  Shared<bool> update_asked{false};  ///< the host wants the boot loader
 };
 
 }  // namespace inkwell::link

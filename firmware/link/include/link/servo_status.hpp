@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include <link/shared.hpp>
-#include <protocol/faults.hpp>
+#include <protocol/supervision.hpp>
 
 namespace inkwell::link {
 

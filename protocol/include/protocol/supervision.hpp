@@ -1,0 +1,266 @@
+// What the board's supervisor does, in three tables: its states, the ways between them, and what it watches in each.
+// The firmware runs by them (control/supervisor.hpp), its tests go through every cell, `inkwell reference` prints them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include <protocol/faults.hpp>
+
+namespace inkwell::protocol {
+
+// ---- states ------------------------------------------------------------------------------------------------
+
+// clang-format off
+/// X(id, name, whether the hand feels a force, meaning)
+#define INKWELL_STATES(X)                                                                                          \
+  X(0, starting, false, "The board measures its current sensors. This takes a tenth of a second.")                 \
+  X(1, unreferenced, false, "Put the stylus into the inkwell once, so that the board knows where the arm is.")     \
+  X(2, ready, false, "The pose is valid. The force is off.")                                                       \
+  X(3, active, true, "The pose is valid. The force is on.")                                                        \
+  X(4, fault, false, "The motors are off because of the fault shown.")                                             \
+  X(5, ramping, true, "The pose is valid. The force is on and rises to its full strength.")                        \
+  X(6, limited, true, "The pose is valid. The force is on, and a limit holds it back.")                            \
+  X(7, update, false, "The motors are off: the board is about to start its boot loader.")
+// clang-format on
+
+/// What the device is doing.
+enum class State : std::uint8_t {
+#define X(id, name, ...) name = id,
+  INKWELL_STATES(X)
+#undef X
+};
+
+struct StateInfo {
+  std::string_view name;
+  bool force_is_on;
+  std::string_view meaning;
+};
+
+inline constexpr auto state_table = std::to_array<StateInfo>({
+#define X(id, name, force_is_on, meaning) {#name, force_is_on, meaning},
+    INKWELL_STATES(X)
+#undef X
+});
+inline constexpr std::size_t state_count = state_table.size();
+
+inline constexpr StateInfo unknown_state{"unknown", false,
+                                         "The device is in a state that this companion does not know."};
+
+constexpr const StateInfo& info(State state) {
+  const auto index = static_cast<std::size_t>(state);
+  return index < state_count ? state_table[index] : unknown_state;
+}
+
+/// Several states, a bit for each.
+class States {
+ public:
+  constexpr States() = default;
+  template <class... More>
+  constexpr States(State first, More... more) : bits_((bit(first) | ... | bit(more))) {}
+  constexpr bool contains(State state) const {
+    return static_cast<std::size_t>(state) < state_count && (bits_ & bit(state)) != 0;
+  }
+  constexpr States operator|(States other) const {
+    States both;
+    both.bits_ = bits_ | other.bits_;
+    return both;
+  }
+
+ private:
+  static constexpr std::uint32_t bit(State state) { return 1u << static_cast<unsigned>(state); }
+  std::uint32_t bits_ = 0;
+};
+
+inline constexpr States with_force{State::ramping, State::active, State::limited};
+
+/// Without a look into the table, since a control interrupt asks.
+constexpr bool force_is_on(State state) { return with_force.contains(state); }
+
+// ---- the ways between them ---------------------------------------------------------------------------------
+
+// clang-format off
+/// X(bit, name, meaning)
+#define INKWELL_EVENTS(X)                                                             \
+  X(1, measured, "the offsets of the current sensors are known")                      \
+  X(2, referenced, "the stylus has rested in the inkwell")                            \
+  X(4, enable, "the command enable_force came")                                       \
+  X(8, disable, "the command disable_force came, or the host is gone")                \
+  X(16, clear, "the command clear_fault came")                                        \
+  X(32, cause, "the fault's cause is still there")                                    \
+  X(64, risen, "the force has risen to its full strength")                            \
+  X(128, held_back, "a limit holds the force back")                                   \
+  X(256, update, "the host has asked for the boot loader, and not reset the bus since")
+// clang-format on
+
+/// What the supervisor decides by.
+enum class Event : std::uint16_t {
+#define X(bit, name, ...) name = bit,
+  INKWELL_EVENTS(X)
+#undef X
+};
+
+struct EventInfo {
+  Event event;
+  std::string_view name;
+  std::string_view meaning;
+};
+
+inline constexpr auto event_table = std::to_array<EventInfo>({
+#define X(bit, name, meaning) {Event::name, #name, meaning},
+    INKWELL_EVENTS(X)
+#undef X
+});
+
+/// Several events, a bit for each.
+using Events = std::uint32_t;
+template <class... More>
+constexpr Events events(More... some) {
+  return (0u | ... | static_cast<Events>(some));
+}
+constexpr Events when(Event event, bool is_so) { return is_so ? static_cast<Events>(event) : 0u; }
+
+/// A way is taken if all of `needs` are there and none of `unless`.
+struct Way {
+  State from;
+  State to;
+  Events needs;
+  Events unless;
+  constexpr bool is_open(Events now) const { return (now & (needs | unless)) == needs; }
+};
+
+/// Those of a state stand together; the first that is open is taken. From each state but `fault` and `update` a fault
+/// leads to `fault`, before any of these.
+inline constexpr auto way_table = std::to_array<Way>({
+    {State::starting, State::update, events(Event::update), 0},
+    {State::starting, State::unreferenced, events(Event::measured), 0},
+    {State::unreferenced, State::update, events(Event::update), 0},
+    {State::unreferenced, State::ready, events(Event::referenced), 0},
+    {State::ready, State::update, events(Event::update), 0},
+    {State::ready, State::unreferenced, 0, events(Event::referenced)},
+    {State::ready, State::ramping, events(Event::enable), events(Event::disable)},
+    {State::ramping, State::update, events(Event::update), 0},
+    {State::ramping, State::ready, events(Event::disable), 0},
+    {State::ramping, State::active, events(Event::risen), 0},
+    {State::active, State::update, events(Event::update), 0},
+    {State::active, State::ready, events(Event::disable), 0},
+    {State::active, State::limited, events(Event::held_back), 0},
+    {State::limited, State::update, events(Event::update), 0},
+    {State::limited, State::ready, events(Event::disable), 0},
+    {State::limited, State::active, 0, events(Event::held_back)},
+    {State::fault, State::update, events(Event::update), 0},
+    {State::fault, State::starting, events(Event::clear), events(Event::cause, Event::measured)},
+    {State::fault, State::unreferenced, events(Event::clear, Event::measured), events(Event::cause, Event::referenced)},
+    {State::fault, State::ready, events(Event::clear, Event::measured, Event::referenced), events(Event::cause)},
+    {State::update, State::starting, 0, events(Event::update, Event::measured)},
+    {State::update, State::unreferenced, events(Event::measured), events(Event::update, Event::referenced)},
+    {State::update, State::ready, events(Event::measured, Event::referenced), events(Event::update)},
+});
+
+// ---- what is watched ---------------------------------------------------------------------------------------
+
+/// When a fault can be cleared.
+enum class Clearing : std::uint8_t {
+  when_gone,  ///< once its cause is gone
+  at_once,    ///< its cause is over when it is seen, or cannot be seen while the motors are off
+  by_reset,   ///< its cause is measured at the start only
+};
+
+/// What becomes of the motors while a fault takes the force away from a hand that moves.
+enum class Off : std::uint8_t {
+  coast,  ///< bridges off: what does not trust currents, bridges, supply or the measure of speed
+  brake,  ///< all low sides on, so that the motors' own voltage brakes them, until the probe is slow
+};
+
+struct Watch {
+  Fault fault;
+  States watched_in;
+  Clearing clearing;
+  Off off;
+};
+
+/// Of several in one period the first is shown, because it explains the others. The first that was shown stays until
+/// it is cleared.
+inline constexpr auto watch_table = [] {
+  constexpr States moving = States(State::ready) | with_force;
+  constexpr States started = States(State::unreferenced) | moving;
+  constexpr States every = States(State::starting) | started;
+  using enum Clearing;
+  using enum Off;
+  return std::to_array<Watch>({
+      {Fault::crystal_failed, every, at_once, coast},
+      {Fault::processor_fault, every, at_once, coast},
+      {Fault::watchdog, every, at_once, coast},
+      {Fault::servo_overrun, every, at_once, coast},
+      {Fault::not_finite, every, when_gone, coast},
+      {Fault::force_law, every, at_once, brake},
+      {Fault::current_sensor, every, by_reset, coast},
+      {Fault::samples_stale, started, when_gone, coast},
+      {Fault::supply_low, started, when_gone, coast},
+      {Fault::supply_high, started, when_gone, coast},
+      {Fault::bridge_fault, started, when_gone, coast},
+      {Fault::over_current, started, when_gone, coast},
+      {Fault::motor_hot, started, when_gone, coast},
+      {Fault::encoder_implausible, moving, at_once, coast},
+      {Fault::over_speed, with_force, at_once, brake},
+      {Fault::host_silent, with_force, at_once, brake},
+  });
+}();
+
+/// Several rows of the table, bit 0 for the first.
+using Watches = std::uint32_t;
+static_assert(watch_table.size() <= 32);
+
+/// The place of a fault in the table.
+constexpr std::size_t place_of(Fault fault) {
+  for (std::size_t i = 0; i < watch_table.size(); ++i)
+    if (watch_table[i].fault == fault) return i;
+  return watch_table.size();
+}
+constexpr Watches watch(Fault fault) { return 1u << place_of(fault); }
+constexpr Watches watch(Fault fault, bool is_found) { return static_cast<Watches>(is_found) << place_of(fault); }
+
+/// The rows for which `is_so` holds.
+template <class Predicate>
+constexpr Watches watches(Predicate is_so) {
+  Watches bits = 0;
+  for (std::size_t i = 0; i < watch_table.size(); ++i)
+    if (is_so(watch_table[i])) bits |= 1u << i;
+  return bits;
+}
+
+// ---- the tables are whole ----------------------------------------------------------------------------------
+
+namespace detail {
+constexpr bool every_fault_is_watched_once() {
+  for (const auto& row : fault_table) {
+    std::size_t rows = 0;
+    for (const Watch& watch : watch_table) rows += static_cast<std::uint16_t>(watch.fault) == row.code;
+    if (rows != (row.code == 0 ? 0u : 1u)) return false;
+  }
+  return true;
+}
+constexpr bool ways_stand_together() {
+  for (std::size_t i = 1; i < way_table.size(); ++i)
+    for (std::size_t k = 0; k + 1 < i; ++k)
+      if (way_table[k].from == way_table[i].from && way_table[i - 1].from != way_table[i].from) return false;
+  return true;
+}
+constexpr bool states_with_force_are_told_alike() {
+  for (std::size_t i = 0; i < state_count; ++i)
+    if (state_table[i].force_is_on != with_force.contains(static_cast<State>(i))) return false;
+  return true;
+}
+#define X(id, text, ...) \
+  static_assert(state_table[id].name == std::string_view(#text), #text ": its id is not its place in the table");
+INKWELL_STATES(X)
+#undef X
+}  // namespace detail
+
+static_assert(detail::every_fault_is_watched_once(), "watch_table: each fault but none has one row");
+static_assert(detail::ways_stand_together(), "way_table: the ways from one state stand together");
+static_assert(detail::states_with_force_are_told_alike());
+
+}  // namespace inkwell::protocol
