@@ -61,6 +61,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
   if (host_link.update_asked.load()) controller.leave_for_update();
+  if (host_link.memory_damaged.load()) controller.raise(protocol::Fault::memory_damaged);
 
   write_bridges(controller.step(samples, settings, clock));
 

@@ -10,6 +10,7 @@
 
 #include "handlers.hpp"
 #include "main_loop.hpp"
+#include "memory_check.hpp"
 #include "parts.hpp"
 #include "start_report.hpp"
 
@@ -60,7 +61,10 @@ int main() {
   encoders.start();
   switches.start();
   analog_inputs.start();
-  if (started_late || (crash && crash->crystal_stopped()))
+  MemoryCheck memory_check;
+  if (!memory_check.start())
+    controller.raise(protocol::Fault::memory_damaged);
+  else if (started_late || (crash && crash->crystal_stopped()))
     controller.raise(protocol::Fault::crystal_failed);
   else if (crash)
     controller.raise(protocol::Fault::processor_fault);
@@ -85,6 +89,7 @@ int main() {
     if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update)
       drivers::start_boot_loader();
     host_link.scope.pack();
+    if (!memory_check.step()) host_link.memory_damaged.store(true);
     feed_watchdog();
     show_state();
     drivers::sleep_unless([periods] { return usb_port.is_awake() || completed_periods.load() != periods; });

@@ -34,6 +34,7 @@ link::ScopeFrames scope_frames;
 Part<drivers::StatusLed> status_led;
 Part<drivers::Console> console;
 Part<drivers::IndependentWatchdog> watchdog;
+Part<drivers::Checksum> checksum;
 Part<drivers::OtgFs> usb_port;
 
 link::Shared<std::uint32_t> completed_periods{0};

@@ -8,6 +8,7 @@
 #include <control/controller.hpp>
 #include <drivers/analog_inputs.hpp>
 #include <drivers/bridges.hpp>
+#include <drivers/checksum.hpp>
 #include <drivers/claims.hpp>
 #include <drivers/console.hpp>
 #include <drivers/encoders.hpp>
@@ -21,7 +22,8 @@ namespace inkwell::application {
 
 /// Every driver; it does not compile if two of them claim the same (drivers/claims.hpp).
 using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::AnalogInputs, drivers::Switches,
-                                 drivers::StatusLed, drivers::Console, drivers::IndependentWatchdog, drivers::OtgFs>;
+                                 drivers::StatusLed, drivers::Console, drivers::IndependentWatchdog, drivers::Checksum,
+                                 drivers::OtgFs>;
 
 /// A driver of the list.
 template <class Driver>
@@ -38,6 +40,7 @@ extern control::Controller controller;
 extern Part<drivers::StatusLed> status_led;
 extern Part<drivers::Console> console;
 extern Part<drivers::IndependentWatchdog> watchdog;
+extern Part<drivers::Checksum> checksum;
 extern Part<drivers::OtgFs> usb_port;
 
 extern link::Link host_link;

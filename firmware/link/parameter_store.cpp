@@ -1,10 +1,33 @@
 #include <link/parameter_store.hpp>
 
+#include <bit>
 #include <cstddef>
+#include <cstring>
 
 namespace inkwell::link {
+namespace {
 
-ParameterStore::ParameterStore() : values_(image_defaults()), settings_{control::prepare(values_)} {}
+/// Differs for any two that differ in a bit, and for most others.
+std::uint32_t sum_of(const control::Settings& settings) {
+  static_assert(sizeof settings % sizeof(std::uint32_t) == 0);
+  const auto* bytes = reinterpret_cast<const std::byte*>(&settings);
+  std::uint32_t sum = 0;
+  for (std::size_t at = 0; at < sizeof settings; at += sizeof sum) {
+    std::uint32_t word;
+    std::memcpy(&word, bytes + at, sizeof word);
+    sum = std::rotl(sum, 1) ^ word;
+  }
+  return sum;
+}
+
+}  // namespace
+
+ParameterStore::ParameterStore()
+    : values_(image_defaults()), settings_{control::prepare(values_)}, settings_sum_{sum_of(settings_.used())} {}
+
+bool ParameterStore::settings_are_intact() const {
+  return settings_.is_offered() || sum_of(settings_.used()) == settings_sum_;
+}
 
 protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on) {
   ++transactions_;
@@ -21,6 +44,7 @@ protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool
   if (refusal_ == protocol::Refusal::accepted) {
     values_ = check.set;
     *next = control::prepare(values_);
+    settings_sum_ = sum_of(*next);
     settings_.offer();
   }
   return refusal_;

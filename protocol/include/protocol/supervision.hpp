@@ -190,6 +190,7 @@ inline constexpr auto watch_table = [] {
   using enum Clearing;
   using enum Off;
   return std::to_array<Watch>({
+      {Fault::memory_damaged, every, by_reset, coast},
       {Fault::crystal_failed, every, at_once, coast},
       {Fault::processor_fault, every, at_once, coast},
       {Fault::watchdog, every, at_once, coast},

@@ -45,7 +45,8 @@ TEST_CASE("a limit is told once the force has risen, for as long as it holds") {
 
 TEST_CASE("from every state with force to disable leads to ready, whatever else was asked") {
   for (const State state : {State::ready, State::ramping, State::active, State::limited})
-    for (const Events also : {0u, events(Event::enable), events(Event::risen), events(Event::risen, Event::held_back)})
+    for (const Events also :
+         {Events{0}, events(Event::enable), events(Event::risen), events(Event::risen, Event::held_back)})
       CHECK(next(state, good | events(Event::disable) | also) == State::ready);
 }
 
@@ -76,14 +77,23 @@ std::vector<FaultCase> fault_cases() {
   const std::vector<State> started{State::unreferenced, State::ready, State::ramping, State::active, State::limited};
   const std::vector<State> all{State::starting, State::unreferenced, State::ready,
                                State::ramping,  State::active,       State::limited};
-  return {{Fault::crystal_failed, all, true},    {Fault::processor_fault, all, true},
-          {Fault::watchdog, all, true},          {Fault::servo_overrun, all, true},
-          {Fault::not_finite, all, false},       {Fault::force_law, all, true},
-          {Fault::current_sensor, all, false},   {Fault::samples_stale, started, false},
-          {Fault::supply_low, started, false},   {Fault::supply_high, started, false},
-          {Fault::bridge_fault, started, false}, {Fault::over_current, started, false},
-          {Fault::motor_hot, started, false},    {Fault::encoder_implausible, moving, true},
-          {Fault::over_speed, force, true},      {Fault::host_silent, force, true}};
+  return {{Fault::memory_damaged, all, false},
+          {Fault::crystal_failed, all, true},
+          {Fault::processor_fault, all, true},
+          {Fault::watchdog, all, true},
+          {Fault::servo_overrun, all, true},
+          {Fault::not_finite, all, false},
+          {Fault::force_law, all, true},
+          {Fault::current_sensor, all, false},
+          {Fault::samples_stale, started, false},
+          {Fault::supply_low, started, false},
+          {Fault::supply_high, started, false},
+          {Fault::bridge_fault, started, false},
+          {Fault::over_current, started, false},
+          {Fault::motor_hot, started, false},
+          {Fault::encoder_implausible, moving, true},
+          {Fault::over_speed, force, true},
+          {Fault::host_silent, force, true}};
 }
 
 TEST_CASE("each fault is looked for in its states and in no other") {
@@ -138,7 +148,8 @@ TEST_CASE("the short look never says that a state stays which the tables leave")
   int stays = 0;
   for (std::size_t i = 0; i < protocol::state_count; ++i)
     for (Events now = 0; now < 2u * events(Event::update); ++now)
-      for (const auto found : {0u, watch(Fault::over_speed), watch(Fault::supply_low), watch(Fault::crystal_failed)}) {
+      for (const auto found :
+           {protocol::Watches{0}, watch(Fault::over_speed), watch(Fault::supply_low), watch(Fault::crystal_failed)}) {
         const Supervisor here{static_cast<State>(i), Fault::none};
         if (!control::surely_stays(here.state, {now, found})) continue;
         ++stays;

@@ -112,8 +112,8 @@ class Claims(unittest.TestCase):
         drivers["bridges"] += drivers.pop("bridges_off")  # the same driver, for the fault handler
         drivers["otg_fs"] += drivers.pop("fifo_memory", "")
         drivers.pop("peripheral_clocks")
-        named = {name: set(re.findall(r"registers::((?:TIM|ADC|DMA|USART)\w+|IWDG|OTG_FS_GLOBAL)\b", text))
-                 for name, text in drivers.items()}
+        peripherals = r"registers::((?:TIM|ADC|DMA|USART)\w+|IWDG|CRC|OTG_FS_GLOBAL)\b"
+        named = {name: set(re.findall(peripherals, text)) for name, text in drivers.items()}
         claimed = {name: set(re.findall(r"(?:peripheral|stream)<registers::(\w+)", text)) for name, text in drivers.items()}
         for name in drivers:
             if name != "claims":

@@ -237,4 +237,21 @@ TEST_CASE("while the force is on the arm can not change, everything else can") {
   CHECK(store.accept(Transaction{entry(Parameter::wall_stiffness_N_per_m, 100.0f)}.bytes(), true) == Refusal::accepted);
 }
 
+TEST_CASE("a bit of the settings that changes by itself is found, whichever it is, and new settings are not it") {
+  ParameterStore store;
+  CHECK(store.settings_are_intact());
+  const Transaction transaction{entry(Parameter::wall_stiffness_N_per_m, 700.0f)};
+  REQUIRE(store.accept(transaction.bytes(), false) == Refusal::accepted);
+  CHECK(store.settings_are_intact());  // nothing is taken yet
+  store.take(1);
+  CHECK(store.settings_are_intact());
+  auto* bytes = reinterpret_cast<unsigned char*>(const_cast<control::Settings*>(&store.settings()));
+  for (std::size_t i = 0; i < sizeof(control::Settings); i += 7) {
+    bytes[i] ^= 0x10;
+    CHECK_FALSE(store.settings_are_intact());
+    bytes[i] ^= 0x10;
+  }
+  CHECK(store.settings_are_intact());
+}
+
 }  // namespace inkwell

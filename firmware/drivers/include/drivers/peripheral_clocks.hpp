@@ -3,6 +3,7 @@
 
 #include <drivers/claims.hpp>
 #include <registers/analog_converter.hpp>
+#include <registers/checksum.hpp>
 #include <registers/clock.hpp>
 #include <registers/direct_memory_access.hpp>
 #include <registers/otg_fs.hpp>
@@ -28,6 +29,7 @@ template <> struct ClockOf<registers::TIM5> { using Enable = RCC::APB1ENR::TIM5E
 template <> struct ClockOf<registers::ADC1> { using Enable = RCC::APB2ENR::ADC1EN; };
 template <> struct ClockOf<registers::ADC2> { using Enable = RCC::APB2ENR::ADC2EN; };
 template <> struct ClockOf<registers::ADC3> { using Enable = RCC::APB2ENR::ADC3EN; };
+template <> struct ClockOf<registers::CRC> { using Enable = RCC::AHB1ENR::CRCEN; };
 template <> struct ClockOf<registers::DMA2> { using Enable = RCC::AHB1ENR::DMA2EN; };
 template <> struct ClockOf<registers::USART2> { using Enable = RCC::APB1ENR::USART2EN; };
 template <> struct ClockOf<registers::OTG_FS_GLOBAL> { using Enable = RCC::AHB2ENR::OTGFSEN; };

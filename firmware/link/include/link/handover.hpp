@@ -20,6 +20,8 @@ class Handover {
 
   /// Where the next value is made; null while the interrupt has not taken the one before.
   T* next() { return offered_.load() ? nullptr : &places_[used_ ^ 1u]; }
+  /// Whether a value waits to be taken; while none does, used() stays the same.
+  bool is_offered() const { return offered_.load(); }
   /// What stands in next() is for the interrupt from now on.
   void offer() { offered_.store(true); }
 

@@ -8,6 +8,7 @@
 //   if (target = link.program.take_force()) controller.drive(*target, link.parameters.settings())
 //   if (shapes = link.program.take_shapes()) controller.replace_shapes(*shapes)
 //   if (link.update_asked) controller.leave_for_update()
+//   if (link.memory_damaged) controller.raise(memory_damaged)
 //   controller.step(...)
 //   controller.write_signals(link.scope.next())
 //   link.poses.record(link.scope.next(), {...}); link.scope.record(periods)
@@ -39,7 +40,8 @@ struct Link {
   PoseRecorder poses;
   ScopeRecorder scope;
   ServoStatus status;
-  Shared<bool> update_asked{false};  ///< the host wants the boot loader
+  Shared<bool> update_asked{false};    ///< the host wants the boot loader
+  Shared<bool> memory_damaged{false};  ///< a bit has changed by itself
 };
 
 }  // namespace inkwell::link

@@ -33,6 +33,9 @@ class ParameterStore {
 
   const protocol::ParameterSet& values() const { return values_; }
 
+  /// Whether the interrupt's settings are bit for bit those that were prepared. True while others wait to be taken.
+  bool settings_are_intact() const;
+
   // ---- control interrupt ----
 
   /// Called once at the start of a control period; swaps if there is a transaction to take, and tells whether it did.
@@ -46,6 +49,7 @@ class ParameterStore {
  private:
   protocol::ParameterSet values_;
   Handover<control::Settings> settings_;
+  std::uint32_t settings_sum_;  ///< of the newest
   Shared<std::uint32_t> applied_at_periods_{0};
   protocol::Refusal refusal_ = protocol::Refusal::accepted;
   std::uint16_t refused_id_ = 0;

@@ -33,6 +33,7 @@ struct ResetAndClockControl {
     using GPIOAEN = Field<AHB1ENR, 0, 1>;
     using GPIOBEN = Field<AHB1ENR, 1, 1>;
     using GPIOCEN = Field<AHB1ENR, 2, 1>;
+    using CRCEN = Field<AHB1ENR, 12, 1>;
     using CCMDATARAMEN = Field<AHB1ENR, 20, 1>;
     using DMA2EN = Field<AHB1ENR, 22, 1>;
   };

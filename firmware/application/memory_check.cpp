@@ -1,0 +1,84 @@
+#include "memory_check.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "memory.hpp"
+#include "parts.hpp"
+#include "vectors.hpp"
+
+namespace inkwell::application {
+namespace {
+
+/// So few that the main loop comes round as often as it did.
+constexpr std::ptrdiff_t words_per_step = 4;
+
+/// What start-up copied.
+struct Copy {
+  const std::uint32_t* begin;
+  const std::uint32_t* end;
+  const std::uint32_t* image;
+};
+
+const std::array<Copy, 3>& copies() {
+  static constinit const std::array<Copy, 3> all{
+      {{interrupt_text_begin, interrupt_text_end, interrupt_text_image},
+       {interrupt_tables_begin, interrupt_tables_end, interrupt_tables_image},
+       {interrupt_vectors, interrupt_vectors + sizeof vectors / sizeof(std::uint32_t),
+        reinterpret_cast<const std::uint32_t*>(&vectors)}}};
+  return all;
+}
+
+}  // namespace
+
+bool MemoryCheck::start() {
+  checksum.start();
+  begin_round();
+  do static_cast<void>(step());
+  while (sound_ && !(part_ == 0 && next_ == flash_begin));
+  return sound_;
+}
+
+bool MemoryCheck::step() {
+  if (!sound_) return false;
+  if (part_ == 0)
+    check_flash();
+  else if (part_ <= copies().size())
+    check_copy();
+  else
+    check_settings();
+  return sound_;
+}
+
+void MemoryCheck::begin_round() {
+  part_ = 0;
+  next_ = flash_begin;
+  checksum.begin();
+}
+
+void MemoryCheck::check_flash() {
+  const std::uint32_t* const end = next_ + std::min(words_per_step, image_check - next_);
+  // With a pointer of its own: where the member counts, GCC 12 writes the last word twice.
+  for (const std::uint32_t* word = next_; word != end; ++word) checksum.add(*word);
+  next_ = end;
+  if (next_ != image_check) return;
+  sound_ = checksum.value() == *image_check;
+  next_ = copies()[0].begin;
+  ++part_;
+}
+
+void MemoryCheck::check_copy() {
+  const Copy& copy = copies()[part_ - 1];
+  const std::uint32_t* const end = next_ + std::min(words_per_step, copy.end - next_);
+  for (; next_ != end; ++next_) sound_ &= *next_ == copy.image[next_ - copy.begin];
+  if (next_ != copy.end) return;
+  if (part_ < copies().size()) next_ = copies()[part_].begin;
+  ++part_;
+}
+
+void MemoryCheck::check_settings() {
+  sound_ = host_link.parameters.settings_are_intact();
+  begin_round();
+}
+
+}  // namespace inkwell::application

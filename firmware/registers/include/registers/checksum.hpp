@@ -1,0 +1,17 @@
+// Cyclic redundancy check (RM0090, chapter CRC).
+#pragma once
+
+#include <registers/register.hpp>
+
+namespace inkwell::registers {
+
+template <std::uint32_t base>
+struct ChecksumUnit {
+  struct DR : Register<base + 0x00> {};
+  struct CR : Register<base + 0x08> {
+    using RESET = Field<CR, 0, 1>;
+  };
+};
+using CRC = ChecksumUnit<0x40023000>;
+
+}  // namespace inkwell::registers

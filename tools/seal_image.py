@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Puts the checksum of the firmware's image behind it, where the firmware looks for it.
+
+    tools/seal_image.py build/board/inkwell.elf
+
+The checksum is the CRC-32 that the STM32F405 counts (RM0090, chapter CRC), of all words from the begin of the flash up
+to the section .image_check. There must be no gap between the sections, because each programmer fills it in its own way.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+POLYNOMIAL = 0x04C11DB7
+
+
+def table_of_bytes() -> list[int]:
+    table = []
+    for byte in range(256):
+        rest = byte << 24
+        for _ in range(8):
+            rest = (rest << 1 ^ (POLYNOMIAL if rest & 0x80000000 else 0)) & 0xFFFFFFFF
+        table.append(rest)
+    return table
+
+
+def checksum(image: bytes) -> int:
+    """Of whole little-endian words, each from its highest bit on."""
+    if len(image) % 4 != 0:
+        raise ValueError("the image does not end at a word's end")
+    table = table_of_bytes()
+    rest = 0xFFFFFFFF
+    for at in range(0, len(image), 4):
+        for byte in reversed(image[at : at + 4]):
+            rest = (rest << 8 & 0xFFFFFFFF) ^ table[rest >> 24 ^ byte]
+    return rest
+
+
+def objcopy(*arguments: str) -> None:
+    subprocess.run(["arm-none-eabi-objcopy", *arguments], check=True)
+
+
+def flash_of(elf: str, folder: Path) -> bytes:
+    objcopy("-O", "binary", elf, str(folder / "image.bin"))
+    image = (folder / "image.bin").read_bytes()
+    headers = subprocess.run(["arm-none-eabi-objdump", "-h", elf], check=True, capture_output=True, text=True).stdout
+    rows = re.findall(r"^ *\d+ \S+ +([0-9a-f]{8}) .*\n +CONTENTS, ALLOC, LOAD", headers, re.MULTILINE)
+    if sum(int(size, 16) for size in rows) != len(image):
+        raise ValueError("there is a gap between two sections in the flash; align them in the linker script")
+    return image
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Puts the checksum of the firmware's image behind it.")
+    parser.add_argument("elf", help="the linked image")
+    elf = parser.parse_args().elf
+    with tempfile.TemporaryDirectory() as folder:
+        word = Path(folder) / "check.bin"
+        try:
+            image = flash_of(elf, Path(folder))
+            word.write_bytes(checksum(image[:-4]).to_bytes(4, "little"))
+            objcopy("--update-section", f".image_check={word}", elf)
+        except (OSError, ValueError, subprocess.CalledProcessError) as error:
+            print(f"cannot seal {elf}: {error}", file=sys.stderr)
+            return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
