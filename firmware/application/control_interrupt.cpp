@@ -65,18 +65,18 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
 
   write_bridges(controller.step(samples, settings, clock));
 
-  protocol::SignalValues& signals = host_link.scope.next();
-  controller.write_signals(signals);
-  host_link.poses.record(signals, {.state = controller.state(),
-                                   .fault = controller.fault(),
-                                   .switches = controller.switches(),
-                                   .force_sources = controller.force_sources(),
-                                   .limits = controller.limits(),
-                                   .command_token = host_link.commands.last_token(),
-                                   .periods = period,
-                                   .begin_cycles = begin_cycles,
-                                   .servo_cycles = controller.servo_cycles()});
-  host_link.scope.record(period);
+  link::Sample& sample = host_link.samples.next();
+  controller.write_signals(sample.signals);
+  sample.summary = {.state = controller.state(),
+                    .fault = controller.fault(),
+                    .switches = controller.switches(),
+                    .force_sources = controller.force_sources(),
+                    .limits = controller.limits(),
+                    .command_token = host_link.commands.last_token(),
+                    .periods = period,
+                    .begin_cycles = begin_cycles};
+  host_link.samples.record();
+  host_link.poses.note_load(controller.servo_cycles());
   controller.finish(clock);
 
   const bool overrun = bridges.period_is_over();

@@ -34,13 +34,14 @@ template <class Value>
 
 }  // namespace
 
-ScopeRecorder::ScopeRecorder(ScopeFrames& frames) : frames_(frames.frames) {
+ScopeRecorder::ScopeRecorder(const SampleRing& samples, ScopeFrames& frames)
+    : samples_(samples), frames_(frames.frames) {
   for (std::uint8_t i = 1; i < ScopeFrames::count; ++i) free_[free_count_++] = i;
   open_frame(0);
 }
 
 void ScopeRecorder::select(const protocol::SignalSelection& selection, std::uint8_t token) {
-  while (packed_ != recorded_.load()) pack();
+  while (packed_ != samples_.recorded()) pack();
   if (sample_count_ != 0) finish_frame();
   plan_ = prepare(selection, token);
   if (plan_.count == 0) return;
@@ -51,10 +52,10 @@ void ScopeRecorder::select(const protocol::SignalSelection& selection, std::uint
 
 void ScopeRecorder::pack() {
   for (std::uint32_t i = 0; i < samples_per_pack; ++i) {
-    const std::uint32_t recorded = recorded_.load();
+    const std::uint32_t recorded = samples_.recorded();
     if (plan_.count == 0) packed_ = recorded;
     if (packed_ == recorded) return;
-    if (recorded - packed_ > readable) skip_overwritten(recorded);
+    if (recorded - packed_ > SampleRing::readable) skip_overwritten(recorded);
     pack_oldest();
   }
 }
@@ -78,13 +79,13 @@ void ScopeRecorder::release() {
 /// The periods of a frame follow on each other, so what was skipped ends the one that was begun.
 void ScopeRecorder::skip_overwritten(std::uint32_t recorded) {
   if (sample_count_ != 0) finish_frame();
-  samples_dropped_ += recorded - readable - packed_;
-  packed_ = recorded - readable;
+  samples_dropped_ += recorded - SampleRing::readable - packed_;
+  packed_ = recorded - SampleRing::readable;
 }
 
 void ScopeRecorder::pack_oldest() {
-  const Sample& sample = samples_[packed_ % capacity];
-  if (sample_count_ == 0) first_period_ = sample.period;
+  const Sample& sample = samples_[packed_];
+  if (sample_count_ == 0) first_period_ = sample.summary.periods;
   if (plan_.encoding == protocol::ScopeEncoding::full)
     write_full(sample.signals);
   else

@@ -16,11 +16,19 @@ inline link::Link& fresh_link() {
   return *new (storage) link::Link(cycles_per_period, frames);
 }
 
+/// What the interrupt leaves of one period.
+inline void interrupt(link::Link& link, const protocol::SignalValues& signals, const link::PeriodSummary& summary) {
+  link.samples.next() = {signals, summary};
+  link.samples.record();
+}
+inline void interrupt(link::Link& link, const protocol::SignalValues& signals, std::uint32_t period) {
+  interrupt(link, signals, {.state = protocol::State::ready, .periods = period});
+}
+
 /// One period of the scope, in the interrupt and in the main loop.
-inline void record(link::ScopeRecorder& scope, const protocol::SignalValues& signals, std::uint32_t period) {
-  scope.next() = signals;
-  scope.record(period);
-  scope.pack();
+inline void record(link::Link& link, const protocol::SignalValues& signals, std::uint32_t period) {
+  interrupt(link, signals, period);
+  link.scope.pack();
 }
 
 }  // namespace inkwell::test

@@ -1,17 +1,16 @@
 // The newest pose on its way from the control interrupt to the main loop.
 #include <doctest/doctest.h>
 
-#include <link/pose_recorder.hpp>
+#include "fresh_link.hpp"
 
 namespace inkwell {
 
 using link::PoseRecorder;
 using protocol::PoseReport;
 using protocol::Signal;
+using test::cycles_per_period;
 
 namespace {
-
-constexpr std::uint32_t cycles_per_period = 8400;
 
 protocol::SignalValues some_signals(float offset = 0.25f) {
   protocol::SignalValues signals{};
@@ -20,19 +19,27 @@ protocol::SignalValues some_signals(float offset = 0.25f) {
   return signals;
 }
 
-link::PeriodSummary summary_of(std::uint32_t period, std::uint32_t servo_cycles = 100) {
-  return {protocol::State::ready, protocol::Fault::none, 5, 6, 2, 42, period, period * cycles_per_period, servo_cycles};
-}
+struct Recorded {
+  link::Link& fresh = test::fresh_link();
+  PoseRecorder& poses = fresh.poses;
+
+  void record(const protocol::SignalValues& signals, std::uint32_t period, std::uint32_t servo_cycles = 100) {
+    test::interrupt(fresh, signals,
+                    {protocol::State::ready, protocol::Fault::none, 5, 6, 2, 42, period, period * cycles_per_period});
+    poses.note_load(servo_cycles);
+  }
+};
 
 }  // namespace
 
 TEST_CASE("a report shows the newest period and its signals") {
-  PoseRecorder recorder(cycles_per_period);
+  Recorded recorded;
+  PoseRecorder& recorder = recorded.poses;
   PoseReport report;
   CHECK_FALSE(recorder.take(report));
   CHECK_FALSE(recorder.read(report));
-  for (std::uint32_t period = 1000; period < 1019; ++period) recorder.record(some_signals(0.5f), summary_of(period));
-  recorder.record(some_signals(), summary_of(1019));
+  for (std::uint32_t period = 1000; period < 1019; ++period) recorded.record(some_signals(0.5f), period);
+  recorded.record(some_signals(), 1019);
   REQUIRE(recorder.take(report));
   CHECK(report.report_id == protocol::ReportId::pose);
   CHECK(report.state == protocol::State::ready);
@@ -54,7 +61,7 @@ TEST_CASE("a report shows the newest period and its signals") {
   CHECK(report.supply_dV == 180);
   CHECK(report.servo_load == 3);  // 100 of 8400 cycles
 
-  recorder.record(some_signals(0.5f), summary_of(1020));
+  recorded.record(some_signals(0.5f), 1020);
   REQUIRE(recorder.take(report));
   CHECK(report.time_periods == 1020);
   const float position_m = report.position_m[0];
@@ -62,12 +69,13 @@ TEST_CASE("a report shows the newest period and its signals") {
 }
 
 TEST_CASE("the load is the longest interrupt since the last report that was taken, and saturates") {
-  PoseRecorder recorder(cycles_per_period);
+  Recorded recorded;
+  PoseRecorder& recorder = recorded.poses;
   const protocol::SignalValues signals = some_signals();
   PoseReport report;
   const auto millisecond = [&](std::uint32_t longest) {
     for (std::uint32_t i = 0; i < 20; ++i) {
-      recorder.record(signals, summary_of(i, i == 7 ? longest : 84u));
+      recorded.record(signals, i, i == 7 ? longest : 84u);
       REQUIRE(recorder.read(report));  // which changes nothing
     }
     REQUIRE(recorder.take(report));
@@ -80,10 +88,11 @@ TEST_CASE("the load is the longest interrupt since the last report that was take
 }
 
 TEST_CASE("a moment of the cycle counter has a board time") {
-  PoseRecorder recorder(cycles_per_period);
+  Recorded recorded;
+  PoseRecorder& recorder = recorded.poses;
   CHECK_FALSE(recorder.time_of(0));          // no period yet
   constexpr std::uint32_t period = 600'000;  // the counter has wrapped
-  recorder.record(some_signals(), summary_of(period));
+  recorded.record(some_signals(), period);
   for (const std::int32_t cycles : {0, 1, 8399, 8400, 20'000, -1, -8399, -8400, -8401, -168'000}) {
     CAPTURE(cycles);
     const auto time = recorder.time_of(period * cycles_per_period + static_cast<std::uint32_t>(cycles));

@@ -86,7 +86,8 @@ SignalSelection select(std::uint8_t count, std::uint8_t first = 0) {
 
 /// Records while the frames are read as soon as they come; every sample must come out once and right.
 void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, std::uint32_t periods) {
-  link::ScopeRecorder& scope = test::fresh_link().scope;
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
   scope.select(selection, 9);
   std::uint32_t next = 500, frames = 0;
   int wrong = 0;
@@ -112,12 +113,12 @@ void check_round_trip(const SignalSelection& selection, ScopeEncoding encoding, 
   };
   const std::uint32_t end = 500 + periods;
   for (std::uint32_t period = 500; period < end; ++period) {
-    test::record(scope, signals_at(period), period);
+    test::record(fresh, signals_at(period), period);
     read_frames();
   }
   scope.select({}, 10);  // finishes the frame that was begun
   for (int i = 0; i < 3; ++i) {
-    test::record(scope, signals_at(0), end);
+    test::record(fresh, signals_at(0), end);
     read_frames();
   }
   CHECK(wrong == 0);
@@ -168,17 +169,18 @@ TEST_CASE("the encoding is the one that the protocol names for a selection") {
 }
 
 TEST_CASE("a narrow value beyond its range saturates") {
-  link::ScopeRecorder& scope = test::fresh_link().scope;
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
   const SignalSelection selection = select(1, static_cast<std::uint8_t>(Signal::current_1_A));
   scope.select(selection, 1);
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float value : {100.0f, -100.0f, infinity, -infinity, std::numeric_limits<float>::quiet_NaN()}) {
     SignalValues signals{};
     signals[Signal::current_1_A] = value;
-    test::record(scope, signals, 0);
+    test::record(fresh, signals, 0);
   }
   scope.select({}, 2);
-  test::record(scope, {}, 5);
+  test::record(fresh, {}, 5);
   std::vector<float> seen;
   const auto keep = [&](std::uint32_t, const std::vector<float>& values) { seen.push_back(values[0]); };
   decode(scope.oldest_frame(), selection, keep);
@@ -192,15 +194,16 @@ TEST_CASE("a narrow value beyond its range saturates") {
 }
 
 TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but never one that is being sent") {
-  link::ScopeRecorder& scope = test::fresh_link().scope;
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
   const SignalSelection selection = select(14);
   constexpr std::uint32_t samples_per_frame = protocol::scope_frame_samples_maximum;
   scope.select(selection, 3);
   constexpr std::uint32_t frames_recorded = 100;
   std::uint32_t period = 0;
-  for (; period < samples_per_frame; ++period) test::record(scope, signals_at(period), period);
+  for (; period < samples_per_frame; ++period) test::record(fresh, signals_at(period), period);
   REQUIRE(!scope.oldest_frame().empty());  // on its way from now on
-  for (; period < frames_recorded * samples_per_frame; ++period) test::record(scope, signals_at(period), period);
+  for (; period < frames_recorded * samples_per_frame; ++period) test::record(fresh, signals_at(period), period);
 
   const auto first = [&] {
     return decode(scope.oldest_frame(), selection, [](std::uint32_t at, const std::vector<float>& values) {
@@ -220,7 +223,7 @@ TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but nev
     samples_seen += header.sample_count;
     ++frames_seen;
     scope.release();
-    test::record(scope, signals_at(period), period);
+    test::record(fresh, signals_at(period), period);
     ++period;
   }
   CHECK(frames_seen == kept);
@@ -229,30 +232,32 @@ TEST_CASE("when nobody reads, the oldest frames are dropped and counted, but nev
 }
 
 TEST_CASE("a frame that is being sent stays as it is, whatever is recorded meanwhile") {
-  link::ScopeRecorder& scope = test::fresh_link().scope;
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
   scope.select(select(31), 4);
   std::uint32_t period = 0;
-  while (scope.oldest_frame().empty()) test::record(scope, signals_at(period), period), ++period;
+  while (scope.oldest_frame().empty()) test::record(fresh, signals_at(period), period), ++period;
   const auto frame = scope.oldest_frame();
   const std::vector<std::byte> copy(frame.begin(), frame.end());
-  for (int i = 0; i < 3000; ++i) test::record(scope, signals_at(period), period), ++period;
+  for (int i = 0; i < 3000; ++i) test::record(fresh, signals_at(period), period), ++period;
   scope.select(select(5), 5);
-  for (int i = 0; i < 3000; ++i) test::record(scope, signals_at(period), period), ++period;
+  for (int i = 0; i < 3000; ++i) test::record(fresh, signals_at(period), period), ++period;
   CHECK(scope.oldest_frame().data() == frame.data());
   CHECK(std::memcmp(frame.data(), copy.data(), copy.size()) == 0);
 }
 
 TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the one before") {
-  link::ScopeRecorder& scope = test::fresh_link().scope;
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
   scope.select(select(14), 1);
   std::uint32_t period = 0;
-  for (int i = 0; i < 500; ++i) test::record(scope, signals_at(period), period), ++period;
+  for (int i = 0; i < 500; ++i) test::record(fresh, signals_at(period), period), ++period;
   const SignalSelection second = select(3, 6);
   REQUIRE(!scope.oldest_frame().empty());  // on its way from now on
   scope.select(select(20), 2);             // overtaken before a sample came
   scope.select(second, 3);
   const std::uint32_t start = period;
-  for (int i = 0; i < 800; ++i) test::record(scope, signals_at(period), period), ++period;
+  for (int i = 0; i < 800; ++i) test::record(fresh, signals_at(period), period), ++period;
   // What was on its way still comes, and says which selection it belongs to.
   std::uint32_t old_frames = 0;
   for (;; ++old_frames) {
@@ -262,7 +267,7 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
     if (header.selection_token == 3) break;
     CHECK(header.selection_token == 1);
     scope.release();
-    test::record(scope, signals_at(period), period);
+    test::record(fresh, signals_at(period), period);
     ++period;
   }
   CHECK(old_frames == 1);
@@ -274,20 +279,20 @@ TEST_CASE("a new selection starts at sequence 0 and forgets the samples of the o
 
 TEST_CASE("a main loop that comes late loses nothing up to the ring's length, beyond it the oldest samples, counted") {
   const SignalSelection selection = select(14);
-  for (const std::uint32_t late_periods : {link::ScopeRecorder::readable - 1, link::ScopeRecorder::readable + 25}) {
-    link::ScopeRecorder& scope = test::fresh_link().scope;
+  for (const std::uint32_t late_periods : {link::SampleRing::readable - 1, link::SampleRing::readable + 25}) {
+    link::Link& fresh = test::fresh_link();
+    link::ScopeRecorder& scope = fresh.scope;
     scope.select(selection, 1);
     constexpr std::uint32_t before = 10;
     std::uint32_t period = 0;
-    for (; period < before; ++period) test::record(scope, signals_at(period), period);
+    for (; period < before; ++period) test::record(fresh, signals_at(period), period);
     for (; period < before + late_periods; ++period) {
-      scope.next() = signals_at(period);
-      scope.record(period);
+      test::interrupt(fresh, signals_at(period), period);
     }
-    for (std::uint32_t i = 0; i < 100; ++i, ++period) test::record(scope, signals_at(period), period);
+    for (std::uint32_t i = 0; i < 100; ++i, ++period) test::record(fresh, signals_at(period), period);
     scope.select({}, 2);
     // One more came before the main loop was there again.
-    const std::uint32_t lost = late_periods + 1 - link::ScopeRecorder::readable;
+    const std::uint32_t lost = late_periods + 1 - link::SampleRing::readable;
     CHECK(scope.samples_dropped() == lost);
     std::uint32_t next = 0;
     int wrong = 0;
@@ -302,14 +307,14 @@ TEST_CASE("a main loop that comes late loses nothing up to the ring's length, be
 }
 
 TEST_CASE("the main loop packs a few samples each time that it comes round") {
-  link::ScopeRecorder& scope = test::fresh_link().scope;
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
   scope.select(select(14), 1);
   constexpr std::uint32_t samples_per_frame = protocol::scope_frame_samples_maximum, before = samples_per_frame - 26;
   std::uint32_t period = 0;
-  for (; period < before; ++period) test::record(scope, signals_at(period), period);
-  for (; period < before + link::ScopeRecorder::readable; ++period) {
-    scope.next() = signals_at(period);
-    scope.record(period);
+  for (; period < before; ++period) test::record(fresh, signals_at(period), period);
+  for (; period < before + link::SampleRing::readable; ++period) {
+    test::interrupt(fresh, signals_at(period), period);
   }
   constexpr std::uint32_t left = samples_per_frame - before, rounds = left / link::ScopeRecorder::samples_per_pack;
   for (std::uint32_t i = 0; i < rounds; ++i) scope.pack();
@@ -319,25 +324,27 @@ TEST_CASE("the main loop packs a few samples each time that it comes round") {
 }
 
 TEST_CASE("the scope is off until signals are selected, and after none are") {
-  link::ScopeRecorder& scope = test::fresh_link().scope;
-  for (std::uint32_t period = 0; period < 5000; ++period) test::record(scope, signals_at(period), period);
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
+  for (std::uint32_t period = 0; period < 5000; ++period) test::record(fresh, signals_at(period), period);
   CHECK(scope.oldest_frame().empty());
   scope.select(select(2), 1);
-  test::record(scope, signals_at(0), 0);
+  test::record(fresh, signals_at(0), 0);
   scope.select({}, 2);
-  test::record(scope, signals_at(1), 1);
+  test::record(fresh, signals_at(1), 1);
   REQUIRE(!scope.oldest_frame().empty());
   const auto ignore = [](std::uint32_t, const std::vector<float>&) {};
   const ScopeFrameHeader header = decode(scope.oldest_frame(), select(2), ignore);
   CHECK(header.sample_count == 1);
   scope.release();
-  for (std::uint32_t period = 0; period < 5000; ++period) test::record(scope, signals_at(period), period);
+  for (std::uint32_t period = 0; period < 5000; ++period) test::record(fresh, signals_at(period), period);
   CHECK(scope.oldest_frame().empty());
 }
 
 TEST_CASE("a frame of changes keeps within its room, however many values change at its end") {
   const SignalSelection selection = select(32);
-  link::ScopeRecorder& scope = test::fresh_link().scope;
+  link::Link& fresh = test::fresh_link();
+  link::ScopeRecorder& scope = fresh.scope;
   scope.select(selection, 1);
   SignalValues signals{};
   std::uint32_t random = 1;
@@ -346,7 +353,7 @@ TEST_CASE("a frame of changes keeps within its room, however many values change 
     random = random * 1664525u + 1013904223u;
     const std::size_t changing = random >> 16 & 1u ? 32 : random >> 24 & 15u;
     for (std::size_t k = 0; k < changing; ++k) signals.values[selection.signals[k]] += 0.01f;
-    test::record(scope, signals, period);
+    test::record(fresh, signals, period);
     for (auto frame = scope.oldest_frame(); !frame.empty(); frame = scope.oldest_frame()) {
       decode(frame, selection, [&](std::uint32_t, const std::vector<float>&) { ++samples; });
       scope.release();

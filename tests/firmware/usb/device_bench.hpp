@@ -127,10 +127,13 @@ struct DeviceBench {
       protocol::SignalValues signals{};
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
       signals[protocol::Signal::gimbal_1_rad] = 1e-4f * static_cast<float>(periods % 30'000);
-      link.poses.record(
-          signals, {state, protocol::Fault::none, 0, 0, 0, link.commands.last_token(), periods, periods * 8400, 100});
+      interrupt(
+          link, signals,
+          {state, protocol::Fault::none, 0, 0, 0, link.commands.last_token(), periods, periods * cycles_per_period});
+      link.poses.note_load(100);
       port.pass_period();
-      record(link.scope, signals, periods++);
+      link.scope.pack();
+      ++periods;
       link.status.record(state, {}, 100, 0, false);
     }
   }

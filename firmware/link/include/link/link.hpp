@@ -10,12 +10,12 @@
 //   if (link.update_asked) controller.leave_for_update()
 //   if (link.memory_damaged) controller.raise(memory_damaged)
 //   controller.step(...)
-//   controller.write_signals(link.scope.next())
-//   link.poses.record(link.scope.next(), {...}); link.scope.record(periods)
+//   controller.write_signals(link.samples.next().signals)
+//   link.samples.next().summary = {...}; link.samples.record(); link.poses.note_load(cycles)
 //   link.status.record(controller.state(), motor_heat, cycles, late_force_reports, overrun)
 //
-// About 10 KB, most of it the last samples of the scope: it lives in the core-coupled memory. The scope's frames are
-// the main loop's and lie elsewhere.
+// About 10 KB, most of it the last samples: it lives in the core-coupled memory. The scope's frames are the main loop's
+// and lie elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,7 @@
 #include <link/parameter_store.hpp>
 #include <link/pose_recorder.hpp>
 #include <link/program_requests.hpp>
+#include <link/sample_ring.hpp>
 #include <link/scope_recorder.hpp>
 #include <link/servo_status.hpp>
 #include <link/shared.hpp>
@@ -32,11 +33,13 @@ namespace inkwell::link {
 
 struct Link {
   /// `cycles_per_period`: processor cycles of one control period.
-  Link(std::uint32_t cycles_per_period, ScopeFrames& frames) : poses(cycles_per_period), scope(frames) {}
+  Link(std::uint32_t cycles_per_period, ScopeFrames& frames)
+      : poses(samples, cycles_per_period), scope(samples, frames) {}
 
   ParameterStore parameters;
   CommandQueue commands;
   ProgramRequests program;
+  SampleRing samples;
   PoseRecorder poses;
   ScopeRecorder scope;
   ServoStatus status;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
+#include <link/sample_ring.hpp>
 #include <link/scope_plan.hpp>
-#include <link/shared.hpp>
 #include <protocol/scope.hpp>
 
 namespace inkwell::link {
@@ -20,35 +20,16 @@ struct ScopeFrames {
   alignas(4) std::array<Frame, count> frames;
 };
 
-/// The interrupt writes every signal of a period straight into a ring of samples, whatever is selected; that is all
-/// that recording costs there. The main loop follows, picks the selected signals and packs them into frames. When no
-/// frame is free, the oldest that is not being sent is dropped and its samples are counted, and so are samples that
-/// the main loop was too late for: the interrupt never waits, and the newest data is kept.
+/// The main loop follows the ring of samples, picks the selected signals and packs them into frames. When no frame is
+/// free, the oldest that is not being sent is dropped and its samples are counted, and so are samples that the main
+/// loop was too late for: the interrupt never waits, and the newest data is kept.
 class ScopeRecorder {
  public:
-  /// Samples in the ring: 1.6 ms, against the fraction of one for which the main loop is busy at most.
-  static constexpr std::uint32_t capacity = 32;
-  /// Two places stay unread, for the samples that the interrupt may write while one is packed.
-  static constexpr std::uint32_t readable = capacity - 2;
   /// So that the main loop comes round also when it has been late; it comes once a period.
   static constexpr std::uint32_t samples_per_pack = 4;
 
   /// `frames` are the recorder's from now on.
-  explicit ScopeRecorder(ScopeFrames& frames);
-
-  // ---- control interrupt ----
-
-  /// Where the signals of this period go; they count once record() has been called.
-  protocol::SignalValues& next() { return samples_[recorded_.load() % capacity].signals; }
-
-  /// Records what was written to next(). Called once every control period.
-  void record(std::uint32_t period) {
-    const std::uint32_t recorded = recorded_.load();
-    samples_[recorded % capacity].period = period;
-    recorded_.store(recorded + 1);
-  }
-
-  // ---- main loop ----
+  ScopeRecorder(const SampleRing& samples, ScopeFrames& frames);
 
   /// Records these signals from the next period on; none stops, and finishes the frame that was begun.
   /// A new selection forgets the finished frames of the one before.
@@ -67,11 +48,6 @@ class ScopeRecorder {
   std::uint32_t samples_dropped() const { return samples_dropped_; }
 
  private:
-  struct Sample {
-    protocol::SignalValues signals;
-    std::uint32_t period;
-  };
-
   void skip_overwritten(std::uint32_t recorded);
   void pack_oldest();
   void open_frame(std::uint8_t frame);
@@ -81,10 +57,7 @@ class ScopeRecorder {
   void write_full(const protocol::SignalValues& signals);
   void write_changes(const protocol::SignalValues& signals);
 
-  std::array<Sample, capacity> samples_{};  ///< ring
-  Shared<std::uint32_t> recorded_{0};       ///< written by the interrupt
-
-  // The main loop's own.
+  const SampleRing& samples_;
   std::uint32_t packed_ = 0;
   ScopePlan plan_{};
   std::array<ScopeFrames::Frame, ScopeFrames::count>& frames_;
