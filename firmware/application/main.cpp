@@ -1,4 +1,6 @@
 // The driver board's firmware: what it is made of, in the order in which it comes to life.
+#include <optional>
+
 #include <board/omni_driver.hpp>
 #include <drivers/boot_loader.hpp>
 #include <drivers/clocks.hpp>
@@ -37,6 +39,23 @@ bool start_clocks() {
   return false;
 }
 
+/// What is to be said of how the run before this one ended.
+protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::optional<drivers::CrashRecord>& crash,
+                               bool started_late) {
+  if (started_late || (crash && crash->crystal_stopped())) return protocol::Fault::crystal_failed;
+  if (crash) return protocol::Fault::processor_fault;
+  return cause.watchdog() ? protocol::Fault::watchdog : protocol::Fault::none;
+}
+
+protocol::CrashFacts facts_of(const drivers::CrashRecord& crash) {
+  return {.exception = crash.exception,
+          .program_counter = crash.program_counter,
+          .link_register = crash.link_register,
+          .configurable_fault_status = crash.configurable_fault_status,
+          .hard_fault_status = crash.hard_fault_status,
+          .fault_address = crash.fault_address};
+}
+
 }  // namespace
 
 extern "C" INKWELL_INTERRUPT void usb_interrupt() { drivers::OtgFs::wake(); }
@@ -61,15 +80,11 @@ int main() {
   encoders.start();
   switches.start();
   analog_inputs.start();
+  const protocol::Fault fault = fault_of_start(reset_cause, crash, started_late);
+  if (fault != protocol::Fault::none) controller.raise(fault);
+  host_link.black_box.start(fault, crash ? facts_of(*crash) : protocol::CrashFacts{});
   MemoryCheck memory_check;
-  if (!memory_check.start())
-    controller.raise(protocol::Fault::memory_damaged);
-  else if (started_late || (crash && crash->crystal_stopped()))
-    controller.raise(protocol::Fault::crystal_failed);
-  else if (crash)
-    controller.raise(protocol::Fault::processor_fault);
-  else if (reset_cause.watchdog())
-    controller.raise(protocol::Fault::watchdog);
+  if (!memory_check.start()) controller.raise(protocol::Fault::memory_damaged);
 
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up();
@@ -89,6 +104,7 @@ int main() {
     if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update)
       drivers::start_boot_loader();
     host_link.scope.pack();
+    host_link.black_box.follow();
     if (!memory_check.step()) host_link.memory_damaged.store(true);
     feed_watchdog();
     show_state();

@@ -6,6 +6,10 @@
 /// Puts a zero-initialised object, or one with a constructor that runs at start-up, into the core-coupled memory.
 #define INKWELL_CORE_COUPLED [[gnu::section(".bss.ccm")]]
 
+/// Puts an object without a constructor into the part of the main memory that start-up does not clear: it survives a
+/// reset, and holds anything after power-up.
+#define INKWELL_KEPT_OVER_RESET [[gnu::section(".bss.kept")]]
+
 extern "C" {
 extern std::uint32_t stack_bottom[], stack_top[];
 extern std::uint32_t data_begin[], data_end[], zero_begin[], zero_end[];

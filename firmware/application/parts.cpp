@@ -6,7 +6,10 @@
 
 namespace inkwell::application {
 
+using BlackBoxMemory = link::BlackBoxMemory<protocol::black_box_rows_before, protocol::black_box_rows_from_fault>;
+
 extern link::ScopeFrames scope_frames;
+extern BlackBoxMemory black_box_memory;
 
 /// The loops overshoot by a twentieth at most (the current loop's tests), and the amplifiers' offsets come on top.
 constexpr bool can_be_supervised(protocol::Parameter current_limit) {
@@ -25,11 +28,12 @@ INKWELL_CORE_COUPLED Part<drivers::Encoders> encoders;
 INKWELL_CORE_COUPLED Part<drivers::Switches> switches;
 INKWELL_CORE_COUPLED control::Controller controller{
     {board::supply_minimum_V, board::supply_maximum_V, board::duty_limit, board::current_measurable_A}};
-INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames};
+INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames, black_box_memory};
 
-// In main memory: one is written by the DMA controller, the other is large.
+// In main memory: one is written by the DMA controller, the others are large.
 Part<drivers::AnalogInputs> analog_inputs;
 link::ScopeFrames scope_frames;
+INKWELL_KEPT_OVER_RESET BlackBoxMemory black_box_memory;
 
 Part<drivers::StatusLed> status_led;
 Part<drivers::Console> console;

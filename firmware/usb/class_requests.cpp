@@ -4,6 +4,7 @@
 #include <new>
 
 #include <control/installed_force_law.hpp>
+#include <protocol/black_box.hpp>
 #include <protocol/usb_identity.hpp>
 #include <usb/device.hpp>
 
@@ -58,7 +59,8 @@ Answer Device::hid_request(const SetupPacket& setup) {
       const bool known = setup.value == report_value(output_report_type, ReportId::command) ||
                          setup.value == report_value(output_report_type, ReportId::force) ||
                          setup.value == report_value(feature_report, ReportId::parameters) ||
-                         setup.value == report_value(feature_report, ReportId::shapes);
+                         setup.value == report_value(feature_report, ReportId::shapes) ||
+                         setup.value == report_value(feature_report, ReportId::black_box_rows);
       return known && setup.length != 0 ? Answer::receive() : Answer::stall();
     }
     if (setup.request == set_idle_request && setup.length == 0) {
@@ -72,6 +74,7 @@ Answer Device::hid_request(const SetupPacket& setup) {
 Answer Device::get_report(const SetupPacket& setup) {
   const std::span<std::byte> buffer = control_.buffer();
   const auto send = [&](const auto& report) {
+    static_assert(sizeof report <= ControlEndpoint::buffer_size);
     std::memcpy(buffer.data(), &report, sizeof report);
     return Answer::send(buffer.first(sizeof report));
   };
@@ -94,6 +97,8 @@ Answer Device::get_report(const SetupPacket& setup) {
     }
     case report_value(feature_report, ReportId::force_law):
       return Answer::send(std::span(control::installed_force_law.report, control::installed_force_law.report_size));
+    case report_value(feature_report, ReportId::black_box): return send(link_.black_box.report());
+    case report_value(feature_report, ReportId::black_box_rows): return send(link_.black_box.rows());
     default: return Answer::stall();
   }
 }
@@ -116,6 +121,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
     return true;
   }
   if (setup.value == report_value(feature_report, ReportId::shapes)) return link_.program.accept_shapes(data);
+  if (setup.value == report_value(feature_report, ReportId::black_box_rows)) return link_.black_box.select_rows(data);
   // What is wrong with a transaction is told by the TransactionReport, not by a stall.
   link_.parameters.accept(data, force_is_on());
   return true;

@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/usb_identity.hpp>
 #include <usb/port.hpp>
@@ -79,6 +80,8 @@ constexpr auto report_descriptor =
          report(ReportId::frame, 7, feature_item, sizeof(protocol::FrameReport)),
          report(ReportId::shapes, 9, feature_item, sizeof(protocol::ShapesReport)),
          report(ReportId::force_law, 10, feature_item, protocol::force_law_report_maximum),
+         report(ReportId::black_box, 11, feature_item, sizeof(protocol::BlackBoxReport)),
+         report(ReportId::black_box_rows, 12, feature_item, sizeof(protocol::BlackBoxRowsReport)),
          bytes(0xC0));  // end of the collection
 
 // ---- and that of the controller (HID usage tables 1.12, section 4) ------------------------------------

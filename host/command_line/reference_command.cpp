@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <device/fault_text.hpp>
+#include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/supervision.hpp>
 #include <protocol/usb_identity.hpp>
@@ -43,6 +44,12 @@ constexpr ReportRow reports[] = {
      "the shapes that are felt from now on; only its used part is sent"},
     {ReportId::force_law, "ForceLawReport", "feature, get", protocol::force_law_report_maximum,
      "the parameters and signals that the image's own force law adds to the tables; its size is in its head"},
+    {ReportId::black_box, "BlackBoxReport", "feature, get", sizeof(protocol::BlackBoxReport),
+     "whether a black box is kept, of which fault, and where the processor crashed"},
+    {ReportId::black_box_rows, "BlackBoxRowsReport", "feature, get", sizeof(protocol::BlackBoxRowsReport),
+     "some rows of the black box: every signal of a control period each"},
+    {ReportId::black_box_rows, "BlackBoxRequest", "feature, set", sizeof(protocol::BlackBoxRequest),
+     "the first row that is wanted"},
 };
 
 void print_reports() {

@@ -7,6 +7,7 @@
 //                                    FrameReport, ForceLawReport
 //   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all; ShapesReport,
 //                                    likewise
+//   both             feature report  those of the black box: protocol/black_box.hpp
 //
 // And, over an interface of its own, ControllerReport: what any program reads that knows joysticks.
 #pragma once
@@ -35,15 +36,17 @@ inline constexpr float servo_period_s = 1.0f / servo_rate_Hz;
 inline constexpr std::uint32_t pose_rate_Hz = 1'000;
 
 enum class ReportId : std::uint8_t {
-  pose = 0x01,         ///< input
-  command = 0x02,      ///< output
-  force = 0x03,        ///< output
-  information = 0x10,  ///< feature, get
-  parameters = 0x11,   ///< feature, get and set
-  transaction = 0x12,  ///< feature, get
-  frame = 0x13,        ///< feature, get
-  shapes = 0x14,       ///< feature, set
-  force_law = 0x15,    ///< feature, get
+  pose = 0x01,            ///< input
+  command = 0x02,         ///< output
+  force = 0x03,           ///< output
+  information = 0x10,     ///< feature, get
+  parameters = 0x11,      ///< feature, get and set
+  transaction = 0x12,     ///< feature, get
+  frame = 0x13,           ///< feature, get
+  shapes = 0x14,          ///< feature, set
+  force_law = 0x15,       ///< feature, get
+  black_box = 0x16,       ///< feature, get: protocol/black_box.hpp
+  black_box_rows = 0x17,  ///< feature, get and set
 };
 
 /// Bits of PoseReport::switches.

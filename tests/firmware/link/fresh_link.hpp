@@ -1,4 +1,5 @@
-// One Link for all tests, made new for each: its scope frames fill half of the chip's memory.
+// One Link for all tests, made new for each: its scope frames fill half of the chip's memory. The black box has fewer
+// rows than on the board, for the same reason.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +10,16 @@
 namespace inkwell::test {
 
 inline constexpr std::uint32_t cycles_per_period = 8400;
+using SmallBlackBox = link::BlackBoxMemory<5, 4>;
 
 inline link::Link& fresh_link() {
   static link::ScopeFrames frames;
+  static SmallBlackBox black_box;
   alignas(link::Link) static std::byte storage[sizeof(link::Link)];
-  return *new (storage) link::Link(cycles_per_period, frames);
+  black_box = {};
+  auto* const fresh = new (storage) link::Link(cycles_per_period, frames, black_box);
+  fresh->black_box.start(protocol::Fault::none, {});
+  return *fresh;
 }
 
 /// What the interrupt leaves of one period.

@@ -120,19 +120,20 @@ struct DeviceBench {
   }
 
   /// Lets the control interrupt run; what it takes and records is real, its signals are not.
-  void run(std::uint32_t count, protocol::State state = protocol::State::ready) {
+  void run(std::uint32_t count, protocol::State state = protocol::State::ready,
+           protocol::Fault fault = protocol::Fault::none) {
     for (std::uint32_t i = 0; i < count; ++i) {
       link.parameters.take(periods);
       if (const protocol::CommandReport* command = link.commands.take()) last_command = *command;
       protocol::SignalValues signals{};
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
       signals[protocol::Signal::gimbal_1_rad] = 1e-4f * static_cast<float>(periods % 30'000);
-      interrupt(
-          link, signals,
-          {state, protocol::Fault::none, 0, 0, 0, link.commands.last_token(), periods, periods * cycles_per_period});
+      interrupt(link, signals,
+                {state, fault, 0, 0, 0, link.commands.last_token(), periods, periods * cycles_per_period});
       link.poses.note_load(100);
       port.pass_period();
       link.scope.pack();
+      link.black_box.follow();
       ++periods;
       link.status.record(state, {}, 100, 0, false);
     }

@@ -405,6 +405,41 @@ TEST_CASE("HID: shapes come whole or are refused by a stall, and go with the hos
   CHECK(taken->life_periods[8] == 0);
 }
 
+TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
+  DeviceBench bench;
+  bench.configure();
+  const auto head = [&] { return bench.get_feature<protocol::BlackBoxReport>(protocol::ReportId::black_box); };
+  bench.run(30);
+  CHECK(head().fault == protocol::Fault::none);
+  CHECK(bench.get_feature<protocol::BlackBoxRowsReport>(protocol::ReportId::black_box_rows).row_count == 0);
+
+  bench.run(100, protocol::State::fault, protocol::Fault::supply_low);
+  CHECK(head().fault == protocol::Fault::supply_low);
+  CHECK(head().fault_periods == 30);
+  CHECK(head().rows_before == 2);
+  REQUIRE(head().row_count == 6);
+  std::uint32_t expected[] = {0, 20, 30, 50, 70, 90};
+  for (std::uint16_t row = 0; row < 6; ++row) {
+    const protocol::BlackBoxRequest request{.first_row = row};
+    CHECK(bench.set_report(3, request) == done_result);
+    for (int i = 0; i < 2; ++i) {
+      const auto report = bench.get_feature<protocol::BlackBoxRowsReport>(protocol::ReportId::black_box_rows);
+      CHECK(report.first_row == row);
+      CHECK(report.row_count == std::min<std::size_t>(protocol::black_box_report_rows, 6u - row));
+      const std::uint32_t period = report.rows[0].time_periods;
+      CHECK(period == expected[row]);
+      const float position_m = report.rows[0].values[static_cast<std::size_t>(protocol::Signal::position_x_m)];
+      CHECK(position_m == static_cast<float>(period));
+    }
+  }
+  protocol::BlackBoxRequest request{.version = protocol::protocol_version - 1, .first_row = 0};
+  CHECK(bench.set_report(3, request) == stall_result);
+  CHECK(bench.set_report(3, request, 3) == stall_result);
+
+  bench.run(1, protocol::State::active);
+  CHECK(head().fault == protocol::Fault::none);
+}
+
 TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, and nothing happens") {
   DeviceBench bench;
   bench.configure();
@@ -415,7 +450,7 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
   for (unsigned type = 0; type < 5; ++type)
     for (unsigned id = 0; id < 256; ++id) {
       const auto value = static_cast<std::uint16_t>(type << 8 | id);
-      if (value == 0x0202 || value == 0x0203 || value == 0x0311 || value == 0x0314) continue;
+      if (value == 0x0202 || value == 0x0203 || value == 0x0311 || value == 0x0314 || value == 0x0317) continue;
       bench.setup(request(0x21, 9, value, 0, 37));
       CHECK(bench.port.out(0, bytes_of(good)) == Handshake::stall);
     }
@@ -439,7 +474,7 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
     for (unsigned id = 0; id < 256; ++id) {
       const unsigned value = type << 8 | id;
       if (value == 0x0101 || value == 0x0310 || value == 0x0311 || value == 0x0312 || value == 0x0313 ||
-          value == 0x0315)
+          value == 0x0315 || value == 0x0316 || value == 0x0317)
         continue;
       CHECK(bench.get_report(static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(id), 64) == stall_result);
     }

@@ -14,12 +14,13 @@
 //   link.samples.next().summary = {...}; link.samples.record(); link.poses.note_load(cycles)
 //   link.status.record(controller.state(), motor_heat, cycles, late_force_reports, overrun)
 //
-// About 10 KB, most of it the last samples: it lives in the core-coupled memory. The scope's frames are the main loop's
-// and lie elsewhere.
+// About 10 KB, most of it the last samples: it lives in the core-coupled memory. The scope's frames and the rows of the
+// black box are the main loop's and lie elsewhere.
 #pragma once
 
 #include <cstdint>
 
+#include <link/black_box.hpp>
 #include <link/command_queue.hpp>
 #include <link/parameter_store.hpp>
 #include <link/pose_recorder.hpp>
@@ -33,8 +34,9 @@ namespace inkwell::link {
 
 struct Link {
   /// `cycles_per_period`: processor cycles of one control period.
-  Link(std::uint32_t cycles_per_period, ScopeFrames& frames)
-      : poses(samples, cycles_per_period), scope(samples, frames) {}
+  template <std::size_t before, std::size_t after>
+  Link(std::uint32_t cycles_per_period, ScopeFrames& frames, BlackBoxMemory<before, after>& memory)
+      : poses(samples, cycles_per_period), scope(samples, frames), black_box(samples, memory) {}
 
   ParameterStore parameters;
   CommandQueue commands;
@@ -42,6 +44,7 @@ struct Link {
   SampleRing samples;
   PoseRecorder poses;
   ScopeRecorder scope;
+  BlackBox black_box;
   ServoStatus status;
   Shared<bool> update_asked{false};    ///< the host wants the boot loader
   Shared<bool> memory_damaged{false};  ///< a bit has changed by itself

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include <link/shared.hpp>
-#include <protocol/faults.hpp>
 #include <protocol/signals.hpp>
+#include <protocol/supervision.hpp>
 
 namespace inkwell::link {
 

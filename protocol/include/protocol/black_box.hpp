@@ -1,0 +1,78 @@
+// The black box: what a board kept of the time around a fault. It keeps one, over a reset as well, from the fault until
+// the force is switched on again or the power goes. Rows lie a millisecond apart; one is the fault's own.
+//
+//   host <- device   feature report  BlackBoxReport: whether there is one, and what it says
+//   host -> device   feature report  BlackBoxRequest: the first row of the next BlackBoxRowsReport
+//   host <- device   feature report  BlackBoxRowsReport, the same again until another one is asked for
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <protocol/reports.hpp>
+#include <protocol/signals.hpp>
+
+namespace inkwell::protocol {
+
+/// Control periods from one row to the next. The fault's own row is out of step with those before it.
+inline constexpr std::uint32_t black_box_step_periods = servo_rate_Hz / 1000;
+/// Rows before the fault, 100 ms of them, and from it on.
+inline constexpr std::size_t black_box_rows_before = 100, black_box_rows_from_fault = 101;
+inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + black_box_rows_from_fault;
+
+/// What the processor noted as it crashed (ARMv7-M, "Fault handling"); all 0 if it did not.
+struct CrashFacts {
+  std::uint32_t exception;        ///< its number: 2 NMI, 3 hard fault, from 16 on an unexpected interrupt
+  std::uint32_t program_counter;  ///< 0 if the stack could not be read
+  std::uint32_t link_register;
+  std::uint32_t configurable_fault_status;  ///< CFSR
+  std::uint32_t hard_fault_status;          ///< HFSR
+  std::uint32_t fault_address;              ///< BFAR
+};
+
+/// Feature report, get.
+struct BlackBoxReport {
+  ReportId report_id = ReportId::black_box;
+  std::uint8_t is_complete;  ///< 1: nothing more will come; 0: rows are still being added
+  std::uint8_t is_restart;   ///< 1: the board's time ended with the last row; the start after it told the fault
+  std::uint8_t reserved = 0;
+  Fault fault;                ///< `none` if no black box is kept; then the rest is 0
+  std::uint16_t rows_before;  ///< how many of the rows are from before the fault; the first ones
+  std::uint16_t row_count;    ///< up to black_box_rows_maximum
+  std::uint16_t reserved_2 = 0;
+  std::uint32_t fault_periods;  ///< the control period of the fault, or of the last row before a restart
+  CrashFacts crash;             ///< of the restart
+};
+
+/// Feature report, set: stalled if it is of another version or length.
+struct BlackBoxRequest {
+  ReportId report_id = ReportId::black_box_rows;
+  std::uint8_t version = protocol_version;
+  std::uint16_t first_row;
+};
+
+/// Every signal of one control period, in the table's order; those of the force law behind them, as far as it has any.
+struct BlackBoxRow {
+  std::uint32_t time_periods;
+  float values[signal_count + force_law_signals_maximum];
+};
+
+/// As many as have room where a device composes its answers.
+inline constexpr std::size_t black_box_report_rows = (sizeof(ParametersReport) - 8) / sizeof(BlackBoxRow);
+
+/// Feature report, get: some rows in the order of time.
+struct BlackBoxRowsReport {
+  ReportId report_id = ReportId::black_box_rows;
+  std::uint8_t row_count;       ///< 0..black_box_report_rows; 0 behind the last row
+  std::uint16_t first_row;      ///< as it was asked for
+  std::uint32_t fault_periods;  ///< BlackBoxReport::fault_periods, which tells one black box from another
+  BlackBoxRow rows[black_box_report_rows];
+};
+
+static_assert(sizeof(BlackBoxReport) == 40);
+static_assert(sizeof(BlackBoxRequest) == 4);
+static_assert(sizeof(BlackBoxRow) == 4 + 4 * (signal_count + force_law_signals_maximum));
+static_assert(sizeof(BlackBoxRowsReport) == 8 + black_box_report_rows * sizeof(BlackBoxRow) &&
+              sizeof(BlackBoxRowsReport) <= sizeof(ParametersReport));
+
+}  // namespace inkwell::protocol
