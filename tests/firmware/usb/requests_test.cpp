@@ -206,7 +206,9 @@ TEST_CASE("firmware update: the device leaves when the host has its answer, not 
   CHECK(bench.control(request(0xA1, 5, 0, 3, 1)) == answer({0}));
   CHECK(bench.control(request(0xA1, 3, 0, 3, 6)) == answer({0, 0, 0, 0, 0, 0}));
   CHECK_FALSE(bench.device.leaves_for_update());
+  CHECK_FALSE(bench.link.update_asked.load());
   bench.setup(detach);
+  CHECK(bench.link.update_asked.load());  // from now on no force comes on
   CHECK_FALSE(bench.device.leaves_for_update());
   CHECK(bench.status_in() == done_result);
   CHECK(bench.device.leaves_for_update());
@@ -232,6 +234,7 @@ TEST_CASE(
   bench.device.poll();
   bench.configure();
   CHECK_FALSE(bench.device.leaves_for_update());
+  CHECK_FALSE(bench.link.update_asked.load());
 }
 
 TEST_CASE("firmware update: other requests, directions and lengths are refused") {
