@@ -67,6 +67,19 @@ struct Device::Implementation {
                       what, length, sizeof report));
   }
 
+  /// From `first_row` on, with the feature_mutex held. Another program may ask for other rows between the two requests.
+  protocol::BlackBoxRowsReport rows_from(std::size_t first_row) {
+    constexpr int tries = 100;
+    const protocol::BlackBoxRequest request{.first_row = static_cast<std::uint16_t>(first_row)};
+    for (int i = 0; i < tries; ++i) {
+      transport->set_feature(std::as_bytes(std::span(&request, 1)));
+      protocol::BlackBoxRowsReport report{};
+      get(report, "black box");
+      if (report.first_row == request.first_row) return report;
+    }
+    throw InUse("Another program reads the black box all the time. Close it and try again.");
+  }
+
   /// Gives the command its token and sends it. `before` is done once the token is known.
   template <class Before>
   std::uint8_t send(protocol::CommandReport& command, Before before) {
@@ -283,6 +296,29 @@ protocol::TransactionReport Device::restore_default_parameters() {
   report.operation = protocol::ParameterOperation::restore_defaults;
   report.version = protocol::protocol_version;
   return implementation_->transact(report);
+}
+
+protocol::BlackBoxReport Device::black_box() {
+  const std::lock_guard lock(implementation_->feature_mutex);
+  protocol::BlackBoxReport report{};
+  implementation_->get(report, "black box");
+  if (report.row_count > protocol::black_box_rows_maximum || report.rows_before > report.row_count)
+    throw Incompatible("The device's black box is damaged. Flash the firmware that belongs to this companion.");
+  return report;
+}
+
+std::vector<protocol::BlackBoxRow> Device::black_box_rows(const protocol::BlackBoxReport& box) {
+  const std::lock_guard lock(implementation_->feature_mutex);
+  std::vector<protocol::BlackBoxRow> rows;
+  while (rows.size() < box.row_count) {
+    const auto report = implementation_->rows_from(rows.size());
+    if (report.row_count == 0 || report.fault_periods != box.fault_periods)
+      throw Error("The black box went while it was read, because the force was switched on.");
+    const std::size_t count =
+        std::min({std::size_t{report.row_count}, std::size(report.rows), box.row_count - rows.size()});
+    rows.insert(rows.end(), report.rows, report.rows + count);
+  }
+  return rows;
 }
 
 std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout) {

@@ -66,6 +66,8 @@ class CsvReader {
       about.arm = value;
     else if (key == "simulation")
       about.simulation = value == "1";
+    else if (key == "step_periods")
+      about.step_periods = step_periods_of(number(value).value_or(1));
     else if (key == "force_law")
       take_force_law(recording_, value, name_);
     else if (key == "complete")

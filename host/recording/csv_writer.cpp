@@ -59,6 +59,7 @@ class CsvWriter final : public Writer {
                    format_name, format_version, about.created_utc, about.firmware_version, about.protocol_version);
     fmt::format_to(out, "# serial_number = {}\n# arm = {}\n# simulation = {}\n", about.serial_number, about.arm,
                    about.simulation ? 1 : 0);
+    if (about.step_periods != 1) fmt::format_to(out, "# step_periods = {}\n", about.step_periods);
     if (about.force_law) fmt::format_to(out, "# force_law = {}\n", force_law_digits(about));
     for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
       fmt::format_to(out, "# parameter {} = {}\n", protocol::known_parameters()[i].name, about.parameters.values[i]);

@@ -53,6 +53,11 @@ class WorkDirectory {
   std::filesystem::path path_;
 };
 
+/// Samples that are far apart need not be so evenly: each is drawn at its own time.
+bool has_point_each(const Recording& recording, Range shown) {
+  return recording.information.step_periods > 1 && shown.end - shown.begin <= points_maximum;
+}
+
 FigureData data_of(const Recording& recording, const std::vector<Quantity>& quantities, Range shown, double from_s,
                    double to_s) {
   FigureData data;
@@ -62,6 +67,14 @@ FigureData data_of(const Recording& recording, const std::vector<Quantity>& quan
     columns.push_back(&recording.column(quantity));
   }
   const std::size_t points = std::min(points_maximum, shown.end - shown.begin);
+  if (has_point_each(recording, shown)) {
+    for (std::size_t i = shown.begin; i < shown.end; ++i) {
+      data.rows.push_back({recording.elapsed_s(i), {}});
+      for (const auto* column : columns)
+        data.rows.back().bands.push_back(band_of(1, [&](std::size_t) { return static_cast<double>((*column)[i]); }));
+    }
+    return data;
+  }
   // With few points, each of them is one sample; the half period keeps rounding from moving one to its neighbour.
   const double half_period_s = 0.5 / protocol::servo_rate_Hz;
   const double step_s = (to_s - from_s + 2 * half_period_s) / static_cast<double>(points);
@@ -100,8 +113,9 @@ std::string subtitle(const Recording& recording) {
   return fmt::format("{}", fmt::join(parts, "  ·  "));
 }
 
-std::string time_label(double shown_s) {
-  if (shown_s * protocol::servo_rate_Hz <= static_cast<double>(points_maximum)) return "time  /  s";
+std::string time_label(const Recording& recording, double shown_s) {
+  if (shown_s * protocol::servo_rate_Hz <= static_cast<double>(points_maximum * recording.information.step_periods))
+    return "time  /  s";
   return fmt::format("time  /  s          line: mean of {:.2g} ms, band: its extremes", 1e3 * shown_s / points_maximum);
 }
 
@@ -178,8 +192,8 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
       text += "unset label\nunset arrow\n" + marks(recording, from_s, to_s, false);
     }
     if (i + 1 == count)
-      text +=
-          fmt::format("set format x '%g'\nset xlabel {} textcolor rgb ink\n", gnuplot_text(time_label(to_s - from_s)));
+      text += fmt::format("set format x '%g'\nset xlabel {} textcolor rgb ink\n",
+                          gnuplot_text(time_label(recording, to_s - from_s)));
     text += fmt::format("set tmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n",
                         static_cast<double>(top) / height, static_cast<double>(top - pane_pixels) / height);
     // A label instead of ylabel, which would stand elsewhere in each pane, as far out as the numbers push it.

@@ -17,6 +17,9 @@ std::string force_law_digits(const Information& information);
 /// there. What is wrong with it becomes a remark, with the file's name.
 void take_force_law(Recording& recording, std::string_view digits, std::string_view file);
 
+/// Information::step_periods as it stands in a file: 1 for what is none, such as in a file of an earlier version.
+std::uint32_t step_periods_of(double written);
+
 std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information);
 Recording read_hdf5(const std::filesystem::path& file);
 

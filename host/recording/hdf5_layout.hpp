@@ -2,7 +2,7 @@
 //
 //   /                    attributes: format, format_version, created_utc, firmware_version, protocol_version,
 //                        serial_number, arm, force_law (as the device sent it, in hexadecimal digits), simulation,
-//                        servo_rate_Hz
+//                        servo_rate_Hz, step_periods (control periods from one sample to the next)
 //   /parameters/NAME     scalar float, attributes unit and help
 //   /period              uint32[N], control period of each sample
 //   /time_s              float64[N]

@@ -55,6 +55,7 @@ class Hdf5Reader {
     about.serial_number = read_text_attribute(root, "serial_number");
     about.arm = read_text_attribute(root, "arm");
     about.simulation = read_number_attribute(root, "simulation") != 0;
+    about.step_periods = step_periods_of(static_cast<double>(read_number_attribute(root, "step_periods")));
     take_force_law(recording_, read_text_attribute(root, "force_law"), name_);
     for (const auto& name : names("/parameters")) {
       const auto parameter = protocol::find_parameter(name);

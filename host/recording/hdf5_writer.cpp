@@ -115,6 +115,7 @@ class Hdf5Writer final : public Writer {
     write_attribute(file.id(), "force_law", force_law_digits(about));
     write_attribute(file.id(), "simulation", std::int64_t{about.simulation});
     write_attribute(file.id(), "servo_rate_Hz", std::int64_t{protocol::servo_rate_Hz});
+    write_attribute(file.id(), "step_periods", std::int64_t{about.step_periods});
 
     const Handle parameters = group(file.id(), "parameters");
     for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {

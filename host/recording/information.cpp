@@ -32,6 +32,7 @@ Information describe(const device::Information& device, const protocol::Paramete
           .force_law = device.force_law ? device.force_law->report : nullptr,
           .parameters = parameters,
           .signals = std::move(signals),
+          .step_periods = 1,
           .simulated = {}};
 }
 

@@ -20,7 +20,11 @@ Recording Recording::without_samples(Information information) {
 
 std::uint64_t Recording::lost() const {
   if (periods.size() < 2) return 0;
-  return std::uint64_t{periods.back() - periods.front()} + 1 - periods.size();
+  const std::uint32_t step = information.step_periods;
+  if (step == 1) return std::uint64_t{periods.back() - periods.front()} + 1 - periods.size();
+  std::uint64_t count = 0;
+  for (std::size_t i = 1; i < size(); ++i) count += (periods[i] - periods[i - 1] - 1) / step;
+  return count;
 }
 
 std::size_t Recording::sample_at(double elapsed) const {
@@ -70,6 +74,16 @@ device::ScopeSamples Recording::samples(std::size_t begin, std::size_t end) cons
   return samples;
 }
 
+device::ScopeSamples Recording::held_sample(std::size_t sample) const {
+  const bool is_last = sample + 1 == size();
+  device::ScopeSamples held = samples(sample, sample + 1);
+  if (!is_last) held.count = std::min(information.step_periods, periods[sample + 1] - periods[sample]);
+  if (sample > 0) held.lost_before -= std::min<std::uint64_t>(held.lost_before, information.step_periods - 1);
+  const std::vector<float> values = held.values;
+  for (std::size_t i = 1; i < held.count; ++i) held.values.insert(held.values.end(), values.begin(), values.end());
+  return held;
+}
+
 void Recording::append(const device::ScopeSamples& samples) {
   for (std::size_t i = 0; i < samples.count; ++i) {
     periods.push_back(samples.first_period + static_cast<std::uint32_t>(i));
@@ -85,6 +99,10 @@ void Recording::keep(std::size_t begin, std::size_t end) {
   cut(periods);
   for (auto& column : columns) cut(column);
   for (auto& column : simulated_columns) cut(column);
+}
+
+std::uint32_t step_periods_of(double written) {
+  return written >= 1 && written <= protocol::servo_rate_Hz ? static_cast<std::uint32_t>(written) : 1;
 }
 
 namespace {
@@ -110,11 +128,11 @@ Recording read(const std::filesystem::path& file) {
   return recording;
 }
 
-void check_can_be_created(const std::filesystem::path& file) {
+void check_can_be_created(const std::filesystem::path& file, Existing existing) {
   const auto ending = file.extension();
   if (ending != ".h5" && ending != ".hdf5" && ending != ".csv")
     throw device::Error(fmt::format("{} must end in .h5 or .csv, which chooses the format.", file.string()));
-  if (std::filesystem::exists(file))
+  if (existing == Existing::stays && std::filesystem::exists(file))
     throw device::Error(fmt::format("{} exists. Give the recording another name, or remove that file.", file.string()));
   const auto folder = std::filesystem::absolute(file).parent_path();
   if (!std::filesystem::is_directory(folder))

@@ -39,6 +39,8 @@ Replay::Passed Replay::advance(double passed_s, double history_s) {
   if (position_s_ >= duration_s()) is_playing_ = false;
 
   const std::size_t end = recording_.sample_at(position_s_ + half_period_s);
+  for (; recording_.information.step_periods > 1 && next_sample_ < end; ++next_sample_)
+    passed.blocks.push_back(recording_.held_sample(next_sample_));
   while (next_sample_ < end) {
     const std::size_t last =
         recording_.end_of_stretch(next_sample_, std::min(end, next_sample_ + block_samples_maximum));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
+#include <protocol/black_box.hpp>
 #include <recording/recording.hpp>
 
 #include <stepped_board.hpp>
@@ -68,6 +70,78 @@ TEST_CASE("a fault is shown with its remedy, and cleared once its cause is gone"
   const auto cleared = rig.run({"fault", "clear"});
   CHECK(cleared.exit_code == 0);
   CHECK(cleared.out.starts_with("No fault."));
+}
+
+TEST_CASE("the black box is told of, saved as an ordinary recording, and gone when the force was switched on") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("fault.h5"), table = directory.file("fault.csv");
+  BoardAndCompanion rig;
+  rig.wait_for_device();
+  const auto check_none = [&] {
+    const auto refused = rig.run({"fault", "--out", file});
+    CHECK(refused.exit_code == 1);
+    CHECK(refused.err.find("No black box is kept") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(file));
+    CHECK(nlohmann::json::parse(rig.run({"fault", "--json"}).out).at("black_box").is_null());
+    CHECK(rig.run({"fault"}).out.find("black box") == std::string::npos);
+  };
+  check_none();
+
+  rig.control.bridge_fault(true);
+  rig.control.run(0.01);  // it is still being filled
+  rig.control.resume();
+  const auto saved = rig.run({"fault", "--out", table});
+  INFO(saved.err);
+  REQUIRE(saved.exit_code == 0);
+  CHECK(saved.out.find("bridge_fault at ") != std::string::npos);
+  CHECK(saved.out.find(fmt::format("201 samples of {} signals", protocol::signal_count)) != std::string::npos);
+  const auto recording = recording::read(table);
+  CHECK(recording.complete);
+  CHECK(recording.size() == protocol::black_box_rows_maximum);
+  CHECK(recording.lost() == 0);
+  CHECK(recording.information.simulation);
+  CHECK(recording.duration_s() == doctest::Approx(0.2).epsilon(0.005));
+  REQUIRE(recording.marks.size() == 1);
+  CHECK(recording.marks[0].text == "bridge_fault");
+  CHECK(recording.marks[0].period == recording.periods[protocol::black_box_rows_before]);
+
+  const auto shown = rig.run({"fault"});
+  CHECK(shown.out.find("A black box is kept: every signal around bridge_fault") != std::string::npos);
+  CHECK(shown.out.find("`inkwell fault --out FILE` saves it") != std::string::npos);
+  CHECK(shown.out.find("exception") == std::string::npos);
+  const auto json = nlohmann::json::parse(rig.run({"fault", "--out", file, "--json"}).out);
+  CHECK(json.at("file") == file);
+  CHECK(json.at("black_box").at("fault") == "bridge_fault");
+  CHECK(json.at("black_box").at("rows") == 201);
+  CHECK(json.at("black_box").at("rows_before") == 100);
+  CHECK(json.at("black_box").at("complete") == true);
+  CHECK(json.at("black_box").at("restart") == false);
+  CHECK(json.at("black_box").at("crash").is_null());
+  CHECK(json.at("black_box").at("time_s").get<double>() == doctest::Approx(recording.marks[0].period / 20e3));
+  CHECK(recording::read(file).periods == recording.periods);
+  CHECK(nlohmann::json::parse(run_program("inkwell", {"replay", file, "--json"}).out).at("lost") == 0);
+  CHECK(run_program("inkwell", {"plot", file, "--signals", "supply_V,force_N"}).exit_code == 0);
+
+  const auto exists = rig.run({"fault", "--out", file});
+  CHECK(exists.exit_code == 2);
+  CHECK(exists.err.find("exists") != std::string::npos);
+  CHECK(rig.run({"fault", "--out", file, "--overwrite"}).exit_code == 0);
+  for (const auto& words : std::vector<std::vector<std::string>>{{"fault", "--overwrite"},
+                                                                 {"fault", "--out", ""},
+                                                                 {"fault", "--out", directory.file("fault.mat")},
+                                                                 {"fault", "clear", "--out", directory.file("b.h5")}}) {
+    const auto refused = rig.run(words);
+    CHECK(refused.exit_code == 2);
+    CHECK_FALSE(refused.err.empty());
+  }
+
+  rig.control.bridge_fault(false);
+  rig.control.run(0.01);
+  rig.control.resume();
+  CHECK(rig.run({"fault", "clear"}).out.find("A black box is kept") != std::string::npos);
+  CHECK(rig.run({"force", "on", "--seconds", "0.1"}).exit_code == 0);
+  std::filesystem::remove(file);
+  check_none();
 }
 
 TEST_CASE("the arms that are there are listed by serial number") {

@@ -113,6 +113,17 @@ std::string error_of(const Recording& recording, const FigureOptions& options, c
 
 }  // namespace
 
+TEST_CASE("samples that are far apart are drawn at their own times") {
+  auto recording = constant({{Signal::force_N, 1.0f}}, 5);
+  recording.information.step_periods = 200;
+  recording.periods = {0, 10, 20, 30, 400};
+  recording.columns[0][0] = recording.columns[0][1] = 0.0f;
+  const TemporaryDirectory directory;
+  draw_figure(recording, {}, directory / "a.png");
+  // Up at a twentieth of the time, and from there on level.
+  CHECK(line_at(read_png(directory.file("a.png")), 0, blue));
+}
+
 TEST_CASE("there is one pane for each unit, and its axis says quantity and unit") {
   const auto panes = figure_panes({Signal::position_x_m, Signal::force_N, Signal::penetration_x_m, Signal::duty_1,
                                    Signal::force_x_N, Signal::duty_2});

@@ -15,6 +15,7 @@
 #include <device/program_force.hpp>
 #include <device/scope_decoder.hpp>
 #include <device/transport.hpp>
+#include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::device {
@@ -78,6 +79,11 @@ class Device {
   /// One transaction: all take effect at one control period, or none does and Refused is thrown.
   protocol::TransactionReport set_parameters(std::span<const ParameterChange> changes);
   protocol::TransactionReport restore_default_parameters();
+
+  /// What the board kept of the time around its last fault; its `fault` is none if it keeps nothing.
+  protocol::BlackBoxReport black_box();
+  /// The rows of this one, in the order of time. Throws Error if the board gave it up meanwhile.
+  std::vector<protocol::BlackBoxRow> black_box_rows(const protocol::BlackBoxReport& box);
 
   /// Waits for the next scope frame; none on time-out.
   std::optional<ScopeSamples> read_scope(std::chrono::milliseconds timeout);

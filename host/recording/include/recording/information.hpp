@@ -29,6 +29,8 @@ struct Information {
   std::shared_ptr<const std::vector<std::byte>> force_law;
   protocol::ParameterSet parameters{};
   std::vector<protocol::Signal> signals;
+  /// Control periods from one sample to the next: 1 in what the scope gave, more in a black box.
+  std::uint32_t step_periods = 1;
   /// What a simulation knew beside them. No device tells these, so a replay passes them over.
   std::vector<protocol::SimulatedQuantity> simulated;
 };

@@ -46,13 +46,15 @@ struct Recording {
   std::vector<Quantity> quantities() const;
   /// Throws device::Error, with what was recorded, if the quantity was not.
   const std::vector<float>& column(Quantity quantity) const;
-  /// Control periods between the first and the last sample that are missing.
+  /// Samples between the first and the last that are missing.
   std::uint64_t lost() const;
 
   /// Where the stretch without a gap ends that `begin` lies in; `end` at the latest.
   std::size_t end_of_stretch(std::size_t begin, std::size_t end) const;
   /// A stretch as the scope gave it; periods that are missing before it count as lost.
   device::ScopeSamples samples(std::size_t begin, std::size_t end) const;
+  /// The sample as the scope would have given it: its values stay until the next one is due.
+  device::ScopeSamples held_sample(std::size_t sample) const;
   /// Adds samples of information.signals to a recording without simulated columns.
   void append(const device::ScopeSamples& samples);
   /// Forgets the samples before `begin` and from `end` on.

@@ -27,8 +27,11 @@ class Writer {
   virtual void finish() = 0;
 };
 
-/// Throws device::Error with a sentence if the ending is unknown, the file exists, or its folder does not.
-void check_can_be_created(const std::filesystem::path& file);
+/// What becomes of a file of the name that was given.
+enum class Existing : std::uint8_t { stays, is_replaced };
+
+/// Throws device::Error with a sentence if the ending is unknown, the file exists and stays, or its folder does not.
+void check_can_be_created(const std::filesystem::path& file, Existing existing = Existing::stays);
 
 /// The ending chooses the format: .h5 and .hdf5, or .csv. An existing file is refused, not overwritten.
 std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information);

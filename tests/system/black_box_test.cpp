@@ -1,0 +1,139 @@
+// What the board keeps of the time around a fault: its cause is to be seen in it, also after a crash.
+#include <doctest/doctest.h>
+
+#include <board/omni_driver.hpp>
+
+#include "hazards.hpp"
+#include "program.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using protocol::Fault;
+using protocol::Signal;
+using protocol::State;
+
+namespace {
+
+float value(const protocol::BlackBoxRow& row, Signal signal) { return row.values[static_cast<std::size_t>(signal)]; }
+
+/// Rows a millisecond apart, on both sides of the fault.
+void check_times(const protocol::BlackBoxReport& box, const std::vector<protocol::BlackBoxRow>& rows) {
+  REQUIRE(rows.size() == box.row_count);
+  int wrong = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    wrong +=
+        i != box.rows_before && rows[i].time_periods - rows[i - 1].time_periods != protocol::black_box_step_periods;
+  CHECK(wrong == 0);
+}
+
+/// After a crash of the sphere pressed into a wall.
+void check_rows_until_crash(const protocol::BlackBoxReport& box, const std::vector<protocol::BlackBoxRow>& rows) {
+  CHECK(box.is_complete == 1);
+  CHECK(box.is_restart == 1);
+  CHECK(box.rows_before == protocol::black_box_rows_before);
+  check_times(box, rows);
+  CHECK(rows.back().time_periods == box.fault_periods);
+  for (const auto& row : rows) CHECK(value(row, Signal::force_z_N) > 0.1f);
+}
+
+}  // namespace
+
+TEST_CASE("the black box of a supply that fails shows how it fell, when the bridges went off, and what came then") {
+  BoardRig rig;
+  press_into_wall(rig);
+  CHECK(rig.device->black_box().fault == Fault::none);
+  rig.control.supply(9.0);
+  rig.run_until([](const auto& pose) { return pose.state == State::fault; });
+  rig.run(0.12);
+  const auto box = rig.device->black_box();
+  CHECK(box.fault == Fault::supply_low);
+  CHECK(box.is_complete == 1);
+  CHECK(box.is_restart == 0);
+  CHECK(box.crash.exception == 0);
+  CHECK(box.rows_before == protocol::black_box_rows_before);
+  const auto rows = rig.device->black_box_rows(box);
+  REQUIRE(rows.size() == protocol::black_box_rows_maximum);
+  check_times(box, rows);
+  const auto& at_fault = rows[box.rows_before];
+  CHECK(at_fault.time_periods == box.fault_periods);
+  CHECK(value(at_fault, Signal::supply_V) < board::supply_minimum_V);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool is_before = i < box.rows_before;
+    CHECK((value(rows[i], Signal::supply_V) >= board::supply_minimum_V) == is_before);
+    CHECK((value(rows[i], Signal::duty_1) != 0 || value(rows[i], Signal::duty_2) != 0) == is_before);
+  }
+  CHECK(value(rows.front(), Signal::supply_V) > value(rows[box.rows_before - 1], Signal::supply_V) + 0.5f);
+  // Each signal in its place: the arm rests against the hand.
+  const double joint_1_rad = static_cast<double>(rig.pose().joint_rad[0]);
+  CHECK(value(rows.back(), Signal::joint_1_rad) == doctest::Approx(joint_1_rad).epsilon(0.02));
+
+  // It stays over a fault that is cleared, another one, and a reset, until the force is on again.
+  rig.control.supply(static_cast<double>(board::supply_nominal_V));
+  rig.run(0.3);
+  rig.command(protocol::Command::clear_fault);
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  rig.control.bridge_fault(true);
+  rig.run(0.3);
+  rig.control.bridge_fault(false);
+  rig.control.reset();
+  rig.control.dock(true);
+  rig.control.hand({.holds = false});
+  reconnect(rig);
+  rig.run(0.3);
+  CHECK(rig.device->black_box().fault == Fault::supply_low);
+  CHECK(rig.device->black_box_rows(box).back().time_periods == rows.back().time_periods);
+  rig.make_active();
+  CHECK(rig.device->black_box().fault == Fault::none);
+}
+
+TEST_CASE("a processor fault leaves the rows before it and the place of the crash, over every reset that follows") {
+  BoardRig rig;
+  press_into_wall(rig);
+  constexpr std::uint32_t nothing_there = 0x60000000;
+  rig.control.jump(nothing_there);
+  rig.control.run(0.02);
+  CHECK(restarts(rig.control) == 1);
+  reconnect(rig);
+  rig.run(0.3);
+  const auto box = rig.device->black_box();
+  CHECK(box.fault == Fault::processor_fault);
+  CHECK(box.crash.exception == 3);
+  CHECK(box.crash.program_counter == nothing_there);
+  CHECK(box.crash.hard_fault_status != 0);
+  const auto rows = rig.device->black_box_rows(box);
+  check_rows_until_crash(box, rows);
+
+  rig.control.reset();
+  reconnect(rig);
+  rig.run(0.3);
+  CHECK(rig.device->black_box().fault == Fault::processor_fault);
+  CHECK(rig.device->black_box_rows(box).front().time_periods == rows.front().time_periods);
+
+  rig.device.reset();
+  rig.control.resume();
+  const TemporaryDirectory directory;
+  const auto address = "127.0.0.1:" + std::to_string(rig.board.usbip_port());
+  const auto shown = run_program("inkwell", {"fault", "--usbip", address});
+  CHECK(shown.exit_code == 0);
+  CHECK(shown.out.find("every signal around processor_fault") != std::string::npos);
+  CHECK(shown.out.find("where the board was restarted") != std::string::npos);
+  CHECK(shown.out.find("exception 3 at 0x60000000") != std::string::npos);
+  CHECK(shown.out.find("arm-none-eabi-addr2line -fiCe inkwell.elf 0x60000000") != std::string::npos);
+  const auto saved = run_program("inkwell", {"fault", "--usbip", address, "--out", directory.file("crash.h5")});
+  INFO(saved.err);
+  CHECK(saved.exit_code == 0);
+}
+
+TEST_CASE("firmware that hung leaves the rows before, and its black box says that the watchdog bit") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.jump(endless_loop_address());
+  rig.control.run(0.04);
+  CHECK(rig.control.status().all.at("watchdog_resets") == 1);
+  reconnect(rig);
+  rig.run(0.3);
+  const auto box = rig.device->black_box();
+  CHECK(box.fault == Fault::watchdog);
+  CHECK(box.crash.exception == 0);
+  check_rows_until_crash(box, rig.device->black_box_rows(box));
+}
