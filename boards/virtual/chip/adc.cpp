@@ -38,6 +38,11 @@ void Adc::idle() {
   machine_.timeline.set(slot_, never, never);
 }
 
+void Adc::stop(bool stopped) {
+  stopped_ = stopped;
+  if (stopped) idle();
+}
+
 Ticks Adc::duration(unsigned cycles) const {
   return machine_.clocks.pclk2.duration(std::uint64_t{cycles} * adcs_.prescaler());
 }
@@ -57,7 +62,7 @@ unsigned Adc::sampling_cycles(unsigned channel) const {
 }
 
 void Adc::start_injected(Ticks now) {
-  if (!is_on() || group_ == Group::injected) return;
+  if (!is_on() || stopped_ || group_ == Group::injected) return;
   // An injected group interrupts a regular one, whose conversion is made again afterwards.
   resume_regular_ = group_ == Group::regular;
   group_ = Group::injected;
@@ -67,7 +72,7 @@ void Adc::start_injected(Ticks now) {
 }
 
 void Adc::start_regular(Ticks now) {
-  if (!is_on() || (sr_ & overrun) != 0 || group_ == Group::regular) return;
+  if (!is_on() || stopped_ || (sr_ & overrun) != 0 || group_ == Group::regular) return;
   sr_ |= adc.sr.strt.mask();
   if (group_ == Group::injected) {
     resume_regular_ = true;
@@ -78,7 +83,7 @@ void Adc::start_regular(Ticks now) {
 }
 
 void Adc::start_regular_at(Ticks when) {
-  if (!is_on() || (sr_ & overrun) != 0 || group_ != Group::none) return;
+  if (!is_on() || stopped_ || (sr_ & overrun) != 0 || group_ != Group::none) return;
   sr_ |= adc.sr.strt.mask();
   group_ = Group::regular;
   phase_ = Phase::waiting;
@@ -110,6 +115,7 @@ void Adc::begin_conversion(Ticks now) {
     if (adc.cr1.eocie.in(cr1_) && ends) wake = done;
   }
   if (adc.cr1.awdie.in(cr1_)) wake = done;
+  wake_lag_ = wake == never ? never : wake - done;
   machine_.timeline.set(slot_, sampled, wake);
 }
 
@@ -139,8 +145,9 @@ void Adc::step(Ticks now) {
   if (phase_ == Phase::sampling) {
     sample_ = sample(channel, now);
     phase_ = Phase::converting;
+    // The clock may have changed since the conversion began.
     const Ticks done = now + duration(resolution_bits());
-    machine_.timeline.set_due(slot_, done);
+    machine_.timeline.set(slot_, done, wake_lag_ == never ? never : done + wake_lag_);
     return;
   }
   watch(channel);

@@ -26,6 +26,8 @@ class Adc final : public TimedPart {
 
   /// Firmware or DMA has read the result.
   void result_taken();
+  /// A fault that lasts: no conversion begins any more.
+  void stop(bool stopped);
   bool is_on() const { return adc.cr2.adon.in(cr2_); }
   /// External trigger selections, or -1 while triggers are off.
   int injected_trigger() const { return adc.cr2.jexten.in(cr2_) ? static_cast<int>(adc.cr2.jextsel.of(cr2_)) : -1; }
@@ -71,11 +73,13 @@ class Adc final : public TimedPart {
   Group group_ = Group::none;
   Phase phase_ = Phase::sampling;
   unsigned rank_ = 0, regular_rank_ = 0, injected_rank_ = 0;
+  bool stopped_ = false;
   bool resume_regular_ = false, automatic_injected_ = false;
   std::uint32_t sample_ = 0;
   Ticks stable_at_ = 0;
-  Ticks began_ = 0;      ///< the conversion
-  bool spoilt_ = false;  ///< the conversion cannot give a true result
+  Ticks began_ = 0;         ///< the conversion
+  Ticks wake_lag_ = never;  ///< of the processor, behind the end of the conversion
+  bool spoilt_ = false;     ///< the conversion cannot give a true result
 };
 
 class Adcs final : public RegisterBlock {
@@ -89,6 +93,7 @@ class Adcs final : public RegisterBlock {
     if ((connected_[timer] >> channel & 1) != 0) trigger(timer, channel);
   }
   void external_line(unsigned line);
+  Adc& converter(unsigned index) { return adcs_[index]; }
   /// A match or trigger output of the timer starts conversions that the processor waits for.
   bool listens_to_timer(unsigned timer, unsigned channel) const { return (awaited_[timer] >> channel & 1) != 0; }
   /// After a change of triggers or interrupts.

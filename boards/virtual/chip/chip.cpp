@@ -9,6 +9,7 @@ namespace inkwell::virtual_board {
 struct Chip::Parts : ChipParts {
   using ChipParts::ChipParts;
   Scheduler::Id end_of_halt = 0;
+  std::array<std::uint32_t, exception_numbers> late_cycles{};
 };
 
 Chip::Chip(Circuit& circuit, const ChipOptions& options) : parts_(std::make_unique<Parts>(circuit, options)) {
@@ -30,6 +31,10 @@ Chip::Chip(Circuit& circuit, const ChipOptions& options) : parts_(std::make_uniq
       if (on_usart) on_usart(number, byte);
       if (on_console) on_console(byte);
     };
+  p.machine.nvic.on_held = [&p](unsigned exception) {
+    const Ticks late = p.machine.clocks.hclk.duration(p.late_cycles[exception]);
+    p.events.at(p.machine.timeline.now() + late, [&p, exception] { p.machine.nvic.let_go(exception); });
+  };
   p.execution.reset(ResetCause::power_on);
 }
 
@@ -77,6 +82,23 @@ void Chip::set_supply_V(double volts) {
   parts_->flash.check_wait_states();
 }
 void Chip::lose_exception(unsigned exception, bool lost) { parts_->machine.nvic.lose(exception, lost); }
+void Chip::delay_exception(unsigned exception, std::uint32_t cycles) {
+  parts_->late_cycles[exception] = cycles;
+  parts_->machine.nvic.hold_back(exception, cycles != 0);
+}
+bool Chip::flip_bit(std::uint32_t address, unsigned bit) {
+  std::uint8_t* place = parts_->machine.memory.at(address, 1);
+  if (place == nullptr) return false;
+  *place = static_cast<std::uint8_t>(*place ^ 1u << (bit & 7));
+  // Blocks that are translated already, and one that reaches into it.
+  parts_->processor.forget_code(address & ~3u, 4);
+  return true;
+}
+void Chip::stop_converter(unsigned number, bool stopped) { parts_->adcs.converter(number - 1).stop(stopped); }
+void Chip::stop_dma(bool stopped) {
+  for (const unsigned number : {1u, 2u}) parts_->dma.controller(number).stop(stopped);
+}
+void Chip::drift_crystal(std::int32_t ppm) { parts_->rcc.drift_crystal(ppm); }
 void Chip::let_crystal_swing(bool swings) { parts_->rcc.let_crystal_swing(swings); }
 unsigned Chip::current_exception() const { return parts_->processor.current_exception(); }
 void Chip::request_stop() { parts_->execution.request_stop(); }

@@ -131,7 +131,7 @@ void DmaController::move_item(unsigned index) {
 
 bool DmaController::request(unsigned index, unsigned channel) {
   const auto& s = streams_[index];
-  if (!dma.cr.en.in(s.control) || dma.cr.chsel.of(s.control) != channel || s.count == 0) return false;
+  if (stopped_ || !dma.cr.en.in(s.control) || dma.cr.chsel.of(s.control) != channel || s.count == 0) return false;
   move_item(index);
   return true;
 }

@@ -17,6 +17,8 @@ class DmaController final : public RegisterBlock {
   void reset() override;
   /// A peripheral's request on a stream's channel. False: no stream takes it now.
   bool request(unsigned stream, unsigned channel);
+  /// A fault that lasts: no request is taken any more.
+  void stop(bool stopped) { stopped_ = stopped; }
   /// After a stream has been enabled: peripherals may have a request waiting.
   std::function<void()> on_enabled;
 
@@ -41,6 +43,7 @@ class DmaController final : public RegisterBlock {
   Machine& machine_;
   Bus& bus_;
   unsigned number_;
+  bool stopped_ = false;
   std::array<Stream, 8> streams_{};
 };
 

@@ -8,7 +8,7 @@
 namespace inkwell::virtual_board {
 
 void Nvic::reset() {
-  pending_ = active_ = {};
+  pending_ = active_ = held_ = {};
   priority_.fill(0);
   level_.fill(0);
   group_ = 0;
@@ -25,6 +25,10 @@ void Nvic::reset() {
 void Nvic::pend(unsigned exception) {
   if (test(pending_, exception)) return;
   assign(pending_, exception, true);
+  if (test(late_, exception) && !test(held_, exception)) {
+    assign(held_, exception, true);
+    on_held(exception);
+  }
   changed_ = true;
   newly_pending_ = true;
 }
@@ -78,7 +82,8 @@ unsigned Nvic::most_urgent() const {
   unsigned best = exception_none;
   int best_group = priority_lowest, best_full = priority_lowest;
   for (unsigned half = 0; half < 2; ++half)
-    for (std::uint64_t bits = pending_[half] & enabled_[half] & ~lost_[half]; bits != 0; bits &= bits - 1) {
+    for (std::uint64_t bits = pending_[half] & enabled_[half] & ~lost_[half] & ~held_[half]; bits != 0;
+         bits &= bits - 1) {
       const unsigned exception = half * 64 + static_cast<unsigned>(std::countr_zero(bits));
       const int group = group_priority(exception);
       const int full = group < 0 ? group : priority_[exception];

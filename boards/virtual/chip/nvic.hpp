@@ -5,6 +5,7 @@
 #include <chip/chip.hpp>
 #include <chip/interfaces.hpp>
 #include <cstdint>
+#include <functional>
 #include <utility>
 
 namespace inkwell::virtual_board {
@@ -54,6 +55,14 @@ class Nvic final : public InterruptController {
     assign(lost_, exception, lost);
     changed_ = true;
   }
+
+  /// Each time it becomes pending, an exception is held back and `on_held` called, until it is let go.
+  void hold_back(unsigned exception, bool late) { assign(late_, exception, late); }
+  void let_go(unsigned exception) {
+    assign(held_, exception, false);
+    changed_ = true;
+  }
+  std::function<void(unsigned exception)> on_held;
 
   std::uint32_t read(std::uint32_t offset) const;  ///< offset from its first register, ISER0
   void write(std::uint32_t offset, std::uint32_t value, unsigned size);
@@ -109,7 +118,8 @@ class Nvic final : public InterruptController {
   std::uint32_t word_of(const Bits& bits, unsigned index) const;
 
   Bits pending_{}, active_{}, enabled_{};
-  Bits lost_{};  ///< not by a reset
+  Bits lost_{}, late_{};  ///< not by a reset
+  Bits held_{};
   bool non_maskable_ = false;
   std::array<std::uint8_t, exception_numbers> priority_{};
   std::array<std::uint32_t, positions> level_{};

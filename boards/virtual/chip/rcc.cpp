@@ -87,6 +87,11 @@ void Rcc::let_crystal_swing(bool swings) {
   update_tree();
 }
 
+void Rcc::drift_crystal(std::int32_t ppm) {
+  machine_.options.crystal_ppm = ppm;
+  update_tree();
+}
+
 void Rcc::lose_crystal() {
   auto& control = words_[rcc_map.cr / 4];
   if (runs_from_crystal())

@@ -36,6 +36,8 @@ class Rcc final : public RegisterBlock, public TimedPart {
   /// security system") the chip goes on with HSI, NMI comes and the timers break; without it what runs from the crystal
   /// stands still.
   void let_crystal_swing(bool swings);
+  /// How much faster than its name it swings, from now on.
+  void drift_crystal(std::int32_t ppm);
   /// PWR_CR.VOS: scale 1 is for the highest clocks.
   void set_voltage_scale(bool scale_1);
 

@@ -31,6 +31,7 @@ class SharedPort final : private RootPort::Client {
   SharedPort(Scheduler& scheduler, BusDevice& device, Client& client, double host_clock_ppm);
 
   void plug(bool in) { port_.plug(in); }
+  void let_host_ask(bool asks) { port_.let_host_ask(asks); }
   bool plugged() const { return port_.plugged(); }
   bool enumerated() const { return port_.enumerated(); }
   bool imported() const { return port_.imported(); }

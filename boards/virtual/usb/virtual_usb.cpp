@@ -133,6 +133,7 @@ void VirtualUsb::settle() {
 bool VirtualUsb::is_asked() const { return implementation_->any(&HostPace::is_asked); }
 void VirtualUsb::connect() { implementation_->port.plug(true); }
 void VirtualUsb::disconnect() { implementation_->port.plug(false); }
+void VirtualUsb::let_host_ask(bool asks) { implementation_->port.let_host_ask(asks); }
 bool VirtualUsb::connected() const { return implementation_->port.plugged(); }
 bool VirtualUsb::enumerated() const { return implementation_->port.enumerated(); }
 bool VirtualUsb::imported() const { return implementation_->port.imported(); }

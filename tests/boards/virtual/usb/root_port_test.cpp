@@ -53,6 +53,19 @@ TEST_CASE("nothing is enumerated without the cable, or with a device that does n
   CHECK(bench.port.enumerated());
 }
 
+TEST_CASE("a host that hangs asks for nothing, its frames go on, and it goes on where it was") {
+  RootPortBench bench;
+  bench.use();
+  bench.port.let_host_ask(false);
+  const unsigned frames = bench.firmware.frames;
+  const std::uint32_t request = bench.submit_control(0x80, 6, 0x0100, 18);
+  bench.run_for(0.1);
+  CHECK_FALSE(bench.outcomes.contains(request));
+  CHECK(bench.firmware.frames - frames >= 99);
+  bench.port.let_host_ask(true);
+  CHECK(bench.wait_for(request).status == 0);
+}
+
 TEST_CASE("an import resets, addresses and runs frames of one millisecond") {
   RootPortBench bench;
   bench.enumerate();

@@ -138,10 +138,20 @@ class Chip {
   void glitch(char port, unsigned pin, Ticks duration);
   /// An exception by number that never reaches the core, or does again.
   void lose_exception(unsigned exception, bool lost);
+  /// An exception that reaches the core so many cycles of HCLK late, from the next time on; 0 is in time again.
+  void delay_exception(unsigned exception, std::uint32_t cycles);
+  /// Turns a bit of a byte of RAM or flash over, as a particle does. False if there is no memory.
+  bool flip_bit(std::uint32_t address, unsigned bit);
+  /// ADC `number` (1 to 3) begins no conversion any more, or does again.
+  void stop_converter(unsigned number, bool stopped);
+  /// Neither DMA takes a request any more, or both do again.
+  void stop_dma(bool stopped);
   /// The supply of the chip, 3.3 V to begin with. Below the brown-out level of the option bytes it is held in reset.
   void set_supply_V(double volts);
   /// The crystal stops, or swings again.
   void let_crystal_swing(bool swings);
+  /// It swings faster than its name by so many parts in a million; ChipOptions::crystal_ppm to begin with.
+  void drift_crystal(std::int32_t ppm);
   /// The exception that runs; 0 in thread mode.
   unsigned current_exception() const;
 

@@ -42,6 +42,8 @@ class HostController {
 
   /// Frames run while true; after 3 ms without them the device is told to suspend.
   void run_frames(bool run);
+  /// A host that hangs makes no transaction; its frames go on.
+  void let_ask(bool asks) { asks_ = asks; }
   /// The address that tokens carry, and the packet size of endpoint 0.
   void address_device(unsigned address, std::uint16_t control_packet_maximum);
   /// The endpoints of these interfaces become usable, all toggles start at DATA0.
@@ -102,7 +104,7 @@ class HostController {
   std::uint32_t busy_pipes_ = 0;  ///< bit i: pipe i has transfers
   unsigned next_bulk_pipe_ = 0;
   unsigned address_ = 0;
-  bool frames_run_ = false;
+  bool frames_run_ = false, asks_ = true;
   unsigned frames_idle_ = 0;
   std::uint64_t frame_ = 0;
   Ticks frame_begin_ = 0;

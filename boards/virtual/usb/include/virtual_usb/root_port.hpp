@@ -37,6 +37,7 @@ class RootPort final : private HostController::Client {
   RootPort(Scheduler& scheduler, BusDevice& device, Client& client, double host_clock_ppm = 0.0);
 
   void plug(bool in);
+  void let_host_ask(bool asks) { controller_.let_ask(asks); }
   bool plugged() const { return plugged_; }
   bool enumerated() const { return state_ >= State::suspended; }
   bool imported() const { return state_ > State::suspended; }

@@ -39,6 +39,8 @@ class VirtualUsb {
   void connect();
   void disconnect();
   bool connected() const;
+  /// The host asks and sends nothing any more, or does again; its frames go on.
+  void let_host_ask(bool asks);
 
   /// The host has read the device's descriptors: programs can import it.
   bool enumerated() const;
