@@ -6,12 +6,18 @@
 namespace inkwell::virtual_board {
 
 MotorDrive::MotorDrive(const MotorConstants& motor, const Imperfections& imperfections, double dead_time_s)
-    : resistance_ohm_(motor.resistance_ohm + 2.0 * imperfections.leg_resistance_ohm),
-      time_constant_s_(motor.inductance_H / resistance_ohm_),
-      inverse_resistance_(1.0 / resistance_ohm_),
+    : legs_ohm_(2.0 * imperfections.leg_resistance_ohm),
+      amplifier_s_(1.0 / (2.0 * std::numbers::pi * imperfections.amplifier_bandwidth_Hz)),
       diode_drop_V_(imperfections.diode_drop_V),
-      amplifier_time_constant_s_(1.0 / (2.0 * std::numbers::pi * imperfections.amplifier_bandwidth_Hz)),
       dead_time_(ticks(dead_time_s)) {
+  configure(motor);
+}
+
+void MotorDrive::configure(const MotorConstants& motor) {
+  resistance_ohm_ = motor.resistance_ohm + legs_ohm_;
+  time_constant_s_ = motor.inductance_H / resistance_ohm_;
+  inverse_resistance_ = 1.0 / resistance_ohm_;
+  amplifier_time_constant_s_ = amplifier_s_;
   // Equal time constants would make the closed form of the amplifier singular; a thousandth apart is as good.
   double ratio = amplifier_time_constant_s_ / time_constant_s_;
   if (std::abs(1.0 - ratio) < 1e-3) {
@@ -23,14 +29,41 @@ MotorDrive::MotorDrive(const MotorConstants& motor, const Imperfections& imperfe
   dead_time_amplifier_decay_ = std::exp(-seconds(dead_time_) / amplifier_time_constant_s_);
 }
 
+void MotorDrive::set_winding(const std::optional<MotorConstants>& motor, Ticks now) {
+  advance(now);
+  conducts_ = motor.has_value();
+  if (conducts_)
+    configure(*motor);
+  else
+    current_A_ = 0.0;  // the arc takes what the inductance held
+}
+
+void MotorDrive::set_leg_fault(unsigned leg, LegFault fault, Ticks now) {
+  advance(now);
+  legs_[leg].fault = fault;
+}
+
+void MotorDrive::set_leg_delay(unsigned leg, Ticks delay) { legs_[leg].delay = delay; }
+
+Leg MotorDrive::LegState::acting() const {
+  switch (fault) {
+    case LegFault::high: return Leg::high;
+    case LegFault::low: return Leg::low;
+    case LegFault::open: return Leg::floating;
+    case LegFault::none: break;
+  }
+  return actual;
+}
+
 void MotorDrive::set_leg(unsigned leg, Leg level, Ticks now) {
   advance(now);
   LegState& state = legs_[leg];
   if (state.wanted == level) return;
   state.wanted = level;
   // Switching off is immediate; switching on waits until the other switch of the leg is surely off.
-  state.actual = dead_time_ == 0 ? level : Leg::floating;
-  state.settles_at = now + dead_time_;
+  const Ticks pause = dead_time_ + state.delay;
+  state.actual = pause == 0 ? level : Leg::floating;
+  state.settles_at = now + pause;
 }
 
 void MotorDrive::advance(Ticks now) {
@@ -54,8 +87,9 @@ MotorDrive::Charges MotorDrive::take_charges() {
 // A floating leg is pulled to a rail by the diode that the current flows through: out of leg A or into leg B
 // for a positive current.
 MotorDrive::Branch MotorDrive::branch() const {
-  const Leg a = legs_[0].actual;
-  const Leg b = legs_[1].actual;
+  if (!conducts_) return {back_emf_V_, 0.0, false, false};
+  const Leg a = legs_[0].acting();
+  const Leg b = legs_[1].acting();
   const bool floating = a == Leg::floating || b == Leg::floating;
   const auto with_sign = [&](bool positive) {
     const bool a_top = a == Leg::high || (a == Leg::floating && !positive);

@@ -18,27 +18,30 @@ Vector3 inkwell_joints_rad(const arms::Description& arm) {
   return {joints_rad[0], joints_rad[1], joints_rad[2]};
 }
 
-MotorDrive motor_drive(const arms::Description& arm, const Imperfections& imperfections) {
-  const double shunt_ohm = static_cast<double>(board::shunt_ohm);
-  return {{arm.motor.resistance_ohm + shunt_ohm, arm.motor.inductance_H},
-          imperfections,
-          static_cast<double>(board::bridge_dead_time_s)};
+constexpr double shunt_ohm = static_cast<double>(board::shunt_ohm);
+
+MotorConstants with_shunt(const arms::Description& arm) {
+  return {arm.motor.resistance_ohm + shunt_ohm, arm.motor.inductance_H};
 }
 
-double torque_per_A(const arms::Description& arm, unsigned motor) {
+MotorDrive motor_drive(const arms::Description& arm, const Imperfections& imperfections) {
+  return {with_shunt(arm), imperfections, static_cast<double>(board::bridge_dead_time_s)};
+}
+
+double sound_torque_per_A(const arms::Description& arm, unsigned motor) {
   const auto& p = arm.parameters;
   const double sign = p[of_axis(Parameter::motor_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
   return sign * static_cast<double>(p[of_axis(Parameter::gear_ratio_1, motor)]) *
          static_cast<double>(p[of_axis(Parameter::torque_constant_1_Nm_per_A, motor)]);
 }
 
-QuadratureEncoder encoder(const arms::Description& arm, unsigned motor) {
+QuadratureEncoder encoder(const arms::Description& arm, unsigned motor, std::uint64_t seed) {
   const auto& p = arm.parameters;
   const double sign = p[of_axis(Parameter::encoder_1_reversed, motor)] == 1.0f ? -1.0 : 1.0;
   const double counts_per_rad = static_cast<double>(p[of_axis(Parameter::gear_ratio_1, motor)]) *
                                 static_cast<double>(p[of_axis(Parameter::encoder_1_counts_per_turn, motor)]) /
                                 (2.0 * std::numbers::pi);
-  return QuadratureEncoder(sign * counts_per_rad, inkwell_joints_rad(arm)[motor]);
+  return QuadratureEncoder(sign * counts_per_rad, inkwell_joints_rad(arm)[motor], 3 * seed + motor);
 }
 
 std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) {
@@ -46,6 +49,8 @@ std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) 
   return {p[of_axis(Parameter::gimbal_1_square_rad, axis)], p[of_axis(Parameter::gimbal_1_slope_rad, axis)],
           p[of_axis(Parameter::gimbal_1_offset_rad, axis)]};
 }
+
+constexpr double reference_V = static_cast<double>(board::adc_reference_V);
 
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
 /// A bare contact to ground; the chip's own pull-up makes the high level.
@@ -59,11 +64,12 @@ Plant::Plant(const arms::Description& arm, const PlantOptions& options)
     : imperfections_(options.imperfections),
       motors_{motor_drive(arm, imperfections_), motor_drive(arm, imperfections_), motor_drive(arm, imperfections_)},
       supply_(imperfections_, static_cast<double>(board::supply_nominal_V)),
-      torque_per_A_{torque_per_A(arm, 0), torque_per_A(arm, 1), torque_per_A(arm, 2)},
+      winding_(with_shunt(arm)),
+      torque_per_A_{sound_torque_per_A(arm, 0), sound_torque_per_A(arm, 1), sound_torque_per_A(arm, 2)},
       arm_(arm, inkwell_joints_rad(arm)),
       probe_m_(arm_.dynamics().position_m(arm_.joints_rad())),
       inkwell_(probe_m_, true),
-      encoders_{encoder(arm, 0), encoder(arm, 1), encoder(arm, 2)},
+      encoders_{encoder(arm, 0, options.seed), encoder(arm, 1, options.seed), encoder(arm, 2, options.seed)},
       gimbal_terms_{gimbal_terms(arm, 0), gimbal_terms(arm, 1), gimbal_terms(arm, 2)},
       random_(options.seed) {
   for (auto& legs : leg_pins_) legs.fill(PinLevel::floating);
@@ -102,6 +108,7 @@ void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
   const Wire wire = wires_[index];
   if (wire.role == Role::enable) {
     bridges_enabled_ = level == PinLevel::high;  // the board's pull-down keeps a floating pin low
+    if (!bridges_enabled_) tripped_ = false;
     for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
   } else {
     leg_pins_[wire.motor][wire.role == Role::leg_a ? 0 : 1] = level;
@@ -109,10 +116,25 @@ void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
   }
 }
 
+bool Plant::shoots_through() const {
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned leg = 0; leg < 2; ++leg) {
+      const bool high = leg_pins_[i][leg] == PinLevel::high;
+      if (leg_faults_[i][leg] == (high ? LegFault::low : LegFault::high)) return true;
+    }
+  return false;
+}
+
 void Plant::update_legs(unsigned motor, Ticks now) {
+  if (bridges_enabled_ && !tripped_ && shoots_through()) {
+    // Microseconds, after which the bridge is off by itself and says so.
+    tripped_ = inputs_stale_ = true;
+    for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
+    return;
+  }
   for (unsigned leg = 0; leg < 2; ++leg) {
     // A disabled or tripped bridge leaves the current to its diodes. A floating pin is low: the inputs have pull-downs.
-    const bool off = !bridges_enabled_ || bridge_fault_;
+    const bool off = !bridges_enabled_ || bridge_fault_ || tripped_;
     motors_[motor].set_leg(leg,
                            off                                       ? Leg::floating
                            : leg_pins_[motor][leg] == PinLevel::high ? Leg::high
@@ -121,19 +143,31 @@ void Plant::update_legs(unsigned motor, Ticks now) {
   }
 }
 
+double Plant::shunt_V(unsigned motor) {
+  constexpr double lower_V = static_cast<double>(board::shunt_amplifier_headroom_V);
+  constexpr double upper_V = reference_V - lower_V;
+  constexpr double V_per_A = static_cast<double>(board::shunt_ohm * board::shunt_amplifier_gain);
+  const ShuntFault& fault = shunt_faults_[motor];
+  const double volts =
+      static_cast<double>(board::shunt_amplifier_offset_V) + imperfections_.amplifier_offset_V[motor] +
+      V_per_A * (1.0 + imperfections_.amplifier_gain_error[motor]) * fault.read_A(motors_[motor].amplifier_A()) +
+      noise(imperfections_.amplifier_noise_V);
+  switch (fault.output) {
+    case ShuntFault::Output::upper_rail: return upper_V;
+    case ShuntFault::Output::lower_rail: return lower_V;
+    case ShuntFault::Output::frozen: return fault.frozen_V;
+    case ShuntFault::Output::follows: break;
+  }
+  return std::clamp(volts, lower_V, upper_V);
+}
+
 double Plant::analog_V(char port, unsigned pin, Ticks now) {
-  constexpr double reference_V = static_cast<double>(board::adc_reference_V);
   const board::Pin wanted{port, static_cast<std::uint8_t>(pin)};
   run_until(now);
   for (unsigned i = 0; i < 3; ++i) {
     if (board::motor_current[i].pin == wanted) {
       motors_[i].advance(now);
-      constexpr double V_per_A = static_cast<double>(board::shunt_ohm * board::shunt_amplifier_gain);
-      const double volts = static_cast<double>(board::shunt_amplifier_offset_V) + imperfections_.amplifier_offset_V[i] +
-                           V_per_A * (1.0 + imperfections_.amplifier_gain_error[i]) * motors_[i].amplifier_A() +
-                           noise(imperfections_.amplifier_noise_V);
-      constexpr double headroom_V = static_cast<double>(board::shunt_amplifier_headroom_V);
-      return std::clamp(volts, headroom_V, reference_V - headroom_V);
+      return shunt_V(i);
     }
     if (board::gimbal[i].pin == wanted)
       return std::clamp(gimbal_V(i) + noise(imperfections_.wiper_noise_V), 0.0, reference_V);
@@ -178,7 +212,7 @@ void Plant::step() {
   for (unsigned i = 0; i < 3; ++i) {
     motors_[i].advance(next_step_);
     const auto charges = motors_[i].take_charges();
-    torque_Nm_[i] = torque_per_A_[i] * charges.motor_As / duration_s;
+    torque_Nm_[i] = torque_per_A(i) * charges.motor_As / duration_s;
     supply_charge_As += charges.supply_As;
   }
   const std::array<Coupling, 3> couplings = {hand_.coupling(next_step_), carrier_.coupling(next_step_),
@@ -190,7 +224,7 @@ void Plant::step() {
   if (carrier_.holds()) finish_docking();
   supply_.advance(duration_s, supply_charge_As);
   for (unsigned i = 0; i < 3; ++i) {
-    motors_[i].set_back_emf_V(torque_per_A_[i] * arm_.joint_speeds_rad_s()[i]);
+    motors_[i].set_back_emf_V(torque_per_A(i) * arm_.joint_speeds_rad_s()[i]);
     motors_[i].set_bus_V(supply_.bus_V());
   }
 }
@@ -229,8 +263,10 @@ void Plant::show_inputs() {
   show(board::button_1.port, board::button_1.number, contact(buttons_[0]), shown_[0]);
   show(board::button_2.port, board::button_2.number, contact(buttons_[1]), shown_[1]);
   show(board::inkwell_switch.port, board::inkwell_switch.number, contact(inkwell_closed), shown_[2]);
-  show(board::bridge_fault_tim1.pin.port, board::bridge_fault_tim1.pin.number, fault_wire(bridge_fault_), shown_[3]);
-  show(board::bridge_fault_tim8.pin.port, board::bridge_fault_tim8.pin.number, fault_wire(bridge_fault_), shown_[4]);
+  show(board::bridge_fault_tim1.pin.port, board::bridge_fault_tim1.pin.number, fault_wire(bridge_fault_ || tripped_),
+       shown_[3]);
+  show(board::bridge_fault_tim8.pin.port, board::bridge_fault_tim8.pin.number, fault_wire(bridge_fault_ || tripped_),
+       shown_[4]);
   show(board::usb_supply.port, board::usb_supply.number, level_of(usb_supply_), shown_[5]);
 }
 
@@ -245,6 +281,28 @@ void Plant::set_bridge_fault(bool fault) {
   bridge_fault_ = fault;
   inputs_stale_ = true;
   for (unsigned i = 0; i < 3; ++i) update_legs(i, now_);
+}
+
+void Plant::set_shunt_fault(unsigned motor, const ShuntFault& fault) {
+  motors_[motor].advance(now_);
+  const double now_V = shunt_V(motor);
+  shunt_faults_[motor] = fault;
+  shunt_faults_[motor].frozen_V = now_V;
+}
+
+void Plant::set_motor_fault(unsigned motor, const MotorFault& fault) {
+  motor_faults_[motor] = fault;
+  std::optional<MotorConstants> left;
+  if (!fault.open)
+    left = MotorConstants{(winding_.resistance_ohm - shunt_ohm) * fault.resistance_factor() + shunt_ohm,
+                          winding_.inductance_H * fault.inductance_factor()};
+  motors_[motor].set_winding(left, now_);
+}
+
+void Plant::set_leg_fault(unsigned motor, unsigned leg, LegFault fault) {
+  leg_faults_[motor][leg] = fault;
+  motors_[motor].set_leg_fault(leg, fault, now_);
+  update_legs(motor, now_);
 }
 
 void Plant::set_usb_supply(bool present) {
@@ -303,7 +361,7 @@ Truth Plant::truth(Ticks now) {
   for (unsigned i = 0; i < 3; ++i) {
     motors_[i].advance(now_);
     t.current_A[i] = motors_[i].current_A();
-    t.torque_Nm[i] = torque_per_A_[i] * t.current_A[i];
+    t.torque_Nm[i] = torque_per_A(i) * t.current_A[i];
     t.encoder_counts[i] = encoders_[i].count_at(arm_.joints_rad()[i]);
   }
   const Coupling hand = hand_.coupling(now_);
@@ -313,7 +371,7 @@ Truth Plant::truth(Ticks now) {
   t.supply_V = supply_.bus_V();
   t.docked = inkwell_.seated();
   t.inkwell_switch = inkwell_.switch_closed(t.position_m);
-  t.bridge_fault = bridge_fault_;
+  t.bridge_fault = bridge_fault_ || tripped_;
   t.buttons = buttons_;
   t.bridges_enabled = bridges_enabled_;
   t.leg_levels = leg_pins_;

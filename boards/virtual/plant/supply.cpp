@@ -14,12 +14,12 @@ Supply::Supply(const Imperfections& imperfections, double source_V)
 void Supply::advance(double duration_s, double charge_As) {
   // Implicit Euler: stable for any source resistance and capacitor.
   const auto next_V = [&](double source_S) {
-    const double charge = capacitance_F_ * bus_V_ - charge_As + duration_s * source_S * source_V_;
+    const double charge = capacitance_F_ * bus_V_ - charge_As + duration_s * source_S * source_V();
     return charge / (capacitance_F_ + duration_s * (source_S + quiescent_conductance_S_));
   };
   const double fed_V = next_V(source_conductance_S_);
   // Above its own voltage the source blocks.
-  bus_V_ = fed_V <= source_V_ ? fed_V : std::max(source_V_, next_V(0.0));
+  bus_V_ = fed_V <= source_V() ? fed_V : std::max(source_V(), next_V(0.0));
   // Below ground the diodes of the bridges conduct.
   bus_V_ = std::max(bus_V_, 0.0);
 }

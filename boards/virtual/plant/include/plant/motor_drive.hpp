@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <chip/interfaces.hpp>
 #include <plant/imperfections.hpp>
@@ -11,6 +12,9 @@ namespace inkwell::virtual_board {
 
 /// What a gate driver is told to do with one leg. `floating` leaves the current to the diodes.
 enum class Leg : std::uint8_t { low, high, floating };
+
+/// What a leg is whatever it is told; `slow` is one that obeys late.
+enum class LegFault : std::uint8_t { none, high, low, open };
 
 struct MotorConstants {
   double resistance_ohm;  ///< winding and shunt
@@ -24,6 +28,12 @@ class MotorDrive {
   /// Tells leg 0 (A, motor terminal +) or 1 (B) what to do from `now` on; it obeys after the dead time. Runs
   /// the current up to `now` first.
   void set_leg(unsigned leg, Leg level, Ticks now);
+
+  /// Another winding in the same motor, from `now` on; none conducts nothing.
+  void set_winding(const std::optional<MotorConstants>& motor, Ticks now);
+  void set_leg_fault(unsigned leg, LegFault fault, Ticks now);
+  /// This much after the dead time the leg's switches conduct.
+  void set_leg_delay(unsigned leg, Ticks delay);
 
   /// Integrates the current up to `now`. Times do not run backward.
   void advance(Ticks now);
@@ -48,7 +58,11 @@ class MotorDrive {
     Leg wanted = Leg::floating;
     Leg actual = Leg::floating;
     Ticks settles_at = 0;  ///< end of the dead time, while `actual` is not `wanted`
+    Ticks delay = 0;
+    LegFault fault = LegFault::none;
+    Leg acting() const;
   };
+  void configure(const MotorConstants& motor);
   /// A voltage behind no resistance that drives the current until it changes its sign or a leg switches.
   struct Branch {
     double voltage_V;     ///< from terminal + to terminal -, without the legs' resistance
@@ -60,10 +74,12 @@ class MotorDrive {
   void integrate(Ticks duration);
   void run(double duration_s, double decay, double amplifier_decay, const Branch& branch);
 
-  double resistance_ohm_, time_constant_s_, inverse_resistance_, diode_drop_V_;
-  double amplifier_time_constant_s_, amplifier_lead_;
+  double legs_ohm_, amplifier_s_;
+  bool conducts_ = true;
+  double resistance_ohm_ = 0.0, time_constant_s_ = 0.0, inverse_resistance_ = 0.0, diode_drop_V_;
+  double amplifier_time_constant_s_ = 0.0, amplifier_lead_ = 0.0;
   Ticks dead_time_;
-  double dead_time_decay_, dead_time_amplifier_decay_;
+  double dead_time_decay_ = 0.0, dead_time_amplifier_decay_ = 0.0;
 
   std::array<LegState, 2> legs_{};
   Ticks now_ = 0;

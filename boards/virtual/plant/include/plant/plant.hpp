@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <random>
 
 #include <chip/interfaces.hpp>
@@ -15,7 +16,9 @@
 #include <plant/hand.hpp>
 #include <plant/imperfections.hpp>
 #include <plant/motor_drive.hpp>
+#include <plant/motor_fault.hpp>
 #include <plant/quadrature_encoder.hpp>
+#include <plant/shunt_fault.hpp>
 #include <plant/supply.hpp>
 #include <plant/truth.hpp>
 
@@ -56,6 +59,21 @@ class Plant final : public Circuit {
   /// Puts the arm somewhere at once, for tests.
   void place(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s);
 
+  // ---- what fails in it, from the same time on; `motor` counts from 0 ----
+  EncoderFault& encoder_fault(unsigned motor) { return encoders_[motor].fault; }
+  ShuntFault shunt_fault(unsigned motor) const { return shunt_faults_[motor]; }
+  /// A frozen output stays at what it is now.
+  void set_shunt_fault(unsigned motor, const ShuntFault& fault);
+  MotorFault motor_fault(unsigned motor) const { return motor_faults_[motor]; }
+  void set_motor_fault(unsigned motor, const MotorFault& fault);
+  /// A leg whose one switch has fused trips its bridge when the other one is asked for: see `tripped_`.
+  void set_leg_fault(unsigned motor, unsigned leg, LegFault fault);
+  void set_leg_delay(unsigned motor, unsigned leg, double delay_s) {
+    motors_[motor].set_leg_delay(leg, ticks(delay_s));
+  }
+  /// The source of the bridges gives this whatever it was set to; none heals it.
+  void fail_supply_at_V(std::optional<double> volts) { supply_.fail_at_V(volts); }
+
   Truth truth(Ticks now);
   const ArmMotion& arm() const { return arm_; }
   const Inkwell& inkwell() const { return inkwell_; }
@@ -77,6 +95,9 @@ class Plant final : public Circuit {
   void update_legs(unsigned motor, Ticks now);
   double noise(double rms) { return rms * normal_(random_); }
   double gimbal_V(unsigned axis);
+  double shunt_V(unsigned motor);
+  double torque_per_A(unsigned motor) const { return torque_per_A_[motor] * motor_faults_[motor].torque_factor(); }
+  bool shoots_through() const;
 
   std::array<Wire, 16 * 9> wires_{};  ///< ports A to I
 
@@ -86,6 +107,11 @@ class Plant final : public Circuit {
   std::array<std::array<PinLevel, 2>, 3> leg_pins_;
   bool bridges_enabled_ = false, bridge_fault_ = false;
   Supply supply_;
+  MotorConstants winding_;  ///< and shunt, of each sound motor
+  std::array<MotorFault, 3> motor_faults_{};
+  std::array<ShuntFault, 3> shunt_faults_{};
+  std::array<std::array<LegFault, 2>, 3> leg_faults_{};
+  bool tripped_ = false;  ///< a bridge's over-current protection, until it is disabled
 
   // Mechanical
   std::array<double, 3> torque_per_A_;  ///< at the joint, sign of the wiring included

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <plant/encoder_fault.hpp>
+
 namespace inkwell::virtual_board {
 
 class QuadratureEncoder {
@@ -15,14 +17,18 @@ class QuadratureEncoder {
   };
 
   /// `counts_per_rad` is signed: negative if the encoder counts down while its joint turns forward.
-  explicit QuadratureEncoder(double counts_per_rad, double joint_rad)
-      : counts_per_rad_(counts_per_rad), shown_at_(joint_rad * counts_per_rad), shown_(count_at(joint_rad)) {}
+  explicit QuadratureEncoder(double counts_per_rad, double joint_rad, std::uint64_t seed = 1)
+      : fault(seed),
+        counts_per_rad_(counts_per_rad),
+        shown_at_(joint_rad * counts_per_rad),
+        reached_(count_at(joint_rad)) {}
 
   /// Counts of the disc at this joint angle; zero is where the joint's angle is zero.
   std::int64_t count_at(double joint_rad) const {
     return static_cast<std::int64_t>(std::floor(joint_rad * counts_per_rad_));
   }
-  std::int64_t shown() const { return shown_; }
+  /// The count that its outputs stand at: that of the disc, less what was lost.
+  std::int64_t shown() const { return reached_ - lost_; }
 
   /// Both outputs at `count`. A leads B while counting up (RM0090, "Encoder interface mode").
   static Levels levels(std::int64_t count) {
@@ -34,21 +40,28 @@ class QuadratureEncoder {
   /// the way is behind it.
   template <class Edge>
   void follow(double joint_rad, Edge&& edge) {
-    const std::int64_t target = count_at(joint_rad);
-    const double from = shown_at_, way = joint_rad * counts_per_rad_ - from;
+    slipped_ += fault.slipped_counts();
+    const double from = shown_at_, way = joint_rad * counts_per_rad_ + slipped_ - from;
     shown_at_ += way;
-    while (shown_ != target) {
-      const bool up = target > shown_;
-      const auto border = static_cast<double>(up ? shown_ + 1 : shown_);
-      shown_ += up ? 1 : -1;
-      edge(levels(shown_), std::clamp((border - from) / way, 0.0, 1.0));
+    const auto target = static_cast<std::int64_t>(std::floor(shown_at_));
+    while (reached_ != target) {
+      const bool up = target > reached_;
+      const auto border = static_cast<double>(up ? reached_ + 1 : reached_);
+      reached_ += up ? 1 : -1;
+      if (fault.swallows())
+        lost_ += up ? 1 : -1;
+      else
+        edge(levels(shown()), std::clamp((border - from) / way, 0.0, 1.0));
     }
   }
+
+  EncoderFault fault;
 
  private:
   double counts_per_rad_;
   double shown_at_;  ///< where the disc stands, in counts
-  std::int64_t shown_;
+  double slipped_ = 0.0;
+  std::int64_t reached_, lost_ = 0;
 };
 
 }  // namespace inkwell::virtual_board

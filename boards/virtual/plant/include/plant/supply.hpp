@@ -2,6 +2,8 @@
 // capacitor, which is why the bus rises while the arm is braked.
 #pragma once
 
+#include <optional>
+
 #include <plant/imperfections.hpp>
 
 namespace inkwell::virtual_board {
@@ -11,7 +13,9 @@ class Supply {
   Supply(const Imperfections& imperfections, double source_V);
 
   void set_source_V(double volts) { source_V_ = volts; }
-  double source_V() const { return source_V_; }
+  /// A fault of the source: it gives this instead, until there is none.
+  void fail_at_V(std::optional<double> volts) { failed_V_ = volts; }
+  double source_V() const { return failed_V_.value_or(source_V_); }
   double bus_V() const { return bus_V_; }
 
   /// One step of `duration_s` in which the bridges drew `charge_As` (negative while they feed back).
@@ -20,6 +24,7 @@ class Supply {
  private:
   double source_conductance_S_, quiescent_conductance_S_, capacitance_F_;
   double source_V_, bus_V_;
+  std::optional<double> failed_V_;
 };
 
 }  // namespace inkwell::virtual_board

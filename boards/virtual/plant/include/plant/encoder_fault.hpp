@@ -1,0 +1,37 @@
+// What may be wrong with an encoder whose wires are sound: a disc that stands, counts that are lost, a disc that slips.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+
+namespace inkwell::virtual_board {
+
+class EncoderFault {
+ public:
+  explicit EncoderFault(std::uint64_t seed) : random_(static_cast<std::uint32_t>(seed) + 1) {}
+
+  void stand(bool stands) { stands_ = stands; }
+  void lose(double share) { lost_share_ = share; }
+  void slip(double counts) { to_slip_ += counts; }
+
+  /// Whether a count that the motor has turned on by shows no edge.
+  bool swallows() {
+    return stands_ || (lost_share_ > 0.0 && std::generate_canonical<double, 32>(random_) < lost_share_);
+  }
+  /// How far the disc slips before it is looked at again. Not so fast that the chip's filters swallow the edges.
+  double slipped_counts() {
+    constexpr double fastest = 20.0;
+    const double now = std::clamp(to_slip_, -fastest, fastest);
+    to_slip_ -= now;
+    return now;
+  }
+
+ private:
+  bool stands_ = false;
+  double lost_share_ = 0.0;
+  double to_slip_ = 0.0;
+  std::minstd_rand random_;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,70 @@
+// The wires between the chip and what is soldered to it, as far as they are broken: each call passes through here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <chip/interfaces.hpp>
+
+namespace inkwell::virtual_board {
+
+enum class WireFault : std::uint8_t {
+  sound,
+  open,    ///< what it drives floats; an analogue input sinks to ground as its capacitor leaks
+  low,     ///< touches ground
+  high,    ///< touches the chip's 3.3 V
+  frozen,  ///< stays as it is
+};
+
+struct WireName {
+  char port;
+  unsigned pin;
+  bool operator==(const WireName&) const = default;
+};
+
+/// Stands between a chip, for which it is the circuit, and a circuit, for which it is the chip's inputs.
+class Wires final : public Circuit, public InputPins {
+ public:
+  static constexpr double supply_V = 3.3;
+  static constexpr double open_input_s = 0.01;  ///< time constant of an analogue input that nothing drives
+
+  explicit Wires(Circuit& circuit) : circuit_(circuit) {}
+  /// Solders the chip in.
+  void connect(InputPins& chip) { chip_ = &chip; }
+
+  void set(WireName wire, WireFault fault);
+  void touch(WireName a, WireName b, bool touching);
+
+  void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
+  double analog_V(char port, unsigned pin, Ticks now) override;
+  void advance(Ticks now) override;
+  void drive(char port, unsigned pin, PinLevel level, Ticks since) override;
+
+ private:
+  struct State {
+    WireFault fault = WireFault::sound;
+    PinLevel by_chip = PinLevel::floating, by_circuit = PinLevel::floating;  ///< what drives it at either end
+    PinLevel frozen_by_chip = PinLevel::floating, frozen_by_circuit = PinLevel::floating;
+    double newest_V = 0.0, frozen_V = 0.0;
+    Ticks since = 0;  ///< the fault
+  };
+  struct Pair {
+    WireName a, b;
+  };
+  State& state(WireName wire) { return states_[static_cast<unsigned>(wire.port - 'A') * 16 + wire.pin]; }
+  const WireName* neighbour(WireName wire) const;
+  PinLevel arriving(WireName wire, PinLevel State::*driven, PinLevel State::*frozen);
+  void tell_chip(WireName wire, Ticks since);
+  void tell_circuit(WireName wire);
+  void tell_both(WireName wire);
+  double volts(WireName wire, Ticks now);
+
+  Circuit& circuit_;
+  InputPins* chip_ = nullptr;
+  std::array<State, 16 * 9> states_{};  ///< ports A to I
+  std::vector<Pair> touching_;
+  Ticks now_ = 0;
+};
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,104 @@
+#include <plant/wires.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace inkwell::virtual_board {
+
+const WireName* Wires::neighbour(WireName wire) const {
+  for (const Pair& pair : touching_) {
+    if (pair.a == wire) return &pair.b;
+    if (pair.b == wire) return &pair.a;
+  }
+  return nullptr;
+}
+
+// What comes out at the other end. Of two wires that touch low wins; one that nothing drives does not count.
+PinLevel Wires::arriving(WireName wire, PinLevel State::*driven, PinLevel State::*frozen) {
+  const State& s = state(wire);
+  switch (s.fault) {
+    case WireFault::open: return PinLevel::floating;
+    case WireFault::low: return PinLevel::low;
+    case WireFault::high: return PinLevel::high;
+    case WireFault::frozen: return s.*frozen;
+    case WireFault::sound: break;
+  }
+  const WireName* other = neighbour(wire);
+  if (other == nullptr || state(*other).*driven == PinLevel::floating) return s.*driven;
+  return s.*driven == PinLevel::floating || state(*other).*driven == PinLevel::low ? state(*other).*driven : s.*driven;
+}
+
+void Wires::tell_chip(WireName wire, Ticks since) {
+  if (chip_ != nullptr)
+    chip_->drive(wire.port, wire.pin, arriving(wire, &State::by_circuit, &State::frozen_by_circuit), since);
+}
+
+void Wires::tell_circuit(WireName wire) {
+  circuit_.output_changed(wire.port, wire.pin, arriving(wire, &State::by_chip, &State::frozen_by_chip), now_);
+}
+
+void Wires::tell_both(WireName wire) {
+  tell_chip(wire, just_now);
+  tell_circuit(wire);
+}
+
+void Wires::set(WireName wire, WireFault fault) {
+  State& s = state(wire);
+  s.frozen_by_chip = arriving(wire, &State::by_chip, &State::frozen_by_chip);
+  s.frozen_by_circuit = arriving(wire, &State::by_circuit, &State::frozen_by_circuit);
+  s.frozen_V = s.newest_V;
+  s.since = now_;
+  s.fault = fault;
+  tell_both(wire);
+}
+
+void Wires::touch(WireName a, WireName b, bool touching) {
+  std::erase_if(touching_,
+                [&](const Pair& pair) { return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a); });
+  if (touching) touching_.push_back({a, b});
+  tell_both(a);
+  tell_both(b);
+}
+
+void Wires::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
+  now_ = std::max(now_, now);
+  const WireName wire{port, pin};
+  state(wire).by_chip = level;
+  if (state(wire).fault == WireFault::sound) tell_circuit(wire);
+  if (const WireName* other = neighbour(wire)) tell_circuit(*other);
+}
+
+void Wires::drive(char port, unsigned pin, PinLevel level, Ticks since) {
+  const WireName wire{port, pin};
+  state(wire).by_circuit = level;
+  if (state(wire).fault == WireFault::sound) tell_chip(wire, since);
+  if (const WireName* other = neighbour(wire)) tell_chip(*other, since);
+}
+
+double Wires::volts(WireName wire, Ticks now) {
+  const State& s = state(wire);
+  switch (s.fault) {
+    case WireFault::open: return s.frozen_V * std::exp(-seconds(now - s.since) / open_input_s);
+    case WireFault::low: return 0.0;
+    case WireFault::high: return supply_V;
+    case WireFault::frozen: return s.frozen_V;
+    case WireFault::sound: break;
+  }
+  return circuit_.analog_V(wire.port, wire.pin, now);
+}
+
+double Wires::analog_V(char port, unsigned pin, Ticks now) {
+  now_ = std::max(now_, now);
+  const WireName wire{port, pin};
+  double read_V = volts(wire, now);
+  if (const WireName* other = neighbour(wire)) read_V = 0.5 * (read_V + volts(*other, now));
+  state(wire).newest_V = read_V;
+  return read_V;
+}
+
+void Wires::advance(Ticks now) {
+  now_ = std::max(now_, now);
+  circuit_.advance(now);
+}
+
+}  // namespace inkwell::virtual_board
