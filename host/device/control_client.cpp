@@ -88,6 +88,21 @@ void ControlClient::crystal(bool swings) { call({{"command", "crystal"}, {"swing
 void ControlClient::gimbal(const Vector3& angles_rad) { call({{"command", "gimbal"}, {"angles_rad", angles_rad}}); }
 void ControlClient::dock(bool docked) { call({{"command", "dock"}, {"docked", docked}}); }
 
+double ControlClient::inject(const InjectedFault& fault) {
+  json request{{"command", "inject"}, {"fault", fault.fault}, {"after_s", fault.after_s}};
+  if (!fault.of.empty()) request["of"] = fault.of;
+  if (fault.amount) request["amount"] = *fault.amount;
+  if (fault.for_s) request["for_s"] = *fault.for_s;
+  return call(request).value("at_s", 0.0);
+}
+
+void ControlClient::heal(const std::string& fault, const std::string& of) {
+  json request{{"command", "heal"}, {"fault", fault}};
+  if (!of.empty()) request["of"] = of;
+  call(request);
+}
+void ControlClient::heal_all() { call({{"command", "heal"}}); }
+
 void ControlClient::hand(const Hand& hand) {
   json request{{"command", "hand"}, {"holds", hand.holds}};
   if (hand.holds) {

@@ -1,4 +1,4 @@
-"""docs/virtual-board.md says of each option and command of virtual-board what it is for, in the order of its help.
+"""docs/virtual-board.md says of each option, command and fault of virtual-board what it is for, in the order of its help.
 
 usage: virtual_board_page_test.py VIRTUAL_BOARD PAGE
 """
@@ -9,9 +9,11 @@ import sys
 
 def names_in_help(help_text):
     options, commands = help_text.split("\nControl socket:", 1)
+    faults = options.split("\nFaults that can be put in,", 1)[1].split(":\n", 1)[1]
     return {
         "Options": re.findall(r"^  (--[a-z-]+)", options, re.MULTILINE),
         "Commands of the control socket": re.findall(r"^  ([a-z]\w*)", commands.split(":", 1)[1], re.MULTILINE),
+        "Faults that can be put in": re.findall(r"^  ([a-z]\w*)", faults, re.MULTILINE),
     }
 
 

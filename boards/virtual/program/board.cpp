@@ -1,5 +1,6 @@
 #include "board.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 #include <utility>
@@ -36,7 +37,7 @@ std::array<std::uint32_t, 3> unique_id_of(std::uint64_t seed) {
 Board::Board(const Options& options, std::function<void()> on_usb_request, std::function<bool()> is_ending)
     : elf_(options.elf),
       plant_(arms::read(options.arm), {.seed = options.seed}),
-      chip_(plant_, {.mode = options.mode,
+      chip_(wires_, {.mode = options.mode,
                      .pricing = options.pricing,
                      .crystal_Hz = options.crystal_Hz,
                      .crystal_ppm = options.crystal_ppm,
@@ -61,10 +62,15 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
     if (trace_.is_running()) trace_.record(index, plant_.truth(when));
   };
   chip_.on_console = [this](std::uint8_t byte) { console(byte); };
-  plant_.connect(chip_.input_pins());
+  wires_.connect(chip_.input_pins());
+  plant_.connect(wires_);
+  injector_.emplace(Injector::Victims{chip_, plant_, wires_, options.crystal_ppm, [this](bool in) { plug(in); },
+                                      [this](bool asks) { usb_->let_host_ask(asks); }},
+                    options.seed);
   plug(true);
   chip_.reset(ResetCause::power_on);
   if (!options.waveform.empty()) waveform_.emplace(options.waveform, options.waveform_pins, chip_);
+  for (const Injection& injection : options.injections) injector_->add(injection);
   chip_.clear_counters();  // resets are counted from here on
   chip_.on_reset = [this](ResetCause cause) {
     locked_up_ = false;
@@ -81,6 +87,16 @@ std::function<void(std::uint32_t, std::uint64_t)> Board::observer(const Options&
 }
 
 Stop Board::run_until(Ticks when) {
+  for (;;) {
+    if (injector_->next() <= chip_.now()) injector_->carry_out();
+    const Ticks next = injector_->next();
+    const Stop stop = run_chip_until(std::min(when, next));
+    const bool goes_on = stop == Stop::time_reached || stop == Stop::locked_up;
+    if (!goes_on || next >= when) return stop;
+  }
+}
+
+Stop Board::run_chip_until(Ticks when) {
   const Stop stop = chip_.run_until(when);
   if (stop == Stop::locked_up && !locked_up_) {
     locked_up_ = true;

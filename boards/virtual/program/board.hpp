@@ -8,6 +8,7 @@
 #include <chip/chip.hpp>
 #include <debugger/symbols.hpp>
 #include <debugger/waveform.hpp>
+#include <injection/injector.hpp>
 #include <plant/plant.hpp>
 #include <virtual_usb/virtual_usb.hpp>
 
@@ -32,6 +33,7 @@ class Board {
 
   Chip& chip() { return chip_; }
   Plant& plant() { return plant_; }
+  Injector& injector() { return *injector_; }
   VirtualUsb& usb() { return *usb_; }
   Trace& trace() { return trace_; }
   const Profile& profile() const { return profile_; }
@@ -42,14 +44,17 @@ class Board {
 
  private:
   void console(std::uint8_t byte);
+  Stop run_chip_until(Ticks when);
   std::function<void(std::uint32_t address, std::uint64_t cycles)> observer(const Options& options);
 
   const std::filesystem::path elf_;
   Symbols symbols_;
   Plant plant_;
+  Wires wires_{plant_};
   Chip chip_;
   std::optional<Waveform> waveform_;
-  std::optional<VirtualUsb> usb_;  ///< there from construction to destruction
+  std::optional<VirtualUsb> usb_;     ///< there from construction to destruction
+  std::optional<Injector> injector_;  ///< likewise
   Trace trace_;
   Profile profile_;
   std::string console_line_;

@@ -12,48 +12,14 @@
 
 #include <protocol/simulation.hpp>
 
+#include "injection_commands.hpp"
+#include "requests.hpp"
 #include "simulation.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
 
 using nlohmann::json;
-
-/// A command that is refused; what() is the sentence for the client.
-class Refused : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-// ---- arguments: each accessor says what it wants ------------------------------------------------------------
-
-const json& at(const json& request, const char* key, const char* what) {
-  const auto found = request.find(key);
-  if (found == request.end()) throw Refused(fmt::format("\"{}\" is missing: {}", key, what));
-  return *found;
-}
-
-bool truth_value(const json& request, const char* key) {
-  const json& value = at(request, key, "true or false");
-  if (!value.is_boolean()) throw Refused(fmt::format("\"{}\" must be true or false", key));
-  return value.get<bool>();
-}
-
-double checked_number(const json& value, const char* key, double minimum, double maximum) {
-  if (!value.is_number()) throw Refused(fmt::format("\"{}\" must hold numbers only", key));
-  const double number = value.get<double>();
-  if (!(number >= minimum && number <= maximum))
-    throw Refused(fmt::format("\"{}\" holds {}, which is outside {} to {}", key, number, minimum, maximum));
-  return number;
-}
-
-double number(const json& request, const char* key, double minimum, double maximum) {
-  return checked_number(at(request, key, "a number"), key, minimum, maximum);
-}
-
-double number_or(const json& request, const char* key, double otherwise, double minimum, double maximum) {
-  return request.contains(key) ? number(request, key, minimum, maximum) : otherwise;
-}
 
 Vector3 vector(const json& request, const char* key, double largest) {
   const json& value = at(request, key, "a list of three numbers");
@@ -110,6 +76,7 @@ json status(const json&, Simulation& simulation) {
       {"watchdog_resets", of(ResetCause::independent_watchdog) + of(ResetCause::window_watchdog)},
       {"unmodelled", chip.unmodelled_accesses()},
       {"violations", violations_of(board)},
+      {"injected", injected(board)},
       {"longest_interrupt", {{"exception", longest}, {"cycles", counters.exceptions[longest].longest_cycles}}},
       {"usb",
        {{"connected", board.usb().connected()},
@@ -300,7 +267,8 @@ json truth(const json&, Simulation& simulation) {
              {"inkwell_switch", t.inkwell_switch},
              {"bridge_fault", t.bridge_fault},
              {"buttons", t.buttons},
-             {"bridges_enabled", t.bridges_enabled}};
+             {"bridges_enabled", t.bridges_enabled},
+             {"injected", injected(simulation.board())}};
   for (const auto& legs : t.leg_levels) reply["bridge_legs"].push_back({name_of(legs[0]), name_of(legs[1])});
   const auto values = traced_values(t);
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -365,6 +333,14 @@ const std::vector<Command>& commands() {
        "it never reaches the core, or does again; 16 is interrupt 0",
        lose_exception},
       {"crystal", {"swings"}, "the crystal stops, or swings again", crystal},
+      {"inject",
+       {"fault", "of", "amount", "after_s", "for_s"},
+       "put a fault of the list above in, at once or later, for ever or a while",
+       inject},
+      {"heal",
+       {"fault", "of"},
+       "take it out again, all of its name without \"of\", all that are in without both",
+       heal},
       {"hand", {"holds", "target_m", "stiffness_N_per_m", "damping_Ns_per_m"}, "it pulls the probe, or lets go", hand},
       {"hand_path", {"points"}, "minimum jerk between [{\"after_s\":0.5,\"target_m\":[x,y,z]},...]", hand_path},
       {"gimbal", {"angles_rad"}, "turn the stylus: yaw, pitch, roll", gimbal},

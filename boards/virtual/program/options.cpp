@@ -1,7 +1,9 @@
 #include "options.hpp"
 
 #include <cstdlib>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <string>
 
@@ -119,6 +121,17 @@ CommandLine read_command_line(int argc, char** argv) {
                                         "at the end, write the instructions of the longest interrupt and their cycles "
                                         "to this file\n(tools/flame-graph draws it); --mode is exact")
                              ->type_name("FILE");
+  std::vector<std::string> injections;
+  app.add_option(
+         "--inject", injections,
+         "a fault that comes at a board time in seconds and lasts so long, as in encoder_lost_counts:2=0.05@1.5+0.2;\n"
+         "without @ from the start, without + for ever; below are all. May be given several times")
+      ->type_name("FAULT")
+      ->allow_extra_args(false);
+  std::string injection_script;
+  app.add_option("--inject-from", injection_script, "a file with one such fault a line; what follows a # is a comment")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
   app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
   app.add_flag(
       "--strict", options.strict,
@@ -132,6 +145,10 @@ CommandLine read_command_line(int argc, char** argv) {
       "\n"
       "Board time waits for the program that uses the device on USB when it owes the next request of a stream, until\n"
       "it asks for more or is gone. So a busy computer, or a debugger that stops that program, loses no data.\n"
+      "\n"
+      "Faults that can be put in, with what they are put into and the amount; its range, and what it is unless "
+      "given:\n" +
+      explain_injections() +
       "\n"
       "Control socket: one JSON object a line each way, such as {\"command\":\"run\",\"for_s\":0.5}. The commands "
       "with\n"
@@ -161,6 +178,20 @@ CommandLine read_command_line(int argc, char** argv) {
     for (const std::string& text : uarts) options.uarts.push_back(UartOption::of(text));
   } catch (const std::invalid_argument& error) {
     std::cerr << "virtual-board: --uart: " << error.what() << "\n";
+    return {std::nullopt, 2};
+  }
+  try {
+    for (const std::string& text : injections) options.injections.push_back(parse_injection(text));
+  } catch (const InvalidInjection& error) {
+    std::cerr << "virtual-board: --inject: " << error.what() << "\n";
+    return {std::nullopt, 2};
+  }
+  try {
+    std::ifstream script(injection_script);
+    const std::string text{std::istreambuf_iterator<char>(script), {}};
+    for (Injection& injection : parse_injections(text)) options.injections.push_back(std::move(injection));
+  } catch (const InvalidInjection& error) {
+    std::cerr << "virtual-board: --inject-from " << injection_script << ", " << error.what() << "\n";
     return {std::nullopt, 2};
   }
   options.mode = mode == "exact" ? Mode::exact : Mode::fast;

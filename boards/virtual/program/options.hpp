@@ -8,6 +8,7 @@
 
 #include <chip/chip.hpp>
 #include <debugger/waveform.hpp>
+#include <injection/injection.hpp>
 
 #include "uart_links.hpp"
 
@@ -32,6 +33,7 @@ struct Options {
   bool real_time = false;
   std::uint64_t seed = 1;         ///< of all noise and of the serial number
   std::optional<double> seconds;  ///< of board time, after which the program ends
+  std::vector<Injection> injections;
   bool paused = false;
   std::optional<std::filesystem::path> profile;  ///< file for the longest interrupt, instruction by instruction
   bool strict = false;                           ///< the first broken rule of the chip ends the program

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,15 @@ struct Hand {
 struct HandWaypoint {
   double after_s = 0;
   Vector3 target_m{};
+};
+
+/// A fault of protocol/injections.hpp, under its name.
+struct InjectedFault {
+  std::string fault;
+  std::string of = {};  ///< what it is put into, such as "2", "1A" or "encoders[0].a"; empty where there is one only
+  std::optional<double> amount = {};  ///< none: the table's own
+  double after_s = 0;
+  std::optional<double> for_s = {};  ///< none: until it is healed
 };
 
 struct BoardStatus {
@@ -78,6 +88,10 @@ class ControlClient {
   void glitch(const std::string& pin, double duration_s);  ///< a pin ("PA0") is the opposite of what drives it
   void lose_exception(int exception, bool lost);           ///< it never reaches the core, or does again
   void crystal(bool swings);                               ///< the crystal stops, or swings again
+  /// Puts a fault in; the board time at which it comes, s.
+  double inject(const InjectedFault& fault);
+  void heal(const std::string& fault, const std::string& of = {});  ///< takes it out, anywhere if no place is named
+  void heal_all();
   void hand(const Hand& hand);
   void hand_path(const std::vector<HandWaypoint>& path);  ///< minimum jerk between the waypoints
   void gimbal(const Vector3& angles_rad);                 ///< turns the stylus: yaw, pitch, roll

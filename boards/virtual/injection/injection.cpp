@@ -1,0 +1,211 @@
+#include <injection/injection.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <board/omni_driver.hpp>
+#include <chip/chip.hpp>
+
+namespace inkwell::virtual_board {
+namespace {
+
+using protocol::InjectionPlace;
+
+constexpr double latest_s = 1e6;
+
+double number(std::string_view text, std::string_view of_what) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    throw InvalidInjection(fmt::format("\"{}\" is no number; it stands for {}", text, of_what));
+  return value;
+}
+
+unsigned whole_number(const std::string& text, unsigned minimum, unsigned maximum, std::string_view of_what) {
+  unsigned value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < minimum || value > maximum)
+    throw InvalidInjection(
+        fmt::format("\"{}\" is no {}; it must be a number from {} to {}", text, of_what, minimum, maximum));
+  return value;
+}
+
+WireName wire(const std::string& text) {
+  for (const board::PinUse& use : board::pin_uses) {
+    if (use.name != text) continue;
+    if (use.pin == board::usb_minus.pin || use.pin == board::usb_plus.pin)
+      throw InvalidInjection(fmt::format("the wire {} is not modelled by itself; usb_cut takes the cable out", text));
+    return {use.pin.port, use.pin.number};
+  }
+  if (text.size() >= 3 && text.size() <= 4 && text[0] == 'P' && text[1] >= 'A' && text[1] <= 'I') {
+    unsigned pin = 16;
+    const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), pin);
+    if (error == std::errc() && end == text.data() + text.size() && pin < 16) return {text[1], pin};
+  }
+  throw InvalidInjection(fmt::format(
+      "\"{}\" is no wire; name a pin, such as PA0, or what it is used for, such as encoders[0].a or bridge_enable",
+      text));
+}
+
+bool is_digit_or_point(char c) { return c == '.' || (c >= '0' && c <= '9'); }
+bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+std::string name_of(WireName wire) {
+  for (const board::PinUse& use : board::pin_uses)
+    if (use.pin.port == wire.port && use.pin.number == wire.pin) return std::string(use.name);
+  return fmt::format("P{}{}", wire.port, wire.pin);
+}
+
+std::uint32_t address(const std::string& text) {
+  std::string_view digits = text;
+  const bool hexadecimal = digits.starts_with("0x");
+  if (hexadecimal) digits.remove_prefix(2);
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, hexadecimal ? 16 : 10);
+  if (error != std::errc() || end != digits.data() + digits.size())
+    throw InvalidInjection(fmt::format("\"{}\" is no address; write it as 0x20000100", text));
+  return value;
+}
+
+std::string_view example_of(InjectionPlace place) {
+  switch (place) {
+    case InjectionPlace::motor: return "the motor: 1, 2 or 3";
+    case InjectionPlace::leg: return "the leg: 1A, 1B, 2A, 2B, 3A or 3B";
+    case InjectionPlace::wire: return "the wire: a pin, such as PA0, or encoders[0].a";
+    case InjectionPlace::wires: return "two wires, such as encoders[0].a+encoders[0].b";
+    case InjectionPlace::exception: return "the exception: 16 is interrupt 0";
+    case InjectionPlace::converter: return "the converter: 1, 2 or 3";
+    case InjectionPlace::none:
+    case InjectionPlace::address: break;
+  }
+  return "";
+}
+
+void check_target(Injection& injection, const std::string& of) {
+  const auto& info = protocol::info(injection.fault);
+  if (of.empty() && info.place != InjectionPlace::none && info.place != InjectionPlace::address)
+    throw InvalidInjection(fmt::format("{} must say what it is put into, {}", info.name, example_of(info.place)));
+  injection.of = of;
+  switch (info.place) {
+    case InjectionPlace::none:
+      if (!of.empty())
+        throw InvalidInjection(fmt::format("{} is not put into anything; leave \"{}\" out", info.name, of));
+      return;
+    case InjectionPlace::motor: injection.number = whole_number(of, 1, 3, "motor") - 1; return;
+    case InjectionPlace::converter: injection.number = whole_number(of, 1, 3, "converter"); return;
+    case InjectionPlace::exception: injection.number = whole_number(of, 2, exception_numbers - 1, "exception"); return;
+    case InjectionPlace::leg:
+      if (of.size() != 2 || of[0] < '1' || of[0] > '3' || (of[1] != 'A' && of[1] != 'B'))
+        throw InvalidInjection(fmt::format("\"{}\" is no leg of a bridge; there are 1A, 1B, 2A, 2B, 3A and 3B", of));
+      injection.number = static_cast<unsigned>(of[0] - '1');
+      injection.leg = of[1] == 'B';
+      return;
+    case InjectionPlace::wire:
+      injection.wires[0] = wire(of);
+      injection.of = name_of(injection.wires[0]);
+      return;
+    case InjectionPlace::wires: {
+      const auto plus = of.find('+');
+      if (plus == std::string::npos)
+        throw InvalidInjection(fmt::format("{} must name two wires, such as PA0+PA1", info.name));
+      injection.wires = {wire(of.substr(0, plus)), wire(of.substr(plus + 1))};
+      if (injection.wires[0] == injection.wires[1]) throw InvalidInjection("a wire always touches itself; name two");
+      injection.of = name_of(injection.wires[0]) + "+" + name_of(injection.wires[1]);
+      return;
+    }
+    case InjectionPlace::address:
+      if (!of.empty()) injection.address = address(of);
+      return;
+  }
+}
+
+void check_time(double time_s, std::string_view what) {
+  if (!(time_s >= 0.0 && time_s <= latest_s))
+    throw InvalidInjection(fmt::format("{} is {} s, which is outside 0 to {}", what, time_s, latest_s));
+}
+
+}  // namespace
+
+Injection checked(const InjectionText& text) {
+  const auto fault = protocol::find_injection(text.fault);
+  if (!fault) {
+    std::vector<std::string_view> names;
+    for (const auto& row : protocol::injection_table) names.push_back(row.name);
+    throw InvalidInjection(fmt::format("there is no fault \"{}\"; known are {}", text.fault, fmt::join(names, ", ")));
+  }
+  const auto& info = protocol::info(*fault);
+  Injection injection{.fault = *fault};
+  check_target(injection, text.of);
+  injection.amount = text.amount.value_or(info.otherwise);
+  if (text.amount && !info.has_amount())
+    throw InvalidInjection(fmt::format("{} has no amount; leave {} out", info.name, *text.amount));
+  if (!(injection.amount >= info.minimum && injection.amount <= info.maximum))
+    throw InvalidInjection(fmt::format("{} {} {} is outside {} to {}", info.name, injection.amount, info.unit,
+                                       info.minimum, info.maximum));
+  check_time(text.after_s, "the time until it comes");
+  if (text.for_s) check_time(*text.for_s, "how long it lasts");
+  injection.after_s = text.after_s;
+  injection.for_s = text.for_s;
+  return injection;
+}
+
+Injection parse_injection(std::string_view text) {
+  InjectionText parts;
+  std::string_view rest = text;
+  // From behind, because the names of two wires have a plus between them as well.
+  const auto cut = [&](char mark, std::string_view what) -> std::optional<double> {
+    const auto place = rest.rfind(mark);
+    if (place == std::string_view::npos) return std::nullopt;
+    const double value = number(rest.substr(place + 1), what);
+    rest = rest.substr(0, place);
+    return value;
+  };
+  const auto at = rest.rfind('@'), plus = rest.rfind('+');
+  const bool lasts = plus != std::string_view::npos && plus + 1 < rest.size() &&
+                     (at == std::string_view::npos || plus > at) && is_digit_or_point(rest[plus + 1]);
+  if (lasts) parts.for_s = cut('+', "how long it lasts, in seconds");
+  if (const auto after_s = cut('@', "the time until it comes, in seconds")) parts.after_s = *after_s;
+  parts.amount = cut('=', "the amount");
+  const auto colon = rest.find(':');
+  parts.fault = std::string(rest.substr(0, colon));
+  if (colon != std::string_view::npos) parts.of = std::string(rest.substr(colon + 1));
+  return checked(parts);
+}
+
+std::vector<Injection> parse_injections(std::string_view script) {
+  std::vector<Injection> injections;
+  for (unsigned line_number = 1; !script.empty(); ++line_number) {
+    const auto end = std::min(script.find('\n'), script.size());
+    std::string_view line = script.substr(0, std::min(end, script.find('#')));
+    script.remove_prefix(std::min(end + 1, script.size()));
+    while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
+    while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+    if (line.empty()) continue;
+    try {
+      injections.push_back(parse_injection(line));
+    } catch (const InvalidInjection& error) {
+      throw InvalidInjection(fmt::format("line {}: {}", line_number, error.what()));
+    }
+  }
+  return injections;
+}
+
+std::string explain_injections() {
+  std::string text;
+  for (const auto& row : protocol::injection_table) {
+    constexpr std::string_view of[] = {"", ":MOTOR", ":LEG", ":WIRE", ":WIRE+WIRE", ":EXCEPTION", ":ADC", "[:ADDRESS]"};
+    std::string usage = fmt::format("{}{}", row.name, of[static_cast<std::size_t>(row.place)]);
+    if (row.has_amount()) usage += "=" + std::string(row.unit.empty() ? "N" : row.unit);
+    constexpr std::size_t column = 30;
+    text += usage.size() < column ? fmt::format("  {:<{}}{}", usage, column, row.help)
+                                  : fmt::format("  {}\n  {:{}}{}", usage, "", column, row.help);
+    if (row.has_amount()) text += fmt::format(" {} to {}; {}", row.minimum, row.maximum, row.otherwise);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,260 @@
+#include <injection/injector.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+#include <board/omni_driver.hpp>
+
+namespace inkwell::virtual_board {
+namespace {
+
+using protocol::InjectedFault;
+
+constexpr std::uint32_t ram_base = 0x2000'0000, ram_bytes = 128 * 1024;
+constexpr std::uint32_t core_ram_base = 0x1000'0000, core_ram_bytes = 64 * 1024;
+constexpr std::uint32_t flash_base = 0x0800'0000, flash_bytes = 1024 * 1024;
+constexpr double spike_s = 2e-6;
+constexpr double logic_supply_V = 3.3;
+
+/// Of those with the same number one is at a place at a time.
+unsigned kind(InjectedFault fault) {
+  switch (fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen: return 1000;
+    case InjectedFault::shunt_high:
+    case InjectedFault::shunt_low:
+    case InjectedFault::shunt_frozen: return 1001;
+    case InjectedFault::leg_high:
+    case InjectedFault::leg_low:
+    case InjectedFault::leg_open: return 1002;
+    case InjectedFault::supply_sag:
+    case InjectedFault::supply_spike:
+    case InjectedFault::supply_cut: return 1003;
+    default: return static_cast<unsigned>(fault);
+  }
+}
+
+/// It happens and is over; a second one comes on top.
+bool is_momentary(InjectedFault fault) {
+  return fault == InjectedFault::encoder_slip || fault == InjectedFault::program_astray ||
+         fault == InjectedFault::ram_bit || fault == InjectedFault::flash_bit;
+}
+
+bool is_within(std::uint32_t address, std::uint32_t base, std::uint32_t bytes) {
+  return address >= base && address - base < bytes;
+}
+
+/// What the image takes of the flash: behind it all is erased, and nothing would notice.
+std::uint32_t programmed_bytes(const Chip& chip) {
+  std::uint32_t bytes = flash_bytes;
+  while (bytes > 4 && chip.memory_word(flash_base + bytes - 4) == 0xFFFF'FFFF) bytes -= 4;
+  return bytes;
+}
+
+}  // namespace
+
+void Injector::add(const Injection& injection) {
+  if (injection.address) {
+    const bool flash = is_within(*injection.address, flash_base, flash_bytes);
+    const bool ram = is_within(*injection.address, ram_base, ram_bytes) ||
+                     is_within(*injection.address, core_ram_base, core_ram_bytes);
+    if ((injection.fault == InjectedFault::ram_bit && !ram) || (injection.fault == InjectedFault::flash_bit && !flash))
+      throw InvalidInjection(
+          fmt::format("there is no {} at 0x{:08X}: flash is from 0x08000000 on, RAM from 0x20000000 "
+                      "and 0x10000000 on",
+                      flash ? "RAM"
+                      : ram ? "flash"
+                            : "memory",
+                      *injection.address));
+  }
+  if (injection.after_s > 0.0)
+    planned_.push_back({injection, victims_.chip.now() + ticks(injection.after_s)});
+  else
+    put_in(injection);
+}
+
+Ticks Injector::next() const {
+  Ticks next = std::numeric_limits<Ticks>::max();
+  for (const Planned& planned : planned_) next = std::min(next, planned.at);
+  for (const Active& active : active_)
+    if (active.until) next = std::min(next, *active.until);
+  return next;
+}
+
+void Injector::carry_out() {
+  const Ticks now = victims_.chip.now();
+  for (auto& active : active_)
+    if (active.until && *active.until <= now) put(active.injection, false);
+  std::erase_if(active_, [&](const Active& active) { return active.until && *active.until <= now; });
+  for (std::size_t i = 0; i < planned_.size();) {
+    if (planned_[i].at > now) {
+      ++i;
+      continue;
+    }
+    const Injection due = planned_[i].injection;
+    planned_.erase(planned_.begin() + static_cast<std::ptrdiff_t>(i));
+    put_in(due);
+  }
+}
+
+void Injector::put_in(Injection injection) {
+  choose_place(injection);
+  if (!is_momentary(injection.fault))
+    std::erase_if(active_, [&](const Active& active) {
+      if (kind(active.injection.fault) != kind(injection.fault) || active.injection.of != injection.of) return false;
+      put(active.injection, false);
+      return true;
+    });
+  const Ticks now = victims_.chip.now();
+  put(injection, true);
+  active_.push_back({injection, now, {}});
+  if (injection.for_s) active_.back().until = now + ticks(*injection.for_s);
+}
+
+unsigned Injector::heal(InjectedFault fault, const std::string& of) {
+  const auto meant = [&](const Injection& injection) {
+    return injection.fault == fault && (of.empty() || injection.of == of);
+  };
+  for (const Active& active : active_)
+    if (meant(active.injection)) put(active.injection, false);
+  const auto healed = std::erase_if(active_, [&](const Active& active) { return meant(active.injection); });
+  const auto forgotten = std::erase_if(planned_, [&](const Planned& planned) { return meant(planned.injection); });
+  return static_cast<unsigned>(healed + forgotten);
+}
+
+void Injector::heal_all() {
+  for (const Active& active : active_) put(active.injection, false);
+  active_.clear();
+  planned_.clear();
+}
+
+void Injector::choose_place(Injection& injection) {
+  const auto below = [&](std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); };
+  if (protocol::info(injection.fault).place != protocol::InjectionPlace::address) return;
+  if (!injection.address) {
+    if (injection.fault == InjectedFault::ram_bit) {
+      const std::uint32_t place = below(ram_bytes + core_ram_bytes);
+      injection.address = place < ram_bytes ? ram_base + place : core_ram_base + place - ram_bytes;
+    } else {
+      injection.address = flash_base + below(programmed_bytes(victims_.chip));
+    }
+  }
+  if (injection.fault == InjectedFault::program_astray) injection.address = *injection.address & ~1u;
+  injection.of = fmt::format("0x{:08X}", *injection.address);
+  if (injection.amount < 0.0) injection.amount = below(8);
+}
+
+// ---- one fault, into its victim or out of it --------------------------------------------------------------
+
+void Injector::put(const Injection& injection, bool in) {
+  switch (protocol::info(injection.fault).place) {
+    case protocol::InjectionPlace::wire:
+    case protocol::InjectionPlace::wires: return put_into_wire(injection, in);
+    case protocol::InjectionPlace::motor:
+    case protocol::InjectionPlace::leg: return put_into_motor(injection, in);
+    default: return put_into_chip(injection, in);
+  }
+}
+
+void Injector::put_into_wire(const Injection& injection, bool in) {
+  const WireName wire = injection.wires[0];
+  const auto set = [&](WireFault fault) { victims_.wires.set(wire, in ? fault : WireFault::sound); };
+  switch (injection.fault) {
+    case InjectedFault::wire_open: return set(WireFault::open);
+    case InjectedFault::wire_low: return set(WireFault::low);
+    case InjectedFault::wire_high: return set(WireFault::high);
+    case InjectedFault::wire_frozen: return set(WireFault::frozen);
+    case InjectedFault::wires_shorted: return victims_.wires.touch(wire, injection.wires[1], in);
+    default: break;
+  }
+  std::erase_if(spikes_, [&](const Spikes& spikes) { return spikes.wire == wire; });
+  if (!in) return;
+  spikes_.push_back({wire, std::make_shared<double>(injection.amount)});
+  spike(spikes_.back().rate_Hz, wire);
+}
+
+void Injector::spike(const std::weak_ptr<double>& rate, WireName wire) {
+  const auto rate_Hz = rate.lock();
+  if (!rate_Hz) return;
+  const double pause_s = std::exponential_distribution<double>(*rate_Hz)(random_);
+  victims_.chip.scheduler().at(victims_.chip.now() + ticks(pause_s) + 1, [this, rate, wire] {
+    if (rate.expired()) return;
+    victims_.chip.glitch(wire.port, wire.pin, ticks(spike_s));
+    spike(rate, wire);
+  });
+}
+
+void Injector::put_into_motor(const Injection& injection, bool in) {
+  Plant& plant = victims_.plant;
+  const unsigned i = injection.number;
+  ShuntFault shunt = plant.shunt_fault(i);
+  MotorFault motor = plant.motor_fault(i);
+  const auto output = [&](ShuntFault::Output stands) {
+    shunt.output = in ? stands : ShuntFault::Output::follows;
+    plant.set_shunt_fault(i, shunt);
+  };
+  const auto leg = [&](LegFault fault) { plant.set_leg_fault(i, injection.leg, in ? fault : LegFault::none); };
+  switch (injection.fault) {
+    case InjectedFault::encoder_stuck: return plant.encoder_fault(i).stand(in);
+    case InjectedFault::encoder_lost_counts: return plant.encoder_fault(i).lose(in ? injection.amount : 0.0);
+    case InjectedFault::encoder_slip:
+      if (in) plant.encoder_fault(i).slip(injection.amount);
+      return;
+    case InjectedFault::shunt_offset:
+      shunt.offset_A = in ? injection.amount : 0.0;
+      return plant.set_shunt_fault(i, shunt);
+    case InjectedFault::shunt_gain: shunt.gain = in ? injection.amount : 1.0; return plant.set_shunt_fault(i, shunt);
+    case InjectedFault::shunt_high: return output(ShuntFault::Output::upper_rail);
+    case InjectedFault::shunt_low: return output(ShuntFault::Output::lower_rail);
+    case InjectedFault::shunt_frozen: return output(ShuntFault::Output::frozen);
+    case InjectedFault::motor_open: motor.open = in; return plant.set_motor_fault(i, motor);
+    case InjectedFault::motor_shorted:
+      motor.turns_left = in ? injection.amount : 1.0;
+      return plant.set_motor_fault(i, motor);
+    case InjectedFault::motor_hot: motor.warmer_K = in ? injection.amount : 0.0; return plant.set_motor_fault(i, motor);
+    case InjectedFault::leg_high: return leg(LegFault::high);
+    case InjectedFault::leg_low: return leg(LegFault::low);
+    case InjectedFault::leg_open: return leg(LegFault::open);
+    case InjectedFault::leg_slow: return plant.set_leg_delay(i, injection.leg, in ? injection.amount : 0.0);
+    default: return;
+  }
+}
+
+void Injector::put_into_chip(const Injection& injection, bool in) {
+  Chip& chip = victims_.chip;
+  Plant& plant = victims_.plant;
+  const double amount = injection.amount;
+  const auto supply_V = [&](double volts) { plant.fail_supply_at_V(in ? std::optional(volts) : std::nullopt); };
+  switch (injection.fault) {
+    case InjectedFault::bridge_fault: return plant.set_bridge_fault(in);
+    case InjectedFault::supply_sag:
+    case InjectedFault::supply_spike: return supply_V(amount);
+    case InjectedFault::supply_cut: return supply_V(0.0);
+    case InjectedFault::logic_sag: return chip.set_supply_V(in ? amount : logic_supply_V);
+    case InjectedFault::crystal_stop: return chip.let_crystal_swing(!in);
+    case InjectedFault::crystal_drift:
+      return chip.drift_crystal(in ? static_cast<std::int32_t>(amount) : victims_.crystal_ppm);
+    case InjectedFault::usb_cut: return victims_.plug(!in);
+    case InjectedFault::host_silent: return victims_.let_host_ask(!in);
+    case InjectedFault::core_stalled: return chip.stall(in ? ticks(amount) : 0);
+    case InjectedFault::core_halted: return chip.halt(in ? ticks(amount) : 0);
+    case InjectedFault::program_astray:
+      if (in) chip.jump(*injection.address);
+      return;
+    case InjectedFault::exception_lost: return chip.lose_exception(injection.number, in);
+    case InjectedFault::exception_late:
+      return chip.delay_exception(injection.number, in ? static_cast<std::uint32_t>(amount) : 0);
+    case InjectedFault::adc_stopped: return chip.stop_converter(injection.number, in);
+    case InjectedFault::dma_stopped: return chip.stop_dma(in);
+    case InjectedFault::ram_bit:
+      if (in) chip.flip_bit(*injection.address, static_cast<unsigned>(amount));
+      return;
+    case InjectedFault::flash_bit: chip.flip_bit(*injection.address, static_cast<unsigned>(amount)); return;
+    default: return;
+  }
+}
+
+}  // namespace inkwell::virtual_board

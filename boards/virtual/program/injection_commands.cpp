@@ -1,0 +1,83 @@
+#include "injection_commands.hpp"
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "requests.hpp"
+
+namespace inkwell::virtual_board {
+
+using nlohmann::json;
+
+namespace {
+
+json told(const Injector::Active& active) {
+  const Injection& injection = active.injection;
+  const auto& info = protocol::info(injection.fault);
+  json told{{"fault", info.name}, {"since_s", seconds(active.since)}};
+  if (!injection.of.empty()) told["of"] = injection.of;
+  if (info.has_amount()) told["amount"] = injection.amount;
+  if (active.until) told["until_s"] = seconds(*active.until);
+  return told;
+}
+
+std::string text_or_number(const json& request, const char* key, const char* what) {
+  const json& value = at(request, key, what);
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_unsigned()) return std::to_string(value.get<std::uint64_t>());
+  throw Refused(fmt::format("\"{}\" must be {}", key, what));
+}
+
+InjectionText injection_text(const json& request) {
+  constexpr double latest_s = 1e6, largest = 1e12;
+  InjectionText text;
+  text.fault = text_or_number(request, "fault", "the name of a fault, such as \"encoder_stuck\"");
+  if (request.contains("of")) text.of = text_or_number(request, "of", "a number or a name, such as 2 or \"PA0\"");
+  if (request.contains("amount")) text.amount = number(request, "amount", -largest, largest);
+  text.after_s = number_or(request, "after_s", 0.0, 0.0, latest_s);
+  if (request.contains("for_s")) text.for_s = number(request, "for_s", 0.0, latest_s);
+  return text;
+}
+
+}  // namespace
+
+json injected(Board& board) {
+  json list = json::array();
+  for (const Injector::Active& active : board.injector().active()) list.push_back(told(active));
+  return list;
+}
+
+json inject(const json& request, Simulation& simulation) {
+  Board& board = simulation.board();
+  try {
+    const Injection injection = checked(injection_text(request));
+    board.injector().add(injection);
+    return {{"at_s", seconds(board.chip().now()) + injection.after_s}};
+  } catch (const InvalidInjection& error) {
+    throw Refused(error.what());
+  }
+}
+
+json heal(const json& request, Simulation& simulation) {
+  Injector& injector = simulation.board().injector();
+  if (!request.contains("fault")) {
+    if (request.contains("of")) throw Refused("\"of\" stands beside \"fault\"; leave both out to heal everything");
+    const std::size_t healed = injector.active().size();
+    injector.heal_all();
+    return {{"healed", healed}};
+  }
+  try {
+    InjectionText text = injection_text(request);
+    const auto fault = protocol::find_injection(text.fault);
+    // Any place will do, if none is named.
+    const std::string of = fault && text.of.empty() ? text.of : checked(text).of;
+    const unsigned healed = injector.heal(fault.value(), of);
+    if (healed == 0) throw Refused(fmt::format("{} {} is not put in; status lists what is", text.fault, of));
+    return {{"healed", healed}};
+  } catch (const InvalidInjection& error) {
+    throw Refused(error.what());
+  }
+}
+
+}  // namespace inkwell::virtual_board

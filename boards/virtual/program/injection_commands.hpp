@@ -1,0 +1,15 @@
+// The commands of the control socket that put faults in, and what they tell.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "simulation.hpp"
+
+namespace inkwell::virtual_board {
+
+/// What is in now.
+nlohmann::json injected(Board& board);
+nlohmann::json inject(const nlohmann::json& request, Simulation& simulation);
+nlohmann::json heal(const nlohmann::json& request, Simulation& simulation);
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,120 @@
+#include <injection/injection.hpp>
+
+#include <string>
+
+#include <doctest/doctest.h>
+
+using namespace inkwell::virtual_board;
+using inkwell::protocol::InjectedFault;
+
+namespace {
+
+std::string refusal_of(const std::string& text) {
+  try {
+    parse_injection(text);
+  } catch (const InvalidInjection& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+bool refuses(const std::string& text, const std::string& because) {
+  const std::string told = refusal_of(text);
+  CAPTURE(text);
+  CAPTURE(told);
+  CHECK(told.find(because) != std::string::npos);
+  return told.find(because) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a fault is written with its place, amount, time and duration") {
+  const auto lost = parse_injection("encoder_lost_counts:2=0.05@1.5+0.2");
+  CHECK(lost.fault == InjectedFault::encoder_lost_counts);
+  CHECK(lost.number == 1);
+  CHECK(lost.of == "2");
+  CHECK(lost.amount == 0.05);
+  CHECK(lost.after_s == 1.5);
+  CHECK(lost.for_s == 0.2);
+
+  const auto stuck = parse_injection("encoder_stuck:3");
+  CHECK(stuck.number == 2);
+  CHECK(stuck.after_s == 0.0);
+  CHECK_FALSE(stuck.for_s);
+  CHECK(parse_injection("supply_sag").amount == 10.0);
+  CHECK(parse_injection("supply_sag+0.5").for_s == 0.5);
+  CHECK(parse_injection("adc_stopped:2").number == 2);
+  CHECK(parse_injection("exception_late:34=8400").number == 34);
+
+  const auto leg = parse_injection("leg_slow:3B=0.000002");
+  CHECK(leg.number == 2);
+  CHECK(leg.leg == 1);
+  CHECK(parse_injection("leg_high:1A").leg == 0);
+}
+
+TEST_CASE("a wire goes by its pin or by what it is used for, which is how it is told") {
+  CHECK(parse_injection("wire_open:PB4").of == "encoders[1].a");
+  CHECK(parse_injection("wire_open:PB4").wires[0] == WireName{'B', 4});
+  CHECK(parse_injection("wire_low:bridge_enable").wires[0] == WireName{'B', 1});
+  CHECK(parse_injection("wire_low:PD2").of == "PD2");
+  const auto shorted = parse_injection("wires_shorted:PA0+encoders[0].b@0.5+1");
+  CHECK(shorted.of == "encoders[0].a+encoders[0].b");
+  CHECK(shorted.wires[1] == WireName{'A', 1});
+  CHECK(shorted.after_s == 0.5);
+  CHECK(shorted.for_s == 1.0);
+}
+
+TEST_CASE("memory goes by its address, or by the seed") {
+  CHECK(parse_injection("ram_bit:0x20000100=3").address == 0x2000'0100u);
+  CHECK(parse_injection("ram_bit:536871168").address == 0x2000'0100u);
+  CHECK_FALSE(parse_injection("flash_bit").address);
+  CHECK(parse_injection("flash_bit").amount == -1.0);
+}
+
+TEST_CASE("what is no fault is refused with a sentence that says what would be one") {
+  CHECK(refuses("encoder_stick:1", "there is no fault \"encoder_stick\"; known are wire_open, "));
+  CHECK(refuses("", "there is no fault \"\""));
+  CHECK(refuses("encoder_stuck", "must say what it is put into, the motor: 1, 2 or 3"));
+  CHECK(refuses("encoder_stuck:4", "\"4\" is no motor; it must be a number from 1 to 3"));
+  CHECK(refuses("encoder_stuck:-1", "is no motor"));
+  CHECK(refuses("encoder_stuck:1x", "is no motor"));
+  CHECK(refuses("encoder_stuck:1=3", "encoder_stuck has no amount"));
+  CHECK(refuses("shunt_offset:1=11", "shunt_offset 11 A is outside -10 to 10"));
+  CHECK(refuses("shunt_offset:1=much", "\"much\" is no number; it stands for the amount"));
+  CHECK(refuses("shunt_offset:1=nan", "is no number"));
+  CHECK(refuses("supply_cut:1", "supply_cut is not put into anything"));
+  CHECK(refuses("supply_cut@-1", "the time until it comes is -1 s"));
+  CHECK(refuses("supply_cut@2e6", "outside 0 to"));
+  CHECK(refuses("supply_cut+9e9", "how long it lasts"));
+  CHECK(refuses("leg_high:4A", "there are 1A, 1B, 2A, 2B, 3A and 3B"));
+  CHECK(refuses("leg_high:1C", "there are 1A"));
+  CHECK(refuses("wire_open:PZ1", "is no wire; name a pin"));
+  CHECK(refuses("wire_open:PA16", "is no wire"));
+  CHECK(refuses("wire_open:usb_plus", "usb_cut takes the cable out"));
+  CHECK(refuses("wires_shorted:PA0", "must name two wires"));
+  CHECK(refuses("wires_shorted:PA0+encoders[0].a", "name two"));
+  CHECK(refuses("exception_lost:98", "from 2 to 97"));
+  CHECK(refuses("adc_stopped:0", "is no converter"));
+  CHECK(refuses("ram_bit:here", "is no address; write it as 0x20000100"));
+  CHECK(refuses("ram_bit:0x100000000", "is no address"));
+  CHECK(refuses("ram_bit=8", "outside -1 to 7"));
+}
+
+TEST_CASE("a script has one fault a line, and the line that is wrong is named") {
+  const auto faults = parse_injections("# a bad day\nsupply_sag=9@1+0.1  # weak\n\n  motor_open:2@2\r\n");
+  REQUIRE(faults.size() == 2);
+  CHECK(faults[0].fault == InjectedFault::supply_sag);
+  CHECK(faults[1].fault == InjectedFault::motor_open);
+  CHECK(parse_injections("").empty());
+  CHECK_THROWS_WITH_AS(parse_injections("motor_open:1\n\nmotor_open:7\n"),
+                       "line 3: \"7\" is no motor; it must be a number from 1 to 3", InvalidInjection);
+}
+
+TEST_CASE("the help has a line for each fault") {
+  const std::string help = explain_injections();
+  for (const auto& row : inkwell::protocol::injection_table) {
+    CAPTURE(row.name);
+    CHECK(help.find("  " + std::string(row.name)) != std::string::npos);
+    CHECK(help.find(std::string(row.help)) != std::string::npos);
+  }
+}
