@@ -119,6 +119,14 @@ void ControlClient::hand_path(const std::vector<HandWaypoint>& path) {
   call({{"command", "hand_path"}, {"points", points}});
 }
 
+void ControlClient::meter_start() { call({{"command", "meter"}, {"action", "start"}}); }
+
+HandReading ControlClient::meter_read() {
+  const json reply = call({{"command", "meter"}, {"action", "read"}});
+  return {reply.value("peak_force_N", 0.0), reply.value("energy_J", 0.0), reply.value("travel_m", 0.0),
+          reply.value("lag_m", 0.0)};
+}
+
 void ControlClient::trace_start() { call({{"command", "trace"}, {"action", "start"}}); }
 void ControlClient::trace_stop() { call({{"command", "trace"}, {"action", "stop"}}); }
 

@@ -114,6 +114,16 @@ void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
     leg_pins_[wire.motor][wire.role == Role::leg_a ? 0 : 1] = level;
     update_legs(wire.motor, now);
   }
+  note_driving(now);
+}
+
+void Plant::note_driving(Ticks now) {
+  const bool on = bridges_enabled_ && !bridge_fault_ && !tripped_;
+  bool drives = false;
+  for (const auto& legs : leg_pins_)
+    for (const PinLevel level : legs) drives |= on && level == PinLevel::high;
+  if (driving_ && !drives) driven_until_ = now;
+  driving_ = drives;
 }
 
 bool Plant::shoots_through() const {
@@ -218,7 +228,10 @@ void Plant::step() {
   const std::array<Coupling, 3> couplings = {hand_.coupling(next_step_), carrier_.coupling(next_step_),
                                              inkwell_.coupling()};
   arm_.step(duration_s, torque_Nm_, couplings);
+  const Vector3 before_m = probe_m_;
   probe_m_ = arm_.dynamics().position_m(arm_.joints_rad());
+  if (meter_.runs() && hand_.holds())
+    meter_.step(probe_m_, couplings[0].target_m, -couplings[0].force_N(probe_m_, (probe_m_ - before_m) / duration_s));
   inputs_stale_ = true;
   inkwell_.advance(duration_s, probe_m_);
   if (carrier_.holds()) finish_docking();
@@ -281,6 +294,7 @@ void Plant::set_bridge_fault(bool fault) {
   bridge_fault_ = fault;
   inputs_stale_ = true;
   for (unsigned i = 0; i < 3; ++i) update_legs(i, now_);
+  note_driving(now_);
 }
 
 void Plant::set_shunt_fault(unsigned motor, const ShuntFault& fault) {
@@ -303,6 +317,7 @@ void Plant::set_leg_fault(unsigned motor, unsigned leg, LegFault fault) {
   leg_faults_[motor][leg] = fault;
   motors_[motor].set_leg_fault(leg, fault, now_);
   update_legs(motor, now_);
+  note_driving(now_);
 }
 
 void Plant::set_usb_supply(bool present) {
@@ -374,6 +389,7 @@ Truth Plant::truth(Ticks now) {
   t.bridge_fault = bridge_fault_ || tripped_;
   t.buttons = buttons_;
   t.bridges_enabled = bridges_enabled_;
+  t.driven_until = driving_ ? now_ : driven_until_;
   t.leg_levels = leg_pins_;
   return t;
 }

@@ -10,11 +10,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <protocol/simulation.hpp>
-
 #include "injection_commands.hpp"
 #include "requests.hpp"
 #include "simulation.hpp"
+#include "truth_commands.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -182,14 +181,6 @@ json hand_path(const json& request, Simulation& simulation) {
   return {};
 }
 
-std::string_view name_of(PinLevel level) {
-  switch (level) {
-    case PinLevel::low: return "low";
-    case PinLevel::high: return "high";
-    default: return "floating";
-  }
-}
-
 PinName pin_of(const json& request) {
   const json& name = at(request, "pin", "a pin, such as \"PA5\"");
   if (!name.is_string()) throw Refused("\"pin\" must be a pin, such as \"PA5\"");
@@ -258,48 +249,6 @@ json dock(const json& request, Simulation& simulation) {
   return {};
 }
 
-json truth(const json&, Simulation& simulation) {
-  const Truth t = simulation.board().truth();
-  json reply{{"board_time_s", seconds(t.at)},
-             {"encoder_counts", t.encoder_counts},
-             {"hand_holds", t.hand_holds},
-             {"docked", t.docked},
-             {"inkwell_switch", t.inkwell_switch},
-             {"bridge_fault", t.bridge_fault},
-             {"buttons", t.buttons},
-             {"bridges_enabled", t.bridges_enabled},
-             {"injected", injected(simulation.board())}};
-  for (const auto& legs : t.leg_levels) reply["bridge_legs"].push_back({name_of(legs[0]), name_of(legs[1])});
-  const auto values = traced_values(t);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    reply[std::string(protocol::simulated_quantity_table[i].name)] = values[i];
-  return reply;
-}
-
-json trace(const json& request, Simulation& simulation) {
-  Trace& trace = simulation.board().trace();
-  const json& action = at(request, "action", "\"start\", \"stop\" or \"read\"");
-  if (action == "start") {
-    trace.start();
-  } else if (action == "stop") {
-    trace.stop();
-  } else if (action == "read") {
-    const auto maximum = static_cast<std::size_t>(number_or(request, "maximum", 10'000, 0, Trace::rows_maximum));
-    json columns{"period", "board_time_s"};
-    for (const auto& quantity : protocol::simulated_quantity_table) columns.push_back(quantity.name);
-    json rows = json::array();
-    for (const Trace::Row& row : trace.read(maximum)) {
-      json cells{row.period, seconds(row.at)};
-      for (const double value : row.values) cells.push_back(value);
-      rows.push_back(std::move(cells));
-    }
-    return {{"columns", std::move(columns)}, {"rows", std::move(rows)}, {"dropped", trace.dropped()}};
-  } else {
-    throw Refused("\"action\" must be \"start\", \"stop\" or \"read\"");
-  }
-  return {};
-}
-
 /// All that is said about a command: it is known, checked and explained by this alone.
 struct Command {
   std::string_view name;
@@ -345,6 +294,7 @@ const std::vector<Command>& commands() {
       {"hand_path", {"points"}, "minimum jerk between [{\"after_s\":0.5,\"target_m\":[x,y,z]},...]", hand_path},
       {"gimbal", {"angles_rad"}, "turn the stylus: yaw, pitch, roll", gimbal},
       {"dock", {"docked"}, "lay the stylus into the inkwell, or take it out", dock},
+      {"meter", {"action"}, "start or read: peak force on the hand, energy given to it, how far it was taken", meter},
       {"trace", {"action", "maximum"}, "start, stop or read the true quantities at every control period", trace},
   };
   return table;

@@ -42,6 +42,14 @@ struct InjectedFault {
   std::optional<double> for_s = {};  ///< none: until it is healed
 };
 
+/// What the hand got from the arm since the meter was started.
+struct HandReading {
+  double peak_force_N = 0;
+  double energy_J = 0;  ///< given to the hand; what it gave back is not taken off
+  double travel_m = 0;  ///< the farthest from where it began
+  double lag_m = 0;     ///< the farthest from where the hand pulls to
+};
+
 struct BoardStatus {
   double board_time_s = 0;
   std::string mode;
@@ -96,6 +104,9 @@ class ControlClient {
   void hand_path(const std::vector<HandWaypoint>& path);  ///< minimum jerk between the waypoints
   void gimbal(const Vector3& angles_rad);                 ///< turns the stylus: yaw, pitch, roll
   void dock(bool docked);                                 ///< presses the stylus into the inkwell, or takes it out
+
+  void meter_start();  ///< measures what the hand gets from the arm, from now on
+  HandReading meter_read();
 
   void trace_start();
   void trace_stop();

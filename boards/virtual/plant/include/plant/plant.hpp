@@ -14,6 +14,7 @@
 #include <chip/interfaces.hpp>
 #include <plant/arm_motion.hpp>
 #include <plant/hand.hpp>
+#include <plant/hand_meter.hpp>
 #include <plant/imperfections.hpp>
 #include <plant/motor_drive.hpp>
 #include <plant/motor_fault.hpp>
@@ -74,6 +75,10 @@ class Plant final : public Circuit {
   /// The source of the bridges gives this whatever it was set to; none heals it.
   void fail_supply_at_V(std::optional<double> volts) { supply_.fail_at_V(volts); }
 
+  /// Measures what the hand gets, from now on.
+  void start_meter() { meter_.start(probe_m_, now_); }
+  const HandMeter& meter() const { return meter_; }
+
   Truth truth(Ticks now);
   const ArmMotion& arm() const { return arm_; }
   const Inkwell& inkwell() const { return inkwell_; }
@@ -98,6 +103,7 @@ class Plant final : public Circuit {
   double shunt_V(unsigned motor);
   double torque_per_A(unsigned motor) const { return torque_per_A_[motor] * motor_faults_[motor].torque_factor(); }
   bool shoots_through() const;
+  void note_driving(Ticks now);
 
   std::array<Wire, 16 * 9> wires_{};  ///< ports A to I
 
@@ -111,6 +117,8 @@ class Plant final : public Circuit {
   std::array<MotorFault, 3> motor_faults_{};
   std::array<ShuntFault, 3> shunt_faults_{};
   std::array<std::array<LegFault, 2>, 3> leg_faults_{};
+  bool driving_ = false;  ///< a bridge that is on has a leg at the supply
+  Ticks driven_until_ = 0;
   bool tripped_ = false;  ///< a bridge's over-current protection, until it is disabled
 
   // Mechanical
@@ -120,6 +128,7 @@ class Plant final : public Circuit {
   Hand hand_;
   Hand carrier_;  ///< holds while it carries the stylus to the inkwell
   Inkwell inkwell_;
+  HandMeter meter_;
   Vector3 torque_Nm_ = Vector3::Zero();
 
   // Inputs of the chip

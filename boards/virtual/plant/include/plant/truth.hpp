@@ -26,6 +26,7 @@ struct Truth {
   bool hand_holds = false, docked = false, inkwell_switch = false, bridge_fault = false;
   std::array<bool, 2> buttons{};
   bool bridges_enabled = false;                         ///< their enable wire is high
+  Ticks driven_until = 0;                               ///< when a bridge that was on had a leg at the supply last
   std::array<std::array<PinLevel, 2>, 3> leg_levels{};  ///< what the chip drives the inputs of the bridges with
 };
 

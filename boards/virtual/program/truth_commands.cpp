@@ -1,0 +1,83 @@
+#include "truth_commands.hpp"
+
+#include <string>
+#include <utility>
+
+#include <protocol/simulation.hpp>
+
+#include "injection_commands.hpp"
+#include "requests.hpp"
+
+namespace inkwell::virtual_board {
+
+using nlohmann::json;
+
+std::string_view name_of(PinLevel level) {
+  switch (level) {
+    case PinLevel::low: return "low";
+    case PinLevel::high: return "high";
+    default: return "floating";
+  }
+}
+
+json truth(const json&, Simulation& simulation) {
+  const Truth t = simulation.board().truth();
+  json reply{{"board_time_s", seconds(t.at)},
+             {"encoder_counts", t.encoder_counts},
+             {"hand_holds", t.hand_holds},
+             {"docked", t.docked},
+             {"inkwell_switch", t.inkwell_switch},
+             {"bridge_fault", t.bridge_fault},
+             {"buttons", t.buttons},
+             {"bridges_enabled", t.bridges_enabled},
+             {"bridges_driven_until_s", seconds(t.driven_until)},
+             {"injected", injected(simulation.board())}};
+  for (const auto& legs : t.leg_levels) reply["bridge_legs"].push_back({name_of(legs[0]), name_of(legs[1])});
+  const auto values = traced_values(t);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    reply[std::string(protocol::simulated_quantity_table[i].name)] = values[i];
+  return reply;
+}
+
+json meter(const json& request, Simulation& simulation) {
+  Plant& plant = simulation.board().plant();
+  const json& action = at(request, "action", "\"start\" or \"read\"");
+  if (action == "start") {
+    plant.start_meter();
+  } else if (action != "read") {
+    throw Refused("\"action\" must be \"start\" or \"read\"");
+  }
+  if (!plant.meter().runs()) throw Refused("the meter has not been started; {\"action\":\"start\"} does so");
+  const HandMeter::Reading& reading = plant.meter().reading();
+  return {{"since_s", seconds(reading.since)},
+          {"peak_force_N", reading.peak_force_N},
+          {"energy_J", reading.energy_J},
+          {"travel_m", reading.travel_m},
+          {"lag_m", reading.lag_m}};
+}
+
+json trace(const json& request, Simulation& simulation) {
+  Trace& trace = simulation.board().trace();
+  const json& action = at(request, "action", "\"start\", \"stop\" or \"read\"");
+  if (action == "start") {
+    trace.start();
+  } else if (action == "stop") {
+    trace.stop();
+  } else if (action == "read") {
+    const auto maximum = static_cast<std::size_t>(number_or(request, "maximum", 10'000, 0, Trace::rows_maximum));
+    json columns{"period", "board_time_s"};
+    for (const auto& quantity : protocol::simulated_quantity_table) columns.push_back(quantity.name);
+    json rows = json::array();
+    for (const Trace::Row& row : trace.read(maximum)) {
+      json cells{row.period, seconds(row.at)};
+      for (const double value : row.values) cells.push_back(value);
+      rows.push_back(std::move(cells));
+    }
+    return {{"columns", std::move(columns)}, {"rows", std::move(rows)}, {"dropped", trace.dropped()}};
+  } else {
+    throw Refused("\"action\" must be \"start\", \"stop\" or \"read\"");
+  }
+  return {};
+}
+
+}  // namespace inkwell::virtual_board

@@ -1,0 +1,17 @@
+// The commands of the control socket that tell what no real board could.
+#pragma once
+
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "simulation.hpp"
+
+namespace inkwell::virtual_board {
+
+std::string_view name_of(PinLevel level);
+nlohmann::json truth(const nlohmann::json& request, Simulation& simulation);
+nlohmann::json meter(const nlohmann::json& request, Simulation& simulation);
+nlohmann::json trace(const nlohmann::json& request, Simulation& simulation);
+
+}  // namespace inkwell::virtual_board
