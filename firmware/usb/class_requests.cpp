@@ -179,7 +179,7 @@ protocol::InformationReport Device::information() const {
 }
 
 std::optional<protocol::FrameReport> Device::frame_report() {
-  const std::optional<Frame> frame = port_.frame();
+  const std::optional<BusFrame> frame = port_.frame();
   if (!frame) return std::nullopt;
   const auto time = link_.poses.time_of(frame->begin_cycles);
   if (!time) return std::nullopt;

@@ -143,7 +143,7 @@ void Device::restart(Endpoint& endpoint) {
 // The host may ask right after each start of frame. So the report is made ready once in a frame, near its end, from the
 // newest control period of which it is sure that a newer one would come too late.
 void Device::send_pose() {
-  const std::optional<Frame> frame = port_.frame();
+  const std::optional<BusFrame> frame = port_.frame();
   Endpoint& endpoint = endpoints_[hid_in];
   if (!frame || endpoint.halted || pose_sequence_ == frame->count + 1) return;
   if (frame->age_cycles + pose_lead_cycles_ < frame->length_cycles) return;

@@ -34,7 +34,7 @@ void DeviceOptions::add_to(CLI::App& app) {
   app.add_flag("--json", json, "Write JSON for programs instead of text for people");
 }
 
-device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode default_mode, BoardTime time) const {
+device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode default_mode, BoardPace pace) const {
   device::VirtualBoardOptions board;
   board.elf = elf;
   board.arm = arm;
@@ -42,8 +42,8 @@ device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode 
                : mode == "exact" ? device::SimulationMode::exact
                                  : device::SimulationMode::fast;
   board.seed = seed;
-  board.real_time = real_time || time == BoardTime::paced;
-  board.paused = time == BoardTime::as_asked;
+  board.real_time = real_time || pace == BoardPace::real_time;
+  board.paused = pace == BoardPace::as_asked;
   board.strict = is_strict;
   return board;
 }
@@ -58,8 +58,8 @@ device::Address DeviceOptions::address() const {
   }
 }
 
-device::OpenArm connect(const DeviceOptions& options, BoardTime time, device::SimulationMode default_mode) {
-  return device::open_arm(options.address(), options.virtual_board(default_mode, time));
+device::OpenArm connect(const DeviceOptions& options, BoardPace pace, device::SimulationMode default_mode) {
+  return device::open_arm(options.address(), options.virtual_board(default_mode, pace));
 }
 
 std::string arm_name(const DeviceOptions& options) {

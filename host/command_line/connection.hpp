@@ -22,10 +22,10 @@ class UsageError : public device::Error {
 };
 
 /// How a virtual board's time passes, unless --real-time was given.
-enum class BoardTime : std::uint8_t {
+enum class BoardPace : std::uint8_t {
   as_it_can,
-  paced,     ///< to the clock on the wall
-  as_asked,  ///< stands still from its first instruction on, but while OpenArm::control lets it pass
+  real_time,  ///< with the clock on the wall
+  as_asked,   ///< stands still from its first instruction on, but while OpenArm::control lets it pass
 };
 
 struct DeviceOptions {
@@ -43,11 +43,11 @@ struct DeviceOptions {
   void add_to(CLI::App& app);
   /// Throws UsageError.
   device::Address address() const;
-  device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardTime time) const;
+  device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;
 };
 
 /// Opens the device that the options name. With --arm, a virtual board's firmware gets that arm's parameters.
-device::OpenArm connect(const DeviceOptions& options, BoardTime time = BoardTime::as_it_can,
+device::OpenArm connect(const DeviceOptions& options, BoardPace pace = BoardPace::as_it_can,
                         device::SimulationMode default_mode = device::SimulationMode::fast);
 
 /// What was typed, and the device if it had to be asked.
@@ -61,12 +61,12 @@ struct Typed {
 /// that no table has may be one of the device's own force law, so that the device is asked.
 template <class Read>
 Typed<std::invoke_result_t<Read>> read_typed(const DeviceOptions& options, Read read,
-                                             BoardTime time = BoardTime::as_it_can) {
+                                             BoardPace pace = BoardPace::as_it_can) {
   try {
     return {read(), std::nullopt};
   } catch (const device::UnknownName& unknown) {
     try {
-      auto connection = connect(options, time);
+      auto connection = connect(options, pace);
       return {read(), std::move(connection)};
     } catch (const device::Error&) {
       throw UsageError(unknown.what());

@@ -47,12 +47,12 @@ int run_wall(DeviceOptions options, const WallCommandOptions& command) {
   experiment::WallOptions wall{.output_directory = command.output, .arm = arm_name(options)};
   if (!command.wall.empty()) wall.wall = experiment::parse_wall(command.wall);
   constexpr auto mode = device::SimulationMode::exact;
-  constexpr auto time = BoardTime::as_asked;
+  constexpr auto pace = BoardPace::as_asked;
   if (options.is_virtual) {
     progress("The virtual board starts.", 0.0);
-    wall.virtual_board = options.virtual_board(mode, time);
+    wall.virtual_board = options.virtual_board(mode, pace);
   }
-  auto connection = connect(options, time, mode);
+  auto connection = connect(options, pace, mode);
   wall.simulation = connection.endpoint.is_virtual;
   const auto summary = experiment::run_wall_experiment(
       *connection.device, connection.control ? &*connection.control : nullptr, wall, progress);

@@ -43,7 +43,7 @@ int switch_off(const DeviceOptions& options) {
 
 /// The board switches the force off when nobody gives signs of life, so this goes on until it is told to end.
 int keep_on(const DeviceOptions& options, double seconds) {
-  const auto connection = connect(options, BoardTime::paced);
+  const auto connection = connect(options, BoardPace::real_time);
   device::Device& device = *connection.device;
   const InterruptGuard interrupt;
   ForceSwitch force(device);

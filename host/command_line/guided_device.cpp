@@ -21,8 +21,8 @@ GuidedDevice::GuidedDevice(const DeviceOptions& options) {
   if (options.is_virtual) {
     protocol::ParameterSet arm = protocol::default_parameters();
     for (const auto& [parameter, value] : changes) arm[parameter] = value;
-    board_ =
-        std::make_unique<device::VirtualBoard>(options.virtual_board(device::SimulationMode::fast, BoardTime::paced));
+    board_ = std::make_unique<device::VirtualBoard>(
+        options.virtual_board(device::SimulationMode::fast, BoardPace::real_time));
     user_.emplace(board_->control(), arm);
     session_ = std::make_unique<device::Session>([this] { return board_->find(); });
   } else {

@@ -160,8 +160,8 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
         recording::check_can_be_created(options.file);
         return chosen_signals(options);
       },
-      BoardTime::paced);
-  const auto connection = early ? std::move(*early) : connect(device_options, BoardTime::paced);
+      BoardPace::real_time);
+  const auto connection = early ? std::move(*early) : connect(device_options, BoardPace::real_time);
   auto& device = *connection.device;
   const auto information = recording::describe(device.information(), device.parameters(), signals,
                                                arm_name(device_options), connection.endpoint.is_virtual);

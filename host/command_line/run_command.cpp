@@ -52,7 +52,7 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
     throw device::Error(
         fmt::format("The libraries in {} are missing. Build them with tools/build.", libraries.string()));
 
-  auto connection = connect(options, BoardTime::paced);
+  auto connection = connect(options, BoardPace::real_time);
   const auto address = device::address_of(connection.endpoint);
   say_which_device(connection.endpoint, address);
   connection.device.reset();  // it is the program's from now on

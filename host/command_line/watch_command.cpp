@@ -86,7 +86,7 @@ void print_line(const PoseReport& pose, std::uint64_t lost) {
 }
 
 int watch(const DeviceOptions& options, const WatchOptions& watch_options) {
-  const auto connection = connect(options, BoardTime::paced);
+  const auto connection = connect(options, BoardPace::real_time);
   if (!options.json) print_head();
   const auto information = connection.device->information().report;
   device::BusClock clock(static_cast<double>(information.processor_clock_Hz) / information.servo_rate_Hz);

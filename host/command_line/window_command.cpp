@@ -14,8 +14,8 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
   std::unique_ptr<device::VirtualBoard> board;
   if (options.is_virtual) {
     // The mouse is the hand, so board time must be the user's time.
-    board =
-        std::make_unique<device::VirtualBoard>(options.virtual_board(device::SimulationMode::fast, BoardTime::paced));
+    board = std::make_unique<device::VirtualBoard>(
+        options.virtual_board(device::SimulationMode::fast, BoardPace::real_time));
     control_port = board->control_port();
     if (window_options.parameters_file.empty()) window_options.parameters_file = options.arm;
     window_options.simulated_arm = protocol::default_parameters();

@@ -25,7 +25,7 @@ struct Shown {
   std::string name;
 };
 
-std::vector<Shown> shown_quantities(const ParameterSet& parameters, Wall wall) {
+std::vector<Shown> shown_quantities(const ParameterSet& parameters, BoxWall wall) {
   const double side = wall.side;
   const double radius_m = static_cast<double>(parameters[Parameter::sphere_radius_m]);
   const double wall_m = wall_position_m(parameters, wall);
@@ -51,7 +51,7 @@ set tmargin at screen 0.79
 set bmargin at screen 0.13
 )";
 
-std::string head(const recording::Information& about, Wall wall, int number, const char* title) {
+std::string head(const recording::Information& about, BoxWall wall, int number, const char* title) {
   const auto& parameters = about.parameters;
   const std::string subtitle = fmt::format(
       "Figure {}  ·  {}{}  ·  wall {}  ·  k = {} N/m, c = {} Ns/m  ·  line: mean of a millisecond, band: its extremes",
@@ -68,7 +68,7 @@ Interval interval_around(Interval contact, double end_s) {
   return {std::max(0.0, contact.from_s - margin_s), std::min(end_s, contact.to_s + margin_s)};
 }
 
-std::string script(const recording::Information& about, const FigureData& data, Wall wall, Interval shown) {
+std::string script(const recording::Information& about, const FigureData& data, BoxWall wall, Interval shown) {
   std::string text =
       "# Draws figure-11.png to figure-14.png. Made by `inkwell experiment`; run it with: gnuplot figures.gnuplot\n";
   text += recording::figure_head("figure-data.csv", width_pixels, height_pixels) + layout;
@@ -110,7 +110,7 @@ std::string script(const recording::Information& about, const FigureData& data, 
 
 }  // namespace
 
-FigureData figure_data(const Recording& recording, Wall wall) {
+FigureData figure_data(const Recording& recording, BoxWall wall) {
   const auto shown = shown_quantities(recording.information.parameters, wall);
   FigureData data;
   std::vector<const std::vector<float>*> columns;
@@ -130,8 +130,8 @@ FigureData figure_data(const Recording& recording, Wall wall) {
 }
 
 std::vector<std::string> draw_figures(const Recording& recording, const std::filesystem::path& directory,
-                                      const FigureOptions& options) {
-  const Wall wall = options.wall ? *options.wall : pushed_wall(recording);
+                                      const PaperFigureOptions& options) {
+  const BoxWall wall = options.wall ? *options.wall : pushed_wall(recording);
   const auto contact = contact_with(recording, wall);
   if (!contact)
     throw device::Error(fmt::format("The sphere does not touch the wall {} in this recording. Record a push into it.",

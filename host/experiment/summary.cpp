@@ -50,14 +50,14 @@ std::size_t row_at(double time_s, std::size_t rows) {
 
 }  // namespace
 
-ForceLaw force_law(const Recording& recording, const ParameterSet& parameters) {
+ForceLawError force_law_error(const Recording& recording, const ParameterSet& parameters) {
   const auto penetration = vector_columns(recording, Signal::penetration_x_m);
   const auto velocity = vector_columns(recording, Signal::velocity_x_m_s);
   const auto force = vector_columns(recording, Signal::force_x_N);
   const double stiffness = static_cast<double>(parameters[Parameter::wall_stiffness_N_per_m]);
   const double damping = static_cast<double>(parameters[Parameter::wall_damping_Ns_per_m]);
   const double limit_N = static_cast<double>(parameters[Parameter::force_limit_N]);
-  ForceLaw law;
+  ForceLawError error;
   for (std::size_t i = 0; i < recording.size(); ++i) {
     std::array<double, 3> expected{}, difference{};
     bool in_contact = false;
@@ -71,16 +71,16 @@ ForceLaw force_law(const Recording& recording, const ParameterSet& parameters) {
     const double scale = asked_N > limit_N ? limit_N / asked_N : 1.0;
     for (std::size_t axis = 0; axis < 3; ++axis) difference[axis] = (*force[axis])[i] - scale * expected[axis];
     const double error_N = magnitude(difference), expected_N = scale * asked_N;
-    ++law.samples;
-    law.error_maximum_N = std::max(law.error_maximum_N, error_N);
+    ++error.samples;
+    error.maximum_N = std::max(error.maximum_N, error_N);
     if (expected_N > relative_error_floor_N)
-      law.error_maximum_relative = std::max(law.error_maximum_relative, error_N / expected_N);
-    law.samples_outside += error_N > std::max(tolerance_N, tolerance_relative * expected_N);
+      error.maximum_relative = std::max(error.maximum_relative, error_N / expected_N);
+    error.samples_outside += error_N > std::max(tolerance_N, tolerance_relative * expected_N);
   }
-  return law;
+  return error;
 }
 
-SteadyHold steady_hold(const Recording& recording, Wall wall, Interval interval) {
+SteadyHold steady_hold(const Recording& recording, BoxWall wall, Interval interval) {
   const std::size_t first = row_at(interval.from_s, recording.size()), last = row_at(interval.to_s, recording.size());
   if (first >= last) throw device::Error("The recording ends before the steady hold. Run the experiment again.");
   SteadyHold hold;
@@ -104,7 +104,7 @@ SteadyHold steady_hold(const Recording& recording, Wall wall, Interval interval)
   return hold;
 }
 
-std::optional<Interval> find_steady_hold(const Recording& recording, Wall wall) {
+std::optional<Interval> find_steady_hold(const Recording& recording, BoxWall wall) {
   auto depth_m = recording.column(of_axis(Signal::penetration_x_m, wall.axis));
   for (float& depth : depth_m) depth = std::abs(depth);
   if (depth_m.empty()) return std::nullopt;
@@ -124,7 +124,7 @@ std::optional<Interval> find_steady_hold(const Recording& recording, Wall wall) 
   return best;
 }
 
-std::optional<Interval> contact_with(const Recording& recording, Wall wall) {
+std::optional<Interval> contact_with(const Recording& recording, BoxWall wall) {
   const auto& penetration_m = recording.column(of_axis(Signal::penetration_x_m, wall.axis));
   std::optional<Interval> contact;
   for (std::size_t i = 0; i < penetration_m.size(); ++i) {
@@ -135,7 +135,7 @@ std::optional<Interval> contact_with(const Recording& recording, Wall wall) {
   return contact;
 }
 
-WallResult evaluate(const Recording& recording, const ParameterSet& parameters, Wall wall,
+WallResult evaluate(const Recording& recording, const ParameterSet& parameters, BoxWall wall,
                     std::optional<Interval> hold) {
   WallResult result;
   result.samples = recording.size();
@@ -155,7 +155,7 @@ WallResult evaluate(const Recording& recording, const ParameterSet& parameters, 
     grow(result.other_torques_maximum_Nm, (*torque_Nm[2])[i]);
   }
   result.contact = contact_with(recording, wall);
-  result.force_law = force_law(recording, parameters);
+  result.force_law_error = force_law_error(recording, parameters);
   if (!hold) hold = find_steady_hold(recording, wall);
   if (hold) result.steady_hold = steady_hold(recording, wall, *hold);
   return result;

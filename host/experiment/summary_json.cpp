@@ -66,10 +66,10 @@ ordered_json summary_json(const Circumstances& circumstances, const WallResult& 
   summary["force_maximum_N"] = result.force_maximum_N;
   summary["torque_1_maximum_Nm"] = result.torque_1_maximum_Nm;
   summary["torque_2_and_3_maximum_Nm"] = result.other_torques_maximum_Nm;
-  summary["force_law"] = {{"samples", result.force_law.samples},
-                          {"error_maximum_N", result.force_law.error_maximum_N},
-                          {"error_maximum_relative", result.force_law.error_maximum_relative},
-                          {"samples_outside_1_percent_and_5_mN", result.force_law.samples_outside}};
+  summary["force_law"] = {{"samples", result.force_law_error.samples},
+                          {"error_maximum_N", result.force_law_error.maximum_N},
+                          {"error_maximum_relative", result.force_law_error.maximum_relative},
+                          {"samples_outside_1_percent_and_5_mN", result.force_law_error.samples_outside}};
   if (const auto& hold = result.steady_hold) {
     const auto& spread = hold->encoder_spread_counts;
     summary["steady_hold"] = {{"from_s", hold->interval.from_s},

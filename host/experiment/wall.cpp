@@ -20,26 +20,26 @@ constexpr Parameter wall_parameters[3][2] = {
 
 char axis_letter(int axis) { return static_cast<char>('x' + axis); }
 
-Wall parse_wall(const std::string& name) {
+BoxWall parse_wall(const std::string& name) {
   if (name.size() == 2 && name[0] >= 'x' && name[0] <= 'z' && (name[1] == '+' || name[1] == '-'))
     return {name[0] - 'x', name[1] == '+' ? 1 : -1};
   throw device::Error(fmt::format("There is no wall {}. Name one of x-, x+, y-, y+, z-, z+.", name));
 }
 
-std::string wall_name(Wall wall) { return {axis_letter(wall.axis), wall.side > 0 ? '+' : '-'}; }
+std::string wall_name(BoxWall wall) { return {axis_letter(wall.axis), wall.side > 0 ? '+' : '-'}; }
 
-Wall forward_wall(const ParameterSet& parameters) {
+BoxWall forward_wall(const ParameterSet& parameters) {
   const bool frame_of_omni = parameters[Parameter::frame] == 1.0f;
   return {frame_of_omni ? 2 : 0, 1};
 }
 
-double wall_position_m(const ParameterSet& parameters, Wall wall) {
+double wall_position_m(const ParameterSet& parameters, BoxWall wall) {
   return static_cast<double>(parameters[wall_parameters[wall.axis][wall.side > 0 ? 1 : 0]]);
 }
 
-Wall pushed_wall(const recording::Recording& recording) {
+BoxWall pushed_wall(const recording::Recording& recording) {
   float deepest_m = 0;
-  Wall wall;
+  BoxWall wall;
   for (int axis = 0; axis < 3; ++axis)
     for (const float penetration_m : recording.column(of_axis(protocol::Signal::penetration_x_m, axis))) {
       if (std::abs(penetration_m) <= deepest_m) continue;

@@ -46,7 +46,7 @@ constexpr double test_spacing_s = 0.12;
 constexpr double user_limit_s = 120, push_limit_s = 30;
 
 /// Where the probe is when the sphere touches the wall.
-double contact_m(const ParameterSet& parameters, Wall wall) {
+double contact_m(const ParameterSet& parameters, BoxWall wall) {
   return wall_position_m(parameters, wall) - wall.side * static_cast<double>(parameters[Parameter::sphere_radius_m]);
 }
 
@@ -59,12 +59,12 @@ Vector3 middle_of_box_m(const ParameterSet& parameters) {
 }
 
 /// The vertical axis, or along the arm's plane where the wall is horizontal.
-std::size_t drag_axis(const ParameterSet& parameters, Wall wall) {
+std::size_t drag_axis(const ParameterSet& parameters, BoxWall wall) {
   const std::size_t vertical = parameters[Parameter::frame] == 1.0f ? 1 : 2;
   return static_cast<int>(vertical) != wall.axis ? vertical : static_cast<std::size_t>(forward_wall(parameters).axis);
 }
 
-std::vector<device::HandWaypoint> hand_path(const ParameterSet& parameters, Wall wall) {
+std::vector<device::HandWaypoint> hand_path(const ParameterSet& parameters, BoxWall wall) {
   const double force_N =
       std::min(push_N, push_part_of_limit * static_cast<double>(parameters[Parameter::force_limit_N]));
   const double stiffness = std::max(1.0, static_cast<double>(parameters[Parameter::wall_stiffness_N_per_m]));
@@ -144,7 +144,7 @@ void take_to_middle(PacedDevice& device, device::ControlClient& control, const P
 }
 
 Push push_by_simulated_hand(PacedDevice& device, device::ControlClient& control, const recording::Information& about,
-                            Wall wall, const Progress& progress) {
+                            BoxWall wall, const Progress& progress) {
   const ParameterSet& parameters = about.parameters;
   progress("The hand takes the stylus to the middle of the box.", 0.25);
   take_to_middle(device, control, parameters);
@@ -186,7 +186,7 @@ bool is_clear(const protocol::PoseReport& pose, const ParameterSet& parameters) 
   return true;
 }
 
-Push push_by_user(PacedDevice& device, const recording::Information& about, Wall wall, const Progress& progress) {
+Push push_by_user(PacedDevice& device, const recording::Information& about, BoxWall wall, const Progress& progress) {
   const ParameterSet& parameters = about.parameters;
   progress("Take the stylus out of the inkwell to the middle of the box. The force will come on there.", 0.25);
   const auto in_the_middle = [&](const auto& pose) {
@@ -233,7 +233,7 @@ nlohmann::ordered_json run_wall_experiment(device::Device& device, device::Contr
   auto& about = circumstances.about;
   about = recording::describe(device.information(), device.parameters(), recording::signal_path(), options.arm,
                               options.simulation);
-  const Wall wall = circumstances.wall = options.wall.value_or(forward_wall(about.parameters));
+  const BoxWall wall = circumstances.wall = options.wall.value_or(forward_wall(about.parameters));
 
   PacedDevice paced(device, hand);
   progress("Waiting for the stylus to rest in the inkwell.", 0.1);

@@ -39,7 +39,7 @@ UartOption UartOption::of(const std::string& text) {
 UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, const std::function<void()>& on_arrival)
     : chip_(chip) {
   for (const UartOption& option : options) {
-    Link link{option.number, nullptr, {}, {}};
+    UartLink link{option.number, nullptr, {}, {}};
     if (option.kind == UartOption::Kind::terminal) {
       link.stream = std::make_unique<TerminalStream>(on_arrival);
     } else if (option.kind == UartOption::Kind::path) {
@@ -53,13 +53,13 @@ UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, const s
   }
   if (links_.empty()) return;
   chip_.on_usart = [this](unsigned number, std::uint8_t byte) {
-    for (Link& link : links_)
+    for (UartLink& link : links_)
       if (link.number == number) link.to_send += static_cast<char>(byte);
   };
 }
 
 void UartLinks::serve() {
-  for (Link& link : links_) {
+  for (UartLink& link : links_) {
     link.arrived += link.stream->take().bytes;
     // A program on the other end cannot know when the firmware has switched its receiver on, so it need not.
     if (chip_.usart_listens(link.number))

@@ -34,14 +34,14 @@ class UartLinks {
   void serve();
 
  private:
-  struct Link {
+  struct UartLink {
     unsigned number;
     std::unique_ptr<ByteStream> stream;
     std::string to_send;
     std::string arrived;  ///< before the receiver was on
   };
   Chip& chip_;
-  std::vector<Link> links_;
+  std::vector<UartLink> links_;
   std::string announcement_;
 };
 

@@ -44,7 +44,7 @@ void FrameClock::note_capture() {
   is_known_ = true;
 }
 
-std::optional<usb::Frame> FrameClock::newest() {
+std::optional<usb::BusFrame> FrameClock::newest() {
   if (TIM2::SR::CC1IF::is_set()) note_capture();
   if (!is_known_) return std::nullopt;
   // An interrupt between the two reads would part them; the control interrupt does not come twice in a row.
@@ -61,11 +61,11 @@ std::optional<usb::Frame> FrameClock::newest() {
     is_known_ = false;
     return std::nullopt;
   }
-  return usb::Frame{.number = number_,
-                    .count = count_,
-                    .begin_cycles = cycles - age * cycles_per_count,
-                    .age_cycles = age * cycles_per_count,
-                    .length_cycles = length_ * cycles_per_count};
+  return usb::BusFrame{.number = number_,
+                       .count = count_,
+                       .begin_cycles = cycles - age * cycles_per_count,
+                       .age_cycles = age * cycles_per_count,
+                       .length_cycles = length_ * cycles_per_count};
 }
 
 }  // namespace inkwell::drivers

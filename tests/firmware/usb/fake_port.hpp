@@ -93,7 +93,7 @@ class FakePort final : public usb::Port {
     at(endpoint_address).armed = true;
   }
 
-  std::optional<usb::Frame> frame() override { return frames_run ? std::optional(frame_) : std::nullopt; }
+  std::optional<usb::BusFrame> frame() override { return frames_run ? std::optional(frame_) : std::nullopt; }
 
   // ---- the host's side ----
 
@@ -205,7 +205,7 @@ class FakePort final : public usb::Port {
 
   std::array<Endpoint, 8> endpoints_{};
   std::deque<usb::Event> events_;
-  usb::Frame frame_{.age_cycles = 19 * 8400, .length_cycles = 20 * 8400};
+  usb::BusFrame frame_{.age_cycles = 19 * 8400, .length_cycles = 20 * 8400};
   std::uint8_t address_ = 0;
 };
 

@@ -89,10 +89,10 @@ TEST_CASE("gnuplot draws the four figures, each line in its colour") {
 
 TEST_CASE("what cannot be drawn as in the paper is said in a sentence") {
   const TemporaryDirectory directory;
-  const auto error_of = [&](const recording::Recording& recording, const FigureOptions& options) {
+  const auto error_of = [&](const recording::Recording& recording, const PaperFigureOptions& options) {
     return message_of<device::Error>([&] { draw_figures(recording, directory.path(), options); });
   };
-  CHECK(error_of(push(), {.wall = Wall{0, 1}}).find("wall x+") != std::string::npos);
+  CHECK(error_of(push(), {.wall = BoxWall{0, 1}}).find("wall x+") != std::string::npos);
   CHECK(error_of(push(), {.wall = {}, .from_s = 0.5, .to_s = 0.4}).find("takes 0.700 s") != std::string::npos);
   auto other = recording::Recording::without_samples({.signals = {Signal::force_N}});
   CHECK(error_of(other, {}).find("does not hold penetration_x_m") != std::string::npos);

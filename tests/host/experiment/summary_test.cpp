@@ -59,30 +59,30 @@ protocol::ParameterSet omni() {
 }  // namespace
 
 TEST_CASE("the force law holds for a recording that was made by it") {
-  const auto law = force_law(push(), omni());
+  const auto law = force_law_error(push(), omni());
   CHECK(law.samples == 12'000);
-  CHECK(law.error_maximum_N < 1e-6);
+  CHECK(law.maximum_N < 1e-6);
   CHECK(law.samples_outside == 0);
 }
 
 TEST_CASE("a force that is off the law is found") {
-  const auto small = force_law(push(0.004), omni());
-  CHECK(small.error_maximum_N == doctest::Approx(0.004).epsilon(1e-3));
+  const auto small = force_law_error(push(0.004), omni());
+  CHECK(small.maximum_N == doctest::Approx(0.004).epsilon(1e-3));
   CHECK(small.samples_outside == 0);
-  const auto large = force_law(push(0.02), omni());
+  const auto large = force_law_error(push(0.02), omni());
   CHECK(large.samples_outside == 12'000);
-  CHECK(large.error_maximum_relative == doctest::Approx(0.02 / 0.6).epsilon(1e-3));
+  CHECK(large.maximum_relative == doctest::Approx(0.02 / 0.6).epsilon(1e-3));
 }
 
 TEST_CASE("the law's force is limited as the firmware limits it, and never pulls") {
   auto parameters = omni();
   parameters[Parameter::force_limit_N] = 0.3f;
-  CHECK(force_law(push(), parameters).error_maximum_N == doctest::Approx(0.3).epsilon(1e-3));
+  CHECK(force_law_error(push(), parameters).maximum_N == doctest::Approx(0.3).epsilon(1e-3));
   const auto leaving = synthetic(10, [](std::size_t, protocol::SignalValues& values) {
     values[Signal::penetration_z_m] = -0.0005f;
     values[Signal::velocity_z_m_s] = -1.0f;  // out of the wall faster than the spring pushes
   });
-  CHECK(force_law(leaving, omni()).error_maximum_N == 0);
+  CHECK(force_law_error(leaving, omni()).maximum_N == 0);
 }
 
 TEST_CASE("the evaluation reads contact, largest values and the steady hold off the recording") {
@@ -112,24 +112,24 @@ TEST_CASE("without a plan the steadiest half second in the wall is taken") {
 }
 
 TEST_CASE("the wall that was pushed is known by the deepest penetration") {
-  CHECK(pushed_wall(push()) == Wall{2, 1});
+  CHECK(pushed_wall(push()) == BoxWall{2, 1});
   const auto to_the_left = synthetic(10, [](std::size_t i, protocol::SignalValues& values) {
     values[Signal::penetration_x_m] = i == 4 ? 0.0004f : 0.0f;
     values[Signal::penetration_y_m] = i == 7 ? -0.0003f : 0.0f;
   });
-  CHECK(pushed_wall(to_the_left) == Wall{0, -1});
+  CHECK(pushed_wall(to_the_left) == BoxWall{0, -1});
   CHECK_THROWS_AS(pushed_wall(synthetic(10, [](std::size_t, protocol::SignalValues&) {})), device::Error);
 }
 
 TEST_CASE("walls have names; the forward one lies in the arm's plane") {
-  CHECK(parse_wall("y-") == Wall{1, -1});
+  CHECK(parse_wall("y-") == BoxWall{1, -1});
   CHECK(wall_name({2, 1}) == "z+");
   for (const char* wrong : {"", "z", "w+", "z*", "z++"}) CHECK_THROWS_AS(parse_wall(wrong), device::Error);
   auto parameters = omni();
   parameters[Parameter::frame] = 1;
-  CHECK(forward_wall(parameters) == Wall{2, 1});
+  CHECK(forward_wall(parameters) == BoxWall{2, 1});
   parameters[Parameter::frame] = 0;
-  CHECK(forward_wall(parameters) == Wall{0, 1});
+  CHECK(forward_wall(parameters) == BoxWall{0, 1});
   CHECK(wall_position_m(parameters, {0, -1}) == static_cast<double>(parameters[Parameter::box_minimum_x_m]));
 }
 

@@ -31,7 +31,7 @@ struct Event {
 };
 
 /// A frame of the bus: what the host does in one of its milliseconds. Cycles are those of the processor's counter.
-struct Frame {
+struct BusFrame {
   std::uint16_t number = 0;         ///< 0..2047, as it came with the start of frame
   std::uint32_t count = 0;          ///< of frames since the port started
   std::uint32_t begin_cycles = 0;   ///< the counter at the start of frame
@@ -76,7 +76,7 @@ class Port {
   virtual void receive(std::uint8_t endpoint_address) = 0;
 
   /// The frame that runs; none while the bus is silent.
-  virtual std::optional<Frame> frame() = 0;
+  virtual std::optional<BusFrame> frame() = 0;
 
  protected:
   ~Port() = default;

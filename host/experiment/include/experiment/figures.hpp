@@ -13,10 +13,10 @@
 namespace inkwell::experiment {
 
 /// Mean, smallest and largest value of each millisecond of what the figures show.
-recording::FigureData figure_data(const recording::Recording& recording, Wall wall);
+recording::FigureData figure_data(const recording::Recording& recording, BoxWall wall);
 
-struct FigureOptions {
-  std::optional<Wall> wall;      ///< without it the one that was pushed into deepest
+struct PaperFigureOptions {
+  std::optional<BoxWall> wall;   ///< without it the one that was pushed into deepest
   std::optional<double> from_s;  ///< since the first sample; without it a little before the contact
   std::optional<double> to_s;    ///< without it a little after the contact
 };
@@ -26,6 +26,6 @@ struct FigureOptions {
 /// was not recorded, the wall was not touched, the stretch of time holds no samples, a file cannot be written, or
 /// gnuplot fails, in its own words.
 std::vector<std::string> draw_figures(const recording::Recording& recording, const std::filesystem::path& directory,
-                                      const FigureOptions& options);
+                                      const PaperFigureOptions& options);
 
 }  // namespace inkwell::experiment

@@ -20,13 +20,13 @@ struct Interval {
 };
 
 /// Comparison of the force that the firmware logged with F = k d + c d' of the values that it logged beside it.
-struct ForceLaw {
+struct ForceLawError {
   std::size_t samples = 0;  ///< in contact
-  double error_maximum_N = 0;
-  double error_maximum_relative = 0;  ///< of the samples with more than 0.5 N
-  std::size_t samples_outside = 0;    ///< error over 1 % and over 5 mN
+  double maximum_N = 0;
+  double maximum_relative = 0;      ///< of the samples with more than 0.5 N
+  std::size_t samples_outside = 0;  ///< error over 1 % and over 5 mN
 };
-ForceLaw force_law(const recording::Recording& recording, const protocol::ParameterSet& parameters);
+ForceLawError force_law_error(const recording::Recording& recording, const protocol::ParameterSet& parameters);
 
 /// How still the arm is while the hand holds steady against the wall.
 struct SteadyHold {
@@ -35,12 +35,12 @@ struct SteadyHold {
   double position_spread_m = 0;                   ///< along the wall's axis
   double penetration_mean_m = 0;
 };
-SteadyHold steady_hold(const recording::Recording& recording, Wall wall, Interval interval);
+SteadyHold steady_hold(const recording::Recording& recording, BoxWall wall, Interval interval);
 /// The steadiest half second with at least half of the largest penetration; none if contact was shorter.
-std::optional<Interval> find_steady_hold(const recording::Recording& recording, Wall wall);
+std::optional<Interval> find_steady_hold(const recording::Recording& recording, BoxWall wall);
 
 /// From the first touch of a wall's axis to the last; none if there was none.
-std::optional<Interval> contact_with(const recording::Recording& recording, Wall wall);
+std::optional<Interval> contact_with(const recording::Recording& recording, BoxWall wall);
 
 struct WallResult {
   std::size_t samples = 0;
@@ -50,12 +50,12 @@ struct WallResult {
   double force_maximum_N = 0;
   double torque_1_maximum_Nm = 0;       ///< magnitude; the paper's T1z
   double other_torques_maximum_Nm = 0;  ///< magnitude of T2x and T3x
-  ForceLaw force_law;
+  ForceLawError force_law_error;
   std::optional<SteadyHold> steady_hold;
   std::optional<Interval> contact;
 };
 /// `hold`: when the hand was steady, if that is known; found by find_steady_hold without it.
-WallResult evaluate(const recording::Recording& recording, const protocol::ParameterSet& parameters, Wall wall,
+WallResult evaluate(const recording::Recording& recording, const protocol::ParameterSet& parameters, BoxWall wall,
                     std::optional<Interval> hold);
 
 }  // namespace inkwell::experiment

@@ -16,7 +16,7 @@ namespace inkwell::experiment {
 /// How the recordings came about.
 struct Circumstances {
   recording::Information about;  ///< of the recording of the push
-  Wall wall;
+  BoxWall wall;
   std::optional<device::VirtualBoardOptions> virtual_board;  ///< that was started for it
   std::uint64_t poses_received = 0;
   std::uint64_t poses_lost = 0;

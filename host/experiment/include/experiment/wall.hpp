@@ -9,21 +9,21 @@
 namespace inkwell::experiment {
 
 /// One wall of the box.
-struct Wall {
+struct BoxWall {
   int axis = 2;  ///< 0 x, 1 y, 2 z
   int side = 1;  ///< 1 the upper wall, -1 the lower one
-  bool operator==(const Wall&) const = default;
+  bool operator==(const BoxWall&) const = default;
 };
 
 /// "z+" and the like. Throws device::Error.
-Wall parse_wall(const std::string& name);
-std::string wall_name(Wall wall);
+BoxWall parse_wall(const std::string& name);
+std::string wall_name(BoxWall wall);
 /// The wall in the arm's plane, away from its base: pushing into it takes no torque about the waist.
-Wall forward_wall(const protocol::ParameterSet& parameters);
+BoxWall forward_wall(const protocol::ParameterSet& parameters);
 /// Where the wall stands along its axis, in metres.
-double wall_position_m(const protocol::ParameterSet& parameters, Wall wall);
+double wall_position_m(const protocol::ParameterSet& parameters, BoxWall wall);
 char axis_letter(int axis);
 /// The wall that was pushed into deepest. Throws device::Error if there was no contact.
-Wall pushed_wall(const recording::Recording& recording);
+BoxWall pushed_wall(const recording::Recording& recording);
 
 }  // namespace inkwell::experiment

@@ -19,9 +19,9 @@ namespace inkwell::experiment {
 
 struct WallOptions {
   std::filesystem::path output_directory;
-  std::string arm;           ///< its name; if it is empty, known by the parameters where they are the default ones
-  bool simulation = false;   ///< the device is virtual
-  std::optional<Wall> wall;  ///< none: the forward wall of the arm
+  std::string arm;              ///< its name; if it is empty, known by the parameters where they are the default ones
+  bool simulation = false;      ///< the device is virtual
+  std::optional<BoxWall> wall;  ///< none: the forward wall of the arm
   std::optional<device::VirtualBoardOptions> virtual_board;  ///< that was started for the experiment
 };
 

@@ -18,7 +18,7 @@ class FrameClock {
   void forget() { is_known_ = false; }
 
   /// The newest frame; none while the bus is silent. To be called once in a frame at least.
-  std::optional<usb::Frame> newest();
+  std::optional<usb::BusFrame> newest();
 
  private:
   void note_capture();
