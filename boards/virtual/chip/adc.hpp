@@ -125,6 +125,7 @@ class Adcs final : public RegisterBlock {
   void trigger(unsigned timer, unsigned channel);
   bool is_clocked(unsigned index) const;
   bool is_slave(unsigned index, bool injected) const;
+  MultiMode mode() const;
   bool injected_simultaneous() const;
   bool regular_simultaneous() const;
   bool converts_together() const { return regular_simultaneous() || interleaved(); }

@@ -72,4 +72,16 @@ struct AdcCommonRegisters {
 };
 inline constexpr AdcCommonRegisters adc_common;
 
+/// ADC_CCR.MULTI without its highest bit, which takes the third converter in.
+enum class MultiMode : std::uint8_t {
+  independent = 0,
+  regular_and_injected = 1,   ///< both simultaneous
+  regular_and_alternate = 2,  ///< regular simultaneous, injected by alternate triggers
+  injected = 5,
+  regular = 6,
+  interleaved = 7,
+  alternate = 9,
+};
+inline constexpr std::uint32_t multi_triple = 0x10;
+
 }  // namespace inkwell::virtual_board

@@ -19,6 +19,8 @@ constexpr TriggerSource injected_sources[16] = {{1, 4}, {1, 0}, {2, 1}, {2, 0}, 
                                                 {4, 3}, {4, 0}, {5, 4}, {5, 0}, {8, 2}, {8, 3}, {8, 4}, {0, 15}};
 constexpr TriggerSource regular_sources[16] = {{1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {2, 4}, {2, 0}, {3, 1},
                                                {3, 0}, {4, 4}, {5, 1}, {5, 2}, {5, 3}, {8, 1}, {8, 0}, {0, 11}};
+/// Two results in a half word of ADC_CDR, as DMA mode 3 moves them.
+constexpr Field byte_pair{"BYTE#", 0, 8, Access::r, {2, 8, 0}};
 constexpr std::uint32_t converter_bytes = 0x100, common = 3 * converter_bytes;
 
 }  // namespace
@@ -43,20 +45,18 @@ bool Adcs::is_clocked(unsigned index) const {
   return false;
 }
 
+MultiMode Adcs::mode() const { return MultiMode(adc_common.ccr.multi.of(ccr_) & ~multi_triple); }
+
 bool Adcs::injected_simultaneous() const {
-  const unsigned mode = adc_common.ccr.multi.of(ccr_);
-  return mode == 0x01 || mode == 0x05 || mode == 0x11 || mode == 0x15;
+  return mode() == MultiMode::regular_and_injected || mode() == MultiMode::injected;
 }
 
 bool Adcs::regular_simultaneous() const {
-  const unsigned mode = adc_common.ccr.multi.of(ccr_);
-  return mode == 0x01 || mode == 0x02 || mode == 0x06 || mode == 0x11 || mode == 0x12 || mode == 0x16;
+  return mode() == MultiMode::regular_and_injected || mode() == MultiMode::regular_and_alternate ||
+         mode() == MultiMode::regular;
 }
 
-bool Adcs::interleaved() const {
-  const unsigned mode = adc_common.ccr.multi.of(ccr_);
-  return mode == 0x07 || mode == 0x17;
-}
+bool Adcs::interleaved() const { return mode() == MultiMode::interleaved; }
 
 // From one converter's start to the next one's: what DELAY says, but never while another one samples (RM0090,
 // "Interleaved mode").
@@ -65,10 +65,7 @@ Ticks Adcs::interleaving_delay() const {
   return machine_.clocks.pclk2.duration(std::uint64_t{std::max(asked, sampling)} * prescaler());
 }
 
-unsigned Adcs::group_size() const {
-  constexpr std::uint32_t triple = 0x10;
-  return (adc_common.ccr.multi.of(ccr_) & triple) != 0 ? 3 : 2;
-}
+unsigned Adcs::group_size() const { return (adc_common.ccr.multi.of(ccr_) & multi_triple) != 0 ? 3 : 2; }
 
 bool Adcs::is_slave(unsigned index, bool injected) const {
   return index != 0 && index < group_size() && (injected ? injected_simultaneous() : converts_together());
@@ -80,9 +77,9 @@ void Adcs::share(std::uint32_t result) {
   const std::uint32_t mode = adc_common.ccr.dma.of(ccr_);
   const std::size_t together = mode == 1 ? 1 : 2;
   while (shared_.size() >= together) {
-    common_data_ = shared_[0];
-    if (mode == 2) common_data_ |= shared_[1] << 16;
-    if (mode == 3) common_data_ = (shared_[0] & 0xFF) | (shared_[1] & 0xFF) << 8;
+    const Field& part = mode == 3 ? byte_pair : adc_common.cdr.data;
+    common_data_ = 0;
+    for (unsigned i = 0; i < together; ++i) common_data_ |= part.with(shared_[i], i);
     shared_.erase(shared_.begin(), shared_.begin() + static_cast<std::ptrdiff_t>(together));
     if (!machine_.dma->adc_request(0)) continue;
     for (unsigned i = 0; i < group_size(); ++i) adcs_[i].result_taken();

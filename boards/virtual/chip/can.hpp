@@ -6,50 +6,10 @@
 #include <utility>
 
 #include "bus.hpp"
+#include "can_map.hpp"
 #include "can_reception.hpp"
 
 namespace inkwell::virtual_board {
-
-struct CanRegisters {
-  struct : Register {
-    Field inrq{"INRQ", 0}, sleep{"SLEEP", 1}, txfp{"TXFP", 2}, rflm{"RFLM", 3}, nart{"NART", 4}, awum{"AWUM", 5},
-        abom{"ABOM", 6}, ttcm{"TTCM", 7}, reset{"RESET", 15, 1, Access::rs}, dbf{"DBF", 16};
-  } mcr{{"MCR", 0x00, 0x0001'0002}};
-  struct : Register {
-    Field inak{"INAK", 0, 1, Access::r}, slak{"SLAK", 1, 1, Access::r}, erri{"ERRI", 2, 1, Access::rc_w1},
-        wkui{"WKUI", 3, 1, Access::rc_w1}, slaki{"SLAKI", 4, 1, Access::rc_w1}, txm{"TXM", 8, 1, Access::r},
-        rxm{"RXM", 9, 1, Access::r}, samp{"SAMP", 10, 1, Access::r}, rx{"RX", 11, 1, Access::r};
-  } msr{{"MSR", 0x04, 0x0000'0C02}};
-  struct : Register {
-    Field rqcp{"RQCP#", 0, 1, Access::rc_w1, {3, 8, 0}}, txok{"TXOK#", 1, 1, Access::rc_w1, {3, 8, 0}},
-        alst{"ALST#", 2, 1, Access::rc_w1, {3, 8, 0}}, terr{"TERR#", 3, 1, Access::rc_w1, {3, 8, 0}},
-        abrq{"ABRQ#", 7, 1, Access::rs, {3, 8, 0}}, code{"CODE", 24, 2, Access::r},
-        tme{"TME#", 26, 1, Access::r, {3, 1, 0}}, low{"LOW#", 29, 1, Access::r, {3, 1, 0}};
-  } tsr{{"TSR", 0x08, 0x1C00'0000}};
-  Register rfr{"RF#R", 0x0C, 0, {2, 4, 0}};
-  struct : Register {
-    Field tmeie{"TMEIE", 0}, fmpie0{"FMPIE0", 1}, ffie0{"FFIE0", 2}, fovie0{"FOVIE0", 3}, fmpie1{"FMPIE1", 4},
-        ffie1{"FFIE1", 5}, fovie1{"FOVIE1", 6}, ewgie{"EWGIE", 8}, epvie{"EPVIE", 9}, bofie{"BOFIE", 10},
-        lecie{"LECIE", 11}, errie{"ERRIE", 15}, wkuie{"WKUIE", 16}, slkie{"SLKIE", 17};
-  } ier{{"IER", 0x14}};
-  struct : Register {
-    Field ewgf{"EWGF", 0, 1, Access::r}, epvf{"EPVF", 1, 1, Access::r}, boff{"BOFF", 2, 1, Access::r}, lec{"LEC", 4, 3},
-        tec{"TEC", 16, 8, Access::r}, rec{"REC", 24, 8, Access::r};
-  } esr{{"ESR", 0x18}};
-  struct : Register {
-    Field brp{"BRP", 0, 10}, ts1{"TS1", 16, 4}, ts2{"TS2", 20, 3}, sjw{"SJW", 24, 2}, lbkm{"LBKM", 30},
-        silm{"SILM", 31};
-  } btr{{"BTR", 0x1C}};
-  struct : Register {
-    Field txrq{"TXRQ", 0}, rtr{"RTR", 1}, ide{"IDE", 2}, exid{"EXID", 3, 18}, stid{"STID", 21, 11};
-  } tir{{"TI#R", 0x180, 0, {3, 0x10, 0}}};
-  Register tdtr{"TDT#R", 0x184, 0, {3, 0x10, 0}}, tdlr{"TDL#R", 0x188, 0, {3, 0x10, 0}},
-      tdhr{"TDH#R", 0x18C, 0, {3, 0x10, 0}};
-  Register fmr{"FMR", 0x200, 0x2A1C'0E01}, fm1r{"FM1R", 0x204}, fs1r{"FS1R", 0x20C}, ffa1r{"FFA1R", 0x214},
-      fa1r{"FA1R", 0x21C};
-  Register first_filter{"F#R1", 0x240, 0, {28, 8, 0}}, second_filter{"F#R2", 0x244, 0, {28, 8, 0}};
-};
-inline constexpr CanRegisters can;
 
 class Can final : public RegisterBlock, public Freezable {
  public:
@@ -85,9 +45,9 @@ class Can final : public RegisterBlock, public Freezable {
  protected:
   std::uint32_t read_word(std::uint32_t offset) override {
     if (can.rfr.covers(offset)) return fifos_[can.rfr.index(offset)].status();
-    if (offset >= mailboxes_received && offset < mailboxes_received + 0x20) {
-      const unsigned place = (offset - mailboxes_received) / 4;
-      return fifos_[place / 4].word(place % 4);
+    if (offset >= can.rir && offset < can.rir + can.rir.count * can.rir.stride) {
+      const std::uint32_t place = offset - can.rir;
+      return fifos_[place / can.rir.stride].word(place % can.rir.stride / 4);
     }
     return stored(offset);
   }
@@ -120,12 +80,10 @@ class Can final : public RegisterBlock, public Freezable {
 
  private:
   static constexpr std::uint32_t bytes = 0x320;
-  static constexpr std::uint32_t mailboxes_received = 0x1B0;  ///< RI0R
   std::uint32_t& word(std::uint32_t offset) { return words_[offset / 4]; }
   void keep_filters() {
-    constexpr std::uint32_t finit = 1;
-    own_filters_.initialising = (word(can.fmr) & finit) != 0;
-    own_filters_.first_of_second_controller = word(can.fmr) >> 8 & 0x3F;
+    own_filters_.initialising = can.fmr.finit.in(word(can.fmr));
+    own_filters_.first_of_second_controller = can.fmr.can2sb.of(word(can.fmr));
     own_filters_.lists = word(can.fm1r);
     own_filters_.whole_words = word(can.fs1r);
     own_filters_.second_fifo = word(can.ffa1r);
@@ -173,7 +131,7 @@ class Can final : public RegisterBlock, public Freezable {
     constexpr unsigned shortest_frame_bits = 47;
     const bool hears_itself = can.btr.lbkm.in(word(can.btr));
     const unsigned data_bits =
-        hears_itself ? 8 * std::min(word(can.tdtr + next_mailbox() * can.tdtr.stride) & 0xF, 8u) : 0;
+        hears_itself ? 8 * std::min(can.tdtr.dlc.of(word(can.tdtr + next_mailbox() * can.tdtr.stride)), 8u) : 0;
     sending_ = events_.at(machine_.timeline.now() + bits(shortest_frame_bits + data_bits), [this] {
       sending_ = 0;
       if (can.btr.lbkm.in(word(can.btr)))
@@ -186,11 +144,10 @@ class Can final : public RegisterBlock, public Freezable {
   }
   /// Of those that wait, the one with the lowest identifier.
   unsigned next_mailbox() {
-    constexpr std::uint32_t request = 1;
     unsigned next = 0;
     std::uint32_t lowest = ~0u;
     for (unsigned i = 0; i < 3; ++i) {
-      const std::uint32_t identifier = word(can.tir + i * can.tir.stride) & ~request;
+      const std::uint32_t identifier = word(can.tir + i * can.tir.stride) & ~can.tir.txrq.mask();
       if (can.tsr.tme.in(word(can.tsr), i) || identifier >= lowest) continue;
       lowest = identifier;
       next = i;
@@ -199,15 +156,15 @@ class Can final : public RegisterBlock, public Freezable {
   }
   void hear_itself() {
     if ((word(can.tsr) & can.tsr.tme.masks()) == can.tsr.tme.masks()) return;  // given up meanwhile
-    constexpr std::uint32_t request = 1, length = 0xF;
     const unsigned mailbox = next_mailbox();
     const auto sent = [&](const auto& registers) { return word(registers + mailbox * registers.stride); };
-    CanFrame frame{sent(can.tir) & ~request, sent(can.tdtr) & length, sent(can.tdlr), sent(can.tdhr)};
+    CanFrame frame{sent(can.tir) & ~can.tir.txrq.mask(), can.tdtr.dlc.of(sent(can.tdtr)), sent(can.tdlr),
+                   sent(can.tdhr)};
     give_up(mailbox);
     word(can.tsr) |= can.tsr.txok.mask(mailbox);
     const auto match = filters_.match(frame.identifier, number_);
     if (!match) return;
-    frame.length |= match->index << 8;
+    frame.length |= can.rdtr.fmi.with(match->index);
     fifos_[match->fifo].put(frame, can.mcr.rflm.in(word(can.mcr)));
   }
   // Each such error counts 8, until the controller is error passive: then it counts no more (ISO 11898-1).
@@ -237,9 +194,9 @@ class Can final : public RegisterBlock, public Freezable {
                                   std::array{&can.ier.fmpie1, &can.ier.ffie1, &can.ier.fovie1}};
     for (unsigned i = 0; i < 2; ++i) {
       const std::uint32_t fifo = fifos_[i].status();
-      const bool told = (told_by_fifo[i][0]->in(enables) && (fifo & CanFifo::pending) != 0) ||
-                        (told_by_fifo[i][1]->in(enables) && (fifo & CanFifo::full) != 0) ||
-                        (told_by_fifo[i][2]->in(enables) && (fifo & CanFifo::overrun) != 0);
+      const bool told = (told_by_fifo[i][0]->in(enables) && can.rfr.fmp.in(fifo)) ||
+                        (told_by_fifo[i][1]->in(enables) && can.rfr.full.in(fifo)) ||
+                        (told_by_fifo[i][2]->in(enables) && can.rfr.fovr.in(fifo));
       machine_.nvic.set_source(first_position_ + 1 + i, 0, told);
     }
     machine_.nvic.set_source(first_position_ + 3, 0,

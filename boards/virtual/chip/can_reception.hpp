@@ -9,14 +9,28 @@
 #include <deque>
 #include <optional>
 
+#include "can_map.hpp"
+
 namespace inkwell::virtual_board {
 
 /// A frame as the mailboxes have it: identifier register, length, data.
 struct CanFrame {
   std::uint32_t identifier;  ///< as RIxR: STID, EXID, IDE, RTR
-  std::uint32_t length;
+  std::uint32_t length;      ///< as RDTxR: DLC, and FMI when it was received
   std::uint32_t low, high;
 };
+
+/// What a filter of 16 bits sees of an identifier (RM0090, "Filter bank scale configuration - register organization").
+struct CanHalfFilter {
+  Field exid{"EXID", 0, 3}, ide{"IDE", 3}, rtr{"RTR", 4}, stid{"STID", 5, 11};
+  /// The three highest bits of EXID.
+  constexpr std::uint32_t seen(std::uint32_t identifier) const {
+    const auto& from = can.rir;
+    return stid.with(from.stid.of(identifier)) | rtr.with(from.rtr.of(identifier)) | ide.with(from.ide.of(identifier)) |
+           exid.with(from.exid.of(identifier) >> (from.exid.width - exid.width));
+  }
+};
+inline constexpr CanHalfFilter can_half_filter;
 
 /// The filter banks of both controllers, which are CAN1's: registers FMR, FM1R, FS1R, FFA1R, FA1R and the banks.
 struct CanFilters {
@@ -42,11 +56,11 @@ struct CanFilters {
     std::optional<Match> best;
     unsigned best_rank = 4;
     for (unsigned i = begin; i < end; ++i) {
-      const bool is_word = bit(whole_words, i), is_list = bit(lists, i);
-      const unsigned fifo = bit(second_fifo, i) ? 1 : 0, rank = (is_word ? 0 : 2) + (is_list ? 0 : 1);
+      const bool is_word = can.fs1r.fsc.in(whole_words, i), is_list = can.fm1r.fbm.in(lists, i);
+      const unsigned fifo = can.ffa1r.ffa.of(second_fifo, i), rank = (is_word ? 0 : 2) + (is_list ? 0 : 1);
       const unsigned first_index = next_index[fifo];
       next_index[fifo] += (is_word ? 1 : 2) * (is_list ? 2 : 1);
-      if (!bit(active, i) || rank >= best_rank) continue;
+      if (!can.fa1r.fact.in(active, i) || rank >= best_rank) continue;
       const auto passed =
           is_word ? match_word(bank[i], identifier, is_list) : match_halves(bank[i], identifier, is_list);
       if (!passed) continue;
@@ -57,16 +71,13 @@ struct CanFilters {
   }
 
  private:
-  static bool bit(std::uint32_t word, unsigned number) { return (word >> number & 1) != 0; }
   static std::optional<unsigned> match_word(const Bank& of, std::uint32_t identifier, bool is_list) {
     if (!is_list) return ((identifier ^ of.first) & of.second) == 0 ? std::optional(0u) : std::nullopt;
     if (identifier == of.first) return 0;
     return identifier == of.second ? std::optional(1u) : std::nullopt;
   }
   static std::optional<unsigned> match_halves(const Bank& of, std::uint32_t identifier, bool is_list) {
-    // STID, RTR, IDE and the three highest bits of EXID.
-    const std::uint32_t seen =
-        (identifier >> 21) << 5 | (identifier >> 1 & 1) << 4 | (identifier >> 2 & 1) << 3 | (identifier >> 18 & 7);
+    const std::uint32_t seen = can_half_filter.seen(identifier);
     unsigned index = 0;
     for (const std::uint32_t word : {of.first, of.second}) {
       const std::uint32_t low = word & 0xFFFF, high = word >> 16;
@@ -86,26 +97,24 @@ struct CanFilters {
 /// RFxR and what is behind it.
 class CanFifo {
  public:
-  static constexpr std::uint32_t pending = 3, full = 1u << 3, overrun = 1u << 4, release = 1u << 5;
-
   void clear() {
     frames_.clear();
     flags_ = 0;
   }
-  std::uint32_t status() const { return static_cast<std::uint32_t>(frames_.size()) | flags_; }
+  std::uint32_t status() const { return can.rfr.fmp.with(static_cast<std::uint32_t>(frames_.size())) | flags_; }
   void write_status(std::uint32_t value) {
-    flags_ &= ~(value & (full | overrun));
-    if ((value & release) != 0 && !frames_.empty()) frames_.pop_front();
+    flags_ &= ~(value & bits_of(can.rfr, Access::rc_w1));
+    if (can.rfr.rfom.in(value) && !frames_.empty()) frames_.pop_front();
   }
   void put(const CanFrame& frame, bool locked) {
     constexpr std::size_t depth = 3;
     if (frames_.size() == depth) {
-      flags_ |= overrun;
+      flags_ |= can.rfr.fovr.mask();
       if (!locked) frames_.back() = frame;
       return;
     }
     frames_.push_back(frame);
-    if (frames_.size() == depth) flags_ |= full;
+    if (frames_.size() == depth) flags_ |= can.rfr.full.mask();
   }
   /// RIxR, RDTxR, RDLxR or RDHxR.
   std::uint32_t word(unsigned number) const {

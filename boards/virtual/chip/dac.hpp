@@ -16,10 +16,28 @@ struct DacRegisters {
   struct : Register {
     Field swtrig{"SWTRIG#", 0, 1, Access::w, {2, 1, 1}};
   } swtrigr{{"SWTRIGR", 0x04}};
-  Register dhr12r1{"DHR12R1", 0x08}, dhr12l1{"DHR12L1", 0x0C}, dhr8r1{"DHR8R1", 0x10}, dhr12r2{"DHR12R2", 0x14},
-      dhr12l2{"DHR12L2", 0x18}, dhr8r2{"DHR8R2", 0x1C}, dhr12rd{"DHR12RD", 0x20}, dhr12ld{"DHR12LD", 0x24},
-      dhr8rd{"DHR8RD", 0x28};
-  Register dor1{"DOR1", 0x2C}, dor2{"DOR2", 0x30};
+  // A channel's value in its three forms, by itself and beside the other one's.
+  struct : Register {
+    Field dhr{"DACC#DHR", 0, 12};
+  } dhr12r{{"DHR12R#", 0x08, 0, {2, 12, 1}}};
+  struct : Register {
+    Field dhr{"DACC#DHR", 4, 12};
+  } dhr12l{{"DHR12L#", 0x0C, 0, {2, 12, 1}}};
+  struct : Register {
+    Field dhr{"DACC#DHR", 0, 8};
+  } dhr8r{{"DHR8R#", 0x10, 0, {2, 12, 1}}};
+  struct : Register {
+    Field dhr{"DACC#DHR", 0, 12, Access::rw, {2, 16, 1}};
+  } dhr12rd{{"DHR12RD", 0x20}};
+  struct : Register {
+    Field dhr{"DACC#DHR", 4, 12, Access::rw, {2, 16, 1}};
+  } dhr12ld{{"DHR12LD", 0x24}};
+  struct : Register {
+    Field dhr{"DACC#DHR", 0, 8, Access::rw, {2, 8, 1}};
+  } dhr8rd{{"DHR8RD", 0x28}};
+  struct : Register {
+    Field dor{"DACC#DOR", 0, 12, Access::r};
+  } dor{{"DOR#", 0x2C, 0, {2, 4, 1}}};
   struct : Register {
     Field dmaudr{"DMAUDR#", 13, 1, Access::rc_w1, {2, 16, 1}};
   } sr{{"SR", 0x34}};
@@ -37,51 +55,57 @@ class Dac final : public RegisterBlock {
  protected:
   std::uint32_t read_word(std::uint32_t offset) override { return stored(offset); }
   void write_word(std::uint32_t offset, std::uint32_t value) override {
-    switch (offset) {
-      case dac.cr:
-        control_ = value & writable(dac.cr);
-        if ((control_ & (dac.cr.wave.masks() | dac.cr.dmaen.masks())) != 0)
-          machine_.log.say_once("DAC_CR: waves and DMA are not modelled");
-        break;
-      case dac.swtrigr:
-        for (unsigned i = 0; i < 2; ++i)
-          if (dac.swtrigr.swtrig.in(value, i)) output_[i] = held_[i];
-        return;
-      case dac.dhr12r1: held_[0] = value & 0xFFF; break;
-      case dac.dhr12l1: held_[0] = value >> 4 & 0xFFF; break;
-      case dac.dhr8r1: held_[0] = (value & 0xFF) << 4; break;
-      case dac.dhr12r2: held_[1] = value & 0xFFF; break;
-      case dac.dhr12l2: held_[1] = value >> 4 & 0xFFF; break;
-      case dac.dhr8r2: held_[1] = (value & 0xFF) << 4; break;
-      case dac.dhr12rd: held_ = {value & 0xFFF, value >> 16 & 0xFFF}; break;
-      case dac.dhr12ld: held_ = {value >> 4 & 0xFFF, value >> 20 & 0xFFF}; break;
-      case dac.dhr8rd: held_ = {(value & 0xFF) << 4, (value >> 8 & 0xFF) << 4}; break;
-      case dac.sr: return;  // without DMA nothing underruns
-      default: return machine_.log.note("DAC", offset, true, value);
+    if (offset == dac.cr) {
+      control_ = value & writable(dac.cr);
+      if ((control_ & (dac.cr.wave.masks() | dac.cr.dmaen.masks())) != 0)
+        machine_.log.say_once("DAC_CR: waves and DMA are not modelled");
+    } else if (offset == dac.swtrigr) {
+      for (unsigned i = 0; i < 2; ++i)
+        if (dac.swtrigr.swtrig.in(value, i)) output_[i] = held_[i];
+      return;
+    } else if (offset == dac.sr) {
+      return;  // without DMA nothing underruns
+    } else if (!hold(offset, value)) {
+      return machine_.log.note("DAC", offset, true, value);
     }
     for (unsigned i = 0; i < 2; ++i)
       if (!dac.cr.ten.in(control_, i)) output_[i] = held_[i];
   }
   std::uint32_t stored(std::uint32_t offset) const override {
-    switch (offset) {
-      case dac.cr: return control_;
-      case dac.dhr12r1: return held_[0];
-      case dac.dhr12l1: return held_[0] << 4;
-      case dac.dhr8r1: return held_[0] >> 4;
-      case dac.dhr12r2: return held_[1];
-      case dac.dhr12l2: return held_[1] << 4;
-      case dac.dhr8r2: return held_[1] >> 4;
-      case dac.dhr12rd: return held_[0] | held_[1] << 16;
-      case dac.dhr12ld: return held_[0] << 4 | held_[1] << 20;
-      case dac.dhr8rd: return held_[0] >> 4 | held_[1] >> 4 << 8;
-      case dac.dor1: return output_[0];
-      case dac.dor2: return output_[1];
-      default: return 0;
-    }
+    if (offset == dac.cr) return control_;
+    if (dac.dor.covers(offset)) return dac.dor.dor.with(output_[dac.dor.index(offset)]);
+    std::uint32_t word = 0;
+    at_form(offset, [&](const Field& field, unsigned channel, unsigned place) {
+      word |= field.with(held_[channel] >> (bits - field.width), place);
+    });
+    return word;
   }
   std::span<const MapEntry> registers() const override { return shown<dac>(); }
 
  private:
+  static constexpr unsigned bits = 12;  ///< of a converter; a form with fewer has the highest
+  /// Calls `use(field, channel, place in the field)` for each channel that a holding register has; false if it is none.
+  template <class Use>
+  static bool at_form(std::uint32_t offset, Use use) {
+    const auto of_one = [&](const auto& form) {
+      if (!form.covers(offset)) return false;
+      use(form.dhr, form.index(offset), 0u);
+      return true;
+    };
+    const auto of_both = [&](const auto& form) {
+      if (offset != form) return false;
+      for (unsigned i = 0; i < 2; ++i) use(form.dhr, i, i);
+      return true;
+    };
+    return of_one(dac.dhr12r) || of_one(dac.dhr12l) || of_one(dac.dhr8r) || of_both(dac.dhr12rd) ||
+           of_both(dac.dhr12ld) || of_both(dac.dhr8rd);
+  }
+  bool hold(std::uint32_t offset, std::uint32_t value) {
+    return at_form(offset, [&](const Field& field, unsigned channel, unsigned place) {
+      held_[channel] = field.of(value, place) << (bits - field.width);
+    });
+  }
+
   Machine& machine_;
   std::uint32_t control_ = 0;
   std::array<std::uint32_t, 2> held_{}, output_{};

@@ -14,8 +14,16 @@ constexpr unsigned alarm_line = 17, wake_up_line = 22;
 constexpr std::int64_t seconds_per_day = 86'400;
 constexpr unsigned unlocked = 2;
 
-constexpr std::uint32_t decimal(unsigned number) { return number / 10 << 4 | number % 10; }
-constexpr unsigned number_of(std::uint32_t decimals) { return (decimals >> 4) * 10 + (decimals & 15); }
+/// A number of two decimals, each in a field of its own.
+struct Decimals {
+  Field tens, units;
+  constexpr std::uint32_t with(unsigned number) const { return tens.with(number / 10) | units.with(number % 10); }
+  constexpr unsigned of(std::uint32_t word) const { return tens.of(word) * 10 + units.of(word); }
+};
+constexpr struct {
+  Decimals second{rtc.tr.st, rtc.tr.su}, minute{rtc.tr.mnt, rtc.tr.mnu}, hour{rtc.tr.ht, rtc.tr.hu};
+  Decimals day{rtc.dr.dt, rtc.dr.du}, month{rtc.dr.mt, rtc.dr.mu}, year{rtc.dr.yt, rtc.dr.yu};
+} calendar;
 constexpr auto year_2000 = std::chrono::sys_days(std::chrono::year(2000) / 1 / 1);
 
 }  // namespace
@@ -53,7 +61,7 @@ std::uint32_t RealTimeClock::time_register() const {
   unsigned hour = of_day / 3600;
   const bool twelve = rtc.cr.fmt.in(control_), afternoon = hour >= 12;
   if (twelve) hour = (hour + 11) % 12 + 1;
-  return decimal(hour) << 16 | decimal(of_day / 60 % 60) << 8 | decimal(of_day % 60) |
+  return calendar.hour.with(hour) | calendar.minute.with(of_day / 60 % 60) | calendar.second.with(of_day % 60) |
          rtc.tr.pm.with(twelve && afternoon);
 }
 
@@ -61,21 +69,21 @@ std::uint32_t RealTimeClock::date_register() const {
   const std::int64_t now_s = set_to_s_ + static_cast<std::int64_t>(cycles() / cycles_per_second());
   const auto day = year_2000 + std::chrono::days(now_s / seconds_per_day);
   const std::chrono::year_month_day date(day);
-  return decimal(static_cast<unsigned>(static_cast<int>(date.year()) % 100)) << 16 |
-         rtc.dr.wdu.with(std::chrono::weekday(day).iso_encoding()) | decimal(static_cast<unsigned>(date.month())) << 8 |
-         decimal(static_cast<unsigned>(date.day()));
+  return calendar.year.with(static_cast<unsigned>(static_cast<int>(date.year()) % 100)) |
+         rtc.dr.wdu.with(std::chrono::weekday(day).iso_encoding()) |
+         calendar.month.with(static_cast<unsigned>(date.month())) |
+         calendar.day.with(static_cast<unsigned>(date.day()));
 }
 
 // The day of the week follows from the date; one that was set otherwise is not kept.
 void RealTimeClock::set_calendar() {
-  using namespace std::chrono;
-  const auto date = year(2000 + static_cast<int>(number_of(written_date_ >> 16 & 0xFF))) /
-                    static_cast<int>(number_of(written_date_ >> 8 & 0x1F)) /
-                    static_cast<int>(number_of(written_date_ & 0x3F));
-  unsigned hour = number_of(written_time_ >> 16 & 0x3F);
+  const auto date = std::chrono::year(2000 + static_cast<int>(calendar.year.of(written_date_))) /
+                    static_cast<int>(calendar.month.of(written_date_)) /
+                    static_cast<int>(calendar.day.of(written_date_));
+  unsigned hour = calendar.hour.of(written_time_);
   if (rtc.cr.fmt.in(control_)) hour = hour % 12 + (rtc.tr.pm.in(written_time_) ? 12 : 0);
-  set_to_s_ = date.ok() ? (sys_days(date) - year_2000).count() * seconds_per_day : 0;
-  set_to_s_ += hour * 3600 + number_of(written_time_ >> 8 & 0x7F) * 60 + number_of(written_time_ & 0x7F);
+  set_to_s_ = date.ok() ? (std::chrono::sys_days(date) - year_2000).count() * seconds_per_day : 0;
+  set_to_s_ += hour * 3600 + calendar.minute.of(written_time_) * 60 + calendar.second.of(written_time_);
   set_at_ = machine_.timeline.now();
 }
 
@@ -106,7 +114,7 @@ std::uint32_t RealTimeClock::read_word(std::uint32_t offset) {
       if (!rtc.cr.alrae.in(control_)) value |= rtc.isr.alrawf.mask();
       if (!rtc.cr.alrbe.in(control_)) value |= rtc.isr.alrbwf.mask();
       if (!rtc.cr.wute.in(control_)) value |= rtc.isr.wutwf.mask();
-      if (number_of(written_date_ >> 16 & 0xFF) != 0) value |= rtc.isr.inits.mask();
+      if (calendar.year.of(written_date_) != 0) value |= rtc.isr.inits.mask();
       if (!clock().runs()) return value;
       if (initialising && now >= initialised_at_ + two_cycles) value |= rtc.isr.initf.mask();
       if (!initialising && now >= synchronised_at_ + two_cycles) value |= rtc.isr.rsf.mask();
@@ -220,11 +228,13 @@ void RealTimeClock::freeze(bool frozen) {
 bool RealTimeClock::alarm_matches(std::uint32_t alarm) const {
   const std::uint32_t time = time_register(), date = date_register();
   const auto& map = rtc.alrmar;
-  const std::uint32_t day = map.wdsel.in(alarm) ? rtc.dr.wdu.of(date) : date & 0x3F;
-  return (map.msk1.in(alarm) || (alarm & 0x7F) == (time & 0x7F)) &&
-         (map.msk2.in(alarm) || (alarm >> 8 & 0x7F) == (time >> 8 & 0x7F)) &&
-         (map.msk3.in(alarm) || (alarm >> 16 & 0x7F) == (time >> 16 & 0x7F)) &&
-         (map.msk4.in(alarm) || (alarm >> 24 & 0x3F) == day);
+  const auto same = [&](const Field& wanted, const Field& told) { return wanted.of(alarm) == told.of(time); };
+  const bool weekday = map.du.of(alarm) == rtc.dr.wdu.of(date);
+  const bool day = map.du.of(alarm) == rtc.dr.du.of(date) && map.dt.of(alarm) == rtc.dr.dt.of(date);
+  return (map.msk1.in(alarm) || (same(map.st, rtc.tr.st) && same(map.su, rtc.tr.su))) &&
+         (map.msk2.in(alarm) || (same(map.mnt, rtc.tr.mnt) && same(map.mnu, rtc.tr.mnu))) &&
+         (map.msk3.in(alarm) || (same(map.pm, rtc.tr.pm) && same(map.ht, rtc.tr.ht) && same(map.hu, rtc.tr.hu))) &&
+         (map.msk4.in(alarm) || (map.wdsel.in(alarm) ? weekday : day));
 }
 
 void RealTimeClock::plan_second() {
