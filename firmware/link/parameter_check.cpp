@@ -22,7 +22,7 @@ using protocol::Refusal;
 struct Limits {
   std::uint16_t id;
   bool whole;
-  bool arm;
+  bool needs_force_off;
   float minimum;
   float maximum;
 };
@@ -31,7 +31,7 @@ constexpr std::array<Limits, parameter_count> table_limits = [] {
   std::array<Limits, parameter_count> rows{};
   for (std::size_t i = 0; i < parameter_count; ++i) {
     const protocol::ParameterInfo& row = protocol::parameter_table[i];
-    rows[i] = {row.id, row.kind != ParameterKind::real, row.group == "arm", row.minimum, row.maximum};
+    rows[i] = {row.id, row.kind != ParameterKind::real, protocol::needs_force_off(row), row.minimum, row.maximum};
   }
   return rows;
 }();
@@ -85,7 +85,7 @@ Refusal check_value(std::size_t index, float value, float current, bool force_is
   if (!(row.minimum <= value && value <= row.maximum)) return Refusal::out_of_range;
   // Every whole parameter's range lies far inside that of an int32.
   if (row.whole && static_cast<float>(static_cast<std::int32_t>(value)) != value) return Refusal::not_whole;
-  if (row.arm && force_is_on && value != current) return Refusal::force_is_on;
+  if (row.needs_force_off && force_is_on && value != current) return Refusal::force_is_on;
   return Refusal::accepted;
 }
 
@@ -109,7 +109,7 @@ ParameterCheck check_whole(const ParameterSet& set, const Given& given) {
 ParameterCheck restore_defaults(const ParameterSet& current, bool force_is_on) {
   if (force_is_on)
     for (std::size_t i = 0; i < parameter_count; ++i)
-      if (table_limits[i].arm && table_defaults.values[i] != current.values[i])
+      if (table_limits[i].needs_force_off && table_defaults.values[i] != current.values[i])
         return refuse(Refusal::force_is_on, id_of(i), table_defaults.values[i]);
   return {Refusal::accepted, 0, 0.0f, image_defaults()};
 }

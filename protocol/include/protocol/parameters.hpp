@@ -156,6 +156,9 @@ constexpr const ParameterInfo& info(Parameter parameter) {
   return known_parameters()[static_cast<std::size_t>(parameter)];
 }
 constexpr std::size_t row_count(Parameter) { return parameter_count; }
+/// Says where the probe is or how a torque comes to be, so that a change under a force would be a jump: it waits until
+/// the force is off. Other parameters belong to an arm as well, but can change at any time.
+constexpr bool needs_force_off(const ParameterInfo& row) { return row.group == "arm"; }
 constexpr bool alike(const ParameterInfo& a, const ParameterInfo& b) {
   return a.kind == b.kind && a.unit == b.unit && a.minimum == b.minimum && a.maximum == b.maximum &&
          a.group == b.group && a.belongs_to_arm == b.belongs_to_arm;

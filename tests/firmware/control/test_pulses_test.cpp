@@ -64,7 +64,7 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
 float shown_A(float current_A) { return std::clamp(current_A, -3.6f, 3.6f); }
 
 TEST_CASE("a current that its sensor cannot show trips within two control periods, at the largest limit too") {
-  constexpr float resistance_ohm = 2.18f, inductance_H = 0.238e-3f;
+  using namespace arm_defaults::motor;
   for (const float amplitude_V : {16.0f, -16.0f}) {
     CAPTURE(amplitude_V);
     protocol::ParameterSet set = tests::paper_parameters();
