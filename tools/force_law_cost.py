@@ -14,6 +14,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tomllib
 
 from call_graph import Function, read_functions, run
 from interrupt_rules import LEAVES, outer_loops, paths_of
@@ -22,14 +23,13 @@ from interrupt_rules import LEAVES, outer_loops, paths_of
 # law may take 1500 of them, and 2000 are left for what the model does not know.
 BUDGET_CYCLES = 1500
 
-COSTS = pathlib.Path(__file__).parent.parent / "boards/virtual/timing/include/timing/costs.hpp"
-COST = re.compile(r'\{Cost::\w+, "(\w+)", \d+, (\d+),')
+COSTS = pathlib.Path(__file__).parent.parent / "boards/virtual/timing/costs.toml"
 STEP = "step_force_law"
 
 
 def read_costs() -> dict[str, int]:
     """The conservative figures of the cycle model."""
-    return {name: int(cycles) for name, cycles in COST.findall(COSTS.read_text())}
+    return {name: row["conservative"] for name, row in tomllib.loads(COSTS.read_text()).items()}
 
 
 CONDITION = r"(?:eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)?"
