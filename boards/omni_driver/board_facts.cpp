@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 namespace board = inkwell::board;
 

@@ -1,7 +1,7 @@
 // The driver board's firmware: what it is made of, in the order in which it comes to life.
 #include <optional>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <drivers/boot_loader.hpp>
 #include <drivers/clocks.hpp>
 #include <drivers/crash_record.hpp>

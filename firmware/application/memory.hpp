@@ -1,4 +1,4 @@
-// Where things lie; see boards/omni_driver/omni_driver.ld, which defines the symbols.
+// Where things lie; see the board's linker script (boards/omni_driver/board.ld), which defines the symbols.
 #pragma once
 
 #include <cstdint>

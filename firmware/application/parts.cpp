@@ -1,6 +1,6 @@
 #include "parts.hpp"
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "memory.hpp"
 

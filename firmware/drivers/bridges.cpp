@@ -1,6 +1,6 @@
 #include <drivers/bridges.hpp>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <drivers/bridges_off.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/leg_compares.hpp>

@@ -1,6 +1,6 @@
 #include <drivers/clocks.hpp>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <registers/clock.hpp>
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 namespace inkwell::device {
 namespace {

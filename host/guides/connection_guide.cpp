@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "joint_motion.hpp"
 

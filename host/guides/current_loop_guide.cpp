@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <device/parameter_file.hpp>
 #include <guides/motor_identification.hpp>
 #include <guides/pulse_recorder.hpp>

@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
 #include <stepped_board.hpp>

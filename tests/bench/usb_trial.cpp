@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "boards/virtual/usb/firmware_on_bus.hpp"
 #include "boards/virtual/usb/force_timing.hpp"

@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "board_rig.hpp"
 #include "program.hpp"

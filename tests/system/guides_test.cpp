@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <arms/description.hpp>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
 

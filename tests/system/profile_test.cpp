@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "program.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "hazards.hpp"
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "board_rig.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <drivers/interrupts.hpp>
 #include <drivers/otg_fs.hpp>
 #include <drivers/pins.hpp>

@@ -1,6 +1,6 @@
 #include <drivers/frame_clock.hpp>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <registers/otg_fs.hpp>
 #include <registers/timer.hpp>

@@ -1,5 +1,5 @@
 // Start of the core and the FIFO memory (RM0090, "OTG_FS programming model": core and device initialization).
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/otg_fs.hpp>
 #include <drivers/peripheral_clocks.hpp>

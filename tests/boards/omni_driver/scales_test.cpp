@@ -1,6 +1,6 @@
 // The board's scales in numbers of their own. Firmware and simulation are both made from the board's facts, so a wrong
 // fact would not show between them: these numbers come from the parts and wires that README.md names.
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include <numbers>
 

@@ -9,7 +9,8 @@ import subprocess
 import sys
 import unittest
 
-README = pathlib.Path(__file__).resolve().parents[3] / "boards/omni_driver/README.md"
+HERE = pathlib.Path(__file__).resolve().parent
+README = HERE.parents[2] / HERE.relative_to(HERE.parents[1]) / "README.md"
 
 # STM32F405 data sheet, "STM32F40xxx pin definitions", LQFP64.
 LQFP64 = {

@@ -1,7 +1,7 @@
 // What several tests of the controller need: a clock, samples, and a controller brought into a state.
 #pragma once
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <control/controller.hpp>
 
 namespace inkwell::tests {

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <device/fault_text.hpp>
 
 using namespace inkwell;

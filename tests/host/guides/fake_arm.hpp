@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <guides/guide.hpp>
 
 namespace inkwell::tests {

@@ -1,7 +1,7 @@
 // The three stores that switch the motors off, for code that may trust neither stack nor memory.
 #pragma once
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <registers/general_purpose_io.hpp>
 #include <registers/timer.hpp>
 

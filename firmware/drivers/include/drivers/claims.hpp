@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 namespace inkwell::drivers {
 

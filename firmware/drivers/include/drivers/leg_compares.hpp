@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 namespace inkwell::drivers {
 

@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <drivers/claims.hpp>
 #include <registers/clock.hpp>
 #include <registers/general_purpose_io.hpp>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <arms/description.hpp>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <plant/imperfections.hpp>
 
 namespace inkwell::test {

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <plant/plant.hpp>
 
 #include "arms.hpp"

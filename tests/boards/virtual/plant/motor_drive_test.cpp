@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 #include <arm/defaults.hpp>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 namespace {
 

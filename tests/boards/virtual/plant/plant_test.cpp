@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <doctest/doctest.h>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "driven_plant.hpp"
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <set>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "firmware_on_bus.hpp"
 

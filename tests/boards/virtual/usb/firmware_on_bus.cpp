@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <protocol/scope.hpp>
 
 namespace inkwell::virtual_usb_test {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "firmware_on_bus.hpp"
 

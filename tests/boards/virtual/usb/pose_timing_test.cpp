@@ -4,7 +4,7 @@
 #include <cstring>
 #include <optional>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "firmware_on_bus.hpp"
 #include "pose_timing.hpp"

@@ -1,7 +1,7 @@
 // The flashed firmware while the supply of the chip fades: with the brown-out level of the board's page, and as new.
 #include <doctest/doctest.h>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "firmware_on_bus.hpp"
 

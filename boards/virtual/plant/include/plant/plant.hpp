@@ -1,5 +1,5 @@
 // Everything around the chip: bridges and motors, sensors, the arm, the inkwell and the user's hand, wired as
-// board/omni_driver.hpp says.
+// board/board.hpp says.
 //
 // Currents are exact between the edges of the bridges; the arm, the supply and the back-EMF take fixed steps
 // of 16.7 us (a third of a control period) with the mean of the true currents. Pins of the chip move only
