@@ -1,7 +1,7 @@
 // What the board keeps of the time around a fault: its cause is to be seen in it, also after a crash.
 #include <doctest/doctest.h>
 
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "hazards.hpp"
 #include "program.hpp"

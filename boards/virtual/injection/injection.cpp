@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 #include <chip/chip.hpp>
 
 namespace inkwell::virtual_board {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 namespace inkwell::virtual_board {
 namespace {

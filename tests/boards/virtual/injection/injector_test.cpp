@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "../plant/arms.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include <doctest/doctest.h>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "driven_plant.hpp"
 

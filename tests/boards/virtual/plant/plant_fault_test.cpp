@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include <doctest/doctest.h>
-#include <board/omni_driver.hpp>
+#include <board/board.hpp>
 
 #include "driven_plant.hpp"
 
