@@ -33,6 +33,7 @@ struct Place {
   X(signals)                \
   X(reference)              \
   X(experiment)             \
+  X(campaign)               \
   X(calibrate)              \
   X(tune)                   \
   X(check)                  \

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-int list(const DeviceOptions& options) {
+int list_signals(const DeviceOptions& options) {
   ordered_json json = ordered_json::array();
   for (const auto& row : protocol::known_signals())
     if (options.json)
@@ -29,7 +29,7 @@ void add_signals_command(const Place& place) {
   auto* command =
       place.program.add_subcommand("signals", "Every signal that can be recorded, with its unit; needs no device");
   add_examples(*command, "inkwell signals");
-  command->callback([place] { place.action = [&options = place.device] { return list(options); }; });
+  command->callback([place] { place.action = [&options = place.device] { return list_signals(options); }; });
 }
 
 }  // namespace inkwell::command_line

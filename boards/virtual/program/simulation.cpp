@@ -108,10 +108,10 @@ void Simulation::advance() {
     case Stop::requested:
     case Stop::debugger: break;
     case Stop::locked_up:
-      end_run("the processor locked up: " + board_.chip().lockup_reason());
       // Nobody may be there to reset it: with --seconds the time goes on, as a watchdog may do so.
-      if (!options_.seconds) pause();
-      return;
+      if (options_.seconds) break;
+      end_run("the processor locked up: " + board_.chip().lockup_reason());
+      return pause();
     case Stop::firmware_exit:
       firmware_exit_code_ = board_.chip().exit_code();
       log_line(board_.chip().now(), fmt::format("the firmware ended with exit code {}", *firmware_exit_code_));

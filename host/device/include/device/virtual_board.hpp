@@ -34,7 +34,9 @@ struct VirtualBoardOptions {
   double host_clock_ppm = 0.0;  ///< how much faster than board time the clock of its USB host is
   bool real_time = true;        ///< paces board time to the wall clock
   bool paused = false;          ///< starts with board time standing still
-  bool strict = false;          ///< the board ends when the firmware does what silicon would not bear
+  /// Of board time, then it ends. A processor that locks up does not stop the time then, as its watchdog may bite.
+  std::optional<double> seconds = {};
+  bool strict = false;  ///< the board ends when the firmware does what silicon would not bear
 };
 
 /// Make it in a thread that lives as long as the board shall: Linux ends the board when that thread ends.

@@ -1,0 +1,99 @@
+#include "bench.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+namespace inkwell::campaign {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double slice_s = 0.005;
+constexpr unsigned slices_per_sign_of_life = 2;
+
+}  // namespace
+
+Bench::Bench(const device::VirtualBoardOptions& options) : board_(options), control_(board_.control()) {
+  control_.stand_by();
+}
+
+bool Bench::connect(double limit_s) {
+  let_go_of_device();
+  if (is_locked_up()) return false;  // nobody would answer
+  for (double waited_s = 0;; waited_s += slice_s) {
+    try {
+      if (const auto endpoint = board_.find()) {
+        device_ = device::Device::open(*endpoint);
+        return true;
+      }
+    } catch (const device::Error&) {
+      let_go_of_device();  // it went while it was being opened
+    }
+    if (waited_s >= limit_s) return false;
+    pass(slice_s);
+  }
+}
+
+void Bench::set(std::initializer_list<device::ParameterChange> changes) {
+  device_->set_parameters(std::vector<device::ParameterChange>(changes));
+}
+
+void Bench::pass(double time_s) { control_.run(time_s); }
+
+bool Bench::is_locked_up() { return control_.status().all.contains("locked_up"); }
+
+void Bench::let_go_of_device() {
+  device_.reset();
+  pose_.reset();
+}
+
+void Bench::read_poses() {
+  if (!device_) return;
+  try {
+    while (const auto pose = device_->read_pose(0ms)) pose_ = pose;
+  } catch (const device::Error&) {
+    let_go_of_device();
+  }
+}
+
+void Bench::command(protocol::Command command) {
+  if (!device_) return;
+  try {
+    device_->send(command);
+  } catch (const device::Error&) {
+    let_go_of_device();
+  }
+}
+
+void Bench::run(double time_s, bool gives_sign_of_life) {
+  for (double left_s = time_s; left_s > 1e-9; left_s -= slice_s) {
+    if (gives_sign_of_life && slices_++ % slices_per_sign_of_life == 0) command(protocol::Command::heartbeat);
+    pass(std::min(left_s, slice_s));
+    read_poses();
+  }
+}
+
+bool Bench::wait_for(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
+  for (double waited_s = 0; waited_s < limit_s; waited_s += slice_s) {
+    if (pose_ && condition(*pose_)) return true;
+    run(slice_s);
+  }
+  return pose_ && condition(*pose_);
+}
+
+bool Bench::wait_for(protocol::State state, double limit_s) {
+  return wait_for([state](const auto& pose) { return pose.state == state; }, limit_s);
+}
+
+void Bench::reset() {
+  control_.reset();
+  let_go_of_device();
+}
+
+device::Vector3 Bench::true_position_m() {
+  const auto truth = control_.truth();
+  return {truth.at("true_position_x_m"), truth.at("true_position_y_m"), truth.at("true_position_z_m")};
+}
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,56 @@
+// A virtual board of its own with an arm, a hand and a host that bears whatever becomes of the device.
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+
+#include <device/control_client.hpp>
+#include <device/device.hpp>
+#include <device/virtual_board.hpp>
+
+namespace inkwell::campaign {
+
+class Bench {
+ public:
+  /// Board time stands still. Throws device::Error if the board does not start.
+  explicit Bench(const device::VirtualBoardOptions& options);
+
+  /// Waits until the board shows its device and opens it; false if it does not in that time.
+  bool connect(double limit_s);
+  bool connected() const { return device_ != nullptr; }
+  device::Device& device() { return *device_; }
+  void set(std::initializer_list<device::ParameterChange> changes);
+
+  /// Lets board time pass, with the host's signs of life or without, and reads every pose. A device that is gone is
+  /// let go of.
+  void run(double time_s, bool gives_sign_of_life = true);
+  /// The same to the instant, without a pose in between.
+  void run_exactly(double time_s) { pass(time_s); }
+  /// False if the condition does not come true in time.
+  bool wait_for(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s);
+  bool wait_for(protocol::State state, double limit_s);
+  void command(protocol::Command command);
+
+  /// The newest; none before the first, and after a connection was lost.
+  const std::optional<protocol::PoseReport>& pose() const { return pose_; }
+  bool is(protocol::State state) const { return pose_ && pose_->state == state; }
+  bool is_locked_up();
+  void reset();
+  device::ControlClient& control() { return control_; }
+  device::Vector3 true_position_m();
+
+ private:
+  void pass(double time_s);
+  void read_poses();
+  void let_go_of_device();
+
+  device::VirtualBoard board_;
+  device::ControlClient control_;
+  std::unique_ptr<device::Device> device_;
+  std::optional<protocol::PoseReport> pose_;
+  unsigned slices_ = 0;
+};
+
+}  // namespace inkwell::campaign

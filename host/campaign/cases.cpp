@@ -1,0 +1,103 @@
+#include <campaign/cases.hpp>
+
+#include <string_view>
+
+#include <fmt/format.h>
+#include <board/board.hpp>
+
+namespace inkwell::campaign {
+namespace {
+
+using protocol::InjectedFault;
+using protocol::InjectionPlace;
+
+/// What the device depends on of each wire but those of USB, console and probe: of three alike, the second.
+bool is_tried(std::string_view wire) {
+  if (wire.find("[0]") != std::string_view::npos || wire.find("[2]") != std::string_view::npos) return false;
+  for (const std::string_view other : {"usb_minus", "usb_plus", "console_", "debug_", "status_led"})
+    if (wire.starts_with(other)) return false;
+  return true;
+}
+
+constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", "bridges[1].leg_a+bridges[1].leg_b",
+                                                 "motor_current[1]+motor_current[2]"};
+constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
+                                                  "bridge_fault_tim8", "inkwell_switch"};
+/// SysTick, the control interrupt (the converters') and that of USB.
+constexpr std::string_view exceptions[] = {"15", "34", "83"};
+
+std::vector<std::string> places(InjectedFault fault) {
+  std::vector<std::string> places;
+  switch (protocol::info(fault).place) {
+    case InjectionPlace::none:
+    case InjectionPlace::address: return {""};
+    case InjectionPlace::motor: return {"2"};
+    case InjectionPlace::leg: return {"2A", "2B"};
+    case InjectionPlace::converter: return {"1", "2", "3"};
+    case InjectionPlace::wires: places.assign(std::begin(wires_that_touch), std::end(wires_that_touch)); break;
+    case InjectionPlace::exception: places.assign(std::begin(exceptions), std::end(exceptions)); break;
+    case InjectionPlace::wire:
+      if (fault == InjectedFault::wire_spikes) {
+        places.assign(std::begin(wires_with_spikes), std::end(wires_with_spikes));
+      } else {
+        for (const auto& use : board::pin_uses)
+          if (is_tried(use.name)) places.emplace_back(use.name);
+      }
+      break;
+  }
+  return places;
+}
+
+}  // namespace
+
+std::string_view name_of(Situation situation) {
+  constexpr std::string_view names[] = {"unreferenced", "ready", "rest", "wall", "motion"};
+  return names[static_cast<std::size_t>(situation)];
+}
+
+std::string_view meaning_of(Situation situation) {
+  constexpr std::string_view meanings[] = {
+      "Out of the inkwell since the start, so that the board does not know where it is; the hand holds it.",
+      "The pose is valid, the force is off; the hand holds it in free space.",
+      "The force is on; the hand holds it at rest in free space.",
+      "The force is on; the hand presses it into a wall of the highest stiffness.",
+      "The force is on; the hand swings it through free space, 60 mm in 0.15 s."};
+  return meanings[static_cast<std::size_t>(situation)];
+}
+
+std::string CaseFault::name() const {
+  if (!fault) return "none";
+  std::string name(protocol::info(*fault).name);
+  if (!of.empty()) name += ":" + of;
+  if (amount) name += fmt::format("={}", *amount);
+  if (for_s) name += fmt::format("+{}", *for_s);
+  return name;
+}
+
+std::string Case::name() const { return fmt::format("{} {} {}", fault.name(), name_of(situation), phase + 1); }
+
+std::vector<CaseFault> case_faults() {
+  std::vector<CaseFault> faults{{}};
+  for (std::size_t i = 0; i < protocol::injection_table.size(); ++i) {
+    const auto fault = static_cast<InjectedFault>(i);
+    for (std::string& of : places(fault)) {
+      CaseFault made{fault, std::move(of), {}, {}};
+      if (fault == InjectedFault::supply_spike) made.for_s = 0.005;
+      if (fault == InjectedFault::encoder_lost_counts) made.amount = 0.1;
+      if (fault == InjectedFault::encoder_slip) made.amount = 400;
+      faults.push_back(std::move(made));
+    }
+  }
+  return faults;
+}
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  unsigned number = 0;
+  for (const CaseFault& fault : case_faults())
+    for (const Situation situation : situations)
+      for (unsigned phase = 0; phase < phases; ++phase) cases.push_back({++number, fault, situation, phase});
+  return cases;
+}
+
+}  // namespace inkwell::campaign

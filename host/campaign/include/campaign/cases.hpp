@@ -1,0 +1,52 @@
+// The fault campaign as a list of jobs: every fault, in every situation of the arm, at three random instants.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <protocol/injections.hpp>
+
+namespace inkwell::campaign {
+
+/// What the arm does when the fault comes.
+enum class Situation : std::uint8_t {
+  unreferenced,  ///< out of the inkwell since the start: no force
+  ready,         ///< the hand holds it, the force is off
+  rest,          ///< the same with the force on, in free space
+  wall,          ///< pressed into a wall of the highest stiffness
+  motion,        ///< the force on, swung fast through free space
+};
+inline constexpr Situation situations[] = {Situation::unreferenced, Situation::ready, Situation::rest, Situation::wall,
+                                           Situation::motion};
+std::string_view name_of(Situation situation);
+std::string_view meaning_of(Situation situation);
+constexpr bool is_active(Situation situation) { return situation >= Situation::rest; }
+
+inline constexpr unsigned phases = 3;
+
+/// A fault at a place; none is the control, in which nothing is put in.
+struct CaseFault {
+  std::optional<protocol::InjectedFault> fault;
+  std::string of;
+  std::optional<double> amount;
+  std::optional<double> for_s;
+
+  std::string name() const;  ///< as --inject writes it
+};
+
+struct Case {
+  unsigned number;  ///< from 1 on; the same as long as the table of faults is
+  CaseFault fault;
+  Situation situation;
+  unsigned phase;  ///< 0 to 2
+
+  std::string name() const;
+};
+
+/// The control first. Of three motors that are wired alike the second stands for all: it bears the load at the wall.
+std::vector<CaseFault> case_faults();
+std::vector<Case> all_cases();
+
+}  // namespace inkwell::campaign

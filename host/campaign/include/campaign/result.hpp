@@ -1,0 +1,49 @@
+// What came of one case, and its file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <campaign/cases.hpp>
+
+namespace inkwell::campaign {
+
+struct Result {
+  unsigned number = 0;
+  std::string fault;  ///< CaseFault::name()
+  std::string situation;
+  unsigned phase = 0;
+  std::string error;  ///< why the case could not be run; the rest says nothing then
+
+  double injected_at_s = 0;  ///< board time
+  std::string place;         ///< that the seed chose
+  bool bridges_were_on = false;
+  std::optional<double> off_after_s;  ///< none: they were off, or stayed on
+  bool bridges_went_on = false;       ///< though they were off
+  std::string detected_as;            ///< name of the firmware's fault; empty: none
+  std::string fault_on_healing;       ///< that came only when the cause had gone
+  unsigned restarts = 0;
+  bool locked_up = false;
+
+  double force_limit_N = 0;
+  double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the fault came
+  std::string recovery;                                 ///< see Recovery in run.cpp
+  std::optional<double> position_error_m;               ///< in the end, of what the device believes
+
+  bool operator==(const Result&) const = default;
+};
+
+std::string to_json(const Result& result);
+/// Throws device::Error if it is no result.
+Result from_json(const std::string& text);
+
+/// The file of a case in the folder.
+std::filesystem::path file_of(const std::filesystem::path& directory, unsigned number);
+/// Whole or not at all, so that a job that is killed leaves no half of a result. Throws device::Error.
+void save(const Result& result, const std::filesystem::path& directory);
+/// By number. A file that is damaged is an error that names it.
+std::vector<Result> load_all(const std::filesystem::path& directory);
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,13 @@
+// Runs one case on a virtual board of its own.
+#pragma once
+
+#include <campaign/cases.hpp>
+#include <campaign/result.hpp>
+#include <device/virtual_board.hpp>
+
+namespace inkwell::campaign {
+
+/// The same case gives the same result on any machine. What keeps it from being run is told in Result::error.
+Result run_case(const Case& the_case, device::VirtualBoardOptions board = {});
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,243 @@
+#include <campaign/page.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <device/error.hpp>
+#include <protocol/reports.hpp>
+#include <recording/gnuplot.hpp>
+
+#include "plot.hpp"
+
+namespace inkwell::campaign {
+namespace {
+
+constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
+
+using Key = std::pair<std::string, std::string>;  // fault, situation
+using Groups = std::map<Key, std::vector<Result>>;
+
+Groups group(std::span<const Result> results) {
+  Groups groups;
+  for (const Result& result : results) groups[{result.fault, result.situation}].push_back(result);
+  return groups;
+}
+
+const std::vector<Result>* find(const Groups& groups, const std::string& fault, Situation situation) {
+  const auto found = groups.find({fault, std::string(name_of(situation))});
+  return found == groups.end() ? nullptr : &found->second;
+}
+
+bool is_detected(const Result& result) {
+  return !result.detected_as.empty() || result.restarts > 0 || result.off_after_s.has_value();
+}
+
+std::string off_text(const Summary& s) {
+  if (s.were_on == 0) return "were off";
+  if (s.went_off == 0) return "stayed on";
+  const double periods = s.off_after_s / control_period_s;
+  std::string text = periods < 100 ? fmt::format("{:.1f}", periods) : fmt::format("{:.0f}", periods);
+  if (s.went_off < s.were_on) text += fmt::format("; {} of {} stayed on", s.were_on - s.went_off, s.were_on);
+  return text;
+}
+
+std::string row(const std::string& fault, const Summary& s) {
+  std::string detected = s.detected_as.empty() ? "-" : s.detected_as;
+  if (s.detected > 0 && s.detected < s.cases) detected += fmt::format(" ({} of {})", s.detected, s.cases);
+  std::string recovery = s.recovery;
+  constexpr double notable_m = 0.002;  // the newest pose of a fast probe is a millisecond old
+  if (s.position_error_m > notable_m) recovery += fmt::format("; position {:.0f} mm off", 1e3 * s.position_error_m);
+  return fmt::format("| `{}` | {} | {} | {:.2f} | {:.1f} | {:.1f} | {} |\n", fault, detected, off_text(s),
+                     s.peak_force_N, 1e3 * s.energy_J, 1e3 * s.travel_m, recovery);
+}
+
+std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
+  std::string text;
+  for (const Situation situation : situations) {
+    text += fmt::format("\n## {}\n\n{}\n\n", name_of(situation), meaning_of(situation));
+    text +=
+        "| fault | detected as | bridges off, control periods | peak force, N | energy, mJ | travel, mm | recovered by "
+        "|\n| --- | --- | --- | --- | --- | --- | --- |\n";
+    for (const CaseFault& fault : faults)
+      if (const auto* results = find(groups, fault.name(), situation)) {
+        const Summary summary = summarise(*results);
+        if (summary.cases > 0) text += row(fault.name(), summary);
+      }
+  }
+  return text;
+}
+
+/// Why a fault may pass unnoticed, as far as its row of the table tells.
+std::string_view reason(const CaseFault& fault) {
+  using protocol::InjectedFault;
+  switch (*fault.fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen:
+      return "At rest in this situation the wire stood where the fault holds it, or nothing watches it.";
+    case InjectedFault::wires_shorted: return "The two agreed, or nothing compares them.";
+    case InjectedFault::wire_spikes: return "The inputs' filters and the next look at them bear it.";
+    case InjectedFault::encoder_stuck:
+    case InjectedFault::encoder_lost_counts:
+    case InjectedFault::encoder_slip:
+      return "No second sensor knows the joint; only an angle far beyond its stop is noticed.";
+    case InjectedFault::shunt_offset:
+    case InjectedFault::shunt_gain:
+    case InjectedFault::shunt_frozen:
+      return "The reading stays within what a motor may have; nothing compares it with what the duty would give.";
+    case InjectedFault::motor_open: return "A current that does not follow its reference is no fault of the firmware.";
+    case InjectedFault::motor_shorted:
+    case InjectedFault::motor_hot: return "The current loop makes up for it; nothing measures the torque.";
+    case InjectedFault::leg_open:
+    case InjectedFault::leg_slow:
+      return "The current loop makes up for part of it; nothing compares duty with current.";
+    case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
+    case InjectedFault::usb_cut:
+    case InjectedFault::host_silent: return "Without force the host may be silent.";
+    case InjectedFault::exception_late: return "Late by less than what the firmware watches for.";
+    case InjectedFault::exception_lost: return "The force needs nothing of it, or it stands without force.";
+    case InjectedFault::ram_bit:
+    case InjectedFault::flash_bit: return "The byte was not used, or nothing depends on the bit.";
+    case InjectedFault::supply_sag:
+    case InjectedFault::supply_spike:
+    case InjectedFault::supply_cut: return "The capacitors bear it for that long, or the motors are off.";
+    default: return "It is over before anything depends on it, or the motors are off.";
+  }
+}
+
+std::string undetected(const Groups& groups, const std::vector<CaseFault>& faults) {
+  std::string text =
+      "\n## Not noticed\n\nWith the force on, in at least one of the cases that were run, the bridges stayed on and no "
+      "fault was told.\n\n| fault | situations | reason |\n| --- | --- | --- |\n";
+  for (const CaseFault& fault : faults) {
+    if (!fault.fault) continue;
+    std::vector<std::string> where;
+    for (const Situation situation : situations) {
+      const auto* results = find(groups, fault.name(), situation);
+      if (results == nullptr || !is_active(situation)) continue;
+      const auto run = std::ranges::count_if(*results, [](const Result& r) { return r.error.empty(); });
+      const auto missed =
+          std::ranges::count_if(*results, [](const Result& r) { return r.error.empty() && !is_detected(r); });
+      if (missed > 0)
+        where.push_back(missed == run ? std::string(name_of(situation))
+                                      : fmt::format("{} ({} of {})", name_of(situation), missed, run));
+    }
+    if (!where.empty())
+      text += fmt::format("| `{}` | {} | {} |\n", fault.name(), fmt::join(where, ", "), reason(fault));
+  }
+  return text;
+}
+
+std::string not_run(std::span<const Result> results) {
+  std::string text;
+  for (const Result& result : results)
+    if (!result.error.empty())
+      text += fmt::format("| {} | `{}` {} {} | {} |\n", result.number, result.fault, result.situation, result.phase + 1,
+                          result.error);
+  if (text.empty()) return text;
+  return "\n## Could not be run\n\n| case | what | why |\n| --- | --- | --- |\n" + text;
+}
+
+std::string off_plot(std::span<const Result> results) {
+  constexpr double limits[] = {1, 2, 5, 20, 100, 1000};
+  std::vector<Bar> bars;
+  for (const double limit : limits) bars.push_back({fmt::format("to {}", limit), 0});
+  bars.push_back({"more", 0});
+  bars.push_back({"stayed on", 0});
+  for (const Result& result : results) {
+    if (!result.error.empty() || !result.bridges_were_on || result.fault == "none") continue;
+    if (!result.off_after_s) {
+      ++bars.back().count;
+      continue;
+    }
+    std::size_t bin = 0;
+    while (bin < std::size(limits) && *result.off_after_s > limits[bin] * control_period_s) ++bin;
+    ++bars[bin].count;
+  }
+  return histogram_svg("Simulation: cases by control periods until the bridges were off", bars);
+}
+
+std::string force_plot(std::span<const Result> results) {
+  constexpr double step_N = 1.0;
+  constexpr std::size_t steps = 10;
+  std::vector<Bar> bars;
+  for (std::size_t i = 0; i < steps; ++i)
+    bars.push_back(
+        {fmt::format("{:.0f}-{:.0f} N", step_N * static_cast<double>(i), step_N * static_cast<double>(i + 1)), 0});
+  bars.push_back({"more", 0});
+  for (const Result& result : results)
+    if (result.error.empty() && result.bridges_were_on)
+      ++bars[std::min(steps, static_cast<std::size_t>(result.peak_force_N / step_N))].count;
+  return histogram_svg("Simulation: cases by the peak force at the hand after the fault", bars);
+}
+
+void add(std::set<std::string>& names, const std::string& name) {
+  if (!name.empty()) names.insert(name);
+}
+
+}  // namespace
+
+Summary summarise(std::span<const Result> results) {
+  Summary s;
+  std::set<std::string> faults, recoveries;
+  for (const Result& r : results) {
+    if (!r.error.empty()) {
+      ++s.failed;
+      continue;
+    }
+    ++s.cases;
+    std::string told = r.detected_as;
+    if (r.restarts > 0) told += told.empty() ? "restart" : ", restart";
+    if (r.locked_up) told += told.empty() ? "locked up" : ", locked up";
+    if (!told.empty()) ++s.detected;
+    add(faults, told);
+    add(recoveries, r.fault_on_healing.empty()
+                        ? r.recovery
+                        : fmt::format("{} of the {} that healing brought", r.recovery, r.fault_on_healing));
+    s.were_on += r.bridges_were_on;
+    s.went_off += r.off_after_s.has_value();
+    s.off_after_s = std::max(s.off_after_s, r.off_after_s.value_or(0.0));
+    s.peak_force_N = std::max(s.peak_force_N, r.peak_force_N);
+    s.energy_J = std::max(s.energy_J, r.energy_J);
+    s.travel_m = std::max(s.travel_m, r.travel_m);
+    s.position_error_m = std::max(s.position_error_m, r.position_error_m.value_or(0.0));
+  }
+  s.detected_as = fmt::format("{}", fmt::join(faults, "; "));
+  s.recovery = fmt::format("{}", fmt::join(recoveries, "; "));
+  return s;
+}
+
+void write_page(std::span<const Result> results, const std::filesystem::path& page) {
+  if (results.empty()) throw device::Error("There is no result to make a page of. Run cases first.");
+  const auto faults = case_faults();
+  const auto groups = group(results);
+  const std::string stem = page.stem().string();
+  std::string text = fmt::format(
+      "# What faults do: simulation\n\n"
+      "Made by `inkwell campaign`; do not edit. The firmware that is flashed runs on the virtual board; each fault is "
+      "put\n"
+      "in while the arm is unreferenced, ready, at rest, pressed into a stiff wall and in fast motion, at three "
+      "random\n"
+      "instants. {} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row\n"
+      "`none` is what the hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how "
+      "far\n"
+      "the probe lags behind the hand) are of the 0.3 s after the fault came. Of three motors that are wired alike "
+      "the\n"
+      "second stands for all. \"bridges off\" is when no bridge that is on had a leg at the supply any more, in "
+      "control\n"
+      "periods of 50 us.\n\n![until the bridges were off]({}-off.svg)\n![peak force]({}-force.svg)\n",
+      results.size(), all_cases().size(), results.front().force_limit_N, stem, stem);
+  text += undetected(groups, faults) + not_run(results) + tables(groups, faults);
+  recording::write_text(page, text);
+  recording::write_text(page.parent_path() / (stem + "-off.svg"), off_plot(results));
+  recording::write_text(page.parent_path() / (stem + "-force.svg"), force_plot(results));
+}
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,249 @@
+#include <campaign/run.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <experiment/wall.hpp>
+#include <protocol/reports.hpp>
+
+#include "bench.hpp"
+
+namespace inkwell::campaign {
+namespace {
+
+using device::Vector3;
+using protocol::Command;
+using protocol::InjectedFault;
+using protocol::Parameter;
+using protocol::ParameterSet;
+using protocol::State;
+
+// A relaxed hand.
+constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
+constexpr double push_part_of_limit = 0.75;
+constexpr double swing_m = 0.03, swing_s = 0.15;  // to either side, from one side to the other
+constexpr double observed_s = 0.3;
+constexpr double longest_case_s = 60;  // of board time
+constexpr double longest_phase_s = 0.1;
+// A bridge that switches has a leg at the supply in each PWM period of 17 us.
+constexpr double still_driving_s = 200e-6;
+
+struct NotReached : device::Error {
+  using Error::Error;
+};
+
+void expect(bool reached, const char* what) {
+  if (!reached) throw NotReached(std::string("The case could not begin: ") + what);
+}
+
+bool is_about_the_host(const CaseFault& fault) {
+  return fault.fault == InjectedFault::usb_cut || fault.fault == InjectedFault::host_silent;
+}
+
+Vector3 middle_of_box_m(const ParameterSet& parameters) {
+  Vector3 middle{};
+  for (int axis = 0; axis < 3; ++axis)
+    middle[static_cast<std::size_t>(axis)] =
+        (experiment::wall_position_m(parameters, {axis, 1}) + experiment::wall_position_m(parameters, {axis, -1})) / 2;
+  return middle;
+}
+
+/// Beyond the wall, so far that hand and wall in series press with part of the force limit.
+Vector3 into_wall_m(const ParameterSet& parameters) {
+  const experiment::Wall wall = experiment::forward_wall(parameters);
+  const double force_N = push_part_of_limit * static_cast<double>(parameters[Parameter::force_limit_N]);
+  const double stiffness_N_per_m = static_cast<double>(parameters[Parameter::wall_stiffness_N_per_m]);
+  const double contact_m = experiment::wall_position_m(parameters, wall) -
+                           wall.side * static_cast<double>(parameters[Parameter::sphere_radius_m]);
+  Vector3 target_m = middle_of_box_m(parameters);
+  target_m[static_cast<std::size_t>(wall.axis)] =
+      contact_m + wall.side * (force_N / hand_stiffness_N_per_m + force_N / stiffness_N_per_m);
+  return target_m;
+}
+
+void take_by_hand(Bench& bench, Vector3 target_m, double duration_s) {
+  const Vector3 here_m = bench.true_position_m();
+  bench.control().hand({true, here_m, hand_stiffness_N_per_m, hand_damping_Ns_per_m});
+  bench.control().dock(false);
+  bench.control().hand_path({{0.0, here_m}, {duration_s, target_m}});
+}
+
+void bring_into(Bench& bench, const Case& the_case) {
+  const Situation situation = the_case.situation;
+  // Before the first instruction the stylus is on its way out: nobody tells the board where it is.
+  if (situation == Situation::unreferenced) {
+    Vector3 away_m = bench.true_position_m();
+    away_m[2] -= 0.04;
+    take_by_hand(bench, away_m, 0.05);
+  }
+  expect(bench.connect(1.0), "the device did not enumerate.");
+  ParameterSet parameters = bench.device().parameters();
+  // Only a fault of the host shall be one: after it comes, this host says nothing in any case.
+  if (!is_about_the_host(the_case.fault)) bench.set({{Parameter::host_timeout_s, 2.0f}});
+  if (situation == Situation::unreferenced) {
+    expect(bench.wait_for(State::unreferenced, 1.0), "the board knew where the arm is.");
+    return bench.run(0.3);
+  }
+  expect(bench.wait_for(State::ready, 1.0), "the board did not find its reference.");
+  take_by_hand(bench, middle_of_box_m(parameters), 0.4);
+  bench.run(0.6);
+  if (situation == Situation::ready) return;
+  if (situation == Situation::wall) {
+    const float stiffest = protocol::info(Parameter::wall_stiffness_N_per_m).maximum;
+    bench.set({{Parameter::wall_stiffness_N_per_m, stiffest}});
+    parameters[Parameter::wall_stiffness_N_per_m] = stiffest;
+  }
+  bench.command(Command::enable_force);
+  expect(bench.wait_for(State::active, 0.5), "the force did not go on.");
+  bench.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
+  const Vector3 middle_m = middle_of_box_m(parameters);
+  if (situation == Situation::wall) {
+    bench.control().hand_path({{0.0, middle_m}, {0.3, into_wall_m(parameters)}});
+    bench.run(0.45);
+  }
+  if (situation == Situation::motion) {
+    std::vector<device::HandWaypoint> path{{0.0, middle_m}};
+    for (int turn = 0; turn < 8; ++turn) {
+      Vector3 side_m = middle_m;
+      side_m[0] += turn % 2 == 0 ? swing_m : -swing_m;
+      path.push_back({(turn + 1) * swing_s, side_m});
+    }
+    bench.control().hand_path(path);
+    bench.run(0.3);
+  }
+  expect(bench.is(State::active), "the force went off before the fault came.");
+}
+
+/// The instant of a phase: the same for each fault, so that the control tells what would have been without.
+double phase_s(const Case& the_case) {
+  std::mt19937 random(100 * static_cast<unsigned>(the_case.situation) + the_case.phase + 1);
+  return longest_phase_s * static_cast<double>(random() >> 8) / static_cast<double>(1u << 24);
+}
+
+bool bridges_drive(const nlohmann::json& truth) {
+  return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>() < still_driving_s;
+}
+
+void observe(Bench& bench, const Case& the_case, Result& result) {
+  auto& control = bench.control();
+  const auto before = control.truth();
+  const unsigned restarts_before = control.status().all.value("resets", 0u);
+  result.injected_at_s = before.at("board_time_s");
+  result.bridges_were_on = bridges_drive(before);
+  if (const auto& fault = the_case.fault; fault.fault) {
+    control.inject({std::string(protocol::info(*fault.fault).name), fault.of, fault.amount, 0.0, fault.for_s});
+    const auto injected = control.truth().at("injected");
+    if (fault.of.empty() && !injected.empty()) result.place = injected[0].value("of", "");
+  }
+  control.meter_start();
+  bench.run(observed_s, false);
+
+  const auto after = control.truth();
+  const auto reading = control.meter_read();
+  const double driven_until_s = after.at("bridges_driven_until_s");
+  const bool drive = bridges_drive(after);
+  if (result.bridges_were_on && !drive) result.off_after_s = std::max(0.0, driven_until_s - result.injected_at_s);
+  result.bridges_went_on = !result.bridges_were_on && driven_until_s > result.injected_at_s;
+  result.peak_force_N = reading.peak_force_N;
+  result.energy_J = reading.energy_J;
+  result.travel_m = the_case.situation == Situation::motion ? reading.lag_m : reading.travel_m;
+  result.locked_up = bench.is_locked_up();
+  result.restarts = control.status().all.value("resets", 0u) - restarts_before;
+}
+
+void note_fault(const Bench& bench, std::string& name) {
+  if (name.empty() && bench.is(State::fault)) name = protocol::info(bench.pose()->fault).name;
+}
+
+/// Clears the fault and switches the force on, by way of the inkwell if the board does not know where the arm is.
+bool works(Bench& bench) {
+  if (!bench.connected() && !bench.connect(0.5)) return false;
+  bench.set({{Parameter::host_timeout_s, 0.5f}});
+  bench.run(0.02);
+  if (bench.is(State::fault)) {
+    bench.command(Command::clear_fault);
+    if (!bench.wait_for([](const auto& pose) { return pose.state != State::fault; }, 0.3)) return false;
+  }
+  if (bench.is(State::starting)) bench.run(0.3);
+  if (bench.is(State::unreferenced)) {
+    bench.control().dock(true);
+    if (!bench.wait_for(State::ready, 2.0)) return false;
+  }
+  if (bench.is(State::ready)) bench.command(Command::enable_force);
+  if (!bench.wait_for(State::active, 0.5)) return false;
+  bench.run(0.1);
+  return bench.is(State::active) && bridges_drive(bench.control().truth());
+}
+
+/// True if that went without an error: a device that goes away meanwhile does not work either.
+bool tries_to_work(Bench& bench) {
+  try {
+    return works(bench);
+  } catch (const device::Error&) {
+    return false;
+  }
+}
+
+void recover(Bench& bench, const Case& the_case, Result& result) {
+  bench.run(0.02, false);
+  note_fault(bench, result.detected_as);
+  // A board that has started anew tells why, if its USB lives.
+  if ((result.restarts > 0 || !bench.connected()) && !is_about_the_host(the_case.fault) && bench.connect(0.3)) {
+    bench.run(0.15);
+    note_fault(bench, result.detected_as);
+  }
+  // What was noticed before the cause was gone; a device that could not be asked tells afterwards.
+  const bool could_tell = bench.connected();
+  bench.control().heal_all();
+  if (!bench.connected()) bench.connect(0.5);
+  bench.run(0.05);
+  if (result.detected_as.empty()) note_fault(bench, could_tell ? result.fault_on_healing : result.detected_as);
+  const bool stayed = is_active(the_case.situation) ? bench.is(State::active) : result.restarts == 0;
+  const bool was_fault = bench.is(State::fault);
+  if (tries_to_work(bench)) {
+    result.recovery = was_fault ? "clear_fault" : stayed ? "none needed" : "force on again";
+  } else {
+    bench.reset();
+    result.recovery = tries_to_work(bench) ? "board reset" : "not recovered";
+  }
+  if (!bench.pose() || !bench.is(State::active)) return;
+  const Vector3 true_m = bench.true_position_m();
+  double squares = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    squares += std::pow(static_cast<double>(bench.pose()->position_m[axis]) - true_m[axis], 2);
+  result.position_error_m = std::sqrt(squares);
+}
+
+}  // namespace
+
+Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
+  Result result{.number = the_case.number,
+                .fault = the_case.fault.name(),
+                .situation = std::string(name_of(the_case.situation)),
+                .phase = the_case.phase};
+  options.real_time = false;
+  options.paused = true;
+  options.seconds = longest_case_s;
+  // A place that the seed chooses is another one each time; all else begins alike for each fault.
+  const auto& fault = the_case.fault.fault;
+  const bool chooses = fault && protocol::info(*fault).place == protocol::InjectionPlace::address;
+  options.seed = chooses ? the_case.number : the_case.phase + 1;
+  try {
+    Bench bench(options);
+    bring_into(bench, the_case);
+    result.force_limit_N = static_cast<double>(bench.device().parameters()[Parameter::force_limit_N]);
+    const double until_fault_s = phase_s(the_case);
+    constexpr double whole_slices_s = 0.01;
+    const double slices_s = std::floor(until_fault_s / whole_slices_s) * whole_slices_s;
+    bench.run(slices_s);
+    bench.run_exactly(until_fault_s - slices_s);
+    observe(bench, the_case, result);
+    recover(bench, the_case, result);
+  } catch (const device::Error& error) {
+    result.error = error.what();
+  }
+  return result;
+}
+
+}  // namespace inkwell::campaign

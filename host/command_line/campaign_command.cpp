@@ -1,0 +1,181 @@
+#include "commands.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <campaign/cases.hpp>
+#include <campaign/page.hpp>
+#include <campaign/result.hpp>
+#include <campaign/run.hpp>
+
+#include "help.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+using campaign::Case;
+
+struct CampaignOptions {
+  std::vector<unsigned> numbers;
+  std::string folder = "campaign-results";
+  std::string page = "docs/campaign.md";
+  unsigned jobs = 1;
+  bool only_numbers = false;
+};
+
+int list_cases(const DeviceOptions& options, const CampaignOptions& command) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Case& c : campaign::all_cases()) {
+    if (options.json)
+      json.push_back({{"number", c.number},
+                      {"fault", c.fault.name()},
+                      {"situation", campaign::name_of(c.situation)},
+                      {"phase", c.phase + 1}});
+    else if (command.only_numbers)
+      fmt::print("{}\n", c.number);
+    else
+      fmt::print("{:5} {}\n", c.number, c.name());
+  }
+  if (options.json) fmt::print("{}\n", json.dump(1));
+  return 0;
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  if (!std::filesystem::is_directory(folder))
+    throw device::Error(
+        fmt::format("The folder {} cannot be made: {}. Name another one with --out.", folder.string(), code.message()));
+}
+
+/// Each case on a board of its own; as many at once as there are jobs. The exit code: 1 if one could not be run.
+int run_cases(const DeviceOptions& options, const CampaignOptions& command, const std::vector<Case>& cases) {
+  make_folder(command.folder);
+  const auto board = options.virtual_board(device::SimulationMode::fast, BoardTime::as_asked);
+  std::atomic<std::size_t> next{0}, failed{0};
+  std::mutex telling;
+  std::string trouble;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < cases.size();) try {
+        const auto result = campaign::run_case(cases[i], board);
+        campaign::save(result, command.folder);
+        const std::lock_guard lock(telling);
+        if (!result.error.empty()) ++failed;
+        const std::string off = result.off_after_s
+                                    ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
+                                    : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
+        fmt::print("{:5} {}: {}\n", cases[i].number, cases[i].name(),
+                   result.error.empty()
+                       ? fmt::format("{}, {}, {:.2f} N, {}", result.detected_as.empty() ? "-" : result.detected_as, off,
+                                     result.peak_force_N, result.recovery)
+                       : result.error);
+        std::fflush(stdout);
+      } catch (const std::exception& error) {  // of a thread it would end the program
+        const std::lock_guard lock(telling);
+        trouble = error.what();
+        next = cases.size();
+      }
+  };
+  std::vector<std::thread> workers;
+  for (unsigned i = 0; i < command.jobs; ++i) workers.emplace_back(work);
+  for (auto& worker : workers) worker.join();
+  if (!trouble.empty()) throw device::Error(trouble);
+  return failed > 0 ? 1 : 0;
+}
+
+int run_chosen(const DeviceOptions& options, const CampaignOptions& command) {
+  const auto all = campaign::all_cases();
+  std::vector<Case> cases;
+  for (const unsigned number : command.numbers) {
+    if (number < 1 || number > all.size())
+      throw UsageError(
+          fmt::format("There is no case {}; they are 1 to {}. See `inkwell campaign list`.", number, all.size()));
+    cases.push_back(all[number - 1]);
+  }
+  return run_cases(options, command, cases);
+}
+
+int merge_results(const CampaignOptions& command) {
+  const auto results = campaign::load_all(command.folder);
+  campaign::write_page(results, command.page);
+  fmt::print("{} of {} cases: {}\n", results.size(), campaign::all_cases().size(), command.page);
+  return 0;
+}
+
+int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
+  make_folder(command.folder);
+  std::vector<Case> missing;
+  for (const Case& c : campaign::all_cases())
+    if (!std::filesystem::exists(campaign::file_of(command.folder, c.number))) missing.push_back(c);
+  const int exit_code = run_cases(options, command, missing);
+  merge_results(command);
+  return exit_code;
+}
+
+void add_folder(CLI::App& command, CampaignOptions& options) {
+  command.add_option("--out", options.folder, "Folder of the results, a file for each case")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+}
+
+void add_jobs(CLI::App& command, CampaignOptions& options) {
+  command.add_option("--jobs", options.jobs, "So many cases at once")
+      ->check(CLI::Range(1, 256))
+      ->type_name("NUMBER")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_campaign_command(const Place& place) {
+  const auto options = std::make_shared<CampaignOptions>();
+  auto* command = place.program.add_subcommand(
+      "campaign",
+      "Every fault in every situation on virtual boards, and the page of what came of it.\n"
+      "Without a command of its own: runs the cases that have no result yet, then writes the page.");
+  command->require_subcommand(0, 1);
+  add_folder(*command, *options);
+  add_jobs(*command, *options);
+  command->add_option("--page", options->page, "Page to write; its plots go beside it")
+      ->type_name("FILE")
+      ->capture_default_str();
+  add_examples(*command,
+               "inkwell campaign --jobs 8\n"
+               "inkwell campaign list --numbers | parallel -S one,two inkwell campaign run {} --out /shared/results\n"
+               "inkwell campaign merge /shared/results --out docs/campaign.md");
+  command->callback([place, command, options] {
+    if (command->get_subcommands().empty())
+      place.action = [&device = place.device, options] { return run_missing(device, *options); };
+  });
+
+  auto* listed = command->add_subcommand("list", "The cases with their numbers");
+  listed->add_flag("--numbers", options->only_numbers, "The numbers alone, for GNU parallel and batch systems");
+  add_examples(*listed, "inkwell campaign list\ninkwell campaign list --numbers");
+  listed->callback(
+      [place, options] { place.action = [&device = place.device, options] { return list_cases(device, *options); }; });
+
+  auto* runs = command->add_subcommand("run", "Runs cases by their numbers; each result is a file");
+  runs->add_option("case", options->numbers, "Numbers of cases")->required()->type_name("NUMBER");
+  add_folder(*runs, *options);
+  add_jobs(*runs, *options);
+  add_examples(*runs, "inkwell campaign run 17 --out results\ninkwell campaign run 17 18 19 --jobs 3 --out results");
+  runs->callback(
+      [place, options] { place.action = [&device = place.device, options] { return run_chosen(device, *options); }; });
+
+  auto* merges = command->add_subcommand("merge", "Writes the page from the results that are there");
+  merges->add_option("results", options->folder, "Folder of the results")->required()->type_name("FOLDER");
+  merges->add_option("--out", options->page, "Page to write; its plots go beside it")
+      ->type_name("FILE")
+      ->capture_default_str();
+  add_examples(*merges, "inkwell campaign merge results --out docs/campaign.md");
+  merges->callback([place, options] { place.action = [options] { return merge_results(*options); }; });
+}
+
+}  // namespace inkwell::command_line

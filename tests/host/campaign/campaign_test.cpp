@@ -1,0 +1,152 @@
+// The list of cases, their files, and the page that is made of them.
+#include <campaign/cases.hpp>
+#include <campaign/page.hpp>
+#include <campaign/result.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <temporary_directory.hpp>
+
+#include <device/error.hpp>
+
+using namespace inkwell;
+using namespace inkwell::campaign;
+using inkwell::tests::TemporaryDirectory;
+
+namespace {
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Result seen(const std::string& fault, const std::string& situation, unsigned phase) {
+  for (const Case& c : all_cases())
+    if (c.fault.name() == fault && name_of(c.situation) == situation && c.phase == phase)
+      return {.number = c.number,
+              .fault = fault,
+              .situation = situation,
+              .phase = phase,
+              .bridges_were_on = is_active(c.situation),
+              .force_limit_N = 3.3,
+              .recovery = "none needed"};
+  FAIL("there is no such case: ", fault);
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("the list has every fault of the table in every situation, three times, and is numbered through") {
+  const auto cases = all_cases();
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    CHECK(cases[i].number == i + 1);
+    CHECK(names.insert(cases[i].name()).second);
+  }
+  CHECK(cases.size() == case_faults().size() * 15);
+  CHECK_FALSE(cases[0].fault.fault);
+  for (const auto& row : protocol::injection_table) {
+    CAPTURE(row.name);
+    for (const Situation situation : situations)
+      CHECK(std::ranges::count_if(cases, [&](const Case& c) {
+              return c.fault.fault && protocol::info(*c.fault.fault).name == row.name && c.situation == situation;
+            }) >= 3);
+  }
+  // Wires by what the board's facts call them, those of one motor; none that a host or a probe hangs on.
+  CHECK(names.contains("wire_open:encoders[1].a wall 2"));
+  CHECK(names.contains("wire_high:bridge_enable rest 1"));
+  CHECK_FALSE(names.contains("wire_open:encoders[0].a wall 1"));
+  CHECK_FALSE(names.contains("wire_open:usb_plus wall 1"));
+  CHECK(names.contains("supply_spike+0.005 motion 3"));
+}
+
+TEST_CASE("a result comes back from its file as it was, and a damaged file is named") {
+  const TemporaryDirectory directory;
+  Result result = seen("bridge_fault", "wall", 1);
+  result.off_after_s = 43e-6;
+  result.detected_as = "bridge_fault";
+  result.peak_force_N = 2.5;
+  result.position_error_m = 1e-5;
+  save(result, directory.path());
+  Result other = seen("none", "rest", 0);
+  other.error = "The board did not \"start\".";
+  save(other, directory.path());
+  const auto loaded = load_all(directory.path());
+  REQUIRE(loaded.size() == 2);
+  CHECK(loaded[0] == other);
+  CHECK(loaded[1] == result);
+  CHECK(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 2);  // nothing unfinished is left
+
+  std::ofstream(file_of(directory.path(), 9)) << "{\"number\": 9}";
+  CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("case-00009.json: This is no result of a case"),
+                       device::Error);
+  CHECK_THROWS_AS(load_all(directory / "nowhere"), device::Error);
+  CHECK_THROWS_AS(save(result, directory / "nowhere"), device::Error);
+}
+
+TEST_CASE("of three instants the worst is told") {
+  Result a = seen("shunt_high:2", "wall", 0), b = seen("shunt_high:2", "wall", 1), c = seen("shunt_high:2", "wall", 2);
+  a.detected_as = b.detected_as = "over_current";
+  a.off_after_s = 20e-6;
+  b.off_after_s = 90e-6;
+  a.peak_force_N = 2.0;
+  c.peak_force_N = 3.0;
+  b.energy_J = 0.002;
+  c.travel_m = 0.004;
+  a.recovery = b.recovery = "clear_fault";
+  const std::array all{a, b, c};
+  const Summary s = summarise(all);
+  CHECK(s.cases == 3);
+  CHECK(s.detected == 2);
+  CHECK(s.detected_as == "over_current");
+  CHECK(s.were_on == 3);
+  CHECK(s.went_off == 2);
+  CHECK(s.off_after_s == 90e-6);
+  CHECK(s.peak_force_N == 3.0);
+  CHECK(s.energy_J == 0.002);
+  CHECK(s.travel_m == 0.004);
+  CHECK(s.recovery == "clear_fault; none needed");
+  b.error = "The board did not start.";
+  CHECK(summarise(std::array{a, b, c}).cases == 2);
+  CHECK(summarise(std::array{a, b, c}).failed == 1);
+}
+
+TEST_CASE("the page has the figures, and leaves nothing out that passed unnoticed or could not be run") {
+  const TemporaryDirectory directory;
+  Result quick = seen("bridge_fault", "wall", 0);
+  quick.detected_as = "bridge_fault";
+  quick.off_after_s = 75e-6;
+  quick.peak_force_N = 2.49;
+  quick.energy_J = 0.00134;
+  quick.travel_m = 0.00436;
+  quick.recovery = "clear_fault";
+  Result missed = seen("motor_hot:2", "motion", 1), off = seen("motor_hot:2", "ready", 1);
+  missed.peak_force_N = 9.5;
+  missed.position_error_m = 0.012;
+  Result failed = seen("dma_stopped", "rest", 2);
+  failed.error = "The device did not enumerate.";
+  const auto page = directory / "campaign.md";
+  write_page(std::array{quick, missed, off, failed}, page);
+  const std::string text = content_of(page);
+  CHECK(text.find("simulation") != std::string::npos);
+  CHECK(text.find("4 of " + std::to_string(all_cases().size()) + " cases were run") != std::string::npos);
+  CHECK(text.find("| `bridge_fault` | bridge_fault | 1.5 | 2.49 | 1.3 | 4.4 | clear_fault |") != std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | - | stayed on | 9.50 | 0.0 | 0.0 | none needed; position 12 mm off |") !=
+        std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | - | were off |") != std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | motion | The current loop makes up for it") != std::string::npos);
+  CHECK(text.find("| " + std::to_string(failed.number) + " | `dma_stopped` rest 3 | The device did not enumerate. |") !=
+        std::string::npos);
+  CHECK(text.find("`bridge_fault` | wall") == std::string::npos);  // it was noticed
+  const std::string plot = content_of(directory / "campaign-off.svg");
+  CHECK(text.find("campaign-off.svg") != std::string::npos);
+  CHECK(plot.find(">to 2</text>") != std::string::npos);
+  CHECK(plot.find(">stayed on</text>") != std::string::npos);
+  CHECK(content_of(directory / "campaign-force.svg").find("</svg>") != std::string::npos);
+  CHECK_THROWS_AS(write_page({}, page), device::Error);
+}

@@ -1,0 +1,111 @@
+// The fault campaign in short: a few of its cases with the firmware that is flashed, and the commands around them.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include <campaign/cases.hpp>
+#include <campaign/result.hpp>
+#include <campaign/run.hpp>
+#include <protocol/reports.hpp>
+#include <temporary_directory.hpp>
+
+#include "program.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using campaign::Result;
+
+namespace {
+
+constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
+
+campaign::Case the_case(const std::string& name) {
+  for (const auto& c : campaign::all_cases())
+    if (c.name() == name) return c;
+  FAIL("there is no case ", name);
+  return {};
+}
+
+Result result_of(const std::string& name) {
+  CAPTURE(name);
+  const Result result = campaign::run_case(the_case(name));
+  INFO("error: ", result.error);
+  REQUIRE(result.error.empty());
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("without a fault the hand feels the wall and nothing happens") {
+  const Result result = result_of("none wall 1");
+  CHECK(result.bridges_were_on);
+  CHECK_FALSE(result.off_after_s);
+  CHECK(result.detected_as.empty());
+  CHECK(result.peak_force_N == doctest::Approx(0.75 * result.force_limit_N).epsilon(0.05));
+  CHECK(result.travel_m < 0.001);
+  CHECK(result.recovery == "none needed");
+  CHECK(result.position_error_m.value() < 0.0005);
+}
+
+TEST_CASE("electrical faults that the firmware knows take the bridges off within two control periods") {
+  struct Known {
+    const char* name;
+    const char* detected_as;
+  };
+  for (const Known& known : {Known{"wire_low:bridge_fault_tim1 rest 2", "bridge_fault"},
+                             {"shunt_high:2 wall 1", "over_current"},
+                             {"wire_low:motor_current[1] motion 3", "over_current"},
+                             {"leg_low:2A motion 1", "bridge_fault"}}) {
+    CAPTURE(known.name);
+    const Result result = result_of(known.name);
+    REQUIRE(result.off_after_s);
+    CHECK(*result.off_after_s < 2 * control_period_s);
+    CHECK(result.detected_as == known.detected_as);
+    CHECK(result.recovery == "clear_fault");
+    CHECK(result.position_error_m.value() < 0.0015);  // the newest pose may be a millisecond old
+  }
+}
+
+TEST_CASE("a chip that no longer hears its converters is restarted by the watchdog, and tells so") {
+  const Result result = result_of("adc_stopped:1 wall 2");
+  REQUIRE(result.off_after_s);
+  CHECK(*result.off_after_s < 0.04);
+  CHECK(result.restarts >= 1);  // and again, as long as the cause lasts
+  CHECK(result.detected_as == "watchdog");
+  CHECK(result.recovery == "clear_fault");
+}
+
+TEST_CASE("without force nothing goes on, and the arm finds its place in the inkwell afterwards") {
+  const Result result = result_of("encoder_slip:2=400 unreferenced 1");
+  CHECK_FALSE(result.bridges_were_on);
+  CHECK_FALSE(result.bridges_went_on);
+  CHECK_FALSE(result.off_after_s);
+  CHECK(result.position_error_m.value() < 0.0005);
+}
+
+TEST_CASE("a case is the same wherever it runs: two runs give one result") {
+  const TemporaryDirectory directory;
+  const auto c = the_case("encoder_lost_counts:2=0.1 motion 2");
+  const Result here = campaign::run_case(c);
+  const auto run = run_program("inkwell", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
+  CHECK(run.exit_code == 0);
+  const auto there = campaign::load_all(directory.path());
+  REQUIRE(there.size() == 1);
+  CHECK(campaign::to_json(there[0]) == campaign::to_json(here));
+
+  const auto page = (directory / "page.md").string();
+  const auto merged = run_program("inkwell", {"campaign", "merge", directory.path(), "--out", page});
+  CHECK(merged.exit_code == 0);
+  CHECK(std::filesystem::exists(page));
+  CHECK(std::filesystem::exists(directory / "page-off.svg"));
+}
+
+TEST_CASE("the list of the campaign is for people and for batch systems; a case that is none is refused") {
+  const auto numbers = run_program("inkwell", {"campaign", "list", "--numbers"});
+  CHECK(numbers.exit_code == 0);
+  CHECK(std::ranges::count(numbers.out, '\n') == static_cast<std::ptrdiff_t>(campaign::all_cases().size()));
+  CHECK(run_program("inkwell", {"campaign", "list"}).out.find("    1 none unreferenced 1\n") != std::string::npos);
+  const auto none = run_program("inkwell", {"campaign", "run", "999999"});
+  CHECK(none.exit_code == 2);
+  CHECK(none.err.find("There is no case 999999") != std::string::npos);
+}
