@@ -61,7 +61,7 @@ std::string_view meaning_of(Situation situation) {
       "The pose is valid, the force is off; the hand holds it in free space.",
       "The force is on; the hand holds it at rest in free space.",
       "The force is on; the hand presses it into a wall of the highest stiffness.",
-      "The force is on; the hand swings it through free space, 60 mm in 0.15 s."};
+      "The force is on; the hand swings it through free space, 60 mm in 0.15 s, with all joints."};
   return meanings[static_cast<std::size_t>(situation)];
 }
 

@@ -73,6 +73,22 @@ std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
   return text;
 }
 
+/// Why a wire may be broken unnoticed, by what it is for.
+std::string_view reason_of_wire(std::string_view wire) {
+  if (wire.starts_with("encoders"))
+    return "No second sensor knows the joint; only an angle far beyond its stop, or a speed that cannot be, is "
+           "noticed.";
+  if (wire.starts_with("bridges"))
+    return "The current loop's reading is as it would be; a current that does not follow its reference is no fault.";
+  if (wire.starts_with("bridge_fault")) return "It stands as with sound bridges; nothing tests it.";
+  if (wire == "bridge_enable") return "It stands as with the force on; nothing reads it back.";
+  if (wire.starts_with("motor_current")) return "The reading stays within what a motor may have.";
+  if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
+  if (wire == "supply") return "It reads a sound supply.";
+  if (wire == "usb_supply") return "It stands as with the cable in.";
+  return "A switch that is open or closed looks like one that is let go of or pressed.";
+}
+
 /// Why a fault may pass unnoticed, as far as its row of the table tells.
 std::string_view reason(const CaseFault& fault) {
   using protocol::InjectedFault;
@@ -80,8 +96,7 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
-    case InjectedFault::wire_frozen:
-      return "At rest in this situation the wire stood where the fault holds it, or nothing watches it.";
+    case InjectedFault::wire_frozen: return reason_of_wire(fault.of);
     case InjectedFault::wires_shorted: return "The two agreed, or nothing compares them.";
     case InjectedFault::wire_spikes: return "The inputs' filters and the next look at them bear it.";
     case InjectedFault::encoder_stuck:
@@ -132,6 +147,24 @@ std::string undetected(const Groups& groups, const std::vector<CaseFault>& fault
     if (!where.empty())
       text += fmt::format("| `{}` | {} | {} |\n", fault.name(), fmt::join(where, ", "), reason(fault));
   }
+  return text;
+}
+
+std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faults) {
+  std::string text =
+      "\n## Above the force limit\n\nWith the force on, the hand felt more than the force limit and a tenth of it.\n\n"
+      "| fault | situation | peak force, N | energy, mJ | travel, mm | detected as | bridges off, control periods |\n"
+      "| --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const CaseFault& fault : faults)
+    for (const Situation situation : situations) {
+      const auto* results = find(groups, fault.name(), situation);
+      if (results == nullptr || !is_active(situation)) continue;
+      const Summary s = summarise(*results);
+      if (s.peak_force_N <= 1.1 * results->front().force_limit_N) continue;
+      text += fmt::format("| `{}` | {} | {:.1f} | {:.0f} | {:.0f} | {} | {} |\n", fault.name(), name_of(situation),
+                          s.peak_force_N, 1e3 * s.energy_J, 1e3 * s.travel_m,
+                          s.detected_as.empty() ? "-" : s.detected_as, off_text(s));
+    }
   return text;
 }
 
@@ -234,7 +267,7 @@ void write_page(std::span<const Result> results, const std::filesystem::path& pa
       "control\n"
       "periods of 50 us.\n\n![until the bridges were off]({}-off.svg)\n![peak force]({}-force.svg)\n",
       results.size(), all_cases().size(), results.front().force_limit_N, stem, stem);
-  text += undetected(groups, faults) + not_run(results) + tables(groups, faults);
+  text += above_limit(groups, faults) + undetected(groups, faults) + not_run(results) + tables(groups, faults);
   recording::write_text(page, text);
   recording::write_text(page.parent_path() / (stem + "-off.svg"), off_plot(results));
   recording::write_text(page.parent_path() / (stem + "-force.svg"), force_plot(results));

@@ -22,7 +22,7 @@ using protocol::State;
 // A relaxed hand.
 constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
 constexpr double push_part_of_limit = 0.75;
-constexpr double swing_m = 0.03, swing_s = 0.15;  // to either side, from one side to the other
+constexpr double swing_m = 0.03, swing_s = 0.15;  // to either side, along all axes; from one side to the other
 constexpr double observed_s = 0.3;
 constexpr double longest_case_s = 60;  // of board time
 constexpr double longest_phase_s = 0.1;
@@ -106,7 +106,7 @@ void bring_into(Bench& bench, const Case& the_case) {
     std::vector<device::HandWaypoint> path{{0.0, middle_m}};
     for (int turn = 0; turn < 8; ++turn) {
       Vector3 side_m = middle_m;
-      side_m[0] += turn % 2 == 0 ? swing_m : -swing_m;
+      for (double& along_m : side_m) along_m += (turn % 2 == 0 ? swing_m : -swing_m) / std::sqrt(3.0);
       path.push_back({(turn + 1) * swing_s, side_m});
     }
     bench.control().hand_path(path);

@@ -140,6 +140,8 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
         std::string::npos);
   CHECK(text.find("| `motor_hot:2` | - | were off |") != std::string::npos);
   CHECK(text.find("| `motor_hot:2` | motion | The current loop makes up for it") != std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | motion | 9.5 | 0 | 0 | - | stayed on |") != std::string::npos);
+  CHECK(text.find("| `bridge_fault` | wall | 2.5 |") == std::string::npos);  // within the limit
   CHECK(text.find("| " + std::to_string(failed.number) + " | `dma_stopped` rest 3 | The device did not enumerate. |") !=
         std::string::npos);
   CHECK(text.find("`bridge_fault` | wall") == std::string::npos);  // it was noticed
