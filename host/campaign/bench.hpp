@@ -36,6 +36,7 @@ class Bench {
   /// The newest; none before the first, and after a connection was lost.
   const std::optional<protocol::PoseReport>& pose() const { return pose_; }
   bool is(protocol::State state) const { return pose_ && pose_->state == state; }
+  bool force_is_on() const { return pose_ && protocol::force_is_on(pose_->state); }
   bool is_locked_up();
   void reset();
   device::ControlClient& control() { return control_; }

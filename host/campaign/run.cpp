@@ -95,7 +95,7 @@ void bring_into(Bench& bench, const Case& the_case) {
     parameters[Parameter::wall_stiffness_N_per_m] = stiffest;
   }
   bench.command(Command::enable_force);
-  expect(bench.wait_for(State::active, 0.5), "the force did not go on.");
+  expect(bench.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5), "the force did not go on.");
   bench.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
   const Vector3 middle_m = middle_of_box_m(parameters);
   if (situation == Situation::wall) {
@@ -112,7 +112,7 @@ void bring_into(Bench& bench, const Case& the_case) {
     bench.control().hand_path(path);
     bench.run(0.3);
   }
-  expect(bench.is(State::active), "the force went off before the fault came.");
+  expect(bench.force_is_on(), "the force went off before the fault came.");
 }
 
 /// The instant of a phase: the same for each fault, so that the control tells what would have been without.
@@ -171,9 +171,9 @@ bool works(Bench& bench) {
     if (!bench.wait_for(State::ready, 2.0)) return false;
   }
   if (bench.is(State::ready)) bench.command(Command::enable_force);
-  if (!bench.wait_for(State::active, 0.5)) return false;
+  if (!bench.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5)) return false;
   bench.run(0.1);
-  return bench.is(State::active) && bridges_drive(bench.control().truth());
+  return bench.force_is_on() && bridges_drive(bench.control().truth());
 }
 
 /// True if that went without an error: a device that goes away meanwhile does not work either.
@@ -199,7 +199,7 @@ void recover(Bench& bench, const Case& the_case, Result& result) {
   if (!bench.connected()) bench.connect(0.5);
   bench.run(0.05);
   if (result.detected_as.empty()) note_fault(bench, could_tell ? result.fault_on_healing : result.detected_as);
-  const bool stayed = is_active(the_case.situation) ? bench.is(State::active) : result.restarts == 0;
+  const bool stayed = is_active(the_case.situation) ? bench.force_is_on() : result.restarts == 0;
   const bool was_fault = bench.is(State::fault);
   if (tries_to_work(bench)) {
     result.recovery = was_fault ? "clear_fault" : stayed ? "none needed" : "force on again";
@@ -207,7 +207,7 @@ void recover(Bench& bench, const Case& the_case, Result& result) {
     bench.reset();
     result.recovery = tries_to_work(bench) ? "board reset" : "not recovered";
   }
-  if (!bench.pose() || !bench.is(State::active)) return;
+  if (!bench.pose() || !bench.force_is_on()) return;
   const Vector3 true_m = bench.true_position_m();
   double squares = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)

@@ -213,8 +213,19 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
 
 }  // namespace
 
+/// Names and unit as far as they fit beside their axis; every name stands in the legend as well.
+std::string label_of(const std::vector<std::string>& words, std::string_view unit) {
+  constexpr std::size_t letters_maximum = 26;
+  std::string names = fmt::format("{}", fmt::join(words, ", "));
+  if (unit.empty()) {
+    for (std::size_t shown = words.size() - 1; names.size() > letters_maximum && shown > 0; --shown)
+      names = fmt::format("{}, ...", fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    return names;
+  }
+  return names.size() > letters_maximum ? std::string(unit) : fmt::format("{}  /  {}", names, unit);
+}
+
 std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities) {
-  constexpr std::size_t words_maximum = 2;  // more would not fit beside their axis
   std::vector<FigurePane> panes;
   std::vector<std::string_view> units;
   std::vector<std::vector<std::string>> words;
@@ -230,13 +241,7 @@ std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities) {
     const auto word = words_of(quantity);
     if (std::find(words[pane].begin(), words[pane].end(), word) == words[pane].end()) words[pane].push_back(word);
   }
-  for (std::size_t i = 0; i < panes.size(); ++i) {
-    std::vector<std::string> parts;
-    if (words[i].size() <= words_maximum || units[i].empty())
-      parts.push_back(fmt::format("{}", fmt::join(words[i], ", ")));
-    if (!units[i].empty()) parts.emplace_back(units[i]);
-    panes[i].label = fmt::format("{}", fmt::join(parts, "  /  "));
-  }
+  for (std::size_t i = 0; i < panes.size(); ++i) panes[i].label = label_of(words[i], units[i]);
   return panes;
 }
 
