@@ -51,7 +51,7 @@ Vector3 middle_of_box_m(const ParameterSet& parameters) {
 
 /// Beyond the wall, so far that hand and wall in series press with part of the force limit.
 Vector3 into_wall_m(const ParameterSet& parameters) {
-  const experiment::Wall wall = experiment::forward_wall(parameters);
+  const experiment::BoxWall wall = experiment::forward_wall(parameters);
   const double force_N = push_part_of_limit * static_cast<double>(parameters[Parameter::force_limit_N]);
   const double stiffness_N_per_m = static_cast<double>(parameters[Parameter::wall_stiffness_N_per_m]);
   const double contact_m = experiment::wall_position_m(parameters, wall) -
@@ -95,7 +95,8 @@ void bring_into(Bench& bench, const Case& the_case) {
     parameters[Parameter::wall_stiffness_N_per_m] = stiffest;
   }
   bench.command(Command::enable_force);
-  expect(bench.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5), "the force did not go on.");
+  expect(bench.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5),
+         "the force did not go on.");
   bench.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
   const Vector3 middle_m = middle_of_box_m(parameters);
   if (situation == Situation::wall) {

@@ -58,7 +58,7 @@ void make_folder(const std::filesystem::path& folder) {
 /// Each case on a board of its own; as many at once as there are jobs. The exit code: 1 if one could not be run.
 int run_cases(const DeviceOptions& options, const CampaignOptions& command, const std::vector<Case>& cases) {
   make_folder(command.folder);
-  const auto board = options.virtual_board(device::SimulationMode::fast, BoardTime::as_asked);
+  const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
   std::atomic<std::size_t> next{0}, failed{0};
   std::mutex telling;
   std::string trouble;

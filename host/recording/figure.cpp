@@ -211,19 +211,20 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
   return text + "unset multiplot\n";
 }
 
-}  // namespace
-
 /// Names and unit as far as they fit beside their axis; every name stands in the legend as well.
 std::string label_of(const std::vector<std::string>& words, std::string_view unit) {
   constexpr std::size_t letters_maximum = 26;
   std::string names = fmt::format("{}", fmt::join(words, ", "));
   if (unit.empty()) {
     for (std::size_t shown = words.size() - 1; names.size() > letters_maximum && shown > 0; --shown)
-      names = fmt::format("{}, ...", fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+      names =
+          fmt::format("{}, ...", fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
     return names;
   }
   return names.size() > letters_maximum ? std::string(unit) : fmt::format("{}  /  {}", names, unit);
 }
+
+}  // namespace
 
 std::vector<FigurePane> figure_panes(const std::vector<Quantity>& quantities) {
   std::vector<FigurePane> panes;
