@@ -73,22 +73,14 @@ void ControlClient::quit() { call({{"command", "quit"}}); }
 void ControlClient::usb(bool connected) { call({{"command", "usb"}, {"connected", connected}}); }
 void ControlClient::buttons(bool first, bool second) { call({{"command", "buttons"}, {"pressed", {first, second}}}); }
 void ControlClient::supply(double voltage_V) { call({{"command", "supply"}, {"voltage_V", voltage_V}}); }
-void ControlClient::bridge_fault(bool fault) { call({{"command", "bridge_fault"}, {"fault", fault}}); }
-void ControlClient::jump(std::uint32_t address) { call({{"command", "jump"}, {"address", address}}); }
-void ControlClient::halt(double for_s) { call({{"command", "halt"}, {"for_s", for_s}}); }
-void ControlClient::stall(double for_s) { call({{"command", "stall"}, {"for_s", for_s}}); }
 void ControlClient::glitch(const std::string& pin, double duration_s) {
   call({{"command", "glitch"}, {"pin", pin}, {"for_s", duration_s}});
 }
 
-void ControlClient::lose_exception(int exception, bool lost) {
-  call({{"command", "lose_exception"}, {"exception", exception}, {"lost", lost}});
-}
-void ControlClient::crystal(bool swings) { call({{"command", "crystal"}, {"swings", swings}}); }
 void ControlClient::gimbal(const Vector3& angles_rad) { call({{"command", "gimbal"}, {"angles_rad", angles_rad}}); }
 void ControlClient::dock(bool docked) { call({{"command", "dock"}, {"docked", docked}}); }
 
-double ControlClient::inject(const InjectedFault& fault) {
+double ControlClient::inject(const Injection& fault) {
   json request{{"command", "inject"}, {"fault", fault.fault}, {"after_s", fault.after_s}};
   if (!fault.of.empty()) request["of"] = fault.of;
   if (fault.amount) request["amount"] = *fault.amount;

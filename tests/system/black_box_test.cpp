@@ -1,8 +1,11 @@
 // What the board keeps of the time around a fault: its cause is to be seen in it, also after a crash.
 #include <doctest/doctest.h>
 
+#include <string>
+
 #include <board/board.hpp>
 
+#include "firmware_image.hpp"
 #include "hazards.hpp"
 #include "program.hpp"
 
@@ -72,9 +75,9 @@ TEST_CASE("the black box of a supply that fails shows how it fell, when the brid
   rig.run(0.3);
   rig.command(protocol::Command::clear_fault);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
-  rig.control.bridge_fault(true);
+  rig.control.inject({"bridge_fault"});
   rig.run(0.3);
-  rig.control.bridge_fault(false);
+  rig.control.heal("bridge_fault");
   rig.control.reset();
   rig.control.dock(true);
   rig.control.hand({.holds = false});
@@ -90,7 +93,7 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
   BoardRig rig;
   press_into_wall(rig);
   constexpr std::uint32_t nothing_there = 0x60000000;
-  rig.control.jump(nothing_there);
+  rig.control.inject({"program_astray", std::to_string(nothing_there)});
   rig.control.run(0.02);
   CHECK(restarts(rig.control) == 1);
   reconnect(rig);
@@ -127,7 +130,7 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
 TEST_CASE("firmware that hung leaves the rows before, and its black box says that the watchdog bit") {
   BoardRig rig;
   press_into_wall(rig);
-  rig.control.jump(endless_loop_address());
+  rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
   rig.control.run(0.04);
   CHECK(rig.control.status().all.at("watchdog_resets") == 1);
   reconnect(rig);

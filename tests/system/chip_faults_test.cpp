@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <string_view>
 
+#include "firmware_image.hpp"
 #include "hazards.hpp"
 
 using namespace inkwell;
@@ -57,7 +59,7 @@ TEST_CASE("a control interrupt that never ends leaves the motors without voltage
   press_into_wall(rig);
   REQUIRE(any_motor_driven(rig.control));
   run_into_control_interrupt(rig);
-  rig.control.jump(endless_loop_address());
+  rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
   rig.control.run(control_period_s);  // the duties that it wrote first become active
   CHECK(restarts(rig.control) == 0);
   CHECK_FALSE(any_motor_driven(rig.control));
@@ -71,7 +73,7 @@ TEST_CASE("a control interrupt that does not finish within its period is a fault
   BoardRig rig;
   press_into_wall(rig);
   run_into_control_interrupt(rig);
-  rig.control.stall(1.2 * control_period_s);
+  rig.control.inject({"core_stalled", "", 1.2 * control_period_s});
   rig.control.run(3 * control_period_s);
   check_bridges_off(rig);
   rig.run(0.02);
@@ -85,7 +87,7 @@ TEST_CASE("a processor that stands still for a moment while no interrupt runs is
   press_into_wall(rig);
   run_into_control_interrupt(rig);
   while (rig.control.status().all.at("exception") == control_interrupt) rig.control.run(1e-6);
-  rig.control.stall(2e-6);
+  rig.control.inject({"core_stalled", "", 2e-6});
   rig.run(0.02);
   CHECK(protocol::force_is_on(rig.pose().state));
 }
@@ -94,7 +96,7 @@ TEST_CASE("a debug probe that halts the core takes the voltage off the motors, a
   BoardRig rig;
   press_into_wall(rig);
   REQUIRE(any_motor_driven(rig.control));
-  rig.control.halt(0.1);
+  rig.control.inject({"core_halted", "", 0.1});
   CHECK_FALSE(any_leg_high_within(rig.control, 0.001));
   rig.control.run(0.098);
   CHECK_FALSE(any_leg_high_within(rig.control, 0.0005));
@@ -107,11 +109,11 @@ TEST_CASE("a debug probe that halts the core takes the voltage off the motors, a
 TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of the firmware lives") {
   BoardRig rig;
   press_into_wall(rig);
-  rig.control.lose_exception(control_interrupt, true);
+  rig.control.inject({"exception_lost", std::to_string(control_interrupt)});
   rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
   CHECK(rig.control.status().all.at("watchdog_resets") == 1);
   check_bridges_off(rig);
-  rig.control.lose_exception(control_interrupt, false);
+  rig.control.heal("exception_lost");
   rig.control.run(0.04);  // the restart may have met the dead interrupt too
   check_fault_after_restart(rig, Fault::watchdog);
 }
@@ -119,7 +121,7 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
 TEST_CASE("a crystal that stops switches the bridges off at once; the board starts when it swings again, and tells") {
   BoardRig rig;
   press_into_wall(rig);
-  rig.control.crystal(false);
+  rig.control.inject({"crystal_stop"});
   rig.control.run(2e-6);
   check_bridges_off(rig);
   rig.control.run(0.05);
@@ -127,7 +129,7 @@ TEST_CASE("a crystal that stops switches the bridges off at once; the board star
   check_bridges_off(rig);
   CHECK_FALSE(rig.board.find());
 
-  rig.control.crystal(true);
+  rig.control.heal("crystal_stop");
   check_fault_after_restart(rig, Fault::crystal_failed);
   check_tells(told_by_info(rig), Fault::crystal_failed);
   rig.control.reset();
@@ -178,9 +180,9 @@ TEST_CASE("force that is switched off leaves no leg of a bridge on") {
 TEST_CASE("after a bridge's fault is cleared the force comes on again and stays") {
   BoardRig rig;
   press_into_wall(rig);
-  rig.control.bridge_fault(true);
+  rig.control.inject({"bridge_fault"});
   rig.run(0.02);
-  rig.control.bridge_fault(false);
+  rig.control.heal("bridge_fault");
   rig.command(protocol::Command::clear_fault);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   rig.command(protocol::Command::enable_force);

@@ -53,7 +53,7 @@ TEST_CASE("a fault is shown with its remedy, and cleared once its cause is gone"
   CHECK(well.exit_code == 0);
   CHECK(well.out.starts_with("No fault."));
 
-  rig.control.bridge_fault(true);
+  rig.control.inject({"bridge_fault"});
   rig.control.run(0.01);
   rig.control.resume();
   const auto shown = rig.run({"fault"});
@@ -66,7 +66,7 @@ TEST_CASE("a fault is shown with its remedy, and cleared once its cause is gone"
   INFO(again.err);
   CHECK(again.err.find("The fault is there again. bridge_fault: A bridge reported") != std::string::npos);
 
-  rig.control.bridge_fault(false);
+  rig.control.heal("bridge_fault");
   const auto cleared = rig.run({"fault", "clear"});
   CHECK(cleared.exit_code == 0);
   CHECK(cleared.out.starts_with("No fault."));
@@ -87,7 +87,7 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
   };
   check_none();
 
-  rig.control.bridge_fault(true);
+  rig.control.inject({"bridge_fault"});
   rig.control.run(0.01);  // it is still being filled
   rig.control.resume();
   const auto saved = rig.run({"fault", "--out", table});
@@ -135,7 +135,7 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
     CHECK_FALSE(refused.err.empty());
   }
 
-  rig.control.bridge_fault(false);
+  rig.control.heal("bridge_fault");
   rig.control.run(0.01);
   rig.control.resume();
   CHECK(rig.run({"fault", "clear"}).out.find("A black box is kept") != std::string::npos);
@@ -178,7 +178,7 @@ TEST_CASE("a command switches the force on for as long as it runs, and any other
     CHECK(on.wait() == 1);
   }
   SUBCASE("a fault") {
-    rig.control.bridge_fault(true);
+    rig.control.inject({"bridge_fault"});
     CHECK(on.wait() == 1);
     const auto refused = rig.run({"force", "on"});
     CHECK(refused.exit_code == 1);

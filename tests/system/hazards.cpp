@@ -1,12 +1,5 @@
 #include "hazards.hpp"
 
-#include <elf.h>
-
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <string_view>
-
 #include <doctest/doctest.h>
 
 #include <device/fault_text.hpp>
@@ -65,24 +58,6 @@ std::string told_by_info(BoardRig& rig) {
 void check_tells(const std::string& text, protocol::Fault fault) {
   INFO("inkwell info: ", text);
   CHECK(text.find(device::fault_line(fault)) != std::string::npos);
-}
-
-std::uint32_t endless_loop_address() {
-  constexpr std::string_view loop = "\xBF\xF3\x4F\x8F\xFC\xE7";
-  std::ifstream file(build_directory() + "/../board/inkwell.elf", std::ios::binary);
-  const std::string image{std::istreambuf_iterator<char>(file), {}};
-  Elf32_Ehdr header;
-  REQUIRE(image.size() > sizeof header);
-  std::memcpy(&header, image.data(), sizeof header);
-  for (unsigned i = 0; i < header.e_phnum; ++i) {
-    Elf32_Phdr segment;
-    std::memcpy(&segment, image.data() + header.e_phoff + i * sizeof segment, sizeof segment);
-    if (segment.p_type != PT_LOAD || (segment.p_flags & PF_X) == 0) continue;
-    for (std::uint32_t offset = 0; offset + loop.size() <= segment.p_filesz; offset += 2)
-      if (image.compare(segment.p_offset + offset, loop.size(), loop) == 0) return segment.p_paddr + offset;
-  }
-  FAIL("the firmware holds no endless loop to jump to");
-  return 0;
 }
 
 int restarts(device::ControlClient& control) { return control.status().all.at("resets").get<int>(); }

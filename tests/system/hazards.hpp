@@ -1,7 +1,6 @@
 // What tests of hazards share: a sphere pressed into a wall, and what the bridges then get.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include <protocol/faults.hpp>
@@ -28,8 +27,5 @@ int restarts(device::ControlClient& control);
 /// What `inkwell info` tells a user about the device of this rig.
 std::string told_by_info(BoardRig& rig);
 void check_tells(const std::string& text, protocol::Fault fault);
-
-/// Where the firmware waits for the reset that it has asked for: "dsb", and a branch back to it.
-std::uint32_t endless_loop_address();
 
 }  // namespace inkwell::tests

@@ -14,7 +14,7 @@ using protocol::State;
 
 namespace {
 
-std::string refusal_of(device::ControlClient& control, const device::InjectedFault& fault) {
+std::string refusal_of(device::ControlClient& control, const device::Injection& fault) {
   try {
     control.inject(fault);
   } catch (const device::Error& error) {

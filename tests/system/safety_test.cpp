@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
 
 #include <board/board.hpp>
 
+#include "firmware_image.hpp"
 #include "hazards.hpp"
 
 using namespace inkwell;
@@ -73,7 +75,7 @@ TEST_CASE("refused parameters do not move a motor") {
 TEST_CASE("a bridge that reports a fault stops all of them at the next control period") {
   BoardRig rig;
   press_into_wall(rig);
-  rig.control.bridge_fault(true);
+  rig.control.inject({"bridge_fault"});
   rig.control.run(1.5 * control_period_s);  // until the next control interrupt, and for as long as that may take
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
@@ -86,14 +88,14 @@ TEST_CASE("a bridge that reports a fault stops all of them at the next control p
   rig.command(protocol::Command::clear_fault);
   rig.run(0.05);
   CHECK(rig.pose().state == State::fault);
-  rig.control.bridge_fault(false);
+  rig.control.heal("bridge_fault");
   rig.run(0.05);
   CHECK(rig.pose().state == State::fault);
   rig.command(protocol::Command::clear_fault);
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
 
-  rig.control.bridge_fault(true);
+  rig.control.inject({"bridge_fault"});
   rig.run(0.05);
   check_tells(told_by_info(rig), protocol::Fault::bridge_fault);
 }
@@ -122,7 +124,7 @@ TEST_CASE("where a bridge tells of a fault meanwhile the arm is not braked any m
   rig.control.hand_path({{0.2, {0.0, 0.06, -0.03}}, {0.4, {0.0, 0.06, -0.03}}});
   rig.run_until([](const auto& pose) { return pose.state == State::fault; });
   REQUIRE(bridges_enabled(rig.control));
-  rig.control.bridge_fault(true);
+  rig.control.inject({"bridge_fault"});
   rig.control.run(1.5 * control_period_s);
   CHECK_FALSE(bridges_enabled(rig.control));
 }
@@ -131,7 +133,7 @@ TEST_CASE("a processor fault with the bridges on switches them off first, and is
   BoardRig rig(device::SimulationMode::exact);
   press_into_wall(rig);
   constexpr std::uint32_t nothing_there = 0x60000000;
-  rig.control.jump(nothing_there);
+  rig.control.inject({"program_astray", std::to_string(nothing_there)});
   constexpr double step_s = 50e-9;
   for (int step = 0; step < 20 && bridges_enabled(rig.control); ++step) rig.control.run(step_s);
   rig.control.run(5 * step_s);  // the writes that switch both timers' outputs off cross to APB2
@@ -154,7 +156,7 @@ TEST_CASE("a processor fault with the bridges on switches them off first, and is
 TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog, and says so") {
   BoardRig rig;
   press_into_wall(rig);
-  rig.control.jump(endless_loop_address());
+  rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
   rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
   CHECK(rig.control.status().all.at("watchdog_resets") == 1);
   CHECK_FALSE(bridges_enabled(rig.control));

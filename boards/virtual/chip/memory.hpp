@@ -7,13 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace inkwell::virtual_board {
+#include <chip/memory_map.hpp>
 
-inline constexpr std::uint32_t flash_base = 0x0800'0000, flash_bytes = 1024 * 1024;
-inline constexpr std::uint32_t sram_base = 0x2000'0000, sram_bytes = 128 * 1024;  ///< SRAM1 and SRAM2 are adjacent
-inline constexpr std::uint32_t ccm_base = 0x1000'0000, ccm_bytes = 64 * 1024;
-inline constexpr std::uint32_t private_bus_base = 0xE000'0000, private_bus_bytes = 0x10'0000;  ///< the core's own
-inline constexpr std::uint32_t system_base = 0x1FFF'0000, system_bytes = 64 * 1024;            ///< with option bytes
+namespace inkwell::virtual_board {
 
 /// As 0x08000000.
 std::string hexadecimal(std::uint32_t value);

@@ -5,35 +5,28 @@
 
 #include <fmt/format.h>
 #include <board/board.hpp>
+#include <chip/memory_map.hpp>
 
 namespace inkwell::virtual_board {
 namespace {
 
 using protocol::InjectedFault;
 
-constexpr std::uint32_t ram_base = 0x2000'0000, ram_bytes = 128 * 1024;
-constexpr std::uint32_t core_ram_base = 0x1000'0000, core_ram_bytes = 64 * 1024;
-constexpr std::uint32_t flash_base = 0x0800'0000, flash_bytes = 1024 * 1024;
 constexpr double spike_s = 2e-6;
-constexpr double logic_supply_V = 3.3;
 
-/// Of those with the same number one is at a place at a time.
-unsigned kind(InjectedFault fault) {
+/// The one that stands for all of which one at a time is at a place.
+InjectedFault kind(InjectedFault fault) {
   switch (fault) {
-    case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
-    case InjectedFault::wire_frozen: return 1000;
-    case InjectedFault::shunt_high:
+    case InjectedFault::wire_frozen: return InjectedFault::wire_open;
     case InjectedFault::shunt_low:
-    case InjectedFault::shunt_frozen: return 1001;
-    case InjectedFault::leg_high:
+    case InjectedFault::shunt_frozen: return InjectedFault::shunt_high;
     case InjectedFault::leg_low:
-    case InjectedFault::leg_open: return 1002;
-    case InjectedFault::supply_sag:
+    case InjectedFault::leg_open: return InjectedFault::leg_high;
     case InjectedFault::supply_spike:
-    case InjectedFault::supply_cut: return 1003;
-    default: return static_cast<unsigned>(fault);
+    case InjectedFault::supply_cut: return InjectedFault::supply_sag;
+    default: return fault;
   }
 }
 
@@ -59,8 +52,8 @@ std::uint32_t programmed_bytes(const Chip& chip) {
 void Injector::add(const Injection& injection) {
   if (injection.address) {
     const bool flash = is_within(*injection.address, flash_base, flash_bytes);
-    const bool ram = is_within(*injection.address, ram_base, ram_bytes) ||
-                     is_within(*injection.address, core_ram_base, core_ram_bytes);
+    const bool ram =
+        is_within(*injection.address, sram_base, sram_bytes) || is_within(*injection.address, ccm_base, ccm_bytes);
     if ((injection.fault == InjectedFault::ram_bit && !ram) || (injection.fault == InjectedFault::flash_bit && !flash))
       throw InvalidInjection(
           fmt::format("there is no {} at 0x{:08X}: flash is from 0x08000000 on, RAM from 0x20000000 "
@@ -136,8 +129,8 @@ void Injector::choose_place(Injection& injection) {
   if (protocol::info(injection.fault).place != protocol::InjectionPlace::address) return;
   if (!injection.address) {
     if (injection.fault == InjectedFault::ram_bit) {
-      const std::uint32_t place = below(ram_bytes + core_ram_bytes);
-      injection.address = place < ram_bytes ? ram_base + place : core_ram_base + place - ram_bytes;
+      const std::uint32_t place = below(sram_bytes + ccm_bytes);
+      injection.address = place < sram_bytes ? sram_base + place : ccm_base + place - sram_bytes;
     } else {
       injection.address = flash_base + below(programmed_bytes(victims_.chip));
     }
@@ -233,7 +226,7 @@ void Injector::put_into_chip(const Injection& injection, bool in) {
     case InjectedFault::supply_sag:
     case InjectedFault::supply_spike: return supply_V(amount);
     case InjectedFault::supply_cut: return supply_V(0.0);
-    case InjectedFault::logic_sag: return chip.set_supply_V(in ? amount : logic_supply_V);
+    case InjectedFault::logic_sag: return chip.set_supply_V(in ? amount : Wires::supply_V);
     case InjectedFault::crystal_stop: return chip.let_crystal_swing(!in);
     case InjectedFault::crystal_drift:
       return chip.drift_crystal(in ? static_cast<std::int32_t>(amount) : victims_.crystal_ppm);

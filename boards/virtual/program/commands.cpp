@@ -148,11 +148,6 @@ json logic_supply(const json& request, Simulation& simulation) {
   return {};
 }
 
-json bridge_fault(const json& request, Simulation& simulation) {
-  simulation.board().plant().set_bridge_fault(truth_value(request, "fault"));
-  return {};
-}
-
 json hand(const json& request, Simulation& simulation) {
   Plant& plant = simulation.board().plant();
   if (!truth_value(request, "holds")) {
@@ -213,33 +208,6 @@ json glitch(const json& request, Simulation& simulation) {
   return {};
 }
 
-json jump(const json& request, Simulation& simulation) {
-  if (simulation.board().locked_up()) throw Refused("the processor is locked up; reset it first");
-  simulation.board().chip().jump(static_cast<std::uint32_t>(number(request, "address", 0.0, 4294967295.0)));
-  return {};
-}
-
-json stall(const json& request, Simulation& simulation) {
-  simulation.board().chip().stall(ticks(number(request, "for_s", 0.0, 1e3)));
-  return {};
-}
-
-json halt(const json& request, Simulation& simulation) {
-  simulation.board().chip().halt(ticks(number(request, "for_s", 0.0, 1e3)));
-  return {};
-}
-
-json lose_exception(const json& request, Simulation& simulation) {
-  const double exception = number(request, "exception", 2, exception_numbers - 1);
-  simulation.board().chip().lose_exception(static_cast<unsigned>(exception), truth_value(request, "lost"));
-  return {};
-}
-
-json crystal(const json& request, Simulation& simulation) {
-  simulation.board().chip().let_crystal_swing(truth_value(request, "swings"));
-  return {};
-}
-
 json gimbal(const json& request, Simulation& simulation) {
   simulation.board().plant().turn_gimbal(vector(request, "angles_rad", 20.0));
   return {};
@@ -272,17 +240,8 @@ const std::vector<Command>& commands() {
       {"buttons", {"pressed"}, "of the stylus: [true,false]", buttons},
       {"supply", {"voltage_V"}, "of the bridges", supply},
       {"logic_supply", {"voltage_V"}, "of the chip, 3.3 V to begin with", logic_supply},
-      {"bridge_fault", {"fault"}, "a bridge pulls the fault wire", bridge_fault},
       {"pin", {"pin", "drive"}, "level at a pin, such as PA5; drives it high, low or floating from outside first", pin},
       {"glitch", {"pin", "for_s"}, "a pin is the opposite of what drives it, as by a spike on its wire", glitch},
-      {"jump", {"address"}, "throw the program counter there, as a flipped bit would", jump},
-      {"stall", {"for_s"}, "the core stands still while all else goes on, as on a bus that does not answer", stall},
-      {"halt", {"for_s"}, "a debug probe halts the core, and what DBGMCU_APBx_FZ says; all else goes on", halt},
-      {"lose_exception",
-       {"exception", "lost"},
-       "it never reaches the core, or does again; 16 is interrupt 0",
-       lose_exception},
-      {"crystal", {"swings"}, "the crystal stops, or swings again", crystal},
       {"inject",
        {"fault", "of", "amount", "after_s", "for_s"},
        "put a fault of the list above in, at once or later, for ever or a while",

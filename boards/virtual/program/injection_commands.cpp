@@ -52,6 +52,8 @@ json inject(const json& request, Simulation& simulation) {
   Board& board = simulation.board();
   try {
     const Injection injection = checked(injection_text(request));
+    if (injection.fault == protocol::InjectedFault::program_astray && board.locked_up())
+      throw Refused("the processor is locked up; reset it first");
     board.injector().add(injection);
     return {{"at_s", seconds(board.chip().now()) + injection.after_s}};
   } catch (const InvalidInjection& error) {

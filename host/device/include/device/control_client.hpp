@@ -34,7 +34,7 @@ struct HandWaypoint {
 };
 
 /// A fault of protocol/injections.hpp, under its name.
-struct InjectedFault {
+struct Injection {
   std::string fault;
   std::string of = {};  ///< what it is put into, such as "2", "1A" or "encoders[0].a"; empty where there is one only
   std::optional<double> amount = {};  ///< none: the table's own
@@ -89,15 +89,9 @@ class ControlClient {
   void usb(bool connected);
   void buttons(bool first, bool second);
   void supply(double voltage_V);
-  void bridge_fault(bool fault);     ///< a bridge pulls the fault wire low, and lets go of it
-  void jump(std::uint32_t address);  ///< throws the processor's program counter somewhere, as a flipped bit would
-  void stall(double for_s);          ///< the core stands still, all else goes on
-  void halt(double for_s);           ///< a debug probe halts it, with what the firmware lets stop then
   void glitch(const std::string& pin, double duration_s);  ///< a pin ("PA0") is the opposite of what drives it
-  void lose_exception(int exception, bool lost);           ///< it never reaches the core, or does again
-  void crystal(bool swings);                               ///< the crystal stops, or swings again
   /// Puts a fault in; the board time at which it comes, s.
-  double inject(const InjectedFault& fault);
+  double inject(const Injection& fault);
   void heal(const std::string& fault, const std::string& of = {});  ///< takes it out, anywhere if no place is named
   void heal_all();
   void hand(const Hand& hand);

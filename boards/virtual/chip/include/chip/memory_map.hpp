@@ -1,0 +1,14 @@
+// Where the memories of an STM32F405 with 1 MB of flash lie (RM0090 2.3).
+#pragma once
+
+#include <cstdint>
+
+namespace inkwell::virtual_board {
+
+inline constexpr std::uint32_t flash_base = 0x0800'0000, flash_bytes = 1024 * 1024;
+inline constexpr std::uint32_t sram_base = 0x2000'0000, sram_bytes = 128 * 1024;  ///< SRAM1 and SRAM2 are adjacent
+inline constexpr std::uint32_t ccm_base = 0x1000'0000, ccm_bytes = 64 * 1024;
+inline constexpr std::uint32_t private_bus_base = 0xE000'0000, private_bus_bytes = 0x10'0000;  ///< the core's own
+inline constexpr std::uint32_t system_base = 0x1FFF'0000, system_bytes = 64 * 1024;            ///< with option bytes
+
+}  // namespace inkwell::virtual_board
