@@ -74,7 +74,7 @@ std::string CaseFault::name() const {
   return name;
 }
 
-std::string Case::name() const { return fmt::format("{} {} {}", fault.name(), name_of(situation), phase + 1); }
+std::string Case::name() const { return fmt::format("{} {} {}", fault.name(), name_of(situation), phase); }
 
 std::vector<CaseFault> case_faults() {
   std::vector<CaseFault> faults{{}};
@@ -96,7 +96,7 @@ std::vector<Case> all_cases() {
   unsigned number = 0;
   for (const CaseFault& fault : case_faults())
     for (const Situation situation : situations)
-      for (unsigned phase = 0; phase < phases; ++phase) cases.push_back({++number, fault, situation, phase});
+      for (unsigned phase = 1; phase <= phases; ++phase) cases.push_back({++number, fault, situation, phase});
   return cases;
 }
 

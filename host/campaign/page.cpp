@@ -119,7 +119,9 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::exception_late: return "Late by less than what the firmware watches for.";
     case InjectedFault::exception_lost: return "The force needs nothing of it, or it stands without force.";
     case InjectedFault::ram_bit:
-    case InjectedFault::flash_bit: return "The byte was not used, or nothing depends on the bit.";
+      return "Of the RAM only the interrupts' code and tables and the settings are checked; the byte was not used, or "
+             "written anew before.";
+    case InjectedFault::flash_bit: return "The check in the background had not come by yet.";
     case InjectedFault::supply_sag:
     case InjectedFault::supply_spike:
     case InjectedFault::supply_cut: return "The capacitors bear it for that long, or the motors are off.";
@@ -172,7 +174,7 @@ std::string not_run(std::span<const Result> results) {
   std::string text;
   for (const Result& result : results)
     if (!result.error.empty())
-      text += fmt::format("| {} | `{}` {} {} | {} |\n", result.number, result.fault, result.situation, result.phase + 1,
+      text += fmt::format("| {} | `{}` {} {} | {} |\n", result.number, result.fault, result.situation, result.phase,
                           result.error);
   if (text.empty()) return text;
   return "\n## Could not be run\n\n| case | what | why |\n| --- | --- | --- |\n" + text;

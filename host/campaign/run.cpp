@@ -7,7 +7,7 @@
 #include <experiment/wall.hpp>
 #include <protocol/reports.hpp>
 
-#include "bench.hpp"
+#include "board_run.hpp"
 
 namespace inkwell::campaign {
 namespace {
@@ -62,46 +62,46 @@ Vector3 into_wall_m(const ParameterSet& parameters) {
   return target_m;
 }
 
-void take_by_hand(Bench& bench, Vector3 target_m, double duration_s) {
-  const Vector3 here_m = bench.true_position_m();
-  bench.control().hand({true, here_m, hand_stiffness_N_per_m, hand_damping_Ns_per_m});
-  bench.control().dock(false);
-  bench.control().hand_path({{0.0, here_m}, {duration_s, target_m}});
+void take_by_hand(BoardRun& board, Vector3 target_m, double duration_s) {
+  const Vector3 here_m = board.true_position_m();
+  board.control().hand({true, here_m, hand_stiffness_N_per_m, hand_damping_Ns_per_m});
+  board.control().dock(false);
+  board.control().hand_path({{0.0, here_m}, {duration_s, target_m}});
 }
 
-void bring_into(Bench& bench, const Case& the_case) {
+void bring_into(BoardRun& board, const Case& the_case) {
   const Situation situation = the_case.situation;
   // Before the first instruction the stylus is on its way out: nobody tells the board where it is.
   if (situation == Situation::unreferenced) {
-    Vector3 away_m = bench.true_position_m();
+    Vector3 away_m = board.true_position_m();
     away_m[2] -= 0.04;
-    take_by_hand(bench, away_m, 0.05);
+    take_by_hand(board, away_m, 0.05);
   }
-  expect(bench.connect(1.0), "the device did not enumerate.");
-  ParameterSet parameters = bench.device().parameters();
+  expect(board.connect(1.0), "the device did not enumerate.");
+  ParameterSet parameters = board.device().parameters();
   // Only a fault of the host shall be one: after it comes, this host says nothing in any case.
-  if (!is_about_the_host(the_case.fault)) bench.set({{Parameter::host_timeout_s, 2.0f}});
+  if (!is_about_the_host(the_case.fault)) board.set({{Parameter::host_timeout_s, 2.0f}});
   if (situation == Situation::unreferenced) {
-    expect(bench.wait_for(State::unreferenced, 1.0), "the board knew where the arm is.");
-    return bench.run(0.3);
+    expect(board.wait_for(State::unreferenced, 1.0), "the board knew where the arm is.");
+    return board.run(0.3);
   }
-  expect(bench.wait_for(State::ready, 1.0), "the board did not find its reference.");
-  take_by_hand(bench, middle_of_box_m(parameters), 0.4);
-  bench.run(0.6);
+  expect(board.wait_for(State::ready, 1.0), "the board did not find its reference.");
+  take_by_hand(board, middle_of_box_m(parameters), 0.4);
+  board.run(0.6);
   if (situation == Situation::ready) return;
   if (situation == Situation::wall) {
     const float stiffest = protocol::info(Parameter::wall_stiffness_N_per_m).maximum;
-    bench.set({{Parameter::wall_stiffness_N_per_m, stiffest}});
+    board.set({{Parameter::wall_stiffness_N_per_m, stiffest}});
     parameters[Parameter::wall_stiffness_N_per_m] = stiffest;
   }
-  bench.command(Command::enable_force);
-  expect(bench.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5),
+  board.command(Command::enable_force);
+  expect(board.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5),
          "the force did not go on.");
-  bench.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
+  board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
   const Vector3 middle_m = middle_of_box_m(parameters);
   if (situation == Situation::wall) {
-    bench.control().hand_path({{0.0, middle_m}, {0.3, into_wall_m(parameters)}});
-    bench.run(0.45);
+    board.control().hand_path({{0.0, middle_m}, {0.3, into_wall_m(parameters)}});
+    board.run(0.45);
   }
   if (situation == Situation::motion) {
     std::vector<device::HandWaypoint> path{{0.0, middle_m}};
@@ -110,15 +110,15 @@ void bring_into(Bench& bench, const Case& the_case) {
       for (double& along_m : side_m) along_m += (turn % 2 == 0 ? swing_m : -swing_m) / std::sqrt(3.0);
       path.push_back({(turn + 1) * swing_s, side_m});
     }
-    bench.control().hand_path(path);
-    bench.run(0.3);
+    board.control().hand_path(path);
+    board.run(0.3);
   }
-  expect(bench.force_is_on(), "the force went off before the fault came.");
+  expect(board.force_is_on(), "the force went off before the fault came.");
 }
 
 /// The instant of a phase: the same for each fault, so that the control tells what would have been without.
 double phase_s(const Case& the_case) {
-  std::mt19937 random(100 * static_cast<unsigned>(the_case.situation) + the_case.phase + 1);
+  std::mt19937 random(100 * static_cast<unsigned>(the_case.situation) + the_case.phase);
   return longest_phase_s * static_cast<double>(random() >> 8) / static_cast<double>(1u << 24);
 }
 
@@ -126,8 +126,8 @@ bool bridges_drive(const nlohmann::json& truth) {
   return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>() < still_driving_s;
 }
 
-void observe(Bench& bench, const Case& the_case, Result& result) {
-  auto& control = bench.control();
+void observe(BoardRun& board, const Case& the_case, Result& result) {
+  auto& control = board.control();
   const auto before = control.truth();
   const unsigned restarts_before = control.status().all.value("resets", 0u);
   result.injected_at_s = before.at("board_time_s");
@@ -138,7 +138,7 @@ void observe(Bench& bench, const Case& the_case, Result& result) {
     if (fault.of.empty() && !injected.empty()) result.place = injected[0].value("of", "");
   }
   control.meter_start();
-  bench.run(observed_s, false);
+  board.run(observed_s, false);
 
   const auto after = control.truth();
   const auto reading = control.meter_read();
@@ -149,70 +149,70 @@ void observe(Bench& bench, const Case& the_case, Result& result) {
   result.peak_force_N = reading.peak_force_N;
   result.energy_J = reading.energy_J;
   result.travel_m = the_case.situation == Situation::motion ? reading.lag_m : reading.travel_m;
-  result.locked_up = bench.is_locked_up();
+  result.locked_up = board.is_locked_up();
   result.restarts = control.status().all.value("resets", 0u) - restarts_before;
 }
 
-void note_fault(const Bench& bench, std::string& name) {
-  if (name.empty() && bench.is(State::fault)) name = protocol::info(bench.pose()->fault).name;
+void note_fault(const BoardRun& board, std::string& name) {
+  if (name.empty() && board.is(State::fault)) name = protocol::info(board.pose()->fault).name;
 }
 
 /// Clears the fault and switches the force on, by way of the inkwell if the board does not know where the arm is.
-bool works(Bench& bench) {
-  if (!bench.connected() && !bench.connect(0.5)) return false;
-  bench.set({{Parameter::host_timeout_s, 0.5f}});
-  bench.run(0.02);
-  if (bench.is(State::fault)) {
-    bench.command(Command::clear_fault);
-    if (!bench.wait_for([](const auto& pose) { return pose.state != State::fault; }, 0.3)) return false;
+bool works(BoardRun& board) {
+  if (!board.connected() && !board.connect(0.5)) return false;
+  board.set({{Parameter::host_timeout_s, 0.5f}});
+  board.run(0.02);
+  if (board.is(State::fault)) {
+    board.command(Command::clear_fault);
+    if (!board.wait_for([](const auto& pose) { return pose.state != State::fault; }, 0.3)) return false;
   }
-  if (bench.is(State::starting)) bench.run(0.3);
-  if (bench.is(State::unreferenced)) {
-    bench.control().dock(true);
-    if (!bench.wait_for(State::ready, 2.0)) return false;
+  if (board.is(State::starting)) board.run(0.3);
+  if (board.is(State::unreferenced)) {
+    board.control().dock(true);
+    if (!board.wait_for(State::ready, 2.0)) return false;
   }
-  if (bench.is(State::ready)) bench.command(Command::enable_force);
-  if (!bench.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5)) return false;
-  bench.run(0.1);
-  return bench.force_is_on() && bridges_drive(bench.control().truth());
+  if (board.is(State::ready)) board.command(Command::enable_force);
+  if (!board.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5)) return false;
+  board.run(0.1);
+  return board.force_is_on() && bridges_drive(board.control().truth());
 }
 
 /// True if that went without an error: a device that goes away meanwhile does not work either.
-bool tries_to_work(Bench& bench) {
+bool tries_to_work(BoardRun& board) {
   try {
-    return works(bench);
+    return works(board);
   } catch (const device::Error&) {
     return false;
   }
 }
 
-void recover(Bench& bench, const Case& the_case, Result& result) {
-  bench.run(0.02, false);
-  note_fault(bench, result.detected_as);
+void recover(BoardRun& board, const Case& the_case, Result& result) {
+  board.run(0.02, false);
+  note_fault(board, result.detected_as);
   // A board that has started anew tells why, if its USB lives.
-  if ((result.restarts > 0 || !bench.connected()) && !is_about_the_host(the_case.fault) && bench.connect(0.3)) {
-    bench.run(0.15);
-    note_fault(bench, result.detected_as);
+  if ((result.restarts > 0 || !board.connected()) && !is_about_the_host(the_case.fault) && board.connect(0.3)) {
+    board.run(0.15);
+    note_fault(board, result.detected_as);
   }
   // What was noticed before the cause was gone; a device that could not be asked tells afterwards.
-  const bool could_tell = bench.connected();
-  bench.control().heal_all();
-  if (!bench.connected()) bench.connect(0.5);
-  bench.run(0.05);
-  if (result.detected_as.empty()) note_fault(bench, could_tell ? result.fault_on_healing : result.detected_as);
-  const bool stayed = is_active(the_case.situation) ? bench.force_is_on() : result.restarts == 0;
-  const bool was_fault = bench.is(State::fault);
-  if (tries_to_work(bench)) {
+  const bool could_tell = board.connected();
+  board.control().heal_all();
+  if (!board.connected()) board.connect(0.5);
+  board.run(0.05);
+  if (result.detected_as.empty()) note_fault(board, could_tell ? result.fault_on_healing : result.detected_as);
+  const bool stayed = is_active(the_case.situation) ? board.force_is_on() : result.restarts == 0;
+  const bool was_fault = board.is(State::fault);
+  if (tries_to_work(board)) {
     result.recovery = was_fault ? "clear_fault" : stayed ? "none needed" : "force on again";
   } else {
-    bench.reset();
-    result.recovery = tries_to_work(bench) ? "board reset" : "not recovered";
+    board.reset();
+    result.recovery = tries_to_work(board) ? "board reset" : "not recovered";
   }
-  if (!bench.pose() || !bench.force_is_on()) return;
-  const Vector3 true_m = bench.true_position_m();
+  if (!board.pose() || !board.force_is_on()) return;
+  const Vector3 true_m = board.true_position_m();
   double squares = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    squares += std::pow(static_cast<double>(bench.pose()->position_m[axis]) - true_m[axis], 2);
+    squares += std::pow(static_cast<double>(board.pose()->position_m[axis]) - true_m[axis], 2);
   result.position_error_m = std::sqrt(squares);
 }
 
@@ -229,18 +229,18 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   // A place that the seed chooses is another one each time; all else begins alike for each fault.
   const auto& fault = the_case.fault.fault;
   const bool chooses = fault && protocol::info(*fault).place == protocol::InjectionPlace::address;
-  options.seed = chooses ? the_case.number : the_case.phase + 1;
+  options.seed = chooses ? the_case.number : the_case.phase;
   try {
-    Bench bench(options);
-    bring_into(bench, the_case);
-    result.force_limit_N = static_cast<double>(bench.device().parameters()[Parameter::force_limit_N]);
+    BoardRun board(options);
+    bring_into(board, the_case);
+    result.force_limit_N = static_cast<double>(board.device().parameters()[Parameter::force_limit_N]);
     const double until_fault_s = phase_s(the_case);
     constexpr double whole_slices_s = 0.01;
     const double slices_s = std::floor(until_fault_s / whole_slices_s) * whole_slices_s;
-    bench.run(slices_s);
-    bench.run_exactly(until_fault_s - slices_s);
-    observe(bench, the_case, result);
-    recover(bench, the_case, result);
+    board.run(slices_s);
+    board.run_exactly(until_fault_s - slices_s);
+    observe(board, the_case, result);
+    recover(board, the_case, result);
   } catch (const device::Error& error) {
     result.error = error.what();
   }

@@ -37,7 +37,7 @@ int list_cases(const DeviceOptions& options, const CampaignOptions& command) {
       json.push_back({{"number", c.number},
                       {"fault", c.fault.name()},
                       {"situation", campaign::name_of(c.situation)},
-                      {"phase", c.phase + 1}});
+                      {"phase", c.phase}});
     else if (command.only_numbers)
       fmt::print("{}\n", c.number);
     else
@@ -47,17 +47,24 @@ int list_cases(const DeviceOptions& options, const CampaignOptions& command) {
   return 0;
 }
 
-void make_folder(const std::filesystem::path& folder) {
+/// `option` is the one that names another.
+void make_folder(const std::filesystem::path& folder, std::string_view option) {
   std::error_code code;
   std::filesystem::create_directories(folder, code);
   if (!std::filesystem::is_directory(folder))
-    throw device::Error(
-        fmt::format("The folder {} cannot be made: {}. Name another one with --out.", folder.string(), code.message()));
+    throw device::Error(fmt::format("The folder {} cannot be made: {}. Name another one with {}.", folder.string(),
+                                    code.message(), option));
+}
+
+/// Before hours of cases, not after them.
+void make_folder_of_page(const CampaignOptions& command, std::string_view option) {
+  const std::filesystem::path folder = std::filesystem::path(command.page).parent_path();
+  if (!folder.empty()) make_folder(folder, option);
 }
 
 /// Each case on a board of its own; as many at once as there are jobs. The exit code: 1 if one could not be run.
 int run_cases(const DeviceOptions& options, const CampaignOptions& command, const std::vector<Case>& cases) {
-  make_folder(command.folder);
+  make_folder(command.folder, "--out");
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
   std::atomic<std::size_t> next{0}, failed{0};
   std::mutex telling;
@@ -104,13 +111,15 @@ int run_chosen(const DeviceOptions& options, const CampaignOptions& command) {
 
 int merge_results(const CampaignOptions& command) {
   const auto results = campaign::load_all(command.folder);
+  make_folder_of_page(command, "--out");
   campaign::write_page(results, command.page);
   fmt::print("{} of {} cases: {}\n", results.size(), campaign::all_cases().size(), command.page);
   return 0;
 }
 
 int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
-  make_folder(command.folder);
+  make_folder(command.folder, "--out");
+  make_folder_of_page(command, "--page");
   std::vector<Case> missing;
   for (const Case& c : campaign::all_cases())
     if (!std::filesystem::exists(campaign::file_of(command.folder, c.number))) missing.push_back(c);

@@ -91,7 +91,7 @@ TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   CHECK(run.exit_code == 0);
   const auto there = campaign::load_all(directory.path());
   REQUIRE(there.size() == 1);
-  CHECK(campaign::to_json(there[0]) == campaign::to_json(here));
+  CHECK(campaign::text_of(there[0]) == campaign::text_of(here));
 
   const auto page = (directory / "page.md").string();
   const auto merged = run_program("inkwell", {"campaign", "merge", directory.path(), "--out", page});

@@ -67,13 +67,13 @@ TEST_CASE("the list has every fault of the table in every situation, three times
 
 TEST_CASE("a result comes back from its file as it was, and a damaged file is named") {
   const TemporaryDirectory directory;
-  Result result = seen("bridge_fault", "wall", 1);
+  Result result = seen("bridge_fault", "wall", 2);
   result.off_after_s = 43e-6;
   result.detected_as = "bridge_fault";
   result.peak_force_N = 2.5;
   result.position_error_m = 1e-5;
   save(result, directory.path());
-  Result other = seen("none", "rest", 0);
+  Result other = seen("none", "rest", 1);
   other.error = "The board did not \"start\".";
   save(other, directory.path());
   const auto loaded = load_all(directory.path());
@@ -90,7 +90,7 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
 }
 
 TEST_CASE("of three instants the worst is told") {
-  Result a = seen("shunt_high:2", "wall", 0), b = seen("shunt_high:2", "wall", 1), c = seen("shunt_high:2", "wall", 2);
+  Result a = seen("shunt_high:2", "wall", 1), b = seen("shunt_high:2", "wall", 2), c = seen("shunt_high:2", "wall", 3);
   a.detected_as = b.detected_as = "over_current";
   a.off_after_s = 20e-6;
   b.off_after_s = 90e-6;
@@ -118,17 +118,17 @@ TEST_CASE("of three instants the worst is told") {
 
 TEST_CASE("the page has the figures, and leaves nothing out that passed unnoticed or could not be run") {
   const TemporaryDirectory directory;
-  Result quick = seen("bridge_fault", "wall", 0);
+  Result quick = seen("bridge_fault", "wall", 1);
   quick.detected_as = "bridge_fault";
   quick.off_after_s = 75e-6;
   quick.peak_force_N = 2.49;
   quick.energy_J = 0.00134;
   quick.travel_m = 0.00436;
   quick.recovery = "clear_fault";
-  Result missed = seen("motor_hot:2", "motion", 1), off = seen("motor_hot:2", "ready", 1);
+  Result missed = seen("motor_hot:2", "motion", 2), off = seen("motor_hot:2", "ready", 2);
   missed.peak_force_N = 9.5;
   missed.position_error_m = 0.012;
-  Result failed = seen("dma_stopped", "rest", 2);
+  Result failed = seen("dma_stopped", "rest", 3);
   failed.error = "The device did not enumerate.";
   const auto page = directory / "campaign.md";
   write_page(std::array{quick, missed, off, failed}, page);

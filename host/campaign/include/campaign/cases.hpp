@@ -40,7 +40,7 @@ struct Case {
   unsigned number;  ///< from 1 on; the same as long as the table of faults is
   CaseFault fault;
   Situation situation;
-  unsigned phase;  ///< 0 to 2
+  unsigned phase;  ///< 1 to phases
 
   std::string name() const;
 };

@@ -14,7 +14,7 @@ struct Result {
   unsigned number = 0;
   std::string fault;  ///< CaseFault::name()
   std::string situation;
-  unsigned phase = 0;
+  unsigned phase = 1;
   std::string error;  ///< why the case could not be run; the rest says nothing then
 
   double injected_at_s = 0;  ///< board time
@@ -35,9 +35,10 @@ struct Result {
   bool operator==(const Result&) const = default;
 };
 
-std::string to_json(const Result& result);
+/// A JSON object with a member for each field, and a line feed.
+std::string text_of(const Result& result);
 /// Throws device::Error if it is no result.
-Result from_json(const std::string& text);
+Result parse_result(const std::string& text);
 
 /// The file of a case in the folder.
 std::filesystem::path file_of(const std::filesystem::path& directory, unsigned number);

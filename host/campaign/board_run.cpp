@@ -1,4 +1,4 @@
-#include "bench.hpp"
+#include "board_run.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -14,11 +14,11 @@ constexpr unsigned slices_per_sign_of_life = 2;
 
 }  // namespace
 
-Bench::Bench(const device::VirtualBoardOptions& options) : board_(options), control_(board_.control()) {
+BoardRun::BoardRun(const device::VirtualBoardOptions& options) : board_(options), control_(board_.control()) {
   control_.stand_by();
 }
 
-bool Bench::connect(double limit_s) {
+bool BoardRun::connect(double limit_s) {
   let_go_of_device();
   if (is_locked_up()) return false;  // nobody would answer
   for (double waited_s = 0;; waited_s += slice_s) {
@@ -35,20 +35,20 @@ bool Bench::connect(double limit_s) {
   }
 }
 
-void Bench::set(std::initializer_list<device::ParameterChange> changes) {
+void BoardRun::set(std::initializer_list<device::ParameterChange> changes) {
   device_->set_parameters(std::vector<device::ParameterChange>(changes));
 }
 
-void Bench::pass(double time_s) { control_.run(time_s); }
+void BoardRun::pass(double time_s) { control_.run(time_s); }
 
-bool Bench::is_locked_up() { return control_.status().all.contains("locked_up"); }
+bool BoardRun::is_locked_up() { return control_.status().all.contains("locked_up"); }
 
-void Bench::let_go_of_device() {
+void BoardRun::let_go_of_device() {
   device_.reset();
   pose_.reset();
 }
 
-void Bench::read_poses() {
+void BoardRun::read_poses() {
   if (!device_) return;
   try {
     while (const auto pose = device_->read_pose(0ms)) pose_ = pose;
@@ -57,7 +57,7 @@ void Bench::read_poses() {
   }
 }
 
-void Bench::command(protocol::Command command) {
+void BoardRun::command(protocol::Command command) {
   if (!device_) return;
   try {
     device_->send(command);
@@ -66,7 +66,7 @@ void Bench::command(protocol::Command command) {
   }
 }
 
-void Bench::run(double time_s, bool gives_sign_of_life) {
+void BoardRun::run(double time_s, bool gives_sign_of_life) {
   for (double left_s = time_s; left_s > 1e-9; left_s -= slice_s) {
     if (gives_sign_of_life && slices_++ % slices_per_sign_of_life == 0) command(protocol::Command::heartbeat);
     pass(std::min(left_s, slice_s));
@@ -74,7 +74,7 @@ void Bench::run(double time_s, bool gives_sign_of_life) {
   }
 }
 
-bool Bench::wait_for(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
+bool BoardRun::wait_for(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
   for (double waited_s = 0; waited_s < limit_s; waited_s += slice_s) {
     if (pose_ && condition(*pose_)) return true;
     run(slice_s);
@@ -82,16 +82,16 @@ bool Bench::wait_for(const std::function<bool(const protocol::PoseReport&)>& con
   return pose_ && condition(*pose_);
 }
 
-bool Bench::wait_for(protocol::State state, double limit_s) {
+bool BoardRun::wait_for(protocol::State state, double limit_s) {
   return wait_for([state](const auto& pose) { return pose.state == state; }, limit_s);
 }
 
-void Bench::reset() {
+void BoardRun::reset() {
   control_.reset();
   let_go_of_device();
 }
 
-device::Vector3 Bench::true_position_m() {
+device::Vector3 BoardRun::true_position_m() {
   const auto truth = control_.truth();
   return {truth.at("true_position_x_m"), truth.at("true_position_y_m"), truth.at("true_position_z_m")};
 }

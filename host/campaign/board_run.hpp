@@ -12,10 +12,10 @@
 
 namespace inkwell::campaign {
 
-class Bench {
+class BoardRun {
  public:
   /// Board time stands still. Throws device::Error if the board does not start.
-  explicit Bench(const device::VirtualBoardOptions& options);
+  explicit BoardRun(const device::VirtualBoardOptions& options);
 
   /// Waits until the board shows its device and opens it; false if it does not in that time.
   bool connect(double limit_s);
