@@ -84,7 +84,7 @@ int main() {
   if (fault != protocol::Fault::none) controller.raise(fault);
   host_link.black_box.start(fault, crash ? facts_of(*crash) : protocol::CrashFacts{});
   MemoryCheck memory_check;
-  if (!memory_check.start()) controller.raise(protocol::Fault::memory_damaged);
+  host_link.memory_damaged.store(!memory_check.start());
 
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up();

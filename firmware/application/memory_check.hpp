@@ -8,7 +8,7 @@ namespace inkwell::application {
 
 /// One round goes through the image in the flash, against the checksum that the build has put behind it
 /// (tools/seal_image.py), through the copies from which interrupts run, against the image, and through the settings
-/// that the control interrupt works with. It takes about a tenth of a second.
+/// that the control interrupt works with. It takes about a fifth of a second.
 class MemoryCheck {
  public:
   /// The first round, at once: nothing that is damaged shall drive a motor. False if a bit is wrong.

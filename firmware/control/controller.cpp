@@ -198,7 +198,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   // Force and torques are in the references, as far as a motor takes part.
   const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
-  const float speed_squared = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
+  const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
   const protocol::Watches found =
       asked_.found | watch(Fault::not_finite, !is_finite(sum_of_all)) |
       watch(Fault::current_sensor, offsets_.measured() && !offsets_.plausible) |
@@ -211,7 +211,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       watch(Fault::motor_hot, heat_.too_hot) |
       watch(Fault::encoder_implausible,
             joints_implausible(probe_.joint_rad, settings.arm.transmission, settings.limits)) |
-      watch(Fault::over_speed, speed_squared > settings.limits.speed_limit_squared_m2_per_s2) |
+      watch(Fault::over_speed, speed_squared_m2_per_s2 > settings.limits.speed_limit_squared_m2_per_s2) |
       watch(Fault::host_silent, host_silence_periods_ > settings.limits.host_timeout_periods);
   const protocol::Events now = asked_.events | when(Event::measured, offsets_.measured()) |
                                when(Event::referenced, reference_.valid) | when(Event::risen, force_gain_ == 1.0f) |
@@ -221,7 +221,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
     change_state(advance(supervisor_, {now, found}));
   if (test_.runs()) --test_.remaining_periods;
   if (brake_.is_on()) [[unlikely]] {
-    advance(brake_, speed_squared, found);
+    advance(brake_, speed_squared_m2_per_s2, found);
     drive_.brake = brake_.is_on();
   }
 }

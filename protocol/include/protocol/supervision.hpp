@@ -74,7 +74,12 @@ class States {
   std::uint32_t bits_ = 0;
 };
 
-inline constexpr States with_force{State::ramping, State::active, State::limited};
+inline constexpr States with_force = [] {
+  States states;
+  for (std::size_t i = 0; i < state_count; ++i)
+    if (state_table[i].force_is_on) states = states | States(static_cast<State>(i));
+  return states;
+}();
 
 /// Without a look into the table, since a control interrupt asks.
 constexpr bool force_is_on(State state) { return with_force.contains(state); }
