@@ -1,6 +1,7 @@
 // A device on a fake port, and a host that carries out control transfers on it.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 #include <usb/device.hpp>
@@ -30,6 +31,12 @@ struct ControlResult {
 
 inline const ControlResult stall_result{true, {}};
 inline const ControlResult done_result{false, {}};
+
+inline ControlResult answer(std::initializer_list<int> bytes) {
+  ControlResult result;
+  for (const int byte : bytes) result.data.push_back(static_cast<std::byte>(byte));
+  return result;
+}
 
 struct DeviceBench {
   FakePort port;
