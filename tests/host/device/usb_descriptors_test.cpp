@@ -48,6 +48,7 @@ TEST_CASE("the layout is the one of the descriptors, in whatever order and with 
                               {7, 5, 0x07, 2, 64, 0, 0},  // bulk OUT
                               {7, 5, 0x88, 3, 64, 0, 1},  // interrupt IN, of no HID interface
                               scope_in,
+                              {7, 5, 0x0D, 2, 64, 0, 0},       // another bulk OUT, after the right one
                               {9, 4, 5, 0, 1, 0x0A, 0, 0, 0},  // another class with both kinds of endpoint
                               {7, 5, 0x89, 2, 64, 0, 0},
                               {7, 5, 0x8A, 3, 64, 0, 1},
