@@ -10,8 +10,8 @@ using namespace inkwell::virtual_board::test;
 namespace {
 
 /// A GDB without the wire, at a chip in exact mode.
-struct Bench {
-  explicit Bench(const std::string& firmware) : test(firmware), session(test.chip) {
+struct Debugger {
+  explicit Debugger(const std::string& firmware) : test(firmware), session(test.chip) {
     session.attach();
     CHECK(session.receive(gdb_packet("QStartNoAckMode")) == "+" + gdb_packet("OK"));
   }
@@ -49,103 +49,103 @@ std::uint32_t place_of_fault() {
 
 TEST_SUITE("virtual board: debugger") {
   TEST_CASE("a breakpoint stops before its instruction, a step behind it, and a fault's handler is stepped into") {
-    Bench bench("lock_up");
+    Debugger gdb("lock_up");
     const std::uint32_t place = place_of_fault();
     char packet[32];
     std::snprintf(packet, sizeof packet, "Z1,%x,2", static_cast<unsigned>(place));
-    CHECK(bench.ask(packet) == "OK");
-    CHECK(bench.session.halted());
-    CHECK(bench.ask("c").empty());
-    CHECK_FALSE(bench.session.halted());
-    CHECK(bench.run() == "T05thread:1;");
-    CHECK(bench.session.halted());
-    CHECK(bench.pc() == place);
-    CHECK(bench.ask("p0") == digits(0x6000'0000));
-    CHECK(bench.ask("pf") == digits(place));
-    CHECK(bench.ask("vCont;s:1").empty());
-    CHECK(bench.run() == "T05thread:1;");
-    CHECK((bench.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 3);
+    CHECK(gdb.ask(packet) == "OK");
+    CHECK(gdb.session.halted());
+    CHECK(gdb.ask("c").empty());
+    CHECK_FALSE(gdb.session.halted());
+    CHECK(gdb.run() == "T05thread:1;");
+    CHECK(gdb.session.halted());
+    CHECK(gdb.pc() == place);
+    CHECK(gdb.ask("p0") == digits(0x6000'0000));
+    CHECK(gdb.ask("pf") == digits(place));
+    CHECK(gdb.ask("vCont;s:1").empty());
+    CHECK(gdb.run() == "T05thread:1;");
+    CHECK((gdb.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 3);
     // The handler's breakpoint is a stop for GDB, and no second fault.
-    CHECK(bench.ask("c").empty());
-    CHECK(bench.run() == "T05thread:1;");
+    CHECK(gdb.ask("c").empty());
+    CHECK(gdb.run() == "T05thread:1;");
     // Without GDB it is one.
-    CHECK(bench.session.receive(gdb_packet("D")) == gdb_packet("OK"));
-    CHECK(bench.test.chip.run_until(bench.test.chip.now() + ticks(0.001)) == Stop::locked_up);
+    CHECK(gdb.session.receive(gdb_packet("D")) == gdb_packet("OK"));
+    CHECK(gdb.test.chip.run_until(gdb.test.chip.now() + ticks(0.001)) == Stop::locked_up);
   }
 
   TEST_CASE("GDB mends what would have failed: registers and memory can be written") {
-    Bench bench("lock_up");
+    Debugger gdb("lock_up");
     char packet[32];
     std::snprintf(packet, sizeof packet, "Z0,%x,2", static_cast<unsigned>(place_of_fault()));
-    bench.ask(packet);
-    bench.ask("c");
-    bench.run();
+    gdb.ask(packet);
+    gdb.ask("c");
+    gdb.run();
     packet[0] = 'z';
-    CHECK(bench.ask(packet) == "OK");
-    CHECK(bench.ask("M2001e000,4:2a000000") == "OK");
-    CHECK(bench.ask("m2001e000,4") == "2a000000");
-    CHECK(bench.ask("P0=00e00120") == "OK");
-    CHECK(bench.ask("s").empty());
-    bench.run();
-    CHECK(bench.ask("p0") == "2a000000");
-    const std::string all = bench.ask("g");
+    CHECK(gdb.ask(packet) == "OK");
+    CHECK(gdb.ask("M2001e000,4:2a000000") == "OK");
+    CHECK(gdb.ask("m2001e000,4") == "2a000000");
+    CHECK(gdb.ask("P0=00e00120") == "OK");
+    CHECK(gdb.ask("s").empty());
+    gdb.run();
+    CHECK(gdb.ask("p0") == "2a000000");
+    const std::string all = gdb.ask("g");
     CHECK(all.size() == 2 * (17 * 4 + 16 * 8 + 4));
-    CHECK(bench.ask("G" + all) == "OK");
-    CHECK(bench.ask("g") == all);
-    CHECK(bench.ask("m60000000,4") == "E0e");
-    CHECK(bench.ask("M08000000,4:00000000") == "E0e");
-    CHECK(bench.ask("me000ed00,4") == "41c20f41");  // CPUID, a register
-    CHECK(bench.test.log.empty());
+    CHECK(gdb.ask("G" + all) == "OK");
+    CHECK(gdb.ask("g") == all);
+    CHECK(gdb.ask("m60000000,4") == "E0e");
+    CHECK(gdb.ask("M08000000,4:00000000") == "E0e");
+    CHECK(gdb.ask("me000ed00,4") == "41c20f41");  // CPUID, a register
+    CHECK(gdb.test.log.empty());
   }
 
   TEST_CASE("a watch point stops behind the instruction that touches it") {
-    Bench bench("lock_up");
-    CHECK(bench.ask("Z2,2001f000,4") == "OK");  // results[0]
-    bench.ask("c");
-    CHECK(bench.run() == "T05thread:1;watch:2001f000;");
-    CHECK(bench.test.result(0) == finished);
-    CHECK(bench.ask("z2,2001f000,4") == "OK");
-    bench.ask("c");
-    CHECK(bench.run() == "T05thread:1;");  // the handler's breakpoint
+    Debugger gdb("lock_up");
+    CHECK(gdb.ask("Z2,2001f000,4") == "OK");  // results[0]
+    gdb.ask("c");
+    CHECK(gdb.run() == "T05thread:1;watch:2001f000;");
+    CHECK(gdb.test.result(0) == finished);
+    CHECK(gdb.ask("z2,2001f000,4") == "OK");
+    gdb.ask("c");
+    CHECK(gdb.run() == "T05thread:1;");  // the handler's breakpoint
   }
 
   TEST_CASE("a step does not go into interrupts, which come after it") {
-    Bench bench("exceptions");
-    bench.ask("c");
-    while (bench.test.chip.counters().exceptions[15].count < 3) CHECK(bench.run(1e-6).empty());
-    CHECK(Bench::payload(bench.session.receive("\x03")) == "T02thread:1;");
-    const auto before = bench.test.chip.counters().exceptions[15].count;
-    REQUIRE((bench.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 0);
+    Debugger gdb("exceptions");
+    gdb.ask("c");
+    while (gdb.test.chip.counters().exceptions[15].count < 3) CHECK(gdb.run(1e-6).empty());
+    CHECK(Debugger::payload(gdb.session.receive("\x03")) == "T02thread:1;");
+    const auto before = gdb.test.chip.counters().exceptions[15].count;
+    REQUIRE((gdb.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 0);
     for (int i = 0; i < 20; ++i) {
-      bench.ask("s");
-      CHECK(bench.run(1e-3) == "T05thread:1;");
-      REQUIRE((bench.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 0);
+      gdb.ask("s");
+      CHECK(gdb.run(1e-3) == "T05thread:1;");
+      REQUIRE((gdb.test.chip.debug_port().core_registers().xpsr & 0x1FF) == 0);
     }
-    CHECK(bench.test.chip.counters().exceptions[15].count == before);
-    bench.ask("c");
-    bench.run(0.001);
-    CHECK(bench.test.chip.counters().exceptions[15].count > before);
+    CHECK(gdb.test.chip.counters().exceptions[15].count == before);
+    gdb.ask("c");
+    gdb.run(0.001);
+    CHECK(gdb.test.chip.counters().exceptions[15].count > before);
   }
 
   TEST_CASE("a lock-up and a reset") {
-    Bench bench("no_handler");
-    bench.ask("c");
-    const std::string wire = bench.session.report(bench.test.chip.run_until(ticks(0.001)));
-    CHECK(Bench::payload(wire) == "T0bthread:1;");
+    Debugger gdb("no_handler");
+    gdb.ask("c");
+    const std::string wire = gdb.session.report(gdb.test.chip.run_until(ticks(0.001)));
+    CHECK(Debugger::payload(wire) == "T0bthread:1;");
     CHECK(wire.find("$O") == 0);
-    CHECK(bench.ask("qRcmd," + hexadecimal(std::string_view("reset"))) == "OK");
-    CHECK(bench.pc() == (bench.test.chip.memory_word(0x0800'0004) & ~1u));
-    CHECK(bench.ask("qRcmd," + hexadecimal(std::string_view("dance"))).size() > 20);
+    CHECK(gdb.ask("qRcmd," + hexadecimal(std::string_view("reset"))) == "OK");
+    CHECK(gdb.pc() == (gdb.test.chip.memory_word(0x0800'0004) & ~1u));
+    CHECK(gdb.ask("qRcmd," + hexadecimal(std::string_view("dance"))).size() > 20);
   }
 
   TEST_CASE("GDB learns what the target is, in parts") {
-    Bench bench("lock_up");
-    CHECK(bench.ask("qSupported:xmlRegisters=arm").find("qXfer:features:read+") != std::string::npos);
+    Debugger gdb("lock_up");
+    CHECK(gdb.ask("qSupported:xmlRegisters=arm").find("qXfer:features:read+") != std::string::npos);
     std::string text;
     for (;;) {
       char packet[64];
       std::snprintf(packet, sizeof packet, "qXfer:features:read:target.xml:%zx,100", text.size());
-      const std::string part = bench.ask(packet);
+      const std::string part = gdb.ask(packet);
       REQUIRE_FALSE(part.empty());
       text += part.substr(1);
       if (part[0] == 'l') break;
@@ -157,14 +157,14 @@ TEST_SUITE("virtual board: debugger") {
   }
 
   TEST_CASE("nonsense is refused, and no packet makes it fall over") {
-    Bench bench("lock_up");
+    Debugger gdb("lock_up");
     for (const char* packet : {"m", "m20000000", "mzz,4", "m20000000,fffffff", "M20000000,4:00", "P0", "P99=00000000",
                                "p99", "G00", "Z1", "Z1,zz,2", "qXfer:features:read:target.xml:0", "qRcmd,0"})
-      CHECK(bench.ask(packet) == "E01");
+      CHECK(gdb.ask(packet) == "E01");
     for (const char* packet : {"", "!", "vRun", "vCont;", "vCont;q", "Z9,0,2", "qUnknown", "c20000000"})
-      CHECK(bench.ask(packet).empty());
-    CHECK(bench.session.halted());
-    CHECK(bench.ask("mfffffffe,10") == "E0e");
-    CHECK(bench.session.receive("$g#00") == "");
+      CHECK(gdb.ask(packet).empty());
+    CHECK(gdb.session.halted());
+    CHECK(gdb.ask("mfffffffe,10") == "E0e");
+    CHECK(gdb.session.receive("$g#00") == "");
   }
 }
