@@ -50,12 +50,13 @@ def running(name: str, *arguments: str) -> Iterator[subprocess.Popen]:
 
 
 def in_each_language(*names: str) -> Callable[[Callable], Callable]:
-    """Runs a test once for each of these examples, which do the same, beside a board of its own."""
+    """Runs a test once for each of these examples, which do the same."""
     def decorate(test: Callable) -> Callable:
         def in_turn(self: unittest.TestCase) -> None:
-            for name in names:
-                with self.subTest(name), VirtualBoard(BUILD) as board:
-                    test(self, name, board)
+            with VirtualBoard(BUILD) as board:
+                for name in names:
+                    with self.subTest(name):
+                        test(self, name, board)
         return in_turn
     return decorate
 

@@ -6,6 +6,7 @@ import pathlib
 import re
 import socket
 import subprocess
+import time
 from collections.abc import Callable, Sequence
 
 import inkwell
@@ -94,6 +95,7 @@ class VirtualBoard:
                 return now
             if now["board_time_s"] > begin_s + limit_s:
                 raise AssertionError(f"within {limit_s} s it did not come to this; last: {now}")
+            time.sleep(0.005)  # the board answers by stopping what it does
 
     def let_pass(self, duration_s: float) -> None:
         end_s = self.truth()["board_time_s"] + duration_s
