@@ -219,11 +219,21 @@ inline constexpr auto watch_table = [] {
 using Watches = std::uint32_t;
 static_assert(watch_table.size() <= 32);
 
+namespace detail {
+/// By the fault's code. A search would not be over before the firmware runs once the table is long.
+inline constexpr auto places = [] {
+  std::array<std::uint8_t, fault_table.size()> result{};
+  result.fill(static_cast<std::uint8_t>(watch_table.size()));
+  for (std::size_t i = 0; i < watch_table.size(); ++i)
+    result[static_cast<std::size_t>(watch_table[i].fault)] = static_cast<std::uint8_t>(i);
+  return result;
+}();
+}  // namespace detail
+
 /// The place of a fault in the table.
 constexpr std::size_t place_of(Fault fault) {
-  for (std::size_t i = 0; i < watch_table.size(); ++i)
-    if (watch_table[i].fault == fault) return i;
-  return watch_table.size();
+  const auto code = static_cast<std::size_t>(fault);
+  return code < detail::places.size() ? detail::places[code] : watch_table.size();
 }
 constexpr Watches watch(Fault fault) { return 1u << place_of(fault); }
 constexpr Watches watch(Fault fault, bool is_found) { return static_cast<Watches>(is_found) << place_of(fault); }
