@@ -113,8 +113,7 @@ protocol::ParameterSet read_parameters(const Section& section) {
 
 Motor read_motor(const Section& section) {
   Motor motor{};
-  const Number numbers[] = {{"resistance_ohm", &motor.resistance_ohm, 0.01, 1000},
-                            {"inductance_H", &motor.inductance_H, 1e-6, 1}};
+  const Number numbers[] = {{"inductance_H", &motor.inductance_H, 1e-6, 1}};
   read_numbers(section, numbers);
   return motor;
 }

@@ -175,7 +175,19 @@ void Controller::find_current_references(const Settings& settings) {
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
 }
 
+void Controller::watch_motors(const Settings& settings) {
+  if (!force_is_on()) {
+    motor_watch_ = {};
+    return;
+  }
+  if (!fits(motor_watch_, current_A_, joint_speed_rad_per_s_, settings.motor_model)) [[unlikely]]
+    raise(Fault::motor_implausible);
+  // What the bridges were told in the period before is what they do until the next.
+  turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V);
+}
+
 void Controller::regulate_currents(const Settings& settings) {
+  watch_motors(settings);
   drive_ = {};
   if (!force_is_on() && !test_.runs()) {
     loops_ = {};

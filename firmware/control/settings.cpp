@@ -64,6 +64,17 @@ Motors motors(const ParameterSet& set) {
   return motors;
 }
 
+MotorModel motor_model(const ParameterSet& set) {
+  const Triple ratio = set.of_each(Parameter::gear_ratio_1);
+  const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
+  const Triple reversed = set.of_each(Parameter::motor_1_reversed);
+  MotorModel model{set.of_each(Parameter::motor_resistance_1_ohm), {}};
+  // A newton metre for an ampere is a volt second for a radian.
+  for (std::size_t i = 0; i < 3; ++i)
+    model.back_emf_Vs_per_rad[i] = sign(reversed[i]) * ratio[i] * constant_Nm_per_A[i];
+  return model;
+}
+
 HeatScale heat(const ParameterSet& set) {
   const Triple continuous_A = set.of_each(Parameter::continuous_current_1_A);
   constexpr auto readings = static_cast<float>(MotorHeat::readings_per_update);
@@ -135,6 +146,7 @@ Settings prepare(const ParameterSet& parameters) {
           .ramp_per_period = ramp_per_period(parameters[Parameter::force_ramp_s]),
           .motors = motors(parameters),
           .heat = heat(parameters),
+          .motor_model = motor_model(parameters),
           .current_loop = {parameters[Parameter::current_proportional_gain_V_per_A],
                            parameters[Parameter::current_integral_gain_V_per_As] * protocol::servo_period_s * 0.5f,
                            parameters[Parameter::voltage_limit_V]},

@@ -27,12 +27,25 @@ constexpr bool is_capital_of(std::string_view c, std::string_view prefix, std::s
   });
 }
 
-constexpr Code faults[] = {
-    CODE(FAULT_NONE),           CODE(FAULT_BRIDGE_FAULT),  CODE(FAULT_SUPPLY_LOW),     CODE(FAULT_SUPPLY_HIGH),
-    CODE(FAULT_CURRENT_SENSOR), CODE(FAULT_OVER_CURRENT),  CODE(FAULT_OVER_SPEED),     CODE(FAULT_ENCODER_IMPLAUSIBLE),
-    CODE(FAULT_HOST_SILENT),    CODE(FAULT_SERVO_OVERRUN), CODE(FAULT_WATCHDOG),       CODE(FAULT_PROCESSOR_FAULT),
-    CODE(FAULT_NOT_FINITE),     CODE(FAULT_SAMPLES_STALE), CODE(FAULT_CRYSTAL_FAILED), CODE(FAULT_FORCE_LAW),
-    CODE(FAULT_MOTOR_HOT),      CODE(FAULT_MEMORY_DAMAGED)};
+constexpr Code faults[] = {CODE(FAULT_NONE),
+                           CODE(FAULT_BRIDGE_FAULT),
+                           CODE(FAULT_SUPPLY_LOW),
+                           CODE(FAULT_SUPPLY_HIGH),
+                           CODE(FAULT_CURRENT_SENSOR),
+                           CODE(FAULT_OVER_CURRENT),
+                           CODE(FAULT_OVER_SPEED),
+                           CODE(FAULT_ENCODER_IMPLAUSIBLE),
+                           CODE(FAULT_HOST_SILENT),
+                           CODE(FAULT_SERVO_OVERRUN),
+                           CODE(FAULT_WATCHDOG),
+                           CODE(FAULT_PROCESSOR_FAULT),
+                           CODE(FAULT_NOT_FINITE),
+                           CODE(FAULT_SAMPLES_STALE),
+                           CODE(FAULT_CRYSTAL_FAILED),
+                           CODE(FAULT_FORCE_LAW),
+                           CODE(FAULT_MOTOR_HOT),
+                           CODE(FAULT_MEMORY_DAMAGED),
+                           CODE(FAULT_MOTOR_IMPLAUSIBLE)};
 static_assert(std::ranges::equal(faults, protocol::fault_table, [](const Code& c, const protocol::CodeInfo& row) {
   return c.value == row.code && is_capital_of(c.name, "FAULT_", row.name);
 }));

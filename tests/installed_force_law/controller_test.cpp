@@ -21,7 +21,7 @@ using protocol::State;
 
 /// Up with 0.5 N, at once and with the largest force far away.
 Settings settings_with_law() {
-  protocol::ParameterSet set = tests::paper_parameters();
+  protocol::ParameterSet set = tests::without_motors(tests::paper_parameters());
   set[protocol::Parameter::force_ramp_s] = 0.0f;
   Settings settings = control::prepare(set);
   settings.force_law = {0.5f, 1.0f};

@@ -25,7 +25,11 @@ using namespace std::chrono_literals;
 
 namespace {
 
-arms::Motor simulated_motor() { return arms::read(INKWELL_SOURCE_DIRECTORY "/boards/arms/omni.toml").motor; }
+arms::Description simulated_arm() { return arms::read(INKWELL_SOURCE_DIRECTORY "/boards/arms/omni.toml"); }
+arms::Motor simulated_motor() { return simulated_arm().motor; }
+double simulated_resistance_ohm() {
+  return static_cast<double>(simulated_arm().parameters[protocol::Parameter::motor_resistance_1_ohm]);
+}
 
 nlohmann::json guide(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--virtual", "--yes", "--json"});
@@ -43,7 +47,7 @@ TEST_CASE("current-loop tuning finds the simulated motors within 5 % and its gai
   CHECK(result.at("applied") == false);
   REQUIRE(result.at("motors").size() == 3);
   for (const auto& motor : result.at("motors")) {
-    CHECK(motor.at("resistance_ohm").get<double>() == doctest::Approx(simulated_motor().resistance_ohm).epsilon(0.05));
+    CHECK(motor.at("resistance_ohm").get<double>() == doctest::Approx(simulated_resistance_ohm()).epsilon(0.05));
     CHECK(motor.at("inductance_H").get<double>() == doctest::Approx(simulated_motor().inductance_H).epsilon(0.05));
     CHECK(std::abs(motor.at("delay_s").get<double>() - 50e-6) < 10e-6);
   }

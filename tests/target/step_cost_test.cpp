@@ -53,10 +53,13 @@ struct StageClock {
   }
 };
 
-/// A box far from the arm, so that every step is in contact with three walls and at the force limit.
+/// A box far from the arm, so that every step is in contact with three walls and at the force limit. The motors are
+/// none: no current flows, and they turn without a voltage.
 protocol::ParameterSet parameters_out_of_box() {
   using enum protocol::Parameter;
-  protocol::ParameterSet set = tests::omni_parameters();
+  protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
+  for (const auto constant : {torque_constant_1_Nm_per_A, torque_constant_2_Nm_per_A, torque_constant_3_Nm_per_A})
+    set[constant] = protocol::info(constant).minimum;
   set[box_minimum_x_m] = set[box_minimum_y_m] = set[box_minimum_z_m] = 0.4f;
   set[box_maximum_x_m] = set[box_maximum_y_m] = set[box_maximum_z_m] = 0.5f;
   return set;

@@ -20,12 +20,13 @@ Vector3 inkwell_joints_rad(const arms::Description& arm) {
 
 constexpr double shunt_ohm = static_cast<double>(board::shunt_ohm);
 
-MotorConstants with_shunt(const arms::Description& arm) {
-  return {arm.motor.resistance_ohm + shunt_ohm, arm.motor.inductance_H};
+MotorConstants with_shunt(const arms::Description& arm, unsigned motor) {
+  return {static_cast<double>(arm.parameters[of_axis(Parameter::motor_resistance_1_ohm, motor)]) + shunt_ohm,
+          arm.motor.inductance_H};
 }
 
-MotorDrive motor_drive(const arms::Description& arm, const Imperfections& imperfections) {
-  return {with_shunt(arm), imperfections, static_cast<double>(board::bridge_dead_time_s)};
+MotorDrive motor_drive(const arms::Description& arm, unsigned motor, const Imperfections& imperfections) {
+  return {with_shunt(arm, motor), imperfections, static_cast<double>(board::bridge_dead_time_s)};
 }
 
 double sound_torque_per_A(const arms::Description& arm, unsigned motor) {
@@ -62,9 +63,10 @@ PinLevel fault_wire(bool fault) { return fault ? PinLevel::low : PinLevel::high;
 
 Plant::Plant(const arms::Description& arm, const PlantOptions& options)
     : imperfections_(options.imperfections),
-      motors_{motor_drive(arm, imperfections_), motor_drive(arm, imperfections_), motor_drive(arm, imperfections_)},
+      motors_{motor_drive(arm, 0, imperfections_), motor_drive(arm, 1, imperfections_),
+              motor_drive(arm, 2, imperfections_)},
       supply_(imperfections_, static_cast<double>(board::supply_nominal_V)),
-      winding_(with_shunt(arm)),
+      windings_{with_shunt(arm, 0), with_shunt(arm, 1), with_shunt(arm, 2)},
       torque_per_A_{sound_torque_per_A(arm, 0), sound_torque_per_A(arm, 1), sound_torque_per_A(arm, 2)},
       arm_(arm, inkwell_joints_rad(arm)),
       probe_m_(arm_.dynamics().position_m(arm_.joints_rad())),
@@ -308,8 +310,8 @@ void Plant::set_motor_fault(unsigned motor, const MotorFault& fault) {
   motor_faults_[motor] = fault;
   std::optional<MotorConstants> left;
   if (!fault.open)
-    left = MotorConstants{(winding_.resistance_ohm - shunt_ohm) * fault.resistance_factor() + shunt_ohm,
-                          winding_.inductance_H * fault.inductance_factor()};
+    left = MotorConstants{(windings_[motor].resistance_ohm - shunt_ohm) * fault.resistance_factor() + shunt_ohm,
+                          windings_[motor].inductance_H * fault.inductance_factor()};
   motors_[motor].set_winding(left, now_);
 }
 

@@ -27,7 +27,8 @@ namespace inkwell::protocol {
   X(14, crystal_failed, "The board's crystal stopped, or swung late; the motors were off until the board had started anew.", "Check the crystal, its two capacitors and their joints, then clear the fault. If it comes back, replace the crystal.") \
   X(15, force_law, "The force law of this image gave a force that is no finite number.", "Look in the force law for a division by zero, the root of a negative number or a state that grows without end, or put its parameters back to their defaults. Then clear the fault.") \
   X(16, motor_hot, "A motor is a quarter hotter than it bears, although its current is held back.", "Let it cool below 85 %; while it does, check its wiring and its current sensor, or what tested it. Then clear the fault.") \
-  X(17, memory_damaged, "A bit of the firmware, or of the parameters that it works with, has changed by itself in memory.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.")
+  X(17, memory_damaged, "A bit of the firmware, or of the parameters that it works with, has changed by itself in memory.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
+  X(18, motor_implausible, "A motor's voltage, current and speed do not belong together.", "Check the motor's wires, its shunt amplifier and its encoder. `inkwell tune current-loop` measures the motor's resistance, by which this is judged. Then clear the fault.")
 
 /// X(code, name, cause, remedy)
 #define INKWELL_REFUSALS(X)                                                                                                       \

@@ -49,6 +49,9 @@ enum class ParameterKind : std::uint8_t {
   X(300, current_proportional_gain_V_per_A, real, "V/A", 0.0f, 10.0f, arm_defaults::current_proportional_gain_V_per_A, "current loop", "Proportional gain of the current loops. The inductance times the wanted bandwidth in rad/s.") \
   X(301, current_integral_gain_V_per_As, real, "V/(As)", 0.0f, 60000.0f, arm_defaults::current_integral_gain_V_per_As, "current loop", "Integral gain of the current loops. The resistance times the wanted bandwidth in rad/s.") \
   X(302, voltage_limit_V, real, "V", 0.0f, 24.0f, 16.0f, "current loop", "Largest voltage that a current loop may put on a motor; the supply bounds it as well.") \
+  X(303, motor_resistance_1_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_1_ohm, "current loop", "Resistance of motor 1's winding. A voltage on the motor that it does not explain takes the force away; the tuning of the current loops measures it.") \
+  X(304, motor_resistance_2_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_2_ohm, "current loop", "Resistance of motor 2's winding.") \
+  X(305, motor_resistance_3_ohm, real, "ohm", 0.1f, 100.0f, arm_defaults::motor_resistance_3_ohm, "current loop", "Resistance of motor 3's winding.") \
   X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Largest current asked of motor 1. Where a motor reaches its limit all give way together; one with 0 takes no part.") \
   X(401, current_limit_2_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_2_A, "limits", "Largest current asked of motor 2.") \
   X(402, current_limit_3_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_3_A, "limits", "Largest current asked of motor 3.") \

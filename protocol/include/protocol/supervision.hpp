@@ -208,6 +208,7 @@ inline constexpr auto watch_table = [] {
       {Fault::supply_high, started, when_gone, coast},
       {Fault::bridge_fault, started, when_gone, coast},
       {Fault::over_current, started, when_gone, coast},
+      {Fault::motor_implausible, with_force, at_once, coast},
       {Fault::motor_hot, started, when_gone, coast},
       {Fault::encoder_implausible, moving, at_once, coast},
       {Fault::over_speed, with_force, at_once, brake},

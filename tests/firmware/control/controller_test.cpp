@@ -22,7 +22,7 @@ using protocol::State;
 /// The paper's arm with a box in which the inkwell's pose is 2 mm inside the upper x wall, without damping.
 Settings settings_near_wall() {
   using enum protocol::Parameter;
-  protocol::ParameterSet set = tests::paper_parameters();
+  protocol::ParameterSet set = tests::without_motors(tests::paper_parameters());
   const Settings plain = control::prepare(set);
   const control::Vector3 inkwell_m = control::forward_kinematics(plain.encoders.inkwell_rad, plain.arm).position_m;
   set[sphere_radius_m] = 0.0f;
@@ -231,7 +231,7 @@ TEST_CASE("a probe beyond its speed limit is let go") {
   Controller controller = tests::active_controller(settings);
   Samples samples = tests::samples_at_rest();
   for (int i = 0; i < 60 && protocol::force_is_on(controller.state()); ++i) {
-    samples.encoder_counts[0] += 80;  // 0.5 rad/ms at the waist
+    samples.encoder_counts[0] += 8;  // 0.05 rad/ms at the waist
     tests::run(controller, samples, settings, 1);
   }
   CHECK(controller.fault() == Fault::over_speed);

@@ -15,7 +15,7 @@ using namespace inkwell;
 using control::CurrentLoop;
 using control::CurrentLoopGains;
 
-constexpr double resistance_ohm = arm_defaults::motor::resistance_ohm;
+constexpr double resistance_ohm = arm_defaults::motor_resistance_1_ohm;
 constexpr double inductance_H = arm_defaults::motor::inductance_H;
 
 struct Motor {

@@ -20,7 +20,7 @@ constexpr float wall_depth_m = 0.001f;
 
 /// The inkwell lies 1 mm deep in the lower wall along z and far from the others; walls are all spring.
 protocol::ParameterSet parameters_in_wall() {
-  protocol::ParameterSet set = tests::omni_parameters();
+  protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
   const control::Settings settings = control::prepare(set);
   const float z_m = control::forward_kinematics(settings.encoders.inkwell_rad, settings.arm).position_m.z;
   set[Parameter::box_minimum_x_m] = set[Parameter::box_minimum_y_m] = -0.5f;

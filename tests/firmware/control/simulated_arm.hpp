@@ -33,6 +33,12 @@ inline protocol::CommandReport command(protocol::Command which) {
   return report;
 }
 
+/// For a rig in which no current flows: its loops may ask for less voltage than may be missed in a motor.
+inline protocol::ParameterSet without_motors(protocol::ParameterSet set) {
+  set[protocol::Parameter::voltage_limit_V] = 0.9f * control::MotorWatch::bearable_V;
+  return set;
+}
+
 /// Steps with unchanged samples.
 inline control::Drive run(control::Controller& controller, const control::Samples& samples,
                           const control::Settings& settings, std::uint32_t periods) {

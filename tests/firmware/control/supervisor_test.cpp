@@ -77,23 +77,15 @@ std::vector<FaultCase> fault_cases() {
   const std::vector<State> started{State::unreferenced, State::ready, State::ramping, State::active, State::limited};
   const std::vector<State> all{State::starting, State::unreferenced, State::ready,
                                State::ramping,  State::active,       State::limited};
-  return {{Fault::memory_damaged, all, false},
-          {Fault::crystal_failed, all, true},
-          {Fault::processor_fault, all, true},
-          {Fault::watchdog, all, true},
-          {Fault::servo_overrun, all, true},
-          {Fault::not_finite, all, false},
-          {Fault::force_law, all, true},
-          {Fault::current_sensor, all, false},
-          {Fault::samples_stale, started, false},
-          {Fault::supply_low, started, false},
-          {Fault::supply_high, started, false},
-          {Fault::bridge_fault, started, false},
-          {Fault::over_current, started, false},
-          {Fault::motor_hot, started, false},
-          {Fault::encoder_implausible, moving, true},
-          {Fault::over_speed, force, true},
-          {Fault::host_silent, force, true}};
+  return {{Fault::memory_damaged, all, false},    {Fault::crystal_failed, all, true},
+          {Fault::processor_fault, all, true},    {Fault::watchdog, all, true},
+          {Fault::servo_overrun, all, true},      {Fault::not_finite, all, false},
+          {Fault::force_law, all, true},          {Fault::current_sensor, all, false},
+          {Fault::samples_stale, started, false}, {Fault::supply_low, started, false},
+          {Fault::supply_high, started, false},   {Fault::bridge_fault, started, false},
+          {Fault::over_current, started, false},  {Fault::motor_implausible, force, true},
+          {Fault::motor_hot, started, false},     {Fault::encoder_implausible, moving, true},
+          {Fault::over_speed, force, true},       {Fault::host_silent, force, true}};
 }
 
 TEST_CASE("each fault is looked for in its states and in no other") {

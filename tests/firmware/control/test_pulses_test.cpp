@@ -64,7 +64,8 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
 float shown_A(float current_A) { return std::clamp(current_A, -3.6f, 3.6f); }
 
 TEST_CASE("a current that its sensor cannot show trips within two control periods, at the largest limit too") {
-  using namespace arm_defaults::motor;
+  using arm_defaults::motor::inductance_H;
+  constexpr float resistance_ohm = arm_defaults::motor_resistance_1_ohm;
   for (const float amplitude_V : {16.0f, -16.0f}) {
     CAPTURE(amplitude_V);
     protocol::ParameterSet set = tests::paper_parameters();

@@ -60,8 +60,10 @@ class SimulatedArm {
     for (std::size_t i = 0; i < 3; ++i) {
       const float Nm_per_A = 1.0f / settings_.motors.ampere_per_Nm[i];
       const float voltage_V = drive.enabled ? drive.duty[i] * supply_V - speed_rad_per_s_[i] * Nm_per_A : 0.0f;
-      current_A_[i] =
-          drive.enabled ? current_A_[i] + step_s / inductance_H * (voltage_V - resistance_ohm * current_A_[i]) : 0.0f;
+      current_A_[i] = drive.enabled
+                          ? current_A_[i] + step_s / inductance_H *
+                                                (voltage_V - settings_.motor_model.resistance_ohm[i] * current_A_[i])
+                          : 0.0f;
       const float friction_Nm =
           coulomb_Nm * std::tanh(speed_rad_per_s_[i] / 0.005f) + viscous_Nms_per_rad * speed_rad_per_s_[i];
       const float torque_Nm = current_A_[i] * Nm_per_A + hand_Nm[i] - friction_Nm;

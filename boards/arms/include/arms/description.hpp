@@ -11,9 +11,8 @@
 
 namespace inkwell::arms {
 
-/// The winding of the three motors, which are alike.
+/// What is not a parameter of the three motors, which are alike in it.
 struct Motor {
-  double resistance_ohm;
   double inductance_H;
 };
 

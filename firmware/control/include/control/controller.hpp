@@ -96,6 +96,7 @@ class Controller {
   void find_pose(const Settings& settings);
   void render_force(const Settings& settings);
   void find_current_references(const Settings& settings);
+  void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void change_state(const Supervisor& next);
@@ -112,6 +113,7 @@ class Controller {
   std::size_t turn_ = 0;  ///< of the joints, motors and gimbal angles, where one a period is enough
   std::array<CurrentLoop, 3> loops_{};
   MotorHeat heat_;
+  MotorWatch motor_watch_;
   TestPulse test_;
   Supervisor supervisor_;
   Situation asked_;  ///< requests and faults from outside, since the period before

@@ -9,6 +9,7 @@
 #include <control/installed_force_law.hpp>
 #include <control/kinematics.hpp>
 #include <control/motor_heat.hpp>
+#include <control/motor_watch.hpp>
 #include <control/program_force.hpp>
 #include <control/torque.hpp>
 #include <protocol/parameters.hpp>
@@ -44,6 +45,7 @@ struct Settings {
   float ramp_per_period;  ///< rise of the force's gain in one control period
   Motors motors;
   HeatScale heat;
+  MotorModel motor_model;
   CurrentLoopGains current_loop;
   Limits limits;
 };

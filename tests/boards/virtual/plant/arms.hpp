@@ -30,9 +30,14 @@ inline double torque_Nm_per_A(const arms::Description& arm, unsigned motor) {
          static_cast<double>(p[of_axis(protocol::Parameter::torque_constant_1_Nm_per_A, motor)]);
 }
 
+/// Of the motors' windings, which are alike.
+inline double winding_ohm(const arms::Description& arm) {
+  return static_cast<double>(arm.parameters[protocol::Parameter::motor_resistance_1_ohm]);
+}
+
 /// All that a motor's current flows through: winding, shunt and the switches of both legs.
 inline double circuit_ohm(const arms::Description& arm) {
-  return arm.motor.resistance_ohm + static_cast<double>(board::shunt_ohm) +
+  return winding_ohm(arm) + static_cast<double>(board::shunt_ohm) +
          2.0 * virtual_board::Imperfections{}.leg_resistance_ohm;
 }
 

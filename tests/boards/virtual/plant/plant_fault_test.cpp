@@ -128,7 +128,7 @@ TEST_CASE("an open motor has no current and no torque, at once, and both again w
 
 TEST_CASE("shorted turns and heat change current and torque as copper and magnets do") {
   const auto arm = test::omni();
-  const double shunt_and_legs_ohm = test::circuit_ohm(arm) - arm.motor.resistance_ohm;
+  const double shunt_and_legs_ohm = test::circuit_ohm(arm) - test::winding_ohm(arm);
   const auto steady = [&](const MotorFault& fault) {
     DrivenPlant driven(arm);
     driven.plant.set_motor_fault(2, fault);
@@ -147,8 +147,8 @@ TEST_CASE("shorted turns and heat change current and torque as copper and magnet
     return (t.supply_V - constant * std::abs(t.joint_speeds_rad_s[2])) / std::abs(t.current_A[2]);
   };
   CHECK(ohm(sound, 1.0) == doctest::Approx(test::circuit_ohm(arm)).epsilon(0.03));
-  CHECK(ohm(shorted, 0.5) == doctest::Approx(0.5 * arm.motor.resistance_ohm + shunt_and_legs_ohm).epsilon(0.05));
-  CHECK(ohm(hot, 0.8) == doctest::Approx(1.393 * arm.motor.resistance_ohm + shunt_and_legs_ohm).epsilon(0.03));
+  CHECK(ohm(shorted, 0.5) == doctest::Approx(0.5 * test::winding_ohm(arm) + shunt_and_legs_ohm).epsilon(0.05));
+  CHECK(ohm(hot, 0.8) == doctest::Approx(1.393 * test::winding_ohm(arm) + shunt_and_legs_ohm).epsilon(0.03));
   const double constant = test::torque_Nm_per_A(arm, 2);
   CHECK(std::abs(shorted.torque_Nm[2] / shorted.current_A[2]) == doctest::Approx(0.5 * constant));
   CHECK(std::abs(hot.torque_Nm[2] / hot.current_A[2]) == doctest::Approx(0.8 * constant));

@@ -113,7 +113,7 @@ class Plant final : public Circuit {
   std::array<std::array<PinLevel, 2>, 3> leg_pins_;
   bool bridges_enabled_ = false, bridge_fault_ = false;
   Supply supply_;
-  MotorConstants winding_;  ///< and shunt, of each sound motor
+  std::array<MotorConstants, 3> windings_;  ///< and shunts, of sound motors
   std::array<MotorFault, 3> motor_faults_{};
   std::array<ShuntFault, 3> shunt_faults_{};
   std::array<std::array<LegFault, 2>, 3> leg_faults_{};

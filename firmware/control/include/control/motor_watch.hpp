@@ -1,0 +1,55 @@
+// Whether a motor's voltage, current and speed fit together.
+//
+// A motor takes the voltage R i + k w: its resistance times its current, and its back EMF. The voltage is the one that
+// its bridge was told, the current comes from the shunt, the speed from the encoder. A current reading that stands
+// still, is another motor's or is too small makes the current loop drive the motor with a voltage that the reading does
+// not explain; so does a motor that is open, or a leg of its bridge that does not follow. The force is then any.
+//
+// Both sides are compared as long as the bridges drive by their current loops. What they differ by beyond what a sound
+// motor may is summed over time, to a flux: an inductance that is left out of the equation adds no more than its own
+// L di to it, and a large difference is noticed sooner than a small one.
+#pragma once
+
+#include <cstddef>
+
+#include <control/vector.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell::control {
+
+/// What a sound motor's voltage goes into.
+struct MotorModel {
+  Triple resistance_ohm;
+  Triple
+      back_emf_Vs_per_rad;  ///< gear ratio times torque constant, of the joint's speed; negative for a reversed motor
+};
+
+struct MotorWatch {
+  /// Dead time and switches of the bridges take half a volt, and the speed of an arm that is being stopped is known a
+  /// millisecond late.
+  static constexpr float bearable_V = 1.5f;
+  /// Copper that is 100 K hotter than where it was measured has 39 % more resistance; switches and shunt add 4 %.
+  static constexpr float bearable_part_of_resistance = 0.5f;
+  /// Its magnets have then 20 % less.
+  static constexpr float bearable_part_of_back_emf = 0.25f;
+  /// A motor of 0.24 mH takes 1.2 mVs to turn its current round from one limit to the other.
+  static constexpr float bearable_flux_Vs = 0.003f;
+
+  /// The motors take turns, so a reading stands for three periods.
+  static constexpr float bearable_sum_V = bearable_flux_Vs / (3.0f * protocol::servo_period_s);
+
+  Triple beyond_V{};       ///< of each motor, the sum of what was beyond the bearable; 0 while its bridge is off
+  std::size_t motor = 0;   ///< whose turn it is, 0..2
+  float voltage_V = 0.0f;  ///< that its bridge had in the period that the present reading ends
+};
+
+/// One control period: whether the motor whose turn it is still fits. `joint_speed_rad_per_s` belongs to it as well.
+bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s, const MotorModel& model);
+
+/// Ends the period: `motor`, 0..2, is next, and `voltage_V` is what its bridge is to have until then.
+inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V) {
+  watch.motor = motor;
+  watch.voltage_V = voltage_V;
+}
+
+}  // namespace inkwell::control

@@ -1,0 +1,184 @@
+// What a sound motor may differ by from R i + k w, what it may not, and that the controller asks all three.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <firmware/control/arms.hpp>
+#include <firmware/control/simulated_arm.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::fits;
+using control::MotorModel;
+using control::MotorWatch;
+using control::Triple;
+using protocol::Fault;
+
+constexpr MotorModel model{{2.0f, 4.0f, 8.0f}, {0.3f, -0.2f, 0.1f}};
+constexpr int never = 100'000;
+
+/// Looks at one motor in which nothing changes; how many it takes until it does not fit.
+int looks(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s) {
+  MotorWatch watch;
+  Triple currents_A{}, speeds_rad_per_s{};
+  currents_A[motor] = current_A;
+  speeds_rad_per_s[motor] = joint_speed_rad_per_s;
+  for (int look = 1; look < never; ++look) {
+    turn_to(watch, motor, voltage_V);
+    if (!fits(watch, currents_A, speeds_rad_per_s, model)) return look;
+  }
+  return never;
+}
+
+TEST_CASE("a motor with the voltage of its resistance and its speed fits, in either direction") {
+  CHECK(looks(0, 5.0f, 2.5f, 0.0f) == never);
+  CHECK(looks(0, -5.0f, -2.5f, 0.0f) == never);
+  CHECK(looks(1, 10.0f, 2.5f, 0.0f) == never);
+  CHECK(looks(0, 6.0f, 0.0f, 20.0f) == never);
+  CHECK(looks(1, -4.0f, 0.0f, 20.0f) == never);
+  CHECK(looks(2, 0.0f, -0.25f, 20.0f) == never);  // shorted, and turned by a hand
+}
+
+TEST_CASE("a motor at rest without current may have the bearable voltage and no more") {
+  CHECK(looks(0, 0.99f * MotorWatch::bearable_V, 0.0f, 0.0f) == never);
+  CHECK(looks(0, -0.99f * MotorWatch::bearable_V, 0.0f, 0.0f) == never);
+  CHECK(looks(0, 1.1f * MotorWatch::bearable_V, 0.0f, 0.0f) < never);
+  CHECK(looks(2, -1.1f * MotorWatch::bearable_V, 0.0f, 0.0f) < never);
+}
+
+TEST_CASE("a hot motor fits: half more resistance, a quarter less back EMF") {
+  for (const float sign : {1.0f, -1.0f}) {
+    CHECK(looks(0, sign * (1.49f * 5.0f + MotorWatch::bearable_V), sign * 2.5f, 0.0f) == never);
+    CHECK(looks(0, sign * (1.6f * 5.0f + MotorWatch::bearable_V), sign * 2.5f, 0.0f) < never);
+    CHECK(looks(0, sign * (0.76f * 6.0f - MotorWatch::bearable_V), 0.0f, sign * 20.0f) == never);
+    CHECK(looks(0, sign * (0.65f * 6.0f - MotorWatch::bearable_V), 0.0f, sign * 20.0f) < never);
+  }
+}
+
+TEST_CASE("what is beyond is summed, so the larger it is the sooner it is noticed") {
+  // Beyond by 4 V, a look of three periods each.
+  const float voltage_V = 4.0f + MotorWatch::bearable_V;
+  const float look_Vs = 4.0f * 3.0f * protocol::servo_period_s;
+  CHECK(looks(0, voltage_V, 0.0f, 0.0f) == static_cast<int>(MotorWatch::bearable_flux_Vs / look_Vs) + 1);
+  CHECK(looks(0, 16.0f, 0.0f, 0.0f) == 2);
+}
+
+TEST_CASE("a current that turns round from one limit to the other in no time is borne, and forgotten") {
+  MotorWatch watch;
+  const Triple still{};
+  const auto look = [&](float voltage_V, float current_A) {
+    turn_to(watch, 0, voltage_V);
+    return fits(watch, {current_A, 0.0f, 0.0f}, still, model);
+  };
+  for (int turn = 0; turn < 1'000; ++turn) {
+    const float sign = turn % 2 == 0 ? 1.0f : -1.0f;
+    CHECK(look(16.0f * sign, -2.5f * sign));
+    for (int rest = 0; rest < 6; ++rest) CHECK(look(5.0f * sign, 2.5f * sign));
+  }
+}
+
+TEST_CASE("each motor has its own sum") {
+  MotorWatch watch;
+  for (int look = 0; look < 300; ++look) {
+    const std::size_t motor = static_cast<std::size_t>(look % 3);
+    turn_to(watch, motor, motor == 2 ? 6.0f : 0.0f);
+    if (fits(watch, {}, {}, model)) continue;
+    CHECK(motor == 2);
+    CHECK(watch.beyond_V[0] == 0.0f);
+    CHECK(watch.beyond_V[1] == 0.0f);
+    return;
+  }
+  FAIL("motor 3 was not noticed");
+}
+
+TEST_CASE("the model of each arm: its resistances, and the torque constants with gear and direction") {
+  using enum protocol::Parameter;
+  protocol::ParameterSet set = tests::omni_parameters();
+  set[motor_resistance_2_ohm] = 7.0f;
+  set[motor_2_reversed] = 1.0f;
+  set[torque_constant_2_Nm_per_A] = 0.02f;
+  const auto settings = control::prepare(set);
+  CHECK(settings.motor_model.resistance_ohm == Triple{2.18f, 7.0f, 2.18f});
+  CHECK(settings.motor_model.back_emf_Vs_per_rad[1] == doctest::Approx(-0.02f * set[gear_ratio_2]));
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(settings.motor_model.back_emf_Vs_per_rad[i] * settings.motors.ampere_per_Nm[i] == doctest::Approx(1.0));
+}
+
+/// Pressed into three walls, so hard that no motor's voltage would do for another's; the reading of `lying` stands
+/// still.
+struct PressedArm {
+  protocol::ParameterSet parameters = [] {
+    using enum protocol::Parameter;
+    protocol::ParameterSet set = tests::omni_parameters();
+    const auto plain = control::prepare(set);
+    const auto inkwell_m = control::forward_kinematics(plain.encoders.inkwell_rad, plain.arm).position_m;
+    set[sphere_radius_m] = 0.0f;
+    set[box_maximum_x_m] = inkwell_m.x - 0.001f;
+    set[box_minimum_x_m] = set[box_minimum_y_m] = -0.5f;
+    set[box_maximum_y_m] = inkwell_m.y - 0.001f;
+    set[box_maximum_z_m] = inkwell_m.z - 0.002f;
+    set[box_minimum_z_m] = -0.5f;
+    set[wall_stiffness_N_per_m] = 3000.0f;
+    set[force_limit_N] = 8.0f;
+    set[force_ramp_s] = 0.0f;
+    return set;
+  }();
+  control::Settings settings = control::prepare(parameters);
+  control::Controller controller = tests::active_controller(settings);
+  control::Samples samples = tests::samples_at_rest();
+  control::Drive drive, next;  // a duty takes effect one period after its samples
+
+  /// Periods until it is no longer driven, at most so many. The windings are quick: a current is there in a period.
+  int run(int periods, std::size_t lying = 3, Triple joint_counts_per_period = {}) {
+    for (int period = 0; period < periods; ++period) {
+      controller.host_alive();
+      next = tests::run(controller, samples, settings, 1);
+      if (!next.enabled && period > 0) {
+        drive = next;
+        return period;
+      }
+      for (std::size_t i = 0; i < 3; ++i) {
+        samples.encoder_counts[i] += static_cast<std::int32_t>(joint_counts_per_period[i]);
+        const float voltage_V = drive.enabled ? drive.duty[i] * samples.supply_V : 0.0f;
+        if (i != lying) samples.current_A[i] = 0.6f * samples.current_A[i] + 0.4f * voltage_V / 2.18f;
+      }
+      drive = next;
+    }
+    return periods;
+  }
+};
+
+TEST_CASE("a reading that stands still takes the force away within milliseconds, whichever motor it is") {
+  for (std::size_t motor = 0; motor < 3; ++motor) {
+    CAPTURE(motor);
+    PressedArm arm;
+    REQUIRE(arm.run(4'000) == 4'000);
+    CHECK(std::fabs(arm.samples.current_A[motor]) > 0.02f);
+    arm.samples.current_A[motor] *= 0.5f;
+    CHECK(arm.run(4'000, motor) < 200);
+    CHECK(arm.controller.fault() == Fault::motor_implausible);
+    CHECK_FALSE(arm.next.enabled);
+    CHECK_FALSE(arm.next.brake);
+    arm.controller.carry_out(tests::command(protocol::Command::clear_fault));
+    arm.run(2);
+    CHECK(arm.controller.state() == protocol::State::ready);
+    // What was summed is forgotten: sound again, it stays on.
+    arm.controller.carry_out(tests::command(protocol::Command::enable_force));
+    arm.run(1);
+    CHECK(arm.run(4'000) == 4'000);
+  }
+}
+
+TEST_CASE("without force nothing is watched: the pulses that measure a motor find any resistance") {
+  const auto settings = control::prepare(tests::omni_parameters());
+  control::Controller controller = tests::ready_controller(settings);
+  auto pulse = tests::command(protocol::Command::test_voltage);
+  pulse.test = {1, 10.0f, 0.05f};
+  controller.carry_out(pulse);
+  CHECK(tests::run(controller, tests::samples_at_rest(), settings, 900).enabled);
+  CHECK(controller.state() == protocol::State::ready);
+}
+
+}  // namespace

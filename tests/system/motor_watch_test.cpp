@@ -1,0 +1,181 @@
+// That voltage, current and speed of sound motors fit together whatever a hand and a program do with the arm, and how
+// near they come to a fault. What happens when they do not fit is in campaign_test.cpp.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <deque>
+
+#include <control/motor_watch.hpp>
+#include <control/settings.hpp>
+
+#include "board_rig.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using control::MotorWatch;
+using protocol::ForceMode;
+using protocol::Parameter;
+using protocol::Signal;
+
+/// Looks at the streamed signals of all three motors as the firmware does, which keeps its own sums to itself.
+class WatchedRig : public BoardRig {
+ public:
+  WatchedRig() {
+    set({{Parameter::force_ramp_s, 0.0f}, {Parameter::speed_limit_m_per_s, 10.0f}});
+    take_to(free_point_m);
+    make_active();
+    device->select_signals(std::array{Signal::duty_1, Signal::duty_2, Signal::duty_3, Signal::current_1_A,
+                                      Signal::current_2_A, Signal::current_3_A, Signal::joint_speed_1_rad_s,
+                                      Signal::joint_speed_2_rad_s, Signal::joint_speed_3_rad_s, Signal::supply_V});
+    watch(0.05);
+    start_anew();
+  }
+
+  void start_anew() {
+    watch_ = {};
+    told_V_.clear();
+    nearest_V = largest_left_V = largest_part = fastest_rad_per_s = strongest_N = 0.0f;
+  }
+
+  void change(std::initializer_list<device::ParameterChange> changes) {
+    set(changes);
+    settings_ = control::prepare(device->parameters());
+  }
+
+  /// Lets board time pass while `each_millisecond` does something.
+  template <class Action>
+  void watch(double time_s, const Action& each_millisecond) {
+    for (auto left = std::lround(1000 * time_s); left > 0; --left) {
+      each_millisecond();
+      control.run(0.001);
+      while (const auto pose = device->read_pose(0ms)) {
+        CHECK(pose->fault == protocol::Fault::none);
+        strongest_N = std::max(strongest_N, std::hypot(pose->force_N[0], pose->force_N[1], pose->force_N[2]));
+        force_is_on = protocol::force_is_on(pose->state);
+      }
+      while (const auto samples = device->read_scope(0ms)) look_at(*samples);
+    }
+    device->send(protocol::Command::heartbeat);
+  }
+  void watch(double time_s) {
+    watch(time_s, [] {});
+  }
+
+  /// Of MotorWatch::bearable_sum_V, at which a fault is told.
+  float nearest_V = 0.0f;
+  /// In a single look: what resistance and speed leave of the voltage, and as a part of what is bearable then.
+  float largest_left_V = 0.0f, largest_part = 0.0f;
+  float fastest_rad_per_s = 0.0f, strongest_N = 0.0f;
+  bool force_is_on = false;
+
+ private:
+  void look_at(const device::ScopeSamples& samples) {
+    REQUIRE(samples.lost_before == 0);
+    const std::size_t width = samples.signals.size();
+    for (std::size_t row = 0; row < samples.count; ++row, ++period_) {
+      const float* value = &samples.values[row * width];
+      told_V_.push_back({value[0] * value[9], value[1] * value[9], value[2] * value[9]});
+      if (told_V_.size() < 3) continue;
+      const std::size_t motor = period_ % 3;
+      fastest_rad_per_s = std::max(fastest_rad_per_s, std::fabs(value[6 + motor]));
+      const float told_V = told_V_.front()[motor];
+      told_V_.pop_front();
+      turn_to(watch_, motor, told_V);
+      fits(watch_, {value[3], value[4], value[5]}, {value[6], value[7], value[8]}, settings_.motor_model);
+      nearest_V = std::max(nearest_V, watch_.beyond_V[motor]);
+      const float ohmic_V = settings_.motor_model.resistance_ohm[motor] * value[3 + motor];
+      const float back_emf_V = settings_.motor_model.back_emf_Vs_per_rad[motor] * value[6 + motor];
+      const float bearable_V = MotorWatch::bearable_V + MotorWatch::bearable_part_of_resistance * std::fabs(ohmic_V) +
+                               MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V);
+      const float left_V = std::fabs(told_V - ohmic_V - back_emf_V);
+      largest_left_V = std::max(largest_left_V, left_V);
+      largest_part = std::max(largest_part, left_V / bearable_V);
+    }
+  }
+
+  control::Settings settings_ = control::prepare(protocol::default_parameters());
+  MotorWatch watch_;
+  std::deque<control::Triple> told_V_;
+  std::size_t period_ = 0;
+};
+
+void check(WatchedRig& rig, const std::string& what) {
+  MESSAGE("simulation, ", what, ": at ", rig.fastest_rad_per_s, " rad/s of a joint and ", rig.strongest_N,
+          " N a motor came to ", rig.nearest_V, " of ", MotorWatch::bearable_sum_V, " V; a look left ",
+          rig.largest_left_V, " V, at most ", rig.largest_part, " of what is bearable");
+  CHECK(rig.force_is_on);
+  CHECK(rig.largest_left_V > 0.1f);  // it was looked at
+  CHECK(rig.nearest_V < 0.25f * MotorWatch::bearable_sum_V);
+  rig.start_anew();
+}
+
+device::Vector3 beside(double x_m, double y_m, double z_m) {
+  return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
+}
+
+/// The hand goes to and fro between two points, so many times a second.
+void swing(WatchedRig& rig, device::Vector3 from_m, device::Vector3 to_m, double half_period_s, int times,
+           double stiffness_N_per_m = 1500, double damping_Ns_per_m = 12) {
+  rig.control.hand({true, from_m, stiffness_N_per_m, damping_Ns_per_m});
+  std::vector<device::HandWaypoint> path{{0.0, from_m}};
+  for (int i = 1; i <= times; ++i) path.push_back({i * half_period_s, i % 2 == 0 ? from_m : to_m});
+  rig.control.hand_path(path);
+  rig.watch(times * half_period_s);
+}
+
+void use(WatchedRig& rig, const std::string& how) {
+  const auto say = [&](const char* what) { check(rig, how + what); };
+  swing(rig, beside(-0.03, -0.03, -0.02), beside(0.03, 0.03, 0.02), 0.1, 8);
+  say("swung through free space");
+  swing(rig, beside(-0.05, -0.02, -0.02), beside(0.05, 0.03, 0.02), 0.045, 16, 4000, 30);
+  say("shaken");
+  rig.change({{Parameter::wall_stiffness_N_per_m, 3000.0f}, {Parameter::force_limit_N, 8.0f}});
+  rig.watch(0.3);
+  swing(rig, free_point_m, beside(0.0, 0.0, -0.10), 0.1, 8);
+  say("knocked on a stiff wall");
+  swing(rig, free_point_m, beside(0.12, -0.12, -0.12), 0.4, 4);
+  say("pressed into three walls");
+  int millisecond = 0;
+  rig.change({{Parameter::program_force_change_N_per_s, 20000.0f}});
+  rig.control.hand({true, free_point_m, 600, 8});
+  rig.watch(1.0, [&] {
+    const float sign = millisecond++ / 10 % 2 == 0 ? 1.0f : -1.0f;
+    rig.device->send_force({.force_N = {4.0f * sign, 5.0f * sign, 4.0f * sign}, .mode = ForceMode::beside_walls});
+  });
+  say("driven by a program to and fro");
+  rig.change({{Parameter::voltage_limit_V, 5.0f}});
+  rig.watch(0.2);
+  swing(rig, beside(-0.05, -0.02, -0.02), beside(0.05, 0.03, 0.02), 0.08, 8, 4000, 30);
+  swing(rig, free_point_m, beside(0.12, -0.12, -0.12), 0.4, 4);
+  say("with loops that get too little voltage");
+  rig.change({{Parameter::voltage_limit_V, 16.0f}});
+  rig.control.hand({false, {}, 0, 0});
+  rig.watch(0.5);
+  say("let go of");
+}
+
+}  // namespace
+
+TEST_CASE("sound motors keep far from a fault, cold and 100 K hotter, and with a supply that sags") {
+  {
+    WatchedRig rig;
+    use(rig, "");
+  }
+  {
+    WatchedRig rig;
+    for (const char* motor : {"1", "2", "3"}) rig.control.inject({.fault = "motor_hot", .of = motor, .amount = 100.0});
+    use(rig, "hot, ");
+  }
+  {
+    WatchedRig rig;
+    rig.control.inject({.fault = "supply_sag", .amount = 13.0});
+    use(rig, "from 13 V, ");
+  }
+}
+
+}  // namespace inkwell::tests
