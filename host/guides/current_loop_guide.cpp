@@ -37,6 +37,9 @@ double to_four_digits(double value) {
   return step * std::round(value / step);
 }
 
+/// Without the shunt, which is the board's and not the motor's.
+double motor_ohm(const MotorCircuit& circuit) { return circuit.resistance_ohm - static_cast<double>(board::shunt_ohm); }
+
 /// What the steps of this guide tell one another.
 struct Tuning {
   CurrentLoopOptions options;
@@ -137,14 +140,13 @@ class IdentifyMotor final : public Step {
   }
 
   void report(const MotorCircuit& circuit) {
-    const double motor_ohm = circuit.resistance_ohm - static_cast<double>(board::shunt_ohm);
     findings_->sentences.push_back(fmt::format(
         "Motor {}: R = {:.3f} ohm ({:.3f} ohm with the shunt), L = {:.4f} mH, time constant {:.0f} us, dead "
         "time takes {:.2f} V, fit within {:.1f} mA.",
-        motor_, motor_ohm, circuit.resistance_ohm, 1e3 * circuit.inductance_H,
+        motor_, motor_ohm(circuit), circuit.resistance_ohm, 1e3 * circuit.inductance_H,
         1e6 * circuit.inductance_H / circuit.resistance_ohm, circuit.dead_time_voltage_V, 1e3 * circuit.residual_A));
     findings_->details["motors"].push_back({{"motor", motor_},
-                                            {"resistance_ohm", motor_ohm},
+                                            {"resistance_ohm", motor_ohm(circuit)},
                                             {"circuit_resistance_ohm", circuit.resistance_ohm},
                                             {"inductance_H", circuit.inductance_H},
                                             {"dead_time_voltage_V", circuit.dead_time_voltage_V},
@@ -287,6 +289,8 @@ class TryGains final : public Step {
     // The bridge holds a voltage for a period, which delays it by half of one in the mean.
     const double margin_deg = phase_margin_deg(tuning_->options.bandwidth_Hz, mean.delay_s + period_s / 2);
     for (const auto& [parameter, value] : gains_of(*tuning_->gains)) device::check_value(parameter, value);
+    for (std::size_t i = 0; i < tuning_->motors.size(); ++i)
+      device::check_value(resistance_of(i), static_cast<float>(motor_ohm(tuning_->motors[i])));
     findings_->sentences.push_back(fmt::format(
         "For {:.0f} Hz: Kp = L w = {:.3f} V/A, Ki = R w = {:.0f} V/(As); the delay leaves {:.0f} degrees of "
         "phase margin.",
@@ -301,6 +305,9 @@ class TryGains final : public Step {
   static std::vector<device::ParameterChange> gains_of(const CurrentLoopGains& gains) {
     return {{Parameter::current_proportional_gain_V_per_A, static_cast<float>(gains.proportional_V_per_A)},
             {Parameter::current_integral_gain_V_per_As, static_cast<float>(gains.integral_V_per_As)}};
+  }
+  Parameter resistance_of(std::size_t place) const {
+    return of_number(Parameter::motor_resistance_1_ohm, tuning_->options.motors[place]);
   }
   bool holds_suggested(const ParameterSet& set) const {
     return std::ranges::all_of(gains_of(*tuning_->gains),
@@ -321,6 +328,9 @@ class TryGains final : public Step {
     findings_->propose(old_, Parameter::current_proportional_gain_V_per_A, tuning_->gains->proportional_V_per_A,
                        reason);
     findings_->propose(old_, Parameter::current_integral_gain_V_per_As, tuning_->gains->integral_V_per_As, reason);
+    for (std::size_t i = 0; i < tuning_->motors.size(); ++i)
+      findings_->propose(old_, resistance_of(i), to_four_digits(motor_ohm(tuning_->motors[i])),
+                         "by which the motor is watched");
   }
 
   std::shared_ptr<Tuning> tuning_;

@@ -66,7 +66,10 @@ TEST_CASE("a wider bandwidth rises faster, and is applied when asked") {
   REQUIRE(result.at("steps").size() == 2);
   const double before_s = result.at("steps")[0].at("rise_time_s"), after_s = result.at("steps")[1].at("rise_time_s");
   CHECK(after_s < 0.75 * before_s);
-  REQUIRE(result.at("proposals").size() == 2);
+  REQUIRE(result.at("proposals").size() == 3);
+  CHECK(result.at("proposals")[2].at("parameter") == "motor_resistance_2_ohm");
+  CHECK(result.at("proposals")[2].at("proposed").get<double>() ==
+        doctest::Approx(simulated_resistance_ohm()).epsilon(0.05));
   CHECK(result.at("proposals")[0].at("proposed").get<double>() ==
         doctest::Approx(simulated_motor().inductance_H * 2 * std::numbers::pi * 1500).epsilon(0.05));
 }

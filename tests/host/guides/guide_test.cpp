@@ -77,7 +77,9 @@ TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one t
   // Tried and put back: two transactions, and the device holds what it held.
   REQUIRE(arm.transactions.size() == 2);
   CHECK(arm.parameters() == protocol::default_parameters());
-  REQUIRE(guide.findings().proposals.size() == 2);
+  REQUIRE(guide.findings().proposals.size() == 3);
+  CHECK(guide.findings().proposals[2].parameter == Parameter::motor_resistance_2_ohm);
+  CHECK(guide.findings().proposals[2].proposed == doctest::Approx(3.0 - board::shunt_ohm).epsilon(0.01));
   CHECK(guide.findings().proposals[0].proposed == doctest::Approx(0.4e-3 * 2 * 3.14159265 * 600).epsilon(0.02));
   CHECK(guide.findings().curves.size() == 2);
 
@@ -85,7 +87,7 @@ TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one t
   arm.pass_millisecond(guide);
   CHECK(guide.applied() == guides::Applied::yes);
   REQUIRE(arm.transactions.size() == 3);
-  CHECK(arm.transactions.back().size() == 2);
+  CHECK(arm.transactions.back().size() == 3);
   CHECK(arm.parameters()[Parameter::current_proportional_gain_V_per_A] == guide.findings().proposals[0].proposed);
 }
 
