@@ -78,11 +78,11 @@ std::string_view reason_of_wire(std::string_view wire) {
   if (wire.starts_with("encoders"))
     return "No second sensor knows the joint; only an angle far beyond its stop, or a speed that cannot be, is "
            "noticed.";
-  if (wire.starts_with("bridges"))
-    return "The current loop's reading is as it would be; a current that does not follow its reference is no fault.";
+  if (wire.starts_with("bridges")) return "While no current is asked of the motor, none is missed.";
   if (wire.starts_with("bridge_fault")) return "It stands as with sound bridges; nothing tests it.";
   if (wire == "bridge_enable") return "It stands as with the force on; nothing reads it back.";
-  if (wire.starts_with("motor_current")) return "The reading stays within what a motor may have.";
+  if (wire.starts_with("motor_current"))
+    return "The reading stays near what is asked for, or what it leads to within what a hot motor may differ by.";
   if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
   if (wire == "supply") return "It reads a sound supply.";
   if (wire == "usb_supply") return "It stands as with the cable in.";
@@ -102,17 +102,20 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::encoder_stuck:
     case InjectedFault::encoder_lost_counts:
     case InjectedFault::encoder_slip:
-      return "No second sensor knows the joint; only an angle far beyond its stop is noticed.";
+      return "No second sensor knows the joint; only an angle far beyond its stop is noticed, or a fast motor's "
+             "missing "
+             "back EMF.";
     case InjectedFault::shunt_offset:
     case InjectedFault::shunt_gain:
-    case InjectedFault::shunt_frozen:
-      return "The reading stays within what a motor may have; nothing compares it with what the duty would give.";
-    case InjectedFault::motor_open: return "A current that does not follow its reference is no fault of the firmware.";
+    case InjectedFault::shunt_frozen: return "Voltage, reading and speed fit within what a hot motor may differ by.";
+    case InjectedFault::motor_open:
+    case InjectedFault::leg_open: return "While no current is asked of the motor, none is missed.";
     case InjectedFault::motor_shorted:
-    case InjectedFault::motor_hot: return "The current loop makes up for it; nothing measures the torque.";
-    case InjectedFault::leg_open:
+    case InjectedFault::motor_hot:
+      return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; nothing "
+             "measures the torque.";
     case InjectedFault::leg_slow:
-      return "The current loop makes up for part of it; nothing compares duty with current.";
+      return "The current loop makes up for it, and what the leg takes is within what a sound one may.";
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
     case InjectedFault::usb_cut:
     case InjectedFault::host_silent: return "Without force the host may be silent.";

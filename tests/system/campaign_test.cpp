@@ -66,6 +66,34 @@ TEST_CASE("electrical faults that the firmware knows take the bridges off within
   }
 }
 
+TEST_CASE("a motor that does not do as its voltage says is let go of before the hand feels more than it may") {
+  struct Known {
+    const char* name;
+    int periods;  ///< many where the loop creeps away from a reading that was right when it froze
+  };
+  for (const Known& known : {Known{"wires_shorted:motor_current[1]+motor_current[2] wall 2", 20},
+                             {"wire_open:motor_current[1] rest 1", 50},
+                             {"shunt_frozen:2 wall 3", 4000},
+                             {"adc_stopped:3 wall 1", 4000},
+                             {"motor_open:2 wall 1", 30},
+                             {"leg_open:2A wall 1", 30},
+                             {"wire_low:bridges[1].leg_a motion 1", 20}}) {
+    CAPTURE(known.name);
+    const Result result = result_of(known.name);
+    REQUIRE(result.off_after_s);
+    CHECK(*result.off_after_s < known.periods * control_period_s);
+    CHECK(result.detected_as == "motor_implausible");
+    CHECK(result.peak_force_N < 1.2 * result.force_limit_N);
+    CHECK(result.recovery == "clear_fault");
+  }
+}
+
+TEST_CASE("a motor that is 100 K hotter is still believed") {
+  const Result result = result_of("motor_hot:2 wall 1");
+  CHECK_FALSE(result.off_after_s);
+  CHECK(result.detected_as.empty());
+}
+
 TEST_CASE("a chip that no longer hears its converters is restarted by the watchdog, and tells so") {
   const Result result = result_of("adc_stopped:1 wall 2");
   REQUIRE(result.off_after_s);
