@@ -52,18 +52,15 @@ class WatchedRig : public BoardRig {
   void watch(double time_s, const Action& each_millisecond) {
     for (auto left = std::lround(1000 * time_s); left > 0; --left) {
       each_millisecond();
-      control.run(0.001);
-      while (const auto pose = device->read_pose(0ms)) {
-        CHECK(pose->fault == protocol::Fault::none);
-        strongest_N = std::max(strongest_N, std::hypot(pose->force_N[0], pose->force_N[1], pose->force_N[2]));
-        force_is_on = protocol::force_is_on(pose->state);
-      }
-      while (const auto samples = device->read_scope(0ms)) look_at(*samples);
+      pass(0.001);
     }
-    device->send(protocol::Command::heartbeat);
   }
   void watch(double time_s) {
-    watch(time_s, [] {});
+    constexpr double slice_s = 0.01;  // the streams are held for longer
+    for (auto left = std::lround(time_s / slice_s); left > 0; --left) {
+      device->send(protocol::Command::heartbeat);
+      pass(slice_s);
+    }
   }
 
   /// Of MotorWatch::bearable_sum_V, at which a fault is told.
@@ -74,6 +71,16 @@ class WatchedRig : public BoardRig {
   bool force_is_on = false;
 
  private:
+  void pass(double time_s) {
+    control.run(time_s);
+    while (const auto pose = device->read_pose(0ms)) {
+      CHECK(pose->fault == protocol::Fault::none);
+      strongest_N = std::max(strongest_N, std::hypot(pose->force_N[0], pose->force_N[1], pose->force_N[2]));
+      force_is_on = protocol::force_is_on(pose->state);
+    }
+    while (const auto samples = device->read_scope(0ms)) look_at(*samples);
+  }
+
   void look_at(const device::ScopeSamples& samples) {
     REQUIRE(samples.lost_before == 0);
     const std::size_t width = samples.signals.size();
