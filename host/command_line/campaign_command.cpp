@@ -111,7 +111,7 @@ int run_chosen(const DeviceOptions& options, const CampaignOptions& command) {
 
 int merge_results(const CampaignOptions& command) {
   const auto results = campaign::load_all(command.folder);
-  make_folder_of_page(command, "--out");
+  if (!results.empty()) make_folder_of_page(command, "--out");
   campaign::write_page(results, command.page);
   fmt::print("{} of {} cases: {}\n", results.size(), campaign::all_cases().size(), command.page);
   return 0;
