@@ -1,5 +1,6 @@
 // The header of the C interface can include nothing of the protocol, so what it numbers is compared with that here.
 #include <algorithm>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
@@ -54,6 +55,13 @@ constexpr Code sources[] = {CODE(WALLS), CODE(SHAPES), CODE(PROGRAM)};
 static_assert(std::ranges::equal(sources, protocol::force_source_table, [](const Code& c, const auto& row) {
   return c.value == static_cast<int>(row.source) && is_capital_of(c.name, "", row.name);
 }));
+
+constexpr Code limits[] = {CODE(LIMIT_FORCE), CODE(LIMIT_CURRENT)};
+static_assert(std::ranges::equal(limits, protocol::limit_table, [](const Code& c, const auto& row) {
+  return c.value == static_cast<int>(row.limit) && is_capital_of(c.name, "LIMIT_", row.name);
+}));
+// The limits came later, into a gap: a program that was built before finds all else where it was.
+static_assert(offsetof(inkwell_pose, position_m) == 24 && sizeof(inkwell_pose) == 240);
 
 static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_holds_back_from);
 static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));

@@ -23,6 +23,7 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control:
   pose.sequence = report.sequence;
   pose.state = state_of(report.state);
   pose.fault = static_cast<int>(report.fault);
+  pose.limits = report.limits;
   std::array<float, 3> joint_rad{}, gimbal_rad{};
   std::array<double, 3> position_m{};
   for (std::size_t i = 0; i < 3; ++i) {

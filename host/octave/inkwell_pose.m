@@ -7,6 +7,8 @@ function pose = inkwell_pose(arm)
 %   pose.velocity_m_s   over the last 8 ms, m/s, 3 x 1
 %   pose.rotation       of the stylus, 3 x 3; the columns are its x, y and z axis
 %   pose.gimbal_rad, pose.joint_rad, pose.force_N    3 x 1
+%   pose.limited_by_force     true while it is held at force_limit_N, or is on its way up to it
+%   pose.limited_by_current   true while a motor gives all the current that it may; all give way together
 %   pose.button_1, pose.button_2, pose.in_inkwell    true or false
   pose = inkwell_mex('pose', arm);
 end

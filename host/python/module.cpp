@@ -35,6 +35,11 @@ bool feels(const inkwell_pose& pose) {
   return (pose.force_sources & source) != 0;
 }
 
+template <inkwell_limit limit>
+bool is_limited(const inkwell_pose& pose) {
+  return (pose.limits & limit) != 0;
+}
+
 std::string describe(const inkwell_pose& pose) {
   return py::str("<inkwell.Pose {:.3f} s, {}: probe at {:.4f} {:.4f} {:.4f} m>")
       .format(pose.time_s, py::cast(pose.state).attr("name"), pose.position_m[0], pose.position_m[1],
@@ -141,6 +146,10 @@ void define_structs(py::module_& module) {
       .def_property_readonly("feels_walls", &feels<INKWELL_WALLS>, "the walls of the board's box are felt")
       .def_property_readonly("feels_shapes", &feels<INKWELL_SHAPES>, "shapes that a program placed are felt")
       .def_property_readonly("feels_program", &feels<INKWELL_PROGRAM>, "forces of a program are felt")
+      .def_property_readonly("limited_by_force", &is_limited<INKWELL_LIMIT_FORCE>,
+                             "the force is held at force_limit_N, or on its way up to it")
+      .def_property_readonly("limited_by_current", &is_limited<INKWELL_LIMIT_CURRENT>,
+                             "a motor gives all the current that it may, and all give way together")
       .def_property_readonly("button_1", flag_of(&inkwell_pose::button_1), "pressed")
       .def_property_readonly("button_2", flag_of(&inkwell_pose::button_2), "pressed")
       .def_property_readonly("in_inkwell", flag_of(&inkwell_pose::in_inkwell), "the stylus rests in the inkwell")

@@ -38,7 +38,7 @@ struct VirtualArm {
       REQUIRE_MESSAGE(pose.time_s < begin_s + limit_s, "the condition was not reached in time; state ",
                       static_cast<int>(pose.state), ", fault ", pose.fault, ", sources ", pose.force_sources,
                       ", force ", pose.force_N[0]);
-      REQUIRE_MESSAGE(inkwell_wait_for_pose(arm, 10.0, &pose) == INKWELL_OK, inkwell_error_text());
+      REQUIRE_MESSAGE(inkwell_wait_for_pose(arm, 10.0, &pose) == INKWELL_OK, std::string(inkwell_error_text()));
     }
     return pose;
   }
@@ -57,7 +57,7 @@ struct VirtualArm {
   void make_active() {
     be_patient();
     hold_in_the_open();
-    REQUIRE_MESSAGE(inkwell_enable_force(arm, 30.0) == INKWELL_OK, inkwell_error_text());
+    REQUIRE_MESSAGE(inkwell_enable_force(arm, 30.0) == INKWELL_OK, std::string(inkwell_error_text()));
   }
 };
 

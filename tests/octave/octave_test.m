@@ -65,6 +65,7 @@ while abs(pose.position_m(1) - 0.005) > 0.0007 || abs(pose.velocity_m_s(1)) > 0.
   pose = inkwell_pose(arm);
 end
 assert(pose.force_N(1), 1.5, 0.2);
+assert(! pose.limited_by_force);
 assert(pose.state, 'active');
 
 % A recording of the command line is loaded whole, and its marks are text.

@@ -37,6 +37,8 @@ class Driving(unittest.TestCase):
         self.assertAlmostEqual(pulled.force_N[0], 1.5, delta=0.15)
         self.assertTrue(pulled.feels_program)
         self.assertFalse(pulled.feels_walls)
+        self.assertFalse(pulled.limited_by_force)
+        self.assertFalse(pulled.limited_by_current)
         self.arm.stop_servo()
         after = calls
         wait_until(self.arm, lambda pose: not pose.feels_program and pose.force_N[0] == 0)
@@ -98,7 +100,7 @@ class Driving(unittest.TestCase):
 
         def pushed(pose):
             self.arm.set_force([math.inf, 0, 0])
-            return abs(pose.force_N[0]) > 3
+            return abs(pose.force_N[0]) > 3 and pose.limited_by_force
 
         felt = wait_until(self.arm, pushed)
         self.assertLess(felt.force_N[0], 3.31)

@@ -155,12 +155,19 @@ enum inkwell_force_source {
   INKWELL_PROGRAM = 4 /* forces of a program */
 };
 
+/* What makes the force smaller than what the hand touches: bits of inkwell_pose::limits. None of them is a fault. */
+enum inkwell_limit {
+  INKWELL_LIMIT_FORCE = 1,  /* the force is held at force_limit_N, or on its way up to it */
+  INKWELL_LIMIT_CURRENT = 2 /* a motor gives all that it may; all give way together, so the direction stays */
+};
+
 /* What the board reports in a millisecond of the bus. */
 typedef struct inkwell_pose {
   double time_s;     /* board time */
   uint32_t sequence; /* one more for each millisecond of the bus; a gap is a pose that this program missed */
   inkwell_state state;
   int fault;              /* one of inkwell_fault */
+  uint32_t limits;        /* bits of inkwell_limit */
   double position_m[3];   /* of the probe, where the stylus is held */
   double velocity_m_s[3]; /* over the last 8 ms */
   double rotation[9];   /* of the stylus, row by row: columns are its x, y and z axis; z points out of its tip's back */
