@@ -156,21 +156,26 @@ std::string undetected(const Groups& groups, const std::vector<CaseFault>& fault
 }
 
 std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faults) {
-  std::string text =
-      "\n## Above the force limit\n\nWith the force on, the hand felt more than the force limit and a tenth of it.\n\n"
-      "| fault | situation | peak force, N | energy, mJ | travel, mm | detected as | bridges off, control periods |\n"
-      "| --- | --- | --- | --- | --- | --- | --- |\n";
+  std::string rows;
   for (const CaseFault& fault : faults)
     for (const Situation situation : situations) {
       const auto* results = find(groups, fault.name(), situation);
       if (results == nullptr || !is_active(situation)) continue;
       const Summary s = summarise(*results);
       if (s.peak_force_N <= 1.1 * results->front().force_limit_N) continue;
-      text += fmt::format("| `{}` | {} | {:.1f} | {:.0f} | {:.0f} | {} | {} |\n", fault.name(), name_of(situation),
+      rows += fmt::format("| `{}` | {} | {:.1f} | {:.0f} | {:.0f} | {} | {} |\n", fault.name(), name_of(situation),
                           s.peak_force_N, 1e3 * s.energy_J, 1e3 * s.travel_m,
                           s.detected_as.empty() ? "-" : s.detected_as, off_text(s));
     }
-  return text;
+  const std::string_view heading =
+      "\n## Above the force limit\n\nWith the force on, cases in which the hand felt more than the force limit and a "
+      "tenth "
+      "of it";
+  if (rows.empty()) return fmt::format("{}: none.\n", heading);
+  return fmt::format(
+      "{}.\n\n| fault | situation | peak force, N | energy, mJ | travel, mm | detected as | bridges off, control "
+      "periods |\n| --- | --- | --- | --- | --- | --- | --- |\n{}",
+      heading, rows);
 }
 
 std::string not_run(std::span<const Result> results) {
