@@ -95,13 +95,11 @@ class WatchedRig : public BoardRig {
       turn_to(watch_, motor, told_V);
       fits(watch_, {value[3], value[4], value[5]}, {value[6], value[7], value[8]}, settings_.motor_model);
       nearest_V = std::max(nearest_V, watch_.beyond_V[motor]);
-      const float ohmic_V = settings_.motor_model.resistance_ohm[motor] * value[3 + motor];
-      const float back_emf_V = settings_.motor_model.back_emf_Vs_per_rad[motor] * value[6 + motor];
-      const float bearable_V = MotorWatch::bearable_V + MotorWatch::bearable_part_of_resistance * std::fabs(ohmic_V) +
-                               MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V);
-      const float left_V = std::fabs(told_V - ohmic_V - back_emf_V);
-      largest_left_V = std::max(largest_left_V, left_V);
-      largest_part = std::max(largest_part, left_V / bearable_V);
+      const control::MotorModel& model = settings_.motor_model;
+      const auto look = control::unexplained(told_V, value[3 + motor], value[6 + motor], model.resistance_ohm[motor],
+                                             model.back_emf_Vs_per_rad[motor]);
+      largest_left_V = std::max(largest_left_V, look.voltage_V);
+      largest_part = std::max(largest_part, look.voltage_V / look.bearable_V);
     }
   }
 
@@ -135,54 +133,65 @@ void swing(WatchedRig& rig, device::Vector3 from_m, device::Vector3 to_m, double
   rig.watch(times * half_period_s);
 }
 
-void use(WatchedRig& rig, const std::string& how) {
-  const auto say = [&](const char* what) { check(rig, how + what); };
-  swing(rig, beside(-0.03, -0.03, -0.02), beside(0.03, 0.03, 0.02), 0.1, 8);
-  say("swung through free space");
-  swing(rig, beside(-0.05, -0.02, -0.02), beside(0.05, 0.03, 0.02), 0.045, 16, 4000, 30);
-  say("shaken");
+void shake(WatchedRig& rig, const std::string& how) {
+  swing(rig, beside(-0.05, -0.02, -0.02), beside(0.05, 0.03, 0.02), 0.045, 12, 4000, 30);
+  check(rig, how + "shaken");
+}
+
+void knock_on_a_stiff_wall(WatchedRig& rig, const std::string& how) {
   rig.change({{Parameter::wall_stiffness_N_per_m, 3000.0f}, {Parameter::force_limit_N, 8.0f}});
-  rig.watch(0.3);
-  swing(rig, free_point_m, beside(0.0, 0.0, -0.10), 0.1, 8);
-  say("knocked on a stiff wall");
-  swing(rig, free_point_m, beside(0.12, -0.12, -0.12), 0.4, 4);
-  say("pressed into three walls");
+  rig.watch(0.2);
+  swing(rig, free_point_m, beside(0.0, 0.0, -0.10), 0.1, 4);
+  check(rig, how + "knocked on a stiff wall");
+}
+
+void press_into_three_walls(WatchedRig& rig, const std::string& how) {
+  swing(rig, free_point_m, beside(0.12, -0.12, -0.12), 0.3, 2);
+  check(rig, how + "pressed into three walls");
+}
+
+void drive_to_and_fro(WatchedRig& rig, const std::string& how) {
   int millisecond = 0;
   rig.change({{Parameter::program_force_change_N_per_s, 20000.0f}});
   rig.control.hand({true, free_point_m, 600, 8});
-  rig.watch(1.0, [&] {
+  rig.watch(0.4, [&] {
     const float sign = millisecond++ / 10 % 2 == 0 ? 1.0f : -1.0f;
     rig.device->send_force({.force_N = {4.0f * sign, 5.0f * sign, 4.0f * sign}, .mode = ForceMode::beside_walls});
   });
-  say("driven by a program to and fro");
-  rig.change({{Parameter::voltage_limit_V, 5.0f}});
-  rig.watch(0.2);
-  swing(rig, beside(-0.05, -0.02, -0.02), beside(0.05, 0.03, 0.02), 0.08, 8, 4000, 30);
-  swing(rig, free_point_m, beside(0.12, -0.12, -0.12), 0.4, 4);
-  say("with loops that get too little voltage");
-  rig.change({{Parameter::voltage_limit_V, 16.0f}});
-  rig.control.hand({false, {}, 0, 0});
-  rig.watch(0.5);
-  say("let go of");
+  check(rig, how + "driven by a program to and fro");
 }
 
 }  // namespace
 
-TEST_CASE("sound motors keep far from a fault, cold and 100 K hotter, and with a supply that sags") {
-  {
-    WatchedRig rig;
-    use(rig, "");
-  }
-  {
-    WatchedRig rig;
-    for (const char* motor : {"1", "2", "3"}) rig.control.inject({.fault = "motor_hot", .of = motor, .amount = 100.0});
-    use(rig, "hot, ");
-  }
-  {
-    WatchedRig rig;
-    rig.control.inject({.fault = "supply_sag", .amount = 13.0});
-    use(rig, "from 13 V, ");
-  }
+TEST_CASE("sound motors keep far from a fault") {
+  WatchedRig rig;
+  shake(rig, "");
+  knock_on_a_stiff_wall(rig, "");
+  press_into_three_walls(rig, "");
+  drive_to_and_fro(rig, "");
+  rig.change({{Parameter::voltage_limit_V, 5.0f}});
+  rig.watch(0.1);
+  swing(rig, beside(-0.05, -0.02, -0.02), beside(0.05, 0.03, 0.02), 0.08, 4, 4000, 30);
+  press_into_three_walls(rig, "with loops that get too little voltage, ");
+  rig.change({{Parameter::voltage_limit_V, 16.0f}});
+  rig.control.hand({false, {}, 0, 0});
+  rig.watch(0.3);
+  check(rig, "let go of");
+}
+
+TEST_CASE("motors that are 100 K hotter keep far from a fault") {
+  WatchedRig rig;
+  for (const char* motor : {"1", "2", "3"}) rig.control.inject({.fault = "motor_hot", .of = motor, .amount = 100.0});
+  knock_on_a_stiff_wall(rig, "hot, ");
+  press_into_three_walls(rig, "hot, ");
+  drive_to_and_fro(rig, "hot, ");
+}
+
+TEST_CASE("motors with a supply that sags keep far from a fault") {
+  WatchedRig rig;
+  rig.control.inject({.fault = "supply_sag", .amount = 13.0});
+  knock_on_a_stiff_wall(rig, "from 13 V, ");
+  drive_to_and_fro(rig, "from 13 V, ");
 }
 
 }  // namespace inkwell::tests

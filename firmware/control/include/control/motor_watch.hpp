@@ -10,6 +10,7 @@
 // L di to it, and a large difference is noticed sooner than a small one.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include <control/vector.hpp>
@@ -20,8 +21,8 @@ namespace inkwell::control {
 /// What a sound motor's voltage goes into.
 struct MotorModel {
   Triple resistance_ohm;
-  Triple
-      back_emf_Vs_per_rad;  ///< gear ratio times torque constant, of the joint's speed; negative for a reversed motor
+  /// Of the joint's speed: gear ratio times torque constant, negative for a reversed motor.
+  Triple back_emf_Vs_per_rad;
 };
 
 struct MotorWatch {
@@ -42,6 +43,19 @@ struct MotorWatch {
   std::size_t motor = 0;   ///< whose turn it is, 0..2
   float voltage_V = 0.0f;  ///< that its bridge had in the period that the present reading ends
 };
+
+/// What the model leaves unexplained of a motor's voltage, and how much a sound motor may leave.
+struct Unexplained {
+  float voltage_V, bearable_V;
+};
+inline Unexplained unexplained(float voltage_V, float current_A, float joint_speed_rad_per_s, float resistance_ohm,
+                               float back_emf_Vs_per_rad) {
+  const float ohmic_V = resistance_ohm * current_A;
+  const float back_emf_V = back_emf_Vs_per_rad * joint_speed_rad_per_s;
+  return {std::fabs(voltage_V - ohmic_V - back_emf_V),
+          MotorWatch::bearable_V + MotorWatch::bearable_part_of_resistance * std::fabs(ohmic_V) +
+              MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
+}
 
 /// One control period: whether the motor whose turn it is still fits. `joint_speed_rad_per_s` belongs to it as well.
 bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s, const MotorModel& model);
