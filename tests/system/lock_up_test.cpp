@@ -1,8 +1,13 @@
 // Firmware that locks the processor up: a run in the background ends, and says where it went wrong.
 #include <doctest/doctest.h>
 
+#include <device/control_client.hpp>
+#include <device/device.hpp>
+#include <device/virtual_board.hpp>
+
 #include "program.hpp"
 
+using namespace inkwell;
 using namespace inkwell::tests;
 
 TEST_CASE("with --seconds a lock-up ends the virtual board with exit code 3 and the way to the first fault") {
@@ -21,4 +26,15 @@ TEST_CASE("with --seconds a watchdog still ends a lock-up") {
   CHECK(result.exit_code == 0);
   CHECK(result.err.find("locked up") != std::string::npos);
   CHECK(result.err.find("watchdog") != std::string::npos);
+}
+
+TEST_CASE("a processor that is locked up cannot be led astray") {
+  const device::VirtualBoard board({.elf = build_directory() + "/chip-firmware/lock_up.elf", .paused = true});
+  device::ControlClient control = board.control();
+  CHECK_NOTHROW(control.inject({.fault = "program_astray", .of = "0x08000200", .after_s = 1.0}));
+  CHECK_THROWS_WITH_AS(control.run(0.01), doctest::Contains("locked up"), device::Error);
+  REQUIRE(control.status().all.contains("locked_up"));
+  CHECK_THROWS_WITH_AS(control.inject({.fault = "program_astray", .of = "0x08000200"}),
+                       doctest::Contains("the processor is locked up; reset it first"), device::Error);
+  CHECK_NOTHROW(control.inject({.fault = "motor_open", .of = "1"}));
 }
