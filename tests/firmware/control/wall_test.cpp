@@ -92,6 +92,7 @@ struct Push {
 /// The hand moves 14 mm along x in 0.3 s, the last 10 mm of it beyond the wall, and then holds still.
 Push push_against_wall(protocol::ParameterSet parameters) {
   parameters[Parameter::sphere_radius_m] = 0.0f;
+  parameters[Parameter::force_ramp_s] = 0.02f;
   for (const Parameter bound : {Parameter::box_minimum_x_m, Parameter::box_minimum_y_m, Parameter::box_minimum_z_m})
     parameters[bound] = -0.4f;
   for (const Parameter bound : {Parameter::box_maximum_y_m, Parameter::box_maximum_z_m}) parameters[bound] = 0.4f;
@@ -104,7 +105,7 @@ Push push_against_wall(protocol::ParameterSet parameters) {
 
   Push push;
   control::Drive next;  // a duty takes effect one period after its samples
-  constexpr int move_periods = 6'000, settle_periods = 6'000, steady_periods = 8'000, ramp_periods = 5'100;
+  constexpr int move_periods = 6'000, settle_periods = 2'000, steady_periods = 4'000, ramp_periods = 500;
   for (int period = -ramp_periods; period < move_periods + settle_periods + steady_periods; ++period) {
     const float part = control::clamp(static_cast<float>(period) / move_periods, 0.0f, 1.0f);
     arm.hand_m.x = start_m.x + 0.014f * part;

@@ -19,7 +19,7 @@ namespace {
 template <class Value>
 Value read(std::span<const std::byte>& bytes) {
   Value value;
-  REQUIRE(bytes.size() >= sizeof value);
+  if (bytes.size() < sizeof value) FAIL("the frame ends in the middle of a value");
   std::memcpy(&value, bytes.data(), sizeof value);
   bytes = bytes.subspan(sizeof value);
   return value;
