@@ -170,7 +170,7 @@ inline constexpr auto way_table = std::to_array<Way>({
 enum class Clearing : std::uint8_t {
   when_gone,  ///< once its cause is gone
   at_once,    ///< its cause is over when it is seen, or cannot be seen while the motors are off
-  by_reset,   ///< its cause is measured at the start only
+  by_reset,   ///< nothing that the firmware does makes its cause go away
 };
 
 /// What becomes of the motors while a fault takes the force away from a hand that moves.
@@ -265,11 +265,6 @@ constexpr bool ways_stand_together() {
       if (way_table[k].from == way_table[i].from && way_table[i - 1].from != way_table[i].from) return false;
   return true;
 }
-constexpr bool states_with_force_are_told_alike() {
-  for (std::size_t i = 0; i < state_count; ++i)
-    if (state_table[i].force_is_on != with_force.contains(static_cast<State>(i))) return false;
-  return true;
-}
 #define X(id, text, ...) \
   static_assert(state_table[id].name == std::string_view(#text), #text ": its id is not its place in the table");
 INKWELL_STATES(X)
@@ -278,6 +273,5 @@ INKWELL_STATES(X)
 
 static_assert(detail::every_fault_is_watched_once(), "watch_table: each fault but none has one row");
 static_assert(detail::ways_stand_together(), "way_table: the ways from one state stand together");
-static_assert(detail::states_with_force_are_told_alike());
 
 }  // namespace inkwell::protocol

@@ -1,6 +1,8 @@
 // When the motors are shorted to brake the arm, and when they are let go.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 #include <control/brake.hpp>
@@ -52,12 +54,12 @@ TEST_CASE("half a second is the longest") {
 }
 
 TEST_CASE("only after the faults that leave bridges, currents and speeds to be trusted, alone or beside others") {
-  for (const Fault fault : {Fault::over_speed, Fault::host_silent, Fault::force_law})
-    CHECK(begun(watch(fault)).is_on());
-  for (const Fault fault :
-       {Fault::bridge_fault, Fault::over_current, Fault::supply_low, Fault::supply_high, Fault::current_sensor,
-        Fault::encoder_implausible, Fault::servo_overrun, Fault::not_finite, Fault::samples_stale, Fault::motor_hot}) {
-    CAPTURE(static_cast<int>(fault));
+  const std::array braked{Fault::over_speed, Fault::host_silent, Fault::force_law};
+  for (const Fault fault : braked) CHECK(begun(watch(fault)).is_on());
+  for (const auto& row : protocol::fault_table) {
+    const auto fault = static_cast<Fault>(row.code);
+    if (fault == Fault::none || std::ranges::find(braked, fault) != braked.end()) continue;
+    CAPTURE(row.name);
     CHECK_FALSE(begun(watch(fault)).is_on());
     CHECK_FALSE(begun(watch(fault) | watch(Fault::over_speed)).is_on());
     Brake brake = begun(watch(Fault::over_speed));

@@ -160,7 +160,6 @@ TEST_CASE("a reading that stands still takes the force away within milliseconds,
     CHECK(arm.run(4'000, motor) < 200);
     CHECK(arm.controller.fault() == Fault::motor_implausible);
     CHECK_FALSE(arm.next.enabled);
-    CHECK_FALSE(arm.next.brake);
     arm.controller.carry_out(tests::command(protocol::Command::clear_fault));
     arm.run(2);
     CHECK(arm.controller.state() == protocol::State::ready);
