@@ -21,6 +21,10 @@ namespace identity = protocol::usb;
 constexpr int report_transfers = 32;
 constexpr std::size_t reports_kept = 1024;  // a second; then the oldest go, and the sequence shows it
 constexpr std::size_t writes_under_way = 16;
+// How long a device that takes no command is waited for: a second of its own time, which its reports tell, however
+// long a busy computer makes that; or silence, of the clock on the wall.
+constexpr unsigned reports_without_a_taken_write = 1000;
+constexpr auto silence = 3s;
 
 class UsbipTransport : public Transport {
  public:
@@ -44,14 +48,13 @@ class UsbipTransport : public Transport {
 
   void write_report(std::span<const std::byte> report) override {
     std::unique_lock lock(writes_mutex_);
-    const bool free = writes_changed_.wait_for(lock, 1s, [&] { return writes_ < writes_under_way || lost_; });
-    if (!free) throw Error("The device takes no commands. Reset the board, or let a paused virtual board run.");
-    if (lost_) throw Disconnected(unplugged);
-    ++writes_;
+    wait_for_room(lock);
+    if (writes_++ == 0) reports_since_taken_ = 0;
     lock.unlock();
     connection_.submit_out(layout_.hid_out_endpoint, report, [this](UsbipConnection::Completion completion) {
       const std::lock_guard done(writes_mutex_);
       --writes_;
+      reports_since_taken_ = 0;
       writes_changed_.notify_one();
       if (completion.status != 0) lost_ = true;
     });
@@ -111,9 +114,28 @@ class UsbipTransport : public Transport {
     connection_.control_out(setup::set_configuration(layout_.configuration), {});
   }
 
+  void wait_for_room(std::unique_lock<std::mutex>& lock) {
+    const auto has_room = [&] { return writes_ < writes_under_way; };
+    const auto takes_none = [&] { return reports_since_taken_ >= reports_without_a_taken_write; };
+    for (std::uint64_t known = reports_come_; !has_room() && !lost_ && !takes_none(); known = reports_come_) {
+      const bool changed = writes_changed_.wait_for(lock, silence, [&] { return has_room() || lost_ || takes_none(); });
+      if (!changed && reports_come_ == known)
+        throw Error("The device takes no commands and is silent. Reset the board, or let a paused virtual board run.");
+    }
+    if (lost_) throw Disconnected(unplugged);
+    if (!has_room()) throw Error("The device takes no commands, although it sends its pose. Reset the board.");
+  }
+
+  void count_report() {
+    const std::lock_guard lock(writes_mutex_);
+    ++reports_come_;
+    if (++reports_since_taken_ == reports_without_a_taken_write) writes_changed_.notify_all();
+  }
+
   void ask_for_report() {
     connection_.submit_in(layout_.hid_in_endpoint, identity::packet_size, [this](UsbipConnection::Completion done) {
       if (done.status != 0) return lose(unplugged);
+      count_report();
       if (!done.data.empty()) reports_.push(std::move(done.data));
       if (reports_.size() > reports_kept) reports_.drop_oldest();
       ask_again([this] { ask_for_report(); });
@@ -181,6 +203,8 @@ class UsbipTransport : public Transport {
   std::mutex writes_mutex_;
   std::condition_variable writes_changed_;
   std::size_t writes_ = 0;
+  unsigned reports_since_taken_ = 0;  ///< while a write is under way
+  std::uint64_t reports_come_ = 0;
   bool lost_ = false;
   UsbipConnection connection_;  ///< last: its thread uses all of the above
 };

@@ -144,8 +144,15 @@ TEST_CASE("a device that takes no more commands is told, and not sent ever more 
   const auto arm = device::Device::open(server.endpoint());
   constexpr std::size_t under_way = 16;
   for (std::size_t i = 0; i < under_way; ++i) arm->send(protocol::Command::heartbeat);
-  const auto message = message_of<device::Error>([&] { arm->send(protocol::Command::heartbeat); });
-  CHECK(contains(message, "takes no commands"));
+  SUBCASE("and sends nothing either") {
+    const auto message = message_of<device::Error>([&] { arm->send(protocol::Command::heartbeat); });
+    CHECK(contains(message, "takes no commands and is silent"));
+  }
+  SUBCASE("while it sends its pose for a second of its time") {
+    for (int i = 0; i < 1000; ++i) server.send(1, Bytes(sizeof(protocol::PoseReport), std::byte{2}));
+    const auto message = message_of<device::Error>([&] { arm->send(protocol::Command::heartbeat); });
+    CHECK(contains(message, "takes no commands, although it sends its pose"));
+  }
   arm->information();
   CHECK(server.commands().size() == under_way);
 }
