@@ -125,7 +125,8 @@ void Controller::find_pose(const Settings& settings) {
 void Controller::render_force(const Settings& settings) {
   probe_.contact = find_contact(probe_.position_m, settings.box);
   advance(program_, settings.program_force);
-  const bool world_changed = std::exchange(world_changed_, false) | shapes_.age();
+  const bool shapes_changed = shapes_.age();
+  const bool world_changed = std::exchange(world_changed_, false) || shapes_changed;
   const bool law_rendered = program_.mode != ForceMode::instead_of_walls;
   const bool law_changed = std::exchange(law_rendered_, law_rendered) != law_rendered;
   force_sources_ = bit(ForceSource::walls, law_rendered) | bit(ForceSource::shapes, shapes_.any()) |
