@@ -18,6 +18,22 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
+/// None also for what does not fit.
+template <class Whole>
+std::optional<Whole> whole_number(std::string_view text) {
+  Whole value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// None for a time that no board can have: its counter of periods begins anew before.
+std::optional<std::uint32_t> period_at(double time_s) {
+  constexpr double longest_s = 4294967295.0 / protocol::servo_rate_Hz;
+  if (!(time_s >= 0.0 && time_s <= longest_s)) return std::nullopt;
+  return static_cast<std::uint32_t>(std::llround(time_s * protocol::servo_rate_Hz));
+}
+
 class CsvReader {
  public:
   explicit CsvReader(const std::filesystem::path& file) : name_(file.string()), stream_(file) {
@@ -59,7 +75,7 @@ class CsvReader {
     else if (key == "firmware_version")
       about.firmware_version = value;
     else if (key == "protocol_version")
-      about.protocol_version = static_cast<std::uint16_t>(number(value).value_or(0));
+      about.protocol_version = whole_number<std::uint16_t>(value).value_or(0);
     else if (key == "serial_number")
       about.serial_number = value;
     else if (key == "arm")
@@ -73,9 +89,15 @@ class CsvReader {
     else if (key == "complete")
       recording_.complete = value == "1";
     else if (key.starts_with("mark "))
-      recording_.marks.push_back({static_cast<std::uint32_t>(number(key.substr(5)).value_or(0)), std::string(value)});
+      mark(key.substr(5), value);
     else if (key.starts_with("parameter "))
       parameter(key.substr(10), value);
+  }
+  void mark(std::string_view period, std::string_view text) {
+    if (const auto known = whole_number<std::uint32_t>(period))
+      recording_.marks.push_back({*known, std::string(text)});
+    else
+      recording_.remarks.push_back(fmt::format("The mark \"{}\" of {} has no period; it was left out.", text, name_));
   }
   void parameter(std::string_view name, std::string_view text) {
     const auto known = protocol::find_parameter(name);
@@ -117,7 +139,10 @@ class CsvReader {
       line.remove_prefix(std::min(line.size(), cell.size() + 1));
       return *value;
     };
-    recording_.periods.push_back(static_cast<std::uint32_t>(std::llround(next() * protocol::servo_rate_Hz)));
+    const double time_s = next();
+    const auto period = period_at(time_s);
+    if (!period) fail(fmt::format("is damaged in line {}: {} s is no time of a board", line_number_, time_s));
+    recording_.periods.push_back(*period);
     auto column = recording_.columns.begin(), simulated_column = recording_.simulated_columns.begin();
     for (const Holds holds : holds_) {
       const auto value = static_cast<float>(next());

@@ -355,8 +355,28 @@ TEST_CASE("a file that is no recording, or a damaged one, is refused with a sent
 
   std::ofstream(directory / "a.csv") << "# inkwell recording = 1\ntime_s,force_N\n0.00005,1.5\n0.0001,oops\n";
   CHECK(error_of(directory / "a.csv").find("line 4") != std::string::npos);
+  for (const char* time : {"nan", "-1", "214748.37", "1e300"}) {
+    std::ofstream(directory / "a.csv") << "# inkwell recording = 1\ntime_s,force_N\n" << time << ",1.5\n";
+    CHECK(error_of(directory / "a.csv").find("line 3: ") != std::string::npos);
+    CHECK(error_of(directory / "a.csv").find("is no time of a board") != std::string::npos);
+  }
   std::ofstream(directory / "b.csv") << "# something else = 1\ntime_s,force_N\n0.00005,1.5\n";
   CHECK_FALSE(error_of(directory / "b.csv").empty());
+}
+
+TEST_CASE("numbers of a CSV that do not fit are left out and named, or as if they were not there") {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a.csv") << "# inkwell recording = 1\n# protocol_version = 65536\n# mark 5025 = knock\n"
+                                        "# mark 4294967296 = too late\n# mark -1 = too early\n"
+                                        "time_s,force_N\n0.25,1\n214748.36475,2\n";
+  const Recording recording = read(directory / "a.csv");
+  CHECK(recording.information.protocol_version == 0);
+  REQUIRE(recording.marks.size() == 1);
+  CHECK(recording.marks[0].period == 5025);
+  REQUIRE(recording.remarks.size() == 2);
+  CHECK(recording.remarks[0].find("\"too late\"") != std::string::npos);
+  CHECK(recording.remarks[1].find("\"too early\"") != std::string::npos);
+  CHECK(recording.periods == std::vector<std::uint32_t>{5000, 4294967295});
 }
 
 TEST_CASE("what a newer version wrote is read as far as it is known, and the rest is named") {
