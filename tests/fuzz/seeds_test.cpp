@@ -1,0 +1,25 @@
+// The seeds of the fuzzer, in each ordinary run of the tests: what once broke something stays mended.
+#include <doctest/doctest.h>
+
+#include "seeds.hpp"
+#include "target.hpp"
+
+using namespace inkwell;
+
+TEST_CASE("every target bears its seeds, nothing, and each seed cut short anywhere") {
+  CHECK(fuzz::targets().size() > 10);
+  for (const fuzz::Target& target : fuzz::targets()) {
+    CAPTURE(target.name);
+    CHECK_NOTHROW(target.run({}));
+    const auto seeds = fuzz::seeds_of(target);
+    CHECK_FALSE(seeds.empty());
+    for (const fuzz::Seed& seed : seeds) {
+      CAPTURE(seed.name);
+      CHECK_FALSE(seed.bytes.empty());
+      const std::size_t step = 1 + seed.bytes.size() / 100;
+      for (std::size_t length = 0; length < seed.bytes.size(); length += step)
+        REQUIRE_NOTHROW(target.run(std::span(seed.bytes).first(length)));
+      CHECK_NOTHROW(target.run(seed.bytes));
+    }
+  }
+}

@@ -1,0 +1,59 @@
+// What is fuzzed: everything of firmware and companion that reads bytes which somebody else wrote. A target is one
+// function that takes any bytes; it may throw what the parser documents, and nothing else may happen.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace inkwell::fuzz {
+
+using Input = std::span<const std::byte>;
+using Bytes = std::vector<std::byte>;
+
+struct Target {
+  std::string_view name;  ///< also of its folder of seeds
+  void (*run)(Input input);
+  std::vector<Bytes> (*examples)();  ///< sound inputs that the code can make itself
+};
+
+inline std::vector<Target>& targets() {
+  static std::vector<Target> all;
+  return all;
+}
+
+/// Puts a target into the list when the program starts.
+struct Registered {
+  using Examples = std::vector<Bytes>();
+  static std::vector<Bytes> none() { return {}; }
+  Registered(std::string_view name, void (*run)(Input input), Examples* examples = none) {
+    targets().push_back({name, run, examples});
+  }
+};
+
+/// The target of this name, or none.
+inline const Target* find(std::string_view name) {
+  for (const Target& target : targets())
+    if (target.name == name) return &target;
+  return nullptr;
+}
+
+inline std::string text_of(Input input) { return {reinterpret_cast<const char*>(input.data()), input.size()}; }
+
+inline Bytes bytes_of(std::string_view text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Calls `parse`; an `Error` is an answer.
+template <class Error, class Parse>
+void refuse_or_take(Parse parse) {
+  try {
+    parse();
+  } catch (const Error&) {
+  }
+}
+
+}  // namespace inkwell::fuzz
