@@ -89,7 +89,7 @@ std::string_view reason_of_wire(std::string_view wire) {
   return "A switch that is open or closed looks like one that is let go of or pressed.";
 }
 
-/// Why a fault may pass unnoticed, as far as its row of the table tells.
+/// Why a fault may pass unnoticed with the force on, as far as its row of the table tells.
 std::string_view reason(const CaseFault& fault) {
   using protocol::InjectedFault;
   switch (*fault.fault) {
@@ -103,33 +103,48 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::encoder_lost_counts:
     case InjectedFault::encoder_slip:
       return "No second sensor knows the joint; only an angle far beyond its stop is noticed, or a fast motor's "
-             "missing "
-             "back EMF.";
+             "missing back EMF.";
     case InjectedFault::shunt_offset:
     case InjectedFault::shunt_gain:
     case InjectedFault::shunt_frozen: return "Voltage, reading and speed fit within what a hot motor may differ by.";
+    case InjectedFault::shunt_high:
+    case InjectedFault::shunt_low: return "None is known: a reading at its rail is more than any sensor can show.";
     case InjectedFault::motor_open:
     case InjectedFault::leg_open: return "While no current is asked of the motor, none is missed.";
     case InjectedFault::motor_shorted:
     case InjectedFault::motor_hot:
       return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; nothing "
              "measures the torque.";
+    case InjectedFault::leg_high:
+    case InjectedFault::leg_low: return "The leg's other switch, at which the bridge trips, was not turned on.";
     case InjectedFault::leg_slow:
       return "The current loop makes up for it, and what the leg takes is within what a sound one may.";
+    case InjectedFault::bridge_fault: return "None is known: the timers' break inputs see the wire.";
+    case InjectedFault::supply_sag:
+    case InjectedFault::supply_spike:
+    case InjectedFault::supply_cut: return "The capacitors bear it for that long.";
+    case InjectedFault::logic_sag:
+      return "The flash was still read right, and no brown-out level of the option bytes lies above that voltage.";
+    case InjectedFault::crystal_stop: return "None is known: the clock's own guard sees it.";
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
     case InjectedFault::usb_cut:
-    case InjectedFault::host_silent: return "Without force the host may be silent.";
+    case InjectedFault::host_silent: return "None is known: a host that is not heard is missed.";
+    case InjectedFault::core_stalled: return "None is known: the watchdog is not fed.";
+    case InjectedFault::core_halted: return "None is known: the timers stop with the core.";
+    case InjectedFault::program_astray:
+      return "The code that it came to returned to the main loop, and had changed nothing that is checked.";
+    case InjectedFault::exception_lost:
+      return "The force does not need it; a host that it keeps from being heard is missed later than a case lasts.";
     case InjectedFault::exception_late: return "Late by less than what the firmware watches for.";
-    case InjectedFault::exception_lost: return "The force needs nothing of it, or it stands without force.";
+    case InjectedFault::adc_stopped:
+      return "Its current reads on as it stood; voltage, reading and speed fit within what a hot motor may differ by.";
+    case InjectedFault::dma_stopped: return "None is known: the age of supply and gimbal is watched.";
     case InjectedFault::ram_bit:
       return "Of the RAM only the interrupts' code and tables and the settings are checked; the byte was not used, or "
              "written anew before.";
     case InjectedFault::flash_bit: return "The check in the background had not come by yet.";
-    case InjectedFault::supply_sag:
-    case InjectedFault::supply_spike:
-    case InjectedFault::supply_cut: return "The capacitors bear it for that long, or the motors are off.";
-    default: return "It is over before anything depends on it, or the motors are off.";
   }
+  return "";
 }
 
 std::string undetected(const Groups& groups, const std::vector<CaseFault>& faults) {

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <temporary_directory.hpp>
@@ -153,4 +154,25 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   write_page(std::array{quick}, page);
   CHECK(content_of(page).find("more than the force limit and a tenth of it: none.") != std::string::npos);
   CHECK_THROWS_AS(write_page({}, page), device::Error);
+}
+
+TEST_CASE("each fault that passes unnoticed with the force on has a reason on the page") {
+  const TemporaryDirectory directory;
+  std::vector<Result> results;
+  for (const CaseFault& fault : case_faults())
+    if (fault.fault) results.push_back(seen(fault.name(), "rest", 1));
+  write_page(results, directory / "campaign.md");
+  const std::string text = content_of(directory / "campaign.md");
+  for (const Result& result : results) {
+    CAPTURE(result.fault);
+    const std::string row = "| `" + result.fault + "` | rest | ";
+    const auto at = text.find(row);
+    REQUIRE(at != std::string::npos);
+    const std::string reason = text.substr(at + row.size(), text.find(" |\n", at) - at - row.size());
+    CHECK(reason.size() > 20);
+    CHECK(reason.ends_with("."));
+    CHECK(reason.find("motors are off") == std::string::npos);  // not with the force on
+  }
+  CHECK(text.find("`adc_stopped:3` | rest | Its current reads on as it stood") != std::string::npos);
+  CHECK(text.find("`program_astray` | rest | The code that it came to returned") != std::string::npos);
 }
