@@ -57,9 +57,9 @@ void make_folder(const std::filesystem::path& folder, std::string_view option) {
 }
 
 /// Before hours of cases, not after them.
-void make_folder_of_page(const CampaignOptions& command, std::string_view option) {
+void make_folder_of_page(const CampaignOptions& command) {
   const std::filesystem::path folder = std::filesystem::path(command.page).parent_path();
-  if (!folder.empty()) make_folder(folder, option);
+  if (!folder.empty()) make_folder(folder, "--page");
 }
 
 /// Each case on a board of its own; as many at once as there are jobs. The exit code: 1 if one could not be run.
@@ -111,7 +111,7 @@ int run_chosen(const DeviceOptions& options, const CampaignOptions& command) {
 
 int merge_results(const CampaignOptions& command) {
   const auto results = campaign::load_all(command.folder);
-  if (!results.empty()) make_folder_of_page(command, "--out");
+  if (!results.empty()) make_folder_of_page(command);
   campaign::write_page(results, command.page);
   fmt::print("{} of {} cases: {}\n", results.size(), campaign::all_cases().size(), command.page);
   return 0;
@@ -119,7 +119,7 @@ int merge_results(const CampaignOptions& command) {
 
 int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
   make_folder(command.folder, "--out");
-  make_folder_of_page(command, "--page");
+  make_folder_of_page(command);
   std::vector<Case> missing;
   for (const Case& c : campaign::all_cases())
     if (!std::filesystem::exists(campaign::file_of(command.folder, c.number))) missing.push_back(c);
@@ -131,6 +131,12 @@ int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
 void add_folder(CLI::App& command, CampaignOptions& options) {
   command.add_option("--out", options.folder, "Folder of the results, a file for each case")
       ->type_name("FOLDER")
+      ->capture_default_str();
+}
+
+void add_page(CLI::App& command, CampaignOptions& options) {
+  command.add_option("--page", options.page, "Page to write; its plots go beside it")
+      ->type_name("FILE")
       ->capture_default_str();
 }
 
@@ -152,13 +158,11 @@ void add_campaign_command(const Place& place) {
   command->require_subcommand(0, 1);
   add_folder(*command, *options);
   add_jobs(*command, *options);
-  command->add_option("--page", options->page, "Page to write; its plots go beside it")
-      ->type_name("FILE")
-      ->capture_default_str();
+  add_page(*command, *options);
   add_examples(*command,
                "inkwell campaign --jobs 8\n"
                "inkwell campaign list --numbers | parallel -S one,two inkwell campaign run {} --out /shared/results\n"
-               "inkwell campaign merge /shared/results --out docs/campaign.md");
+               "inkwell campaign merge /shared/results --page docs/campaign.md");
   command->callback([place, command, options] {
     if (command->get_subcommands().empty())
       place.action = [&device = place.device, options] { return run_missing(device, *options); };
@@ -180,10 +184,8 @@ void add_campaign_command(const Place& place) {
 
   auto* merges = command->add_subcommand("merge", "Writes the page from the results that are there");
   merges->add_option("results", options->folder, "Folder of the results")->required()->type_name("FOLDER");
-  merges->add_option("--out", options->page, "Page to write; its plots go beside it")
-      ->type_name("FILE")
-      ->capture_default_str();
-  add_examples(*merges, "inkwell campaign merge results --out docs/campaign.md");
+  add_page(*merges, *options);
+  add_examples(*merges, "inkwell campaign merge results --page docs/campaign.md");
   merges->callback([place, options] { place.action = [options] { return merge_results(*options); }; });
 }
 

@@ -122,7 +122,7 @@ TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   CHECK(campaign::text_of(there[0]) == campaign::text_of(here));
 
   const auto page = (directory / "page.md").string();
-  const auto merged = run_program("inkwell", {"campaign", "merge", directory.path(), "--out", page});
+  const auto merged = run_program("inkwell", {"campaign", "merge", directory.path(), "--page", page});
   CHECK(merged.exit_code == 0);
   CHECK(std::filesystem::exists(page));
   CHECK(std::filesystem::exists(directory / "page-off.svg"));
