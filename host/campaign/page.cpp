@@ -34,8 +34,17 @@ const std::vector<Result>* find(const Groups& groups, const std::string& fault, 
   return found == groups.end() ? nullptr : &found->second;
 }
 
-bool is_detected(const Result& result) {
-  return !result.detected_as.empty() || result.restarts > 0 || result.off_after_s.has_value();
+/// A lock-up is what the fault did, not what the board noticed of it.
+bool is_detected(const Result& result) { return !result.detected_as.empty() || result.restarts > 0; }
+
+bool is_unnoticed(const Result& result) { return !is_detected(result) && !result.off_after_s; }
+
+std::string told(const Result& result) {
+  std::vector<std::string_view> parts;
+  if (!result.detected_as.empty()) parts.push_back(result.detected_as);
+  if (result.restarts > 0) parts.push_back("restart");
+  if (result.locked_up) parts.push_back("locked up");
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string off_text(const Summary& s) {
@@ -159,7 +168,7 @@ std::string undetected(const Groups& groups, const std::vector<CaseFault>& fault
       if (results == nullptr || !is_active(situation)) continue;
       const auto run = std::ranges::count_if(*results, [](const Result& r) { return r.error.empty(); });
       const auto missed =
-          std::ranges::count_if(*results, [](const Result& r) { return r.error.empty() && !is_detected(r); });
+          std::ranges::count_if(*results, [](const Result& r) { return r.error.empty() && is_unnoticed(r); });
       if (missed > 0)
         where.push_back(missed == run ? std::string(name_of(situation))
                                       : fmt::format("{} ({} of {})", name_of(situation), missed, run));
@@ -191,6 +200,20 @@ std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faul
       "{}.\n\n| fault | situation | peak force, N | energy, mJ | travel, mm | detected as | bridges off, control "
       "periods |\n| --- | --- | --- | --- | --- | --- | --- |\n{}",
       heading, rows);
+}
+
+std::string went_on(std::span<const Result> results) {
+  std::string text;
+  for (const Result& result : results)
+    if (result.error.empty() && result.bridges_went_on)
+      text += fmt::format("| {} | `{}` {} {} | {:.2f} | {:.1f} | {:.1f} | {} |\n", result.number, result.fault,
+                          result.situation, result.phase, result.peak_force_N, 1e3 * result.energy_J,
+                          1e3 * result.travel_m, told(result).empty() ? "-" : told(result));
+  if (text.empty()) return text;
+  return "\n## Went on by itself\n\nThe bridges were off, and a leg was at the supply after the fault came.\n\n"
+         "| case | what | peak force, N | energy, mJ | travel, mm | detected as |\n"
+         "| --- | --- | --- | --- | --- | --- |\n" +
+         text;
 }
 
 std::string not_run(std::span<const Result> results) {
@@ -246,16 +269,10 @@ Summary summarise(std::span<const Result> results) {
   Summary s;
   std::set<std::string> faults, recoveries;
   for (const Result& r : results) {
-    if (!r.error.empty()) {
-      ++s.failed;
-      continue;
-    }
+    if (!r.error.empty()) continue;
     ++s.cases;
-    std::string told = r.detected_as;
-    if (r.restarts > 0) told += told.empty() ? "restart" : ", restart";
-    if (r.locked_up) told += told.empty() ? "locked up" : ", locked up";
-    if (!told.empty()) ++s.detected;
-    add(faults, told);
+    s.detected += is_detected(r);
+    add(faults, told(r));
     add(recoveries, r.fault_on_healing.empty()
                         ? r.recovery
                         : fmt::format("{} of the {} that healing brought", r.recovery, r.fault_on_healing));
@@ -292,7 +309,8 @@ void write_page(std::span<const Result> results, const std::filesystem::path& pa
       "control\n"
       "periods of 50 us.\n\n![until the bridges were off]({}-off.svg)\n![peak force]({}-force.svg)\n",
       results.size(), all_cases().size(), results.front().force_limit_N, stem, stem);
-  text += above_limit(groups, faults) + undetected(groups, faults) + not_run(results) + tables(groups, faults);
+  text += went_on(results) + above_limit(groups, faults) + undetected(groups, faults) + not_run(results) +
+          tables(groups, faults);
   recording::write_text(page, text);
   recording::write_text(page.parent_path() / (stem + "-off.svg"), off_plot(results));
   recording::write_text(page.parent_path() / (stem + "-force.svg"), force_plot(results));

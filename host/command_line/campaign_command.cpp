@@ -78,7 +78,9 @@ int run_cases(const DeviceOptions& options, const CampaignOptions& command, cons
         const std::string off = result.off_after_s
                                     ? fmt::format("off after {:.3f} ms", 1e3 * *result.off_after_s)
                                     : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
-        fmt::print("{:5} {}: {}\n", cases[i].number, cases[i].name(),
+        // By the place it is found out why a case went as it did.
+        const std::string place = result.place.empty() ? "" : " at " + result.place;
+        fmt::print("{:5} {}{}: {}\n", cases[i].number, cases[i].name(), place,
                    result.error.empty()
                        ? fmt::format("{}, {}, {:.2f} N, {}", result.detected_as.empty() ? "-" : result.detected_as, off,
                                      result.peak_force_N, result.recovery)

@@ -128,6 +128,17 @@ TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   CHECK(std::filesystem::exists(directory / "page-off.svg"));
 }
 
+TEST_CASE("a place that the seed chose is told with the case") {
+  const TemporaryDirectory directory;
+  const auto c = the_case("ram_bit unreferenced 1");
+  const auto run = run_program("inkwell", {"campaign", "run", std::to_string(c.number), "--out", directory.path()});
+  CHECK(run.exit_code == 0);
+  const auto results = campaign::load_all(directory.path());
+  REQUIRE(results.size() == 1);
+  CHECK(results[0].place.starts_with("0x"));
+  CHECK(run.out.find("ram_bit unreferenced 1 at " + results[0].place + ": ") != std::string::npos);
+}
+
 TEST_CASE("the list of the campaign is for people and for batch systems; a case that is none is refused") {
   const auto numbers = run_program("inkwell", {"campaign", "list", "--numbers"});
   CHECK(numbers.exit_code == 0);

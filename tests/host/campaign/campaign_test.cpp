@@ -114,7 +114,6 @@ TEST_CASE("of three instants the worst is told") {
   CHECK(s.recovery == "clear_fault; none needed");
   b.error = "The board did not start.";
   CHECK(summarise(std::array{a, b, c}).cases == 2);
-  CHECK(summarise(std::array{a, b, c}).failed == 1);
 }
 
 TEST_CASE("the page has the figures, and leaves nothing out that passed unnoticed or could not be run") {
@@ -154,6 +153,39 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   write_page(std::array{quick}, page);
   CHECK(content_of(page).find("more than the force limit and a tenth of it: none.") != std::string::npos);
   CHECK_THROWS_AS(write_page({}, page), device::Error);
+}
+
+TEST_CASE("a restart is noticed, a lock-up or bridges that went off are not by themselves") {
+  const TemporaryDirectory directory;
+  Result restarted = seen("logic_sag", "rest", 1), stuck = seen("logic_sag", "rest", 2),
+         quiet = seen("logic_sag", "rest", 3);
+  restarted.restarts = 2;
+  stuck.locked_up = true;
+  quiet.off_after_s = 1e-3;
+  const std::array all{restarted, stuck, quiet};
+  CHECK(summarise(all).detected == 1);
+  write_page(all, directory / "campaign.md");
+  const std::string text = content_of(directory / "campaign.md");
+  CHECK(text.find("| `logic_sag` | locked up; restart (1 of 3) |") != std::string::npos);
+  CHECK(text.find("| `logic_sag` | rest (1 of 3) |") != std::string::npos);  // what locked up with the bridges on
+}
+
+TEST_CASE("a bridge that went on though it was off stands on the page before all else, and only then") {
+  const TemporaryDirectory directory;
+  Result off = seen("bridge_fault", "ready", 1), on = seen("wire_high:bridge_enable", "ready", 2);
+  const auto page = directory / "campaign.md";
+  write_page(std::array{off, on}, page);
+  CHECK(content_of(page).find("## Went on by itself") == std::string::npos);
+  on.bridges_went_on = true;
+  on.peak_force_N = 1.25;
+  write_page(std::array{off, on}, page);
+  const std::string text = content_of(page);
+  const auto section = text.find("## Went on by itself");
+  REQUIRE(section != std::string::npos);
+  CHECK(section < text.find("## Above the force limit"));
+  CHECK(text.find("| " + std::to_string(on.number) + " | `wire_high:bridge_enable` ready 2 | 1.25 | 0.0 | 0.0 | - |") !=
+        std::string::npos);
+  CHECK(text.find("`bridge_fault` ready 1") == std::string::npos);
 }
 
 TEST_CASE("each fault that passes unnoticed with the force on has a reason on the page") {

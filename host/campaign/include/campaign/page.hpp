@@ -11,9 +11,9 @@ namespace inkwell::campaign {
 
 /// What is told of the three phases of a fault in a situation: the worst of them.
 struct Summary {
-  unsigned cases = 0, failed = 0;
-  unsigned detected = 0;
-  std::string detected_as;  ///< all names; empty: not once
+  unsigned cases = 0;       ///< that could be run
+  unsigned detected = 0;    ///< a fault was told, or the board restarted; bridges that went off alone are none
+  std::string detected_as;  ///< faults, restarts and lock-ups; empty: none of them
   unsigned went_off = 0, were_on = 0;
   double off_after_s = 0;
   double peak_force_N = 0, energy_J = 0, travel_m = 0;

@@ -18,7 +18,7 @@ struct Result {
   std::string error;  ///< why the case could not be run; the rest says nothing then
 
   double injected_at_s = 0;  ///< board time
-  std::string place;         ///< that the seed chose
+  std::string place;         ///< that the seed chose; empty: the case names it
   bool bridges_were_on = false;
   std::optional<double> off_after_s;  ///< none: they were off, or stayed on
   bool bridges_went_on = false;       ///< though they were off
@@ -29,7 +29,7 @@ struct Result {
 
   double force_limit_N = 0;
   double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the fault came
-  std::string recovery;                                 ///< see Recovery in run.cpp
+  std::string recovery;                                 ///< what gave the force back; the page shows it as it is
   std::optional<double> position_error_m;               ///< in the end, of what the device believes
 
   bool operator==(const Result&) const = default;
