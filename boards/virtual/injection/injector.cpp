@@ -47,6 +47,12 @@ std::uint32_t programmed_bytes(const Chip& chip) {
   return bytes;
 }
 
+/// add() has looked at the address; a fault that did not come must not be told as one that did.
+void flip_bit(Chip& chip, const Injection& injection) {
+  if (!chip.flip_bit(*injection.address, static_cast<unsigned>(injection.amount)))
+    throw InvalidInjection(fmt::format("there is no memory at 0x{:08X} in which a bit could flip", *injection.address));
+}
+
 }  // namespace
 
 void Injector::add(const Injection& injection) {
@@ -243,9 +249,9 @@ void Injector::put_into_chip(const Injection& injection, bool in) {
     case InjectedFault::adc_stopped: return chip.stop_converter(injection.number, in);
     case InjectedFault::dma_stopped: return chip.stop_dma(in);
     case InjectedFault::ram_bit:
-      if (in) chip.flip_bit(*injection.address, static_cast<unsigned>(amount));
+      if (in) flip_bit(chip, injection);
       return;
-    case InjectedFault::flash_bit: chip.flip_bit(*injection.address, static_cast<unsigned>(amount)); return;
+    case InjectedFault::flash_bit: return flip_bit(chip, injection);
     default: return;
   }
 }

@@ -141,7 +141,7 @@ class Chip {
   /// An exception that reaches the core so many cycles of HCLK late, from the next time on; 0 is in time again.
   void delay_exception(unsigned exception, std::uint32_t cycles);
   /// Turns a bit of a byte of RAM or flash over, as a particle does. False if there is no memory.
-  bool flip_bit(std::uint32_t address, unsigned bit);
+  [[nodiscard]] bool flip_bit(std::uint32_t address, unsigned bit);
   /// ADC `number` (1 to 3) begins no conversion any more, or does again.
   void stop_converter(unsigned number, bool stopped);
   /// Neither DMA takes a request any more, or both do again.
