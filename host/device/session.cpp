@@ -170,6 +170,7 @@ struct Session::Implementation {
       selection = signals;
     }
     auto& [restore_defaults, changes] = taken.parameters;
+    bool is_at_parameters = false;
     try {
       for (const auto& queued : taken.commands) {
         if (queued.pulse)
@@ -178,11 +179,15 @@ struct Session::Implementation {
           to.send(queued.command);
       }
       if (taken.select) select(to, selection);
+      is_at_parameters = true;
       if (restore_defaults) transact(to, [&] { return to.restore_default_parameters(); });
       restore_defaults = false;
       if (!changes.empty()) transact(to, [&to, &wanted = changes] { return to.set_parameters(wanted); });
     } catch (const Stalled&) {
-      throw;  // sent again, it would be refused again
+      // Sent again, it would be refused again; what stands behind it was not sent yet.
+      if (is_at_parameters && !std::exchange(restore_defaults, false)) changes.clear();
+      put_back(std::move(taken.parameters));
+      throw;
     } catch (const Error&) {
       put_back(std::move(taken.parameters));
       throw;

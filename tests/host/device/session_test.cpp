@@ -220,6 +220,26 @@ TEST_CASE("a transaction that the device stalls is not sent again by the connect
   CHECK(limits == 1);
 }
 
+TEST_CASE("changes behind a transaction that the device stalls reach it by the connection after it") {
+  FakeUsbipServer server;
+  std::atomic<int> restorations = 0, changes = 0;
+  server.judge = [&](const protocol::ParametersReport& report) {
+    server.stalls_accepted = report.operation == protocol::ParameterOperation::restore_defaults;
+    ++(server.stalls_accepted ? restorations : changes);
+    return protocol::Refusal::accepted;
+  };
+  std::atomic<bool> is_there = false;
+  device::Session session([&] { return is_there ? std::optional(server.endpoint()) : std::nullopt; });
+  session.restore_default_parameters();
+  session.set_parameters({{Parameter::force_limit_N, 2.5f}});
+  is_there = true;
+  CHECK(eventually([&] { return changes == 1; }));
+  REQUIRE(
+      eventually([&] { return is_connected(session) && (*session.parameters())[Parameter::force_limit_N] == 2.5f; }));
+  CHECK(restorations == 1);
+  CHECK(changes == 1);
+}
+
 TEST_CASE("the defaults take the place of changes that were asked for before") {
   FakeUsbipServer server;
   std::atomic<bool> is_there = false;
