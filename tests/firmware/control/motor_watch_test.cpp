@@ -123,12 +123,14 @@ struct PressedArm {
     set[wall_stiffness_N_per_m] = 3000.0f;
     set[force_limit_N] = 8.0f;
     set[force_ramp_s] = 0.0f;
+    set[speed_limit_m_per_s] = 10.0f;
     return set;
   }();
   control::Settings settings = control::prepare(parameters);
   control::Controller controller = tests::active_controller(settings);
   control::Samples samples = tests::samples_at_rest();
-  control::Drive drive, next;  // a duty takes effect one period after its samples
+  control::Drive drive, next;   // a duty takes effect one period after its samples
+  float back_emf_share = 1.0f;  // that the windings have of what belongs to their speed
 
   /// Periods until it is no longer driven, at most so many. The windings are quick: a current is there in a period.
   int run(int periods, std::size_t lying = 3, Triple joint_counts_per_period = {}) {
@@ -141,7 +143,10 @@ struct PressedArm {
       }
       for (std::size_t i = 0; i < 3; ++i) {
         samples.encoder_counts[i] += static_cast<std::int32_t>(joint_counts_per_period[i]);
-        const float voltage_V = drive.enabled ? drive.duty[i] * samples.supply_V : 0.0f;
+        const float speed_rad_per_s =
+            joint_counts_per_period[i] * settings.encoders.rad_per_count[i] / protocol::servo_period_s;
+        const float back_emf_V = back_emf_share * settings.motor_model.back_emf_Vs_per_rad[i] * speed_rad_per_s;
+        const float voltage_V = (drive.enabled ? drive.duty[i] * samples.supply_V : 0.0f) - back_emf_V;
         if (i != lying) samples.current_A[i] = 0.6f * samples.current_A[i] + 0.4f * voltage_V / 2.18f;
       }
       drive = next;
@@ -168,6 +173,26 @@ TEST_CASE("a reading that stands still takes the force away within milliseconds,
     arm.run(1);
     CHECK(arm.run(4'000) == 4'000);
   }
+}
+
+TEST_CASE("a motor that turns is believed with the back EMF of its speed, and not without") {
+  for (std::size_t motor = 0; motor < 3; ++motor)
+    for (const float back_emf_share : {1.0f, 0.0f}) {
+      CAPTURE(motor);
+      CAPTURE(back_emf_share);
+      PressedArm arm;
+      REQUIRE(arm.run(1'000) == 1'000);
+      arm.back_emf_share = back_emf_share;
+      int periods = 0;
+      // Faster by a count a period at a time: an arm does not begin to turn at once.
+      for (const float counts : {1.0f, 2.0f, 3.0f, 4.0f}) {
+        Triple joint_counts_per_period{};
+        joint_counts_per_period[motor] = -counts;
+        periods += arm.run(60, 3, joint_counts_per_period);
+      }
+      CHECK((periods == 4 * 60) == (back_emf_share == 1.0f));
+      CHECK((arm.controller.fault() == Fault::motor_implausible) == (back_emf_share == 0.0f));
+    }
 }
 
 TEST_CASE("without force nothing is watched: the pulses that measure a motor find any resistance") {
