@@ -73,6 +73,15 @@ void ControlClient::quit() { call({{"command", "quit"}}); }
 void ControlClient::usb(bool connected) { call({{"command", "usb"}, {"connected", connected}}); }
 void ControlClient::buttons(bool first, bool second) { call({{"command", "buttons"}, {"pressed", {first, second}}}); }
 void ControlClient::supply(double voltage_V) { call({{"command", "supply"}, {"voltage_V", voltage_V}}); }
+
+PinLevels ControlClient::call_pin(const json& request) {
+  const json reply = call(request);
+  return {reply.value("level", std::string()), reply.value("chip_drives", std::string())};
+}
+PinLevels ControlClient::pin(const std::string& pin) { return call_pin({{"command", "pin"}, {"pin", pin}}); }
+PinLevels ControlClient::drive_pin(const std::string& pin, const std::string& level) {
+  return call_pin({{"command", "pin"}, {"pin", pin}, {"drive", level}});
+}
 void ControlClient::glitch(const std::string& pin, double duration_s) {
   call({{"command", "glitch"}, {"pin", pin}, {"for_s", duration_s}});
 }

@@ -42,6 +42,12 @@ struct Injection {
   std::optional<double> for_s = {};  ///< none: until it is healed
 };
 
+/// A pin of the chip: "high", "low" or "floating".
+struct PinLevels {
+  std::string level;        ///< what a meter would show
+  std::string chip_drives;  ///< what the chip itself puts out
+};
+
 /// What the hand got from the arm since the meter was started.
 struct HandReading {
   double peak_force_N = 0;
@@ -89,6 +95,9 @@ class ControlClient {
   void usb(bool connected);
   void buttons(bool first, bool second);
   void supply(double voltage_V);
+  PinLevels pin(const std::string& pin);  ///< such as "PA0"
+  /// The same after it is driven from outside: "high", "low" or "floating".
+  PinLevels drive_pin(const std::string& pin, const std::string& level);
   void glitch(const std::string& pin, double duration_s);  ///< a pin ("PA0") is the opposite of what drives it
   /// Puts a fault in; the board time at which it comes, s.
   double inject(const Injection& fault);
@@ -108,6 +117,7 @@ class ControlClient {
 
  private:
   nlohmann::json call(const nlohmann::json& request);
+  PinLevels call_pin(const nlohmann::json& request);
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

@@ -1,0 +1,42 @@
+// Pins of the virtual board that have no command of their own, read and driven by its control socket.
+#include <doctest/doctest.h>
+
+#include <device/control_client.hpp>
+#include <device/error.hpp>
+#include <device/virtual_board.hpp>
+
+#include "program.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+TEST_CASE("a pin shows what the chip puts out, and the chip sees what drives it from outside") {
+  const device::VirtualBoard board({.elf = build_directory() + "/chip-firmware/input_output.elf", .paused = true});
+  auto control = board.control();
+  CHECK(control.pin("PC10").chip_drives == "floating");
+  // This firmware drives PC10 high, and counts edges of PB13 that fall, by interrupt 40, once the flash is erased.
+  control.run(0.3);
+  CHECK(control.pin("PC10").chip_drives == "high");
+  CHECK(control.pin("PC10").level == "high");
+  CHECK(control.drive_pin("PB13", "high").level == "high");
+  CHECK(control.pin("PB13").chip_drives == "floating");
+  control.run(0.0001);
+  const auto interrupts = [&] {
+    const auto longest = control.status().all.at("longest_interrupt");
+    return longest.at("exception") == 16 + 40 && longest.at("cycles") > 0;
+  };
+  CHECK_FALSE(interrupts());
+  CHECK(control.drive_pin("PB13", "low").level == "low");
+  control.run(0.0001);
+  CHECK(interrupts());
+  CHECK(control.drive_pin("PB13", "floating").level == "high");  // its pull-up
+}
+
+TEST_CASE("what is no pin, or no level, is refused with a sentence") {
+  const device::VirtualBoard board({.elf = build_directory() + "/chip-firmware/input_output.elf", .paused = true});
+  auto control = board.control();
+  CHECK_THROWS_WITH_AS(control.pin("PA16"), doctest::Contains("\"PA16\" is not a pin"), device::Error);
+  CHECK_THROWS_WITH_AS(control.pin(""), doctest::Contains("is not a pin"), device::Error);
+  CHECK_THROWS_WITH_AS(control.drive_pin("PA1", "up"), doctest::Contains("\"high\", \"low\" or \"floating\""),
+                       device::Error);
+}
