@@ -48,11 +48,6 @@ class Timeline {
       wake_moved_forward_ = true;
     }
   }
-  /// The next step, without a change of the wake.
-  void set_due(Slot slot, Ticks due) {
-    due_[slot] = due;
-    next_due_ = std::min(next_due_, due);
-  }
   Ticks now() const { return now_; }
   /// Makes every step up to and including `until`.
   void catch_up(Ticks until) {

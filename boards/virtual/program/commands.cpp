@@ -143,11 +143,6 @@ json supply(const json& request, Simulation& simulation) {
   return {};
 }
 
-json logic_supply(const json& request, Simulation& simulation) {
-  simulation.board().chip().set_supply_V(number(request, "voltage_V", 0.0, 3.6));
-  return {};
-}
-
 json hand(const json& request, Simulation& simulation) {
   Plant& plant = simulation.board().plant();
   if (!truth_value(request, "holds")) {
@@ -239,7 +234,6 @@ const std::vector<Command>& commands() {
       {"usb", {"connected"}, "plug or pull the cable, and with it VBUS", usb},
       {"buttons", {"pressed"}, "of the stylus: [true,false]", buttons},
       {"supply", {"voltage_V"}, "of the bridges", supply},
-      {"logic_supply", {"voltage_V"}, "of the chip, 3.3 V to begin with", logic_supply},
       {"pin", {"pin", "drive"}, "level at a pin, such as PA5; drives it high, low or floating from outside first", pin},
       {"glitch", {"pin", "for_s"}, "a pin is the opposite of what drives it, as by a spike on its wire", glitch},
       {"inject",

@@ -15,10 +15,8 @@ class BusClock {
   /// To be given a report now and then, once a second for instance.
   void note(const protocol::FrameReport& report);
 
-  /// Control periods of the board in a frame of the host; nominal before the second report.
-  double periods_per_frame() const { return periods_per_frame_; }
-
-  /// Time of a control period in seconds of the host's frames, since the bus runs; none before the first report.
+  /// Time of a control period in seconds of the host's frames, since the bus runs; none before the first report, at the
+  /// nominal rate before the second.
   std::optional<double> host_time_s(std::uint32_t time_periods) const;
 
  private:

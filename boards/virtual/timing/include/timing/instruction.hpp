@@ -55,10 +55,6 @@ struct Instruction {
   std::int32_t offset = 0;
 
   bool uses_float() const { return kind >= Kind::float_plain; }
-  bool ends_run() const {
-    return kind == Kind::branch_immediate || kind == Kind::branch_register || kind == Kind::table_branch ||
-           kind == Kind::call || loads_program_counter;
-  }
 };
 
 /// Whether an instruction that begins with this half word has a second one.
