@@ -55,14 +55,18 @@ std::string_view name_of(Situation situation) {
   return names[static_cast<std::size_t>(situation)];
 }
 
-std::string_view meaning_of(Situation situation) {
-  constexpr std::string_view meanings[] = {
-      "Out of the inkwell since the start, so that the board does not know where it is; the hand holds it.",
-      "The pose is valid, the force is off; the hand holds it in free space.",
-      "The force is on; the hand holds it at rest in free space.",
-      "The force is on; the hand presses it into a wall of the highest stiffness.",
-      "The force is on; the hand swings it through free space, 60 mm in 0.15 s, with all joints."};
-  return meanings[static_cast<std::size_t>(situation)];
+std::string meaning_of(Situation situation) {
+  switch (situation) {
+    case Situation::unreferenced:
+      return "Out of the inkwell since the start, so that the board does not know where it is; the hand holds it.";
+    case Situation::ready: return "The pose is valid, the force is off; the hand holds it in free space.";
+    case Situation::rest: return "The force is on; the hand holds it at rest in free space.";
+    case Situation::wall: return "The force is on; the hand presses it into a wall of the highest stiffness.";
+    case Situation::motion:
+      return fmt::format("The force is on; the hand swings it through free space, {:.0f} mm in {} s, with all joints.",
+                         2e3 * swing_m, swing_s);
+  }
+  return "";
 }
 
 std::string CaseFault::name() const {

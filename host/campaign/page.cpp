@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <campaign/run.hpp>
 #include <device/error.hpp>
 #include <protocol/reports.hpp>
 #include <recording/gnuplot.hpp>
@@ -294,21 +295,21 @@ void write_page(std::span<const Result> results, const std::filesystem::path& pa
   const auto faults = case_faults();
   const auto groups = group(results);
   const std::string stem = page.stem().string();
-  std::string text = fmt::format(
-      "# What faults do: simulation\n\n"
-      "Made by `inkwell campaign`; do not edit. The firmware that is flashed runs on the virtual board; each fault is "
-      "put\n"
-      "in while the arm is unreferenced, ready, at rest, pressed into a stiff wall and in fast motion, at three "
-      "random\n"
-      "instants. {} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row\n"
-      "`none` is what the hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how "
-      "far\n"
-      "the probe lags behind the hand) are of the 0.3 s after the fault came. Of three motors that are wired alike "
-      "the\n"
-      "second stands for all. \"bridges off\" is when no bridge that is on had a leg at the supply any more, in "
-      "control\n"
-      "periods of 50 us.\n\n![until the bridges were off]({}-off.svg)\n![peak force]({}-force.svg)\n",
-      results.size(), all_cases().size(), results.front().force_limit_N, stem, stem);
+  constexpr const char* head = R"(# What faults do: simulation
+
+Made by `inkwell campaign`; do not edit. The firmware that is flashed runs on the virtual board; each fault is put
+in while the arm is unreferenced, ready, at rest, pressed into a stiff wall and in fast motion, at {} random
+instants. {} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row
+`none` is what the hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how far
+the probe lags behind the hand) are of the {} s after the fault came. Of three motors that are wired alike the
+second stands for all. "bridges off" is when no bridge that is on had a leg at the supply any more, in control
+periods of {:.0f} us.
+
+![until the bridges were off]({}-off.svg)
+![peak force]({}-force.svg)
+)";
+  std::string text = fmt::format(head, phases, results.size(), all_cases().size(), results.front().force_limit_N,
+                                 observed_s, 1e6 * control_period_s, stem, stem);
   text += went_on(results) + above_limit(groups, faults) + undetected(groups, faults) + not_run(results) +
           tables(groups, faults);
   recording::write_text(page, text);

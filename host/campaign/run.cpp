@@ -22,8 +22,6 @@ using protocol::State;
 // A relaxed hand.
 constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
 constexpr double push_part_of_limit = 0.75;
-constexpr double swing_m = 0.03, swing_s = 0.15;  // to either side, along all axes; from one side to the other
-constexpr double observed_s = 0.3;
 constexpr double longest_case_s = 60;  // of board time
 constexpr double longest_phase_s = 0.1;
 // A bridge that switches has a leg at the supply in each PWM period of 17 us.

@@ -6,9 +6,9 @@
 #include <campaign/cases.hpp>
 #include <campaign/result.hpp>
 #include <campaign/run.hpp>
-#include <protocol/reports.hpp>
 #include <temporary_directory.hpp>
 
+#include "hazards.hpp"
 #include "program.hpp"
 
 using namespace inkwell;
@@ -16,8 +16,6 @@ using namespace inkwell::tests;
 using campaign::Result;
 
 namespace {
-
-constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
 
 campaign::Case the_case(const std::string& name) {
   for (const auto& c : campaign::all_cases())

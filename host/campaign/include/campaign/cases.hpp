@@ -21,8 +21,12 @@ enum class Situation : std::uint8_t {
 inline constexpr Situation situations[] = {Situation::unreferenced, Situation::ready, Situation::rest, Situation::wall,
                                            Situation::motion};
 std::string_view name_of(Situation situation);
-std::string_view meaning_of(Situation situation);
+/// A sentence with its figures.
+std::string meaning_of(Situation situation);
 constexpr bool is_active(Situation situation) { return situation >= Situation::rest; }
+
+/// The swing of `motion`: to either side, along all axes; from one side to the other.
+inline constexpr double swing_m = 0.03, swing_s = 0.15;
 
 inline constexpr unsigned phases = 3;
 

@@ -7,6 +7,9 @@
 
 namespace inkwell::campaign {
 
+/// So long after the fault came, bridges and hand are watched.
+inline constexpr double observed_s = 0.3;
+
 /// The same case gives the same result on any machine. What keeps it from being run is told in Result::error.
 Result run_case(const Case& the_case, device::VirtualBoardOptions board = {});
 
