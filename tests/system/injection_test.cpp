@@ -14,7 +14,7 @@ using protocol::State;
 
 namespace {
 
-std::string refusal_of(device::ControlClient& control, const device::Injection& fault) {
+std::string refusal_of(device::ControlClient& control, const device::InjectionRequest& fault) {
   try {
     control.inject(fault);
   } catch (const device::Error& error) {

@@ -4,8 +4,8 @@
 
 namespace inkwell::virtual_board {
 namespace {
-constexpr std::uint32_t receive_full = spi.sr.rxne.mask(), transmit_empty = spi.sr.txe.mask(),
-                        overrun = spi.sr.ovr.mask();
+constexpr std::uint32_t spi_receive_full = spi.sr.rxne.mask(), spi_transmit_empty = spi.sr.txe.mask(),
+                        spi_overrun = spi.sr.ovr.mask();
 }  // namespace
 
 void Spi::reset() {
@@ -24,36 +24,36 @@ Ticks Spi::frame_duration() const {
 
 void Spi::start_frame() {
   const bool clocks = spi.cr1.spe.in(control1_) && spi.cr1.mstr.in(control1_);
-  const bool has_frame = (status_ & transmit_empty) == 0 || spi.cr1.rxonly.in(control1_);
+  const bool has_frame = (status_ & spi_transmit_empty) == 0 || spi.cr1.rxonly.in(control1_);
   if (frame_ != 0 || !clocks || !has_frame) return;
-  status_ |= transmit_empty;  // the frame has left for the shift register
+  status_ |= spi_transmit_empty;  // the frame has left for the shift register
   frame_ = events_.at(machine_.timeline.now() + frame_duration(), [this] { end_frame(); });
 }
 
 void Spi::end_frame() {
   frame_ = 0;
-  if ((status_ & receive_full) != 0)
-    status_ |= overrun;
+  if ((status_ & spi_receive_full) != 0)
+    status_ |= spi_overrun;
   else
     received_ = spi.cr1.dff.in(control1_) ? 0xFFFF : 0xFF;
-  status_ |= receive_full;
+  status_ |= spi_receive_full;
   start_frame();
   serve_dma();
   update();
 }
 
 void Spi::serve_dma() {
-  if (spi.cr2.rxdmaen.in(control2_) && (status_ & receive_full) != 0) machine_.dma->spi_request(number_, false);
+  if (spi.cr2.rxdmaen.in(control2_) && (status_ & spi_receive_full) != 0) machine_.dma->spi_request(number_, false);
   if (spi.cr2.txdmaen.in(control2_))
-    while ((status_ & transmit_empty) != 0 && machine_.dma->spi_request(number_, true)) {
+    while ((status_ & spi_transmit_empty) != 0 && machine_.dma->spi_request(number_, true)) {
     }
 }
 
 void Spi::update() {
   machine_.nvic.set_source(position_, 0,
-                           (spi.cr2.rxneie.in(control2_) && (status_ & receive_full) != 0) ||
-                               (spi.cr2.txeie.in(control2_) && (status_ & transmit_empty) != 0) ||
-                               (spi.cr2.errie.in(control2_) && (status_ & overrun) != 0));
+                           (spi.cr2.rxneie.in(control2_) && (status_ & spi_receive_full) != 0) ||
+                               (spi.cr2.txeie.in(control2_) && (status_ & spi_transmit_empty) != 0) ||
+                               (spi.cr2.errie.in(control2_) && (status_ & spi_overrun) != 0));
 }
 
 std::uint32_t Spi::stored(std::uint32_t offset) const {
@@ -69,7 +69,7 @@ std::uint32_t Spi::stored(std::uint32_t offset) const {
 
 std::uint32_t Spi::read_word(std::uint32_t offset) {
   if (offset == spi.dr) {
-    status_ &= ~(receive_full | overrun);  // silicon clears OVR at the read of SR that follows
+    status_ &= ~(spi_receive_full | spi_overrun);  // silicon clears OVR at the read of SR that follows
     update();
     return received_;
   }
@@ -87,7 +87,7 @@ void Spi::write_word(std::uint32_t offset, std::uint32_t value) {
     case spi.cr2: control2_ = value & writable(spi.cr2); break;
     case spi.sr: status_ &= value | ~bits_of(spi.sr, Access::rc_w0); break;
     case spi.dr:
-      status_ &= ~transmit_empty;
+      status_ &= ~spi_transmit_empty;
       start_frame();
       break;
     case spi.crcpr: polynomial_ = value & writable(spi.crcpr); break;

@@ -6,12 +6,12 @@
 
 namespace inkwell::virtual_board {
 namespace {
-constexpr std::uint32_t overrun = usart_map.sr.ore.mask(), idle_line = usart_map.sr.idle.mask(),
-                        receive_full = usart_map.sr.rxne.mask(), complete = usart_map.sr.tc.mask(),
-                        transmit_empty = usart_map.sr.txe.mask();
+constexpr std::uint32_t usart_overrun = usart_map.sr.ore.mask(), idle_line = usart_map.sr.idle.mask(),
+                        usart_receive_full = usart_map.sr.rxne.mask(), complete = usart_map.sr.tc.mask(),
+                        usart_transmit_empty = usart_map.sr.txe.mask();
 // The enables of the interrupts stand at the bits of their flags.
-static_assert(idle_line == usart_map.cr1.idleie.mask() && receive_full == usart_map.cr1.rxneie.mask() &&
-              complete == usart_map.cr1.tcie.mask() && transmit_empty == usart_map.cr1.txeie.mask());
+static_assert(idle_line == usart_map.cr1.idleie.mask() && usart_receive_full == usart_map.cr1.rxneie.mask() &&
+              complete == usart_map.cr1.tcie.mask() && usart_transmit_empty == usart_map.cr1.txeie.mask());
 }  // namespace
 
 Usart::Usart(Machine& machine, unsigned number, unsigned position, bool on_apb2)
@@ -37,19 +37,21 @@ Ticks Usart::frame_duration() const {
 }
 
 void Usart::update() {
-  const std::uint32_t asserted = (status_ & control1_ & (idle_line | receive_full | complete | transmit_empty)) |
-                                 ((control1_ & receive_full) != 0 ? status_ & overrun : 0);
+  const std::uint32_t asserted =
+      (status_ & control1_ & (idle_line | usart_receive_full | complete | usart_transmit_empty)) |
+      ((control1_ & usart_receive_full) != 0 ? status_ & usart_overrun : 0);
   machine_.nvic.set_source(position_, 0, asserted != 0);
   const Ticks due = std::min(sent_at_, received_at_);
-  const bool awaited = (control1_ & (receive_full | complete | transmit_empty | idle_line)) != 0 ||
+  const bool awaited = (control1_ & (usart_receive_full | complete | usart_transmit_empty | idle_line)) != 0 ||
                        usart_map.cr3.dmar.in(control3_) || usart_map.cr3.dmat.in(control3_);
   machine_.timeline.set(slot_, due, awaited ? due : never);
 }
 
 void Usart::serve_dma() {
-  if (usart_map.cr3.dmar.in(control3_) && (status_ & receive_full) != 0) machine_.dma->usart_request(number_, false);
+  if (usart_map.cr3.dmar.in(control3_) && (status_ & usart_receive_full) != 0)
+    machine_.dma->usart_request(number_, false);
   if (usart_map.cr3.dmat.in(control3_))
-    while ((status_ & transmit_empty) != 0 && machine_.dma->usart_request(number_, true)) {
+    while ((status_ & usart_transmit_empty) != 0 && machine_.dma->usart_request(number_, true)) {
     }
 }
 
@@ -58,7 +60,7 @@ void Usart::load_shift_register() {
   if (!usart_map.cr1.ue.in(control1_) || !usart_map.cr1.te.in(control1_)) return;
   shift_ = holding_;
   holding_full_ = false;
-  status_ |= transmit_empty;
+  status_ |= usart_transmit_empty;
   sent_at_ = machine_.timeline.now() + frame_duration();
   update();
 }
@@ -90,11 +92,11 @@ void Usart::take_received() {
     return;
   }
   if (listens()) {
-    if ((status_ & receive_full) != 0) {
-      status_ |= overrun;
+    if ((status_ & usart_receive_full) != 0) {
+      status_ |= usart_overrun;
     } else {
       received_ = line_.front();
-      status_ |= receive_full;
+      status_ |= usart_receive_full;
       serve_dma();
     }
   }
@@ -117,7 +119,7 @@ std::uint32_t Usart::stored(std::uint32_t offset) const {
 std::uint32_t Usart::read_word(std::uint32_t offset) {
   if (offset == usart_map.dr) {
     // Reading SR, then DR clears the receiver's flags.
-    status_ &= ~(receive_full | overrun | idle_line);
+    status_ &= ~(usart_receive_full | usart_overrun | idle_line);
     update();
     return received_;
   }
@@ -131,7 +133,7 @@ void Usart::write_word(std::uint32_t offset, std::uint32_t value) {
     case usart_map.dr:
       holding_ = static_cast<std::uint8_t>(value);
       holding_full_ = true;
-      status_ &= ~(transmit_empty | complete);
+      status_ &= ~(usart_transmit_empty | complete);
       load_shift_register();
       break;
     case usart_map.brr: baud_ = value & writable(usart_map.brr); break;

@@ -15,20 +15,6 @@ char value_of(PinLevel level) { return level == PinLevel::high ? '1' : level == 
 
 }  // namespace
 
-PinName PinName::of(const std::string& name) {
-  const auto wrong = [&] {
-    return std::invalid_argument(fmt::format("\"{}\" is not a pin; pins are PA0 to PI15.", name));
-  };
-  if (name.size() < 3 || name.size() > 4 || name[0] != 'P' || name[1] < 'A' || name[1] > 'I') throw wrong();
-  unsigned pin = 0;
-  for (const char digit : name.substr(2)) {
-    if (digit < '0' || digit > '9') throw wrong();
-    pin = 10 * pin + static_cast<unsigned>(digit - '0');
-  }
-  if (pin > 15) throw wrong();
-  return {name[1], pin};
-}
-
 Waveform::Waveform(const std::filesystem::path& path, std::vector<PinName> pins, Chip& chip)
     : chip_(chip), file_(path) {
   if (!file_)

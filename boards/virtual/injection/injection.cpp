@@ -33,18 +33,14 @@ unsigned whole_number(const std::string& text, unsigned minimum, unsigned maximu
   return value;
 }
 
-WireName wire(const std::string& text) {
+PinName wire(const std::string& text) {
   for (const board::PinUse& use : board::pin_uses) {
     if (use.name != text) continue;
     if (use.pin == board::usb_minus.pin || use.pin == board::usb_plus.pin)
       throw InvalidInjection(fmt::format("the wire {} is not modelled by itself; usb_cut takes the cable out", text));
     return {use.pin.port, use.pin.number};
   }
-  if (text.size() >= 3 && text.size() <= 4 && text[0] == 'P' && text[1] >= 'A' && text[1] <= 'I') {
-    unsigned pin = 16;
-    const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), pin);
-    if (error == std::errc() && end == text.data() + text.size() && pin < 16) return {text[1], pin};
-  }
+  if (const auto pin = PinName::find(text)) return *pin;
   throw InvalidInjection(fmt::format(
       "\"{}\" is no wire; name a pin, such as PA0, or what it is used for, such as encoders[0].a or bridge_enable",
       text));
@@ -53,10 +49,10 @@ WireName wire(const std::string& text) {
 bool is_digit_or_point(char c) { return c == '.' || (c >= '0' && c <= '9'); }
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-std::string name_of(WireName wire) {
+std::string name_of(PinName wire) {
   for (const board::PinUse& use : board::pin_uses)
     if (use.pin.port == wire.port && use.pin.number == wire.pin) return std::string(use.name);
-  return fmt::format("P{}{}", wire.port, wire.pin);
+  return wire.text();
 }
 
 std::uint32_t address(const std::string& text) {
@@ -129,31 +125,32 @@ void check_time(double time_s, std::string_view what) {
 
 }  // namespace
 
-Injection checked(const InjectionText& text) {
-  const auto fault = protocol::find_injection(text.fault);
+Injection checked(const InjectionRequest& request) {
+  const auto fault = protocol::find_injection(request.fault);
   if (!fault) {
     std::vector<std::string_view> names;
     for (const auto& row : protocol::injection_table) names.push_back(row.name);
-    throw InvalidInjection(fmt::format("there is no fault \"{}\"; known are {}", text.fault, fmt::join(names, ", ")));
+    throw InvalidInjection(
+        fmt::format("there is no fault \"{}\"; known are {}", request.fault, fmt::join(names, ", ")));
   }
   const auto& info = protocol::info(*fault);
   Injection injection{.fault = *fault};
-  check_target(injection, text.of);
-  injection.amount = text.amount.value_or(info.otherwise);
-  if (text.amount && !info.has_amount())
-    throw InvalidInjection(fmt::format("{} has no amount; leave {} out", info.name, *text.amount));
+  check_target(injection, request.of);
+  injection.amount = request.amount.value_or(info.otherwise);
+  if (request.amount && !info.has_amount())
+    throw InvalidInjection(fmt::format("{} has no amount; leave {} out", info.name, *request.amount));
   if (!(injection.amount >= info.minimum && injection.amount <= info.maximum))
     throw InvalidInjection(fmt::format("{} {} {} is outside {} to {}", info.name, injection.amount, info.unit,
                                        info.minimum, info.maximum));
-  check_time(text.after_s, "the time until it comes");
-  if (text.for_s) check_time(*text.for_s, "how long it lasts");
-  injection.after_s = text.after_s;
-  injection.for_s = text.for_s;
+  check_time(request.after_s, "the time until it comes");
+  if (request.for_s) check_time(*request.for_s, "how long it lasts");
+  injection.after_s = request.after_s;
+  injection.for_s = request.for_s;
   return injection;
 }
 
 Injection parse_injection(std::string_view text) {
-  InjectionText parts;
+  InjectionRequest parts;
   std::string_view rest = text;
   // From behind, because the names of two wires have a plus between them as well.
   const auto cut = [&](char mark, std::string_view what) -> std::optional<double> {

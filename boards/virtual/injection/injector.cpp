@@ -159,7 +159,7 @@ void Injector::put(const Injection& injection, bool in) {
 }
 
 void Injector::put_into_wire(const Injection& injection, bool in) {
-  const WireName wire = injection.wires[0];
+  const PinName wire = injection.wires[0];
   const auto set = [&](WireFault fault) { victims_.wires.set(wire, in ? fault : WireFault::sound); };
   switch (injection.fault) {
     case InjectedFault::wire_open: return set(WireFault::open);
@@ -175,7 +175,7 @@ void Injector::put_into_wire(const Injection& injection, bool in) {
   spike(spikes_.back().rate_Hz, wire);
 }
 
-void Injector::spike(const std::weak_ptr<double>& rate, WireName wire) {
+void Injector::spike(const std::weak_ptr<double>& rate, PinName wire) {
   const auto rate_Hz = rate.lock();
   if (!rate_Hz) return;
   const double pause_s = std::exponential_distribution<double>(*rate_Hz)(random_);

@@ -5,7 +5,7 @@
 
 namespace inkwell::virtual_board {
 
-const WireName* Wires::neighbour(WireName wire) const {
+const PinName* Wires::neighbour(PinName wire) const {
   for (const Pair& pair : touching_) {
     if (pair.a == wire) return &pair.b;
     if (pair.b == wire) return &pair.a;
@@ -14,7 +14,7 @@ const WireName* Wires::neighbour(WireName wire) const {
 }
 
 // What comes out at the other end. Of two wires that touch low wins; one that nothing drives does not count.
-PinLevel Wires::arriving(WireName wire, PinLevel State::*driven, PinLevel State::*frozen) {
+PinLevel Wires::arriving(PinName wire, PinLevel State::*driven, PinLevel State::*frozen) {
   const State& s = state(wire);
   switch (s.fault) {
     case WireFault::open: return PinLevel::floating;
@@ -23,26 +23,26 @@ PinLevel Wires::arriving(WireName wire, PinLevel State::*driven, PinLevel State:
     case WireFault::frozen: return s.*frozen;
     case WireFault::sound: break;
   }
-  const WireName* other = neighbour(wire);
+  const PinName* other = neighbour(wire);
   if (other == nullptr || state(*other).*driven == PinLevel::floating) return s.*driven;
   return s.*driven == PinLevel::floating || state(*other).*driven == PinLevel::low ? state(*other).*driven : s.*driven;
 }
 
-void Wires::tell_chip(WireName wire, Ticks since) {
+void Wires::tell_chip(PinName wire, Ticks since) {
   if (chip_ != nullptr)
     chip_->drive(wire.port, wire.pin, arriving(wire, &State::by_circuit, &State::frozen_by_circuit), since);
 }
 
-void Wires::tell_circuit(WireName wire) {
+void Wires::tell_circuit(PinName wire) {
   circuit_.output_changed(wire.port, wire.pin, arriving(wire, &State::by_chip, &State::frozen_by_chip), now_);
 }
 
-void Wires::tell_both(WireName wire) {
+void Wires::tell_both(PinName wire) {
   tell_chip(wire, just_now);
   tell_circuit(wire);
 }
 
-void Wires::set(WireName wire, WireFault fault) {
+void Wires::set(PinName wire, WireFault fault) {
   State& s = state(wire);
   s.frozen_by_chip = arriving(wire, &State::by_chip, &State::frozen_by_chip);
   s.frozen_by_circuit = arriving(wire, &State::by_circuit, &State::frozen_by_circuit);
@@ -52,7 +52,7 @@ void Wires::set(WireName wire, WireFault fault) {
   tell_both(wire);
 }
 
-void Wires::touch(WireName a, WireName b, bool touching) {
+void Wires::touch(PinName a, PinName b, bool touching) {
   std::erase_if(touching_,
                 [&](const Pair& pair) { return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a); });
   if (touching) touching_.push_back({a, b});
@@ -62,20 +62,20 @@ void Wires::touch(WireName a, WireName b, bool touching) {
 
 void Wires::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
   now_ = std::max(now_, now);
-  const WireName wire{port, pin};
+  const PinName wire{port, pin};
   state(wire).by_chip = level;
   if (state(wire).fault == WireFault::sound) tell_circuit(wire);
-  if (const WireName* other = neighbour(wire)) tell_circuit(*other);
+  if (const PinName* other = neighbour(wire)) tell_circuit(*other);
 }
 
 void Wires::drive(char port, unsigned pin, PinLevel level, Ticks since) {
-  const WireName wire{port, pin};
+  const PinName wire{port, pin};
   state(wire).by_circuit = level;
   if (state(wire).fault == WireFault::sound) tell_chip(wire, since);
-  if (const WireName* other = neighbour(wire)) tell_chip(*other, since);
+  if (const PinName* other = neighbour(wire)) tell_chip(*other, since);
 }
 
-double Wires::volts(WireName wire, Ticks now) {
+double Wires::volts(PinName wire, Ticks now) {
   const State& s = state(wire);
   switch (s.fault) {
     case WireFault::open: return s.frozen_V * std::exp(-seconds(now - s.since) / open_input_s);
@@ -89,9 +89,9 @@ double Wires::volts(WireName wire, Ticks now) {
 
 double Wires::analog_V(char port, unsigned pin, Ticks now) {
   now_ = std::max(now_, now);
-  const WireName wire{port, pin};
+  const PinName wire{port, pin};
   double read_V = volts(wire, now);
-  if (const WireName* other = neighbour(wire)) read_V = 0.5 * (read_V + volts(*other, now));
+  if (const PinName* other = neighbour(wire)) read_V = 0.5 * (read_V + volts(*other, now));
   state(wire).newest_V = read_V;
   return read_V;
 }

@@ -29,15 +29,15 @@ std::string text_or_number(const json& request, const char* key, const char* wha
   throw Refused(fmt::format("\"{}\" must be {}", key, what));
 }
 
-InjectionText injection_text(const json& request) {
+InjectionRequest injection_request(const json& request) {
   constexpr double latest_s = 1e6, largest = 1e12;
-  InjectionText text;
-  text.fault = text_or_number(request, "fault", "the name of a fault, such as \"encoder_stuck\"");
-  if (request.contains("of")) text.of = text_or_number(request, "of", "a number or a name, such as 2 or \"PA0\"");
-  if (request.contains("amount")) text.amount = number(request, "amount", -largest, largest);
-  text.after_s = number_or(request, "after_s", 0.0, 0.0, latest_s);
-  if (request.contains("for_s")) text.for_s = number(request, "for_s", 0.0, latest_s);
-  return text;
+  InjectionRequest wanted;
+  wanted.fault = text_or_number(request, "fault", "the name of a fault, such as \"encoder_stuck\"");
+  if (request.contains("of")) wanted.of = text_or_number(request, "of", "a number or a name, such as 2 or \"PA0\"");
+  if (request.contains("amount")) wanted.amount = number(request, "amount", -largest, largest);
+  wanted.after_s = number_or(request, "after_s", 0.0, 0.0, latest_s);
+  if (request.contains("for_s")) wanted.for_s = number(request, "for_s", 0.0, latest_s);
+  return wanted;
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ json injected(Board& board) {
 json inject(const json& request, Simulation& simulation) {
   Board& board = simulation.board();
   try {
-    const Injection injection = checked(injection_text(request));
+    const Injection injection = checked(injection_request(request));
     if (injection.fault == protocol::InjectedFault::program_astray && board.locked_up())
       throw Refused("the processor is locked up; reset it first");
     board.injector().add(injection);
@@ -70,12 +70,12 @@ json heal(const json& request, Simulation& simulation) {
     return {{"healed", healed}};
   }
   try {
-    InjectionText text = injection_text(request);
-    const auto fault = protocol::find_injection(text.fault);
+    const InjectionRequest wanted = injection_request(request);
+    const auto fault = protocol::find_injection(wanted.fault);
     // Any place will do, if none is named.
-    const std::string of = fault && text.of.empty() ? text.of : checked(text).of;
+    const std::string of = fault && wanted.of.empty() ? wanted.of : checked(wanted).of;
     const unsigned healed = injector.heal(fault.value(), of);
-    if (healed == 0) throw Refused(fmt::format("{} {} is not put in; status lists what is", text.fault, of));
+    if (healed == 0) throw Refused(fmt::format("{} {} is not put in; status lists what is", wanted.fault, of));
     return {{"healed", healed}};
   } catch (const InvalidInjection& error) {
     throw Refused(error.what());

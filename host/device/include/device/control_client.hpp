@@ -33,8 +33,8 @@ struct HandWaypoint {
   Vector3 target_m{};
 };
 
-/// A fault of protocol/injections.hpp, under its name.
-struct Injection {
+/// Asks for a fault of protocol/injections.hpp, under its name.
+struct InjectionRequest {
   std::string fault;
   std::string of = {};  ///< what it is put into, such as "2", "1A" or "encoders[0].a"; empty where there is one only
   std::optional<double> amount = {};  ///< none: the table's own
@@ -100,7 +100,7 @@ class ControlClient {
   PinLevels drive_pin(const std::string& pin, const std::string& level);
   void glitch(const std::string& pin, double duration_s);  ///< a pin ("PA0") is the opposite of what drives it
   /// Puts a fault in; the board time at which it comes, s.
-  double inject(const Injection& fault);
+  double inject(const InjectionRequest& fault);
   void heal(const std::string& fault, const std::string& of = {});  ///< takes it out, anywhere if no place is named
   void heal_all();
   void hand(const Hand& hand);

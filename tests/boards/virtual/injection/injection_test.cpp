@@ -54,12 +54,12 @@ TEST_CASE("a fault is written with its place, amount, time and duration") {
 
 TEST_CASE("a wire goes by its pin or by what it is used for, which is how it is told") {
   CHECK(parse_injection("wire_open:PB4").of == "encoders[1].a");
-  CHECK(parse_injection("wire_open:PB4").wires[0] == WireName{'B', 4});
-  CHECK(parse_injection("wire_low:bridge_enable").wires[0] == WireName{'B', 1});
+  CHECK(parse_injection("wire_open:PB4").wires[0] == PinName{'B', 4});
+  CHECK(parse_injection("wire_low:bridge_enable").wires[0] == PinName{'B', 1});
   CHECK(parse_injection("wire_low:PD2").of == "PD2");
   const auto shorted = parse_injection("wires_shorted:PA0+encoders[0].b@0.5+1");
   CHECK(shorted.of == "encoders[0].a+encoders[0].b");
-  CHECK(shorted.wires[1] == WireName{'A', 1});
+  CHECK(shorted.wires[1] == PinName{'A', 1});
   CHECK(shorted.after_s == 0.5);
   CHECK(shorted.for_s == 1.0);
 }

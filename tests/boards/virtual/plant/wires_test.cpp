@@ -30,7 +30,7 @@ struct Wired {
   Wires wires{ends};
 };
 
-constexpr WireName a0{'A', 0}, a1{'A', 1}, c3{'C', 3};
+constexpr PinName a0{'A', 0}, a1{'A', 1}, c3{'C', 3};
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chip/chip.hpp>
+#include <chip/pin_name.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -11,14 +12,6 @@
 #include <vector>
 
 namespace inkwell::virtual_board {
-
-struct PinName {
-  char port;  ///< 'A' to 'I'
-  unsigned pin;
-  /// Of a name such as PA8. Throws std::invalid_argument with a sentence.
-  static PinName of(const std::string& name);
-  std::string text() const { return std::string("P") + port + std::to_string(pin); }
-};
 
 class Waveform {
  public:

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <plant/wires.hpp>
+#include <chip/pin_name.hpp>
 #include <protocol/injections.hpp>
 
 namespace inkwell::virtual_board {
@@ -22,7 +22,7 @@ class InvalidInjection : public std::runtime_error {
 };
 
 /// As it was written.
-struct InjectionText {
+struct InjectionRequest {
   std::string fault;
   std::string of;  ///< what it is put into; empty: not said
   std::optional<double> amount;
@@ -35,7 +35,7 @@ struct Injection {
   std::string of;                        ///< under its full name; empty where there is one only
   unsigned number = 0;                   ///< of the motor (from 0), the exception or the converter
   unsigned leg = 0;                      ///< 0 is A
-  std::array<WireName, 2> wires{};       ///< one or two
+  std::array<PinName, 2> wires{};        ///< one or two
   std::optional<std::uint32_t> address;  ///< none: by the seed
   double amount = 0.0;
   double after_s = 0.0;
@@ -43,7 +43,7 @@ struct Injection {
 };
 
 /// Both throw InvalidInjection.
-Injection checked(const InjectionText& text);
+Injection checked(const InjectionRequest& request);
 /// NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2; times in seconds.
 Injection parse_injection(std::string_view text);
 /// One a line; what follows a # is a comment. Names the line that is wrong.

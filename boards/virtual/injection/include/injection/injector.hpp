@@ -60,14 +60,14 @@ class Injector {
   void put_into_wire(const Injection& injection, bool in);
   void put_into_motor(const Injection& injection, bool in);
   void put_into_chip(const Injection& injection, bool in);
-  void spike(const std::weak_ptr<double>& rate, WireName wire);
+  void spike(const std::weak_ptr<double>& rate, PinName wire);
 
   Victims victims_;
   std::mt19937_64 random_;
   std::vector<Planned> planned_;
   std::vector<Active> active_;
   struct Spikes {
-    WireName wire;
+    PinName wire;
     std::shared_ptr<double> rate_Hz;  ///< spikes come as long as it lives
   };
   std::vector<Spikes> spikes_;

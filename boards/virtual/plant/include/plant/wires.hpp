@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <chip/interfaces.hpp>
+#include <chip/pin_name.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -15,12 +16,6 @@ enum class WireFault : std::uint8_t {
   low,     ///< touches ground
   high,    ///< touches the chip's 3.3 V
   frozen,  ///< stays as it is
-};
-
-struct WireName {
-  char port;
-  unsigned pin;
-  bool operator==(const WireName&) const = default;
 };
 
 /// Stands between a chip, for which it is the circuit, and a circuit, for which it is the chip's inputs.
@@ -33,8 +28,8 @@ class Wires final : public Circuit, public InputPins {
   /// Solders the chip in.
   void connect(InputPins& chip) { chip_ = &chip; }
 
-  void set(WireName wire, WireFault fault);
-  void touch(WireName a, WireName b, bool touching);
+  void set(PinName wire, WireFault fault);
+  void touch(PinName a, PinName b, bool touching);
 
   void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
   double analog_V(char port, unsigned pin, Ticks now) override;
@@ -50,15 +45,15 @@ class Wires final : public Circuit, public InputPins {
     Ticks since = 0;  ///< the fault
   };
   struct Pair {
-    WireName a, b;
+    PinName a, b;
   };
-  State& state(WireName wire) { return states_[static_cast<unsigned>(wire.port - 'A') * 16 + wire.pin]; }
-  const WireName* neighbour(WireName wire) const;
-  PinLevel arriving(WireName wire, PinLevel State::*driven, PinLevel State::*frozen);
-  void tell_chip(WireName wire, Ticks since);
-  void tell_circuit(WireName wire);
-  void tell_both(WireName wire);
-  double volts(WireName wire, Ticks now);
+  State& state(PinName wire) { return states_[static_cast<unsigned>(wire.port - 'A') * 16 + wire.pin]; }
+  const PinName* neighbour(PinName wire) const;
+  PinLevel arriving(PinName wire, PinLevel State::*driven, PinLevel State::*frozen);
+  void tell_chip(PinName wire, Ticks since);
+  void tell_circuit(PinName wire);
+  void tell_both(PinName wire);
+  double volts(PinName wire, Ticks now);
 
   Circuit& circuit_;
   InputPins* chip_ = nullptr;
