@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::uint32_t watchdog = adc.sr.awd.mask(), end_of_conversion = adc.sr.eoc.mask(),
                         end_of_injected = adc.sr.jeoc.mask(), overrun = adc.sr.ovr.mask();
-constexpr double reference_V = 3.3;
 constexpr unsigned position = 18;
 
 }  // namespace
@@ -120,7 +119,7 @@ void Adc::begin_conversion(Ticks now) {
 }
 
 std::uint32_t Adc::convert(double voltage_V) const {
-  const double counts = std::floor(voltage_V / reference_V * 4096.0);
+  const double counts = std::floor(voltage_V / logic_supply_V * 4096.0);
   return static_cast<std::uint32_t>(std::clamp(counts, 0.0, 4095.0)) >> (12 - resolution_bits());
 }
 
@@ -128,7 +127,7 @@ std::uint32_t Adc::sample(unsigned channel, Ticks now) const {
   // Typical values of the data sheet at 25 C; VBAT is divided by 2.
   if (channel == 16) return index_ == 0 && adcs_.temperature_on() ? convert(0.76) : 0;
   if (channel == 17) return index_ == 0 && adcs_.temperature_on() ? convert(1.21) : 0;
-  if (channel == 18) return index_ == 0 && adcs_.battery_on() ? convert(reference_V / 2) : 0;
+  if (channel == 18) return index_ == 0 && adcs_.battery_on() ? convert(logic_supply_V / 2) : 0;
   if (channel > 18) return 0;
   const AnalogPin pin = index_ == 2 ? analog_pins_3[channel] : analog_pins_12[channel];
   const bool analog = machine_.pins->is_analog(static_cast<unsigned>(pin.port - 'A'), pin.pin);

@@ -60,6 +60,10 @@ struct Image {
   }
 };
 
+std::string range_of(std::uint32_t base, std::uint32_t bytes) {
+  return hexadecimal(base) + " to " + hexadecimal(base + bytes - 1);
+}
+
 /// The processor takes its first stack pointer and its first instruction's address from where the flash begins
 /// (ARMv7-M, B1.5.5). Returns what is odd about the stack pointer, or nothing.
 std::string check_vectors(const Image& image, const std::string& name, Memory& memory) {
@@ -82,8 +86,8 @@ std::string check_vectors(const Image& image, const std::string& name, Memory& m
                     "KEEP holds it.");
   if (memory.ram_at(stack - 4, 4) != nullptr) return {};
   return name + " begins with its stack pointer at " + hexadecimal(stack) +
-         ", which is outside of the RAM of the STM32F405 (0x20000000 to 0x2001FFFF and 0x10000000 to 0x1000FFFF): it "
-         "is firmware for another chip, unless it sets its stack pointer itself.";
+         ", which is outside of the RAM of the STM32F405 (" + range_of(sram_base, sram_bytes) + " and " +
+         range_of(ccm_base, ccm_bytes) + "): it is firmware for another chip, unless it sets its stack pointer itself.";
 }
 
 }  // namespace

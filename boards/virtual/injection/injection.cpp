@@ -14,8 +14,6 @@ namespace {
 
 using protocol::InjectionPlace;
 
-constexpr double latest_s = 1e6;
-
 double number(std::string_view text, std::string_view of_what) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -119,8 +117,8 @@ void check_target(Injection& injection, const std::string& of) {
 }
 
 void check_time(double time_s, std::string_view what) {
-  if (!(time_s >= 0.0 && time_s <= latest_s))
-    throw InvalidInjection(fmt::format("{} is {} s, which is outside 0 to {}", what, time_s, latest_s));
+  if (!(time_s >= 0.0 && time_s <= latest_injection_s))
+    throw InvalidInjection(fmt::format("{} is {} s, which is outside 0 to {}", what, time_s, latest_injection_s));
 }
 
 }  // namespace
@@ -197,8 +195,10 @@ std::string explain_injections() {
     std::string usage = fmt::format("{}{}", row.name, of[static_cast<std::size_t>(row.place)]);
     if (row.has_amount()) usage += "=" + std::string(row.unit.empty() ? "N" : row.unit);
     constexpr std::size_t column = 30;
-    text += usage.size() < column ? fmt::format("  {:<{}}{}", usage, column, row.help)
-                                  : fmt::format("  {}\n  {:{}}{}", usage, "", column, row.help);
+    const std::string help =
+        fmt::format(fmt::runtime(row.help), fmt::arg("wire_spike_us", 1e6 * protocol::wire_spike_s));
+    text += usage.size() < column ? fmt::format("  {:<{}}{}", usage, column, help)
+                                  : fmt::format("  {}\n  {:{}}{}", usage, "", column, help);
     if (row.has_amount()) text += fmt::format(" {} to {}; {}", row.minimum, row.maximum, row.otherwise);
     text += '\n';
   }

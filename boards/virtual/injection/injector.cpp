@@ -12,8 +12,6 @@ namespace {
 
 using protocol::InjectedFault;
 
-constexpr double spike_s = 2e-6;
-
 /// The one that stands for all of which one at a time is at a place.
 InjectedFault kind(InjectedFault fault) {
   switch (fault) {
@@ -62,12 +60,11 @@ void Injector::add(const Injection& injection) {
         is_within(*injection.address, sram_base, sram_bytes) || is_within(*injection.address, ccm_base, ccm_bytes);
     if ((injection.fault == InjectedFault::ram_bit && !ram) || (injection.fault == InjectedFault::flash_bit && !flash))
       throw InvalidInjection(
-          fmt::format("there is no {} at 0x{:08X}: flash is from 0x08000000 on, RAM from 0x20000000 "
-                      "and 0x10000000 on",
+          fmt::format("there is no {} at 0x{:08X}: flash is from 0x{:08X} on, RAM from 0x{:08X} and 0x{:08X} on",
                       flash ? "RAM"
                       : ram ? "flash"
                             : "memory",
-                      *injection.address));
+                      *injection.address, flash_base, sram_base, ccm_base));
   }
   if (injection.after_s > 0.0)
     planned_.push_back({injection, victims_.chip.now() + ticks(injection.after_s)});
@@ -181,7 +178,7 @@ void Injector::spike(const std::weak_ptr<double>& rate, PinName wire) {
   const double pause_s = std::exponential_distribution<double>(*rate_Hz)(random_);
   victims_.chip.scheduler().at(victims_.chip.now() + ticks(pause_s) + 1, [this, rate, wire] {
     if (rate.expired()) return;
-    victims_.chip.glitch(wire.port, wire.pin, ticks(spike_s));
+    victims_.chip.glitch(wire.port, wire.pin, ticks(protocol::wire_spike_s));
     spike(rate, wire);
   });
 }
@@ -232,7 +229,7 @@ void Injector::put_into_chip(const Injection& injection, bool in) {
     case InjectedFault::supply_sag:
     case InjectedFault::supply_spike: return supply_V(amount);
     case InjectedFault::supply_cut: return supply_V(0.0);
-    case InjectedFault::logic_sag: return chip.set_supply_V(in ? amount : Wires::supply_V);
+    case InjectedFault::logic_sag: return chip.set_supply_V(in ? amount : logic_supply_V);
     case InjectedFault::crystal_stop: return chip.let_crystal_swing(!in);
     case InjectedFault::crystal_drift:
       return chip.drift_crystal(in ? static_cast<std::int32_t>(amount) : victims_.crystal_ppm);

@@ -80,7 +80,7 @@ double Wires::volts(PinName wire, Ticks now) {
   switch (s.fault) {
     case WireFault::open: return s.frozen_V * std::exp(-seconds(now - s.since) / open_input_s);
     case WireFault::low: return 0.0;
-    case WireFault::high: return supply_V;
+    case WireFault::high: return logic_supply_V;
     case WireFault::frozen: return s.frozen_V;
     case WireFault::sound: break;
   }

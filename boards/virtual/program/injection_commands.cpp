@@ -30,13 +30,13 @@ std::string text_or_number(const json& request, const char* key, const char* wha
 }
 
 InjectionRequest injection_request(const json& request) {
-  constexpr double latest_s = 1e6, largest = 1e12;
+  constexpr double largest = 1e12;
   InjectionRequest wanted;
   wanted.fault = text_or_number(request, "fault", "the name of a fault, such as \"encoder_stuck\"");
   if (request.contains("of")) wanted.of = text_or_number(request, "of", "a number or a name, such as 2 or \"PA0\"");
   if (request.contains("amount")) wanted.amount = number(request, "amount", -largest, largest);
-  wanted.after_s = number_or(request, "after_s", 0.0, 0.0, latest_s);
-  if (request.contains("for_s")) wanted.for_s = number(request, "for_s", 0.0, latest_s);
+  wanted.after_s = number_or(request, "after_s", 0.0, 0.0, latest_injection_s);
+  if (request.contains("for_s")) wanted.for_s = number(request, "for_s", 0.0, latest_injection_s);
   return wanted;
 }
 

@@ -24,14 +24,17 @@ enum class InjectionPlace : std::uint8_t {
   address,    ///< of a byte; a place by the seed unless given
 };
 
+inline constexpr double wire_spike_s = 2e-6;
+
 // clang-format off
+/// A name in braces stands for that figure: explain_injections() writes it.
 #define INKWELL_INJECTIONS(X)                                                                                           \
   X(wire_open, wire, "", 0, 0, 0, "The wire is broken: what it drives floats.")                                         \
   X(wire_low, wire, "", 0, 0, 0, "It touches ground.")                                                                  \
   X(wire_high, wire, "", 0, 0, 0, "It touches 3.3 V.")                                                                  \
   X(wire_frozen, wire, "", 0, 0, 0, "It stays as it is, whatever drives it.")                                           \
   X(wires_shorted, wires, "", 0, 0, 0, "Two wires touch: low wins, analogue ones meet half-way.")                       \
-  X(wire_spikes, wire, "1/s", 1, 100000, 1000, "So many spikes of 2 us on a digital input, at random times.")           \
+  X(wire_spikes, wire, "1/s", 1, 100000, 1000, "So many spikes of {wire_spike_us} us on a digital input, at random times.") \
   X(encoder_stuck, motor, "", 0, 0, 0, "The encoder's disc stands while the motor turns.")                              \
   X(encoder_lost_counts, motor, "", 0.0001, 1, 0.01, "So large a share of its counts is lost, at random.")              \
   X(encoder_slip, motor, "counts", -20000, 20000, 400, "The disc slips on its shaft by so much.")                       \

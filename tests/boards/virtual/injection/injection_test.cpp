@@ -115,6 +115,8 @@ TEST_CASE("the help has a line for each fault") {
   for (const auto& row : inkwell::protocol::injection_table) {
     CAPTURE(row.name);
     CHECK(help.find("  " + std::string(row.name)) != std::string::npos);
-    CHECK(help.find(std::string(row.help)) != std::string::npos);
+    CHECK(help.find(std::string(row.help.substr(0, row.help.find('{')))) != std::string::npos);
   }
+  CHECK(help.find("So many spikes of 2 us on a digital input") != std::string::npos);
+  CHECK(help.find('{') == std::string::npos);
 }

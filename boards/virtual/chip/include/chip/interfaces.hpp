@@ -18,6 +18,9 @@ inline constexpr Ticks ticks_per_s = 8'400'000'000;
 constexpr double seconds(Ticks ticks) { return static_cast<double>(ticks) / static_cast<double>(ticks_per_s); }
 constexpr Ticks ticks(double time_s) { return static_cast<Ticks>(time_s * static_cast<double>(ticks_per_s) + 0.5); }
 
+/// Of the chip, and of its converters' reference, unless something is wrong with it.
+inline constexpr double logic_supply_V = 3.3;
+
 /// Events in the order of board time; equal times run in the order in which they were asked for.
 class Scheduler {
  public:

@@ -21,6 +21,9 @@ class InvalidInjection : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// No fault comes later, or lasts longer.
+inline constexpr double latest_injection_s = 1e6;
+
 /// As it was written.
 struct InjectionRequest {
   std::string fault;

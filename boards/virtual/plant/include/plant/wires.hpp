@@ -21,7 +21,6 @@ enum class WireFault : std::uint8_t {
 /// Stands between a chip, for which it is the circuit, and a circuit, for which it is the chip's inputs.
 class Wires final : public Circuit, public InputPins {
  public:
-  static constexpr double supply_V = 3.3;
   static constexpr double open_input_s = 0.01;  ///< time constant of an analogue input that nothing drives
 
   explicit Wires(Circuit& circuit) : circuit_(circuit) {}
