@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <board/board.hpp>
+#include <chip/exception_numbers.hpp>
 
 namespace inkwell::campaign {
 namespace {
@@ -24,7 +25,9 @@ constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", 
 constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
                                                   "bridge_fault_tim8", "inkwell_switch"};
 /// SysTick, the control interrupt (the converters') and that of USB.
-constexpr std::string_view exceptions[] = {"15", "34", "83"};
+constexpr unsigned exceptions[] = {virtual_board::exception_systick,
+                                   virtual_board::exception_of(virtual_board::converters_position),
+                                   virtual_board::exception_of(virtual_board::otg_fs_position)};
 
 std::vector<std::string> places(InjectedFault fault) {
   std::vector<std::string> places;
@@ -35,7 +38,9 @@ std::vector<std::string> places(InjectedFault fault) {
     case InjectionPlace::leg: return {"2A", "2B"};
     case InjectionPlace::converter: return {"1", "2", "3"};
     case InjectionPlace::wires: places.assign(std::begin(wires_that_touch), std::end(wires_that_touch)); break;
-    case InjectionPlace::exception: places.assign(std::begin(exceptions), std::end(exceptions)); break;
+    case InjectionPlace::exception:
+      for (const unsigned exception : exceptions) places.push_back(std::to_string(exception));
+      break;
     case InjectionPlace::wire:
       if (fault == InjectedFault::wire_spikes) {
         places.assign(std::begin(wires_with_spikes), std::end(wires_with_spikes));

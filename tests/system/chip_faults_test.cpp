@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include <chip/exception_numbers.hpp>
+
 #include "firmware_image.hpp"
 #include "hazards.hpp"
 
@@ -17,8 +19,7 @@ using protocol::State;
 
 namespace {
 
-/// Its number as an exception: position 18 of RM0090's vector table.
-constexpr int control_interrupt = 16 + 18;
+constexpr int control_interrupt = virtual_board::exception_of(virtual_board::converters_position);
 
 /// Whether a motor got voltage at any of 60 instants of a control period, three of the bridges' own.
 bool any_motor_driven(device::ControlClient& control) {

@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::uint32_t watchdog = adc.sr.awd.mask(), end_of_conversion = adc.sr.eoc.mask(),
                         end_of_injected = adc.sr.jeoc.mask(), overrun = adc.sr.ovr.mask();
-constexpr unsigned position = 18;
 
 }  // namespace
 
@@ -220,7 +219,7 @@ void Adc::update_interrupt() {
   const bool asserted =
       (adc.cr1.eocie.in(cr1_) && adc.sr.eoc.in(sr_)) || (adc.cr1.awdie.in(cr1_) && adc.sr.awd.in(sr_)) ||
       (adc.cr1.jeocie.in(cr1_) && adc.sr.jeoc.in(sr_)) || (adc.cr1.ovrie.in(cr1_) && adc.sr.ovr.in(sr_));
-  machine_.nvic.set_source(position, index_, asserted);
+  machine_.nvic.set_source(converters_position, index_, asserted);
 }
 
 std::uint32_t Adc::stored(std::uint32_t offset) const {

@@ -3,27 +3,13 @@
 
 #include <array>
 #include <chip/chip.hpp>
+#include <chip/exception_numbers.hpp>
 #include <chip/interfaces.hpp>
 #include <cstdint>
 #include <functional>
 #include <utility>
 
 namespace inkwell::virtual_board {
-
-enum Exception : unsigned {
-  exception_none = 0,
-  exception_reset = 1,
-  exception_nmi = 2,
-  exception_hard_fault = 3,
-  exception_memory_fault = 4,
-  exception_bus_fault = 5,
-  exception_usage_fault = 6,
-  exception_svcall = 11,
-  exception_debug = 12,
-  exception_pendsv = 14,
-  exception_systick = 15,
-  exception_interrupt_0 = 16,
-};
 
 /// Execution priority: lower is more urgent; thread mode has `lowest`.
 inline constexpr int priority_lowest = 256;
@@ -36,7 +22,7 @@ struct Masks {
 
 class Nvic final : public InterruptController {
  public:
-  static constexpr unsigned positions = 82;
+  static constexpr unsigned positions = interrupt_positions;
   static constexpr unsigned outside_source = 31;
 
   void reset();

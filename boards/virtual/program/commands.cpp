@@ -53,8 +53,8 @@ json status(const json&, Simulation& simulation) {
   const Counters& counters = chip.counters();
   std::uint32_t resets = 0;
   for (const auto count : counters.resets) resets += count;
-  unsigned longest = 16;
-  for (unsigned exception = 16; exception < exception_numbers; ++exception)
+  unsigned longest = exception_interrupt_0;
+  for (unsigned exception = exception_interrupt_0; exception < exception_numbers; ++exception)
     if (counters.exceptions[exception].longest_cycles > counters.exceptions[longest].longest_cycles)
       longest = exception;
   const auto of = [&](ResetCause cause) { return counters.resets[static_cast<std::size_t>(cause)]; };

@@ -349,7 +349,7 @@ void OtgFsDevice::update_interrupt() {
   const bool asserted = otg.gahbcfg.gint.in(bus_configuration_) && (interrupt_status() & interrupt_mask_) != 0;
   if (asserted == interrupt_asserted_) return;
   interrupt_asserted_ = asserted;
-  interrupts_.set_level(interrupt_position, asserted);
+  interrupts_.set_level(otg_fs_position, asserted);
 }
 
 std::uint32_t OtgFsDevice::not_modelled(std::uint32_t offset, bool is_write, std::uint32_t value) {

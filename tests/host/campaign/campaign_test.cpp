@@ -64,6 +64,9 @@ TEST_CASE("the list has every fault of the table in every situation, three times
   CHECK_FALSE(names.contains("wire_open:encoders[0].a wall 1"));
   CHECK_FALSE(names.contains("wire_open:usb_plus wall 1"));
   CHECK(names.contains("supply_spike+0.005 motion 3"));
+  // SysTick, and positions 18 and 67 of RM0090's vector table.
+  for (const char* exception : {"15", "34", "83"})
+    CHECK(names.contains("exception_lost:" + std::string(exception) + " rest 1"));
 }
 
 TEST_CASE("a result comes back from its file as it was, and a damaged file is named") {

@@ -64,7 +64,7 @@ TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fast
     bus.connect();
     bus.run_for(0.3);
     REQUIRE(other.watchdog_resets() == 0);
-    constexpr unsigned control_interrupt = 16 + 18;
+    constexpr unsigned control_interrupt = virtual_board::exception_of(virtual_board::converters_position);
     bus.chip.lose_exception(control_interrupt, true);
     bus.run_for(sort.not_before_s);
     CHECK(other.watchdog_resets() == 0);

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <chip/debug_port.hpp>
+#include <chip/exception_numbers.hpp>
 #include <chip/interfaces.hpp>
 #include <chip/violations.hpp>
 #include <cstddef>
@@ -61,9 +62,6 @@ enum class ResetCause : std::uint8_t {
   brown_out
 };
 inline constexpr std::size_t reset_causes = 7;
-
-/// Exceptions are counted by number: 11 is SVCall, 15 is SysTick, 16 + position is an interrupt.
-inline constexpr unsigned exception_numbers = 16 + 82;
 
 struct ExceptionCounters {
   std::uint64_t count = 0;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <chip/exception_numbers.hpp>
 #include <chip/violations.hpp>
 #include <virtual_usb/bus.hpp>
 #include <virtual_usb/word_fifo.hpp>
@@ -19,7 +20,6 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
  public:
   static constexpr std::uint32_t base = 0x5000'0000;
   static constexpr std::uint32_t size = 0x4'0000;
-  static constexpr unsigned interrupt_position = 67;
   static constexpr unsigned endpoint_count = 4;  ///< IN and OUT each, endpoint 0 included
   static constexpr std::size_t packet_memory_words = 320;
 
