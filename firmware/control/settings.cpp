@@ -1,6 +1,7 @@
 #include <control/settings.hpp>
 
 #include <control/conditioning.hpp>
+#include <protocol/faults.hpp>
 
 namespace inkwell::control {
 
@@ -90,9 +91,8 @@ HeatScale heat(const ParameterSet& set) {
 }
 
 Limits limits(const ParameterSet& set) {
-  // Half above the limit, but never so low that the sensors' noise reaches it. Where this is more than the board can
+  // Above the limit, but never so low that the sensors' noise reaches it. Where this is more than the board can
   // measure, the board's bound comes first (BoardLimits).
-  constexpr float over_current_ratio = 1.5f;
   constexpr float over_current_minimum_A = 0.5f;
   // Counts may be lost or the stops yield a little before the angles are called impossible.
   constexpr float joint_margin_rad = 0.35f;
@@ -102,7 +102,7 @@ Limits limits(const ParameterSet& set) {
   for (std::size_t i = 0; i < 3; ++i) {
     limits.joint_minimum_rad[i] -= joint_margin_rad;
     limits.joint_maximum_rad[i] += joint_margin_rad;
-    const float over_A = over_current_ratio * limits.over_current_A[i];
+    const float over_A = protocol::over_current_ratio * limits.over_current_A[i];
     limits.over_current_A[i] = over_A > over_current_minimum_A ? over_A : over_current_minimum_A;
   }
   const float speed_m_per_s = set[Parameter::speed_limit_m_per_s];

@@ -7,15 +7,20 @@
 
 namespace inkwell::protocol {
 
+/// A motor current is too much beyond so many times its limit.
+inline constexpr float over_current_ratio = 1.5f;
+/// Supply and gimbal are not known any more if they were not measured for longer.
+inline constexpr float samples_stale_s = 0.001f;
+
 // clang-format off
-/// X(code, name, cause, remedy). A name in braces stands for that figure of the board: device::fault_text() writes it.
+/// X(code, name, cause, remedy). A name in braces stands for that figure: device::fault_text() writes it.
 #define INKWELL_FAULTS(X)                                                                                                         \
   X(0, none, "No fault.", "Nothing to do.")                                                                                       \
   X(1, bridge_fault, "A bridge reported over-current, over-temperature or under-voltage.", "Check the motor wiring for a short, let the bridges cool, then clear the fault.") \
   X(2, supply_low, "The supply of the bridges is below {supply_minimum_V} V.", "Check the {supply_nominal_V} V supply and its fuse, then clear the fault.")       \
   X(3, supply_high, "The supply of the bridges is above {supply_maximum_V} V.", "Use a supply of {supply_nominal_V} V; if it rises while the arm is moved fast, add bulk capacitance. Then clear the fault.") \
   X(4, current_sensor, "A current sensor does not read zero while its bridge is off.", "Check the shunt amplifier of that motor and its {shunt_amplifier_offset_V} V reference, then reset the board.") \
-  X(5, over_current, "A motor current exceeded its limit by half, or what its sensor can measure.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
+  X(5, over_current, "A motor current exceeded {over_current_percent} % of its limit, or what its sensor can measure.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
   X(6, over_speed, "The probe moved faster than speed_limit_m_per_s.", "Hold the stylus, lower wall_stiffness_N_per_m if it was thrown out of a wall, then clear the fault.") \
   X(7, encoder_implausible, "A joint angle lies far beyond its stop, so encoder counts were lost or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \
   X(8, host_silent, "The host was silent for longer than host_timeout_s while the force was on.", "Reconnect the companion and switch the force on again.") \
@@ -23,10 +28,10 @@ namespace inkwell::protocol {
   X(10, watchdog, "The board was restarted by its watchdog.", "Report this with the firmware version, then clear the fault.")    \
   X(11, processor_fault, "The processor met a fault; it switched the bridges off and restarted.", "Report this with the firmware version, then clear the fault.") \
   X(12, not_finite, "A value in the control path was not a finite number.", "Check the parameters of the arm, load the defaults, then clear the fault.") \
-  X(13, samples_stale, "Supply and gimbal were not measured for a millisecond.", "If it comes back after the fault is cleared, reset the board and report this with the firmware version.") \
+  X(13, samples_stale, "Supply and gimbal were not measured for {samples_stale_ms} ms.", "If it comes back after the fault is cleared, reset the board and report this with the firmware version.") \
   X(14, crystal_failed, "The board's crystal stopped, or swung late; the motors were off until the board had started anew.", "Check the crystal, its two capacitors and their joints, then clear the fault. If it comes back, replace the crystal.") \
   X(15, force_law, "The force law of this image gave a force that is no finite number.", "Look in the force law for a division by zero, the root of a negative number or a state that grows without end, or put its parameters back to their defaults. Then clear the fault.") \
-  X(16, motor_hot, "A motor is a quarter hotter than it bears, although its current is held back.", "Let it cool below 85 %; while it does, check its wiring and its current sensor, or what tested it. Then clear the fault.") \
+  X(16, motor_hot, "A motor is {motor_heat_beyond_percent} % hotter than it bears, although its current is held back.", "Let it cool below {motor_heat_holds_back_percent} %; while it does, check its wiring and its current sensor, or what tested it. Then clear the fault.") \
   X(17, memory_damaged, "A bit of the firmware, or of the parameters that it works with, has changed by itself in memory.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
   X(18, motor_implausible, "A motor's voltage, current and speed do not belong together.", "Check the motor's wires, its shunt amplifier and its encoder. `inkwell tune current-loop` measures the motor's resistance, by which this is judged. Then clear the fault.")
 

@@ -22,3 +22,10 @@ TEST_CASE("the supply's faults name the limits at which the firmware switches of
   CHECK(device::fault_text(Fault::supply_high).cause == "The supply of the bridges is above 24 V.");
   CHECK(device::fault_text(Fault::current_sensor).remedy.find("its 1.65 V reference") != std::string::npos);
 }
+
+TEST_CASE("the faults of the motors and of old samples name the figures that the firmware goes by") {
+  CHECK(device::fault_text(Fault::over_current).cause.find("exceeded 150 % of its limit") != std::string::npos);
+  CHECK(device::fault_text(Fault::samples_stale).cause == "Supply and gimbal were not measured for 1 ms.");
+  CHECK(device::fault_text(Fault::motor_hot).cause.find("is 25 % hotter than it bears") != std::string::npos);
+  CHECK(device::fault_text(Fault::motor_hot).remedy.find("cool below 85 %;") != std::string::npos);
+}

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <control/vector.hpp>
+#include <protocol/faults.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::control {
@@ -39,8 +40,7 @@ struct SupplyFilter {
   static constexpr float weight = 1.0f / 32.0f;
   /// Keeps the reciprocal finite when the supply is absent; far below any supply that is allowed to drive.
   static constexpr float floor_V = 1.0f;
-  /// A supply that was not measured for longer is not known any more.
-  static constexpr std::uint32_t stale_periods = periods_in(0.001f);
+  static constexpr std::uint32_t stale_periods = periods_in(protocol::samples_stale_s);
 
   float supply_V = 0.0f;
   float per_V = 1.0f / floor_V;
