@@ -17,7 +17,8 @@ namespace {
 
 constexpr float points_maximum = 10'000.0f;  // more than any display has
 constexpr std::array<std::string_view, 2> theme_names{"dark", "light"};
-constexpr std::array<std::string_view, 3> plot_kind_names{"time", "spectrum", "xy"};
+constexpr auto plot_kind_names = std::to_array<std::string_view>({"time", "spectrum", "xy"});
+static_assert(plot_kind_names.size() == plot_kind_count);
 constexpr std::array<std::string_view, 3> trigger_mode_names{"off", "normal", "single"};
 constexpr std::array<std::string_view, 2> trigger_edge_names{"rising", "falling"};
 

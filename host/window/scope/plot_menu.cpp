@@ -32,7 +32,8 @@ void choose_signals(ScopePlot& plot, const Style& style) {
 }  // namespace
 
 bool draw_plot_menu(ScopePlot& plot, bool may_be_removed, const Style& style) {
-  static constexpr std::array<const char*, 3> kinds{"against time", "spectrum", "against each other"};
+  static constexpr auto kinds = std::to_array<const char*>({"against time", "spectrum", "against each other"});
+  static_assert(kinds.size() == plot_kind_count);
   ImGui::SetNextWindowSizeConstraints({style.points(250), 0}, {style.points(330), style.points(420)});
   if (!ImGui::BeginPopup("plot menu")) return false;
   auto kind = static_cast<int>(plot.kind);

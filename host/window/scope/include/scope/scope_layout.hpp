@@ -1,6 +1,7 @@
 // What the scope's plots show, and the layouts that come with the window.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -16,6 +17,7 @@ enum class PlotKind : std::uint8_t {
   spectrum,  ///< amplitude of the signals against frequency
   xy,        ///< the second signal against the first, the third against the first, ...
 };
+inline constexpr std::size_t plot_kind_count = static_cast<std::size_t>(PlotKind::xy) + 1;  // the last one
 
 struct ScopePlot {
   PlotKind kind = PlotKind::time;
