@@ -55,19 +55,19 @@ std::vector<std::string> places(InjectedFault fault) {
 
 }  // namespace
 
-std::string_view name_of(Situation situation) {
+std::string_view name_of(CaseSituation situation) {
   constexpr std::string_view names[] = {"unreferenced", "ready", "rest", "wall", "motion"};
   return names[static_cast<std::size_t>(situation)];
 }
 
-std::string meaning_of(Situation situation) {
+std::string meaning_of(CaseSituation situation) {
   switch (situation) {
-    case Situation::unreferenced:
+    case CaseSituation::unreferenced:
       return "Out of the inkwell since the start, so that the board does not know where it is; the hand holds it.";
-    case Situation::ready: return "The pose is valid, the force is off; the hand holds it in free space.";
-    case Situation::rest: return "The force is on; the hand holds it at rest in free space.";
-    case Situation::wall: return "The force is on; the hand presses it into a wall of the highest stiffness.";
-    case Situation::motion:
+    case CaseSituation::ready: return "The pose is valid, the force is off; the hand holds it in free space.";
+    case CaseSituation::rest: return "The force is on; the hand holds it at rest in free space.";
+    case CaseSituation::wall: return "The force is on; the hand presses it into a wall of the highest stiffness.";
+    case CaseSituation::motion:
       return fmt::format("The force is on; the hand swings it through free space, {:.0f} mm in {} s, with all joints.",
                          2e3 * swing_m, swing_s);
   }
@@ -104,7 +104,7 @@ std::vector<Case> all_cases() {
   std::vector<Case> cases;
   unsigned number = 0;
   for (const CaseFault& fault : case_faults())
-    for (const Situation situation : situations)
+    for (const CaseSituation situation : situations)
       for (unsigned phase = 1; phase <= phases; ++phase) cases.push_back({++number, fault, situation, phase});
   return cases;
 }

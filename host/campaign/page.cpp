@@ -30,7 +30,7 @@ Groups group(std::span<const Result> results) {
   return groups;
 }
 
-const std::vector<Result>* find(const Groups& groups, const std::string& fault, Situation situation) {
+const std::vector<Result>* find(const Groups& groups, const std::string& fault, CaseSituation situation) {
   const auto found = groups.find({fault, std::string(name_of(situation))});
   return found == groups.end() ? nullptr : &found->second;
 }
@@ -69,7 +69,7 @@ std::string row(const std::string& fault, const Summary& s) {
 
 std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
   std::string text;
-  for (const Situation situation : situations) {
+  for (const CaseSituation situation : situations) {
     text += fmt::format("\n## {}\n\n{}\n\n", name_of(situation), meaning_of(situation));
     text +=
         "| fault | detected as | bridges off, control periods | peak force, N | energy, mJ | travel, mm | recovered by "
@@ -164,7 +164,7 @@ std::string undetected(const Groups& groups, const std::vector<CaseFault>& fault
   for (const CaseFault& fault : faults) {
     if (!fault.fault) continue;
     std::vector<std::string> where;
-    for (const Situation situation : situations) {
+    for (const CaseSituation situation : situations) {
       const auto* results = find(groups, fault.name(), situation);
       if (results == nullptr || !is_active(situation)) continue;
       const auto run = std::ranges::count_if(*results, [](const Result& r) { return r.error.empty(); });
@@ -183,7 +183,7 @@ std::string undetected(const Groups& groups, const std::vector<CaseFault>& fault
 std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faults) {
   std::string rows;
   for (const CaseFault& fault : faults)
-    for (const Situation situation : situations) {
+    for (const CaseSituation situation : situations) {
       const auto* results = find(groups, fault.name(), situation);
       if (results == nullptr || !is_active(situation)) continue;
       const Summary s = summarise(*results);

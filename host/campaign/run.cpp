@@ -68,9 +68,9 @@ void take_by_hand(BoardRun& board, Vector3 target_m, double duration_s) {
 }
 
 void bring_into(BoardRun& board, const Case& the_case) {
-  const Situation situation = the_case.situation;
+  const CaseSituation situation = the_case.situation;
   // Before the first instruction the stylus is on its way out: nobody tells the board where it is.
-  if (situation == Situation::unreferenced) {
+  if (situation == CaseSituation::unreferenced) {
     Vector3 away_m = board.true_position_m();
     away_m[2] -= 0.04;
     take_by_hand(board, away_m, 0.05);
@@ -79,15 +79,15 @@ void bring_into(BoardRun& board, const Case& the_case) {
   ParameterSet parameters = board.device().parameters();
   // Only a fault of the host shall be one: after it comes, this host says nothing in any case.
   if (!is_about_the_host(the_case.fault)) board.set({{Parameter::host_timeout_s, 2.0f}});
-  if (situation == Situation::unreferenced) {
+  if (situation == CaseSituation::unreferenced) {
     expect(board.wait_for(State::unreferenced, 1.0), "the board knew where the arm is.");
     return board.run(0.3);
   }
   expect(board.wait_for(State::ready, 1.0), "the board did not find its reference.");
   take_by_hand(board, middle_of_box_m(parameters), 0.4);
   board.run(0.6);
-  if (situation == Situation::ready) return;
-  if (situation == Situation::wall) {
+  if (situation == CaseSituation::ready) return;
+  if (situation == CaseSituation::wall) {
     const float stiffest = protocol::info(Parameter::wall_stiffness_N_per_m).maximum;
     board.set({{Parameter::wall_stiffness_N_per_m, stiffest}});
     parameters[Parameter::wall_stiffness_N_per_m] = stiffest;
@@ -97,11 +97,11 @@ void bring_into(BoardRun& board, const Case& the_case) {
          "the force did not go on.");
   board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
   const Vector3 middle_m = middle_of_box_m(parameters);
-  if (situation == Situation::wall) {
+  if (situation == CaseSituation::wall) {
     board.control().hand_path({{0.0, middle_m}, {0.3, into_wall_m(parameters)}});
     board.run(0.45);
   }
-  if (situation == Situation::motion) {
+  if (situation == CaseSituation::motion) {
     std::vector<device::HandWaypoint> path{{0.0, middle_m}};
     for (int turn = 0; turn < 8; ++turn) {
       Vector3 side_m = middle_m;
@@ -146,7 +146,7 @@ void observe(BoardRun& board, const Case& the_case, Result& result) {
   result.bridges_went_on = !result.bridges_were_on && driven_until_s > result.injected_at_s;
   result.peak_force_N = reading.peak_force_N;
   result.energy_J = reading.energy_J;
-  result.travel_m = the_case.situation == Situation::motion ? reading.lag_m : reading.travel_m;
+  result.travel_m = the_case.situation == CaseSituation::motion ? reading.lag_m : reading.travel_m;
   result.locked_up = board.is_locked_up();
   result.restarts = control.status().all.value("resets", 0u) - restarts_before;
 }

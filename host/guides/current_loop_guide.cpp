@@ -44,7 +44,7 @@ double motor_ohm(const MotorCircuit& circuit) { return circuit.resistance_ohm - 
 struct Tuning {
   CurrentLoopOptions options;
   std::vector<MotorCircuit> motors;  ///< in the order of options.motors
-  std::optional<CurrentLoopGains> gains;
+  std::optional<SuggestedGains> gains;
   std::vector<recording::CurrentStep> before, after;
 };
 
@@ -302,7 +302,7 @@ class TryGains final : public Step {
     findings_->details["phase_margin_deg"] = margin_deg;
   }
 
-  static std::vector<device::ParameterChange> gains_of(const CurrentLoopGains& gains) {
+  static std::vector<device::ParameterChange> gains_of(const SuggestedGains& gains) {
     return {{Parameter::current_proportional_gain_V_per_A, static_cast<float>(gains.proportional_V_per_A)},
             {Parameter::current_integral_gain_V_per_As, static_cast<float>(gains.integral_V_per_As)}};
   }

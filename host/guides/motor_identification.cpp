@@ -167,7 +167,7 @@ MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_per
   return circuit;
 }
 
-CurrentLoopGains suggest_gains(const MotorCircuit& motor, double bandwidth_Hz) {
+SuggestedGains suggest_gains(const MotorCircuit& motor, double bandwidth_Hz) {
   const double bandwidth_rad_s = 2 * std::numbers::pi * bandwidth_Hz;
   return {motor.inductance_H * bandwidth_rad_s, motor.resistance_ohm * bandwidth_rad_s};
 }

@@ -53,7 +53,7 @@ TEST_CASE("the list has every fault of the table in every situation, three times
   CHECK_FALSE(cases[0].fault.fault);
   for (const auto& row : protocol::injection_table) {
     CAPTURE(row.name);
-    for (const Situation situation : situations)
+    for (const CaseSituation situation : situations)
       CHECK(std::ranges::count_if(cases, [&](const Case& c) {
               return c.fault.fault && protocol::info(*c.fault.fault).name == row.name && c.situation == situation;
             }) >= 3);

@@ -11,19 +11,19 @@
 namespace inkwell::campaign {
 
 /// What the arm does when the fault comes.
-enum class Situation : std::uint8_t {
+enum class CaseSituation : std::uint8_t {
   unreferenced,  ///< out of the inkwell since the start: no force
   ready,         ///< the hand holds it, the force is off
   rest,          ///< the same with the force on, in free space
   wall,          ///< pressed into a wall of the highest stiffness
   motion,        ///< the force on, swung fast through free space
 };
-inline constexpr Situation situations[] = {Situation::unreferenced, Situation::ready, Situation::rest, Situation::wall,
-                                           Situation::motion};
-std::string_view name_of(Situation situation);
+inline constexpr CaseSituation situations[] = {CaseSituation::unreferenced, CaseSituation::ready, CaseSituation::rest,
+                                               CaseSituation::wall, CaseSituation::motion};
+std::string_view name_of(CaseSituation situation);
 /// A sentence with its figures.
-std::string meaning_of(Situation situation);
-constexpr bool is_active(Situation situation) { return situation >= Situation::rest; }
+std::string meaning_of(CaseSituation situation);
+constexpr bool is_active(CaseSituation situation) { return situation >= CaseSituation::rest; }
 
 /// The swing of `motion`: to either side, along all axes; from one side to the other.
 inline constexpr double swing_m = 0.03, swing_s = 0.15;
@@ -43,7 +43,7 @@ struct CaseFault {
 struct Case {
   unsigned number;  ///< from 1 on; the same as long as the table of faults is
   CaseFault fault;
-  Situation situation;
+  CaseSituation situation;
   unsigned phase;  ///< 1 to phases
 
   std::string name() const;

@@ -34,7 +34,7 @@ struct MotorCircuit {
 /// Throws device::Error if there is no pulse, no current, or the currents do not follow such a circuit.
 MotorCircuit identify(const std::vector<VoltagePulse>& pulses, double sample_period_s, double ripple_A);
 
-struct CurrentLoopGains {
+struct SuggestedGains {
   double proportional_V_per_A = 0;
   double integral_V_per_As = 0;
 };
@@ -42,7 +42,7 @@ struct CurrentLoopGains {
 /// Pole-zero cancellation: with Kp = L w and Ki = R w the open loop is w / s, whose closed loop has the bandwidth w
 /// and no overshoot but for the delay (see for example Harnefors and Nee, "Model-based current control of AC
 /// machines using the internal model control method", IEEE Trans. Ind. Appl. 34(1), 1998).
-CurrentLoopGains suggest_gains(const MotorCircuit& motor, double bandwidth_Hz);
+SuggestedGains suggest_gains(const MotorCircuit& motor, double bandwidth_Hz);
 
 /// Phase that the delay leaves at the bandwidth: 90 degrees less w times the delay.
 double phase_margin_deg(double bandwidth_Hz, double delay_s);
