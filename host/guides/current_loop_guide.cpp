@@ -1,4 +1,5 @@
-// Current loops: identify each motor from voltage pulses, suggest gains, try them with steps of current.
+// Current loops: identify each motor from voltage pulses, suggest gains and resistances, try the gains with steps of
+// current.
 #include <guides/guides.hpp>
 
 #include <algorithm>
@@ -356,8 +357,10 @@ Plan plan_current_loop(const Choices& choices) {
 
 }  // namespace
 
-const Offer current_loop_guide{"tune", "current-loop", "Current-loop tuning",
-                               "Measures resistance and inductance of the motors, and tries gains for a bandwidth.",
-                               plan_current_loop};
+const Offer current_loop_guide{
+    "tune", "current-loop", "Current-loop tuning",
+    "Measures resistance and inductance of the motors, proposes the resistances, and tries gains for "
+    "a bandwidth.",
+    plan_current_loop};
 
 }  // namespace inkwell::guides

@@ -13,7 +13,7 @@ namespace inkwell::virtual_board {
 /// What a gate driver is told to do with one leg. `floating` leaves the current to the diodes.
 enum class Leg : std::uint8_t { low, high, floating };
 
-/// What a leg is whatever it is told; `slow` is one that obeys late.
+/// What a leg is whatever it is told.
 enum class LegFault : std::uint8_t { none, high, low, open };
 
 struct MotorConstants {
