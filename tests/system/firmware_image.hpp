@@ -6,7 +6,7 @@
 
 namespace inkwell::tests {
 
-/// The first function or variable whose mangled name has this in it.
+/// The function or variable whose mangled name has this in it; fails the test unless there is exactly one.
 std::uint32_t firmware_symbol(std::string_view name);
 
 /// Where the firmware waits for the reset that it has asked for: "dsb", and a branch back to it.

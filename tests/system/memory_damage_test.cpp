@@ -1,8 +1,13 @@
 // What the firmware does when a bit of it, or of its parameters, has changed by itself.
 #include <doctest/doctest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include <control/settings.hpp>
+#include <protocol/parameters.hpp>
 
 #include "firmware_image.hpp"
 #include "hazards.hpp"
@@ -18,6 +23,26 @@ std::string text_of(std::uint32_t address) { return std::to_string(address); }
 
 bool is_in_fault(const protocol::PoseReport& pose) { return pose.state == State::fault; }
 
+/// A bit of each place flips under a pressing hand.
+void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int bit) {
+  BoardRig rig;
+  press_into_wall(rig);
+  for (const std::uint32_t address : places)
+    rig.control.inject({"ram_bit", text_of(address), static_cast<double>(bit)});
+  rig.run_until(is_in_fault);
+  CHECK(rig.pose().fault == Fault::memory_damaged);
+  CHECK_FALSE(bridges_enabled(rig.control));
+
+  // It is as damaged as before: the fault can not be cleared.
+  rig.command(protocol::Command::clear_fault);
+  rig.run(0.05);
+  CHECK(rig.pose().state == State::fault);
+
+  rig.control.reset();
+  reconnect(rig);
+  rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
+}
+
 }  // namespace
 
 TEST_CASE("a bit that flips in what the interrupts run from switches the force off, and a reset writes it anew") {
@@ -27,22 +52,18 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
                                   firmware_symbol("write_brake"), firmware_symbol("nowhere")};
   for (const std::uint32_t address : places) {
     CAPTURE(address);
-    BoardRig rig;
-    press_into_wall(rig);
-    rig.control.inject({"ram_bit", text_of(address), 7});
-    rig.run_until(is_in_fault);
-    CHECK(rig.pose().fault == Fault::memory_damaged);
-    CHECK_FALSE(bridges_enabled(rig.control));
-
-    // It is as damaged as before: the fault can not be cleared.
-    rig.command(protocol::Command::clear_fault);
-    rig.run(0.05);
-    CHECK(rig.pose().state == State::fault);
-
-    rig.control.reset();
-    reconnect(rig);
-    rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
+    check_found_and_written_anew({address}, 7);
   }
+}
+
+TEST_CASE("a bit that flips in the settings switches the force off, and a reset prepares them anew") {
+  // The link begins with the parameters and the two places of the settings, of which the interrupt uses one.
+  const std::uint32_t settings = firmware_symbol("host_link") + sizeof(protocol::ParameterSet);
+  constexpr std::uint32_t bytes = sizeof(control::Settings);
+  // The last bit of a limit that is far away: it is to be found before it does harm.
+  constexpr std::uint32_t limit =
+      offsetof(control::Settings, limits) + offsetof(control::Limits, speed_limit_squared_m2_per_s2);
+  check_found_and_written_anew({settings + limit, settings + bytes + limit}, 0);
 }
 
 TEST_CASE("a bit that flips in the flash switches the force off, and no reset brings it back while it is wrong") {
