@@ -5,7 +5,6 @@
 #include <fstream>
 #include <span>
 #include <sstream>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "commands.hpp"
 
-#include <algorithm>
 #include <atomic>
+#include <cstdio>
+#include <filesystem>
 #include <mutex>
-#include <set>
 #include <thread>
 #include <vector>
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <string_view>
-#include <utility>
 
 #include <inkwell/inkwell.h>
 #include <protocol/faults.hpp>

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <string_view>
 
 #include <chip/exception_numbers.hpp>
 

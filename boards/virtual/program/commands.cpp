@@ -1,8 +1,6 @@
 #include "commands.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <vector>

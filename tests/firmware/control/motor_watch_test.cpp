@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 
 #include <firmware/control/arms.hpp>
 #include <firmware/control/simulated_arm.hpp>

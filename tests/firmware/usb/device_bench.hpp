@@ -1,8 +1,8 @@
 // A device on a fake port, and a host that carries out control transfers on it.
 #pragma once
 
+#include <cstring>
 #include <initializer_list>
-#include <string>
 
 #include <usb/device.hpp>
 

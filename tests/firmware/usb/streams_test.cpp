@@ -1,6 +1,8 @@
 // Poses, scope frames, and a host that sleeps, vanishes or comes back.
 #include <doctest/doctest.h>
 
+#include <cstring>
+
 #include "device_bench.hpp"
 
 namespace inkwell {

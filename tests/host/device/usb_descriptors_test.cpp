@@ -3,7 +3,6 @@
 
 #include <array>
 #include <bit>
-#include <string>
 #include <vector>
 
 #include <device/error.hpp>

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <doctest/doctest.h>
 #include <board/board.hpp>
