@@ -86,8 +86,8 @@ std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
 /// Why a wire may be broken unnoticed, by what it is for.
 std::string_view reason_of_wire(std::string_view wire) {
   if (wire.starts_with("encoders"))
-    return "No second sensor knows the joint; only an angle far beyond its stop, or a speed that cannot be, is "
-           "noticed.";
+    return "No second sensor knows the joint; only an angle far beyond its stop, or a speed that cannot be, "
+           "is noticed.";
   if (wire.starts_with("bridges")) return "While no current is asked of the motor, none is missed.";
   if (wire.starts_with("bridge_fault")) return "It stands as with sound bridges; nothing tests it.";
   if (wire == "bridge_enable") return "It stands as with the force on; nothing reads it back.";
@@ -194,8 +194,7 @@ std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faul
     }
   const std::string_view heading =
       "\n## Above the force limit\n\nWith the force on, cases in which the hand felt more than the force limit and a "
-      "tenth "
-      "of it";
+      "tenth of it";
   if (rows.empty()) return fmt::format("{}: none.\n", heading);
   return fmt::format(
       "{}.\n\n| fault | situation | peak force, N | energy, mJ | travel, mm | detected as | bridges off, control "

@@ -63,8 +63,7 @@ void print_reports() {
                row.what);
   fmt::print(
       "\nInterface {}, endpoint 0x{:02x}, is a HID multi-axis controller of its own: a ControllerReport of {} bytes "
-      "every "
-      "{} ms, without an id. Interface {} is the run-time part of USB's class for firmware updates.\n",
+      "every {} ms, without an id. Interface {} is the run-time part of USB's class for firmware updates.\n",
       protocol::usb::controller_interface, protocol::usb::controller_in_endpoint, sizeof(protocol::ControllerReport),
       protocol::usb::controller_interval_ms, protocol::usb::firmware_update_interface);
 }

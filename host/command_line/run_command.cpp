@@ -88,8 +88,8 @@ void add_run_command(const Place& place) {
   auto* command = place.program.add_subcommand(
       "run",
       "Start a program that was made for an Omni's libraries (HDAPI, CHAI3D) with this arm\n\n"
-      "Puts libHD.so and libhdPhantom.so of this arm in the place of theirs and sets INKWELL_DEVICE. With --virtual, "
-      "a\n"
+      "Puts libHD.so and libhdPhantom.so of this arm in the place of theirs "
+      "and sets INKWELL_DEVICE. With --virtual, a\n"
       "virtual board lives as long as the program. Options stand before PROGRAM; what stands behind is its own.\n"
       "Exit code: the program's, or 128 and the signal that ended it.");
   const auto own = std::make_shared<DeviceOptions>();

@@ -359,8 +359,8 @@ Plan plan_current_loop(const Choices& choices) {
 
 const Offer current_loop_guide{
     "tune", "current-loop", "Current-loop tuning",
-    "Measures resistance and inductance of the motors, proposes the resistances, and tries gains for "
-    "a bandwidth.",
+    "Measures resistance and inductance of the motors, proposes the resistances, and tries gains "
+    "for a bandwidth.",
     plan_current_loop};
 
 }  // namespace inkwell::guides

@@ -79,8 +79,7 @@ bool RestInInkwell::advance(const Observation& now, DevicePort&) {
   if (reports_) {
     findings_->sentences.push_back(fmt::format(
         "The inkwell's switch is closed and the arm is referenced there: joints at {:.4f}, {:.4f} and {:.4f} rad, "
-        "probe at "
-        "{:.1f}, {:.1f}, {:.1f} mm.",
+        "probe at {:.1f}, {:.1f}, {:.1f} mm.",
         joint_rad(pose, 1), joint_rad(pose, 2), joint_rad(pose, 3), 1e3 * static_cast<double>(pose.position_m[0]),
         1e3 * static_cast<double>(pose.position_m[1]), 1e3 * static_cast<double>(pose.position_m[2])));
     findings_->details["inkwell"] = {{"joint_rad", {joint_rad(pose, 1), joint_rad(pose, 2), joint_rad(pose, 3)}},

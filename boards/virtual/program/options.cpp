@@ -28,12 +28,11 @@ CommandLine read_command_line(int argc, char** argv) {
   options.arm = default_arm();
   CLI::App app{
       "Runs the ELF of an STM32F405 on a board made of software: the chip, bridges, motors and sensors, an arm and a\n"
-      "hand. Its USB device is exported by the USB/IP protocol; a control socket moves the hand, presses buttons, "
-      "runs\n"
+      "hand. Its USB device is exported by the USB/IP protocol; a control "
+      "socket moves the hand, presses buttons, runs\n"
       "and stops the time, and tells what no real board could. Both listen on 127.0.0.1 only.\n"
-      "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT and uartN=PORT if asked for. "
-      "Its log goes to "
-      "stderr."};
+      "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT and uartN=PORT if asked for.\n"
+      "Its log goes to stderr."};
   app.name("virtual-board");
   app.get_formatter()->column_width(30);
   app.add_option("--elf", options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
@@ -105,8 +104,8 @@ CommandLine read_command_line(int argc, char** argv) {
                              ->type_name("T");
   std::vector<std::string> uarts;
   app.add_option("--uart", uarts,
-                 "where a UART leads, both ways: usart1=stdio is this terminal, usart1=PORT a TCP port (0 is any free "
-                 "one),\n"
+                 "where a UART leads, both ways: usart1=stdio is this terminal, "
+                 "usart1=PORT a TCP port (0 is any free one),\n"
                  "usart1=PATH a terminal of its own under that name; usart1 to usart3, uart4, uart5, usart6")
       ->type_name("UART=PLACE")
       ->allow_extra_args(false);
@@ -139,19 +138,19 @@ CommandLine read_command_line(int argc, char** argv) {
       "are logged and listed at the end");
   app.footer(
       "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options, 3 the processor was\n"
-      "locked up at the end of --seconds, 4 a broken rule (--strict); firmware that ends by semihosting passes its "
-      "own\n"
+      "locked up at the end of --seconds, 4 a broken rule (--strict); firmware "
+      "that ends by semihosting passes its own\n"
       "exit code on.\n"
       "\n"
       "Board time waits for the program that uses the device on USB when it owes the next request of a stream, until\n"
       "it asks for more or is gone. So a busy computer, or a debugger that stops that program, loses no data.\n"
       "\n"
-      "Faults that can be put in, with what they are put into and the amount; its range, and what it is unless "
-      "given:\n" +
+      "Faults that can be put in, with what they are put into and the amount; its range, and what it is "
+      "unless given:\n" +
       explain_injections() +
       "\n"
-      "Control socket: one JSON object a line each way, such as {\"command\":\"run\",\"for_s\":0.5}. The commands "
-      "with\n"
+      "Control socket: one JSON object a line each way, such as "
+      "{\"command\":\"run\",\"for_s\":0.5}. The commands with\n"
       "their keys; lengths in metres, angles in radians, times in seconds of board time:\n" +
       explain_commands());
   try {

@@ -41,8 +41,7 @@ std::string help_of(const protocol::ParameterInfo& info) {
 
 constexpr std::string_view editing_help =
     "Click the number to type one: Enter sends it, Escape keeps the old one. Drag the dots to change it, with Shift "
-    "ten "
-    "times as fast, with Ctrl a tenth.";
+    "ten times as fast, with Ctrl a tenth.";
 
 ValueRange range_of(const protocol::ParameterInfo& info) {
   return {.minimum = info.minimum,
