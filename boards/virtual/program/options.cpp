@@ -21,182 +21,223 @@ std::filesystem::path default_arm() {
   return (executable.parent_path() / "../../boards/arms/omni.toml").lexically_normal();
 }
 
-}  // namespace
-
-CommandLine read_command_line(int argc, char** argv) {
+/// As it was written, until all of it is read.
+struct Given {
   Options options;
-  options.arm = default_arm();
-  CLI::App app{
-      "Runs the ELF of an STM32F405 on a board made of software: the chip, bridges, motors and sensors, an arm and a\n"
-      "hand. Its USB device is exported by the USB/IP protocol; a control "
-      "socket moves the hand, presses buttons, runs\n"
-      "and stops the time, and tells what no real board could. Both listen on 127.0.0.1 only.\n"
-      "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT and uartN=PORT if asked for.\n"
-      "Its log goes to stderr."};
-  app.name("virtual-board");
-  app.get_formatter()->column_width(30);
-  app.add_option("--elf", options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
-  app.add_option("--arm", options.arm, "arm description (default: omni.toml from $INKWELL_ARMS or ../../boards/arms)")
+  std::uint16_t gdb_port = 0;
+  std::string mode = "fast", pricing = "likely";
+  double seconds = 0.0;
+  std::vector<std::string> uarts, pins, injections;
+  std::string profile, injection_script;
+  CLI::Option *gdb_option = nullptr, *mode_option = nullptr, *seconds_option = nullptr, *profile_option = nullptr;
+};
+
+constexpr const char* description =
+    "Runs the ELF of an STM32F405 on a board made of software: the chip, bridges, motors and sensors, an arm and a\n"
+    "hand. Its USB device is exported by the USB/IP protocol; a control "
+    "socket moves the hand, presses buttons, runs\n"
+    "and stops the time, and tells what no real board could. Both listen on 127.0.0.1 only.\n"
+    "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT and uartN=PORT if asked for.\n"
+    "Its log goes to stderr.";
+
+void add_files_and_ports(CLI::App& app, Given& given) {
+  app.add_option("--elf", given.options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
+  app.add_option("--arm", given.options.arm,
+                 "arm description (default: omni.toml from $INKWELL_ARMS or ../../boards/arms)")
       ->type_name("FILE");
   const auto port = CLI::Range(0, 65535).description("");
-  app.add_option("--usbip", options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")
+  app.add_option("--usbip", given.options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")
       ->check(port)
       ->type_name("PORT");
-  app.add_option("--control", options.control_port, "TCP port of the control socket; 0 is any free one")
+  app.add_option("--control", given.options.control_port, "TCP port of the control socket; 0 is any free one")
       ->check(port)
       ->type_name("PORT");
-  std::uint16_t gdb_port = 0;
-  auto* gdb_option = app.add_option("--gdb", gdb_port,
+  given.gdb_option = app.add_option("--gdb", given.gdb_port,
                                     "TCP port where GDB may connect (target remote :PORT), 0 is any free one; "
                                     "--mode is exact")
                          ->check(port)
                          ->type_name("PORT");
-  std::string mode = "fast";
-  auto* mode_option =
-      app.add_option("--mode", mode, "exact: interrupts come at any instruction; fast: between blocks of instructions")
-          ->check(CLI::IsMember({"exact", "fast"}).description(""))
-          ->type_name("exact|fast")
-          ->capture_default_str();
-  std::string pricing = "likely";
-  app.add_option("--pricing", pricing,
+}
+
+void add_chip(CLI::App& app, Given& given) {
+  given.mode_option = app.add_option("--mode", given.mode,
+                                     "exact: interrupts come at any instruction; fast: between blocks of instructions")
+                          ->check(CLI::IsMember({"exact", "fast"}).description(""))
+                          ->type_name("exact|fast")
+                          ->capture_default_str();
+  app.add_option("--pricing", given.pricing,
                  "what instructions cost where the sources leave a choice (docs/cycles.md); deadlines are judged by\n"
                  "the conservative figures")
       ->check(CLI::IsMember({"likely", "conservative"}).description(""))
       ->type_name("likely|conservative")
       ->capture_default_str();
-  app.add_option("--crystal", options.crystal_Hz, "frequency of the crystal at the pins OSC, 4 to 26 MHz")
+  app.add_option("--crystal", given.options.crystal_Hz, "frequency of the crystal at the pins OSC, 4 to 26 MHz")
       ->check(CLI::Range(4'000'000, 26'000'000).description(""))
       ->type_name("HZ")
       ->capture_default_str();
   app.add_option(
-         "--crystal-ppm", options.crystal_ppm,
+         "--crystal-ppm", given.options.crystal_ppm,
          "it swings faster than that by so many parts in a million; negative: slower. USB bears 2500 (USB 2.0,\n"
          "section 7.1.11), a crystal for it has 50")
       ->check(CLI::Range(-10'000, 10'000).description(""))
       ->type_name("N")
       ->capture_default_str();
   app.add_option(
-         "--lsi", options.low_speed_internal_Hz,
+         "--lsi", given.options.low_speed_internal_Hz,
          "frequency of the low-speed internal oscillator, which the watchdog runs from; each chip has its own,\n"
          "from 17 to 47 kHz")
       ->check(CLI::Range(17'000, 47'000).description(""))
       ->type_name("HZ")
       ->capture_default_str();
-  app.add_option("--brown-out", options.brown_out_level,
+  app.add_option("--brown-out", given.options.brown_out_level,
                  "brown-out level in the chip's option bytes: 0 is off, as in a new chip; 3 is what the board wants")
       ->check(CLI::Range(0, 3).description(""))
       ->type_name("LEVEL")
       ->capture_default_str();
-  app.add_option("--host-clock-ppm", options.host_clock_ppm,
+}
+
+void add_time_and_seed(CLI::App& app, Given& given) {
+  app.add_option("--host-clock-ppm", given.options.host_clock_ppm,
                  "the USB host's clock is faster than board time by so many parts in a million: its start of frame\n"
                  "comes at its own millisecond; negative: slower (USB 2.0, section 7.1.11, bears 500)")
       ->check(CLI::Range(-500.0, 500.0).description(""))
       ->type_name("N")
       ->capture_default_str();
-  app.add_flag("--real-time", options.real_time, "keep board time from running ahead of the clock on the wall");
-  app.add_option("--seed", options.seed,
+  app.add_flag("--real-time", given.options.real_time, "keep board time from running ahead of the clock on the wall");
+  app.add_option("--seed", given.options.seed,
                  "of all noise and of the serial number; the same seed and commands give the same run")
       ->type_name("N")
       ->capture_default_str();
-  double seconds = 0.0;
-  auto* seconds_option = app.add_option("--seconds", seconds, "end after this much board time")
+  given.seconds_option = app.add_option("--seconds", given.seconds, "end after this much board time")
                              ->check(CLI::PositiveNumber.description(""))
                              ->type_name("T");
-  std::vector<std::string> uarts;
-  app.add_option("--uart", uarts,
+}
+
+void add_instruments(CLI::App& app, Given& given) {
+  app.add_option("--uart", given.uarts,
                  "where a UART leads, both ways: usart1=stdio is this terminal, "
                  "usart1=PORT a TCP port (0 is any free one),\n"
                  "usart1=PATH a terminal of its own under that name; usart1 to usart3, uart4, uart5, usart6")
       ->type_name("UART=PLACE")
       ->allow_extra_args(false);
-  app.add_option("--vcd", options.waveform, "write levels of pins and the running exception to this file, for GTKWave")
+  app.add_option("--vcd", given.options.waveform,
+                 "write levels of pins and the running exception to this file, for GTKWave")
       ->type_name("FILE");
-  std::vector<std::string> pins;
-  app.add_option("--vcd-pins", pins, "only these pins, such as PA8,PC6 (default: all)")
+  app.add_option("--vcd-pins", given.pins, "only these pins, such as PA8,PC6 (default: all)")
       ->delimiter(',')
       ->type_name("PINS");
-  std::string profile;
-  auto* profile_option = app.add_option("--profile", profile,
+  given.profile_option = app.add_option("--profile", given.profile,
                                         "at the end, write the instructions of the longest interrupt and their cycles "
                                         "to this file\n(tools/flame-graph draws it); --mode is exact")
                              ->type_name("FILE");
-  std::vector<std::string> injections;
+}
+
+void add_faults(CLI::App& app, Given& given) {
   app.add_option(
-         "--inject", injections,
+         "--inject", given.injections,
          "a fault that comes at a board time in seconds and lasts so long, as in encoder_lost_counts:2=0.05@1.5+0.2;\n"
          "without @ from the start, without + for ever; below are all. May be given several times")
       ->type_name("FAULT")
       ->allow_extra_args(false);
-  std::string injection_script;
-  app.add_option("--inject-from", injection_script, "a file with one such fault a line; what follows a # is a comment")
+  app.add_option("--inject-from", given.injection_script,
+                 "a file with one such fault a line; what follows a # is a comment")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
-  app.add_flag("--paused", options.paused, "start with board time standing still until a client runs it");
+}
+
+void add_start_and_end(CLI::App& app, Given& given) {
+  app.add_flag("--paused", given.options.paused, "start with board time standing still until a client runs it");
   app.add_flag(
-      "--strict", options.strict,
+      "--strict", given.options.strict,
       "end, with exit code 4, when the firmware first does what silicon would not bear; without it such things\n"
       "are logged and listed at the end");
-  app.footer(
-      "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options, 3 the processor was\n"
-      "locked up at the end of --seconds, 4 a broken rule (--strict); firmware "
-      "that ends by semihosting passes its own\n"
-      "exit code on.\n"
-      "\n"
-      "Board time waits for the program that uses the device on USB when it owes the next request of a stream, until\n"
-      "it asks for more or is gone. So a busy computer, or a debugger that stops that program, loses no data.\n"
-      "\n"
-      "Faults that can be put in, with what they are put into and the amount; its range, and what it is "
-      "unless given:\n" +
-      explain_injections() +
-      "\n"
-      "Control socket: one JSON object a line each way, such as "
-      "{\"command\":\"run\",\"for_s\":0.5}. The commands with\n"
-      "their keys; lengths in metres, angles in radians, times in seconds of board time:\n" +
-      explain_commands());
+}
+
+std::string footer() {
+  return "Exit codes: 0 ended as asked, 1 cannot run (the reason is on stderr), 2 wrong options, 3 the processor was\n"
+         "locked up at the end of --seconds, 4 a broken rule (--strict); firmware "
+         "that ends by semihosting passes its own\n"
+         "exit code on.\n"
+         "\n"
+         "Board time waits for the program that uses the device on USB when it owes the next request of a "
+         "stream, until\n"
+         "it asks for more or is gone. So a busy computer, or a debugger that stops that program, loses no data.\n"
+         "\n"
+         "Faults that can be put in, with what they are put into and the amount; its range, and what it is "
+         "unless given:\n" +
+         explain_injections() +
+         "\n"
+         "Control socket: one JSON object a line each way, such as "
+         "{\"command\":\"run\",\"for_s\":0.5}. The commands with\n"
+         "their keys; lengths in metres, angles in radians, times in seconds of board time:\n" +
+         explain_commands();
+}
+
+/// Makes the options of what was written. False after a sentence on stderr if something of it can not be.
+bool take_over(Given& given) {
+  if (*given.gdb_option || *given.profile_option) {
+    if (*given.mode_option && given.mode != "exact") {
+      std::cerr << "virtual-board: --gdb and --profile look at every instruction; leave --mode fast out.\n";
+      return false;
+    }
+    given.mode = "exact";
+  }
+  if (*given.gdb_option) given.options.gdb_port = given.gdb_port;
+  if (*given.profile_option) given.options.profile = given.profile;
+  try {
+    for (const std::string& name : given.pins) given.options.waveform_pins.push_back(PinName::of(name));
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "virtual-board: --vcd-pins: " << error.what() << "\n";
+    return false;
+  }
+  try {
+    for (const std::string& text : given.uarts) given.options.uarts.push_back(UartOption::of(text));
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "virtual-board: --uart: " << error.what() << "\n";
+    return false;
+  }
+  try {
+    for (const std::string& text : given.injections) given.options.injections.push_back(parse_injection(text));
+  } catch (const InvalidInjection& error) {
+    std::cerr << "virtual-board: --inject: " << error.what() << "\n";
+    return false;
+  }
+  try {
+    std::ifstream script(given.injection_script);
+    const std::string text{std::istreambuf_iterator<char>(script), {}};
+    for (Injection& injection : parse_injections(text)) given.options.injections.push_back(std::move(injection));
+  } catch (const InvalidInjection& error) {
+    std::cerr << "virtual-board: --inject-from " << given.injection_script << ", " << error.what() << "\n";
+    return false;
+  }
+  given.options.mode = given.mode == "exact" ? Mode::exact : Mode::fast;
+  given.options.pricing = given.pricing == "conservative" ? Pricing::conservative : Pricing::likely;
+  if (*given.seconds_option) given.options.seconds = given.seconds;
+  return true;
+}
+
+}  // namespace
+
+CommandLine read_command_line(int argc, char** argv) {
+  Given given;
+  given.options.arm = default_arm();
+  CLI::App app{description};
+  app.name("virtual-board");
+  app.get_formatter()->column_width(30);
+  add_files_and_ports(app, given);
+  add_chip(app, given);
+  add_time_and_seed(app, given);
+  add_instruments(app, given);
+  add_faults(app, given);
+  add_start_and_end(app, given);
+  app.footer(footer());
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return {std::nullopt, app.exit(error) == 0 ? 0 : 2};
   }
-  if (*gdb_option || *profile_option) {
-    if (*mode_option && mode != "exact") {
-      std::cerr << "virtual-board: --gdb and --profile look at every instruction; leave --mode fast out.\n";
-      return {std::nullopt, 2};
-    }
-    mode = "exact";
-  }
-  if (*gdb_option) options.gdb_port = gdb_port;
-  if (*profile_option) options.profile = profile;
-  try {
-    for (const std::string& name : pins) options.waveform_pins.push_back(PinName::of(name));
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "virtual-board: --vcd-pins: " << error.what() << "\n";
-    return {std::nullopt, 2};
-  }
-  try {
-    for (const std::string& text : uarts) options.uarts.push_back(UartOption::of(text));
-  } catch (const std::invalid_argument& error) {
-    std::cerr << "virtual-board: --uart: " << error.what() << "\n";
-    return {std::nullopt, 2};
-  }
-  try {
-    for (const std::string& text : injections) options.injections.push_back(parse_injection(text));
-  } catch (const InvalidInjection& error) {
-    std::cerr << "virtual-board: --inject: " << error.what() << "\n";
-    return {std::nullopt, 2};
-  }
-  try {
-    std::ifstream script(injection_script);
-    const std::string text{std::istreambuf_iterator<char>(script), {}};
-    for (Injection& injection : parse_injections(text)) options.injections.push_back(std::move(injection));
-  } catch (const InvalidInjection& error) {
-    std::cerr << "virtual-board: --inject-from " << injection_script << ", " << error.what() << "\n";
-    return {std::nullopt, 2};
-  }
-  options.mode = mode == "exact" ? Mode::exact : Mode::fast;
-  options.pricing = pricing == "conservative" ? Pricing::conservative : Pricing::likely;
-  if (*seconds_option) options.seconds = seconds;
-  return {options, 0};
+  if (!take_over(given)) return {std::nullopt, 2};
+  return {given.options, 0};
 }
 
 }  // namespace inkwell::virtual_board
