@@ -12,7 +12,7 @@
 #include <campaign/run.hpp>
 #include <device/error.hpp>
 #include <protocol/reports.hpp>
-#include <recording/gnuplot.hpp>
+#include <recording/write_text.hpp>
 
 #include "plot.hpp"
 

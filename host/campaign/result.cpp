@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <device/error.hpp>
-#include <recording/gnuplot.hpp>
+#include <recording/write_text.hpp>
 
 /// A number, or null for none.
 template <>

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <protocol/reports.hpp>
+#include <recording/write_text.hpp>
 
 namespace inkwell::experiment {
 namespace {

@@ -12,6 +12,7 @@
 #include <experiment/summary_json.hpp>
 #include <protocol/reports.hpp>
 #include <recording/signals.hpp>
+#include <recording/write_text.hpp>
 #include <recording/writer.hpp>
 
 #include "scope_capture.hpp"

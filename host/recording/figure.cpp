@@ -11,6 +11,7 @@
 
 #include <device/error.hpp>
 #include <recording/gnuplot.hpp>
+#include <recording/write_text.hpp>
 
 namespace inkwell::recording {
 namespace {

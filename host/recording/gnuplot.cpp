@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 
 #include <fmt/format.h>
 
 #include <device/error.hpp>
+#include <recording/write_text.hpp>
 
 namespace inkwell::recording {
 namespace {
@@ -32,12 +32,6 @@ std::string shell_quoted(const std::string& text) {
 }
 
 }  // namespace
-
-void write_text(const std::filesystem::path& file, std::string_view text) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.flush()) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
-}
 
 void FigureData::write(const std::filesystem::path& file) const {
   fmt::memory_buffer text;

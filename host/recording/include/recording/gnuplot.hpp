@@ -43,9 +43,6 @@ struct FigureData {
   void write(const std::filesystem::path& file) const;
 };
 
-/// Throws device::Error if the text cannot be written whole.
-void write_text(const std::filesystem::path& file, std::string_view text);
-
 struct Curve {
   std::string name;   ///< of the band in the data
   std::string style;  ///< colour, a variable of figure_head, and what else belongs to the line

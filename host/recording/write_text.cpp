@@ -1,0 +1,17 @@
+#include <recording/write_text.hpp>
+
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include <device/error.hpp>
+
+namespace inkwell::recording {
+
+void write_text(const std::filesystem::path& file, std::string_view text) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream.flush()) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
+}
+
+}  // namespace inkwell::recording
