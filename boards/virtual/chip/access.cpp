@@ -13,12 +13,17 @@ bool is_of_devices(std::uint32_t address) {
 
 }  // namespace
 
-std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, bool privileged) const {
+// Unicorn's own memory protection unit stays off: it would know regions and rights, but neither what a bus answers nor
+// which registers are where, and its pages are what is asked for here in any case. A page with one set of rights costs
+// nothing from its second access on; only of one that a region divides is each access asked for.
+std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access access, Role role) const {
   const bool fetch = access == Access::fetch;
   if (fetch && is_of_devices(address)) return Outcome::execute_never;
   const bool on_private_bus = address - private_bus_base < private_bus_bytes;
-  if (on_private_bus) return privileged ? std::nullopt : std::optional(Outcome::data_fault);
-  if (protects_ && !machine_.memory_protection.allows(address, access == Access::store, fetch, privileged))
+  if (on_private_bus) return role.privileged ? std::nullopt : std::optional(Outcome::data_fault);
+  const auto& protection = machine_.memory_protection;
+  if (protection.is_on(role.above_faults) &&
+      !protection.allows(address, access == Access::store, fetch, role.privileged))
     return fetch ? Outcome::execute_never : Outcome::protected_data;
   const bool is_core_coupled = address - ccm_base < ccm_bytes;
   const bool answers = (fetch ? machine_.memory.at(address, 1) != nullptr && !is_core_coupled
@@ -29,9 +34,9 @@ std::optional<Outcome> Processor::refusal_of(std::uint32_t address, Access acces
   return fetch ? Outcome::instruction_fault : Outcome::data_fault;
 }
 
-bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, bool privileged) {
+bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Role role) {
   for (const std::uint32_t byte : {address, address + bytes - 1}) {
-    refusal_ = refusal_of(byte, access, privileged);
+    refusal_ = refusal_of(byte, access, role);
     if (!refusal_) continue;
     fault_address_ = byte;
     if (!core_coupled_on_ && byte - ccm_base < ccm_bytes) machine_.violations.violate(Rule::ccm_clock_off);
@@ -40,18 +45,38 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, bo
   return false;
 }
 
-int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, bool privileged) {
-  if (protects_ && machine_.memory_protection.divides(page, bytes)) return -1;
+int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) {
+  const auto& protection = machine_.memory_protection;
+  if (protection.is_on(role.above_faults) && protection.divides(page, bytes)) return -1;
+  // The engine asks about the alignment of an access only where it has to ask about each.
+  const bool is_memory = machine_.memory.at(page, 1) != nullptr;
+  if (is_memory && is_device(page, role)) return -1;
   int rights = 0;
-  if (!refusal_of(page, Access::load, privileged)) rights |= may_read;
-  if (!refusal_of(page, Access::store, privileged)) rights |= may_write;
-  if (!refusal_of(page, Access::fetch, privileged)) rights |= may_execute;
+  if (!refusal_of(page, Access::load, role)) rights |= may_read;
+  if (!refusal_of(page, Access::store, role)) rights |= may_write;
+  if (!refusal_of(page, Access::fetch, role)) rights |= may_execute;
   return rights;
 }
 
-// ARMv7-M, A3.2.1 and A3.5: of Device and Strongly-ordered memory. What the memory protection unit could make of these
-// regions is left out.
-bool Processor::is_device(std::uint32_t address) const { return is_of_devices(address); }
+// ARMv7-M, A3.2.1 and A3.5: of Device and Strongly-ordered memory, by the default map or as a region has it.
+bool Processor::is_device(std::uint32_t address, Role role) const {
+  const auto& protection = machine_.memory_protection;
+  const bool on_private_bus = address - private_bus_base < private_bus_bytes;
+  if (protection.is_on(role.above_faults) && !on_private_bus)
+    if (const auto device = protection.makes_device(address)) return *device;
+  return is_of_devices(address);
+}
+
+bool Processor::runs_above_faults() const {
+  return current_exception_ == exception_nmi || current_exception_ == exception_hard_fault ||
+         (read(UC_ARM_REG_FAULTMASK) & 1) != 0;
+}
+
+EngineCalls::Role Processor::role() const {
+  constexpr std::uint32_t control_unprivileged = 1;
+  return {current_exception_ != exception_none || (read(UC_ARM_REG_CONTROL) & control_unprivileged) == 0,
+          runs_above_faults()};
+}
 
 void Processor::misaligned(std::uint32_t address) {
   refusal_ = Outcome::misaligned;
@@ -72,12 +97,7 @@ void Processor::take_new_rights() {
     forget_code(flash_base, flash_bytes);
     forget_code(sram_base, sram_bytes);
   }
-  const bool at_fault = current_exception_ == exception_nmi || current_exception_ == exception_hard_fault;
-  const bool protects = machine_.memory_protection.is_on(at_fault);
-  if (!rights_changed_ && protects == protects_) return;
-  rights_changed_ = false;
-  protects_ = protects;
-  forget_pages();
+  if (std::exchange(rights_changed_, false)) forget_pages();
 }
 
 }  // namespace inkwell::virtual_board

@@ -21,6 +21,9 @@ void helper_le_stw_mmu_arm(void* state, std::uint32_t address, std::uint32_t val
                            std::uintptr_t return_address);
 void helper_le_stl_mmu_arm(void* state, std::uint32_t address, std::uint32_t value, std::uint32_t operation,
                            std::uintptr_t return_address);
+bool armv7m_nvic_neg_prio_requested_arm(void* controller, bool secure);
+void* tb_gen_code_arm(void* processor, std::uint32_t address, std::uint32_t segment, std::uint32_t flags,
+                      int block_flags);
 void tcg_gen_qemu_ld_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation);
 void tcg_gen_qemu_st_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation);
 }
@@ -43,6 +46,7 @@ struct Engine {
   decltype(&arm_cpu_tlb_fill_arm) fill = find<decltype(arm_cpu_tlb_fill_arm)>("arm_cpu_tlb_fill_arm");
   decltype(&arm_cpu_do_unaligned_access_arm) fault =
       find<decltype(arm_cpu_do_unaligned_access_arm)>("arm_cpu_do_unaligned_access_arm");
+  decltype(&tb_gen_code_arm) translate = find<decltype(tb_gen_code_arm)>("tb_gen_code_arm");
   decltype(&cpu_lduw_code_arm) fetch = find<decltype(cpu_lduw_code_arm)>("cpu_lduw_code_arm");
   decltype(&tcg_gen_qemu_ld_i32_arm) load = find<decltype(tcg_gen_qemu_ld_i32_arm)>("tcg_gen_qemu_ld_i32_arm");
   decltype(&tcg_gen_qemu_st_i32_arm) store = find<decltype(tcg_gen_qemu_st_i32_arm)>("tcg_gen_qemu_st_i32_arm");
@@ -62,7 +66,7 @@ const Engine& engine() {
 
 /// The instruction that the engine translates on this thread.
 struct Translated {
-  std::uint32_t address = 0;
+  std::uint32_t block = 0, address = 0;
   std::uint16_t first = 0, second = 0;
   bool whole = true;
   void fetched(std::uint32_t at, std::uint16_t half_word) {
@@ -70,14 +74,19 @@ struct Translated {
       second = half_word;
       whole = true;
     } else {
-      *this = {at, half_word, 0, !is_wide(half_word)};
+      *this = {block, at, half_word, 0, !is_wide(half_word)};
     }
   }
+  bool begins_at(std::uint32_t at) const { return whole || at != address + 2; }
 };
 thread_local Translated translated;
 
-/// Bit 0 of the engine's index of a translation regime is privilege (of an M-profile processor).
-bool is_privileged(int index) { return (index & 1) != 0; }
+/// The engine's index of a translation regime, of an M-profile processor.
+EngineCalls::Role role_of(unsigned index) {
+  constexpr unsigned privileged = 1, negative_priority = 2;
+  return {(index & privileged) != 0, (index & negative_priority) != 0};
+}
+EngineCalls::Role role_of(int index) { return role_of(static_cast<unsigned>(index)); }
 
 int aligned_if_needed(int operation) {
   constexpr int aligned = 0x70;  // MO_ALIGN
@@ -88,16 +97,16 @@ int aligned_if_needed(int operation) {
 /// The engine would make two accesses of one to a device that is not aligned, and nobody would see it.
 void check_alignment(std::uint32_t address, unsigned bytes, EngineCalls::Access access, std::uint32_t operation,
                      std::uintptr_t return_address) {
-  if (address % bytes == 0 || in_use == nullptr || !in_use->is_device(address)) return;
   constexpr std::uint32_t index_mask = 0xF;
+  if (address % bytes == 0 || in_use == nullptr || !in_use->is_device(address, role_of(operation & index_mask))) return;
   arm_cpu_do_unaligned_access_arm(in_use->remembered_processor(), address, static_cast<int>(access),
                                   static_cast<int>(operation & index_mask), return_address);  // does not come back
 }
 
 }  // namespace
 
-EngineCalls::Use::Use(EngineCalls& calls) { in_use = &calls; }
-EngineCalls::Use::~Use() { in_use = nullptr; }
+EngineCalls::Use::Use(EngineCalls& calls) : before_(in_use) { in_use = &calls; }
+EngineCalls::Use::~Use() { in_use = before_; }
 
 void EngineCalls::forget_page(std::uint32_t address) {
   if (processor_ != nullptr && engine().forget_page != nullptr) engine().forget_page(processor_, address);
@@ -119,7 +128,7 @@ void tlb_set_page_with_attrs_arm(void* processor, std::uint32_t address, std::ui
   if (in_use == nullptr) return engine().set_page(processor, address, physical, attributes, rights, index, bytes);
   in_use->remember_processor(processor);
   const std::uint32_t page = address & ~(page_bytes - 1);
-  const int allowed = in_use->rights_in_page(page, page_bytes, is_privileged(index));
+  const int allowed = in_use->rights_in_page(page, page_bytes, role_of(index));
   // Of a page that is not marked as whole the engine asks again at each access.
   if (allowed < 0)
     return engine().set_page(processor, address, physical, attributes, rights, index, not_the_whole_page);
@@ -133,7 +142,7 @@ bool arm_cpu_tlb_fill_arm(void* processor, std::uint64_t address, int bytes, int
   if (in_use != nullptr) {
     in_use->remember_processor(processor);
     if (in_use->refuses(static_cast<std::uint32_t>(address), static_cast<unsigned>(bytes > 0 ? bytes : 1),
-                        static_cast<EngineCalls::Access>(access), is_privileged(index))) {
+                        static_cast<EngineCalls::Access>(access), role_of(index))) {
       if (probe) return false;
       engine().fault(processor, address, access, index, return_address);  // does not come back
     }
@@ -150,10 +159,31 @@ void arm_cpu_do_unaligned_access_arm(void* processor, std::uint64_t address, int
 
 std::uint32_t cpu_lduw_code_arm(void* state, std::uint32_t address) {
   using namespace inkwell::virtual_board;
+  // The engine would let a block fault for any of its instructions with the program counter of the first. A branch to
+  // itself instead ends the block before such an instruction, which then is the first of its own.
+  constexpr std::uint32_t branch_to_itself = 0xE7FE;
+  const bool may_end = in_use != nullptr && address != translated.block && translated.begins_at(address);
+  if (may_end && !in_use->may_fetch(address)) return branch_to_itself;
   const std::uint32_t half_word = engine().fetch(state, address);
+  if (may_end && is_wide(static_cast<std::uint16_t>(half_word)) && !in_use->may_fetch(address + 2))
+    return branch_to_itself;
   translated.fetched(address, static_cast<std::uint16_t>(half_word));
   if (in_use != nullptr) in_use->translates(address);
   return half_word;
+}
+
+void* tb_gen_code_arm(void* processor, std::uint32_t address, std::uint32_t segment, std::uint32_t flags,
+                      int block_flags) {
+  using namespace inkwell::virtual_board;
+  translated = {};
+  translated.block = address;
+  return engine().translate(processor, address, segment, flags, block_flags);
+}
+
+// The engine has no interrupt controller, and answers no.
+bool armv7m_nvic_neg_prio_requested_arm(void*, bool) {
+  using namespace inkwell::virtual_board;
+  return in_use != nullptr && in_use->runs_above_faults();
 }
 
 void tcg_gen_qemu_ld_i32_arm(void* context, void* value, void* address, std::uintptr_t index, int operation) {

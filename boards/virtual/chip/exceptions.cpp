@@ -8,7 +8,9 @@
 namespace inkwell::virtual_board {
 namespace {
 
+// The extended frame has S0 to S15 and FPSCR behind the basic one, and a word that nobody writes.
 constexpr std::uint32_t basic_frame_bytes = 0x20, extended_frame_bytes = 0x68;
+constexpr unsigned basic_words = 8, float_words = 17;
 constexpr std::uint32_t control_unprivileged = 1, control_spsel = 2, control_fpca = 4;
 constexpr std::uint32_t xpsr_if_then = 0x0600FC00;
 constexpr std::uint32_t xpsr_thumb = 1u << 24, xpsr_align = 1u << 9, xpsr_exception = 0x1FF;
@@ -21,6 +23,7 @@ int frame_registers[] = {UC_ARM_REG_R0, UC_ARM_REG_R1,   UC_ARM_REG_R2, UC_ARM_R
                          UC_ARM_REG_LR, UC_ARM_REG_XPSR, UC_ARM_REG_SP, UC_ARM_REG_CONTROL};
 int float_registers[] = {UC_ARM_REG_D0, UC_ARM_REG_D1, UC_ARM_REG_D2, UC_ARM_REG_D3,
                          UC_ARM_REG_D4, UC_ARM_REG_D5, UC_ARM_REG_D6, UC_ARM_REG_D7};
+constexpr int doubles = 8;
 
 }  // namespace
 
@@ -45,6 +48,7 @@ void Processor::clear_counters() { counters_ = {}; }
 
 bool Processor::start_handler(unsigned exception, std::uint32_t exception_return, std::uint32_t vector_table) {
   const std::uint32_t vector = machine_.memory.word(vector_table + 4 * exception);
+  current_exception_ = exception;  // before the engine asks what runs
   write(UC_ARM_REG_LR, exception_return);
   write(UC_ARM_REG_IPSR, exception);
   write(UC_ARM_REG_EPSR, xpsr_thumb);  // no if-then block is under way
@@ -52,7 +56,6 @@ bool Processor::start_handler(unsigned exception, std::uint32_t exception_return
   write(UC_ARM_REG_APSR_NZCV, 0);  // makes Unicorn notice the change of mode; flags are free at entry
   program_counter_ = vector;
   timing_.redirect();
-  current_exception_ = exception;
   machine_.nvic.enter(exception);
   begin_counting(exception);
   if (on_exception) on_exception(exception);
@@ -70,10 +73,11 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   const bool aligned = (align_stack || extended) && (stack_pointer & 4) != 0;
   const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
   const std::uint32_t frame = stacks ? (stack_pointer - bytes) & ~(aligned ? 4u : 0u) : stack_pointer;
-  std::uint8_t* place = machine_.memory.ram_at(frame, bytes);
+  std::optional<Outcome> float_refusal;
   if (stacks) {
-    const bool privileged = current_exception_ != exception_none || (control & control_unprivileged) == 0;
-    const auto refusal = place == nullptr ? Outcome::data_fault : refusal_of(frame, Access::store, privileged);
+    auto refusal = refusal_of_stack(frame, basic_words, Access::store, role());
+    if (extended) float_refusal = refusal_of_stack(frame + basic_frame_bytes, float_words, Access::store, role());
+    if (!lazily && !refusal) refusal = float_refusal;
     if (refusal) {
       write(UC_ARM_REG_SP, frame);
       return refusal == Outcome::protected_data ? Entry::protected_stack : Entry::no_stack;
@@ -89,14 +93,15 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
       values[5],
       program_counter_ & ~1u,
       (values[6] & ~(xpsr_align | xpsr_exception)) | xpsr_thumb | (aligned ? xpsr_align : 0u) | current_exception_};
-  if (extended) {
-    // Stacked at once also when FPCCR asks for lazy stacking: firmware can not tell but by reading its own stack.
-    void* float_places[8];
-    for (int i = 0; i < 8; ++i) float_places[i] = &words[8 + 2 * i];
-    uc_reg_read_batch(engine_, float_registers, float_places, 8);
-    words[24] = read(UC_ARM_REG_FPSCR);
+  // Stacked at once also when FPCCR asks for lazy stacking: firmware can not tell but by reading its own stack. What
+  // can not be stacked waits for the instruction that asks for it.
+  if (extended && !float_refusal) read_float_context(&words[basic_words]);
+  if (stacks) {
+    const std::uint32_t written = 4 * (extended && !float_refusal ? basic_words + float_words : basic_words);
+    std::memcpy(machine_.memory.ram_at(frame, written), words, written);
   }
-  if (stacks) std::memcpy(place, words, bytes);
+  if (extended) unstacked_float_.reset();
+  if (float_refusal) unstacked_float_ = UnstackedFloat{frame + basic_frame_bytes, role()};
 
   std::uint32_t exception_return = exc_return_handler & ~(extended ? exc_return_basic : 0u);
   if (current_exception_ == exception_none) {
@@ -104,10 +109,13 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
     if ((control & control_spsel) != 0) exception_return |= exc_return_process_stack;
   }
   write(UC_ARM_REG_SP, frame);
+  const bool unprivileged = current_exception_ == exception_none && (control & control_unprivileged) != 0;
+  if (unprivileged) lift_privilege();
   // SPSEL must be off before the mode changes, or Unicorn mixes up its banked stack pointers.
   if ((control & (control_spsel | control_fpca)) != 0)
     write(UC_ARM_REG_CONTROL, control & ~(control_spsel | control_fpca));
   const bool started = start_handler(exception, exception_return, vector_table);
+  if (unprivileged) write(UC_ARM_REG_CONTROL, control_unprivileged);
   const auto& costs = timing_.costs();
   wait(costs[Cost::exception_entry] + costs[Cost::vector_from_flash] * timing_.flash().wait_states());
   if (extended) {
@@ -127,14 +135,56 @@ void Processor::resume_if_then_block(std::uint32_t xpsr) {
     resumed_bytes_ += is_wide(machine_.memory.half_word(resumed_at_ + resumed_bytes_)) ? 4 : 2;
 }
 
-bool Processor::return_from_exception(std::uint32_t vector_table) {
+// A frame begins at a word, and rights end at multiples of 32 bytes.
+std::optional<Outcome> Processor::refusal_of_stack(std::uint32_t address, unsigned words, Access access,
+                                                   Role as) const {
+  constexpr std::uint32_t granule_bytes = 32;
+  const std::uint32_t bytes = 4 * words;
+  for (std::uint32_t done = 0; done < bytes; done += granule_bytes - (address + done) % granule_bytes)
+    if (const auto refusal = refusal_of(address + done, access, as)) return refusal;
+  if (machine_.memory.ram_at(address, bytes) == nullptr) return Outcome::data_fault;
+  return {};
+}
+
+// Unicorn ignores what an unprivileged thread may not write also where we write it. In a handler CONTROL is open.
+void Processor::lift_privilege() {
+  const std::uint32_t control = read(UC_ARM_REG_CONTROL);
+  write(UC_ARM_REG_IPSR, exception_hard_fault);
+  write(UC_ARM_REG_CONTROL, control & ~control_unprivileged);
+  write(UC_ARM_REG_IPSR, exception_none);
+}
+
+void Processor::read_float_context(std::uint32_t* words) const {
+  void* places[doubles];
+  for (int i = 0; i < doubles; ++i) places[i] = &words[2 * i];
+  uc_reg_read_batch(engine_, float_registers, places, doubles);
+  words[2 * doubles] = read(UC_ARM_REG_FPSCR);
+}
+
+std::optional<Outcome> Processor::stack_float_context() {
+  const auto refusal = refusal_of_stack(unstacked_float_->address, float_words, Access::store, unstacked_float_->role);
+  if (refusal) return refusal;
+  std::uint32_t words[float_words];
+  read_float_context(words);
+  std::memcpy(machine_.memory.ram_at(unstacked_float_->address, sizeof words), words, sizeof words);
+  unstacked_float_.reset();
+  return {};
+}
+
+bool Processor::chain_exception(unsigned exception, std::uint32_t vector_table) {
+  const std::uint32_t control = read(UC_ARM_REG_CONTROL);
+  if ((control & control_fpca) != 0) write(UC_ARM_REG_CONTROL, control & ~control_fpca);
+  return start_handler(exception, fault_address_, vector_table);
+}
+
+Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   const std::uint32_t exception_return = fault_address_;
   const bool to_thread = (exception_return & exc_return_thread) != 0;
   const bool process_stack = (exception_return & exc_return_process_stack) != 0;
   const bool extended = (exception_return & exc_return_basic) == 0;
   const unsigned leaving = current_exception_;
   auto& nvic = machine_.nvic;
-  if (!nvic.active(leaving) || (!to_thread && process_stack)) return false;
+  if (!nvic.active(leaving) || (!to_thread && process_stack)) return Return::invalid;
 
   nvic.leave(leaving);
   if (leaving != exception_nmi) write(UC_ARM_REG_FAULTMASK, 0);
@@ -143,34 +193,40 @@ bool Processor::return_from_exception(std::uint32_t vector_table) {
   end_counting();
 
   // Tail-chaining: what is pending starts on the frame that is already there.
-  if (next != exception_none) {
-    const std::uint32_t control = read(UC_ARM_REG_CONTROL);
-    if ((control & control_fpca) != 0) write(UC_ARM_REG_CONTROL, control & ~control_fpca);
-    return start_handler(next, exception_return, vector_table);
-  }
+  if (next != exception_none) return chain_exception(next, vector_table) ? Return::done : Return::invalid;
 
+  // Read as what it returns to (ARMv7-M, B1.5.8).
+  const Role as{!to_thread || (read(UC_ARM_REG_CONTROL) & control_unprivileged) == 0,
+                nvic.execution_priority(masks()) < 0};
   const std::uint32_t frame = read(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP);
   const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
-  const std::uint8_t* place = machine_.memory.ram_at(frame, bytes);
-  if (place == nullptr) return false;
+  const bool float_stacked = extended && !unstacked_float_;
+  const unsigned words_to_read = float_stacked ? basic_words + float_words : basic_words;
+  const auto refusal = refusal_of_stack(frame, words_to_read, Access::load, as);
+  if (refusal) return refusal == Outcome::protected_data ? Return::protected_stack : Return::no_stack;
   std::uint32_t words[extended_frame_bytes / 4];
-  std::memcpy(words, place, bytes);
+  std::memcpy(words, machine_.memory.ram_at(frame, 4 * words_to_read), 4 * words_to_read);
   const std::uint32_t xpsr = words[7];
   const unsigned exception = xpsr & xpsr_exception;
   // The mode in the frame must be the mode that EXC_RETURN names.
-  if ((exception == exception_none) != to_thread || exception >= exception_numbers) return false;
+  if ((exception == exception_none) != to_thread || exception >= exception_numbers) return Return::invalid;
 
-  if (extended) {
-    void* float_places[8];
-    for (int i = 0; i < 8; ++i) float_places[i] = &words[8 + 2 * i];
-    uc_reg_write_batch(engine_, float_registers, float_places, 8);
+  current_exception_ = exception;  // before the engine asks what runs
+  if (extended) unstacked_float_.reset();
+  if (float_stacked) {
+    void* float_places[doubles];
+    for (int i = 0; i < doubles; ++i) float_places[i] = &words[basic_words + 2 * i];
+    uc_reg_write_batch(engine_, float_registers, float_places, doubles);
     write(UC_ARM_REG_FPSCR, words[24]);
   }
   const std::uint32_t stack_pointer = (frame + bytes) | ((xpsr & xpsr_align) != 0 ? 4u : 0u);
-  const std::uint32_t control = read(UC_ARM_REG_CONTROL) & 1u;
+  const std::uint32_t privilege = read(UC_ARM_REG_CONTROL) & control_unprivileged;
+  const std::uint32_t control = (process_stack ? control_spsel : 0u) | (extended ? control_fpca : 0u);
+  if (privilege != 0) write(UC_ARM_REG_CONTROL, 0);  // while it can still be written
   write(UC_ARM_REG_IPSR, exception);
-  write(UC_ARM_REG_CONTROL, control | (process_stack ? control_spsel : 0u) | (extended ? control_fpca : 0u));
+  write(UC_ARM_REG_CONTROL, control);
   write(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP, stack_pointer);
+  if (privilege != 0) write(UC_ARM_REG_CONTROL, control | privilege);
   void* places[6];
   for (int i = 0; i < 6; ++i) places[i] = &words[i];
   uc_reg_write_batch(engine_, frame_registers, places, 6);
@@ -184,9 +240,8 @@ bool Processor::return_from_exception(std::uint32_t vector_table) {
     if (!timing_.lazy_stacking_due()) wait(timing_.costs()[Cost::float_unstacking]);
     timing_.stack_lazily(false);
   }
-  current_exception_ = exception;
   if (on_exception) on_exception(exception);
-  return true;
+  return Return::done;
 }
 
 }  // namespace inkwell::virtual_board

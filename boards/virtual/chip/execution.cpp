@@ -178,22 +178,25 @@ void Execution::sleep_until(Ticks when) {
   }
 }
 
-void Execution::enter(unsigned exception, bool stacks) {
+/// If not, HardFault has been entered, or the processor has locked up.
+bool Execution::has_handler(unsigned exception) {
   const std::uint32_t place = system_control_.vector_table() + 4 * exception;
   const std::uint32_t vector = machine_.memory.word(place);
-  const bool has_handler = (vector & 1) != 0;
-  if (has_handler) {
-    const auto entry =
-        processor_.enter_exception(exception, system_control_.aligns_stack(), system_control_.preserves_float_context(),
-                                   system_control_.stacks_lazily(), system_control_.vector_table(), stacks);
-    if (entry == Processor::Entry::started) return;
-    return enter_for_lost_stack(exception, entry == Processor::Entry::protected_stack);
-  }
+  if ((vector & 1) != 0) return true;
   const std::string what = "the vector table has no handler for " + name_of(exception) + ": it holds " +
                            hexadecimal(vector) + at(" at", place, processor_.program_counter());
   note_fault(what);
   system_control_.record_fault(0, scb.hfsr.vecttbl.mask());
   exception == exception_hard_fault ? lock_up(what) : enter(exception_hard_fault);
+  return false;
+}
+
+void Execution::enter(unsigned exception, bool stacks) {
+  if (!has_handler(exception)) return;
+  const auto entry =
+      processor_.enter_exception(exception, system_control_.aligns_stack(), system_control_.preserves_float_context(),
+                                 system_control_.stacks_lazily(), system_control_.vector_table(), stacks);
+  if (entry != Processor::Entry::started) enter_for_lost_stack(exception, entry == Processor::Entry::protected_stack);
 }
 
 // What could not be stacked is lost; the fault of it starts on what the stack pointer has become (ARMv7-M, B1.5.9). An
@@ -269,10 +272,49 @@ void Execution::handle_breakpoint() {
   }
 }
 
+// A frame that can not be read back stays where it is, and the fault of it starts on it (ARMv7-M, B1.5.8 and B1.5.9).
+void Execution::handle_lost_frame(bool is_protected) {
+  const std::string what = is_protected ? "the memory protection unit refuses the stack at the end of an exception"
+                                        : "the stack is not in RAM at the end of an exception";
+  note_fault(what + at(": stack pointer", processor_.read(UC_ARM_REG_SP), processor_.program_counter()));
+  system_control_.record_fault(is_protected ? scb.cfsr.munstkerr.mask() : scb.cfsr.unstkerr.mask(), 0);
+  auto& nvic = machine_.nvic;
+  unsigned fault = is_protected ? exception_memory_fault : exception_bus_fault;
+  const int priority = nvic.execution_priority(processor_.masks());
+  if (!nvic.enabled(fault) || nvic.group_priority(fault) >= priority) {
+    if (priority <= -1) return lock_up(what);
+    fault = exception_hard_fault;
+    system_control_.record_fault(0, scb.hfsr.forced.mask());
+    machine_.log.say_once("HardFault: " + what);
+  }
+  if (has_handler(fault)) processor_.chain_exception(fault, system_control_.vector_table());
+}
+
+// Lazy stacking fails in the handler that asks for it. A fault that may not interrupt that handler waits behind it, and
+// what was to be stacked is lost then (ARMv7-M, B1.5.7).
+void Execution::handle_lost_float_context(bool is_protected) {
+  const unsigned fault = is_protected ? exception_memory_fault : exception_bus_fault;
+  const std::uint32_t bits = is_protected ? scb.cfsr.mlsperr.mask() : scb.cfsr.lsperr.mask();
+  auto& nvic = machine_.nvic;
+  if (nvic.enabled(fault) && nvic.group_priority(fault) >= nvic.execution_priority(processor_.masks())) {
+    system_control_.record_fault(bits, 0);
+    nvic.pend(fault);
+    return processor_.drop_lazy_stacking();
+  }
+  raise_fault(fault, bits,
+              at(is_protected ? "the memory protection unit refuses lazy stacking at" : "lazy stacking fails at",
+                 processor_.program_counter(), processor_.program_counter()));
+}
+
 void Execution::handle_return() {
-  if (!processor_.return_from_exception(system_control_.vector_table()))
-    return raise_fault(exception_usage_fault, scb.cfsr.invpc.mask(),
-                       at("invalid EXC_RETURN", processor_.fault_address(), processor_.program_counter()));
+  switch (processor_.return_from_exception(system_control_.vector_table())) {
+    case Processor::Return::done: break;
+    case Processor::Return::invalid:
+      return raise_fault(exception_usage_fault, scb.cfsr.invpc.mask(),
+                         at("invalid EXC_RETURN", processor_.fault_address(), processor_.program_counter()));
+    case Processor::Return::no_stack: return handle_lost_frame(false);
+    case Processor::Return::protected_stack: return handle_lost_frame(true);
+  }
   processor_.watch_masks(false);
   if (processor_.returned_to_thread() && system_control_.sleeps_on_exit()) state_ = State::sleeps;
 }
@@ -320,6 +362,8 @@ void Execution::handle(Outcome outcome) {
       raise_fault(exception_memory_fault, scb.cfsr.daccviol.mask() | scb.cfsr.mmarvalid.mask(),
                   at("the memory protection unit refuses", address, program_counter));
       break;
+    case Outcome::float_context_lost: handle_lost_float_context(false); break;
+    case Outcome::float_context_protected: handle_lost_float_context(true); break;
     case Outcome::misaligned:
       raise_fault(exception_usage_fault, scb.cfsr.unaligned.mask(),
                   at("an access that is not aligned to", address, program_counter));

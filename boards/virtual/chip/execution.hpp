@@ -56,6 +56,9 @@ class Execution {
   void handle_return();
   void raise_fault(unsigned exception, std::uint32_t configurable_bits, const std::string& what);
   void enter(unsigned exception, bool stacks = true);
+  bool has_handler(unsigned exception);
+  void handle_lost_frame(bool is_protected);
+  void handle_lost_float_context(bool is_protected);
   void enter_for_lost_stack(unsigned exception, bool is_protected);
   void note_fault(const std::string& what);
   void lock_up(const std::string& what);

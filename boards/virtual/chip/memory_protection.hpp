@@ -4,6 +4,7 @@
 #include <array>
 #include <chip/register_map.hpp>
 #include <cstdint>
+#include <optional>
 
 namespace inkwell::virtual_board {
 
@@ -52,14 +53,22 @@ class MemoryProtection {
       attributes_[region_] = value & writable(mpu.rasr);
     }
   }
-  /// Accesses are checked; `at_fault` is while HardFault or NMI runs.
-  bool is_on(bool at_fault) const {
-    return mpu.ctrl.enable.in(control_) && (!at_fault || mpu.ctrl.hfnmiena.in(control_));
+  /// Accesses are checked; `above_faults` is in HardFault or NMI, or with FAULTMASK set.
+  bool is_on(bool above_faults) const {
+    return mpu.ctrl.enable.in(control_) && (!above_faults || mpu.ctrl.hfnmiena.in(control_));
   }
   bool allows(std::uint32_t address, bool write, bool fetch, bool privileged) const {
-    for (unsigned i = regions; i-- > 0;)  // the region of the highest number decides
-      if (covers(i, address)) return region_allows(attributes_[i], write, fetch, privileged);
+    if (const auto* attributes = region_at(address)) return region_allows(*attributes, write, fetch, privileged);
     return privileged && mpu.ctrl.privdefena.in(control_);
+  }
+  /// Whether a region makes Device or Strongly-ordered memory of the address, if one decides (PM0214, table "TEX, C, B,
+  /// and S encoding").
+  std::optional<bool> makes_device(std::uint32_t address) const {
+    const auto* attributes = region_at(address);
+    if (attributes == nullptr) return {};
+    const unsigned kind = mpu.rasr.tex.of(*attributes);
+    const bool cached = mpu.rasr.c.in(*attributes), buffered = mpu.rasr.b.in(*attributes);
+    return !cached && (kind == 0 || (kind == 2 && !buffered));
   }
   /// Some of a page of `bytes` may lie in a region of which another part does not.
   bool divides(std::uint32_t page, std::uint32_t bytes) const {
@@ -76,6 +85,12 @@ class MemoryProtection {
  private:
   static constexpr unsigned regions = 8, subregions = 8;
   std::uint64_t region_bytes(unsigned i) const { return std::uint64_t{2} << mpu.rasr.size.of(attributes_[i]); }
+  /// Attributes of the region that decides: of those that cover the address the one of the highest number.
+  const std::uint32_t* region_at(std::uint32_t address) const {
+    for (unsigned i = regions; i-- > 0;)
+      if (covers(i, address)) return &attributes_[i];
+    return nullptr;
+  }
   bool covers(unsigned i, std::uint32_t address) const {
     constexpr std::uint64_t smallest_with_subregions = 256;
     const std::uint64_t size = region_bytes(i), first = bases_[i] & ~(size - 1);

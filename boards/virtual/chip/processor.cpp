@@ -33,16 +33,6 @@ enum : std::uint32_t {
   invalid_state = 18,
 };
 
-template <class Function>
-void for_each_float_instruction(const Memory& memory, std::uint32_t address, std::uint32_t bytes, Function&& visit) {
-  for (std::uint32_t at = address; at < address + bytes;) {
-    const std::uint16_t first = memory.half_word(at);
-    const bool wide = is_wide(first);
-    if (decode(first, wide ? memory.half_word(at + 2) : std::uint16_t{0}, at).uses_float()) visit(at);
-    at += wide ? 4 : 2;
-  }
-}
-
 }  // namespace
 
 Processor::Processor(Machine& machine, Bus& bus)
@@ -106,6 +96,7 @@ void Processor::map_holes() {
 
 void Processor::reset(std::uint32_t vector_table) {
   for (int id = UC_ARM_REG_R0; id <= UC_ARM_REG_R12; ++id) write(id, 0);
+  current_exception_ = exception_none;
   write(UC_ARM_REG_CONTROL, 0);
   write(UC_ARM_REG_IPSR, 0);
   write(UC_ARM_REG_PRIMASK, 0);
@@ -122,11 +113,11 @@ void Processor::reset(std::uint32_t vector_table) {
   write(UC_ARM_REG_MSP, stack);
   write(UC_ARM_REG_LR, 0xFFFFFFFF);
   program_counter_ = machine_.memory.word(vector_table + 4);
-  current_exception_ = 0;
   timing_.redirect();
   timing_.stack_lazily(false);
   watch_masks_ = event_register_ = false;
   float_unit_on_ = false;
+  unstacked_float_.reset();
   core_coupled_on_ = true;
   while (!running_.empty()) end_counting();
   // The firmware may have been replaced.
@@ -160,6 +151,7 @@ Outcome Processor::run(std::uint64_t cycles) {
   if (guard_bytes_ != 0) guard_float_instructions();
   take_new_rights();
   stopped_ = false;
+  stopped_before_.reset();
   block_ = nullptr;
   instruction_end_ = cycles_;
   outcome_ = Outcome::slice_over;
@@ -171,7 +163,8 @@ Outcome Processor::run(std::uint64_t cycles) {
     const Use use(*this);
     error = uc_emu_start(engine_, program_counter_ | 1, 0, 0, 0);
   }
-  program_counter_ = read(UC_ARM_REG_PC) & ~1u;
+  // Unicorn 2.0.1 leaves its program counter behind when it stops before a block, once it has hooks of instructions.
+  program_counter_ = stopped_before_.value_or(read(UC_ARM_REG_PC) & ~1u);
   if (!stopped_ && block_ != nullptr) cycles_ = instruction_end_;
   if (!flash_stores_.empty()) finish_flash_stores();
   if (!new_divides_.empty()) ask_about_new_divides();
@@ -179,35 +172,6 @@ Outcome Processor::run(std::uint64_t cycles) {
   if (error == UC_ERR_INSN_INVALID) return Outcome::undefined_instruction;
   check(error, "run");
   return stopped_ ? Outcome::slice_over : Outcome::wait_for_interrupt;
-}
-
-bool Processor::has_unguarded_float(std::uint32_t address, std::uint32_t bytes) {
-  const auto& block = timing_.block(address, {machine_.memory.at(address, bytes), bytes});
-  if (!block.uses_float) return false;
-  bool unguarded = false;
-  for_each_float_instruction(machine_.memory, address, bytes,
-                             [&](std::uint32_t at) { unguarded |= !float_guards_.contains(at); });
-  return unguarded;
-}
-
-// Unicorn looks for hooks of an instruction only when it translates it.
-void Processor::guard_float_instructions() {
-  for_each_float_instruction(machine_.memory, guard_address_, guard_bytes_, [&](std::uint32_t at) {
-    if (!float_guards_.insert(at).second) return;
-    uc_hook hook;
-    check(uc_hook_add(engine_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(float_hook), this, at, at), "be watched");
-  });
-  uc_ctl_remove_cache(engine_, std::uint64_t{guard_address_}, std::uint64_t{guard_address_} + guard_bytes_);
-  guard_bytes_ = 0;
-}
-
-void Processor::float_hook(uc_engine*, std::uint64_t address, std::uint32_t, void* pointer) {
-  auto& self = *static_cast<Processor*>(pointer);
-  if (self.float_unit_on_ || self.stopped_) return;
-  self.last_code_address_ = static_cast<std::uint32_t>(address);
-  self.machine_.violations.violate(Rule::float_unit_off);
-  self.outcome_ = Outcome::no_coprocessor;
-  self.stop();
 }
 
 void Processor::finish_flash_stores() {
@@ -258,12 +222,12 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   if (exact) {
     self.cycles_ = self.instruction_end_;  // the code hook decides whether to stop
   } else {
-    if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) return self.stop();
+    if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) return self.stop_before(start);
   }
-  if (!self.float_unit_on_ && self.has_unguarded_float(start, size)) {
+  if (self.refuses_float() && self.has_unguarded_float(start, size)) {
     self.guard_address_ = start;
     self.guard_bytes_ = size;
-    return self.stop();
+    return self.stop_before(start);
   }
   const auto& block = self.enter_block(start, size);
   if (exact) {
@@ -273,7 +237,7 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
     self.block_is_plain_ = self.is_plain(block);
     return;
   }
-  if (self.machine_.traps_zero_division && self.has_new_divides(block)) return self.stop();
+  if (self.machine_.traps_zero_division && self.has_new_divides(block)) return self.stop_before(start);
   self.last_code_address_ = start;
   self.cycles_ += self.timing_.wait_for_flash(block, self.cycles_, self.register_reader()) + block.cycles;
   self.instructions_ += block.instructions;
@@ -399,8 +363,7 @@ bool Processor::flash_store_hook(uc_engine*, uc_mem_type, std::uint64_t address,
                                  void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
   const auto place = static_cast<std::uint32_t>(address);
-  const bool privileged = self.current_exception_ != exception_none || (self.read(UC_ARM_REG_CONTROL) & 1) == 0;
-  if (self.refusal_of(place, Access::store, privileged)) return true;  // the fault follows
+  if (self.refusal_of(place, Access::store, self.role())) return true;  // the fault follows
   const auto bytes = static_cast<unsigned>(size);
   if (const auto content = self.machine_.flash->program(place, static_cast<std::uint32_t>(value), bytes)) {
     self.flash_stores_.push_back({place, *content, bytes});

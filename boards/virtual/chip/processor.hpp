@@ -35,12 +35,14 @@ enum class Outcome : std::uint8_t {
   invalid_state,  ///< a branch out of Thumb state
   no_coprocessor,
   division_by_zero,
-  data_fault,         ///< nothing answers at fault_address()
-  misaligned,         ///< fault_address() is not aligned as the instruction needs it
-  protected_data,     ///< the memory protection unit does not allow the access to fault_address()
-  instruction_fault,  ///< nothing to execute at fault_address()
-  debugger,           ///< a breakpoint, a watch point, the end of a step
-  execute_never,      ///< fault_address() is in a region without instructions
+  data_fault,               ///< nothing answers at fault_address()
+  misaligned,               ///< fault_address() is not aligned as the instruction needs it
+  protected_data,           ///< the memory protection unit does not allow the access to fault_address()
+  instruction_fault,        ///< nothing to execute at fault_address()
+  debugger,                 ///< a breakpoint, a watch point, the end of a step
+  execute_never,            ///< fault_address() is in a region without instructions
+  float_context_lost,       ///< an instruction of the FPU asks for lazy stacking, and the stack is not in RAM
+  float_context_protected,  ///< likewise, and the memory protection unit refuses it
 };
 
 class Processor final : public ClockUser, private EngineCalls {
@@ -120,7 +122,10 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Stops behind the instruction that touches the place.
   uc_hook watch(const WatchPoint& watch_point);
   void unwatch(uc_hook hook);
-  void write(int id, std::uint32_t value) { uc_reg_write(engine_, id, &value); }
+  void write(int id, std::uint32_t value) {
+    const Use use(*this);  // the engine may ask what has changed with it
+    uc_reg_write(engine_, id, &value);
+  }
   std::uint32_t program_counter() const { return program_counter_; }
   void set_program_counter(std::uint32_t value) { program_counter_ = value; }
   Masks masks() const;
@@ -141,9 +146,22 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Stacks the context, unless `stacks` is false, and starts the handler.
   Entry enter_exception(unsigned exception, bool align_stack, bool float_context, bool lazily,
                         std::uint32_t vector_table, bool stacks);
-  /// Ends the handler that runs. False: what it returns to is not valid.
-  bool return_from_exception(std::uint32_t vector_table);
+  enum class Return : std::uint8_t {
+    done,
+    invalid,          ///< what it returns to is not valid
+    no_stack,         ///< the frame is not in RAM; the handler that ran has ended all the same
+    protected_stack,  ///< the memory protection unit refuses it; likewise
+  };
+  /// Ends the handler that runs.
+  Return return_from_exception(std::uint32_t vector_table);
+  /// Starts a handler on the frame of one that has just ended. False: it is not valid.
+  bool chain_exception(unsigned exception, std::uint32_t vector_table);
   bool returned_to_thread() const { return current_exception_ == exception_none; }
+  // float_guards.cpp
+  /// FPCCR.LSPACT.
+  bool lazy_stacking_due() const;
+  /// What the frame has room for is never written.
+  void drop_lazy_stacking();
   Counters& counters() { return counters_; }
   /// Called when another exception begins to run, or the thread again (0); none by default.
   std::function<void(unsigned exception)> on_exception;
@@ -177,18 +195,33 @@ class Processor final : public ClockUser, private EngineCalls {
   void resume_if_then_block(std::uint32_t xpsr);
   bool if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const;
   void finish_flash_stores();
-  static void float_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
+  // float_guards.cpp
   bool has_unguarded_float(std::uint32_t address, std::uint32_t bytes);
   void guard_float_instructions();
+  static void float_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
+  /// An instruction of the FPU would fault now.
+  bool refuses_float() const { return !float_unit_on_ || unstacked_float_; }
   // access.cpp
-  bool refuses(std::uint32_t address, unsigned bytes, Access access, bool privileged) override;
-  int rights_in_page(std::uint32_t page, std::uint32_t bytes, bool privileged) override;
+  bool refuses(std::uint32_t address, unsigned bytes, Access access, Role role) override;
+  int rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) override;
+  bool may_fetch(std::uint32_t address) const override { return !refusal_of(address, Access::fetch, role()); }
+  bool runs_above_faults() const override;
   bool takes_plain_stores(std::uint32_t page) const override { return plain_stores_.plain(page); }
-  bool is_device(std::uint32_t address) const override;
+  bool is_device(std::uint32_t address, Role role) const override;
   void misaligned(std::uint32_t address) override;
   bool must_be_aligned(std::uint16_t first, std::uint16_t second) const override;
   void translates(std::uint32_t address) override { timing_.read_anew(address); }
-  std::optional<Outcome> refusal_of(std::uint32_t address, Access access, bool privileged) const;
+  /// Of what runs now.
+  Role role() const;
+  std::optional<Outcome> refusal_of(std::uint32_t address, Access access, Role role) const;
+  /// Why a frame's words can not be written or read.
+  std::optional<Outcome> refusal_of_stack(std::uint32_t address, unsigned words, Access access, Role as) const;
+  /// Of an unprivileged thread, for what it may not write itself.
+  void lift_privilege();
+  /// S0 to S15 and FPSCR, as a frame has them.
+  void read_float_context(std::uint32_t* words) const;
+  /// Does the lazy stacking that is due, or says why not.
+  std::optional<Outcome> stack_float_context();
   void take_new_rights();
   /// Exact mode: no instruction of the block waits, and nobody wants to know of it.
   bool is_plain(const BlockPrice& block) const;
@@ -209,6 +242,10 @@ class Processor final : public ClockUser, private EngineCalls {
     stopped_ = true;
     uc_emu_stop(engine_);
   }
+  void stop_before(std::uint32_t block) {
+    stopped_before_ = block;
+    stop();
+  }
   void begin_counting(unsigned exception);
   void end_counting();
   bool start_handler(unsigned exception, std::uint32_t exception_return, std::uint32_t vector_table);
@@ -224,6 +261,7 @@ class Processor final : public ClockUser, private EngineCalls {
   std::array<std::uint32_t, 4> recent_addresses_{};  ///< of the newest instructions; an if-then block holds up to four
   std::uint32_t fault_address_ = 0;
   Outcome outcome_ = Outcome::slice_over;
+  std::optional<std::uint32_t> stopped_before_;  ///< this block
   bool stopped_ = false, watch_masks_ = false, masks_opened_ = false, event_register_ = false;
   CycleCounter timing_;
   PeripheralBus register_bus_;
@@ -242,8 +280,13 @@ class Processor final : public ClockUser, private EngineCalls {
   std::set<std::uint32_t> divides_asked_about_;
   std::vector<std::uint32_t> new_divides_;
   bool float_unit_on_ = false, core_coupled_on_ = true, rights_changed_ = false;
+  /// Lazy stacking is due that could not be done at entry.
+  struct UnstackedFloat {
+    std::uint32_t address;  ///< FPCAR
+    Role role;              ///< of what was interrupted
+  };
+  std::optional<UnstackedFloat> unstacked_float_;
   bool traps_misaligned_ = false, translates_aligned_ = false;
-  bool protects_ = false;                              ///< the memory protection unit checks what runs now
   std::optional<Outcome> refusal_;                     ///< of the access that faults
   std::uint32_t resumed_at_ = 0, resumed_bytes_ = 0;   ///< rest of an if-then block that a return went on with
   std::set<std::uint32_t> float_guards_;               ///< instructions of the FPU that are stopped at while it is off

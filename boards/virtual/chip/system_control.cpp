@@ -154,7 +154,7 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
     case fpu_cpacr_base + fpu_cpacr.cpacr: return coprocessor_access_;
     case core_debug_base + core_debug.dhcsr: return core_debug.dhcsr.c_debugen.with(machine_.debugging.attached);
     case core_debug_base + core_debug.demcr: return debug_monitor_;
-    case fpu_base + fpu.fpccr: return float_control_;
+    case fpu_base + fpu.fpccr: return float_control_ | fpu.fpccr.lspact.with(machine_.processor->lazy_stacking_due());
     case fpu_base + fpu.fpcar: return float_address_;
     case fpu_base + fpu.fpdscr: return float_default_;
     case fpu_base + fpu.mvfr: return 0x1011'0021;  // FPv4-SP
@@ -241,7 +241,10 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
     case nvic_stir_base + nvic_stir.stir:
       machine_.nvic.pend(exception_interrupt_0 + nvic_stir.stir.intid.of(value) % Nvic::positions);
       return;
-    case fpu_base + fpu.fpccr: float_control_ = value & writable(fpu.fpccr); return;
+    case fpu_base + fpu.fpccr:
+      float_control_ = value & writable(fpu.fpccr) & ~fpu.fpccr.lspact.mask();
+      if (!fpu.fpccr.lspact.in(value)) machine_.processor->drop_lazy_stacking();
+      return;
     case fpu_base + fpu.fpcar: float_address_ = value; return;
     case fpu_base + fpu.fpdscr: float_default_ = value; return;
     case dbg_base + dbg.cr: machine_.sleep_counts_cycles = dbg.cr.dbg_sleep.in(value); return;

@@ -86,9 +86,11 @@ struct SystemControlRegisters {
   } shcsr{{"SHCSR", 0x24}};
   struct : Register {
     Field iaccviol{"IACCVIOL", 0, 1, Access::rc_w1}, daccviol{"DACCVIOL", 1, 1, Access::rc_w1},
-        mstkerr{"MSTKERR", 4, 1, Access::rc_w1}, mmarvalid{"MMARVALID", 7, 1, Access::rc_w1},
+        munstkerr{"MUNSTKERR", 3, 1, Access::rc_w1}, mstkerr{"MSTKERR", 4, 1, Access::rc_w1},
+        mlsperr{"MLSPERR", 5, 1, Access::rc_w1}, mmarvalid{"MMARVALID", 7, 1, Access::rc_w1},
         ibuserr{"IBUSERR", 8, 1, Access::rc_w1}, preciserr{"PRECISERR", 9, 1, Access::rc_w1},
-        stkerr{"STKERR", 12, 1, Access::rc_w1}, bfarvalid{"BFARVALID", 15, 1, Access::rc_w1},
+        unstkerr{"UNSTKERR", 11, 1, Access::rc_w1}, stkerr{"STKERR", 12, 1, Access::rc_w1},
+        lsperr{"LSPERR", 13, 1, Access::rc_w1}, bfarvalid{"BFARVALID", 15, 1, Access::rc_w1},
         undefinstr{"UNDEFINSTR", 16, 1, Access::rc_w1}, invstate{"INVSTATE", 17, 1, Access::rc_w1},
         invpc{"INVPC", 18, 1, Access::rc_w1}, nocp{"NOCP", 19, 1, Access::rc_w1},
         unaligned{"UNALIGNED", 24, 1, Access::rc_w1}, divbyzero{"DIVBYZERO", 25, 1, Access::rc_w1};
@@ -134,7 +136,7 @@ inline constexpr std::uint32_t nvic_stir_base = 0xE000'EF00;
 
 struct FloatContextRegisters {
   struct : Register {
-    Field lspen{"LSPEN", 30}, aspen{"ASPEN", 31};
+    Field lspact{"LSPACT", 0}, lspen{"LSPEN", 30}, aspen{"ASPEN", 31};
   } fpccr{{"FPCCR", 0x00, 0xC000'0000}};
   struct : Register {
     Field address{"ADDRESS", 3, 29};

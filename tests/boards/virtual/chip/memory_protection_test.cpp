@@ -1,0 +1,61 @@
+// What the memory protection unit allows, and what becomes of what it does not.
+#include <doctest/doctest.h>
+
+#include "chip_fixture.hpp"
+
+using namespace inkwell::virtual_board;
+using namespace inkwell::virtual_board::test;
+
+namespace {
+
+constexpr std::uint32_t passes = 0, refused = 0x82, refused_instruction = 0x01, unaligned = 1u << 24,
+                        no_answer = 0x8200, as_hard_fault = 1u << 30;
+
+/// By their index, as the firmware's comments have them.
+void check_results(const ChipUnderTest& test, unsigned first, const std::vector<std::uint32_t>& expected) {
+  for (unsigned i = 0; i < expected.size(); ++i) {
+    const unsigned number = first + i;
+    CAPTURE(number);
+    CHECK(test.result(number) == expected[i]);
+  }
+}
+
+}  // namespace
+
+TEST_SUITE("virtual chip: memory protection") {
+  TEST_CASE("regions, their order, eighths and edges, rights, the default map, masks and kinds of memory") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("protection", mode);
+      const Stop stop = test.chip.run_until(ticks(0.01));
+      REQUIRE(test.result(0) == finished);
+      // A read-only page; a region above it without its third eighth; 32 bytes in another page, from both sides.
+      check_results(test, 1,
+                    {passes, refused, passes, refused, passes, refused, refused, refused, refused, passes, passes});
+      // An instruction of 32 bits that reaches into 32 bytes without instructions, and one that begins there.
+      check_results(test, 12,
+                    {passes, passes, refused_instruction, 0x3E, refused_instruction, 0x40, passes, refused_instruction,
+                     0x40, refused_instruction});
+      // AP: privileged load and store, a user's load and store (PM0214, "AP encoding").
+      check_results(test, 22, {0b0000, 0b0011, 0b0111, 0b1111, 0b0000, 0b0001, 0b0101, 0b0101});
+      check_results(test, 30, {passes, refused, refused, passes, no_answer, 0x800});
+      check_results(test, 36, {refused, passes, refused, refused | as_hard_fault, 1, refused | as_hard_fault});
+      check_results(test, 42, {passes, unaligned, passes});
+      CHECK(stop == Stop::locked_up);
+      CHECK(test.chip.lockup_reason().find("the memory protection unit refuses 0x20010000") != std::string::npos);
+    }
+  }
+
+  TEST_CASE("a frame that is refused in part is a fault at entry, at return, or at the first float") {
+    constexpr std::uint32_t stacking = 0x10, unstacking = 0x08, lazy = 0x20, called = 0x5C, two = 0x4000'0000;
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("protected_stacks", mode);
+      test.run_for(0.01);
+      REQUIRE(test.result(0) == finished);
+      check_results(test, 1, {stacking, called, called, unstacking});
+      check_results(test, 5, {1, lazy, 0, two, two});
+      check_results(test, 10, {1, 0, lazy, 7, 8, called});
+    }
+  }
+}
