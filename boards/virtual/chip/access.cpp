@@ -68,6 +68,7 @@ bool Processor::is_device(std::uint32_t address, Role role) const {
 }
 
 bool Processor::runs_above_faults() const {
+  if (!machine_.memory_protection.is_on(false)) return false;  // for nobody asks
   return current_exception_ == exception_nmi || current_exception_ == exception_hard_fault ||
          (read(UC_ARM_REG_FAULTMASK) & 1) != 0;
 }
@@ -97,7 +98,9 @@ void Processor::take_new_rights() {
     forget_code(flash_base, flash_bytes);
     forget_code(sram_base, sram_bytes);
   }
-  if (std::exchange(rights_changed_, false)) forget_pages();
+  if (!std::exchange(rights_changed_, false)) return;
+  forget_pages();
+  write(UC_ARM_REG_APSR_NZCV, read(UC_ARM_REG_APSR_NZCV));  // lets the engine ask runs_above_faults()
 }
 
 }  // namespace inkwell::virtual_board

@@ -74,7 +74,7 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
   const std::uint32_t frame = stacks ? (stack_pointer - bytes) & ~(aligned ? 4u : 0u) : stack_pointer;
   std::optional<Outcome> float_refusal;
-  if (stacks) {
+  if (stacks && !takes_any_frame(frame, bytes)) {
     auto refusal = refusal_of_stack(frame, basic_words, Access::store, role());
     if (extended) float_refusal = refusal_of_stack(frame + basic_frame_bytes, float_words, Access::store, role());
     if (!lazily && !refusal) refusal = float_refusal;
@@ -133,6 +133,12 @@ void Processor::resume_if_then_block(std::uint32_t xpsr) {
   resumed_at_ = program_counter_ & ~1u;
   for (int left = 4 - std::countr_zero(state); left > 0; --left)
     resumed_bytes_ += is_wide(machine_.memory.half_word(resumed_at_ + resumed_bytes_)) ? 4 : 2;
+}
+
+// Nearly always, and each exception asks.
+bool Processor::takes_any_frame(std::uint32_t address, std::uint32_t bytes) const {
+  return !machine_.memory_protection.is_on(false) && core_coupled_on_ &&
+         machine_.memory.ram_at(address, bytes) != nullptr;
 }
 
 // A frame begins at a word, and rights end at multiples of 32 bytes.
@@ -195,15 +201,17 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   // Tail-chaining: what is pending starts on the frame that is already there.
   if (next != exception_none) return chain_exception(next, vector_table) ? Return::done : Return::invalid;
 
-  // Read as what it returns to (ARMv7-M, B1.5.8).
-  const Role as{!to_thread || (read(UC_ARM_REG_CONTROL) & control_unprivileged) == 0,
-                nvic.execution_priority(masks()) < 0};
   const std::uint32_t frame = read(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP);
   const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
   const bool float_stacked = extended && !unstacked_float_;
   const unsigned words_to_read = float_stacked ? basic_words + float_words : basic_words;
-  const auto refusal = refusal_of_stack(frame, words_to_read, Access::load, as);
-  if (refusal) return refusal == Outcome::protected_data ? Return::protected_stack : Return::no_stack;
+  if (!takes_any_frame(frame, bytes)) {
+    // Read as what it returns to (ARMv7-M, B1.5.8).
+    const Role as{!to_thread || (read(UC_ARM_REG_CONTROL) & control_unprivileged) == 0,
+                  nvic.execution_priority(masks()) < 0};
+    if (const auto refusal = refusal_of_stack(frame, words_to_read, Access::load, as))
+      return refusal == Outcome::protected_data ? Return::protected_stack : Return::no_stack;
+  }
   std::uint32_t words[extended_frame_bytes / 4];
   std::memcpy(words, machine_.memory.ram_at(frame, 4 * words_to_read), 4 * words_to_read);
   const std::uint32_t xpsr = words[7];

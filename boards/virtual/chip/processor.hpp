@@ -123,8 +123,12 @@ class Processor final : public ClockUser, private EngineCalls {
   uc_hook watch(const WatchPoint& watch_point);
   void unwatch(uc_hook hook);
   void write(int id, std::uint32_t value) {
-    const Use use(*this);  // the engine may ask what has changed with it
-    uc_reg_write(engine_, id, &value);
+    if (!machine_.memory_protection.is_on(false)) {
+      uc_reg_write(engine_, id, &value);
+    } else {
+      const Use use(*this);  // the engine asks what has changed with it: see runs_above_faults()
+      uc_reg_write(engine_, id, &value);
+    }
   }
   std::uint32_t program_counter() const { return program_counter_; }
   void set_program_counter(std::uint32_t value) { program_counter_ = value; }
@@ -214,6 +218,8 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Of what runs now.
   Role role() const;
   std::optional<Outcome> refusal_of(std::uint32_t address, Access access, Role role) const;
+  /// No part of a frame there is refused.
+  bool takes_any_frame(std::uint32_t address, std::uint32_t bytes) const;
   /// Why a frame's words can not be written or read.
   std::optional<Outcome> refusal_of_stack(std::uint32_t address, unsigned words, Access access, Role as) const;
   /// Of an unprivileged thread, for what it may not write itself.
