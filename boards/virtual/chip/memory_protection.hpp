@@ -34,6 +34,8 @@ inline constexpr std::uint32_t mpu_base = 0xE000'ED90, mpu_bytes = 0x2C;
 class MemoryProtection {
  public:
   void reset() { *this = {}; }
+  /// The register at this offset is RBAR or one of its aliases.
+  static bool is_base(std::uint32_t offset) { return offset >= mpu.rbar && (offset - mpu.rbar) % 8 == 0; }
   std::uint32_t read(std::uint32_t offset) const {
     if (offset == mpu.typer) return mpu.typer.reset_value;
     if (offset == mpu.ctrl) return control_;
@@ -52,6 +54,23 @@ class MemoryProtection {
     } else {
       attributes_[region_] = value & writable(mpu.rasr);
     }
+  }
+  /// The manual says what each enabled region does: its base is a multiple of its size, it has 32 bytes or more, no
+  /// eighth is left out of fewer than 256, and neither AP nor TEX, C and B are reserved.
+  bool is_defined() const {
+    for (unsigned i = 0; i < regions; ++i) {
+      const std::uint32_t attributes = attributes_[i];
+      if (!mpu.rasr.enable.in(attributes)) continue;
+      const unsigned kind = mpu.rasr.tex.of(attributes);
+      const bool cached = mpu.rasr.c.in(attributes), buffered = mpu.rasr.b.in(attributes);
+      const bool is_reserved_kind =
+          kind == 3 || (kind == 1 && cached != buffered) || (kind == 2 && (cached || buffered));
+      if (region_bytes(i) < smallest || (bases_[i] & (region_bytes(i) - 1)) != 0 || is_reserved_kind ||
+          mpu.rasr.ap.of(attributes) == reserved_rights ||
+          (mpu.rasr.srd.of(attributes) != 0 && region_bytes(i) < smallest_with_subregions))
+        return false;
+    }
+    return true;
   }
   /// Accesses are checked; `above_faults` is in HardFault or NMI, or with FAULTMASK set.
   bool is_on(bool above_faults) const {
@@ -83,7 +102,8 @@ class MemoryProtection {
   }
 
  private:
-  static constexpr unsigned regions = 8, subregions = 8;
+  static constexpr unsigned regions = 8, subregions = 8, reserved_rights = 4;
+  static constexpr std::uint64_t smallest = 32, smallest_with_subregions = 256;
   std::uint64_t region_bytes(unsigned i) const { return std::uint64_t{2} << mpu.rasr.size.of(attributes_[i]); }
   /// Attributes of the region that decides: of those that cover the address the one of the highest number.
   const std::uint32_t* region_at(std::uint32_t address) const {
@@ -92,7 +112,6 @@ class MemoryProtection {
     return nullptr;
   }
   bool covers(unsigned i, std::uint32_t address) const {
-    constexpr std::uint64_t smallest_with_subregions = 256;
     const std::uint64_t size = region_bytes(i), first = bases_[i] & ~(size - 1);
     if (!mpu.rasr.enable.in(attributes_[i]) || address < first || address - first >= size) return false;
     const auto subregion = static_cast<unsigned>((address - first) * subregions / size);
@@ -111,7 +130,6 @@ class MemoryProtection {
       default: return false;
     }
   }
-  static bool is_base(std::uint32_t offset) { return (offset - mpu.rbar) % 8 == 0; }
   std::uint32_t control_ = 0, region_ = 0;
   std::array<std::uint32_t, regions> bases_{}, attributes_{};
 };

@@ -255,6 +255,9 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
   if (address - stk_base < stk_bytes) return systick_.write(address - stk_base, value);
   if (address - mpu_base < mpu_bytes) {
     machine_.memory_protection.write(address - mpu_base, value);
+    // A base is written before the size that belongs to it.
+    if (!MemoryProtection::is_base(address - mpu_base) && !machine_.memory_protection.is_defined())
+      machine_.violations.violate(Rule::region_undefined);
     return machine_.processor->rights_changed();
   }
   machine_.log.note("private peripheral bus 0xE0000000", address & 0xFFFFF, true, value);

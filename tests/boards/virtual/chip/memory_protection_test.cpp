@@ -46,6 +46,19 @@ TEST_SUITE("virtual chip: memory protection") {
     }
   }
 
+  TEST_CASE("a region that the manual leaves open is told") {
+    for (unsigned number = 0; number < 8; ++number) {
+      CAPTURE(number);
+      ChipUnderTest test("reserved_regions");
+      test.breaks_rules = number != 0;
+      for (unsigned pin = 0; pin < 3; ++pin)
+        test.chip.input_pins().drive('D', pin, (number >> pin & 1) != 0 ? PinLevel::high : PinLevel::low);
+      test.run_for(0.001);
+      REQUIRE(test.result(0) == finished);
+      CHECK(test.has_broken(Rule::region_undefined) == (number != 0));
+    }
+  }
+
   TEST_CASE("a frame that is refused in part is a fault at entry, at return, or at the first float") {
     constexpr std::uint32_t stacking = 0x10, unstacking = 0x08, lazy = 0x20, called = 0x5C, two = 0x4000'0000;
     for (const Mode mode : {Mode::exact, Mode::fast}) {

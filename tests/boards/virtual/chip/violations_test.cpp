@@ -40,6 +40,7 @@ constexpr Case cases[] = {
     {23, Rule::usb_disturbed},
     {24, Rule::option_bytes_locked},
     {25, Rule::narrow_register_write},
+    {26, Rule::region_undefined},
 };
 
 /// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.

@@ -19,6 +19,10 @@ namespace inkwell::virtual_board {
        "it is a UsageFault (NOCP)", "write CPACR |= 0xF << 20, then DSB and ISB, before the first one")                \
   RULE(stack_outside_memory, "MSP", "RM0090, Memory map", "The stack does not lie in SRAM or CCM",                     \
        "the first push is a BusFault", "let it begin at or below 0x20020000 (SRAM) or 0x10010000 (CCM)")               \
+  RULE(region_undefined, "MPU_RASR", "PM0214, MPU region attribute and size register",                                 \
+       "A region of the memory protection unit is enabled that is not at a multiple of its size, or is reserved",      \
+       "what it protects is open; here its base is rounded down",                                                      \
+       "align it; take SIZE 4 or more, SRD only from 256 bytes on, and no reserved AP, TEX, C and B")                  \
   RULE(flash_wait_states, "FLASH_ACR", "RM0090, Relation between CPU clock frequency and Flash memory read time",      \
        "LATENCY is too small for HCLK", "the flash is misread; here the next instruction from it is an undefined one", \
        "set a wait state for each 30 MHz begun, at 3.3 V, before the clock is switched")                               \

@@ -32,6 +32,7 @@ enum Fault : std::uint32_t {
   usb_disturbed,
   option_bytes_locked,
   narrow_register_write,
+  region_undefined,
 };
 
 std::uint32_t fault;
@@ -165,6 +166,8 @@ void run() {
   convert();
   use_others();
   start_usb();
+  word(0xE000ED9C) = 0x2001'0000 | (fault == region_undefined ? 1u << 5 : 0) | 1 << 4;
+  word(0xE000EDA0) = 3 << 24 | 3 << 16 | 9 << 1 | 1;
   results[0] = finished;
   for (;;) wait_for_interrupt();
 }
