@@ -112,10 +112,9 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   const bool unprivileged = current_exception_ == exception_none && (control & control_unprivileged) != 0;
   if (unprivileged) lift_privilege();
   // SPSEL must be off before the mode changes, or Unicorn mixes up its banked stack pointers.
-  if ((control & (control_spsel | control_fpca)) != 0)
+  if (unprivileged || (control & (control_spsel | control_fpca)) != 0)
     write(UC_ARM_REG_CONTROL, control & ~(control_spsel | control_fpca));
   const bool started = start_handler(exception, exception_return, vector_table);
-  if (unprivileged) write(UC_ARM_REG_CONTROL, control_unprivileged);
   const auto& costs = timing_.costs();
   wait(costs[Cost::exception_entry] + costs[Cost::vector_from_flash] * timing_.flash().wait_states());
   if (extended) {

@@ -41,6 +41,8 @@ TEST_SUITE("virtual chip: memory protection") {
       check_results(test, 30, {passes, refused, refused, passes, no_answer, 0x800});
       check_results(test, 36, {refused, passes, refused, refused | as_hard_fault, 1, refused | as_hard_fault});
       check_results(test, 42, {passes, unaligned, passes});
+      // CONTROL has nPRIV in a handler too, SPSEL only in the thread.
+      check_results(test, 45, {passes, 1, static_cast<std::uint32_t>(-32), 3, 0});
       CHECK(stop == Stop::locked_up);
       CHECK(test.chip.lockup_reason().find("the memory protection unit refuses 0x20010000") != std::string::npos);
     }
@@ -60,15 +62,16 @@ TEST_SUITE("virtual chip: memory protection") {
   }
 
   TEST_CASE("a frame that is refused in part is a fault at entry, at return, or at the first float") {
-    constexpr std::uint32_t stacking = 0x10, unstacking = 0x08, lazy = 0x20, called = 0x5C, two = 0x4000'0000;
+    constexpr std::uint32_t stacking = 0x10, unstacking = 0x08, lazy = 0x20, active = 1u << 31, called = 0x5C,
+                            two = 0x4000'0000;
     for (const Mode mode : {Mode::exact, Mode::fast}) {
       CAPTURE(static_cast<int>(mode));
       ChipUnderTest test("protected_stacks", mode);
       test.run_for(0.01);
       REQUIRE(test.result(0) == finished);
       check_results(test, 1, {stacking, called, called, unstacking});
-      check_results(test, 5, {1, lazy, 0, two, two});
-      check_results(test, 10, {1, 0, lazy, 7, 8, called});
+      check_results(test, 5, {1, lazy | active, 0, two, two});
+      check_results(test, 10, {1, 0, lazy, 7, 8, called, two});
     }
   }
 }

@@ -45,7 +45,8 @@ void supervisor_call();
 void supervisor_call() { asm volatile("mrs r0, control\n bic r0, #1\n msr control, r0" ::: "r0"); }
 std::uint32_t verdict_of_user(Probe probe, std::uint32_t address) {
   asm volatile("mrs r0, control\n orr r0, #1\n msr control, r0\n isb" ::: "r0", "memory");
-  const std::uint32_t found = verdict(probe, address);
+  verdict(probe, address);
+  const std::uint32_t found = verdict(probe, address);  // still a user behind the fault
   become_privileged();
   return found;
 }
@@ -180,6 +181,35 @@ void probe_kinds() {
   take_regions_away();
 }
 
+// results[45] to [49]: the unit is switched on where it does not count; a user on the process stack is interrupted, and
+// goes on as one.
+void probe_late_start_and_user() {
+  set_rights(0, 0x2001'0000, 12, read_only);
+  asm volatile("cpsid f" ::: "memory");
+  protect(enable | default_map);
+  note(verdict(store_word, 0x2001'0000));
+  asm volatile("cpsie f" ::: "memory");
+  take_regions_away();
+  static std::uint32_t in_handler, stack_in_handler;
+  constexpr std::uint32_t stack = 0x2001'1000;
+  let_everybody_run();
+  protect(enable | default_map);
+  set_handler(11, [] { asm volatile("mrs %0, control\n mrs %1, psp" : "=r"(in_handler), "=r"(stack_in_handler)); });
+  std::uint32_t of_user, stack_of_user;
+  asm volatile("msr psp, %2\n mov r0, #3\n msr control, r0\n isb\n svc #0\n mrs %0, control\n mov %1, sp"
+               : "=r"(of_user), "=r"(stack_of_user)
+               : "r"(stack)
+               : "r0", "r1", "r2", "r3", "r12", "lr", "memory");
+  set_handler(11, supervisor_call);
+  become_privileged();
+  asm volatile("mov r0, #0\n msr control, r0\n isb" ::: "r0", "memory");
+  note(in_handler);
+  note(stack_in_handler - stack);
+  note(of_user);
+  note(stack_of_user - stack);
+  take_regions_away();
+}
+
 }  // namespace
 
 void run() {
@@ -194,6 +224,7 @@ void run() {
   probe_background();
   probe_masks();
   probe_kinds();
+  probe_late_start_and_user();
   results[0] = finished;
   // HFNMIENA: FAULTMASK is no way around any more, and nothing is left that could handle the fault.
   set_rights(0, 0x2001'0000, 12, read_only);
