@@ -100,8 +100,8 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
     const std::uint32_t written = 4 * (extended && !float_refusal ? basic_words + float_words : basic_words);
     std::memcpy(machine_.memory.ram_at(frame, written), words, written);
   }
-  if (extended) unstacked_float_.reset();
-  if (float_refusal) unstacked_float_ = UnstackedFloat{frame + basic_frame_bytes, role()};
+  if (extended) set_unstacked_float({});
+  if (float_refusal) set_unstacked_float(UnstackedFloat{frame + basic_frame_bytes, role()});
 
   std::uint32_t exception_return = exc_return_handler & ~(extended ? exc_return_basic : 0u);
   if (current_exception_ == exception_none) {
@@ -172,7 +172,7 @@ std::optional<Outcome> Processor::stack_float_context() {
   std::uint32_t words[float_words];
   read_float_context(words);
   std::memcpy(machine_.memory.ram_at(unstacked_float_->address, sizeof words), words, sizeof words);
-  unstacked_float_.reset();
+  set_unstacked_float({});
   return {};
 }
 
@@ -219,7 +219,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   if ((exception == exception_none) != to_thread || exception >= exception_numbers) return Return::invalid;
 
   current_exception_ = exception;  // before the engine asks what runs
-  if (extended) unstacked_float_.reset();
+  if (extended) set_unstacked_float({});
   if (float_stacked) {
     void* float_places[doubles];
     for (int i = 0; i < doubles; ++i) float_places[i] = &words[basic_words + 2 * i];

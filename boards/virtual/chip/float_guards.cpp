@@ -39,7 +39,7 @@ void Processor::guard_float_instructions() {
 
 void Processor::float_hook(uc_engine*, std::uint64_t address, std::uint32_t, void* pointer) {
   auto& self = *static_cast<Processor*>(pointer);
-  if (!self.refuses_float() || self.stopped_) return;
+  if (!self.refuses_float_ || self.stopped_) return;
   self.last_code_address_ = static_cast<std::uint32_t>(address);
   if (!self.float_unit_on_) {
     self.machine_.violations.violate(Rule::float_unit_off);
@@ -56,7 +56,7 @@ bool Processor::lazy_stacking_due() const { return timing_.lazy_stacking_due() |
 
 void Processor::drop_lazy_stacking() {
   timing_.stack_lazily(false);
-  unstacked_float_.reset();
+  set_unstacked_float({});
 }
 
 }  // namespace inkwell::virtual_board

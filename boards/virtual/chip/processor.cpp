@@ -116,8 +116,8 @@ void Processor::reset(std::uint32_t vector_table) {
   timing_.redirect();
   timing_.stack_lazily(false);
   watch_masks_ = event_register_ = false;
-  float_unit_on_ = false;
-  unstacked_float_.reset();
+  set_float_unit(false);
+  set_unstacked_float({});
   core_coupled_on_ = true;
   while (!running_.empty()) end_counting();
   // The firmware may have been replaced.
@@ -224,7 +224,7 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   } else {
     if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) return self.stop_before(start);
   }
-  if (self.refuses_float() && self.has_unguarded_float(start, size)) {
+  if (self.refuses_float_ && self.has_unguarded_float(start, size)) {
     self.guard_address_ = start;
     self.guard_bytes_ = size;
     return self.stop_before(start);

@@ -63,7 +63,10 @@ class Processor final : public ClockUser, private EngineCalls {
   /// The masks that were watched have let something through since the last call.
   bool take_masks_opened() { return std::exchange(masks_opened_, false); }
   /// CPACR lets firmware use the FPU. While it does not, each of the FPU's instructions is stopped at.
-  void set_float_unit(bool on) { float_unit_on_ = on; }
+  void set_float_unit(bool on) {
+    float_unit_on_ = on;
+    refuses_float_ = !float_unit_on_ || unstacked_float_;
+  }
   /// CCM has its clock (RCC_AHB1ENR.CCMDATARAMEN). It takes effect from the next slice on, which begins at once.
   void set_core_coupled_memory(bool on) {
     core_coupled_on_ = on;
@@ -203,8 +206,6 @@ class Processor final : public ClockUser, private EngineCalls {
   bool has_unguarded_float(std::uint32_t address, std::uint32_t bytes);
   void guard_float_instructions();
   static void float_hook(uc_engine*, std::uint64_t address, std::uint32_t size, void* self);
-  /// An instruction of the FPU would fault now.
-  bool refuses_float() const { return !float_unit_on_ || unstacked_float_; }
   // access.cpp
   bool refuses(std::uint32_t address, unsigned bytes, Access access, Role role) override;
   int rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) override;
@@ -292,6 +293,11 @@ class Processor final : public ClockUser, private EngineCalls {
     Role role;              ///< of what was interrupted
   };
   std::optional<UnstackedFloat> unstacked_float_;
+  void set_unstacked_float(std::optional<UnstackedFloat> what) {
+    unstacked_float_ = what;
+    refuses_float_ = !float_unit_on_ || unstacked_float_;
+  }
+  bool refuses_float_ = true;  ///< an instruction of the FPU would fault now; every block asks
   bool traps_misaligned_ = false, translates_aligned_ = false;
   std::optional<Outcome> refusal_;                     ///< of the access that faults
   std::uint32_t resumed_at_ = 0, resumed_bytes_ = 0;   ///< rest of an if-then block that a return went on with
