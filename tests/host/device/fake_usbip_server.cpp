@@ -181,7 +181,10 @@ void FakeUsbipServer::serve_transfers(int client) {
       match(endpoint);
     } else if (endpoint == hid_out_endpoint) {
       take_output(data);
-      if (!holds_outputs) answer(client, sequence, output_status, {}, static_cast<std::uint32_t>(data.size()));
+      if (holds_outputs)
+        held_outputs_.push_back(sequence);
+      else
+        answer(client, sequence, output_status, {}, static_cast<std::uint32_t>(data.size()));
     }
   }
 }
@@ -314,6 +317,12 @@ void FakeUsbipServer::fail(std::uint8_t endpoint, std::int32_t status) {
   const std::lock_guard lock(mutex_);
   answer(client_, waiting_[endpoint].front(), status, {}, 0);
   waiting_[endpoint].pop_front();
+}
+
+void FakeUsbipServer::answer_output() {
+  const std::lock_guard lock(mutex_);
+  answer(client_, held_outputs_.front(), output_status, {}, 0);
+  held_outputs_.pop_front();
 }
 
 void FakeUsbipServer::send_unasked(std::span<const std::byte> bytes) {

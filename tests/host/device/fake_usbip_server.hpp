@@ -65,7 +65,7 @@ class FakeUsbipServer {
   std::atomic<bool> scope_is_taken = false;
   /// Control requests are taken in but not answered, as by a board whose time stands still.
   std::atomic<bool> holds_requests = false;
-  /// Output reports are taken in but not answered.
+  /// Output reports are taken in but not answered, unless by answer_output().
   std::atomic<bool> holds_outputs = false;
   /// What the answer to an output report says: 0 or a negative errno.
   std::atomic<std::int32_t> output_status = 0;
@@ -76,6 +76,8 @@ class FakeUsbipServer {
   void send(std::uint8_t endpoint, Bytes data);
   /// Ends the oldest waiting transfer of this IN endpoint with a negative errno.
   void fail(std::uint8_t endpoint, std::int32_t status);
+  /// Answers the oldest output report that is held.
+  void answer_output();
   /// Sends bytes that are no answer to anything.
   void send_unasked(std::span<const std::byte> bytes);
   /// Cuts the connection, as a board that was stopped would.
@@ -108,6 +110,7 @@ class FakeUsbipServer {
   bool is_configured_ = false;
   std::map<std::uint8_t, std::deque<std::uint32_t>> waiting_;
   std::map<std::uint8_t, std::deque<Bytes>> ready_;
+  std::deque<std::uint32_t> held_outputs_;
   std::vector<protocol::CommandReport> commands_;
   std::vector<protocol::ForceReport> forces_;
   std::vector<Bytes> shapes_placed_;

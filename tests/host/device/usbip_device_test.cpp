@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <future>
 #include <limits>
 #include <thread>
 
@@ -155,6 +156,34 @@ TEST_CASE("a device that takes no more commands is told, and not sent ever more 
   }
   arm->information();
   CHECK(server.commands().size() == under_way);
+}
+
+TEST_CASE("how long a device takes no command counts from the one that it took last") {
+  FakeUsbipServer server;
+  server.holds_outputs = true;
+  const auto arm = device::Device::open(server.endpoint());
+  std::uint32_t sequence = 0;
+  const auto pass = [&](std::uint32_t poses) {
+    const std::uint32_t end = sequence + poses;
+    while (sequence < end) server.send(1, bytes_of(pose_number(sequence++)));
+    REQUIRE(eventually([&] {
+      const auto pose = arm->read_pose(1s);
+      return pose && pose->sequence + 1 == end;
+    }));
+  };
+  const auto send_the_next = [&] {
+    auto sent = std::async(std::launch::async, [&] { arm->send(protocol::Command::heartbeat); });
+    CHECK(sent.wait_for(100ms) == std::future_status::timeout);  // it waits for room
+    server.answer_output();
+    CHECK_NOTHROW(sent.get());
+  };
+  pass(1000);  // a second in which no command was sent
+  for (int i = 0; i < 16; ++i) arm->send(protocol::Command::heartbeat);
+  send_the_next();
+  for (int i = 0; i < 2; ++i) {
+    pass(600);
+    send_the_next();
+  }
 }
 
 TEST_CASE("a device that its server has lost is Disconnected, whichever transfer says so") {
