@@ -182,14 +182,9 @@ void Processor::finish_flash_stores() {
   flash_stores_.clear();
 }
 
-const BlockPrice& Processor::enter_block(std::uint32_t address, std::uint32_t bytes) {
-  const BlockPrice* block = timing_.known_block(address, bytes);
-  if (block == nullptr) {
-    if (address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes, *this);
-    block = &timing_.block(address, {machine_.memory.at(address, bytes), bytes});
-  }
-  cycles_ += timing_.enter(*block, cycles_);
-  return *block;
+[[gnu::noinline]] const BlockPrice& Processor::price_block(std::uint32_t address, std::uint32_t bytes) {
+  if (address - sram_base < sram_bytes) plain_stores_.code_runs_at(address, bytes, *this);
+  return timing_.block(address, {machine_.memory.at(address, bytes), bytes});
 }
 
 void Processor::after_clock_change() {
@@ -229,21 +224,28 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
     self.guard_bytes_ = size;
     return self.stop_before(start);
   }
-  const auto& block = self.enter_block(start, size);
+  const BlockPrice* known = self.timing_.known_block(start, size);
+  const BlockPrice& block = known != nullptr ? *known : self.price_block(start, size);
+  std::uint64_t cycles = self.cycles_;
+  cycles += self.timing_.enter(block, cycles);
+  self.cycles_ = cycles;
   if (exact) {
     self.block_ = &block;
-    self.block_start_ = self.cycles_;
+    self.block_start_ = cycles;
     self.next_request_ = self.next_divide_ = self.next_read_ = 0;
     self.block_is_plain_ = self.is_plain(block);
     return;
   }
-  if (self.machine_.traps_zero_division && self.has_new_divides(block)) return self.stop_before(start);
+  if (block.has_divides && self.machine_.traps_zero_division && self.has_new_divides(block))
+    return self.stop_before(start);
   self.last_code_address_ = start;
-  self.cycles_ += self.timing_.wait_for_flash(block, self.cycles_, self.register_reader()) + block.cycles;
   self.instructions_ += block.instructions;
+  cycles += self.timing_.wait_for_flash(block, cycles, self.register_reader()) + block.cycles;
   // Operands that the block itself computes are not known yet.
-  for (const auto& divide : block.divides)
-    self.cycles_ += divide.known_at_entry ? self.divide_wait(divide) : divide_mean(self.timing_.costs());
+  if (block.has_divides)
+    for (const auto& divide : block.divides)
+      cycles += divide.known_at_entry ? self.divide_wait(divide) : divide_mean(self.timing_.costs());
+  self.cycles_ = cycles;
 }
 
 // Most blocks are, and the code hook, which costs more than the instructions themselves, then has little to ask.

@@ -234,7 +234,8 @@ class Processor final : public ClockUser, private EngineCalls {
   bool is_plain(const BlockPrice& block) const;
   bool may_run(std::uint32_t address);
   void wait_in_block(std::uint32_t address, std::uint16_t after_cycles);
-  const BlockPrice& enter_block(std::uint32_t address, std::uint32_t bytes);
+  /// Of a block that runs for the first time, or after a change there.
+  const BlockPrice& price_block(std::uint32_t address, std::uint32_t bytes);
   /// R0 to R14 by number.
   auto register_reader() const {
     return [this](std::uint8_t number) {

@@ -216,6 +216,8 @@ BlockPrice price(std::span<const std::uint8_t> code, std::uint32_t address, Code
   Walk walk(code, address, memory, costs, word);
   const unsigned cycles = walk.run(false, &block);
   block.refill_cycles = static_cast<std::uint16_t>(walk.run(true, nullptr) - cycles);
+  block.has_divides = !block.divides.empty();
+  block.has_reads = !block.reads.empty();
   return block;
 }
 

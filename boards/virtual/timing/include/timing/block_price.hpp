@@ -48,12 +48,13 @@ struct BlockPrice {
   std::uint16_t float_busy_cycles = 0;   ///< how long a division of the FPU goes on after the block
   std::uint16_t first_float_cycles = 0;  ///< after which the FPU is asked, if uses_float
   bool uses_float = false;
-  std::vector<Request> requests;      ///< in the order of time
-  std::vector<std::uint16_t> starts;  ///< by half word: cycles from the block's start to that instruction's
+  bool has_divides = false, has_reads = false;  ///< asked at each run, so that they stand beside what each run needs
+  mutable bool reads_flash = false;             ///< one of the reads has been seen there
+  mutable std::uint32_t runs = 0;               ///< of a block with reads
+  std::vector<Request> requests;                ///< in the order of time
+  std::vector<std::uint16_t> starts;            ///< by half word: cycles from the block's start to that instruction's
   std::vector<Divide> divides;
   std::vector<Read> reads;
-  mutable std::uint32_t runs = 0;    ///< of a block with reads
-  mutable bool reads_flash = false;  ///< one of the reads has been seen there
 };
 
 /// Reads a word of memory without any effect; may be empty.

@@ -26,7 +26,13 @@ class CycleCounter {
   const FlashAccelerator& flash() const { return flash_; }
 
   /// The price of the run of so many bytes at `address`, if it is known and nothing has changed there since; else null.
-  const BlockPrice* known_block(std::uint32_t address, std::uint32_t bytes);
+  const BlockPrice* known_block(std::uint32_t address, std::uint32_t bytes) {
+    if (forgets_) forget_prices();
+    const Known* known = *place_of(address).known;
+    const bool fits =
+        known != nullptr && known->is_current && known->price.address == address && known->price.bytes == bytes;
+    return fits ? &known->price : nullptr;
+  }
   /// The price of the run of `code` that stands at `address`. The reference holds while the block runs.
   const BlockPrice& block(std::uint32_t address, std::span<const std::uint8_t> code);
   /// The block begins at cycle `now`: what it waits for the refill after the last branch and for the FPU.
@@ -57,15 +63,22 @@ class CycleCounter {
  private:
   /// Of blocks hundreds run in each control period, so that what they need lies together.
   struct alignas(64) Known {
+    bool is_current = false;  ///< nobody has read the code anew since it was priced
     BlockPrice price;
-    bool is_current = false;         ///< nobody has read the code anew since it was priced
     std::vector<std::uint8_t> code;  ///< what it was priced from
   };
   struct Place {
     Known** known;  ///< null is none
     CodeMemory memory;
   };
-  Place place_of(std::uint32_t address);
+  Place place_of(std::uint32_t address) {
+    // The flash shows at 0 too.
+    const std::uint32_t in_flash = address < map_.flash_bytes ? address : address - map_.flash_base;
+    if (in_flash < map_.flash_bytes) return {&known_in_flash_[in_flash / 2], CodeMemory::flash};
+    if (address - map_.sram_base < map_.sram_bytes)
+      return {&known_in_sram_[(address - map_.sram_base) / 2], CodeMemory::sram};
+    return {&known_elsewhere_[address], CodeMemory::flash};
+  }
   const BlockPrice& remember(const Place& place, std::uint32_t address, std::span<const std::uint8_t> code);
   void forget_prices();
 
@@ -74,7 +87,7 @@ class CycleCounter {
   }
   /// Whether a block reads the flash is asked at its first runs and now and then; asking costs more than running.
   static bool asks_for_reads(const BlockPrice& block) {
-    if (block.reads.empty()) return false;
+    if (!block.has_reads) return false;
     const std::uint32_t run = block.runs++;
     return block.reads_flash || run < runs_asked_at_first || run % runs_between_asking == 0;
   }
@@ -99,6 +112,33 @@ class CycleCounter {
   bool lazy_stacking_due_ = false;
   std::uint32_t random_ = 1;
 };
+
+inline unsigned CycleCounter::enter(const BlockPrice& block, std::uint64_t now) {
+  unsigned waited = 0;
+  if (redirected_)
+    waited += block.refill_cycles;
+  else if (block.address != last_end_)
+    waited += last_taken_cycles_ + block.refill_cycles;
+  redirected_ = false;
+  last_end_ = block.address + block.bytes;
+  last_taken_cycles_ = block.taken_cycles;
+  if (block.uses_float) {
+    if (lazy_stacking_due_) {
+      lazy_stacking_due_ = false;
+      waited += costs_[Cost::lazy_stacking];
+    }
+    const std::uint64_t asked = now + waited + block.first_float_cycles;
+    if (float_ready_ > asked) waited += static_cast<unsigned>(float_ready_ - asked);
+  }
+  if (block.float_busy_cycles != 0) float_ready_ = now + waited + block.cycles + block.float_busy_cycles;
+  return waited;
+}
+
+inline unsigned CycleCounter::wait_for(const BlockPrice::Request& request, std::uint64_t now) {
+  const std::uint32_t offset = request.address < map_.flash_bytes ? request.address : request.address - map_.flash_base;
+  if (offset >= map_.flash_bytes) return 0;
+  return request.is_data ? flash_.read(offset, now) : flash_.fetch(offset, now);
+}
 
 template <class RegisterValue>
 unsigned CycleCounter::wait_for(const BlockPrice::Read& read, std::uint64_t now, RegisterValue&& register_value) {
