@@ -23,7 +23,7 @@ using protocol::Parameter;
 #ifdef INKWELL_ON_PC
 constexpr int pose_count = 100'000;
 #else
-constexpr int pose_count = 300;  // double is software there
+constexpr int pose_count = 100;  // double is software there
 #endif
 
 struct Point {
