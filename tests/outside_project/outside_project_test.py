@@ -21,14 +21,13 @@ def run(*command) -> str:
 
 
 class OutsideProject(unittest.TestCase):
-    def check(self, by: str):
+    def check(self, by: str, *how):
+        """Configures the project with ours taken in this way, and builds it."""
         build = pathlib.Path(WORK) / by
         run(CMAKE, "--fresh", "-S", pathlib.Path(__file__).parent / "project", "-B", build, "-G", "Ninja",
             f"-DCMAKE_CXX_COMPILER={COMPILER}", f"-DINKWELL_SOURCE={REPOSITORY}", f"-DINKWELL_BY={by}")
-        run(CMAKE, "--build", build, "--target", "outside")
+        run(CMAKE, "--build", build, "--target", "outside", "--", *how)
 
-        # Its program is where it puts programs, and uses the protocol and the signal path.
-        self.assertEqual(run(build / "outside").strip(), "0.479")
         # None of our warnings, optimisation or other options reach its sources.
         commands = json.loads((build / "compile_commands.json").read_text())
         own = next(each["command"] for each in commands if each["file"].endswith("project/main.cpp"))
@@ -37,12 +36,16 @@ class OutsideProject(unittest.TestCase):
         self.assertFalse([each["file"] for each in commands if "-Werror" in each["command"]])
         # It does not get our tests.
         self.assertIn("Total Tests: 0", run("ctest", "--test-dir", build, "-N"))
+        return build
 
     def test_add_subdirectory(self):
-        self.check("add_subdirectory")
+        build = self.check("add_subdirectory")
+        # Its program is where it puts programs, and uses the protocol and the signal path.
+        self.assertEqual(run(build / "outside").strip(), "0.479")
 
     def test_fetch_content(self):
-        self.check("FetchContent")
+        # The same sources by the same commands: what would be built is found out, and not built again.
+        self.check("FetchContent", "-n")
 
 
 if __name__ == "__main__":
