@@ -151,7 +151,7 @@ TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way t
   CHECK(largest_current_A(rig.control) > 1.0);
   rig.device->select_signals(std::vector{Signal::motor_heat_1, Signal::motor_heat_2, Signal::motor_heat_3});
   float hottest = 0;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 60; ++i) {
     rig.run(0.1);
     while (const auto samples = rig.device->read_scope(std::chrono::milliseconds(0)))
       if (!samples->values.empty()) hottest = std::max(hottest, std::ranges::max(samples->values));

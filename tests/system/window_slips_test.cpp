@@ -119,15 +119,17 @@ TEST_CASE("a value that the device refuses leaves the old one") {
 
 TEST_CASE("space is a space while a text is typed; Escape and F12 switch the force off, also then") {
   WindowRig rig;
-  rig.switch_force_on();
   rig.click("tabs/Recording");
-  rig.enter("recording/file", "two words");
-  rig.control.run(0.1);  // for a command on its way
-  rig.control.resume();
-  CHECK(rig.look().state() == "active");
-  SUBCASE("Escape") { rig.press_key("Escape"); }
-  SUBCASE("F12") { rig.press_key("F12"); }
-  rig.look_until("the force is off", force_is_off);
+  for (const char* key : {"Escape", "F12"}) {
+    CAPTURE(key);
+    rig.switch_force_on();
+    rig.enter("recording/file", "two words");
+    rig.control.run(0.1);  // for a command on its way
+    rig.control.resume();
+    CHECK(rig.look().state() == "active");
+    rig.press_key(key);
+    rig.look_until("the force is off", force_is_off);
+  }
 }
 
 TEST_CASE("Ctrl+Z goes by the character, wherever the keyboard has it") {
@@ -160,12 +162,16 @@ TEST_CASE("a key that is held takes back one change, not one after the other") {
 
 TEST_CASE("a page lists the keys") {
   WindowRig rig;
-  SUBCASE("F1") { rig.press_key("F1"); }
-  SUBCASE("?") { rig.press_key("question"); }
-  SUBCASE("its button") { rig.click("status/?"); }
-  rig.look_until("it is there", [](const Sight& now) { return now.says("Switch the force off, always"); });
-  rig.click("Keys and mouse/Close");
-  rig.look_until("it is gone", [](const Sight& now) { return !now.says("Switch the force off, always"); });
+  const std::pair<const char*, std::function<void()>> ways[] = {{"F1", [&] { rig.press_key("F1"); }},
+                                                                {"?", [&] { rig.press_key("question"); }},
+                                                                {"its button", [&] { rig.click("status/?"); }}};
+  for (const auto& [way, open] : ways) {
+    CAPTURE(way);
+    open();
+    rig.look_until("it is there", [](const Sight& now) { return now.says("Switch the force off, always"); });
+    rig.click("Keys and mouse/Close");
+    rig.look_until("it is gone", [](const Sight& now) { return !now.says("Switch the force off, always"); });
+  }
 }
 
 TEST_CASE("the scene says why no wall pushes back, and has the button for it") {
@@ -188,30 +194,35 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   rig.click("recording/Stop recording");
   rig.look_until("it is complete", [](const Sight& now) { return now.says("push.h5 is complete"); });
 
-  rig.switch_force_on();
-  rig.click("recording/Replay the last one");
-  SUBCASE("a STOP is no answer") {
-    rig.look_until("it asks", [](const Sight& now) { return now.has("force before replay/Cancel"); });
-    rig.click("status/STOP");
-    rig.look_until("the force is off", force_is_off);
+  const auto asks = [](const Sight& now) { return now.has("force before replay/Cancel"); };
+  const auto ask_with_force = [&] {
+    rig.switch_force_on();
+    rig.click("recording/Replay the last one");
+    rig.look_until("it asks", asks);
+  };
+  const auto check_no_replay = [&] {
     rig.control.run(0.1);  // in which the replay would begin
     rig.control.resume();
     CHECK_FALSE(rig.look().says("REPLAY"));
-    return;
-  }
-  SUBCASE("Escape is no") {
-    rig.look_until("it asks", [](const Sight& now) { return now.has("force before replay/Cancel"); });
-    rig.press_key("Escape");
-    rig.look_until("the force is off", force_is_off);
-    CHECK_FALSE(rig.look().has("force before replay/Cancel"));
-    CHECK_FALSE(rig.look().says("REPLAY"));
-    return;
-  }
-  SUBCASE("the buttons") {}
+  };
+  ask_with_force();
+  rig.click("status/STOP");  // is no answer
+  rig.look_until("the force is off", force_is_off);
+  check_no_replay();
+  CHECK(asks(rig.look()));
   rig.click("force before replay/Cancel");
-  rig.look_until("the question is gone", [](const Sight& now) { return !now.has("force before replay/Cancel"); });
+
+  ask_with_force();
+  rig.press_key("Escape");  // is no
+  rig.look_until("the force is off", force_is_off);
+  CHECK_FALSE(asks(rig.look()));
+  check_no_replay();
+
+  ask_with_force();
+  rig.click("force before replay/Cancel");
+  rig.look_until("the question is gone", [&](const Sight& now) { return !asks(now); });
+  check_no_replay();
   CHECK(rig.look().state() == "active");
-  CHECK_FALSE(rig.look().says("REPLAY"));
 
   rig.click("recording/Replay the last one");
   rig.click("force before replay/Switch off and replay");
