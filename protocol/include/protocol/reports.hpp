@@ -26,8 +26,13 @@ namespace inkwell::protocol {
 
 static_assert(std::endian::native == std::endian::little, "the structures go over the wire as they lie in memory");
 
+/// By how many versions this build is ahead of the tree; a test's firmware is (tests/target/next_protocol).
+#ifndef INKWELL_PROTOCOL_VERSIONS_AHEAD
+#define INKWELL_PROTOCOL_VERSIONS_AHEAD 0
+#endif
+
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 8;
+inline constexpr std::uint16_t protocol_version = 8 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
