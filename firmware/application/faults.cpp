@@ -2,7 +2,7 @@
 #include <drivers/bridges_off.hpp>
 #include <drivers/crash_record.hpp>
 #include <drivers/system.hpp>
-#include <registers/processor.hpp>
+#include <registers/peripherals.hpp>
 
 #include "handlers.hpp"
 #include "memory.hpp"

@@ -3,8 +3,7 @@
 #include <cstring>
 
 #include <drivers/boot_loader.hpp>
-#include <registers/clock.hpp>
-#include <registers/processor.hpp>
+#include <registers/peripherals.hpp>
 
 #include "handlers.hpp"
 #include "memory.hpp"

@@ -5,8 +5,7 @@
 #include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
 #include <placement/interrupt.hpp>
-#include <registers/analog_converter.hpp>
-#include <registers/direct_memory_access.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 namespace {

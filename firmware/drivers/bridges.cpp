@@ -7,7 +7,7 @@
 #include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
 #include <placement/interrupt.hpp>
-#include <registers/processor.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 namespace {

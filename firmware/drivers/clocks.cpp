@@ -2,7 +2,7 @@
 
 #include <board/board.hpp>
 #include <drivers/cycle_counter.hpp>
-#include <registers/clock.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 namespace {

@@ -3,7 +3,7 @@
 #include <drivers/cycle_counter.hpp>
 #include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
-#include <registers/serial_port.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 namespace {

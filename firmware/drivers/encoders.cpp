@@ -3,7 +3,7 @@
 #include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
 #include <placement/interrupt.hpp>
-#include <registers/timer.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 namespace {

@@ -2,8 +2,7 @@
 
 #include <board/board.hpp>
 #include <drivers/cycle_counter.hpp>
-#include <registers/processor.hpp>
-#include <registers/watchdog.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 namespace {

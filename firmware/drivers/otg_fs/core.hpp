@@ -7,7 +7,7 @@
 #include <drivers/interrupts.hpp>
 #include <drivers/otg_fs.hpp>
 #include <drivers/pins.hpp>
-#include <registers/otg_fs.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

@@ -2,8 +2,7 @@
 
 #include <board/board.hpp>
 #include <drivers/cycle_counter.hpp>
-#include <registers/otg_fs.hpp>
-#include <registers/timer.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include <drivers/cycle_counter.hpp>
-#include <registers/otg_fs.hpp>
+#include <registers/peripherals.hpp>
 
 #include "core.hpp"
 #include "fifo_memory.hpp"

@@ -5,7 +5,7 @@
 #include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
 #include <placement/interrupt.hpp>
-#include <registers/otg_fs.hpp>
+#include <registers/peripherals.hpp>
 
 #include "core.hpp"
 #include "fifo_memory.hpp"

@@ -11,8 +11,7 @@
 #include <cstdint>
 
 #include <drivers/claims.hpp>
-#include <registers/analog_converter.hpp>
-#include <registers/direct_memory_access.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <board/board.hpp>
-#include <registers/general_purpose_io.hpp>
-#include <registers/timer.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

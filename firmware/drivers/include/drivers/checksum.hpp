@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include <drivers/claims.hpp>
-#include <registers/checksum.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

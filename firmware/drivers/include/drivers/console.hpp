@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include <drivers/claims.hpp>
-#include <registers/serial_port.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include <registers/processor.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

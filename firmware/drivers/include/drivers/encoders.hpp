@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include <drivers/claims.hpp>
-#include <registers/timer.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

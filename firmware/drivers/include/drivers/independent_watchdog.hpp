@@ -2,7 +2,7 @@
 #pragma once
 
 #include <drivers/claims.hpp>
-#include <registers/watchdog.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

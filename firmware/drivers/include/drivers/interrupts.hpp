@@ -2,7 +2,7 @@
 #pragma once
 
 #include <drivers/claims.hpp>
-#include <registers/processor.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

@@ -2,13 +2,7 @@
 #pragma once
 
 #include <drivers/claims.hpp>
-#include <registers/analog_converter.hpp>
-#include <registers/checksum.hpp>
-#include <registers/clock.hpp>
-#include <registers/direct_memory_access.hpp>
-#include <registers/otg_fs.hpp>
-#include <registers/serial_port.hpp>
-#include <registers/timer.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

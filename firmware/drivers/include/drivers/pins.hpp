@@ -6,8 +6,7 @@
 
 #include <board/board.hpp>
 #include <drivers/claims.hpp>
-#include <registers/clock.hpp>
-#include <registers/general_purpose_io.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

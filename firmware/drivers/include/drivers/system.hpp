@@ -5,8 +5,7 @@
 #include <cstdint>
 
 #include <drivers/interrupts.hpp>
-#include <registers/clock.hpp>
-#include <registers/processor.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 

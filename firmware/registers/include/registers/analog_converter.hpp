@@ -45,9 +45,6 @@ struct AnalogConverter {
   };
   struct DR : Register<base + 0x4C> {};
 };
-using ADC1 = AnalogConverter<0x40012000>;
-using ADC2 = AnalogConverter<0x40012100>;
-using ADC3 = AnalogConverter<0x40012200>;
 
 template <std::uint32_t base>
 struct AnalogConverterCommon {
@@ -55,6 +52,5 @@ struct AnalogConverterCommon {
     using ADCPRE = Field<CCR, 16, 2>;
   };
 };
-using ADC_COMMON = AnalogConverterCommon<0x40012300>;
 
 }  // namespace inkwell::registers

@@ -12,6 +12,5 @@ struct ChecksumUnit {
     using RESET = Field<CR, 0, 1>;
   };
 };
-using CRC = ChecksumUnit<0x40023000>;
 
 }  // namespace inkwell::registers

@@ -60,7 +60,6 @@ struct ResetAndClockControl {
     using IWDGRSTF = Field<CSR, 29, 1>;
   };
 };
-using RCC = ResetAndClockControl<0x40023800>;
 
 template <std::uint32_t base>
 struct PowerControl {
@@ -68,7 +67,6 @@ struct PowerControl {
     using VOS = Field<CR, 14, 1>;
   };
 };
-using PWR = PowerControl<0x40007000>;
 
 template <std::uint32_t base>
 struct FlashInterface {
@@ -79,6 +77,5 @@ struct FlashInterface {
     using DCEN = Field<ACR, 10, 1>;
   };
 };
-using FLASH = FlashInterface<0x40023C00>;
 
 }  // namespace inkwell::registers

@@ -30,6 +30,5 @@ struct DirectMemoryAccess {
   struct S0PAR : Register<base + 0x18> {};
   struct S0M0AR : Register<base + 0x1C> {};
 };
-using DMA2 = DirectMemoryAccess<0x40026400>;
 
 }  // namespace inkwell::registers

@@ -15,8 +15,5 @@ struct GeneralPurposeIo {
   struct AFRL : Register<base + 0x20> {};
   struct AFRH : Register<base + 0x24> {};
 };
-using GPIOA = GeneralPurposeIo<0x40020000>;
-using GPIOB = GeneralPurposeIo<0x40020400>;
-using GPIOC = GeneralPurposeIo<0x40020800>;
 
 }  // namespace inkwell::registers

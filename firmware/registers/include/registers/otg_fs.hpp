@@ -67,7 +67,6 @@ struct UsbGlobal {
     using INEPTXFD = Field<DIEPTXF3, 16, 16>;
   };
 };
-using OTG_FS_GLOBAL = UsbGlobal<0x50000000>;
 
 template <std::uint32_t base>
 struct UsbDevice {
@@ -135,13 +134,11 @@ struct UsbDevice {
     using STUPCNT = Field<DOEPTSIZ, 29, 2>;
   };
 };
-using OTG_FS_DEVICE = UsbDevice<0x50000800>;
 
 template <std::uint32_t base>
 struct UsbPower {
   struct PCGCCTL : Register<base + 0x00> {};
 };
-using OTG_FS_PWRCLK = UsbPower<0x50000E00>;
 
 /// Windows into the FIFO memory: a write fills the transmit FIFO of that endpoint, a read of any empties the
 /// receive FIFO.
@@ -149,6 +146,5 @@ template <std::uint32_t base>
 struct UsbFifo {
   struct DFIFO : RegisterArray<base + 0x0000, 0x1000, 4> {};
 };
-using OTG_FS_FIFO = UsbFifo<0x50001000>;
 
 }  // namespace inkwell::registers

@@ -17,7 +17,6 @@ struct SystemControlBlock {
   struct HFSR : Register<base + 0x2C> {};
   struct BFAR : Register<base + 0x38> {};
 };
-using SCB = SystemControlBlock<0xE000ED00>;
 
 template <std::uint32_t base>
 struct CoprocessorAccess {
@@ -25,7 +24,6 @@ struct CoprocessorAccess {
     using CP = Field<CPACR, 20, 4>;
   };
 };
-using FPU_CPACR = CoprocessorAccess<0xE000ED88>;
 
 template <std::uint32_t base>
 struct NestedVectoredInterruptController {
@@ -33,7 +31,6 @@ struct NestedVectoredInterruptController {
   struct ICER : RegisterArray<base + 0x080, 4, 3> {};
   struct IPR : RegisterArray<base + 0x300, 1, 82, std::uint8_t> {};
 };
-using NVIC = NestedVectoredInterruptController<0xE000E100>;
 
 template <std::uint32_t base>
 struct CoreDebug {
@@ -41,7 +38,6 @@ struct CoreDebug {
     using TRCENA = Field<DEMCR, 24, 1>;
   };
 };
-using CORE_DEBUG = CoreDebug<0xE000EDF0>;
 
 template <std::uint32_t base>
 struct DataWatchpointAndTrace {
@@ -50,7 +46,6 @@ struct DataWatchpointAndTrace {
   };
   struct CYCCNT : Register<base + 0x04> {};
 };
-using DWT = DataWatchpointAndTrace<0xE0001000>;
 
 template <std::uint32_t base>
 struct DebugSupport {
@@ -62,12 +57,10 @@ struct DebugSupport {
     using DBG_TIM8_STOP = Field<DBGMCU_APB2_FZ, 1, 1>;
   };
 };
-using DBG = DebugSupport<0xE0042000>;
 
 template <std::uint32_t base>
 struct DeviceSignature {
   struct U_ID : RegisterArray<base + 0x00, 4, 3> {};
 };
-using SIGNATURE = DeviceSignature<0x1FFF7A10>;
 
 }  // namespace inkwell::registers

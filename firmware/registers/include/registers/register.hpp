@@ -1,7 +1,7 @@
 // Registers and fields as types: an address is a template argument, so an access costs what a store costs.
 //
 // Headers in this folder keep one form. tools/check_registers.py compares what the compiler makes of it with the
-// manufacturer's description of the chip; a peripheral's alias stands in one line with its address, to be found:
+// manufacturer's description of the chip:
 //
 //   template <std::uint32_t base>
 //   struct Timer {
@@ -10,7 +10,8 @@
 //     };
 //     struct CNT : Register<base + 0x24> {};
 //   };
-//   using TIM1 = Timer<0x40010000>;
+//
+// and in peripherals.hpp the row X(TIM1, Timer, 0x40010000).
 //
 // Names are those of the reference manual, so that they can be looked up.
 #pragma once

@@ -17,6 +17,5 @@ struct SerialPort {
     using UE = Field<CR1, 13, 1>;
   };
 };
-using USART2 = SerialPort<0x40004400>;
 
 }  // namespace inkwell::registers

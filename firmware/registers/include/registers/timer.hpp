@@ -59,8 +59,6 @@ struct AdvancedTimer {
     using MOE = Field<BDTR, 15, 1>;
   };
 };
-using TIM1 = AdvancedTimer<0x40010000>;
-using TIM8 = AdvancedTimer<0x40010400>;
 
 template <std::uint32_t base>
 struct EncoderTimer {
@@ -79,9 +77,6 @@ struct EncoderTimer {
   struct CNT : Register<base + 0x24> {};
   struct ARR : Register<base + 0x2C> {};
 };
-using TIM3 = EncoderTimer<0x40000400>;
-using TIM4 = EncoderTimer<0x40000800>;
-using TIM5 = EncoderTimer<0x40000C00>;
 
 /// A timer that captures its count at a trigger.
 template <std::uint32_t base>
@@ -108,6 +103,5 @@ struct CaptureTimer {
     using ITR1_RMP = Field<OR, 10, 2>;
   };
 };
-using TIM2 = CaptureTimer<0x40000000>;
 
 }  // namespace inkwell::registers

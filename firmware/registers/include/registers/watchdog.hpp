@@ -16,6 +16,5 @@ struct IndependentWatchdog {
   };
   struct SR : Register<base + 0x0C> {};
 };
-using IWDG = IndependentWatchdog<0x40003000>;
 
 }  // namespace inkwell::registers

@@ -18,8 +18,7 @@
 
 #include <drivers/claims.hpp>
 #include <drivers/frame_clock.hpp>
-#include <registers/otg_fs.hpp>
-#include <registers/timer.hpp>
+#include <registers/peripherals.hpp>
 #include <usb/port.hpp>
 
 namespace inkwell::drivers {

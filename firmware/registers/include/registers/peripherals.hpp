@@ -1,0 +1,56 @@
+// The peripherals of the chip and of its core of which something is used.
+#pragma once
+
+#include <registers/analog_converter.hpp>
+#include <registers/checksum.hpp>
+#include <registers/clock.hpp>
+#include <registers/direct_memory_access.hpp>
+#include <registers/general_purpose_io.hpp>
+#include <registers/otg_fs.hpp>
+#include <registers/processor.hpp>
+#include <registers/serial_port.hpp>
+#include <registers/timer.hpp>
+#include <registers/watchdog.hpp>
+
+/// X(name, map of its registers, base). RM0090, "Memory map"; those of the core by the ARMv7-M Architecture Reference
+/// Manual.
+#define INKWELL_PERIPHERALS(X)                           \
+  X(SIGNATURE, DeviceSignature, 0x1FFF7A10)              \
+  X(TIM2, CaptureTimer, 0x40000000)                      \
+  X(TIM3, EncoderTimer, 0x40000400)                      \
+  X(TIM4, EncoderTimer, 0x40000800)                      \
+  X(TIM5, EncoderTimer, 0x40000C00)                      \
+  X(IWDG, IndependentWatchdog, 0x40003000)               \
+  X(USART2, SerialPort, 0x40004400)                      \
+  X(PWR, PowerControl, 0x40007000)                       \
+  X(TIM1, AdvancedTimer, 0x40010000)                     \
+  X(TIM8, AdvancedTimer, 0x40010400)                     \
+  X(ADC1, AnalogConverter, 0x40012000)                   \
+  X(ADC2, AnalogConverter, 0x40012100)                   \
+  X(ADC3, AnalogConverter, 0x40012200)                   \
+  X(ADC_COMMON, AnalogConverterCommon, 0x40012300)       \
+  X(GPIOA, GeneralPurposeIo, 0x40020000)                 \
+  X(GPIOB, GeneralPurposeIo, 0x40020400)                 \
+  X(GPIOC, GeneralPurposeIo, 0x40020800)                 \
+  X(CRC, ChecksumUnit, 0x40023000)                       \
+  X(RCC, ResetAndClockControl, 0x40023800)               \
+  X(FLASH, FlashInterface, 0x40023C00)                   \
+  X(DMA2, DirectMemoryAccess, 0x40026400)                \
+  X(OTG_FS_GLOBAL, UsbGlobal, 0x50000000)                \
+  X(OTG_FS_DEVICE, UsbDevice, 0x50000800)                \
+  X(OTG_FS_PWRCLK, UsbPower, 0x50000E00)                 \
+  X(OTG_FS_FIFO, UsbFifo, 0x50001000)                    \
+  X(DWT, DataWatchpointAndTrace, 0xE0001000)             \
+  X(NVIC, NestedVectoredInterruptController, 0xE000E100) \
+  X(SCB, SystemControlBlock, 0xE000ED00)                 \
+  X(FPU_CPACR, CoprocessorAccess, 0xE000ED88)            \
+  X(CORE_DEBUG, CoreDebug, 0xE000EDF0)                   \
+  X(DBG, DebugSupport, 0xE0042000)
+
+namespace inkwell::registers {
+
+#define X(name, Map, base) using name = Map<base>;
+INKWELL_PERIPHERALS(X)
+#undef X
+
+}  // namespace inkwell::registers
