@@ -10,11 +10,11 @@
 namespace inkwell::drivers {
 namespace {
 
-using registers::ADC1;
-using registers::ADC2;
-using registers::ADC3;
-using registers::ADC_COMMON;
-using registers::DMA2;
+using ADC1 = RegistersOf<AnalogInputs, registers::ADC1>;
+using ADC2 = RegistersOf<AnalogInputs, registers::ADC2>;
+using ADC3 = RegistersOf<AnalogInputs, registers::ADC3>;
+using ADC_COMMON = RegistersOf<AnalogInputs, registers::ADC_COMMON>;
+using DMA2 = RegistersOfStream<AnalogInputs, registers::DMA2, 0>;
 
 /// JEXTSEL and JEXTEN (RM0090, ADC_CR2).
 constexpr std::uint32_t trigger_tim1_trgo = 0b0001, rising_edge = 0b01;
@@ -91,8 +91,8 @@ constexpr std::uint32_t stabilisation_cycles = board::processor_Hz / 100'000;
 }  // namespace
 
 void AnalogInputs::start_clocks() {
-  start_clock_of_stream<AnalogInputs, DMA2, 0>();
-  start_clocks_of<AnalogInputs, ADC1, ADC2, ADC3>();
+  start_clock_of_stream<AnalogInputs, registers::DMA2, 0>();
+  start_clocks_of<AnalogInputs, registers::ADC1, registers::ADC2, registers::ADC3>();
 }
 
 void AnalogInputs::start() {

@@ -12,8 +12,8 @@
 namespace inkwell::drivers {
 namespace {
 
-using registers::TIM1;
-using registers::TIM8;
+using TIM1 = RegistersOf<Bridges, registers::TIM1>;
+using TIM8 = RegistersOf<Bridges, registers::TIM8>;
 using Enable = DigitalOutput<Bridges, board::bridge_enable>;
 
 /// Master mode of TIM1: what its trigger output shows (RM0090, TIMx_CR2, MMS).
@@ -85,7 +85,7 @@ void connect_pins() {
 
 void Bridges::start() {
   Enable::start();
-  start_clocks_of<Bridges, TIM1, TIM8>();
+  start_clocks_of<Bridges, registers::TIM1, registers::TIM8>();
   // A debugger that halts the processor stops the timers: a halt must not leave the last duty on the motors for good.
   // That the outputs go idle as well is to be seen on the bench (boards/omni_driver/README.md, "First power-up").
   using Freeze = registers::DBG::DBGMCU_APB2_FZ;

@@ -4,10 +4,10 @@
 
 namespace inkwell::drivers {
 
-using registers::CRC;
+using CRC = RegistersOf<Checksum, registers::CRC>;
 
 void Checksum::start() {
-  start_clocks_of<Checksum, CRC>();
+  start_clocks_of<Checksum, registers::CRC>();
   begin();
 }
 

@@ -8,7 +8,7 @@
 namespace inkwell::drivers {
 namespace {
 
-using registers::USART2;
+using USART2 = RegistersOf<Console, registers::USART2>;
 
 constexpr std::uint32_t baud_Hz = 115'200;
 /// Twice what a character of ten bits takes, so that a port that does not run cannot stop the board.
@@ -22,7 +22,7 @@ void write_character(char character) {
 }  // namespace
 
 void Console::start(std::uint32_t bus_Hz) {
-  start_clocks_of<Console, USART2>();
+  start_clocks_of<Console, registers::USART2>();
   connect<Console, board::console_transmit>(Pull::up, Speed::low);
   USART2::BRR::write((bus_Hz + baud_Hz / 2) / baud_Hz);
   USART2::CR1::write(USART2::CR1::UE(1), USART2::CR1::TE(1));

@@ -8,9 +8,9 @@
 namespace inkwell::drivers {
 namespace {
 
-using registers::TIM3;
-using registers::TIM4;
-using registers::TIM5;
+using TIM3 = RegistersOf<Encoders, registers::TIM3>;
+using TIM4 = RegistersOf<Encoders, registers::TIM4>;
+using TIM5 = RegistersOf<Encoders, registers::TIM5>;
 
 static_assert(board::encoders[0].timer == 5 && board::encoders[1].timer == 3 && board::encoders[2].timer == 4);
 
@@ -37,7 +37,7 @@ void connect_encoder() {
 }  // namespace
 
 void Encoders::start() {
-  start_clocks_of<Encoders, TIM3, TIM4, TIM5>();
+  start_clocks_of<Encoders, registers::TIM3, registers::TIM4, registers::TIM5>();
   connect_encoder<board::encoders[0]>();
   connect_encoder<board::encoders[1]>();
   connect_encoder<board::encoders[2]>();

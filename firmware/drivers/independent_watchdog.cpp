@@ -7,7 +7,7 @@
 namespace inkwell::drivers {
 namespace {
 
-using registers::IWDG;
+using IWDG = RegistersOf<IndependentWatchdog, registers::IWDG>;
 
 constexpr std::uint32_t key_start = 0xCCCC, key_unlock = 0x5555, key_feed = 0xAAAA;
 constexpr std::uint32_t oscillator_Hz = 32'000;  // 17 to 47 kHz by the data sheet

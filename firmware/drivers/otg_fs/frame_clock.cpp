@@ -4,11 +4,13 @@
 #include <drivers/cycle_counter.hpp>
 #include <registers/peripherals.hpp>
 
+#include "core.hpp"
+
 namespace inkwell::drivers {
 
 namespace {
 
-using registers::TIM2;
+using TIM2 = RegistersOf<OtgFs, registers::TIM2>;
 
 constexpr std::uint32_t cycles_per_count = board::processor_Hz / board::timer_apb1_Hz;
 static_assert(cycles_per_count * board::timer_apb1_Hz == board::processor_Hz);
@@ -39,7 +41,7 @@ void FrameClock::note_capture() {
   count_ += is_known_ ? (passed + nominal_length / 2) / nominal_length : 1;
   if (is_known_ && passed - (nominal_length - length_tolerance) <= 2 * length_tolerance) length_ = passed;
   captured_ = captured;
-  number_ = static_cast<std::uint16_t>(registers::OTG_FS_DEVICE::DSTS::FNSOF::read());
+  number_ = static_cast<std::uint16_t>(Device::DSTS::FNSOF::read());
   is_known_ = true;
 }
 

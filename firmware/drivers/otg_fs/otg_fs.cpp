@@ -14,7 +14,7 @@ namespace inkwell::drivers {
 
 namespace {
 
-using Fifo = registers::OTG_FS_FIFO;
+using Fifo = RegistersOf<OtgFs, registers::OTG_FS_FIFO>;
 using usb::Event;
 using usb::packet_size_maximum;
 

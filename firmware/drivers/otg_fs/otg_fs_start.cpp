@@ -36,7 +36,7 @@ bool OtgFs::start() {
   connect<OtgFs, board::usb_minus>(Pull::none, Speed::high);
   connect<OtgFs, board::usb_plus>(Pull::none, Speed::high);
   UsbSupply::start(Pull::none);
-  start_clocks_of<OtgFs, Core, registers::TIM2>();
+  start_clocks_of<OtgFs, registers::OTG_FS_GLOBAL, registers::TIM2>();
   frame_clock_.start();
 
   Core::GAHBCFG::modify(Core::GAHBCFG::GINT(0));
@@ -50,7 +50,7 @@ bool OtgFs::start() {
   // disconnection comes first, and follow_cable() ends it.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
-  registers::OTG_FS_PWRCLK::PCGCCTL::write(0);  // the PHY's clock is never stopped
+  Power::PCGCCTL::write(0);  // the PHY's clock is never stopped
   set_address(0);
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);

@@ -5,12 +5,14 @@
 namespace inkwell::registers {
 
 #define X(name, Map, base) template struct Map<base>;
-INKWELL_PERIPHERALS(X)
+INKWELL_CLAIMABLE_PERIPHERALS(X)
+INKWELL_SHARED_PERIPHERALS(X)
 #undef X
 
 struct Peripherals {
 #define X(name, Map, base) using name = Map<base>;
-  INKWELL_PERIPHERALS(X)
+  INKWELL_CLAIMABLE_PERIPHERALS(X)
+  INKWELL_SHARED_PERIPHERALS(X)
 #undef X
 } peripherals;
 

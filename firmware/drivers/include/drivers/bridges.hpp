@@ -50,7 +50,7 @@ class Bridges {
 
   /// An update came since the last call of begin_period(): called at the end of the control interrupt, it tells
   /// that the interrupt took longer than its period.
-  bool period_is_over() const { return registers::TIM1::SR::UIF::is_set(); }
+  bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
   void begin_period();
 
   /// Waits for the next update, at most two control periods. False if one of the timers does not run.

@@ -2,14 +2,18 @@
 #pragma once
 
 #include <board/board.hpp>
+#include <drivers/bridges.hpp>
 #include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 
+using LegsA = RegistersOf<Bridges, registers::TIM1>;
+using LegsB = RegistersOf<Bridges, registers::TIM8>;
+
 /// TIMx_BDTR while the bridges are off. Idle outputs are driven low (OSSI, OSSR), the break input is active low,
 /// and lock level 1 keeps a stray store from taking the break input away.
-inline constexpr std::uint32_t outputs_off = registers::TIM1::BDTR::LOCK(1).bits | registers::TIM1::BDTR::OSSI(1).bits |
-                                             registers::TIM1::BDTR::OSSR(1).bits | registers::TIM1::BDTR::BKE(1).bits;
+inline constexpr std::uint32_t outputs_off =
+    LegsA::BDTR::LOCK(1).bits | LegsA::BDTR::OSSI(1).bits | LegsA::BDTR::OSSR(1).bits | LegsA::BDTR::BKE(1).bits;
 
 struct Store {
   std::uint32_t address;
@@ -18,7 +22,7 @@ struct Store {
 
 static_assert(board::bridge_enable.port == 'B');
 inline constexpr Store bridge_enable_low{registers::GPIOB::BSRR::address, 1u << (board::bridge_enable.number + 16)};
-inline constexpr Store legs_a_off{registers::TIM1::BDTR::address, outputs_off};
-inline constexpr Store legs_b_off{registers::TIM8::BDTR::address, outputs_off};
+inline constexpr Store legs_a_off{LegsA::BDTR::address, outputs_off};
+inline constexpr Store legs_b_off{LegsB::BDTR::address, outputs_off};
 
 }  // namespace inkwell::drivers

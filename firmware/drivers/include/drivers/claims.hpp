@@ -4,8 +4,8 @@
 //    public:
 //     static constexpr std::array claims{peripheral<registers::TIM3>(), pin(board::encoders[1].a), ...};
 //
-// A driver starts a peripheral's clock, sets a pin up and enables an interrupt only if it claims them, and the
-// application's PartsList does not compile with two drivers that claim the same.
+// A driver has a peripheral's registers, starts its clock, sets a pin up and enables an interrupt only if it claims
+// them, and the application's PartsList does not compile with two drivers that claim the same.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include <board/board.hpp>
+#include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
 
@@ -28,10 +29,14 @@ struct Claim {
 
 namespace detail {
 
+/// What stands behind a peripheral's name.
 template <class Peripheral>
-struct BaseOf;
-template <template <std::uint32_t> class Registers, std::uint32_t base>
-struct BaseOf<Registers<base>> : std::integral_constant<std::uint32_t, base> {};
+struct Behind;
+template <template <std::uint32_t> class Map, std::uint32_t base_>
+struct Behind<registers::Claimable<Map, base_>> {
+  static constexpr std::uint32_t base = base_;
+  using Registers = Map<base_>;
+};
 
 template <class Claims>
 constexpr bool holds(const Claims& claims, const Claim& wanted) {
@@ -60,11 +65,11 @@ struct AllApart<First, Rest...> : std::bool_constant<(Apart<First, Rest>::value 
 
 template <class Peripheral>
 constexpr Claim peripheral() {
-  return {Claim::Kind::peripheral, detail::BaseOf<Peripheral>::value};
+  return {Claim::Kind::peripheral, detail::Behind<Peripheral>::base};
 }
 template <class Controller, std::uint32_t number>
 constexpr Claim stream() {
-  return {Claim::Kind::stream, detail::BaseOf<Controller>::value + number};
+  return {Claim::Kind::stream, detail::Behind<Controller>::base + number};
 }
 constexpr Claim pin(const board::Pin& pin) {
   return {Claim::Kind::pin, static_cast<std::uint32_t>(pin.port) << 8 | pin.number};
@@ -74,9 +79,26 @@ constexpr Claim pin(const board::AnalogInput& input) { return pin(input.pin); }
 constexpr Claim interrupt(Interrupt line) { return {Claim::Kind::interrupt, static_cast<std::uint32_t>(line)}; }
 
 template <class Driver, Claim claim>
-constexpr void require_claim() {
+constexpr bool require_claim() {
   static_assert(detail::holds(Driver::claims, claim), "a driver uses what it does not claim");
+  return true;
 }
+
+namespace detail {
+
+template <class Driver, class Peripheral, Claim claim>
+struct Claimed : Behind<Peripheral> {
+  static_assert(require_claim<Driver, claim>());
+};
+
+}  // namespace detail
+
+/// The registers of a driver's own peripheral.
+template <class Driver, class Peripheral>
+using RegistersOf = typename detail::Claimed<Driver, Peripheral, peripheral<Peripheral>()>::Registers;
+/// Those of the controller of its own stream.
+template <class Driver, class Controller, std::uint32_t number>
+using RegistersOfStream = typename detail::Claimed<Driver, Controller, stream<Controller, number>()>::Registers;
 
 /// All drivers of an application.
 template <class... Drivers>

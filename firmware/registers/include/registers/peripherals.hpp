@@ -1,4 +1,5 @@
-// The peripherals of the chip and of its core of which something is used.
+// The peripherals of the chip and of its core of which something is used: each with the map of its registers and its
+// base (RM0090, "Memory map"; for the core the ARMv7-M Architecture Reference Manual).
 #pragma once
 
 #include <registers/analog_converter.hpp>
@@ -12,34 +13,36 @@
 #include <registers/timer.hpp>
 #include <registers/watchdog.hpp>
 
-/// X(name, map of its registers, base). RM0090, "Memory map"; those of the core by the ARMv7-M Architecture Reference
-/// Manual.
-#define INKWELL_PERIPHERALS(X)                           \
+/// X(name, map, base). Each of these is one driver's own: its registers are drivers::RegistersOf, for who claims it.
+#define INKWELL_CLAIMABLE_PERIPHERALS(X)           \
+  X(TIM2, CaptureTimer, 0x40000000)                \
+  X(TIM3, EncoderTimer, 0x40000400)                \
+  X(TIM4, EncoderTimer, 0x40000800)                \
+  X(TIM5, EncoderTimer, 0x40000C00)                \
+  X(IWDG, IndependentWatchdog, 0x40003000)         \
+  X(USART2, SerialPort, 0x40004400)                \
+  X(TIM1, AdvancedTimer, 0x40010000)               \
+  X(TIM8, AdvancedTimer, 0x40010400)               \
+  X(ADC1, AnalogConverter, 0x40012000)             \
+  X(ADC2, AnalogConverter, 0x40012100)             \
+  X(ADC3, AnalogConverter, 0x40012200)             \
+  X(ADC_COMMON, AnalogConverterCommon, 0x40012300) \
+  X(CRC, ChecksumUnit, 0x40023000)                 \
+  X(DMA2, DirectMemoryAccess, 0x40026400)          \
+  X(OTG_FS_GLOBAL, UsbGlobal, 0x50000000)          \
+  X(OTG_FS_DEVICE, UsbDevice, 0x50000800)          \
+  X(OTG_FS_PWRCLK, UsbPower, 0x50000E00)           \
+  X(OTG_FS_FIFO, UsbFifo, 0x50001000)
+
+/// X(name, map, base). These are everyone's: `registers::RCC::CR::read()`. Of a port the pins are claimed.
+#define INKWELL_SHARED_PERIPHERALS(X)                    \
   X(SIGNATURE, DeviceSignature, 0x1FFF7A10)              \
-  X(TIM2, CaptureTimer, 0x40000000)                      \
-  X(TIM3, EncoderTimer, 0x40000400)                      \
-  X(TIM4, EncoderTimer, 0x40000800)                      \
-  X(TIM5, EncoderTimer, 0x40000C00)                      \
-  X(IWDG, IndependentWatchdog, 0x40003000)               \
-  X(USART2, SerialPort, 0x40004400)                      \
   X(PWR, PowerControl, 0x40007000)                       \
-  X(TIM1, AdvancedTimer, 0x40010000)                     \
-  X(TIM8, AdvancedTimer, 0x40010400)                     \
-  X(ADC1, AnalogConverter, 0x40012000)                   \
-  X(ADC2, AnalogConverter, 0x40012100)                   \
-  X(ADC3, AnalogConverter, 0x40012200)                   \
-  X(ADC_COMMON, AnalogConverterCommon, 0x40012300)       \
   X(GPIOA, GeneralPurposeIo, 0x40020000)                 \
   X(GPIOB, GeneralPurposeIo, 0x40020400)                 \
   X(GPIOC, GeneralPurposeIo, 0x40020800)                 \
-  X(CRC, ChecksumUnit, 0x40023000)                       \
   X(RCC, ResetAndClockControl, 0x40023800)               \
   X(FLASH, FlashInterface, 0x40023C00)                   \
-  X(DMA2, DirectMemoryAccess, 0x40026400)                \
-  X(OTG_FS_GLOBAL, UsbGlobal, 0x50000000)                \
-  X(OTG_FS_DEVICE, UsbDevice, 0x50000800)                \
-  X(OTG_FS_PWRCLK, UsbPower, 0x50000E00)                 \
-  X(OTG_FS_FIFO, UsbFifo, 0x50001000)                    \
   X(DWT, DataWatchpointAndTrace, 0xE0001000)             \
   X(NVIC, NestedVectoredInterruptController, 0xE000E100) \
   X(SCB, SystemControlBlock, 0xE000ED00)                 \
@@ -49,8 +52,15 @@
 
 namespace inkwell::registers {
 
+/// Names a peripheral and gives none of its registers.
+template <template <std::uint32_t> class Map, std::uint32_t base>
+struct Claimable {};
+
+#define X(name, Map, base) using name = Claimable<Map, base>;
+INKWELL_CLAIMABLE_PERIPHERALS(X)
+#undef X
 #define X(name, Map, base) using name = Map<base>;
-INKWELL_PERIPHERALS(X)
+INKWELL_SHARED_PERIPHERALS(X)
 #undef X
 
 }  // namespace inkwell::registers
