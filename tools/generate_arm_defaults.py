@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes <arm/defaults.hpp> from an arm description: its rows of the parameter table and its motor as constants.
+"""Prints <arm/defaults.hpp> from an arm description: its rows of the parameter table and its motor as constants.
 
-usage: generate_arm_defaults.py ARM.toml OUTPUT.hpp
+usage: generate_arm_defaults.py ARM.toml
 """
 import pathlib
 import sys
@@ -9,9 +9,9 @@ import tomllib
 
 
 def main() -> None:
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 2:
         sys.exit(__doc__)
-    source, output = map(pathlib.Path, sys.argv[1:])
+    source = pathlib.Path(sys.argv[1])
     try:
         description = tomllib.loads(source.read_text())
     except (OSError, tomllib.TOMLDecodeError) as error:
@@ -37,9 +37,7 @@ def main() -> None:
                 sys.exit(f"{source}: {key} = {value!r} is not a number.")
             lines.append(f"inline constexpr float {key} = {float(value)!r}f;")
         lines += ["", f"}}  // namespace inkwell::{namespace}"]
-    lines.append("")
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text("\n".join(lines))
+    print("\n".join(lines))
 
 
 main()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes <timing/cost_rows.hpp> from boards/virtual/timing/costs.toml: its rows as the X-macro INKWELL_COSTS.
+"""Prints <timing/cost_rows.hpp> from boards/virtual/timing/costs.toml: its rows as the X-macro INKWELL_COSTS.
 
-usage: generate_costs.py COSTS.toml OUTPUT.hpp
+usage: generate_costs.py COSTS.toml
 """
 import json
 import pathlib
@@ -10,9 +10,9 @@ import tomllib
 
 
 def main() -> None:
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 2:
         sys.exit(__doc__)
-    source, output = map(pathlib.Path, sys.argv[1:])
+    source = pathlib.Path(sys.argv[1])
     try:
         rows = [
             f"  X({name}, {row['likely']}, {row['conservative']}, {row['source']}, {json.dumps(row['meaning'])})"
@@ -21,9 +21,8 @@ def main() -> None:
     except (OSError, tomllib.TOMLDecodeError, KeyError, TypeError) as error:
         sys.exit(f"{source}: {error!r}. Each row needs likely, conservative, source and meaning.")
     lines = [f"// Made by the build from {source.name}; edit that file instead.", "#pragma once", "",
-             "#define INKWELL_COSTS(X) \\", " \\\n".join(rows), ""]
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text("\n".join(lines))
+             "#define INKWELL_COSTS(X) \\", " \\\n".join(rows)]
+    print("\n".join(lines))
 
 
 main()
