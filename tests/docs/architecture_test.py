@@ -1,9 +1,11 @@
-"""docs/architecture.md names every folder and all that it uses; and the test that says so notices when it does not.
+"""docs/architecture.md names every folder and all that it uses, the README those at the top; and the test that says so
+notices when it does not.
 
     architecture_test.py TARGET_GRAPH...
 """
 
 import pathlib
+import re
 import sys
 import unittest
 
@@ -26,6 +28,12 @@ class Architecture(unittest.TestCase):
         paths = architecture.read_paths(document)
         self.assertEqual([6, 5, 5], [len(path) for path in paths])
         self.assertLessEqual({folder for path in paths for folder in path}, architecture.read_table(document).keys())
+
+    def test_readme_lists_the_top_folders_of_the_table(self):
+        section = (REPOSITORY / "README.md").read_text().split("## How the house is laid out")[1].split("\n## ")[0]
+        table = architecture.read_table((REPOSITORY / "docs/architecture.md").read_text())
+        self.assertEqual(list(dict.fromkeys(folder.split("/")[0] for folder in table)),
+                         re.findall(r"^    (\w+)/ ", section, re.MULTILINE))
 
 
 class Differences(unittest.TestCase):
