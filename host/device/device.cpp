@@ -189,7 +189,7 @@ std::optional<protocol::PoseReport> Device::read_pose(std::chrono::milliseconds 
   protocol::PoseReport pose;
   const auto give_up_at = Clock::now() + timeout;
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(give_up_at - Clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(give_up_at - Clock::now());
     const std::size_t length = implementation_->transport->read_report(writable_bytes(pose), std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     if (length != sizeof pose || pose.report_id != ReportId::pose) continue;
@@ -325,7 +325,7 @@ std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout
   std::array<std::byte, protocol::scope_frame_maximum> frame;
   const auto give_up_at = Clock::now() + timeout;
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(give_up_at - Clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(give_up_at - Clock::now());
     const std::size_t length = implementation_->transport->read_bulk(frame, std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     const std::lock_guard lock(implementation_->scope_mutex);
