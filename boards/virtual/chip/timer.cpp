@@ -24,7 +24,9 @@ void Timer::reset() {
   active_prescaler_ = repetitions_ = count_ = 0;
   down_ = gate_open_ = false;
   for (auto& channel : channels_) channel = Channel{.input = channel.input};
-  if (machine_.timers != nullptr) machine_.timers->set_slave(traits_.number, 0, false);
+  external_ = {.pin = external_.pin, .level = external_.pin, .divided = external_.pin, .filter = external_.filter};
+  edges_ = 0;
+  listen();
   configure_inputs();
   configure_outputs();
   begin_ramp(machine_.timeline.now());
@@ -34,7 +36,7 @@ void Timer::reset() {
 const Clock& Timer::clock() const { return traits_.on_apb2 ? machine_.clocks.timer2 : machine_.clocks.timer1; }
 
 bool Timer::runs() const {
-  if (!enabled() || frozen_ || encoder_mode() || slave_mode() == external_clock) return false;
+  if (!enabled() || frozen_ || counts_edges()) return false;
   return slave_mode() != gated || gate_open_;
 }
 
@@ -181,6 +183,7 @@ void Timer::update_event(bool by_software) {
 void Timer::reinitialise(bool by_software) {
   settle();
   if (centre_aligned()) down_ = false;
+  edges_ = 0;
   update_event(by_software);
   count_ = down_ ? active_reload_ : 0;
   begin_ramp(machine_.timeline.now());
@@ -190,6 +193,9 @@ void Timer::reinitialise(bool by_software) {
 void Timer::count_one(bool down) {
   if (frozen_) return;
   down_ = down;
+  // The prescaler divides these clocks as it does the timer's own.
+  if (edges_++ < active_prescaler_) return;
+  edges_ = 0;
   bool wrapped = false;
   if (down) {
     wrapped = count_ == 0;
@@ -225,7 +231,7 @@ Ticks Timer::update_time() const {
 }
 
 void Timer::plan() {
-  const Ticks input_due = channels_[next_input()].input.next_change();
+  const Ticks input_due = filter_of(next_input()).next_change();
   const Ticks input_wake = inputs_wake() ? input_due : never;
   step_due_ = never;
   if (!runs() || !clock().runs()) return machine_.timeline.set(slot_, input_due, input_wake);

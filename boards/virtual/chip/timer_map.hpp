@@ -75,7 +75,7 @@ inline constexpr TimerRegisters tim;
 inline constexpr Field itr1_remap{"ITR1_RMP", 10, 2};
 inline constexpr std::uint32_t itr1_is_otg_fs_sof = 2;
 /// CCMRx.CCxS: a capture by the internal trigger that SMCR.TS selects.
-inline constexpr std::uint32_t capture_by_trigger = 3;
+inline constexpr std::uint32_t trigger_input = 3;
 
 /// CCMRx.OCxM
 enum OutputMode : std::uint32_t {

@@ -109,6 +109,19 @@ void Timer::capture(unsigned i) {
   if (i == 0 && master_mode() == master_compare_pulse) trigger_out(true, true);
 }
 
+// RM0090, TIMx_CCMR1: ICxPSC. One of 1, 2, 4 or 8 events is a capture.
+void Timer::capture_event(unsigned i) {
+  auto& channel = channels_[i];
+  if (++channel.events < 1u << tim.ccmr1.icpsc.of(ccmr_[i / 2], i % 2)) return;
+  channel.events = 0;
+  capture(i);
+}
+
+void Timer::capture_by_trigger() {
+  for (unsigned i = 0; i < traits_.channels; ++i)
+    if (selection(i) == trigger_input && tim.ccer.cce.in(ccer_, i)) capture_event(i);
+}
+
 void Timer::count_encoder_edge(unsigned changed) {
   // RM0090, table "Counting direction versus encoder signals"; CCxP inverts an input.
   const unsigned mode = slave_mode();
@@ -127,9 +140,10 @@ void Timer::channel_edge(unsigned i) {
     if (target >= traits_.channels || selection(target) != (target == i ? 1u : 2u)) continue;
     if (!tim.ccer.cce.in(ccer_, target)) continue;
     const bool falling = tim.ccer.ccp.in(ccer_, target), both = falling && tim.ccer.ccnp.in(ccer_, target);
-    if (both || high != falling) capture(target);
+    if (both || high != falling) capture_event(target);
   }
   const unsigned source = trigger_source();
+  if (source == input_1_edge && i == 0) capture_by_trigger();
   if (encoder_mode() || slave_mode() == 0) return;
   const bool inverted = tim.ccer.ccp.in(ccer_, i);
   if (source == input_1_edge && i == 0) trigger_in(true, true);
@@ -144,19 +158,26 @@ void Timer::configure_inputs() {
     channels_[i].input.configure(InputFilterSetting::of(filter, tim.cr1.ckd.of(cr1_)), clock(),
                                  machine_.timeline.now());
   }
+  external_.filter.configure(InputFilterSetting::of(tim.smcr.etf.of(smcr_), tim.cr1.ckd.of(cr1_)), clock(),
+                             machine_.timeline.now());
 }
 
 unsigned Timer::next_input() const {
-  unsigned next = 0;
-  for (unsigned i = 1; i < traits_.channels; ++i)
-    if (channels_[i].input.next_change() < channels_[next].input.next_change()) next = i;
+  unsigned next = external_trigger_input;
+  for (unsigned i = 0; i < traits_.channels; ++i)
+    if (channels_[i].input.next_change() < filter_of(next).next_change()) next = i;
   return next;
 }
 
 void Timer::take_input_changes(Ticks until) {
   for (;;) {
     const unsigned i = next_input();
-    if (channels_[i].input.next_change() > until) return;
+    if (filter_of(i).next_change() > until) return;
+    if (i == external_trigger_input) {
+      external_.filter.pass();
+      external_edge();
+      continue;
+    }
     channels_[i].input.pass();
     if (encoder_mode() && i < 2) count_encoder_edge(i);
     channel_edge(i);
@@ -172,11 +193,7 @@ void Timer::input_changed(unsigned line, bool high, Ticks when) {
     configure_outputs();
     return;
   }
-  if (line == external_trigger) {
-    const bool inverted = tim.smcr.etp.in(smcr_);
-    if (trigger_source() == external_input) trigger_in(high != inverted, false);
-    return;
-  }
+  if (line == external_trigger) return drive_external_trigger(high, when);
   if (line >= traits_.channels) return;
   // A sample at the very instant of a change sees what comes after it.
   if (when != 0) take_input_changes(when - 1);
@@ -185,23 +202,51 @@ void Timer::input_changed(unsigned line, bool high, Ticks when) {
 }
 
 void Timer::connect_input(unsigned line, bool high) {
-  if (line == break_input)
+  if (line == break_input) {
     break_input_ = high;
-  else if (line < traits_.channels)
+  } else if (line == external_trigger) {
+    external_.pin = high;
+    external_.level = external_.divided = high != tim.smcr.etp.in(smcr_);
+    external_.filter.connect(external_.level);
+  } else if (line < traits_.channels) {
     channels_[line].input.connect(high);
+  }
+}
+
+// RM0090, TIMx_SMCR: ETP, ETPS, then ETF. How the divider begins is not published; here with its first edge.
+void Timer::drive_external_trigger(bool high, Ticks when) {
+  external_.pin = high;
+  const bool level = high != tim.smcr.etp.in(smcr_);
+  if (level == external_.level) return;
+  external_.level = level;
+  const unsigned prescaler = tim.smcr.etps.of(smcr_);
+  if (prescaler == 0) {
+    external_.divided = level;
+  } else {
+    if (!level || external_.rises++ % (1u << (prescaler - 1)) != 0) return;
+    external_.divided = !external_.divided;
+  }
+  if (when != 0) take_input_changes(when - 1);
+  external_.filter.drive(external_.divided, when);
+  plan();
+}
+
+// ECE is a clock of its own, beside which the slave mode may reset, gate or start the counter.
+void Timer::external_edge() {
+  const bool high = external_.filter.output();
+  if (high && tim.smcr.ece.in(smcr_) && enabled() && (slave_mode() != gated || gate_open_)) count_one(down_);
+  if (trigger_source() == external_input) trigger_in(high, false);
 }
 
 void Timer::internal_trigger(unsigned master, bool level, bool is_pulse) {
-  const unsigned source = trigger_source();
-  if (!traits_.slave || source > 3 || traits_.internal_triggers[source] != master) return;
-  if (traits_.number == 2 && source == 1 && itr1_remap.in(or_)) return;  // not TIM8 then
+  if (master != master_) return;
+  if (level) capture_by_trigger();
   trigger_in(level, is_pulse);
 }
 
 void Timer::usb_start_of_frame() {
   if (itr1_remap.of(or_) != itr1_is_otg_fs_sof || trigger_source() != 1) return;
-  for (unsigned i = 0; i < traits_.channels; ++i)
-    if (selection(i) == capture_by_trigger && tim.ccer.cce.in(ccer_, i)) capture(i);
+  capture_by_trigger();
   trigger_in(true, true);
 }
 
@@ -224,7 +269,7 @@ void Timer::trigger_in(bool level, bool is_pulse) {
       }
       break;
     case external_clock:
-      if (level && enabled()) count_one(down_);
+      if (level && enabled() && !tim.smcr.ece.in(smcr_)) count_one(down_);
       break;
     default: return;
   }

@@ -1,4 +1,6 @@
 // Registers of a timer, and the set of all timers.
+#include <utility>
+
 #include "adc.hpp"
 #include "dma.hpp"
 #include "pins.hpp"
@@ -133,7 +135,7 @@ std::uint32_t Timer::read_word(std::uint32_t offset) {
       if (runs()) account(tick_at(machine_.timeline.now()));
       return sr_;
     case tim.cnt:
-      if (encoder_mode() || slave_mode() == external_clock) machine_.advance_circuit(Machine::input_age_limit);
+      if (counts_edges()) machine_.advance_circuit(Machine::input_age_limit);
       take_input_changes(machine_.timeline.now());
       return count_now();
     case tim.egr: return 0;
@@ -222,12 +224,10 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
     case tim.cr2: cr2_ = unlocked(offset, cr2_, value & writable(tim.cr2)); break;
     case tim.smcr: {
       settle();
+      const bool was_running = runs();
       smcr_ = value & writable(tim.smcr);
-      const unsigned source = trigger_source();
-      const bool listens = traits_.slave && slave_mode() >= reset_mode && source < input_1_edge;
-      machine_.timers->set_slave(traits_.number, source < input_1_edge ? traits_.internal_triggers[source] : 0,
-                                 listens);
-      if (tim.smcr.ece.in(smcr_)) machine_.log.say_once("TIMx_SMCR.ECE: external clock mode 2 is not modelled");
+      if (!was_running) begin_ramp(machine_.timeline.now());
+      drive_external_trigger(external_.pin, machine_.timeline.now());
       break;
     }
     case tim.dier:
@@ -242,7 +242,11 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
     case tim.egr: return write_events(value);
     case tim.ccmr1: ccmr_[0] = unlocked(offset, ccmr_[0], value & writable(tim.ccmr1)); break;
     case tim.ccmr2: ccmr_[1] = unlocked(offset, ccmr_[1], value & writable(tim.ccmr2)); break;
-    case tim.ccer: ccer_ = unlocked(offset, ccer_, value & writable(tim.ccer)); break;
+    case tim.ccer:
+      ccer_ = unlocked(offset, ccer_, value & writable(tim.ccer));
+      for (unsigned i = 0; i < traits_.channels; ++i)
+        if (!tim.ccer.cce.in(ccer_, i)) channels_[i].events = 0;
+      break;
     case tim.cnt:
       settle();
       count_ = value & limit_;
@@ -264,7 +268,7 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
       check_break();
       break;
     case tim.dcr: dcr_ = value; return;
-    case tim.option: or_ = value; return;
+    case tim.option: or_ = value; return listen();
     default:
       if (tim.ccr.covers(offset)) {
         const unsigned i = tim.ccr.index(offset);
@@ -281,12 +285,25 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
   }
   // A new configuration of channels, triggers or interrupts; a channel without preload takes its value at once.
   settle();
+  listen();
   configure_inputs();
   for (unsigned i = 0; i < traits_.channels; ++i)
     if (!preloads(i)) channels_[i].active_compare = channels_[i].compare;
   begin_ramp(runs() ? ramp_start_ : machine_.timeline.now());
   configure_outputs();
   plan();
+}
+
+/// To the trigger output of the timer behind TS, if that has a use.
+void Timer::listen() {
+  bool captures = false;
+  for (unsigned i = 0; i < traits_.channels; ++i)
+    captures |= selection(i) == trigger_input && tim.ccer.cce.in(ccer_, i);
+  const unsigned source = trigger_source();
+  const bool listens = traits_.slave && (slave_mode() >= reset_mode || captures) && source < input_1_edge;
+  const bool is_remapped = traits_.number == 2 && source == 1 && itr1_remap.in(or_);
+  const unsigned master = listens && !is_remapped ? traits_.internal_triggers[source] : 0;
+  if (std::exchange(master_, master) != master) machine_.timers->set_slave(traits_.number, master);
 }
 
 Timers::Timers(Machine& machine) {
@@ -305,9 +322,9 @@ void Timers::trigger_from(unsigned master, bool level, bool is_pulse) {
     if ((slaves >> number & 1) != 0) timer(number).internal_trigger(master, level, is_pulse);
 }
 
-void Timers::set_slave(unsigned slave, unsigned master, bool listens) {
+void Timers::set_slave(unsigned slave, unsigned master) {
   for (auto& slaves : slaves_) slaves &= ~(1u << slave);
-  if (listens) slaves_[master] |= 1u << slave;
+  if (master != 0) slaves_[master] |= 1u << slave;
   for (auto& t : timers_)
     if (t.traits().number != slave) t.plan_again();
 }

@@ -2,8 +2,7 @@
 //
 // The counter is not stepped: it runs in ramps (up to the next overflow or underflow) and its value follows
 // from the time. Steps happen only at compare matches that somebody needs and at the ends of ramps.
-// Not modelled: prescalers of inputs, the filter of the external trigger, dead time, DMA bursts, captures by an
-// internal trigger other than USB's start of frame.
+// Not modelled: dead time, DMA bursts.
 #pragma once
 
 #include <array>
@@ -83,7 +82,16 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
     PinLevel when_active = PinLevel::floating, when_inactive = PinLevel::floating;
     PinLevel complement_when_active = PinLevel::floating, complement_when_inactive = PinLevel::floating;
     InputFilter input{};
+    unsigned events = 0;  ///< of its input since its last capture
   };
+  /// ETR, from its pin to the filter whose output is ETRF.
+  struct ExternalTrigger {
+    bool pin = false, level = false, divided = false;  ///< level: behind ETP; divided: behind ETPS
+    unsigned rises = 0;
+    InputFilter filter{};
+  };
+  /// Beside the four channels, where inputs are counted.
+  static constexpr unsigned external_trigger_input = 4;
 
   // timer.cpp: counting
   const Clock& clock() const;
@@ -98,6 +106,8 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   unsigned trigger_source() const { return tim.smcr.ts.of(smcr_); }
   unsigned master_mode() const { return tim.cr2.mms.of(cr2_); }
   bool encoder_mode() const { return slave_mode() >= encoder_1 && slave_mode() <= encoder_3; }
+  /// The counter's clock are edges of inputs.
+  bool counts_edges() const { return encoder_mode() || slave_mode() == external_clock || tim.smcr.ece.in(smcr_); }
   bool outputs_on() const { return !traits_.breaks || (tim.bdtr.moe.in(bdtr_) && !frozen_); }
   bool runs() const;
   void settle();
@@ -127,14 +137,23 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void check_break();
   void break_now();
   void capture(unsigned channel);
+  void capture_event(unsigned channel);
+  /// TRC: the trigger is the input of channels that ask for it.
+  void capture_by_trigger();
+  void listen();
   bool input(unsigned channel) const { return channels_[channel].input.output(); }
   void configure_inputs();
   /// The input that changes next behind its filter.
   unsigned next_input() const;
+  const InputFilter& filter_of(unsigned input) const {
+    return input == external_trigger_input ? external_.filter : channels_[input].input;
+  }
   void take_input_changes(Ticks until);
   /// What an input does can reach the processor before that looks at the counter.
   bool inputs_wake() const;
   void count_encoder_edge(unsigned changed_channel);
+  void drive_external_trigger(bool high, Ticks when);
+  void external_edge();
   void trigger_in(bool level, bool is_pulse);
   void channel_edge(unsigned channel);
 
@@ -156,7 +175,10 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
                 dcr_ = 0, or_ = 0;
   std::array<std::uint32_t, 2> ccmr_{};
   std::array<Channel, 4> channels_{};
+  ExternalTrigger external_{};
+  unsigned master_ = 0;  ///< the timer that it listens to, 0 is none
   std::uint32_t active_prescaler_ = 0, active_reload_ = 0, repetitions_ = 0;
+  std::uint32_t edges_ = 0;  ///< since the prescaler let one through
   std::uint32_t count_ = 0;  ///< at the start of the ramp
   bool down_ = false;
   bool gate_open_ = false;
@@ -176,7 +198,8 @@ class Timers final : public TriggerLines {
   void trigger_from(unsigned master, bool level, bool is_pulse);
   /// A slave listens to the trigger output of `master` in a mode that starts or steps it.
   bool has_slave(unsigned master) const { return slaves_[master] != 0; }
-  void set_slave(unsigned slave, unsigned master, bool listens);
+  /// Master 0: `slave` listens to none.
+  void set_slave(unsigned slave, unsigned master);
   void plan_again();
   void clock_failed() {
     for (auto& timer : timers_) timer.clock_failed();
