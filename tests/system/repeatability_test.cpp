@@ -1,6 +1,7 @@
 // The same seed and the same calls give the same run, in both modes, however slow the computer is.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <chrono>
@@ -75,6 +76,21 @@ void check_repeats(device::SimulationMode mode) {
   CHECK((prompt.truth == slow.truth));
 }
 
+struct Cycles {
+  double mean, longest;
+};
+
+/// Of the control interrupt, the last signal of a story.
+Cycles servo_cycles(const Story& story) {
+  double sum = 0, longest = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 4; i < story.samples.size(); i += 5, ++count) {
+    sum += story.samples[i];
+    longest = std::max(longest, static_cast<double>(story.samples[i]));
+  }
+  return {sum / static_cast<double>(count), longest};
+}
+
 }  // namespace
 
 TEST_CASE("a run begins with all that the host sent and ends with all that the device sent") {
@@ -97,4 +113,14 @@ TEST_CASE("fast mode repeats itself") { check_repeats(device::SimulationMode::fa
 TEST_CASE("exact mode repeats itself") { check_repeats(device::SimulationMode::exact); }
 TEST_CASE("another seed is another run") {
   CHECK(prompt_story(device::SimulationMode::fast).samples != play(device::SimulationMode::fast, 4, [] {}).samples);
+}
+
+TEST_CASE("both modes count the same cycles within 2 %") {
+  const auto exact = servo_cycles(prompt_story(device::SimulationMode::exact));
+  const auto fast = servo_cycles(prompt_story(device::SimulationMode::fast));
+  MESSAGE("simulation: the control interrupt takes ", exact.mean, " cycles on average in exact mode, ", fast.mean,
+          " in fast mode; at most ", exact.longest, " and ", fast.longest);
+  CHECK(exact.mean > 500);
+  CHECK(fast.mean == doctest::Approx(exact.mean).epsilon(0.02));
+  CHECK(fast.longest == doctest::Approx(exact.longest).epsilon(0.02));
 }
