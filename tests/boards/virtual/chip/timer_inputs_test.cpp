@@ -209,6 +209,19 @@ TEST_SUITE("virtual chip: timer inputs") {
     CHECK(inputs.read(tim3 + ccr1) == captured.back());
   }
 
+  TEST_CASE("a channel captures by both edges of the first input") {
+    Inputs inputs;
+    constexpr std::uint32_t edges_of_input_1 = 4 << 4, cc2_from_trigger = 3 << 8, cc2e = 1 << 4, cc2if = 1 << 2,
+                            cc2of = 1 << 10;
+    inputs.write(tim3 + smcr, edges_of_input_1);
+    inputs.write(tim3 + ccmr1, cc1_from_its_pin | cc2_from_trigger);
+    inputs.write(tim3 + ccer, cc2e);
+    inputs.write(tim3 + cr1, cen);
+    inputs.write(tim3 + sr, 0);
+    inputs.pulse('B', 4);
+    CHECK((inputs.read(tim3 + sr) & (cc2if | cc2of)) == (cc2if | cc2of));
+  }
+
   TEST_CASE("the trigger gates the external clock") {
     Inputs inputs;
     constexpr std::uint32_t behind_input_1 = 5 << 4;
