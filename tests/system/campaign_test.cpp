@@ -86,12 +86,6 @@ TEST_CASE("a motor that does not do as its voltage says is let go of before the 
   }
 }
 
-TEST_CASE("a motor that is 100 K hotter is still believed") {
-  const Result result = result_of("motor_hot:2 wall 1");
-  CHECK_FALSE(result.off_after_s);
-  CHECK(result.detected_as.empty());
-}
-
 TEST_CASE("a chip that no longer hears its converters is restarted by the watchdog, and tells so") {
   const Result result = result_of("adc_stopped:1 wall 2");
   REQUIRE(result.off_after_s);

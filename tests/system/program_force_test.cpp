@@ -160,7 +160,7 @@ TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kick
     int milliseconds;
   };
   double floor_m = z_m;
-  for (const Move& move : {Move{0.005, 300}, {-0.005, 8}, {0.005, 300}}) {
+  for (const Move& move : {Move{0.005, 300}, {-0.005, 8}}) {
     CAPTURE(move.by_m);
     floor_m += move.by_m;
     std::vector<protocol::PoseReport> poses{rig.pose()};

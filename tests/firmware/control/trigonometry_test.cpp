@@ -14,7 +14,7 @@ TEST_CASE("sine and cosine within 1.2e-7 over twenty radians either way") {
 #ifdef INKWELL_ON_PC
   constexpr int steps = 2'000'000;
 #else
-  constexpr int steps = 2'000;
+  constexpr int steps = 1'000;
 #endif
   double worst = 0;
   for (int i = -steps; i <= steps; ++i) {
