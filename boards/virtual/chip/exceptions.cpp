@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "processor.hpp"
+#include "xpsr.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 constexpr std::uint32_t basic_frame_bytes = 0x20, extended_frame_bytes = 0x68;
 constexpr unsigned basic_words = 8, float_words = 17;
 constexpr std::uint32_t control_unprivileged = 1, control_spsel = 2, control_fpca = 4;
-constexpr std::uint32_t xpsr_if_then = 0x0600FC00;
-constexpr std::uint32_t xpsr_thumb = 1u << 24, xpsr_align = 1u << 9, xpsr_exception = 0x1FF;
 // EXC_RETURN (ARMv7-M, table B1-8): bit 4 clear is an extended frame, bit 3 thread mode, bit 2 process stack.
 constexpr std::uint32_t exc_return_handler = 0xFFFFFFF1, exc_return_basic = 1u << 4, exc_return_thread = 1u << 3,
                         exc_return_process_stack = 1u << 2;
@@ -51,7 +50,7 @@ bool Processor::start_handler(unsigned exception, std::uint32_t exception_return
   current_exception_ = exception;  // before the engine asks what runs
   write(UC_ARM_REG_LR, exception_return);
   write(UC_ARM_REG_IPSR, exception);
-  write(UC_ARM_REG_EPSR, xpsr_thumb);  // no if-then block is under way
+  write(UC_ARM_REG_EPSR, xpsr.thumb.mask());  // no if-then block is under way
   resumed_bytes_ = 0;
   write(UC_ARM_REG_APSR_NZCV, 0);  // makes Unicorn notice the change of mode; flags are free at entry
   program_counter_ = vector;
@@ -84,15 +83,10 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
     }
   }
 
+  const std::uint32_t status = (values[6] & ~(xpsr.padded.mask() | xpsr.exception.mask())) | xpsr.thumb.mask() |
+                               xpsr.padded.with(aligned) | current_exception_;
   std::uint32_t words[extended_frame_bytes / 4] = {
-      values[0],
-      values[1],
-      values[2],
-      values[3],
-      values[4],
-      values[5],
-      program_counter_ & ~1u,
-      (values[6] & ~(xpsr_align | xpsr_exception)) | xpsr_thumb | (aligned ? xpsr_align : 0u) | current_exception_};
+      values[0], values[1], values[2], values[3], values[4], values[5], program_counter_ & ~1u, status};
   // Stacked at once also when FPCCR asks for lazy stacking: firmware can not tell but by reading its own stack. What
   // can not be stacked waits for the instruction that asks for it.
   if (extended && !float_refusal) read_float_context(&words[basic_words]);
@@ -124,11 +118,11 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   return started ? Entry::started : Entry::no_handler;
 }
 
-void Processor::resume_if_then_block(std::uint32_t xpsr) {
+void Processor::resume_if_then_block(std::uint32_t status) {
   resumed_bytes_ = 0;
-  if ((xpsr & xpsr_if_then) == 0) return;
+  if ((status & xpsr.if_then()) == 0) return;
   // ITSTATE's low half: the lowest bit that is set ends the block (ARMv7-M, B1.4.2).
-  const std::uint32_t state = (xpsr >> 25 & 3) | (xpsr >> 8 & 0xFC);
+  const std::uint32_t state = xpsr.if_then_state(status);
   resumed_at_ = program_counter_ & ~1u;
   for (int left = 4 - std::countr_zero(state); left > 0; --left)
     resumed_bytes_ += is_wide(machine_.memory.half_word(resumed_at_ + resumed_bytes_)) ? 4 : 2;
@@ -213,8 +207,8 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   }
   std::uint32_t words[extended_frame_bytes / 4];
   std::memcpy(words, machine_.memory.ram_at(frame, 4 * words_to_read), 4 * words_to_read);
-  const std::uint32_t xpsr = words[7];
-  const unsigned exception = xpsr & xpsr_exception;
+  const std::uint32_t status = words[7];
+  const unsigned exception = xpsr.exception.of(status);
   // The mode in the frame must be the mode that EXC_RETURN names.
   if ((exception == exception_none) != to_thread || exception >= exception_numbers) return Return::invalid;
 
@@ -226,7 +220,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
     uc_reg_write_batch(engine_, float_registers, float_places, doubles);
     write(UC_ARM_REG_FPSCR, words[24]);
   }
-  const std::uint32_t stack_pointer = (frame + bytes) | ((xpsr & xpsr_align) != 0 ? 4u : 0u);
+  const std::uint32_t stack_pointer = (frame + bytes) | (xpsr.padded.in(status) ? 4u : 0u);
   const std::uint32_t privilege = read(UC_ARM_REG_CONTROL) & control_unprivileged;
   const std::uint32_t control = (process_stack ? control_spsel : 0u) | (extended ? control_fpca : 0u);
   if (privilege != 0) write(UC_ARM_REG_CONTROL, 0);  // while it can still be written
@@ -237,10 +231,10 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   void* places[6];
   for (int i = 0; i < 6; ++i) places[i] = &words[i];
   uc_reg_write_batch(engine_, frame_registers, places, 6);
-  write(UC_ARM_REG_XPSR_NZCVQG, (xpsr & (0xF80F0000 | xpsr_if_then)) | xpsr_thumb | exception);
-  write(UC_ARM_REG_APSR_NZCV, xpsr & 0xF0000000);  // last: it rebuilds Unicorn's own copies of the flags
+  write(UC_ARM_REG_XPSR_NZCVQG, (status & (xpsr.flags() | xpsr.if_then())) | xpsr.thumb.mask() | exception);
+  write(UC_ARM_REG_APSR_NZCV, status & xpsr.conditions.mask());  // last: it rebuilds Unicorn's own copies of the flags
   program_counter_ = words[6];
-  resume_if_then_block(xpsr);
+  resume_if_then_block(status);
   timing_.redirect();
   if (extended) {
     // What was never stacked needs no unstacking.

@@ -6,6 +6,7 @@
 
 #include "bus.hpp"
 #include "flash.hpp"
+#include "xpsr.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -103,7 +104,7 @@ void Processor::reset(std::uint32_t vector_table) {
   write(UC_ARM_REG_FAULTMASK, 0);
   write(UC_ARM_REG_BASEPRI, 0);
   write(UC_ARM_REG_FPSCR, 0);
-  write(UC_ARM_REG_XPSR_NZCVQG, 1u << 24);
+  write(UC_ARM_REG_XPSR_NZCVQG, xpsr.thumb.mask());
   write(UC_ARM_REG_APSR_NZCV, 0);
   write(UC_ARM_REG_PSP, 0);
   const std::uint32_t stack = machine_.memory.word(vector_table) & ~3u;

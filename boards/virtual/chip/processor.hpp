@@ -199,7 +199,7 @@ class Processor final : public ClockUser, private EngineCalls {
   bool in_if_then_block(std::uint32_t address) const;
   bool in_resumed_if_then_block(std::uint32_t address) const { return address - resumed_at_ < resumed_bytes_; }
   /// A return into the middle of an if-then block, as the fault of one of its instructions makes it.
-  void resume_if_then_block(std::uint32_t xpsr);
+  void resume_if_then_block(std::uint32_t status);
   bool if_then_block_covers(std::uint32_t if_then, std::uint32_t address) const;
   void finish_flash_stores();
   // float_guards.cpp

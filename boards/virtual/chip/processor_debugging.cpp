@@ -1,12 +1,8 @@
 // The processor towards a debugger: its registers, and where it stops.
 #include "processor.hpp"
+#include "xpsr.hpp"
 
 namespace inkwell::virtual_board {
-namespace {
-
-constexpr std::uint32_t xpsr_thumb = 1u << 24, xpsr_exception = 0x1FF, xpsr_flags = 0xF80F'0000;
-
-}  // namespace
 
 CoreRegisters Processor::core_registers() const {
   CoreRegisters registers;
@@ -14,7 +10,7 @@ CoreRegisters Processor::core_registers() const {
   registers.general[CoreRegisters::sp] = read(UC_ARM_REG_SP);
   registers.general[CoreRegisters::lr] = read(UC_ARM_REG_LR);
   registers.general[CoreRegisters::pc] = program_counter_ & ~1u;
-  registers.xpsr = (read(UC_ARM_REG_XPSR) & ~xpsr_exception) | xpsr_thumb | current_exception_;
+  registers.xpsr = (read(UC_ARM_REG_XPSR) & ~xpsr.exception.mask()) | xpsr.thumb.mask() | current_exception_;
   return registers;
 }
 
@@ -22,8 +18,9 @@ void Processor::set_core_registers(const CoreRegisters& registers) {
   for (unsigned i = 0; i <= 12; ++i) write(UC_ARM_REG_R0 + static_cast<int>(i), registers.general[i]);
   write(UC_ARM_REG_SP, registers.general[CoreRegisters::sp] & ~3u);
   write(UC_ARM_REG_LR, registers.general[CoreRegisters::lr]);
-  write(UC_ARM_REG_XPSR_NZCVQG, (registers.xpsr & xpsr_flags) | xpsr_thumb | current_exception_);
-  write(UC_ARM_REG_APSR_NZCV, registers.xpsr & 0xF000'0000);  // last: it rebuilds Unicorn's own copies of the flags
+  write(UC_ARM_REG_XPSR_NZCVQG, (registers.xpsr & xpsr.flags()) | xpsr.thumb.mask() | current_exception_);
+  write(UC_ARM_REG_APSR_NZCV,
+        registers.xpsr & xpsr.conditions.mask());  // last: it rebuilds Unicorn's own copies of the flags
 }
 
 FloatRegisters Processor::read_float_registers() const {
