@@ -302,7 +302,8 @@ void OtgFs::begin_receive(unsigned endpoint) {
     Size::write(endpoint, Size::PKTCNT(1), Size::XFRSIZ(packet_size_maximum));
   } else if (Size::PKTCNT::from(Size::read(endpoint)) == 0) {
     return;  // its packet waits in the receive FIFO, and who takes it receives again
-  }          // else it was stalled or reopened, and its size stands
+  }
+  // Otherwise it was stalled or reopened, and its size stands.
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }
 
