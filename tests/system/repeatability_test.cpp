@@ -28,6 +28,8 @@ struct Story {
   std::uint64_t instructions = 0;
 };
 
+constexpr std::size_t story_signals = 5;
+
 /// A stylus is taken out of the inkwell and pressed into a wall. `dawdling`: what the host does between its calls.
 template <class Dawdling>
 Story play(device::SimulationMode mode, std::uint64_t seed, Dawdling dawdling) {
@@ -37,8 +39,8 @@ Story play(device::SimulationMode mode, std::uint64_t seed, Dawdling dawdling) {
   dawdling();
   rig.command(protocol::Command::heartbeat);
   dawdling();
-  rig.device->select_signals(std::vector{Signal::encoder_1_counts, Signal::velocity_z_m_s, Signal::current_2_A,
-                                         Signal::duty_3, Signal::servo_cycles});
+  rig.device->select_signals(std::array<Signal, story_signals>{
+      Signal::encoder_1_counts, Signal::velocity_z_m_s, Signal::current_2_A, Signal::duty_3, Signal::servo_cycles});
   dawdling();
   rig.control.trace_start();
   rig.take_to(free_point_m, 0.2);
@@ -68,7 +70,7 @@ const Story& prompt_story(device::SimulationMode mode) {
 
 void check_repeats(device::SimulationMode mode) {
   const auto& prompt = prompt_story(mode);
-  REQUIRE(prompt.samples.size() > 5 * 10'000);
+  REQUIRE(prompt.samples.size() > story_signals * 10'000);
   const auto slow = play(mode, 3, [call = 0]() mutable { std::this_thread::sleep_for(7ms * (++call % 4)); });
   CHECK(prompt.instructions == slow.instructions);
   CHECK((prompt.poses == slow.poses));
@@ -80,11 +82,11 @@ struct Cycles {
   double mean, longest;
 };
 
-/// Of the control interrupt, the last signal of a story.
+/// Of the control interrupt, the last of the signals that a story takes.
 Cycles servo_cycles(const Story& story) {
   double sum = 0, longest = 0;
   std::size_t count = 0;
-  for (std::size_t i = 4; i < story.samples.size(); i += 5, ++count) {
+  for (std::size_t i = story_signals - 1; i < story.samples.size(); i += story_signals, ++count) {
     sum += story.samples[i];
     longest = std::max(longest, static_cast<double>(story.samples[i]));
   }
