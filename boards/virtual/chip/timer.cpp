@@ -24,8 +24,8 @@ void Timer::reset() {
   active_prescaler_ = repetitions_ = count_ = 0;
   down_ = gate_open_ = false;
   for (auto& channel : channels_) channel = Channel{.input = channel.input};
-  external_ = {.pin = external_.pin, .level = external_.pin, .divided = external_.pin, .filter = external_.filter};
-  edges_ = 0;
+  connect_input(external_trigger, external_.pin);
+  external_.rises = edges_ = 0;
   listen();
   configure_inputs();
   configure_outputs();

@@ -217,15 +217,16 @@ void Timer::connect_input(unsigned line, bool high) {
 void Timer::drive_external_trigger(bool high, Ticks when) {
   external_.pin = high;
   const bool level = high != tim.smcr.etp.in(smcr_);
-  if (level == external_.level) return;
+  const bool rises = level && !external_.level;
   external_.level = level;
   const unsigned prescaler = tim.smcr.etps.of(smcr_);
-  if (prescaler == 0) {
-    external_.divided = level;
-  } else {
-    if (!level || external_.rises++ % (1u << (prescaler - 1)) != 0) return;
-    external_.divided = !external_.divided;
-  }
+  bool divided = external_.divided;
+  if (prescaler == 0)
+    divided = level;
+  else if (rises && external_.rises++ % (1u << (prescaler - 1)) == 0)
+    divided = !divided;
+  if (divided == external_.divided) return;
+  external_.divided = divided;
   if (when != 0) take_input_changes(when - 1);
   external_.filter.drive(external_.divided, when);
   plan();

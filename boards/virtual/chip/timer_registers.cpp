@@ -294,7 +294,6 @@ void Timer::write_word(std::uint32_t offset, std::uint32_t value) {
   plan();
 }
 
-/// To the trigger output of the timer behind TS, if that has a use.
 void Timer::listen() {
   bool captures = false;
   for (unsigned i = 0; i < traits_.channels; ++i)

@@ -140,7 +140,6 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void capture_event(unsigned channel);
   /// TRC: the trigger is the input of channels that ask for it.
   void capture_by_trigger();
-  void listen();
   bool input(unsigned channel) const { return channels_[channel].input.output(); }
   void configure_inputs();
   /// The input that changes next behind its filter.
@@ -158,6 +157,8 @@ class Timer final : public RegisterBlock, public TimedPart, public ClockUser, pu
   void channel_edge(unsigned channel);
 
   // timer_registers.cpp
+  /// To the trigger output of the timer behind TS, if that has a use.
+  void listen();
   void write_control(std::uint32_t value);
   void write_events(std::uint32_t value);
   /// Bits of a register that LOCK protects now.

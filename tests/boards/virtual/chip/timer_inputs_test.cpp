@@ -159,6 +159,17 @@ TEST_SUITE("virtual chip: timer inputs") {
     CHECK(inputs.read(tim3 + cnt) == 1);
   }
 
+  TEST_CASE("without its divider the external trigger is as its pin, however the divider stood") {
+    Inputs inputs;
+    inputs.write(tim3 + smcr, ece | 1 << 12);
+    inputs.write(tim3 + cr1, cen);
+    inputs.pulse('D', 2);  // the divider rises, and stays so
+    CHECK(inputs.read(tim3 + cnt) == 1);
+    inputs.write(tim3 + smcr, ece);
+    inputs.pulses('D', 2, 3);
+    CHECK(inputs.read(tim3 + cnt) == 4);
+  }
+
   TEST_CASE("ETF: a pulse that is shorter than the filter is none") {
     Inputs inputs;
     constexpr unsigned eight_samples = 3;
