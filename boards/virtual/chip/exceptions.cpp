@@ -95,6 +95,9 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
     std::memcpy(machine_.memory.ram_at(frame, written), words, written);
   }
   if (extended) set_unstacked_float({});
+  if (extended && lazily)
+    float_frame_ = FloatFrame{frame + basic_frame_bytes, machine_.nvic.execution_priority(masks()), role().privileged,
+                              current_exception_ == exception_none};
   if (float_refusal) set_unstacked_float(UnstackedFloat{frame + basic_frame_bytes, role()});
 
   std::uint32_t exception_return = exc_return_handler & ~(extended ? exc_return_basic : 0u);

@@ -196,6 +196,7 @@ void Execution::enter(unsigned exception, bool stacks) {
   const auto entry =
       processor_.enter_exception(exception, system_control_.aligns_stack(), system_control_.preserves_float_context(),
                                  system_control_.stacks_lazily(), system_control_.vector_table(), stacks);
+  if (const auto frame = processor_.take_float_frame()) system_control_.note_float_frame(*frame);
   if (entry != Processor::Entry::started) enter_for_lost_stack(exception, entry == Processor::Entry::protected_stack);
 }
 

@@ -37,6 +37,13 @@ struct ClockTree {
   }
 };
 
+/// Room that an exception has left for the FPU's registers, and what was interrupted.
+struct FloatFrame {
+  std::uint32_t address;
+  int priority;  ///< of its execution
+  bool privileged, in_thread;
+};
+
 /// A part that counts cycles of a clock which firmware can change.
 class ClockUser {
  public:

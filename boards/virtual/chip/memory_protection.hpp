@@ -42,6 +42,11 @@ class MemoryProtection {
     if (offset == mpu.rnr) return region_;
     return is_base(offset) ? bases_[region_] | mpu.rbar.region.with(region_) : attributes_[region_];
   }
+  /// The value names a region that there is, if it names one.
+  static bool names_region(std::uint32_t offset, std::uint32_t value) {
+    if (offset == mpu.rnr) return mpu.rnr.region.of(value) < regions;
+    return !is_base(offset) || !mpu.rbar.valid.in(value) || mpu.rbar.region.of(value) < regions;
+  }
   void write(std::uint32_t offset, std::uint32_t value) {
     if (offset == mpu.typer) return;
     if (offset == mpu.ctrl) {

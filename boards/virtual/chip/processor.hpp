@@ -164,6 +164,8 @@ class Processor final : public ClockUser, private EngineCalls {
   /// Starts a handler on the frame of one that has just ended. False: it is not valid.
   bool chain_exception(unsigned exception, std::uint32_t vector_table);
   bool returned_to_thread() const { return current_exception_ == exception_none; }
+  /// Of the exception that was entered last, if it left room for floats.
+  std::optional<FloatFrame> take_float_frame() { return std::exchange(float_frame_, std::nullopt); }
   // float_guards.cpp
   /// FPCCR.LSPACT.
   bool lazy_stacking_due() const;
@@ -294,6 +296,7 @@ class Processor final : public ClockUser, private EngineCalls {
     Role role;              ///< of what was interrupted
   };
   std::optional<UnstackedFloat> unstacked_float_;
+  std::optional<FloatFrame> float_frame_;
   void set_unstacked_float(std::optional<UnstackedFloat> what) {
     unstacked_float_ = what;
     refuses_float_ = !float_unit_on_ || unstacked_float_;

@@ -76,6 +76,21 @@ void SystemControl::record_fault(std::uint32_t configurable_bits, std::uint32_t 
   hard_faults_ |= hard_fault_bits;
 }
 
+void SystemControl::note_float_frame(const FloatFrame& frame) {
+  const auto& nvic = machine_.nvic;
+  const auto could_pend = [&](unsigned exception, bool enabled) {
+    return enabled && frame.priority > nvic.group_priority(exception);
+  };
+  const auto& control = fpu.fpccr;
+  float_address_ = frame.address & writable(fpu.fpcar);
+  float_control_ = (float_control_ & (control.lspen.mask() | control.aspen.mask())) |
+                   control.user.with(!frame.privileged) | control.thread.with(frame.in_thread) |
+                   control.hfrdy.with(could_pend(exception_hard_fault, true)) |
+                   control.mmrdy.with(could_pend(exception_memory_fault, nvic.enabled(exception_memory_fault))) |
+                   control.bfrdy.with(could_pend(exception_bus_fault, nvic.enabled(exception_bus_fault))) |
+                   control.monrdy.with(could_pend(exception_debug, core_debug.demcr.mon_en.in(debug_monitor_)));
+}
+
 std::uint32_t SystemControl::cycle_count() const {
   if (!dwt.ctrl.cyccntena.in(trace_control_)) return cycle_held_;
   // The core's clock stands still in sleep, unless the debugger keeps it on (DBGMCU_CR.DBG_SLEEP).
@@ -193,7 +208,10 @@ void SystemControl::write(std::uint32_t address, std::uint32_t value, unsigned s
   }
   const std::uint32_t word = address & ~3u;
   const bool cleared_by_ones = word == scb_base + scb.cfsr;  // a narrow write must not clear its neighbours
-  if (size != 4 && word >= dwt_base) value = merge(cleared_by_ones ? 0 : read_word(word), value, address, size);
+  if (size != 4 && word >= dwt_base) {
+    if (!cleared_by_ones) machine_.violations.violate(Rule::narrow_core_write);
+    value = merge(cleared_by_ones ? 0 : read_word(word), value, address, size);
+  }
   write_word(word, value);
 }
 
@@ -254,6 +272,7 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
   }
   if (address - stk_base < stk_bytes) return systick_.write(address - stk_base, value);
   if (address - mpu_base < mpu_bytes) {
+    if (!MemoryProtection::names_region(address - mpu_base, value)) machine_.violations.violate(Rule::region_number);
     machine_.memory_protection.write(address - mpu_base, value);
     // A base is written before the size that belongs to it.
     if (!MemoryProtection::is_base(address - mpu_base) && !machine_.memory_protection.is_defined())

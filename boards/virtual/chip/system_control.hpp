@@ -51,6 +51,8 @@ class SystemControl {
   /// Records a fault's cause. Bits of CFSR, HFSR; addresses where the bits say that they are valid.
   void record_fault(std::uint32_t configurable_bits, std::uint32_t hard_fault_bits);
   void record_bus_fault_address(std::uint32_t address) { bus_fault_address_ = address; }
+  /// What lazy stacking will need, for FPCCR and FPCAR (ARMv7-M, B1.5.7, UpdateFPCCR).
+  void note_float_frame(const FloatFrame& frame);
   void record_memory_fault_address(std::uint32_t address) { memory_fault_address_ = address; }
 
  private:

@@ -136,7 +136,8 @@ inline constexpr std::uint32_t nvic_stir_base = 0xE000'EF00;
 
 struct FloatContextRegisters {
   struct : Register {
-    Field lspact{"LSPACT", 0}, lspen{"LSPEN", 30}, aspen{"ASPEN", 31};
+    Field lspact{"LSPACT", 0}, user{"USER", 1}, thread{"THREAD", 3}, hfrdy{"HFRDY", 4}, mmrdy{"MMRDY", 5},
+        bfrdy{"BFRDY", 6}, monrdy{"MONRDY", 8}, lspen{"LSPEN", 30}, aspen{"ASPEN", 31};
   } fpccr{{"FPCCR", 0x00, 0xC000'0000}};
   struct : Register {
     Field address{"ADDRESS", 3, 29};

@@ -74,4 +74,21 @@ TEST_SUITE("virtual chip: memory protection") {
       check_results(test, 10, {1, 0, lazy, 7, 8, called, two});
     }
   }
+
+  TEST_CASE("room for floats is noted with what was interrupted, and which faults could come then") {
+    constexpr std::uint32_t due = 0xC000'0001, user = 0x002, thread = 0x008, hard = 0x010, memory = 0x020, bus = 0x040,
+                            monitor = 0x100, behind_frame = 0x20;
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("lazy_stacking", mode);
+      test.run_for(0.001);
+      REQUIRE(test.result(0) == finished);
+      check_results(test, 1, {due | thread | hard, behind_frame});
+      check_results(test, 3, {due | thread | hard | memory | bus | monitor, behind_frame});
+      check_results(test, 5, {due | thread | hard | memory, behind_frame});
+      check_results(test, 7, {due | hard | memory | bus | monitor, behind_frame});
+      check_results(test, 9, {due | user | thread | hard | memory | bus | monitor, behind_frame});
+      check_results(test, 11, {0x8000'0000 | thread});
+    }
+  }
 }

@@ -41,6 +41,9 @@ constexpr Case cases[] = {
     {24, Rule::option_bytes_locked},
     {25, Rule::narrow_register_write},
     {26, Rule::region_undefined},
+    {27, Rule::region_number},
+    {28, Rule::region_number},
+    {29, Rule::narrow_core_write},
 };
 
 /// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.

@@ -23,6 +23,11 @@ namespace inkwell::virtual_board {
        "A region of the memory protection unit is enabled that is not at a multiple of its size, or is reserved",      \
        "what it protects is open; here its base is rounded down",                                                      \
        "align it; take SIZE 4 or more, SRD only from 256 bytes on, and no reserved AP, TEX, C and B")                  \
+  RULE(region_number, "MPU_RNR", "PM0214, MPU region number register", "A region beyond the eighth is chosen",         \
+       "which region is written is left open; here its number is taken modulo 8", "number them from 0 to 7")           \
+  RULE(narrow_core_write, "", "ARMv7-M, B3.1.1 and B3.2", "A register of the core is written by fewer than 32 bits",   \
+       "what becomes of it is left open; here its other bits stay",                                                    \
+       "write whole words; only SHPR, CFSR, NVIC_IPR and the trace's ports take less")                                 \
   RULE(flash_wait_states, "FLASH_ACR", "RM0090, Relation between CPU clock frequency and Flash memory read time",      \
        "LATENCY is too small for HCLK", "the flash is misread; here the next instruction from it is an undefined one", \
        "set a wait state for each 30 MHz begun, at 3.3 V, before the clock is switched")                               \

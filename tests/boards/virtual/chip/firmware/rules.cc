@@ -33,6 +33,9 @@ enum Fault : std::uint32_t {
   option_bytes_locked,
   narrow_register_write,
   region_undefined,
+  region_number,
+  region_number_of_base,
+  narrow_core_write,
 };
 
 std::uint32_t fault;
@@ -150,6 +153,16 @@ void start_usb() {
   for (unsigned i = 0; i < packets * 16; ++i) word(core + 0x3000) = i;
 }
 
+// Priorities, CFSR and the trace's ports may be written so (ARMv7-M, B3.2.1, C1.7.3).
+void use_narrow_writes() {
+  byte(0xE000ED1F) = 0x40;
+  half(0xE000ED20) = 0x40;
+  byte(0xE000E403) = 0x40;
+  byte(0xE000ED29) = 0xFF;
+  byte(0xE0000000) = 'x';
+  if (fault == narrow_core_write) byte(0xE000ED10) = 0;
+}
+
 }  // namespace
 
 void run() {
@@ -168,6 +181,10 @@ void run() {
   start_usb();
   word(0xE000ED9C) = 0x2001'0000 | (fault == region_undefined ? 1u << 5 : 0) | 1 << 4;
   word(0xE000EDA0) = 3 << 24 | 3 << 16 | 9 << 1 | 1;
+  word(0xE000ED98) = fault == region_number ? 8 : 7;
+  if (fault == region_number_of_base) word(0xE000ED9C) = 1 << 4 | 8;
+  word(0xE000ED9C) = 8;  // without VALID no number
+  use_narrow_writes();
   results[0] = finished;
   for (;;) wait_for_interrupt();
 }
