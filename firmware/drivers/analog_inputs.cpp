@@ -19,9 +19,9 @@ using DMA2 = RegistersOfStream<AnalogInputs, registers::DMA2, 0>;
 /// JEXTSEL and JEXTEN (RM0090, ADC_CR2).
 constexpr std::uint32_t trigger_tim1_trgo = 0b0001, rising_edge = 0b01;
 
-/// Cycles that a channel is sampled for, as a code of ADC_SMPRx. The shunt amplifiers are fast and low in
-/// impedance; potentiometers of 10 k and the supply's divider are neither.
-constexpr std::uint32_t sample_3_cycles = 0b000, sample_144_cycles = 0b110;
+/// 144 cycles as a code of ADC_SMPRx. The shunt amplifiers are fast and low in impedance, and are sampled for the 3
+/// cycles that a reset leaves; potentiometers of 10 k and the supply's divider are neither.
+constexpr std::uint32_t sample_144_cycles = 0b110;
 static_assert(4.0f * (144 + 12) / board::adc_Hz < 0.8f / board::servo_rate_Hz,
               "the slow conversions must be over when the next injected ones come");
 
@@ -43,9 +43,8 @@ constexpr std::uint32_t adc1_armed = ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits 
 
 template <class Converter>
 void set_up_injected(const board::AnalogInput& input) {
-  Converter::SMPR1::write(sampling(input.channel, sample_3_cycles));
-  // A sequence of one takes its channel from the last place.
-  Converter::JSQR::write(typename Converter::JSQR::JL(0), typename Converter::JSQR::JSQ4(input.channel));
+  // A sequence of one, as after a reset, takes its channel from the last place.
+  Converter::JSQR::write(typename Converter::JSQR::JSQ4(input.channel));
 }
 
 template <class Converter>
@@ -56,8 +55,7 @@ float take_current_A() {
 }
 
 void set_up_slow_sequence() {
-  ADC1::SMPR1::write(sampling(board::motor_current[0].channel, sample_3_cycles) |
-                     sampling(board::gimbal[0].channel, sample_144_cycles) |
+  ADC1::SMPR1::write(sampling(board::gimbal[0].channel, sample_144_cycles) |
                      sampling(board::gimbal[1].channel, sample_144_cycles) |
                      sampling(board::gimbal[2].channel, sample_144_cycles));
   ADC1::SMPR2::write(sampling(board::supply.channel, sample_144_cycles));

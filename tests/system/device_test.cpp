@@ -132,6 +132,38 @@ TEST_CASE("1000 poses a second and 14 signals at 20 kHz arrive for 4 s, none los
   CHECK(information.report.servo_overruns == 0);
 }
 
+TEST_CASE("a wiper shows neither in its neighbour's reading nor in the supply's") {
+  // One converter measures them in turn, and a sampling that is too short leaves some of the one before.
+  BoardRig rig;
+  using protocol::Signal;
+  const std::vector signals{Signal::gimbal_1_rad, Signal::gimbal_2_rad, Signal::gimbal_3_rad, Signal::supply_V};
+  const auto means = [&](const device::Vector3& angles_rad) {
+    rig.control.gimbal(angles_rad);
+    rig.run(0.2);  // the readings are filtered
+    rig.device->select_signals(signals);
+    rig.run(0.1);
+    std::array<double, 4> sums{};
+    std::size_t count = 0;
+    while (const auto samples = rig.device->read_scope(0ms)) {
+      for (std::size_t i = 0; i < samples->values.size(); ++i) sums[i % 4] += samples->values[i];
+      count += samples->count;
+    }
+    REQUIRE(count > 1000);
+    for (double& sum : sums) sum /= static_cast<double>(count);
+    return sums;
+  };
+  // Each next to the other end of the neighbour's track.
+  constexpr device::Vector3 one_way_rad{-2.3, 1.6, -2.3}, other_way_rad{2.3, -0.4, 2.3};
+  const auto one_way = means(one_way_rad), other_way = means(other_way_rad);
+  constexpr double two_counts_rad = 2 * 5.16 / board::adc_counts;
+  for (std::size_t i = 0; i < 3; ++i) {
+    CAPTURE(i);
+    CHECK(std::abs(one_way[i] - one_way_rad[i]) < two_counts_rad);
+    CHECK(std::abs(other_way[i] - other_way_rad[i]) < two_counts_rad);
+  }
+  CHECK(std::abs(one_way[3] - other_way[3]) < 2 * static_cast<double>(board::supply_step_V));
+}
+
 TEST_CASE("a host that does not read the scope loses the oldest samples, counted, and nothing else") {
   BoardRig rig;
   rig.device->select_signals(floating_point_signals(14));

@@ -122,7 +122,21 @@ std::uint32_t Adc::convert(double voltage_V) const {
   return static_cast<std::uint32_t>(std::clamp(counts, 0.0, 4095.0)) >> (12 - resolution_bits());
 }
 
-std::uint32_t Adc::sample(unsigned channel, Ticks now) const {
+/// The sampling capacitor still holds the channel before. At first it shares its charge with the capacitor at the pin,
+/// through the switch; then the source makes up for what that one has lost (data sheet, figure "Typical connection
+/// diagram using the ADC", with its largest switch resistance).
+double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
+  constexpr double switch_ohm = 6000.0, sampling_F = 4e-12;
+  const double both_F = source.capacitance_F + sampling_F;
+  const double shared_V = (source.capacitance_F * pin_V + sampling_F * sampled_V_) / both_F;
+  const double sharing_s = switch_ohm * sampling_F * source.capacitance_F / both_F;
+  const double supplying_s = source.resistance_ohm * both_F + switch_ohm * sampling_F;
+  const double unshared_V = sharing_s > 0.0 ? (sampled_V_ - shared_V) * std::exp(-time_s / sharing_s) : 0.0;
+  sampled_V_ = pin_V + (shared_V - pin_V) * std::exp(-time_s / supplying_s) + unshared_V;
+  return sampled_V_;
+}
+
+std::uint32_t Adc::sample(unsigned channel, Ticks now) {
   // Typical values of the data sheet at 25 C; VBAT is divided by 2.
   if (channel == 16) return index_ == 0 && adcs_.temperature_on() ? convert(0.76) : 0;
   if (channel == 17) return index_ == 0 && adcs_.temperature_on() ? convert(1.21) : 0;
@@ -134,7 +148,9 @@ std::uint32_t Adc::sample(unsigned channel, Ticks now) const {
   // No value that firmware could take for a true one for long.
   if (!analog || spoilt_)
     return static_cast<std::uint32_t>(now * 2'654'435'761u >> 16 & 0xFFF) >> (12 - resolution_bits());
-  return convert(machine_.circuit.analog_V(pin.port, pin.pin, now));
+  return convert(charge(machine_.circuit.analog_V(pin.port, pin.pin, now),
+                        machine_.circuit.analog_source(pin.port, pin.pin),
+                        seconds(duration(sampling_cycles(channel)))));
 }
 
 void Adc::step(Ticks now) {

@@ -57,7 +57,8 @@ class Adc final : public TimedPart {
   void finish_injected(Ticks now);
   void check_start(Ticks now);
   std::uint32_t convert(double voltage_V) const;
-  std::uint32_t sample(unsigned channel, Ticks now) const;
+  std::uint32_t sample(unsigned channel, Ticks now);
+  double charge(double pin_V, const AnalogSource& source, double time_s);
   void watch(unsigned channel);
   void idle();
   void update_interrupt();
@@ -76,6 +77,7 @@ class Adc final : public TimedPart {
   bool stopped_ = false;
   bool resume_regular_ = false, automatic_injected_ = false;
   std::uint32_t sample_ = 0;
+  double sampled_V_ = 0.0;  ///< what the sampling capacitor is left with
   Ticks stable_at_ = 0;
   Ticks began_ = 0;         ///< the conversion
   Ticks wake_lag_ = never;  ///< of the processor, behind the end of the conversion

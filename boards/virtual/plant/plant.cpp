@@ -191,6 +191,18 @@ double Plant::analog_V(char port, unsigned pin, Ticks now) {
   return 0.0;  // nothing is wired there; the board's ground plane is near
 }
 
+AnalogSource Plant::analog_source(char port, unsigned pin) const {
+  const board::Pin wanted{port, static_cast<std::uint8_t>(pin)};
+  for (unsigned i = 0; i < 3; ++i) {
+    if (board::motor_current[i].pin == wanted) return {board::current_filter_ohm, board::current_filter_F};
+    // A wiper in the middle has the most behind it.
+    if (board::gimbal[i].pin == wanted) return {board::gimbal_track_ohm / 4, board::gimbal_filter_F};
+  }
+  if (board::supply.pin != wanted) return {};
+  return {board::supply_upper_ohm * board::supply_lower_ohm / (board::supply_upper_ohm + board::supply_lower_ohm),
+          board::supply_filter_F};
+}
+
 double Plant::gimbal_V(unsigned axis) {
   // angle = square r^2 + slope r + offset, for the r that lies on the track
   const auto& [square, slope, offset] = gimbal_terms_[axis];

@@ -96,6 +96,11 @@ double Wires::analog_V(char port, unsigned pin, Ticks now) {
   return read_V;
 }
 
+// A broken wire's own time constant is in its voltage already.
+AnalogSource Wires::analog_source(char port, unsigned pin) const {
+  return states_[index({port, pin})].fault == WireFault::sound ? circuit_.analog_source(port, pin) : AnalogSource{};
+}
+
 void Wires::advance(Ticks now) {
   now_ = std::max(now_, now);
   circuit_.advance(now);

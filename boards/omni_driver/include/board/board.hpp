@@ -219,10 +219,14 @@ inline constexpr float current_linear_A =
 inline constexpr float current_measurable_A = 0.95f * current_linear_A;
 static_assert(current_measurable_A < current_linear_A && current_linear_A < current_range_A);
 
-/// Supply through 100 k over 10 k.
-inline constexpr float supply_divider = 11.0f;
+inline constexpr float supply_upper_ohm = 100e3f, supply_lower_ohm = 10e3f;
+inline constexpr float supply_divider = (supply_upper_ohm + supply_lower_ohm) / supply_lower_ohm;
 inline constexpr float supply_step_V = adc_step_V * supply_divider;
 static_assert(supply_divider * adc_reference_V > supply_maximum_V + 6.0f, "over-voltage must be measurable");
+
+/// In front of the pins: what a channel leaves in the converter's sampling capacitor, the next one's must bear.
+inline constexpr float current_filter_ohm = 47.0f, current_filter_F = 1e-9f;
+inline constexpr float gimbal_track_ohm = 10e3f, gimbal_filter_F = 100e-9f, supply_filter_F = 100e-9f;
 
 /// One injected conversion: 3 cycles of sampling and 12 of conversion. Between the update and the sampling lie at most
 /// 3 cycles (data sheet, ADC characteristics, injected trigger conversion latency).

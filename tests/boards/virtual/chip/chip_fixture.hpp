@@ -30,6 +30,10 @@ class RecordingCircuit final : public Circuit {
     const auto found = voltages.find({port, pin});
     return found == voltages.end() ? 0.0 : found->second;
   }
+  AnalogSource analog_source(char port, unsigned pin) const override {
+    const auto found = sources.find({port, pin});
+    return found == sources.end() ? AnalogSource{} : found->second;
+  }
   void advance(Ticks now) override {
     check_time(now);
     longest_pause = std::max(longest_pause, now - last_advance);
@@ -44,6 +48,7 @@ class RecordingCircuit final : public Circuit {
 
   std::vector<Edge> edges, samples;
   std::map<std::pair<char, unsigned>, double> voltages;
+  std::map<std::pair<char, unsigned>, AnalogSource> sources;
   bool time_ran_backward = false;
   Ticks longest_pause = 0, last_advance = 0;
 

@@ -42,7 +42,8 @@ TEST_CASE("a converter that has stopped starts no conversion; its register keeps
   test.circuit.voltages = {{{'C', 0}, 0.825}, {{'C', 1}, 1.65}, {{'C', 2}, 2.475}};
   test.run_for(0.003);
   test.chip.stop_converter(2, true);
-  test.circuit.voltages = {{{'C', 0}, 1.65}, {{'C', 1}, 0.825}, {{'C', 2}, 0.825}};
+  // The first shares its converter with C3 and C4.
+  test.circuit.voltages = {{{'C', 0}, 1.65}, {{'C', 1}, 0.825}, {{'C', 2}, 0.825}, {{'C', 3}, 1.65}, {{'C', 4}, 1.65}};
   test.run_for(0.001);
   CHECK(test.result(2) == 2048);
   CHECK(test.result(3) == 2048);  // of the time before

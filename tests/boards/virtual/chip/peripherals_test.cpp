@@ -105,7 +105,8 @@ TEST_SUITE("virtual chip: peripherals") {
 
   TEST_CASE("injected conversions start with the trigger, all three converters at the same instant") {
     ChipUnderTest test("converters");
-    test.circuit.voltages = {{{'C', 0}, 0.825}, {{'C', 1}, 1.65}, {{'C', 2}, 2.475}, {{'C', 3}, 0.5}, {{'C', 4}, 3.0}};
+    test.circuit.voltages = {
+        {{'C', 0}, 0.825}, {{'C', 1}, 1.65}, {{'C', 2}, 2.475}, {{'C', 3}, 0.825}, {{'C', 4}, 0.825}};
     std::vector<Ticks> sequences;
     test.chip.on_injected_sequence = [&](std::uint64_t index, Ticks when) {
       CHECK(index == sequences.size());
@@ -142,6 +143,36 @@ TEST_SUITE("virtual chip: peripherals") {
     const double undisturbed = 0.01 * 21e6 / (96 * 8);
     CHECK(test.result(6) - before < undisturbed);
     CHECK(test.result(6) - before > 0.7 * undisturbed);
+  }
+
+  TEST_CASE("a reading holds some of the channel before until its source has charged the sampling capacitor") {
+    constexpr double switch_ohm = 6000, sampling_F = 4e-12, adc_Hz = 21e6;
+    const auto counts = [](double volts) { return volts / 3.3 * 4096; };
+    // C3 and C4 are sampled for 84 cycles in turn, C0 for 3 of them between the two.
+    const auto read = [&](AnalogSource source) {
+      ChipUnderTest test("converters");
+      test.circuit.voltages = {{{'C', 0}, 1.0}, {{'C', 3}, 1.0}, {{'C', 4}, 3.0}};
+      test.circuit.sources = {{{'C', 4}, source}};
+      test.run_for(0.003);
+      const std::uint32_t both = test.result(9);
+      CHECK((both & 0xFFFF) == std::floor(counts(1.0)));
+      return both >> 16;
+    };
+    CHECK(read({}) == std::floor(counts(3.0)));
+    // Through a megohm, the capacitor charges for a time constant or so.
+    const double constant_s = (1e6 + switch_ohm) * sampling_F;
+    const double reached_V = 3.0 - 2.0 * std::exp(-84 / adc_Hz / constant_s);
+    CHECK(read({1e6, 0.0}) == doctest::Approx(counts(reached_V)).epsilon(0.001));
+    // A capacitor at the pin gives its charge at once: 2 V times 4 pF of 1 nF are missing.
+    CHECK(read({1e6, 1e-9}) == doctest::Approx(counts(3.0 - 2.0 * 0.004)).epsilon(0.0003));
+    CHECK(read({1e6, 100e-9}) == std::floor(counts(3.0 - 2.0 * 0.00004)));
+    // Three cycles are six time constants of the switch alone.
+    ChipUnderTest test("converters");
+    test.circuit.voltages = {{{'C', 0}, 0.5}, {{'C', 3}, 3.0}, {{'C', 4}, 3.0}};
+    test.run_for(0.003);
+    const double left_V = 2.5 * std::exp(-3 / adc_Hz / (switch_ohm * sampling_F));
+    CHECK(test.result(2) == std::floor(counts(0.5 + left_V)));
+    CHECK(test.result(2) > counts(0.5) + 5);
   }
 
   TEST_CASE("the CRC unit computes Ethernet's polynomial over words, while its clock is on") {

@@ -14,6 +14,7 @@ class TwoEnds final : public Circuit, public InputPins {
  public:
   void output_changed(char port, unsigned pin, PinLevel level, Ticks) override { heard[{port, pin}] = level; }
   double analog_V(char port, unsigned pin, Ticks) override { return volts[{port, pin}]; }
+  AnalogSource analog_source(char, unsigned) const override { return {10e3, 100e-9}; }
   void advance(Ticks) override {}
   void drive(char port, unsigned pin, PinLevel level, Ticks since) override {
     seen[{port, pin}] = level;
@@ -74,6 +75,9 @@ TEST_CASE("an analogue wire that is broken, shorted or frozen") {
   w.ends.volts[{'C', 3}] = 1.0;
   w.wires.set(c3, WireFault::frozen);
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == 2.0);
+  CHECK(w.wires.analog_source('C', 3).resistance_ohm == 0.0);
+  CHECK(w.wires.analog_source('C', 4).resistance_ohm == 10e3);
+  CHECK(w.wires.analog_source('C', 4).capacitance_F == 100e-9);
   w.wires.set(c3, WireFault::low);
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == 0.0);
   w.wires.set(c3, WireFault::high);

@@ -76,6 +76,12 @@ class TriggerLines {
 
 enum class PinLevel : std::uint8_t { low, high, floating };
 
+/// What stands behind a voltage at an analogue pin. None of either is an ideal source.
+struct AnalogSource {
+  double resistance_ohm = 0.0;
+  double capacitance_F = 0.0;  ///< from the pin to ground
+};
+
 /// What is soldered to the chip. Times of calls never run backward.
 class Circuit {
  public:
@@ -84,6 +90,8 @@ class Circuit {
   virtual void output_changed(char port, unsigned pin, PinLevel level, Ticks now) = 0;
   /// Voltage that an ADC samples at a pin, in volts. Called at the sampling instant.
   virtual double analog_V(char port, unsigned pin, Ticks now) = 0;
+  /// How fast that voltage reaches the ADC's sampling capacitor.
+  virtual AnalogSource analog_source(char /*port*/, unsigned /*pin*/) const { return {}; }
   /// Lets the circuit's own time pass; called at least once every 50 us of board time.
   virtual void advance(Ticks now) = 0;
 };

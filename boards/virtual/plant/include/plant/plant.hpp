@@ -42,6 +42,7 @@ class Plant final : public Circuit {
 
   void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
   double analog_V(char port, unsigned pin, Ticks now) override;
+  AnalogSource analog_source(char port, unsigned pin) const override;
   void advance(Ticks now) override;
 
   // ---- what a person does to it, from the time of the last call of the chip on ----

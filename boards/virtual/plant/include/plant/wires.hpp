@@ -32,6 +32,7 @@ class Wires final : public Circuit, public InputPins {
 
   void output_changed(char port, unsigned pin, PinLevel level, Ticks now) override;
   double analog_V(char port, unsigned pin, Ticks now) override;
+  AnalogSource analog_source(char port, unsigned pin) const override;
   void advance(Ticks now) override;
   void drive(char port, unsigned pin, PinLevel level, Ticks since) override;
 
@@ -46,7 +47,8 @@ class Wires final : public Circuit, public InputPins {
   struct Pair {
     PinName a, b;
   };
-  State& state(PinName wire) { return states_[static_cast<unsigned>(wire.port - 'A') * 16 + wire.pin]; }
+  static std::size_t index(PinName wire) { return static_cast<std::size_t>(wire.port - 'A') * 16 + wire.pin; }
+  State& state(PinName wire) { return states_[index(wire)]; }
   const PinName* neighbour(PinName wire) const;
   PinLevel arriving(PinName wire, PinLevel State::*driven, PinLevel State::*frozen);
   void tell_chip(PinName wire, Ticks since);

@@ -36,6 +36,7 @@ enum Fault : std::uint32_t {
   region_number,
   region_number_of_base,
   narrow_core_write,
+  stream_flags_left,
 };
 
 std::uint32_t fault;
@@ -74,6 +75,7 @@ void convert() {
   if (fault != analog_pin_mode) word(gpio::c + gpio::moder) = 0x3F;
   word(adc::ccr) = fault == converter_too_fast ? 0 : 1 << 16;
   for (unsigned i = 0; i < 3; ++i) {
+    word(adc::adc1 + 0x100 * i + 0x0C) = 1 << 3 * i;  // 15 cycles, for the first of all conversions
     word(adc::adc1 + 0x100 * i + adc::sqr3) = 10 + i;
     word(adc::adc1 + 0x100 * i + adc::cr2) = 1;
   }
@@ -83,7 +85,22 @@ void convert() {
   for (unsigned i = 0; i < 3; ++i) results[1 + i] = word(adc::adc1 + 0x100 * i + adc::dr);
 }
 
+/// Moves a word from memory to memory, twice.
+void copy() {
+  constexpr std::uint32_t dma2 = 0x40026400, lifcr = dma2 + 0x08, s0cr = dma2 + 0x10, s0ndtr = dma2 + 0x14;
+  word(rcc::ahb1enr) |= 1 << 22;
+  read_back(rcc::ahb1enr);
+  word(dma2 + 0x18) = reinterpret_cast<std::uint32_t>(results);
+  word(dma2 + 0x1C) = reinterpret_cast<std::uint32_t>(results + 100);
+  for (unsigned i = 0; i < 2; ++i) {
+    word(s0ndtr) = 1;
+    word(s0cr) = 2 << 13 | 2 << 11 | 2 << 6 | 1;
+    if (fault != stream_flags_left) word(lifcr) = 0x3D;
+  }
+}
+
 void use_others() {
+  copy();
   constexpr std::uint32_t tim8 = timer::tim8;
   word(rcc::apb2enr) |= 2;
   read_back(rcc::apb2enr);
