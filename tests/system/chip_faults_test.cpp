@@ -190,3 +190,21 @@ TEST_CASE("after a bridge's fault is cleared the force comes on again and stays"
   CHECK(protocol::force_is_on(rig.pose().state));
   CHECK(any_motor_driven(rig.control));
 }
+
+TEST_CASE("gimbal and supply are measured again after a transfer that failed for a moment") {
+  BoardRig rig;
+  rig.run(0.1);
+  for (int failure = 0; failure < 10; ++failure) {
+    device::InjectionRequest fault{"dma_stopped"};
+    fault.for_s = 0.5 * static_cast<double>(protocol::samples_stale_s);
+    rig.control.inject(fault);
+    rig.run(0.03);
+  }
+  rig.control.supply(20.0);
+  rig.control.gimbal({0.7, 0.8, 0.9});
+  rig.run(0.3);
+  CHECK(rig.pose().supply_dV == doctest::Approx(200).epsilon(0.01));
+  for (int i = 0; i < 3; ++i) CHECK(rig.pose().gimbal_rad[i] == doctest::Approx(0.7 + 0.1 * i).epsilon(0.01));
+  CHECK(rig.pose().state != State::fault);
+  CHECK(rig.control.status().all.at("violations").empty());
+}

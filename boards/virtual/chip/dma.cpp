@@ -138,6 +138,9 @@ bool DmaController::request(unsigned index, unsigned channel) {
 
 void DmaController::enable(unsigned index) {
   auto& s = streams_[index];
+  if (s.flags != 0)
+    machine_.violations.violate(Rule::stream_flags_left,
+                                "DMA" + std::to_string(number_) + " stream " + std::to_string(index));
   s.reload = s.count;
   s.moved = 0;
   if (dma.cr.dir.of(s.control) == memory_to_memory) {

@@ -44,6 +44,7 @@ constexpr Case cases[] = {
     {27, Rule::region_number},
     {28, Rule::region_number},
     {29, Rule::narrow_core_write},
+    {30, Rule::stream_flags_left},
 };
 
 /// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.
@@ -112,7 +113,7 @@ TEST_SUITE("virtual chip: rules of silicon") {
     REQUIRE(violations.size() == 2);
     CHECK(violations[0].where == "ADC2");
     CHECK(violations[1].where == "ADC3");
-    CHECK(violations[0].count == 4);
+    CHECK(violations[0].count == 5);
     CHECK(violations[0].code_address >= 0x0800'0000);
     CHECK(violations[0].code_address < 0x0810'0000);
     CHECK(violations[0].first > 0);

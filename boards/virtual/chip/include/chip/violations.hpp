@@ -66,6 +66,9 @@ namespace inkwell::virtual_board {
        "IWDG_PR or IWDG_RLR is written while PVU or RVU is set", "the value is lost", "wait until the flag is 0")      \
   RULE(copy_by_first_controller, "DMA_SxCR", "RM0090, DMA main features", "DMA1 is asked to move memory to memory",    \
        "nothing is moved", "take DMA2")                                                                                \
+  RULE(stream_flags_left, "DMA_SxCR", "RM0090, DMA stream configuration procedure",                                    \
+       "A stream is enabled while flags of its last transfer are set", "its new transfer need not start",              \
+       "clear all its flags by DMA_LIFCR or DMA_HIFCR first")                                                          \
   RULE(option_bytes_locked, "FLASH_OPTCR", "RM0090, Unlocking the option bytes",                                       \
        "It is written while OPTLOCK is set, or with a wrong key",                                                      \
        "the write is ignored; a wrong key locks until reset",                                                          \
