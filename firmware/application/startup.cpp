@@ -41,8 +41,6 @@ extern "C" [[noreturn, gnu::used]] void start() {
   // processor saves them lazily is its default (FPCCR) and stays.
   constexpr std::uint32_t full_access_to_both = 0b1111;
   FPU_CPACR::CPACR::modify(FPU_CPACR::CPACR::CP(full_access_to_both));
-  // A boot loader leaves the table pointing to itself.
-  SCB::VTOR::write(reinterpret_cast<std::uint32_t>(&vectors));
   asm volatile("dsb\n isb" ::: "memory");
 
   copy(interrupt_text_image, interrupt_text_begin, interrupt_text_end);
@@ -51,7 +49,7 @@ extern "C" [[noreturn, gnu::used]] void start() {
   copy(core_coupled_data_image, core_coupled_data_begin, core_coupled_data_end);
   std::fill(zero_begin, zero_end, 0u);
   std::fill(core_coupled_zero_begin, core_coupled_zero_end, 0u);
-  // From now on the processor finds the handlers without the flash.
+  // From now on the processor finds the handlers, without the flash, also where a boot loader left its own table.
   std::memcpy(interrupt_vectors, &vectors, sizeof vectors);
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");

@@ -20,21 +20,17 @@ using Enable = DigitalOutput<Bridges, board::bridge_enable>;
 constexpr std::uint32_t trigger_on_enable = 0b001;
 constexpr std::uint32_t trigger_on_update = 0b010;
 
-/// Sets a timer up, compare values neutral, outputs off, counter at rest at 0.
+/// Sets a timer up, outputs off, counter at rest at 0. Compare values are written before the outputs are switched on.
 template <class Timer>
 void set_up() {
   constexpr std::uint32_t centre_aligned = 0b01;
   constexpr std::uint32_t high_below_compare = 0b110;
-  // Preload everywhere. URS: only the counter itself raises the update flag, not the software's UG.
-  Timer::CR1::write(typename Timer::CR1::CMS(centre_aligned), typename Timer::CR1::ARPE(1),
-                    typename Timer::CR1::URS(1));
-  Timer::PSC::write(0);
+  Timer::CR1::write(typename Timer::CR1::CMS(centre_aligned));
   Timer::ARR::write(board::pwm_top);
   Timer::RCR::write(typename Timer::RCR::REP(board::pwm_repetition));
   Timer::CCMR1::write(typename Timer::CCMR1::OC1M(high_below_compare), typename Timer::CCMR1::OC1PE(1),
                       typename Timer::CCMR1::OC2M(high_below_compare), typename Timer::CCMR1::OC2PE(1));
   Timer::CCMR2::write(typename Timer::CCMR2::OC3M(high_below_compare), typename Timer::CCMR2::OC3PE(1));
-  for (const auto& bridge : board::bridges) Timer::CCR::write(bridge.channel - 1u, board::pwm_top / 2);
   Timer::BDTR::write(outputs_off);
   Timer::CCER::write(typename Timer::CCER::CC1E(1), typename Timer::CCER::CC2E(1), typename Timer::CCER::CC3E(1));
   // Loads the repetition counter as well, so the events are counted from here: with an odd repetition value and
@@ -54,16 +50,14 @@ void write_legs(const LegCompares& legs) {
 /// (RM0090, "TIMx internal trigger connection"). It comes some two cycles late, 12 ns, by which the legs of a
 /// bridge stay apart; the bridge's own dead time is 17 times that.
 void start_together() {
-  constexpr std::uint32_t start_on_trigger = 0b110, internal_trigger_0 = 0b000, no_slave = 0b000;
+  constexpr std::uint32_t start_on_trigger = 0b110, internal_trigger_0 = 0b000;
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_enable));
-  // The trigger is chosen while the slave mode is off, as the manual asks (TIMx_SMCR, TS).
-  TIM8::SMCR::write(TIM8::SMCR::TS(internal_trigger_0));
   TIM8::SMCR::write(TIM8::SMCR::TS(internal_trigger_0), TIM8::SMCR::SMS(start_on_trigger));
   TIM1::CR1::modify(TIM1::CR1::CEN(1));
-  // Reading TIM1 back gives TIM8 the time to see the trigger before it stops listening.
+  // Reading TIM1 back gives TIM8 the time to see the trigger before it means something else. Later ones find it
+  // running.
   static_cast<void>(TIM1::CR1::read());
   static_cast<void>(TIM1::CR1::read());
-  TIM8::SMCR::write(TIM8::SMCR::SMS(no_slave));
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_update));
 }
 

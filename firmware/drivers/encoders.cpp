@@ -24,7 +24,6 @@ void set_up() {
                       typename Timer::CCMR1::IC1F(filter), typename Timer::CCMR1::IC2F(filter));
   Timer::SMCR::write(typename Timer::SMCR::SMS(both_edges));
   Timer::ARR::write(0xFFFF);
-  Timer::CNT::write(0);
   Timer::CR1::write(typename Timer::CR1::CEN(1));
 }
 

@@ -69,6 +69,7 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   if (options.real_time) arguments.push_back("--real-time");
   if (options.paused) arguments.push_back("--paused");
   if (options.seconds) arguments.insert(arguments.end(), {"--seconds", std::to_string(*options.seconds)});
+  if (options.from_boot_loader) arguments.push_back("--from-boot-loader");
   if (options.strict) arguments.push_back("--strict");
   if (!options.profile.empty()) arguments.insert(arguments.end(), {"--profile", options.profile.string()});
   return arguments;

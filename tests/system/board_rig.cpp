@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <doctest/doctest.h>
 #include <stepped_board.hpp>
@@ -18,12 +19,16 @@ using namespace std::chrono_literals;
 device::VirtualBoardOptions options(device::SimulationMode mode, std::uint64_t seed, device::CyclePricing pricing) {
   auto options = stepped_board(mode, pricing);
   options.seed = seed;
-  options.strict = true;
   return options;
 }
 
 device::VirtualBoardOptions with_image(device::VirtualBoardOptions options, const std::string& image) {
   options.elf = build_directory() + "/../board/" + image;
+  return options;
+}
+
+device::VirtualBoardOptions strictly(device::VirtualBoardOptions options) {
+  options.strict = true;
   return options;
 }
 
@@ -38,7 +43,8 @@ BoardRig::BoardRig(device::SimulationMode mode, std::uint64_t seed, device::Cycl
 BoardRig::BoardRig(const std::string& image)
     : BoardRig(with_image(options(device::SimulationMode::fast, 1, device::CyclePricing::likely), image)) {}
 
-BoardRig::BoardRig(const device::VirtualBoardOptions& options) : board(options), control(board.control()) {
+BoardRig::BoardRig(device::VirtualBoardOptions options)
+    : board(strictly(std::move(options))), control(board.control()) {
   control.stand_by();
   connect();
   run(0.05);

@@ -23,6 +23,8 @@ class BoardRig {
                     device::CyclePricing pricing = device::CyclePricing::likely);
   /// With another image, build/board/`image`.
   explicit BoardRig(const std::string& image);
+  /// Of stepped_board(); the first broken rule of the chip ends the board.
+  explicit BoardRig(device::VirtualBoardOptions options);
 
   /// Lets board time pass in slices of 10 ms, collects every pose report, keeps the host's sign of life.
   void run(double time_s);
@@ -50,7 +52,6 @@ class BoardRig {
   std::unique_ptr<device::Device> device;
 
  private:
-  explicit BoardRig(const device::VirtualBoardOptions& options);
   void pass_slice();
   double since_sign_of_life_s_ = 0;
   std::vector<protocol::PoseReport> poses_;

@@ -13,6 +13,8 @@
 
 #include <board/board.hpp>
 
+#include <stepped_board.hpp>
+
 #include "board_rig.hpp"
 #include "program.hpp"
 
@@ -45,6 +47,16 @@ TEST_CASE("the device enumerates within a second of board time and says who it i
   const auto status = rig.control.status();
   INFO("registers that the virtual chip does not model: ", status.all.at("unmodelled").dump());
   CHECK(status.unmodelled.empty());
+}
+
+TEST_CASE("the firmware starts as well when the chip's boot loader starts it") {
+  auto options = stepped_board(device::SimulationMode::fast, device::CyclePricing::likely);
+  options.from_boot_loader = true;
+  BoardRig rig(options);
+  rig.make_active();
+  rig.run(0.1);
+  CHECK(protocol::force_is_on(rig.pose().state));
+  CHECK(rig.device->information().report.servo_overruns == 0);
 }
 
 TEST_CASE("two boards are told apart by their serial numbers, which their seeds make") {

@@ -1,6 +1,7 @@
 #include <chip/chip.hpp>
 #include <cstdio>
 
+#include "boot_loader.hpp"
 #include "execution.hpp"
 #include "parts.hpp"
 
@@ -58,6 +59,7 @@ void Chip::reset(ResetCause cause) {
 }
 
 Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
+void Chip::start_by_boot_loader() { jump(loader_go); }
 void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
 void Chip::stall(Ticks duration) { parts_->execution.stall(duration); }
 void Chip::halt(Ticks duration) {

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "boot_loader.hpp"
 #include "can.hpp"
 #include "crc.hpp"
 #include "dac.hpp"
@@ -23,23 +24,6 @@ constexpr ClockGate gate(const EnableRegister& enable, const Field& field, unsig
 /// Reset register that belongs to an enable register (RM0090, "RCC register map").
 constexpr std::uint32_t reset_register_of(std::uint32_t enable_register) {
   return enable_register - (rcc_map.ahb1enr - rcc_map.ahb1rstr);
-}
-
-/// Stands for the boot loader in the chip: says by semihosting that there is none, and waits for a reset.
-void put_boot_loader(std::uint8_t* system) {
-  constexpr std::uint32_t stack = sram_base + 0x2000, entry = system_base + 8 + 1;
-  constexpr std::uint16_t code[] = {
-      0x2004,  // movs r0, #4: write a text
-      0xA101,  // adr r1, the text
-      0xBEAB,  // bkpt 0xAB
-      0xE7FE,  // b .
-  };
-  constexpr char text[] =
-      "The firmware has started the chip's boot loader. This board has none: it waits until it is reset.\n";
-  std::memcpy(system, &stack, 4);
-  std::memcpy(system + 4, &entry, 4);
-  std::memcpy(system + 8, code, sizeof code);
-  std::memcpy(system + 8 + sizeof code, text, sizeof text);
 }
 
 struct Place {
@@ -133,7 +117,7 @@ ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(cir
   std::memcpy(system + 0x7A10, options.unique_id.data(), 12);
   const std::uint16_t flash_kilobytes = flash_bytes / 1024;
   std::memcpy(system + 0x7A22, &flash_kilobytes, 2);
-  put_boot_loader(system);
+  put_boot_loader(system, machine.options.crystal_Hz);
 }
 
 void ChipParts::put_peripherals() {

@@ -69,6 +69,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
                     options.seed);
   plug(true);
   chip_.reset(ResetCause::power_on);
+  if (options.from_boot_loader) chip_.start_by_boot_loader();
   if (!options.waveform.empty()) waveform_.emplace(options.waveform, options.waveform_pins, chip_);
   for (const Injection& injection : options.injections) injector_->add(injection);
   chip_.clear_counters();  // resets are counted from here on

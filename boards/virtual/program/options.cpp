@@ -89,6 +89,10 @@ void add_chip(CLI::App& app, Given& given) {
       ->check(CLI::Range(17'000, 47'000).description(""))
       ->type_name("HZ")
       ->capture_default_str();
+  app.add_flag(
+      "--from-boot-loader", given.options.from_boot_loader,
+      "the boot loader in the chip starts the firmware, by its command Go, and leaves PLL, vector table and the clock\n"
+      "of CCM otherwise than a reset does");
   app.add_option("--brown-out", given.options.brown_out_level,
                  "brown-out level in the chip's option bytes: 0 is off, as in a new chip; 3 is what the board wants")
       ->check(CLI::Range(0, 3).description(""))

@@ -28,6 +28,7 @@ struct Options {
   std::uint32_t crystal_Hz = 8'000'000;
   std::int32_t crystal_ppm = 0;  ///< the crystal swings faster than its name by so many parts in a million
   std::uint32_t low_speed_internal_Hz = 32'000;
+  bool from_boot_loader = false;
   unsigned brown_out_level = 0;  ///< of the option bytes
   double host_clock_ppm = 0.0;   ///< the USB host's clock is faster than board time by so many parts in a million
   bool real_time = false;

@@ -123,6 +123,9 @@ class Chip {
   /// Runs until board time reaches `when`, or the firmware exits. Calls of the circuit, of
   /// peripherals and of scheduled events come from inside it.
   Stop run_until(Ticks when);
+  /// Lets the boot loader in the chip start the firmware, after a reset, as it does when it is told to go there
+  /// (AN2606): with clocks, CCM and vector table as a loader may leave them, which is not as a reset does.
+  void start_by_boot_loader();
   /// Sets the program counter, as a debugger does between two instructions, or a particle that flips a bit of it.
   /// Not from inside run_until().
   void jump(std::uint32_t address);

@@ -1,0 +1,93 @@
+#include "boot_loader.hpp"
+
+#include <cstddef>
+#include <cstring>
+
+namespace inkwell::virtual_board {
+namespace {
+
+constexpr std::uint32_t loader_stack = sram_base + 0x2000, loader_entry = system_base + 8 + 1;
+
+constexpr std::uint16_t say_there_is_none[] = {
+    0x2004,  // movs r0, #4: write a text
+    0xA101,  // adr r1, the text
+    0xBEAB,  // bkpt 0xAB
+    0xE7FE,  // b .
+};
+constexpr char there_is_none[] =
+    "The firmware has started the chip's boot loader. This board has none: it waits until it is reset.\n";
+
+/// Leaves the chip as a loader may: voltage scale 2, 60 MHz from crystal and PLL, the internal oscillator off, no clock
+/// for CCM, the vector table its own.
+constexpr std::uint16_t go[] = {
+    0x481A,          // ldr r0, =RCC
+    0x6C01,          // ldr r1, [r0, #APB1ENR]
+    0xF041, 0x5180,  // orr r1, #PWREN
+    0x6401,          // str r1, [r0, #APB1ENR]
+    0x6C01,          // ldr r1, [r0, #APB1ENR]: the clock arrives meanwhile
+    0x4B18,          // ldr r3, =PWR
+    0x2100,          // movs r1, #0: VOS
+    0x6019,          // str r1, [r3, #CR]
+    0x6801,          // ldr r1, [r0, #CR]
+    0xF441, 0x3180,  // orr r1, #HSEON
+    0x6001,          // str r1, [r0, #CR]
+    0x6801,          // ldr r1, [r0, #CR]
+    0x038A,          // lsls r2, r1, #14: HSERDY
+    0xD5FC,          // bpl, two back
+    0x4914,          // ldr r1, =60 MHz
+    0x6041,          // str r1, [r0, #PLLCFGR]
+    0x6801,          // ldr r1, [r0, #CR]
+    0xF041, 0x7180,  // orr r1, #PLLON
+    0x6001,          // str r1, [r0, #CR]
+    0x6801,          // ldr r1, [r0, #CR]
+    0x018A,          // lsls r2, r1, #6: PLLRDY
+    0xD5FC,          // bpl, two back
+    0x4B11,          // ldr r3, =FLASH
+    0x2101,          // movs r1, #1: LATENCY
+    0x6019,          // str r1, [r3, #ACR]
+    0xF241, 0x0100,  // movw r1, #PPRE1 by 2
+    0x6081,          // str r1, [r0, #CFGR]
+    0x3102,          // adds r1, #SW from the PLL
+    0x6081,          // str r1, [r0, #CFGR]
+    0x6881,          // ldr r1, [r0, #CFGR]
+    0xF001, 0x010C,  // and r1, #SWS
+    0x2908,          // cmp r1, #SWS from the PLL
+    0xD1FA,          // bne, three back
+    0x6801,          // ldr r1, [r0, #CR]
+    0xF021, 0x0101,  // bic r1, #HSION
+    0x6001,          // str r1, [r0, #CR]
+    0x2100,          // movs r1, #0
+    0x6401,          // str r1, [r0, #APB1ENR]
+    0x6301,          // str r1, [r0, #AHB1ENR]
+    0x4908,          // ldr r1, =VTOR
+    0x4A08,          // ldr r2, =the system memory
+    0x600A,          // str r2, [r1]
+    0xF04F, 0x6100,  // mov r1, #the flash
+    0x680A,          // ldr r2, [r1]
+    0x4695,          // mov sp, r2
+    0x684A,          // ldr r2, [r1, #4]
+    0x4710,          // bx r2
+};
+
+/// The VCO at 240 MHz, divided by 4 for the core and by 5 for USB.
+constexpr std::uint32_t pll_for_60_MHz(std::uint32_t crystal_Hz) {
+  return crystal_Hz / 1'000'000 | 240 << 6 | 1 << 16 | 1 << 22 | 5 << 24;
+}
+
+template <class T, std::size_t n>
+std::uint8_t* append(std::uint8_t* to, const T (&words)[n]) {
+  std::memcpy(to, words, sizeof words);
+  return to + sizeof words;
+}
+
+}  // namespace
+
+void put_boot_loader(std::uint8_t* system, std::uint32_t crystal_Hz) {
+  const std::uint32_t vectors[] = {loader_stack, loader_entry};
+  append(append(append(system, vectors), say_there_is_none), there_is_none);
+  const std::uint32_t literals[] = {0x4002'3800, 0x4000'7000, pll_for_60_MHz(crystal_Hz),
+                                    0x4002'3C00, 0xE000'ED08, system_base};
+  append(append(system + (loader_go - system_base), go), literals);
+}
+
+}  // namespace inkwell::virtual_board
