@@ -59,6 +59,15 @@ TEST_CASE("the firmware starts as well when the chip's boot loader starts it") {
   CHECK(rig.device->information().report.servo_overruns == 0);
 }
 
+TEST_CASE("the firmware says on its console who it is and why it was reset") {
+  const auto image = std::filesystem::path(build_directory()) / ".." / "board" / "inkwell.elf";
+  const auto result = run_program("virtual-board",
+                                  {"--elf", image.string(), "--uart", "usart2=stdio", "--seconds", "0.05", "--strict"});
+  CHECK(result.exit_code == 0);
+  CHECK(result.out.find("\ninkwell ") != std::string::npos);
+  CHECK(result.out.find(", reset cause 0000000e\r\n") != std::string::npos);
+}
+
 TEST_CASE("two boards are told apart by their serial numbers, which their seeds make") {
   const auto serial_number_of = [](std::uint64_t seed) {
     return BoardRig(device::SimulationMode::fast, seed).device->information().serial_number;

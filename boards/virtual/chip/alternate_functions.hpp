@@ -63,6 +63,18 @@ inline constexpr TimerPin timer_pins[] = {
 };
 // clang-format on
 
+/// Pins that a USART can send on.
+struct TransmitPin {
+  unsigned usart;
+  char port;
+  std::uint8_t pin;
+  std::uint8_t alternate_function;
+};
+inline constexpr TransmitPin transmit_pins[] = {
+    {1, 'A', 9, 7}, {1, 'B', 6, 7}, {2, 'A', 2, 7},  {2, 'D', 5, 7},  {3, 'B', 10, 7}, {3, 'C', 10, 7},
+    {3, 'D', 8, 7}, {4, 'A', 0, 8}, {4, 'C', 10, 8}, {5, 'C', 12, 8}, {6, 'C', 6, 8},  {6, 'G', 14, 8},
+};
+
 /// Pins of the ADCs' external channels (data sheet, pin table): ADC1 and ADC2 share theirs, ADC3 has others at 4..9
 /// and 14, 15. Port 0: no pin.
 struct AnalogPin {

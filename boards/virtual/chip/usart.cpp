@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "alternate_functions.hpp"
 #include "dma.hpp"
+#include "pins.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -26,14 +28,16 @@ void Usart::reset() {
   update();
 }
 
+unsigned Usart::cycles_of_bit() const {
+  if (!usart_map.cr1.over8.in(control1_)) return baud_;
+  return usart_map.brr.div_mantissa.of(baud_) * 8 + (usart_map.brr.div_fraction.of(baud_) & 7);
+}
+
 Ticks Usart::frame_duration() const {
   const Clock& clock = on_apb2_ ? machine_.clocks.pclk2 : machine_.clocks.pclk1;
-  const std::uint64_t cycles = usart_map.cr1.over8.in(control1_) ? usart_map.brr.div_mantissa.of(baud_) * 8 +
-                                                                       (usart_map.brr.div_fraction.of(baud_) & 7)
-                                                                 : baud_;
   const unsigned stop_bits = usart_map.cr2.stop.of(control2_) >= 2 ? 2 : 1;
   const unsigned bits = 1 + (usart_map.cr1.m.in(control1_) ? 9 : 8) + stop_bits;
-  return clock.duration(std::max<std::uint64_t>(cycles, 1) * bits);
+  return clock.duration(std::uint64_t{std::max(cycles_of_bit(), 1u)} * bits);
 }
 
 void Usart::update() {
@@ -65,10 +69,24 @@ void Usart::load_shift_register() {
   update();
 }
 
+std::string Usart::name() const { return (number_ == 4 || number_ == 5 ? "UART" : "USART") + std::to_string(number_); }
+
+bool Usart::is_heard() const {
+  const unsigned shortest = usart_map.cr1.over8.in(control1_) ? 8 : 16;
+  if (cycles_of_bit() < shortest) {
+    machine_.violations.violate(Rule::usart_divider, name());
+    return false;
+  }
+  for (const auto& [usart, port, pin, function] : transmit_pins)
+    if (usart == number_ && machine_.pins->has_function(static_cast<unsigned>(port - 'A'), pin, function)) return true;
+  machine_.violations.violate(Rule::usart_pin, name());
+  return false;
+}
+
 void Usart::step(Ticks now) {
   if (sent_at_ <= now) {
     sent_at_ = never;
-    if (on_sent) on_sent(number_, shift_);
+    if (is_heard() && on_sent) on_sent(number_, shift_);
     load_shift_register();
     if (sent_at_ == never) status_ |= complete;
     serve_dma();
@@ -147,7 +165,7 @@ void Usart::write_word(std::uint32_t offset, std::uint32_t value) {
       serve_dma();
       break;
     case usart_map.gtpr: guard_ = value & writable(usart_map.gtpr); break;
-    default: return machine_.log.note("USART" + std::to_string(number_), offset, true, value);
+    default: return machine_.log.note(name(), offset, true, value);
   }
   update();
 }

@@ -59,7 +59,12 @@ class Usart final : public RegisterBlock, public TimedPart {
   std::span<const MapEntry> registers() const override { return shown<usart_map>(); }
 
  private:
+  std::string name() const;
+  /// In cycles of its bus.
+  unsigned cycles_of_bit() const;
   Ticks frame_duration() const;
+  /// What is sent leaves the chip and can be read.
+  bool is_heard() const;
   void load_shift_register();
   void take_received();
   void update();

@@ -14,7 +14,6 @@ class CycleCounter {
     using registers::CORE_DEBUG;
     using registers::DWT;
     CORE_DEBUG::DEMCR::modify(CORE_DEBUG::DEMCR::TRCENA(1));
-    DWT::CYCCNT::write(0);
     DWT::CTRL::modify(DWT::CTRL::CYCCNTENA(1));
   }
 

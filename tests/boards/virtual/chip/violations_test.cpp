@@ -45,6 +45,8 @@ constexpr Case cases[] = {
     {28, Rule::region_number},
     {29, Rule::narrow_core_write},
     {30, Rule::stream_flags_left},
+    {31, Rule::usart_pin},
+    {32, Rule::usart_divider},
 };
 
 /// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.
@@ -61,6 +63,7 @@ struct Planted {
     if (core.attachment() == 0) return;
     core.begin_reset();
     core.end_reset();
+    core.setup(0, 0, std::array<std::byte, 8>{});
   }
   std::uint32_t converted(unsigned converter) const { return test.result(1 + converter); }
   bool host_is_answered() {

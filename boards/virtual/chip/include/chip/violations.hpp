@@ -66,6 +66,10 @@ namespace inkwell::virtual_board {
        "IWDG_PR or IWDG_RLR is written while PVU or RVU is set", "the value is lost", "wait until the flag is 0")      \
   RULE(copy_by_first_controller, "DMA_SxCR", "RM0090, DMA main features", "DMA1 is asked to move memory to memory",    \
        "nothing is moved", "take DMA2")                                                                                \
+  RULE(usart_pin, "GPIOx_AFRx", "STM32F405 data sheet, Alternate function mapping",                                    \
+       "A USART sends while none of its pins is in its alternate function", "nobody hears it", "connect its TX pin")   \
+  RULE(usart_divider, "USART_BRR", "RM0090, Fractional baud rate generation",                                          \
+       "A USART sends with a divider below 16, or 8 with OVER8", "it sends nothing that can be read", "set BRR first") \
   RULE(stream_flags_left, "DMA_SxCR", "RM0090, DMA stream configuration procedure",                                    \
        "A stream is enabled while flags of its last transfer are set", "its new transfer need not start",              \
        "clear all its flags by DMA_LIFCR or DMA_HIFCR first")                                                          \

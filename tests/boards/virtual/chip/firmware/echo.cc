@@ -5,6 +5,9 @@ void run() {
   constexpr std::uint32_t usart1 = 0x40011000, status = usart1, data = usart1 + 4;
   word(rcc::apb2enr) |= 1 << 4;
   [[maybe_unused]] const std::uint32_t arrived = word(rcc::apb2enr);
+  word(rcc::ahb1enr) |= 1;
+  [[maybe_unused]] const std::uint32_t port_arrived = word(rcc::ahb1enr);
+  gpio::alternate(gpio::a, 9, 7);
   word(usart1 + 0x08) = 139;
   word(usart1 + 0x0C) = 1 << 13 | 1 << 3 | 1 << 2;
   for (;;) {

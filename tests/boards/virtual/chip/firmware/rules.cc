@@ -37,6 +37,8 @@ enum Fault : std::uint32_t {
   region_number_of_base,
   narrow_core_write,
   stream_flags_left,
+  usart_pin,
+  usart_divider,
 };
 
 std::uint32_t fault;
@@ -99,8 +101,19 @@ void copy() {
   }
 }
 
+void send() {
+  constexpr std::uint32_t usart2 = 0x40004400;
+  word(rcc::apb1enr) |= 1 << 17;
+  read_back(rcc::apb1enr);
+  if (fault != usart_pin) gpio::alternate(gpio::a, 2, 7);
+  word(usart2 + 0x08) = fault == usart_divider ? 15 : 16;
+  word(usart2 + 0x0C) = 1 << 13 | 1 << 3;
+  word(usart2 + 0x04) = 'x';
+}
+
 void use_others() {
   copy();
+  send();
   constexpr std::uint32_t tim8 = timer::tim8;
   word(rcc::apb2enr) |= 2;
   read_back(rcc::apb2enr);
