@@ -71,7 +71,7 @@ int hostile(const std::filesystem::path& image, std::uint64_t from, std::uint64_
 int main(int argc, char** argv) {
   CLI::App app{
       "The firmware that would be flashed, on the virtual chip, against a USB host. Everything is simulation."};
-  std::filesystem::path image = flashed_image(std::filesystem::read_symlink("/proc/self/exe").parent_path());
+  std::filesystem::path image = flashed_image();
   app.add_option("--elf", image, "firmware to run")->type_name("FILE");
   app.require_subcommand(1);
   double host_clock_ppm = 0.0, time_s = 10.0;

@@ -108,7 +108,8 @@ void Adc::begin_conversion(Ticks now) {
   if (group_ == Group::injected) {
     if (adc.cr1.jeocie.in(cr1_) && rank_ + 1 >= injected_length()) wake = done;
   } else {
-    if (adc.cr2.dma.in(cr2_) || adcs_.shares_dma()) wake = done + machine_.transfer_lag();
+    const bool is_awaited = adc.cr1.ovrie.in(cr1_) || machine_.dma->interrupts_for_adc(adcs_.shares_dma() ? 0 : index_);
+    if (adc.cr2.dma.in(cr2_) || adcs_.shares_dma()) wake = done + (is_awaited ? 0 : machine_.transfer_lag());
     const bool ends = adc.cr2.eocs.in(cr2_) || regular_rank_ + 1 >= regular_length();
     if (adc.cr1.eocie.in(cr1_) && ends) wake = done;
   }

@@ -1,5 +1,6 @@
 #include "dma.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace inkwell::virtual_board {
@@ -208,6 +209,11 @@ void DmaController::write_word(std::uint32_t offset, std::uint32_t value) {
 Dma::Dma(Machine& machine, Bus& bus) : first_(machine, bus, 1), second_(machine, bus, 2) { machine.dma = this; }
 
 bool Dma::adc_request(unsigned index) { return ask(*this, adc_requests, index, 0); }
+bool Dma::interrupts_for_adc(unsigned index) const {
+  return std::ranges::any_of(adc_requests, [&](const Request& r) {
+    return r.peripheral == index && (r.controller == 1 ? first_ : second_).interrupts_for(r.stream, r.channel);
+  });
+}
 bool Dma::timer_request(unsigned timer, unsigned source) { return ask(*this, timer_requests, timer, source); }
 bool Dma::spi_request(unsigned number, bool transmit) { return ask(*this, spi_requests, number, transmit ? 1 : 0); }
 bool Dma::usart_request(unsigned number, bool transmit) { return ask(*this, usart_requests, number, transmit ? 1 : 0); }

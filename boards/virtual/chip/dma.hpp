@@ -17,6 +17,12 @@ class DmaController final : public RegisterBlock {
   void reset() override;
   /// A peripheral's request on a stream's channel. False: no stream takes it now.
   bool request(unsigned stream, unsigned channel);
+  /// The stream serves the channel, and its end, its half or an error interrupts.
+  bool interrupts_for(unsigned index, unsigned channel) const {
+    const std::uint32_t control = streams_[index].control;
+    return dma.cr.en.in(control) && dma.cr.chsel.of(control) == channel &&
+           (dma.cr.tcie.in(control) || dma.cr.htie.in(control) || dma.cr.teie.in(control));
+  }
   /// A fault that lasts: no request is taken any more.
   void stop(bool stopped) { stopped_ = stopped; }
   /// After a stream has been enabled: peripherals may have a request waiting.
@@ -53,6 +59,8 @@ class Dma {
   Dma(Machine& machine, Bus& bus);
   DmaController& controller(unsigned number) { return number == 1 ? first_ : second_; }
   bool adc_request(unsigned index);
+  /// A stream that serves this converter would interrupt.
+  bool interrupts_for_adc(unsigned index) const;
   /// `source` 0 is the update, 1..4 the channels.
   bool timer_request(unsigned timer, unsigned source);
   bool usart_request(unsigned number, bool transmit);

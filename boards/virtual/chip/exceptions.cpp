@@ -67,7 +67,8 @@ Processor::Entry Processor::enter_exception(unsigned exception, bool align_stack
   void* places[9];
   for (int i = 0; i < 9; ++i) places[i] = &values[i];
   uc_reg_read_batch(engine_, frame_registers, places, 9);
-  const std::uint32_t stack_pointer = values[7], control = values[8];
+  // The stack pointers' last two bits are always 0 (ARMv7-M, B1.4.1); Unicorn keeps what MSR has written.
+  const std::uint32_t stack_pointer = values[7] & ~3u, control = values[8];
   const bool extended = float_context && (control & control_fpca) != 0;
   const bool aligned = (align_stack || extended) && (stack_pointer & 4) != 0;
   const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
@@ -197,7 +198,7 @@ Processor::Return Processor::return_from_exception(std::uint32_t vector_table) {
   // Tail-chaining: what is pending starts on the frame that is already there.
   if (next != exception_none) return chain_exception(next, vector_table) ? Return::done : Return::invalid;
 
-  const std::uint32_t frame = read(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP);
+  const std::uint32_t frame = read(process_stack ? UC_ARM_REG_PSP : UC_ARM_REG_MSP) & ~3u;
   const std::uint32_t bytes = extended ? extended_frame_bytes : basic_frame_bytes;
   const bool float_stacked = extended && !unstacked_float_;
   const unsigned words_to_read = float_stacked ? basic_words + float_words : basic_words;

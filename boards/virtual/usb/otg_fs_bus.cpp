@@ -45,6 +45,7 @@ void OtgFsDevice::check_bus_power() {
 // Of the endpoints' bits only USBAEP is the core's to clear: enables, stalls and FIFOs stay as they are until firmware
 // clears them.
 void OtgFsDevice::begin_reset() {
+  bus_is_silent_ = true;
   suspended_ = false;
   latched_interrupts_ |= otg.gintsts.usbrst.mask();
   for (unsigned i = 0; i < endpoint_count; ++i) {
@@ -63,6 +64,7 @@ void OtgFsDevice::begin_reset() {
 }
 
 void OtgFsDevice::end_reset() {
+  bus_is_silent_ = false;
   check_core();
   latched_interrupts_ |= otg.gintsts.enumdne.mask();
   update_interrupt();
@@ -126,6 +128,7 @@ void OtgFsDevice::push_data(std::span<const std::byte> data) {
 // SETUP packets are always taken, whatever NAK and STALL say; they put NAK on both sides of endpoint 0.
 Handshake OtgFsDevice::setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) {
   if (endpoint != 0 || !answers(address, endpoint)) return Handshake::nothing;
+  check_turnaround();
   constexpr std::size_t words = 1 + 2;
   if (receive_words_free() < words) {
     rules_.violate(Rule::usb_no_room_for_setup);

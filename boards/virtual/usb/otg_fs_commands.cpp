@@ -84,7 +84,7 @@ void OtgFsDevice::flush_transmit(unsigned number) {
 }
 
 void OtgFsDevice::check_flush(std::uint32_t value) {
-  const bool may_receive = pulled_up_ && !global_out_nak_effective_ && !reset_is_unseen();
+  const bool may_receive = pulled_up_ && !bus_is_silent_ && !global_out_nak_effective_ && !reset_is_unseen();
   if (otg.grstctl.rxfflsh.in(value) && may_receive) rules_.violate(Rule::usb_flush_in_use, "receive FIFO");
   if (!otg.grstctl.txfflsh.in(value)) return;
   const unsigned number = otg.grstctl.txfnum.of(value);

@@ -272,6 +272,7 @@ void OtgFsDevice::update_pull_up() {
   const bool rises = pulled_up && !pulled_up_;
   pulled_up_ = pulled_up;
   if (rises) {
+    bus_is_silent_ = true;
     ++attachments_;
     check_bus_power();
     scheduler_.cancel(connection_check_);
@@ -313,6 +314,10 @@ void OtgFsDevice::check_core() {
   else if (!reset_since_selection_)
     rules_.violate(Rule::usb_core_reset);
   if (otg.dcfg.dspd.of(device_configuration_) != otg_full_speed) rules_.violate(Rule::usb_speed);
+}
+
+// From the first packet that the core answers; firmware may set it when the speed has been enumerated.
+void OtgFsDevice::check_turnaround() {
   if (otg.gusbcfg.trdt.of(usb_configuration_) < turnaround_needed(chip_.hclk_Hz()))
     rules_.violate(Rule::usb_turnaround);
 }

@@ -9,6 +9,7 @@ namespace {
 constexpr unsigned debounce_frames = 100;
 constexpr unsigned reset_frames = 20;
 constexpr unsigned reset_recovery_frames = 10;
+constexpr unsigned before_second_reset_frames = 1;  ///< the device takes the end of its first transfer meanwhile
 constexpr unsigned address_recovery_frames = 2;
 constexpr unsigned answer_frames = 500;
 
@@ -154,6 +155,7 @@ void RootPort::time_over() {
       enter(State::reading_packet_size, 0);
       ask_for_descriptor(descriptor::device, 0, 64);
       break;
+    case State::packet_size_known: begin_reset(State::second_reset); break;
     case State::second_reset: end_reset(State::second_recovery); break;
     case State::second_recovery:
     case State::import_recovery:
@@ -217,7 +219,7 @@ void RootPort::answered(const Urb& urb) {
         break;
       }
       control_packet_maximum_ = static_cast<std::uint16_t>(byte(7));
-      begin_reset(State::second_reset);
+      enter(State::packet_size_known, before_second_reset_frames);
       break;
     case State::addressing:
     case State::import_addressing:

@@ -145,6 +145,17 @@ TEST_SUITE("virtual chip: peripherals") {
     CHECK(test.result(6) - before > 0.7 * undisturbed);
   }
 
+  TEST_CASE("a stream's interrupt comes when its last item has been moved, in fast mode too") {
+    const auto first_interrupt = [](Mode mode) {
+      ChipUnderTest test("converters", mode);
+      test.run_for(0.003);
+      const auto edges = test.circuit.edges_of('B', 2);
+      REQUIRE(edges.size() > 20);
+      return edges[1].when;  // the pin became an output before
+    };
+    CHECK(first_interrupt(Mode::fast) < first_interrupt(Mode::exact) + ticks(1.5e-6));
+  }
+
   TEST_CASE("a reading holds some of the channel before until its source has charged the sampling capacitor") {
     constexpr double switch_ohm = 6000, sampling_F = 4e-12, adc_Hz = 21e6;
     const auto counts = [](double volts) { return volts / 3.3 * 4096; };

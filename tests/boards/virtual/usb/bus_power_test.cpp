@@ -14,7 +14,7 @@ bool enumerates(FirmwareOnBus& bus) {
 }  // namespace
 
 TEST_CASE("D+ is pulled up only while the cable brings VBUS") {
-  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+  FirmwareOnBus bus(flashed_image());
   bus.connect();
   bus.plug(false);
   bus.run_for(0.001);

@@ -14,7 +14,7 @@ namespace {
 
 TEST_CASE("the controller reports every 8 ms what the poses say, and costs neither a pose nor a sample") {
   using protocol::Signal;
-  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+  FirmwareOnBus bus(flashed_image());
   bus.connect();
   bus.run_for(0.01);
   std::optional<protocol::PoseReport> pose;

@@ -13,7 +13,7 @@ namespace {
 
 /// The angles of joint 1 that poses show while spikes of this length follow each other on a wire of its encoder.
 std::set<float> angles_under_spikes(double spike_s, double period_s) {
-  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+  FirmwareOnBus bus(flashed_image());
   const auto wire = board::encoders[0].a.pin;
   for (const auto& input : {board::encoders[0].a.pin, board::encoders[0].b.pin})
     bus.chip.input_pins().drive(input.port, input.number, virtual_board::PinLevel::low);

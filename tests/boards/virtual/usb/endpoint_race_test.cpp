@@ -10,7 +10,7 @@ namespace inkwell::virtual_usb_test {
 TEST_CASE("a pose that the host takes while the driver takes it back does not begin again") {
   for (const int token_at : {1, 2, 3}) {
     CAPTURE(token_at);
-    FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+    FirmwareOnBus bus(flashed_image());
     bus.connect();
     bus.run_for(0.01);
     constexpr std::uint32_t control_of_poses = 0x920, epena = 1u << 31;
@@ -54,7 +54,7 @@ Setup descriptor_request(std::uint8_t type) {
 
 /// The firmware, a host that sends one SETUP and a token, and then another SETUP when it is told to.
 struct Race {
-  Race() : bus(flashed_image(INKWELL_BUILD_DIRECTORY)) { bus.connect(); }
+  Race() : bus(flashed_image()) { bus.connect(); }
 
   void begin(const Setup& setup) {
     bus.cable.setup(own_address, 0, setup);

@@ -16,8 +16,8 @@ namespace {
 constexpr std::uint8_t pose_endpoint = 1, report_endpoint = 1, scope_endpoint = 2, controller_endpoint = 3;
 }  // namespace
 
-std::filesystem::path flashed_image(const std::filesystem::path& build_directory) {
-  return build_directory / ".." / "board" / "inkwell.elf";
+std::filesystem::path flashed_image() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / ".." / "board" / "inkwell.elf";
 }
 
 namespace {

@@ -96,7 +96,7 @@ class WatchedRegisters final : public virtual_board::Peripheral {
 };
 
 /// build/board/inkwell.elf, beside the build folder of this program.
-std::filesystem::path flashed_image(const std::filesystem::path& build_directory);
+std::filesystem::path flashed_image();
 
 /// Chip, cable and a host that enumerates and configures the device.
 class FirmwareOnBus final : private virtual_board::RootPort::Client {

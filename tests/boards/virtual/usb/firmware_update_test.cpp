@@ -9,7 +9,7 @@ namespace inkwell::virtual_usb_test {
 namespace {
 
 TEST_CASE("a detach request starts the chip's boot loader, and a reset the firmware again") {
-  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+  FirmwareOnBus bus(flashed_image());
   std::string said;
   bus.chip.on_console = [&](std::uint8_t character) { said += static_cast<char>(character); };
   bus.connect();

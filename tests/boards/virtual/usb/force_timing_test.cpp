@@ -13,7 +13,7 @@ namespace inkwell::virtual_usb_test {
 TEST_CASE("a force in every frame: none is lost or late, and each is felt within 3 ms of its pose") {
   for (const double host_clock_ppm : {500.0, -500.0}) {
     CAPTURE(host_clock_ppm);
-    const ForceTiming timing = measure_forces(flashed_image(INKWELL_BUILD_DIRECTORY), host_clock_ppm, 1.0);
+    const ForceTiming timing = measure_forces(flashed_image(), host_clock_ppm, 1.0);
     CHECK(timing.sent >= 998);
     CHECK(timing.received == timing.sent);
     CHECK(timing.lost == 0);

@@ -7,7 +7,7 @@
 namespace inkwell::virtual_usb_test {
 
 TEST_CASE("ten thousand cases of a hostile host leave the device well, and no request gets another one's answer") {
-  const HostileOutcome outcome = be_hostile(flashed_image(INKWELL_BUILD_DIRECTORY), 0, hostile_cases_in_a_row, 3);
+  const HostileOutcome outcome = be_hostile(flashed_image(), 0, hostile_cases_in_a_row, 3);
   for (const auto& failure : outcome.failures) FAIL_CHECK(failure);
   CHECK(outcome.cases == hostile_cases_in_a_row);
   CHECK(outcome.answers > 3'000);

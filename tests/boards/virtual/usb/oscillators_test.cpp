@@ -16,7 +16,7 @@ using virtual_board::PinLevel;
 using virtual_board::ResetCause;
 
 struct OtherBoard {
-  explicit OtherBoard(const ChipOptions& options) : bus(flashed_image(INKWELL_BUILD_DIRECTORY), 0.0, options) {}
+  explicit OtherBoard(const ChipOptions& options) : bus(flashed_image(), 0.0, options) {}
   std::uint32_t watchdog_resets() const {
     return bus.chip.counters().resets[static_cast<std::size_t>(ResetCause::independent_watchdog)];
   }

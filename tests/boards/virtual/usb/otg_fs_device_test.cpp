@@ -317,6 +317,16 @@ TEST_CASE("reset, flush and disable of an idle endpoint take their time, and sto
     bench.write(grstctl, 2u << 6 | txfflsh);
     CHECK(bench.log.has("flushed while the core may be using it"));
   }
+  SUBCASE("flush of the receive FIFO while no packet can come") {
+    bench.core.begin_reset();
+    bench.write(gintsts, 1u << 12);
+    bench.write(grstctl, rxfflsh);
+    bench.wait_us(0.2);
+    CHECK(bench.log.sentences.empty());
+    bench.core.end_reset();
+    bench.write(grstctl, rxfflsh);
+    CHECK(bench.log.has("flushed while the core may be using it"));
+  }
   SUBCASE("flush of the receive FIFO needs the global OUT NAK") {
     bench.write(grstctl, rxfflsh);
     CHECK(bench.log.has("flushed while the core may be using it"));

@@ -15,7 +15,7 @@ TEST_CASE("every frame of a fast and of a slow host brings a new pose, and none 
   // Half a millisecond and more goes by between the clocks: control periods and frames meet at every phase.
   for (const double host_clock_ppm : {500.0, -500.0}) {
     CAPTURE(host_clock_ppm);
-    const PoseTiming timing = measure_poses(flashed_image(INKWELL_BUILD_DIRECTORY), host_clock_ppm, 1.5, 14);
+    const PoseTiming timing = measure_poses(flashed_image(), host_clock_ppm, 1.5, 14);
     CHECK(timing.frames >= 1498);
     CHECK(timing.empty_frames == 0);
     CHECK(timing.gaps == 0);
@@ -27,7 +27,7 @@ TEST_CASE("every frame of a fast and of a slow host brings a new pose, and none 
 
 TEST_CASE("the frame report tells when a frame began, and how fast the clocks run against each other") {
   constexpr double host_clock_ppm = 200.0;
-  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY), host_clock_ppm);
+  FirmwareOnBus bus(flashed_image(), host_clock_ppm);
   bus.connect();
   struct Seen {
     std::uint16_t number = 0;
@@ -60,7 +60,7 @@ TEST_CASE("the frame report tells when a frame began, and how fast the clocks ru
 }
 
 TEST_CASE("a pose that the host left is replaced by a newer one") {
-  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+  FirmwareOnBus bus(flashed_image());
   bus.connect();
   std::optional<protocol::PoseReport> pose;
   Ticks taken_at = 0;

@@ -20,7 +20,7 @@ PinLevel level(const FirmwareOnBus& bus, board::Pin pin) { return bus.chip.pin_o
 }  // namespace
 
 TEST_CASE("brown-out level 3 holds the chip in reset before the flash is misread, and lets it start again") {
-  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY), 0.0, {.brown_out_level = 3});
+  FirmwareOnBus bus(flashed_image(), 0.0, {.brown_out_level = 3});
   bus.connect();
   bus.chip.clear_counters();
   bus.chip.set_supply_V(2.85);
@@ -46,7 +46,7 @@ TEST_CASE("brown-out level 3 holds the chip in reset before the flash is misread
 }
 
 TEST_CASE("without a brown-out level the flash is misread at 168 MHz below 2.7 V") {
-  FirmwareOnBus bus(flashed_image(INKWELL_BUILD_DIRECTORY));
+  FirmwareOnBus bus(flashed_image());
   bus.connect();
   bus.chip.set_supply_V(2.7);
   bus.run_for(0.01);

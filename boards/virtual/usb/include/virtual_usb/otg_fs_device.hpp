@@ -145,6 +145,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   void check_connection();
   void check_bus_power();
   void check_core();
+  void check_turnaround();
   /// Notes the access; 0, as the register reads.
   std::uint32_t not_modelled(std::uint32_t offset, bool is_write, std::uint32_t value);
   void note(const char* sentence, std::uint32_t offset, bool is_write, std::uint32_t value);
@@ -197,7 +198,7 @@ class OtgFsDevice final : public Peripheral, public BusDevice {
   Ticks receive_found_empty_at_ = 0;    ///< by firmware, the last time
   unsigned setup_packets_allowed_ = 0;  ///< DOEPTSIZ0.STUPCNT
   bool bus_power_ = false;
-  bool pulled_up_ = false;
+  bool pulled_up_ = false, bus_is_silent_ = true;  ///< before the end of the first reset, and in each
   bool suspended_ = false;
   std::uint32_t attachments_ = 0;
   std::uint16_t frame_number_ = 0;

@@ -57,6 +57,7 @@ class RootPort final : private HostController::Client {
     first_reset,
     first_recovery,
     reading_packet_size,
+    packet_size_known,
     second_reset,
     second_recovery,
     addressing,

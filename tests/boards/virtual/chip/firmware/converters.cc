@@ -13,6 +13,7 @@ void converted() {
   results[1] = results[1] + 1;
 }
 void ring_filled() {
+  word(gpio::b + gpio::odr) = word(gpio::b + gpio::odr) ^ 1 << 2;
   word(0x40026408 + 4) = 0x3Du;  // HIFCR, stream 4
   results[6] = results[6] + 1;
   for (unsigned i = 0; i < 4; ++i) results[8 + i] = ring[2 * i] | static_cast<std::uint32_t>(ring[2 * i + 1]) << 16;
@@ -24,8 +25,9 @@ void run() {
   word(rcc::ahb1enr) |= 7 | 1 << 22;
   word(rcc::apb1enr) |= 1;
   word(rcc::apb2enr) |= 7 << 8;
-  word(gpio::c + gpio::moder) = 0x3FF;  // C0 to C4 analogue
-  word(adc::ccr) = 1 << 16 | 0x15;      // PCLK2 / 4, injected simultaneous, three converters
+  word(gpio::c + gpio::moder) = 0x3FF;    // C0 to C4 analogue
+  word(gpio::b + gpio::moder) |= 1 << 4;  // B2 an output
+  word(adc::ccr) = 1 << 16 | 0x15;        // PCLK2 / 4, injected simultaneous, three converters
   for (unsigned i = 0; i < 3; ++i) {
     word(adc::adc1 + 0x100 * i + adc::jsqr) = (10 + i) << 15;
     word(adc::adc1 + 0x100 * i + adc::cr2) = 1;

@@ -52,8 +52,8 @@ void run() {
   byte(0xE000'ED22) = 0xF0;
   word(0xE000'ED04) = 1u << 28;
   barrier();
-  // [9], [10]: a user.
-  call_as_user(0x2001'1000);
+  // [9], [10]: a user, with bits in the stack pointer that are always 0.
+  call_as_user(0x2001'1003);
   // [11]: stacked at once, so that FPCCR stays as it was written.
   word(control) = 1u << 31 | 1u << 3;
   call_with_floats();
