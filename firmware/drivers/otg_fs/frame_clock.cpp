@@ -29,7 +29,6 @@ void FrameClock::start() {
   TIM2::SMCR::write(TIM2::SMCR::TS(internal_trigger_1));
   TIM2::CCMR1::write(TIM2::CCMR1::CC1S(capture_at_trigger));
   TIM2::CCER::write(TIM2::CCER::CC1E(1));
-  TIM2::ARR::write(~0u);
   TIM2::CR1::write(TIM2::CR1::CEN(1));
   length_ = nominal_length;
 }

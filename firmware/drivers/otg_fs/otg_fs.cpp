@@ -77,12 +77,9 @@ bool OtgFs::next_event(Event& event) {
     event.length = 0;
     return true;
   }
-  if (Core::GINTSTS::ENUMDNE::from(interrupts)) {
-    Core::GINTSTS::write(Core::GINTSTS::ENUMDNE(1));
-    change<Device::DIEPCTL>(0, Device::DIEPCTL::MPSIZ(0));  // code of 64 bytes on endpoint 0
-    Device::DCTL::modify(Device::DCTL::CGINAK(1));
-  }
-  // What was sent comes before what was received: the host goes on only after it has the packet.
+  // At the end of a reset (ENUMDNE) nothing is left to do: there is one speed, and a core that was reset takes packets
+  // of 64 bytes on endpoint 0. What was sent comes before what was received: the host goes on only after it has the
+  // packet.
   if (next_sent(event) || next_received(event) || next_suspend_or_resume(event, interrupts)) return true;
   answer_control();
   Line::enable();
@@ -172,7 +169,6 @@ bool OtgFs::take_received_word(Event& event) {
       return false;
     case out_done:
       if (endpoint >= out_endpoints) return false;
-      Device::DOEPINT::write(endpoint, ~0u);
       event.kind = Event::Kind::received;
       event.length = out_[endpoint].length;
       event.data = out_[endpoint].data;
@@ -182,7 +178,6 @@ bool OtgFs::take_received_word(Event& event) {
 }
 
 void OtgFs::pass_on_setup(Event& event) {
-  Device::DOEPINT::write(0, ~0u);
   write_control_out_size();
   control_receive_waits_ = control_stall_waits_ = false;
   setup_waits_ = setup_done_is_lost_ = false;
@@ -196,6 +191,7 @@ bool OtgFs::next_suspend_or_resume(Event& event, std::uint32_t interrupts) {
   using Status = Core::GINTSTS;
   event.length = 0;
   if (Status::USBSUSP::from(interrupts)) {
+    // The flags of a resume as well: those of the bus before it fell silent are of no interest.
     Status::write(Status::USBSUSP(1), Status::SOF(1), Status::WKUPINT(1));
     suspended_ = true;
     frame_clock_.forget();
@@ -203,7 +199,6 @@ bool OtgFs::next_suspend_or_resume(Event& event, std::uint32_t interrupts) {
     return true;
   }
   if (suspended_ && (Status::WKUPINT::from(interrupts) || Status::SOF::from(interrupts))) {
-    Status::write(Status::SOF(1), Status::WKUPINT(1));
     suspended_ = false;
     event.kind = Event::Kind::resume;
     return true;
@@ -323,8 +318,8 @@ void OtgFs::stop_out() {
     if (Control::EPENA::from(Control::read(i))) {
       Control::modify(i, Control::SNAK(1), Control::EPDIS(1));
       static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::EPDISD::from(Flags::read(i)) != 0; }));
+      Flags::write(i, Flags::EPDISD(1));
     }
-    Flags::write(i, ~0u);
   }
   Device::DCTL::modify(Device::DCTL::CGONAK(1));
 }

@@ -50,7 +50,6 @@ bool OtgFs::start() {
   // disconnection comes first, and follow_cable() ends it.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
-  Power::PCGCCTL::write(0);  // the PHY's clock is never stopped
   set_address(0);
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);

@@ -107,6 +107,9 @@ namespace inkwell::virtual_board {
        "take it from the table: 6 from 32 MHz on, more below")                                                         \
   RULE(usb_narrow_access, "OTG_FS", "RM0090, OTG_FS control and status registers",                                     \
        "registers are read and written by whole words only", "other sizes do what nobody says", "use 32 bits")         \
+  RULE(usb_endpoint_type, "OTG_FS_DIEPCTLx", "RM0090, OTG device endpoint x control register",                         \
+       "A transfer begins on an endpoint other than 0 whose EPTYP says control",                                       \
+       "the core takes only endpoint 0 for one", "write EPTYP with USBAEP")                                            \
   RULE(usb_no_such_fifo, "OTG_FS_GRSTCTL", "RM0090, OTG_FS reset register",                                            \
        "flush of a transmit FIFO that does not exist", "TXFFLSH may stay set", "use 0 to 3, or 16 for all")            \
   RULE(usb_size_while_enabled, "OTG_FS_DIEPTSIZx", "RM0090, OTG device IN endpoint x transfer size register",          \

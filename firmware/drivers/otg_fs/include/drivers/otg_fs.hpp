@@ -27,7 +27,6 @@ class OtgFs final : public usb::Port {
  public:
   static constexpr std::array claims{peripheral<registers::OTG_FS_GLOBAL>(),
                                      peripheral<registers::OTG_FS_DEVICE>(),
-                                     peripheral<registers::OTG_FS_PWRCLK>(),
                                      peripheral<registers::OTG_FS_FIFO>(),
                                      peripheral<registers::TIM2>(),
                                      pin(board::usb_minus),
