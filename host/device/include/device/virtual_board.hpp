@@ -37,7 +37,7 @@ struct VirtualBoardOptions {
   /// Of board time, then it ends. A processor that locks up does not stop the time then, as its watchdog may bite.
   std::optional<double> seconds = {};
   bool from_boot_loader = false;  ///< the chip's boot loader starts the firmware, not a reset
-  bool strict = false;  ///< the board ends when the firmware does what silicon would not bear
+  bool strict = false;            ///< the board ends when the firmware does what silicon would not bear
 };
 
 /// Make it in a thread that lives as long as the board shall: Linux ends the board when that thread ends.
