@@ -65,11 +65,16 @@ void set_up_slow_sequence() {
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
+/// What a stream's last transfer may have left, and the next one may not find (RM0090, DMA stream configuration
+/// procedure).
+constexpr std::uint32_t flags_of_stream = DMA2::LIFCR::CFEIF0::mask | DMA2::LIFCR::CDMEIF0::mask |
+                                          DMA2::LIFCR::CTEIF0::mask | DMA2::LIFCR::CHTIF0::mask |
+                                          DMA2::LIFCR::CTCIF0::mask;
+
 /// Sets the stream up from its first transfer; it must be off.
 INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destination) {
   constexpr std::uint32_t channel_adc1 = 0, half_word = 0b01, from_peripheral = 0b00;
-  DMA2::LIFCR::write(DMA2::LIFCR::CFEIF0(1), DMA2::LIFCR::CDMEIF0(1), DMA2::LIFCR::CTEIF0(1), DMA2::LIFCR::CHTIF0(1),
-                     DMA2::LIFCR::CTCIF0(1));
+  DMA2::LIFCR::write(flags_of_stream);
   DMA2::S0PAR::write(ADC1::DR::address);
   DMA2::S0M0AR::write(reinterpret_cast<std::uint32_t>(destination));
   DMA2::S0NDTR::write(slow_channels);

@@ -23,7 +23,6 @@ void set_up() {
   Timer::CCMR1::write(typename Timer::CCMR1::CC1S(direct_input), typename Timer::CCMR1::CC2S(direct_input),
                       typename Timer::CCMR1::IC1F(filter), typename Timer::CCMR1::IC2F(filter));
   Timer::SMCR::write(typename Timer::SMCR::SMS(both_edges));
-  Timer::ARR::write(0xFFFF);
   Timer::CR1::write(typename Timer::CR1::CEN(1));
 }
 
@@ -45,6 +44,7 @@ void Encoders::start() {
   set_up<TIM4>();
 }
 
+// TIM5 counts to 32 bits, the others to 16, as a reset leaves them: their lower halves wrap alike.
 INKWELL_INTERRUPT std::array<std::uint16_t, 3> Encoders::read() const {
   return {static_cast<std::uint16_t>(TIM5::CNT::read()), static_cast<std::uint16_t>(TIM3::CNT::read()),
           static_cast<std::uint16_t>(TIM4::CNT::read())};

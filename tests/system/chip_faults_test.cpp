@@ -118,6 +118,11 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
   rig.control.heal("exception_lost");
   rig.control.run(0.04);  // the restart may have met the dead interrupt too
   check_fault_after_restart(rig, Fault::watchdog);
+  // What was told once is not told of the next reset.
+  rig.control.reset();
+  reconnect(rig);
+  rig.run(0.3);
+  CHECK(rig.pose().fault != Fault::watchdog);
 }
 
 TEST_CASE("a crystal that stops switches the bridges off at once; the board starts when it swings again, and tells") {
