@@ -75,7 +75,9 @@ void OtgFsDevice::write_in_endpoint(std::uint32_t offset, std::uint32_t value) {
 
 void OtgFsDevice::write_in_control(unsigned number, std::uint32_t value) {
   InEndpoint& endpoint = in_[number];
-  const std::uint32_t stored = stored_in_bits(number);
+  const std::uint32_t stored = stored_in_bits(number),
+                      chooses_fifo = otg.diepctl.usbaep.mask() | otg.diepctl.txfnum.mask();
+  layout_changed_ |= ((endpoint.control ^ value) & stored & chooses_fifo) != 0;
   endpoint.control = (endpoint.control & ~stored) | (value & stored);
   if (number == 0)
     endpoint.control |= value & otg.diepctl.stall.mask();  // firmware can only set it: a SETUP packet clears it
