@@ -98,6 +98,7 @@ def known_differences() -> list[Known]:
         Known("OTG_FS_GLOBAL", "GRXSTSP", None, None, "the SVD has only GRXSTSR, which does not pop; RM0090: 0x50000020"),
         Known("OTG_FS_GLOBAL", "DIEPTXF0", None, "FS_GNPTXFSIZ_Device", "the SVD has its name in host mode"),
         Known("OTG_FS_DEVICE", "DCFG|DCTL|DSTS|D[IO]EPMSK|DAINT|DAINTMSK|DIEPCTL0", None, "FS_{}", FS_PREFIX),
+        Known("OTG_FS_PWRCLK", "PCGCCTL", None, "FS_{}", FS_PREFIX),
         Known("RCC", "CSR", "IWDGRSTF", "WDGRSTF", "RM0090 calls the independent watchdog's flag IWDGRSTF"),
         Known("DBG", "DBGMCU_APB1_FZ", "DBG_IWDG_STOP", "DBG_IWDEG_STOP", "a misspelling in the SVD"),
         Known("IWDG", "PR", "PR_", "PR", IN_CPP),

@@ -176,7 +176,8 @@ TEST_CASE("a wiper shows neither in its neighbour's reading nor in the supply's"
   // Each next to the other end of the neighbour's track.
   constexpr device::Vector3 one_way_rad{-2.3, 1.6, -2.3}, other_way_rad{2.3, -0.4, 2.3};
   const auto one_way = means(one_way_rad), other_way = means(other_way_rad);
-  constexpr double two_counts_rad = 2 * 5.16 / board::adc_counts;
+  const double steepest_rad = rig.device->parameters()[Parameter::gimbal_3_slope_rad];
+  const double two_counts_rad = 2 * steepest_rad / board::adc_counts;
   for (std::size_t i = 0; i < 3; ++i) {
     CAPTURE(i);
     CHECK(std::abs(one_way[i] - one_way_rad[i]) < two_counts_rad);

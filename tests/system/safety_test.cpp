@@ -33,12 +33,6 @@ TEST_CASE("an arm that has not been in the inkwell gets no force") {
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
 }
 
-TEST_CASE("the legs are held low before there was ever a force, not left to the bridges' pull-downs") {
-  BoardRig rig;
-  for (const auto& legs : rig.control.truth().at("bridge_legs"))
-    for (const auto& level : legs) CHECK(level == "low");
-}
-
 TEST_CASE("the force goes off when the host falls silent") {
   BoardRig rig;
   rig.make_active();

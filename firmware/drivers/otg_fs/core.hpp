@@ -13,6 +13,7 @@ namespace inkwell::drivers {
 
 using Core = RegistersOf<OtgFs, registers::OTG_FS_GLOBAL>;
 using Device = RegistersOf<OtgFs, registers::OTG_FS_DEVICE>;
+using Power = RegistersOf<OtgFs, registers::OTG_FS_PWRCLK>;
 using Line = InterruptLine<OtgFs, Interrupt::usb>;
 using UsbSupply = DigitalInput<OtgFs, board::usb_supply>;
 

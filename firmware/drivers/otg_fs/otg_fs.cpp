@@ -94,11 +94,18 @@ bool OtgFs::follow_cable(Event& event) {
   pulled_up_ = plugged;
   Device::DCTL::modify(Device::DCTL::SDIS(plugged ? 0 : 1));
   if (plugged || suspended_) return false;
+  fall_silent(event);
+  return true;
+}
+
+// The flags of a resume as well: those of the bus before it fell silent are none.
+void OtgFs::fall_silent(Event& event) {
+  using Status = Core::GINTSTS;
+  Status::write(Status::USBSUSP(1), Status::SOF(1), Status::WKUPINT(1));
   suspended_ = true;
   frame_clock_.forget();
   event.kind = Event::Kind::suspend;
   event.length = 0;
-  return true;
 }
 
 // The core itself only deactivates the endpoints: what was enabled still is, and packets of before may stand in the
@@ -189,18 +196,14 @@ void OtgFs::pass_on_setup(Event& event) {
 
 bool OtgFs::next_suspend_or_resume(Event& event, std::uint32_t interrupts) {
   using Status = Core::GINTSTS;
-  event.length = 0;
   if (Status::USBSUSP::from(interrupts)) {
-    // The flags of a resume as well: those of the bus before it fell silent are of no interest.
-    Status::write(Status::USBSUSP(1), Status::SOF(1), Status::WKUPINT(1));
-    suspended_ = true;
-    frame_clock_.forget();
-    event.kind = Event::Kind::suspend;
+    fall_silent(event);
     return true;
   }
   if (suspended_ && (Status::WKUPINT::from(interrupts) || Status::SOF::from(interrupts))) {
     suspended_ = false;
     event.kind = Event::Kind::resume;
+    event.length = 0;
     return true;
   }
   return false;

@@ -50,6 +50,8 @@ bool OtgFs::start() {
   // disconnection comes first, and follow_cable() ends it.
   Device::DCTL::modify(Device::DCTL::SDIS(1));
   Core::GCCFG::modify(Core::GCCFG::NOVBUSSENS(1));
+  // A core reset leaves the PHY's clock stopped if a boot loader's suspend has (RM0090, GRSTCTL: CSRST).
+  Power::PCGCCTL::write(0);
   set_address(0);
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);

@@ -135,6 +135,11 @@ struct UsbDevice {
   };
 };
 
+template <std::uint32_t base>
+struct UsbPower {
+  struct PCGCCTL : Register<base + 0x00> {};
+};
+
 /// Windows into the FIFO memory: a write fills the transmit FIFO of that endpoint, a read of any empties the
 /// receive FIFO.
 template <std::uint32_t base>

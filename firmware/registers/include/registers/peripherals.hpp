@@ -31,6 +31,7 @@
   X(DMA2, DirectMemoryAccess, 0x40026400)          \
   X(OTG_FS_GLOBAL, UsbGlobal, 0x50000000)          \
   X(OTG_FS_DEVICE, UsbDevice, 0x50000800)          \
+  X(OTG_FS_PWRCLK, UsbPower, 0x50000E00)           \
   X(OTG_FS_FIFO, UsbFifo, 0x50001000)
 
 /// X(name, map, base). These are everyone's: `registers::RCC::CR::read()`. Of a port the pins are claimed.

@@ -558,6 +558,29 @@ TEST_CASE("what the manual forbids is said and has its consequence") {
     bench.write(0x940, bench.read(0x940) | epena | cnak);
     CHECK(bench.log.has("overlap"));
   }
+  SUBCASE("a FIFO that nobody has laid out before its endpoint was opened") {
+    bench.write(0x950, 1u << 19);
+    bench.write(0x940, bench.read(0x940) | epena | cnak);
+    CHECK(bench.log.sentences.empty());
+    bench.write(0x960, 1u << 28 | 3u << 22 | 2u << 18 | 1u << 15 | 64);
+    bench.write(0x970, 1u << 19);
+    bench.write(0x960, bench.read(0x960) | epena | cnak);
+    CHECK(bench.log.has("beyond the 320 words"));
+  }
+  SUBCASE("an endpoint that says it is one for control") {
+    bench.write(0x940, 1u << 28 | 2u << 22 | 1u << 15 | 64);
+    bench.write(0x950, 1u << 19);
+    bench.write(0x940, bench.read(0x940) | epena | cnak);
+    CHECK(bench.log.has("whose EPTYP says control"));
+  }
+  SUBCASE("a turnaround that is too short when the first packet comes") {
+    bench.write(0x00C, (bench.read(0x00C) & ~(0xFu << 10)) | 1u << 10);
+    bench.core.begin_reset();
+    bench.core.end_reset();
+    CHECK(bench.log.sentences.empty());
+    bench.core.setup(0, 0, some_request);
+    CHECK(bench.log.has("TRDT"));
+  }
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ class OtgFs final : public usb::Port {
  public:
   static constexpr std::array claims{peripheral<registers::OTG_FS_GLOBAL>(),
                                      peripheral<registers::OTG_FS_DEVICE>(),
+                                     peripheral<registers::OTG_FS_PWRCLK>(),
                                      peripheral<registers::OTG_FS_FIFO>(),
                                      peripheral<registers::TIM2>(),
                                      pin(board::usb_minus),
@@ -69,6 +70,7 @@ class OtgFs final : public usb::Port {
   };
 
   bool follow_cable(usb::Event& event);
+  void fall_silent(usb::Event& event);
   void bus_reset();
   bool next_sent(usb::Event& event);
   bool next_received(usb::Event& event);

@@ -44,7 +44,7 @@ void run() {
   enable_interrupt(60, 5);
   word(adc::adc1 + adc::sqr1) = 1 << 20;
   word(adc::adc1 + adc::sqr3) = 13 | 14 << 5;
-  word(adc::adc1 + 0x0C) = 4 << 9 | 4 << 12;  // channels 13 and 14: 84 cycles
+  word(adc::adc1 + adc::smpr1) = 4 << 9 | 4 << 12;  // channels 13 and 14: 84 cycles
   word(adc::adc1 + adc::cr1) = 1 << 7 | 1 << 8;
   set_handler(interrupt(18), converted);
   enable_interrupt(18, 1);

@@ -77,7 +77,7 @@ void convert() {
   if (fault != analog_pin_mode) word(gpio::c + gpio::moder) = 0x3F;
   word(adc::ccr) = fault == converter_too_fast ? 0 : 1 << 16;
   for (unsigned i = 0; i < 3; ++i) {
-    word(adc::adc1 + 0x100 * i + 0x0C) = 1 << 3 * i;  // 15 cycles, for the first of all conversions
+    word(adc::adc1 + 0x100 * i + adc::smpr1) = 1 << 3 * i;  // 15 cycles, for the first of all conversions
     word(adc::adc1 + 0x100 * i + adc::sqr3) = 10 + i;
     word(adc::adc1 + 0x100 * i + adc::cr2) = 1;
   }

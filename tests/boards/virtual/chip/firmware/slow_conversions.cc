@@ -35,7 +35,7 @@ void move_destination_out_of_reach() {
   const std::uint32_t control = DMA2::S0CR::read();
   DMA2::S0CR::write(control & ~DMA2::S0CR::EN::mask);
   DMA2::S0M0AR::write(core_coupled_memory);
-  DMA2::LIFCR::write(0x3D);
+  DMA2::LIFCR::write(flags_of_stream);
   DMA2::S0CR::write(control | DMA2::S0CR::EN::mask);
 }
 
