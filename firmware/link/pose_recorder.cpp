@@ -49,6 +49,11 @@ bool PoseRecorder::take(protocol::PoseReport& report) {
   return true;
 }
 
+std::optional<std::uint32_t> PoseRecorder::newest_cycles() const {
+  const Sample* const sample = newest();
+  return sample == nullptr ? std::nullopt : std::optional(sample->summary.begin_cycles);
+}
+
 std::optional<BoardTime> PoseRecorder::time_of(std::uint32_t cycles) const {
   const Sample* const sample = newest();
   if (sample == nullptr) return std::nullopt;

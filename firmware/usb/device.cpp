@@ -14,10 +14,11 @@ constexpr int events_per_poll = 8;
 
 constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // places in endpoints_
 
-/// How long before the next start of frame a report is made ready: a control period, because the main loop gets to see
-/// a new pose once in that time; and what it takes then, while it also fills the scope's FIFO, to load the report.
+/// A pose goes out if its control interrupt began less than this before the next start of frame: the pose after it
+/// comes a period later, is seen when its interrupt is over, which takes less than half of one, and then the main loop,
+/// which also fills the scope's FIFO, must load the report.
 constexpr float pose_loading_s = 12e-6f;
-constexpr float pose_lead_s = protocol::servo_period_s + pose_loading_s;
+constexpr float pose_lead_s = 1.5f * protocol::servo_period_s + pose_loading_s;
 
 /// A host that left so many reports in a row did not listen, so it lost none: 0.1 s.
 constexpr std::uint32_t replaced_unheard = protocol::pose_rate_Hz / 10;
@@ -141,12 +142,15 @@ void Device::restart(Endpoint& endpoint) {
 }
 
 // The host may ask right after each start of frame. So the report is made ready once in a frame, near its end, from the
-// newest control period of which it is sure that a newer one would come too late.
+// first control period of which it is sure that a newer one would come too late.
 void Device::send_pose() {
   const std::optional<BusFrame> frame = port_.frame();
   Endpoint& endpoint = endpoints_[hid_in];
   if (!frame || endpoint.halted || pose_sequence_ == frame->count + 1) return;
-  if (frame->age_cycles + pose_lead_cycles_ < frame->length_cycles) return;
+  const std::optional<std::uint32_t> sampled_cycles = link_.poses.newest_cycles();
+  if (!sampled_cycles) return;
+  const std::uint32_t to_frame_cycles = frame->begin_cycles + frame->length_cycles - *sampled_cycles;
+  if (static_cast<std::int32_t>(to_frame_cycles - pose_lead_cycles_) > 0) return;
   if (endpoint.busy) {
     port_.cancel(endpoint.address);
     endpoint.busy = false;

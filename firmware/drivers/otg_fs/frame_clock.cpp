@@ -64,7 +64,6 @@ std::optional<usb::BusFrame> FrameClock::newest() {
   return usb::BusFrame{.number = number_,
                        .count = count_,
                        .begin_cycles = cycles - age * cycles_per_count,
-                       .age_cycles = age * cycles_per_count,
                        .length_cycles = length_ * cycles_per_count};
 }
 

@@ -96,13 +96,12 @@ class FakePort final : public usb::Port {
 
   // ---- the host's side ----
 
-  /// Time passes. A frame has twenty control periods, and after a whole number of frames the next is one period away.
+  /// Time passes. A frame has twenty control periods, and the main loop runs in the middle of each; after a whole
+  /// number of frames the next is half a period away.
   void pass_period() {
-    constexpr std::uint32_t period_cycles = 8400, frame_cycles = 20 * period_cycles;
-    frame_.length_cycles = frame_cycles;
-    frame_.age_cycles += period_cycles;
-    if (frame_.age_cycles < frame_cycles) return;
-    frame_.age_cycles = 0;
+    age_cycles_ += period_cycles;
+    if (age_cycles_ < frame_cycles) return;
+    age_cycles_ -= frame_cycles;
     frame_.begin_cycles += frame_cycles;
     ++frame_.count;
     frame_.number = frame_.count % 2048;
@@ -204,7 +203,9 @@ class FakePort final : public usb::Port {
 
   std::array<Endpoint, 8> endpoints_{};
   std::deque<usb::Event> events_;
-  usb::BusFrame frame_{.age_cycles = 19 * 8400, .length_cycles = 20 * 8400};
+  static constexpr std::uint32_t period_cycles = 8400, frame_cycles = 20 * period_cycles;
+  usb::BusFrame frame_{.begin_cycles = 0u - frame_cycles, .length_cycles = frame_cycles};
+  std::uint32_t age_cycles_ = frame_cycles - period_cycles / 2;
   std::uint8_t address_ = 0;
 };
 

@@ -44,6 +44,9 @@ class PoseRecorder {
   /// The same for a report that is sent: the longest interrupt is looked for anew.
   bool take(protocol::PoseReport& report);
 
+  /// The cycle counter when the newest pose's control interrupt began; nothing before the first period.
+  std::optional<std::uint32_t> newest_cycles() const;
+
   /// Board time at a moment of the cycle counter that is less than 12 s ago; nothing if there is no pose to count from.
   std::optional<BoardTime> time_of(std::uint32_t cycles) const;
 

@@ -35,7 +35,6 @@ struct BusFrame {
   std::uint16_t number = 0;         ///< 0..2047, as it came with the start of frame
   std::uint32_t count = 0;          ///< of frames since the port started
   std::uint32_t begin_cycles = 0;   ///< the counter at the start of frame
-  std::uint32_t age_cycles = 0;     ///< since then
   std::uint32_t length_cycles = 0;  ///< from one start of frame to the next, as measured
 };
 
