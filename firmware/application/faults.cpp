@@ -11,11 +11,11 @@ namespace inkwell::application {
 
 /// Switches the motors off with three stores before it trusts anything else, the stack included: that may be what is
 /// broken. Then the record is made on the lowest 256 bytes of the stack, which nobody uses
-/// unless the stack has overflowed. A second fault in here locks the processor up until the watchdog resets it.
+/// unless the stack has overflowed. No interrupt comes between: it has the priority of a hard fault. A second fault in
+/// here locks the processor up until the watchdog resets it.
 extern "C" [[gnu::naked]] void fault_handler() {
   using namespace drivers;
   asm volatile(
-      "cpsid i \n"
       "ldr r2, =%c[enable_address] \n"
       "ldr r3, =%c[enable_low] \n"
       "str r3, [r2] \n"

@@ -1,6 +1,5 @@
 #include <drivers/analog_inputs.hpp>
 
-#include <drivers/cycle_counter.hpp>
 #include <drivers/interrupts.hpp>
 #include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
@@ -88,9 +87,6 @@ INKWELL_INTERRUPT void set_up_memory_access(const volatile std::uint16_t* destin
 /// Periods without a whole sequence after which it is taken for dead. One is missed when a control interrupt is late.
 constexpr std::uint32_t patience_periods = 4;
 
-/// 3 us after switching on, the converters are accurate (data sheet, ADC characteristics, t_STAB).
-constexpr std::uint32_t stabilisation_cycles = board::processor_Hz / 100'000;
-
 }  // namespace
 
 void AnalogInputs::start_clocks() {
@@ -114,24 +110,14 @@ void AnalogInputs::start() {
   set_up_injected<ADC2>(board::motor_current[1]);
   set_up_injected<ADC3>(board::motor_current[2]);
   set_up_slow_sequence();
-  set_up_memory_access(slow_.data());
-
-  ADC1::CR2::write(adc1_with_requests);
-  ADC2::CR2::write(ADC2::CR2::ADON(1));
-  ADC3::CR2::write(ADC3::CR2::ADON(1));
-  wait(stabilisation_cycles);
-  // The first control period finds gimbal and supply measured already.
-  ADC1::CR2::write(adc1_with_requests | ADC1::CR2::SWSTART::mask);
-  wait(board::servo_cycles);
 }
 
+// 3 us after switching on, the converters are accurate (data sheet, ADC characteristics, t_STAB).
 void AnalogInputs::arm() {
   ADC3::CR2::write(ADC3::CR2::ADON(1), ADC3::CR2::JEXTSEL(trigger_tim1_trgo), ADC3::CR2::JEXTEN(rising_edge));
   ADC2::CR2::write(ADC2::CR2::ADON(1), ADC2::CR2::JEXTSEL(trigger_tim1_trgo), ADC2::CR2::JEXTEN(rising_edge));
-  ADC1::CR2::write(adc1_with_requests | adc1_armed);
-  using Line = InterruptLine<AnalogInputs, Interrupt::analog_converters>;
-  Line::set_priority(Priority::first);
-  Line::enable();
+  ADC1::CR2::write(adc1_without_requests | adc1_armed);
+  InterruptLine<AnalogInputs, Interrupt::analog_converters>::enable();
 }
 
 INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::take_currents_A() {
@@ -139,7 +125,7 @@ INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::take_currents_A() {
 }
 
 INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
-  if (slow_stopped_) return start_slow_again();
+  if (slow_stopped_) return set_up_slow();
   if (!DMA2::LISR::TCIF0::is_set()) {
     // After a late control interrupt the sequence may still be running; starting it again in its middle would shift all
     // later results by a place. An overrun of the converter or an error of the transfer ends it for good.
@@ -159,7 +145,7 @@ INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
   slow_stopped_ = true;
 }
 
-INKWELL_INTERRUPT void AnalogInputs::start_slow_again() {
+INKWELL_INTERRUPT void AnalogInputs::set_up_slow() {
   ++slow_age_periods_;
   slow_stopped_ = false;
   set_up_memory_access(slow_.data());

@@ -12,7 +12,7 @@ using IWDG = RegistersOf<IndependentWatchdog, registers::IWDG>;
 constexpr std::uint32_t key_start = 0xCCCC, key_unlock = 0x5555, key_feed = 0xAAAA;
 constexpr std::uint32_t oscillator_Hz = 32'000;  // 17 to 47 kHz by the data sheet
 constexpr std::uint32_t timeout_ms = 20;
-constexpr std::uint32_t divider = 4, divider_code = 0;
+constexpr std::uint32_t divider = 4;  // which every reset leaves, and only a reset stops it
 constexpr std::uint32_t reload = oscillator_Hz / divider * timeout_ms / 1000 - 1;
 
 }  // namespace
@@ -23,7 +23,6 @@ void IndependentWatchdog::start() {
   // Starting it first starts its oscillator, without which the new values would never be taken over.
   IWDG::KR::write(key_start);
   IWDG::KR::write(key_unlock);
-  IWDG::PR::write(IWDG::PR::PR_(divider_code));
   IWDG::RLR::write(IWDG::RLR::RL(reload));
   // Five of its cycles; if they never end, the default timeout of half a second holds, which is safe as well.
   static_cast<void>(wait_for(board::processor_Hz / 200, [] { return IWDG::SR::read() == 0; }));

@@ -34,11 +34,11 @@ class AnalogInputs {
   /// Before TIM1 runs: the converters miss a trigger that comes before their clocks.
   void start_clocks();
 
-  /// Switches the converters on, sets their sequences up and measures gimbal and supply once. The converters do not
-  /// listen to TIM1 yet.
+  /// Connects the pins and sets the sequences up.
   void start();
 
-  /// Lets TIM1 trigger the converters. Call it well before an update, so that all three hear the same one first.
+  /// Switches the converters on and lets TIM1 trigger them. Call it well before an update, so that all three are
+  /// accurate by then and hear the same one first.
   void arm();
 
   /// Currents at the last update, from leg A to leg B of each bridge, offsets of the amplifiers included.
@@ -57,12 +57,12 @@ class AnalogInputs {
 
  private:
   void stop_slow();
-  void start_slow_again();
+  void set_up_slow();
 
   /// Written by the DMA controller, which reaches the main RAM only.
   std::array<volatile std::uint16_t, 4> slow_{};
   std::uint32_t slow_age_periods_ = 0;
-  bool slow_stopped_ = false;  ///< to be set up again in the next period
+  bool slow_stopped_ = true;  ///< to be set up in the next period: at the start, or again
 };
 
 }  // namespace inkwell::drivers

@@ -8,9 +8,6 @@ namespace inkwell::registers {
 template <std::uint32_t base>
 struct IndependentWatchdog {
   struct KR : Register<base + 0x00> {};
-  struct PR : Register<base + 0x04> {
-    using PR_ = Field<PR, 0, 3>;
-  };
   struct RLR : Register<base + 0x08> {
     using RL = Field<RLR, 0, 12>;
   };
