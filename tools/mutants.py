@@ -11,7 +11,7 @@ from pathlib import Path
 
 # "RCC::CR::modify(", "Timer::CCR::write(", "Line::enable(", "connect<Bridges, ...>(": what reaches a register.
 REGISTER_WRITE = re.compile(
-    r"(?<![\w:.>])(?:\w+::)+(?:write|modify|set_priority|enable|set_high|set_low|start)\("
+    r"(?<![\w:.>])(?:\w+::)+(?:write|modify|enable|set_high|set_low|start)\("
     r"|(?<![\w:.>])(?:connect|connect_analog|start_clocks_of|start_clock_of_stream|set_up\w*)(?:<[^;(]*>)?\(")
 # A field's value among the arguments, and no number of an endpoint or a channel: "CR::PLLON(1)".
 FIELD = re.compile(r"(?:typename )?(?:\w+::)+\w+\(")

@@ -10,8 +10,6 @@ extern "C" {
 [[noreturn]] void fault_handler();
 /// End of the injected conversions: once every control period.
 void control_interrupt();
-/// The USB core has sent a whole transfer: wakes the main loop.
-void usb_interrupt();
 }
 
 }  // namespace inkwell::application

@@ -7,7 +7,6 @@
 #include <drivers/crash_record.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/system.hpp>
-#include <placement/interrupt.hpp>
 #include <usb/device.hpp>
 
 #include "handlers.hpp"
@@ -57,9 +56,6 @@ protocol::CrashFacts facts_of(const drivers::CrashRecord& crash) {
 }
 
 }  // namespace
-
-extern "C" INKWELL_INTERRUPT void usb_interrupt() { drivers::OtgFs::wake(); }
-
 }  // namespace inkwell::application
 
 int main() {
@@ -108,6 +104,6 @@ int main() {
     if (!memory_check.step()) host_link.memory_damaged.store(true);
     feed_watchdog();
     show_state();
-    drivers::sleep_unless([periods] { return usb_port.is_awake() || completed_periods.load() != periods; });
+    drivers::sleep_unless([periods] { return completed_periods.load() != periods; });
   }
 }

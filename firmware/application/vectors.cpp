@@ -15,7 +15,6 @@ constexpr VectorTable make_vectors() {
   table.exceptions[0] = reset_handler;
   table.interrupts.fill(fault_handler);
   table.interrupts[static_cast<std::size_t>(drivers::Interrupt::analog_converters)] = control_interrupt;
-  table.interrupts[static_cast<std::size_t>(drivers::Interrupt::usb)] = usb_interrupt;
   return table;
 }
 

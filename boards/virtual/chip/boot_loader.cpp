@@ -18,8 +18,19 @@ constexpr char there_is_none[] =
     "The firmware has started the chip's boot loader. This board has none: it waits until it is reset.\n";
 
 /// Leaves the chip as a loader may: voltage scale 2, 60 MHz from crystal and PLL, the internal oscillator off, no clock
-/// for CCM, the vector table its own.
+/// for CCM, the vector table its own, the clock of the USB core's PHY stopped, as while the bus slept.
 constexpr std::uint16_t go[] = {
+    0xF643, 0x0000,  // movw r0, #RCC
+    0xF2C4, 0x0002,  // movt r0, #RCC
+    0x6B41,          // ldr r1, [r0, #AHB2ENR]
+    0xF041, 0x0180,  // orr r1, #OTGFSEN
+    0x6341,          // str r1, [r0, #AHB2ENR]
+    0x6B41,          // ldr r1, [r0, #AHB2ENR]: the clock arrives meanwhile
+    0xF640, 0x6300,  // movw r3, #PCGCCTL
+    0xF2C5, 0x0300,  // movt r3, #PCGCCTL
+    0x2101,          // movs r1, #STPPCLK
+    0x6019,          // str r1, [r3]
+    0xBF00,          // nop: the constants below stay aligned
     0x481A,          // ldr r0, =RCC
     0x6C01,          // ldr r1, [r0, #APB1ENR]
     0xF041, 0x5180,  // orr r1, #PWREN

@@ -101,7 +101,8 @@ void OtgFsDevice::resume() {
 
 bool OtgFsDevice::answers(unsigned address, unsigned endpoint) const {
   const bool addressed = address == address_ || (control_transfer_open_ && address == programmed_address());
-  return pulled_up_ && addressed && endpoint < endpoint_count && clock_is_exact();
+  const bool phy_clock_runs = !otg.pcgcctl.stppclk.in(power_control_);
+  return pulled_up_ && addressed && endpoint < endpoint_count && clock_is_exact() && phy_clock_runs;
 }
 
 std::size_t OtgFsDevice::receive_depth() const { return std::min<std::size_t>(receive_size_, packet_memory_words); }

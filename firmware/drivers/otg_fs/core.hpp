@@ -14,7 +14,6 @@ namespace inkwell::drivers {
 using Core = RegistersOf<OtgFs, registers::OTG_FS_GLOBAL>;
 using Device = RegistersOf<OtgFs, registers::OTG_FS_DEVICE>;
 using Power = RegistersOf<OtgFs, registers::OTG_FS_PWRCLK>;
-using Line = InterruptLine<OtgFs, Interrupt::usb>;
 using UsbSupply = DigitalInput<OtgFs, board::usb_supply>;
 
 /// The core answers within a packet's time of 50 us or never.

@@ -69,9 +69,8 @@ void write_control_out_size() {
 // ---- events ------------------------------------------------------------------------------------------
 
 bool OtgFs::next_event(Event& event) {
-  if (follow_cable(event)) return true;
-  const std::uint32_t interrupts = Core::GINTSTS::read();
-  if (Core::GINTSTS::USBRST::from(interrupts)) {
+  follow_cable();
+  if (Core::GINTSTS::USBRST::is_set()) {
     bus_reset();
     event.kind = Event::Kind::reset;
     event.length = 0;
@@ -80,41 +79,26 @@ bool OtgFs::next_event(Event& event) {
   // At the end of a reset (ENUMDNE) nothing is left to do: there is one speed, and a core that was reset takes packets
   // of 64 bytes on endpoint 0. What was sent comes before what was received: the host goes on only after it has the
   // packet.
-  if (next_sent(event) || next_received(event) || next_suspend_or_resume(event, interrupts)) return true;
+  if (next_sent(event) || next_received(event) || next_suspend_or_resume(event)) return true;
   answer_control();
-  Line::enable();
   return false;
 }
 
-// A device that lives from its own supply pulls D+ up only while VBUS is there (USB 2.0, section 7.1.5). A cable that
-// is pulled is a bus that has fallen silent.
-bool OtgFs::follow_cable(Event& event) {
+// A device that lives from its own supply pulls D+ up only while VBUS is there (USB 2.0, section 7.1.5).
+void OtgFs::follow_cable() {
   const bool plugged = UsbSupply::is_high();
-  if (plugged == pulled_up_) return false;
+  if (plugged == pulled_up_) return;
   pulled_up_ = plugged;
   Device::DCTL::modify(Device::DCTL::SDIS(plugged ? 0 : 1));
-  if (plugged || suspended_) return false;
-  fall_silent(event);
-  return true;
-}
-
-// The flags of a resume as well: those of the bus before it fell silent are none.
-void OtgFs::fall_silent(Event& event) {
-  using Status = Core::GINTSTS;
-  Status::write(Status::USBSUSP(1), Status::SOF(1), Status::WKUPINT(1));
-  suspended_ = true;
-  frame_clock_.forget();
-  event.kind = Event::Kind::suspend;
-  event.length = 0;
 }
 
 // The core itself only deactivates the endpoints: what was enabled still is, and packets of before may stand in the
-// receive FIFO.
+// receive FIFO. An OUT endpoint may stay enabled, behind its NAK: begin_receive() goes on with it.
 void OtgFs::bus_reset() {
   Core::GINTSTS::write(Core::GINTSTS::USBRST(1));
   for (unsigned i = 0; i < Device::DOEPCTL::count; ++i) change<Device::DOEPCTL>(i, Device::DOEPCTL::SNAK(1));
   for (unsigned i = 0; i < in_endpoints; ++i) stop_in(i);
-  stop_out();
+  empty_receive_fifo();
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);
   control_receive_waits_ = control_stall_waits_ = false;
@@ -194,19 +178,15 @@ void OtgFs::pass_on_setup(Event& event) {
   std::copy(setup_.begin(), setup_.end(), event.data.begin());
 }
 
-bool OtgFs::next_suspend_or_resume(Event& event, std::uint32_t interrupts) {
-  using Status = Core::GINTSTS;
-  if (Status::USBSUSP::from(interrupts)) {
-    fall_silent(event);
-    return true;
-  }
-  if (suspended_ && (Status::WKUPINT::from(interrupts) || Status::SOF::from(interrupts))) {
-    suspended_ = false;
-    event.kind = Event::Kind::resume;
-    event.length = 0;
-    return true;
-  }
-  return false;
+// A cable that is pulled is a bus that has fallen silent.
+bool OtgFs::next_suspend_or_resume(Event& event) {
+  const bool silent = !pulled_up_ || Device::DSTS::SUSPSTS::is_set();
+  if (silent == suspended_) return false;
+  suspended_ = silent;
+  if (silent) frame_clock_.forget();
+  event.kind = silent ? Event::Kind::suspend : Event::Kind::resume;
+  event.length = 0;
+  return true;
 }
 
 // ---- transfers ---------------------------------------------------------------------------------------
@@ -307,23 +287,14 @@ void OtgFs::begin_receive(unsigned endpoint) {
 
 void OtgFs::cancel(std::uint8_t endpoint_address) { stop_in(number_of(endpoint_address)); }
 
-// RM0090, "Disabling an OUT endpoint": not before the global OUT NAK, which is in effect when its word is taken from
-// the receive FIFO. The words before it end transfers, and their packets are lost with them.
-void OtgFs::stop_out() {
-  using Control = Device::DOEPCTL;
-  using Flags = Device::DOEPINT;
+// The global OUT NAK is in effect when its word is taken from the receive FIFO (RM0090, "Setting the global OUT NAK").
+// The words before it end transfers, and their packets are lost with them.
+void OtgFs::empty_receive_fifo() {
   Device::DCTL::modify(Device::DCTL::SGONAK(1));
   static_cast<void>(wait_for(core_answer_cycles, [] {
     if (Core::GINTSTS::RXFLVL::is_set()) read_packet({}, Core::GRXSTSP::BCNT::read());
     return Core::GINTSTS::GOUTNAKEFF::is_set();
   }));
-  for (unsigned i = 1; i < out_endpoints; ++i) {
-    if (Control::EPENA::from(Control::read(i))) {
-      Control::modify(i, Control::SNAK(1), Control::EPDIS(1));
-      static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::EPDISD::from(Flags::read(i)) != 0; }));
-      Flags::write(i, Flags::EPDISD(1));
-    }
-  }
   Device::DCTL::modify(Device::DCTL::CGONAK(1));
 }
 
@@ -346,7 +317,8 @@ void OtgFs::stop_in(unsigned endpoint) {
     }
   }
   fifo_memory::flush_transmit(endpoint);
-  Flags::write(endpoint, Flags::XFRC(1), Flags::EPDISD(1), Flags::INEPNE(1));
+  // INEPNE goes when NAK is cleared again.
+  Flags::write(endpoint, Flags::XFRC(1), Flags::EPDISD(1));
 }
 
 // ---- endpoints ---------------------------------------------------------------------------------------
@@ -357,12 +329,11 @@ void OtgFs::open(std::uint8_t endpoint_address, usb::EndpointType type) {
     using Control = Device::DIEPCTL;
     stop_in(endpoint);
     Control::write(endpoint, Control::MPSIZ(packet_size_maximum), Control::USBAEP(1),
-                   Control::EPTYP(static_cast<std::uint32_t>(type)), Control::TXFNUM(endpoint), Control::SD0PID(1),
-                   Control::SNAK(1));
+                   Control::EPTYP(static_cast<std::uint32_t>(type)), Control::TXFNUM(endpoint), Control::SD0PID(1));
   } else {
     using Control = Device::DOEPCTL;
     Control::write(endpoint, Control::MPSIZ(packet_size_maximum), Control::USBAEP(1),
-                   Control::EPTYP(static_cast<std::uint32_t>(type)), Control::SD0PID(1), Control::SNAK(1));
+                   Control::EPTYP(static_cast<std::uint32_t>(type)), Control::SD0PID(1));
   }
 }
 
@@ -370,9 +341,9 @@ void OtgFs::close(std::uint8_t endpoint_address) {
   const unsigned endpoint = number_of(endpoint_address);
   if (is_in(endpoint_address)) {
     stop_in(endpoint);
-    change<Device::DIEPCTL>(endpoint, Device::DIEPCTL::USBAEP(0), Device::DIEPCTL::SNAK(1));
+    change<Device::DIEPCTL>(endpoint, Device::DIEPCTL::USBAEP(0));
   } else {
-    change<Device::DOEPCTL>(endpoint, Device::DOEPCTL::USBAEP(0), Device::DOEPCTL::SNAK(1));
+    change<Device::DOEPCTL>(endpoint, Device::DOEPCTL::USBAEP(0));
   }
 }
 

@@ -4,7 +4,6 @@
 #include <drivers/otg_fs.hpp>
 #include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
-#include <placement/interrupt.hpp>
 #include <registers/peripherals.hpp>
 
 #include "core.hpp"
@@ -39,7 +38,6 @@ bool OtgFs::start() {
   start_clocks_of<OtgFs, registers::OTG_FS_GLOBAL, registers::TIM2>();
   frame_clock_.start();
 
-  Core::GAHBCFG::modify(Core::GAHBCFG::GINT(0));
   Core::GUSBCFG::modify(Core::GUSBCFG::PHYSEL(1));
   if (!reset_core()) return false;
   Core::GCCFG::write(Core::GCCFG::PWRDWN(1));
@@ -56,21 +54,8 @@ bool OtgFs::start() {
   fifo_memory::lay_out();
   fifo_memory::flush_transmit(fifo_memory::all_transmit_fifos);
   fifo_memory::flush_receive();
-
-  constexpr std::uint32_t scope_endpoint = 1u << 2;
-  Device::DIEPMSK::write(Device::DIEPMSK::XFRCM(1));
-  Device::DAINTMSK::write(Device::DAINTMSK::IEPM(scope_endpoint));
-  Core::GINTSTS::write(~0u);  // what is still flagged belongs to the time before
-  Core::GINTMSK::write(Core::GINTMSK::IEPINT(1));
-  Core::GAHBCFG::modify(Core::GAHBCFG::GINT(1));
-  Line::set_priority(Priority::last);
-  Line::enable();
   return true;
 }
-
-INKWELL_INTERRUPT void OtgFs::wake() { Line::disable(); }
-
-bool OtgFs::is_awake() { return !Line::is_enabled(); }
 
 namespace fifo_memory {
 

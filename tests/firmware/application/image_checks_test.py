@@ -90,8 +90,8 @@ class ImageChecks(unittest.TestCase):
         self.assert_refused(check_image, reads)
 
     def test_an_unmarked_handler_is_found(self):
-        check_image, _ = self.check("void usb_interrupt() { sink = 1; }\nvoid work() { sink = 2; }\n"
-                                    "[[gnu::section(\".vectors\"), gnu::used]] void (*const more)() = usb_interrupt;")
+        check_image, _ = self.check("void more_interrupt() { sink = 1; }\nvoid work() { sink = 2; }\n"
+                                    "[[gnu::section(\".vectors\"), gnu::used]] void (*const more)() = more_interrupt;")
         self.assert_refused(check_image, "handles an interrupt but lies outside .interrupt_text")
 
     def test_a_mark_that_lies_is_found(self):

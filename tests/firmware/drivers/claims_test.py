@@ -79,7 +79,7 @@ class Claims(unittest.TestCase):
                              ("pin(board::gimbal[1])", "AnalogInputs"),
                              ("pin(board::Pin{'C', 10})", "StatusLed"),
                              ("stream<registers::DMA2, 0>()", "AnalogInputs"),
-                             ("interrupt(Interrupt::usb)", "OtgFs")):
+                             ("interrupt(Interrupt::analog_converters)", "AnalogInputs")):
             with self.subTest(claim):
                 self.assert_refused(self.compile(f"{FREE_PIN}, {claim}"), TAKEN,
                                     f"Apart<inkwell::drivers::{owner}, Newcomer>")
@@ -89,9 +89,7 @@ class Claims(unittest.TestCase):
                       "RegistersOfStream<Newcomer, registers::DMA2, 1>::LISR::read();",
                       "start_clocks_of<Newcomer, registers::TIM3>();",
                       "start_clock_of_stream<Newcomer, registers::DMA2, 1>();",
-                      "InterruptLine<Newcomer, Interrupt::usb>::enable();",
-                      "InterruptLine<Newcomer, Interrupt::usb>::disable();",
-                      "InterruptLine<Newcomer, Interrupt::usb>::set_priority(Priority::last);",
+                      "InterruptLine<Newcomer, Interrupt::analog_converters>::enable();",
                       "connect<Newcomer, board::usb_plus>(Pull::none, Speed::low);",
                       "connect_analog<Newcomer, board::supply>();",
                       "DigitalInput<Newcomer, board::button_1>::start(Pull::up);",

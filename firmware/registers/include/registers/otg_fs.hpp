@@ -7,9 +7,6 @@ namespace inkwell::registers {
 
 template <std::uint32_t base>
 struct UsbGlobal {
-  struct GAHBCFG : Register<base + 0x08> {
-    using GINT = Field<GAHBCFG, 0, 1>;
-  };
   struct GUSBCFG : Register<base + 0x0C> {
     using PHYSEL = Field<GUSBCFG, 6, 1>;
     using TRDT = Field<GUSBCFG, 10, 4>;
@@ -23,16 +20,10 @@ struct UsbGlobal {
     using AHBIDL = Field<GRSTCTL, 31, 1>;
   };
   struct GINTSTS : Register<base + 0x14> {
-    using SOF = Field<GINTSTS, 3, 1>;
     using RXFLVL = Field<GINTSTS, 4, 1>;
     using GOUTNAKEFF = Field<GINTSTS, 7, 1>;
-    using USBSUSP = Field<GINTSTS, 11, 1>;
     using USBRST = Field<GINTSTS, 12, 1>;
     using ENUMDNE = Field<GINTSTS, 13, 1>;
-    using WKUPINT = Field<GINTSTS, 31, 1>;
-  };
-  struct GINTMSK : Register<base + 0x18> {
-    using IEPINT = Field<GINTMSK, 18, 1>;
   };
   struct GRXSTSR : Register<base + 0x1C> {
     using EPNUM = Field<GRXSTSR, 0, 4>;
@@ -81,13 +72,8 @@ struct UsbDevice {
     using CGONAK = Field<DCTL, 10, 1>;
   };
   struct DSTS : Register<base + 0x08> {
+    using SUSPSTS = Field<DSTS, 0, 1>;
     using FNSOF = Field<DSTS, 8, 14>;
-  };
-  struct DIEPMSK : Register<base + 0x10> {
-    using XFRCM = Field<DIEPMSK, 0, 1>;
-  };
-  struct DAINTMSK : Register<base + 0x1C> {
-    using IEPM = Field<DAINTMSK, 0, 16>;
   };
   struct DIEPCTL : RegisterArray<base + 0x100, 0x20, 4> {
     using MPSIZ = Field<DIEPCTL, 0, 11>;
@@ -122,11 +108,7 @@ struct UsbDevice {
     using CNAK = Field<DOEPCTL, 26, 1>;
     using SNAK = Field<DOEPCTL, 27, 1>;
     using SD0PID = Field<DOEPCTL, 28, 1>;
-    using EPDIS = Field<DOEPCTL, 30, 1>;
     using EPENA = Field<DOEPCTL, 31, 1>;
-  };
-  struct DOEPINT : RegisterArray<base + 0x308, 0x20, 4> {
-    using EPDISD = Field<DOEPINT, 1, 1>;
   };
   struct DOEPTSIZ : RegisterArray<base + 0x310, 0x20, 4> {
     using XFRSIZ = Field<DOEPTSIZ, 0, 19>;

@@ -28,8 +28,6 @@ struct CoprocessorAccess {
 template <std::uint32_t base>
 struct NestedVectoredInterruptController {
   struct ISER : RegisterArray<base + 0x000, 4, 3> {};
-  struct ICER : RegisterArray<base + 0x080, 4, 3> {};
-  struct IPR : RegisterArray<base + 0x300, 1, 82, std::uint8_t> {};
 };
 
 template <std::uint32_t base>

@@ -3,12 +3,11 @@
 //   drivers::OtgFs port;
 //   usb::Device device{port, link, identity};
 //   port.start();
-//   for (;;) { device.poll(); sleep_unless([] { return OtgFs::is_awake(); }); }
-//   extern "C" void OTG_FS_IRQHandler() { drivers::OtgFs::wake(); }
+//   for (;;) { device.poll(); ... }
 //
-// Everything happens in poll(). The core's interrupt comes only when a transfer of the scope is complete,
-// and only wakes the main loop, so that the next one starts at once: at 17.8 packets a millisecond of 19 the
-// bus leaves no time to sleep between two frames.
+// Everything happens in poll(), and the core has no interrupt: the control interrupt wakes the main loop every 50 us,
+// the time of a packet. A transfer of the scope takes 5 ms, so that the bus stands idle between two of them for at most
+// a hundredth of its time.
 #pragma once
 
 #include <array>
@@ -32,18 +31,11 @@ class OtgFs final : public usb::Port {
                                      peripheral<registers::TIM2>(),
                                      pin(board::usb_minus),
                                      pin(board::usb_plus),
-                                     pin(board::usb_supply),
-                                     interrupt(Interrupt::usb)};
+                                     pin(board::usb_supply)};
 
   /// Sets pins, clock and core up; next_event() connects the pull-up of D+ while the cable brings VBUS. Takes 26 ms.
   /// The 48 MHz clock runs already (clocks.hpp). False if the core does not answer.
   [[nodiscard]] bool start();
-
-  /// To be called by the interrupt OTG_FS: switches the interrupt off until the main loop has polled. Touches
-  /// no register of the core, because it may come in the middle of a packet that is written into a FIFO.
-  static void wake();
-  /// The interrupt came, and not all of what it came for has been polled yet.
-  static bool is_awake();
 
   bool next_event(usb::Event& event) override;
   void set_address(std::uint8_t address) override;
@@ -69,14 +61,13 @@ class OtgFs final : public usb::Port {
     std::uint8_t length = 0;
   };
 
-  bool follow_cable(usb::Event& event);
-  void fall_silent(usb::Event& event);
+  void follow_cable();
   void bus_reset();
   bool next_sent(usb::Event& event);
   bool next_received(usb::Event& event);
   bool take_received_word(usb::Event& event);
   void pass_on_setup(usb::Event& event);
-  bool next_suspend_or_resume(usb::Event& event, std::uint32_t interrupts);
+  bool next_suspend_or_resume(usb::Event& event);
   void answer_control();
   /// False while a SETUP makes the answer stale, or may.
   bool arm_control();
@@ -84,7 +75,7 @@ class OtgFs final : public usb::Port {
   void begin_receive(unsigned endpoint);
   void fill(unsigned endpoint);
   void stop_in(unsigned endpoint);
-  void stop_out();
+  void empty_receive_fifo();
 
   FrameClock frame_clock_;
   std::array<InTransfer, in_endpoints> in_{};
