@@ -35,10 +35,9 @@ static_assert(in_first_register(board::motor_current[0]) && in_first_register(bo
               in_first_register(board::gimbal[1]) && in_first_register(board::gimbal[2]) &&
               !in_first_register(board::supply));
 
-/// ADC_CR2 of ADC1: with and without DMA requests, and what makes it listen to TIM1.
-constexpr std::uint32_t adc1_without_requests = ADC1::CR2::ADON(1).bits;
-constexpr std::uint32_t adc1_with_requests = adc1_without_requests | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits;
-constexpr std::uint32_t adc1_armed = ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
+/// ADC_CR2 of ADC1 from arm() on; SWSTART starts the slow conversions.
+constexpr std::uint32_t adc1_armed = ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits |
+                                     ADC1::CR2::JEXTSEL(trigger_tim1_trgo).bits | ADC1::CR2::JEXTEN(rising_edge).bits;
 
 template <class Converter>
 void set_up_injected(const board::AnalogInput& input) {
@@ -116,7 +115,7 @@ void AnalogInputs::start() {
 void AnalogInputs::arm() {
   ADC3::CR2::write(ADC3::CR2::ADON(1), ADC3::CR2::JEXTSEL(trigger_tim1_trgo), ADC3::CR2::JEXTEN(rising_edge));
   ADC2::CR2::write(ADC2::CR2::ADON(1), ADC2::CR2::JEXTSEL(trigger_tim1_trgo), ADC2::CR2::JEXTEN(rising_edge));
-  ADC1::CR2::write(adc1_without_requests | adc1_armed);
+  ADC1::CR2::write(adc1_armed);
   InterruptLine<AnalogInputs, Interrupt::analog_converters>::enable();
 }
 
@@ -134,13 +133,12 @@ INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
   }
   slow_age_periods_ = 0;
   DMA2::LIFCR::write(DMA2::LIFCR::CTCIF0(1));
-  ADC1::CR2::write(adc1_with_requests | adc1_armed | ADC1::CR2::SWSTART::mask);
+  ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }
 
 // The way back of RM0090, "Overrun detection", in two periods: a stream that is told to stop first finishes its
-// transfer, and nothing waits here. Without requests there is no overrun meanwhile.
+// transfer, and nothing waits here.
 INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
-  ADC1::CR2::write(adc1_without_requests | adc1_armed);
   DMA2::S0CR::write(0);
   slow_stopped_ = true;
 }
@@ -151,7 +149,7 @@ INKWELL_INTERRUPT void AnalogInputs::set_up_slow() {
   set_up_memory_access(slow_.data());
   // A result that nobody took would make the first new one an overrun again.
   ADC1::SR::write(~(ADC1::SR::OVR::mask | ADC1::SR::EOC::mask));
-  ADC1::CR2::write(adc1_with_requests | adc1_armed | ADC1::CR2::SWSTART::mask);
+  ADC1::CR2::write(adc1_armed | ADC1::CR2::SWSTART::mask);
 }
 
 INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::gimbal_ratio() const {

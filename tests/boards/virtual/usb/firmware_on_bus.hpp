@@ -23,12 +23,14 @@ using virtual_board::Ticks;
 using virtual_board::ticks;
 using virtual_board::Urb;
 
-/// What is soldered to the chip holds still: supply and sensors read as on a board at rest.
+/// What is soldered to the chip holds still: supply and sensors read as on a board at rest, but for what a test moves.
 class RestingCircuit final : public virtual_board::Circuit {
  public:
   void output_changed(char, unsigned, virtual_board::PinLevel, Ticks) override {}
-  double analog_V(char, unsigned, Ticks) override { return 1.65; }
+  double analog_V(char port, unsigned pin, Ticks now) override { return voltage_V ? voltage_V(port, pin, now) : 1.65; }
   void advance(Ticks) override {}
+
+  std::function<double(char port, unsigned pin, Ticks now)> voltage_V;
 };
 
 /// The cable: passes everything on and tells what went over it.
