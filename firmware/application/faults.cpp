@@ -1,16 +1,70 @@
 // What happens when the processor cannot go on: bridges off, a record, a restart.
+#include <algorithm>
+#include <iterator>
+
 #include <drivers/bridges_off.hpp>
-#include <drivers/crash_record.hpp>
 #include <drivers/system.hpp>
 #include <registers/peripherals.hpp>
 
+#include "crash.hpp"
 #include "handlers.hpp"
 #include "memory.hpp"
 
 namespace inkwell::application {
 
+[[gnu::section(".noinit")]] drivers::KeptOverReset<protocol::CrashFacts> crash_record;
+
+namespace {
+
+using protocol::CrashFacts;
+
+/// What fault_handler() has saved: r4 to r11, and the value that a return from the exception would take (EXC_RETURN).
+struct SavedRegisters {
+  std::uint32_t r4_to_r11[8];
+  std::uint32_t exception_return;
+};
+
+/// What the processor pushed on entry; room for its floats follows, if they were in use.
+struct ExceptionFrame {
+  std::uint32_t r0_to_r3[4];
+  std::uint32_t r12, link_register, program_counter, program_status;
+};
+
+std::uint32_t address_of(const void* place) { return reinterpret_cast<std::uint32_t>(place); }
+
+/// Before the exception (ARMv7-M, B1.5.7 "Stack alignment on exception entry").
+std::uint32_t stack_before(const ExceptionFrame* frame, std::uint32_t exception_return) {
+  constexpr std::uint32_t no_floats = 1u << 4, was_aligned = 1u << 9, bytes_of_floats = 72;
+  return address_of(frame + 1) + ((exception_return & no_floats) != 0 ? 0 : bytes_of_floats) +
+         ((frame->program_status & was_aligned) != 0 ? 4 : 0);
+}
+
+/// A place of the firmware's code behind a BL, or a BLX with a register (ARMv7-M, A7.7.18 and A7.7.19).
+bool is_behind_call(std::uint32_t address) {
+  const auto lies_in = [address](const std::uint32_t* begin, const std::uint32_t* end) {
+    return address >= address_of(begin) + 4 && address < address_of(end);
+  };
+  if (address % 2 != 0) return false;
+  if (!lies_in(flash_begin, image_check) && !lies_in(interrupt_text_begin, interrupt_text_end)) return false;
+  const auto* behind = reinterpret_cast<const std::uint16_t*>(address);
+  return ((behind[-2] & 0xF800) == 0xF000 && (behind[-1] & 0xD000) == 0xD000) || (behind[-1] & 0xFF87) == 0x4780;
+}
+
+/// Without frame pointers the stack does not tell its return addresses from old ones: what looks like one is noted.
+void note_callers(CrashFacts& crash) {
+  std::size_t count = 0;
+  const auto consider = [&](std::uint32_t word) {
+    if ((word & 1) != 0 && is_behind_call(word - 1)) crash.callers[count++] = word - 1;
+  };
+  consider(crash.link_register);
+  const auto* word = reinterpret_cast<const std::uint32_t*>(crash.stack_pointer);
+  for (; word < stack_top && count < std::size(crash.callers); ++word) consider(*word);
+}
+
+}  // namespace
+
 /// Switches the motors off with three stores before it trusts anything else, the stack included: that may be what is
-/// broken. Then the record is made on the lowest 256 bytes of the stack, which nobody uses
+/// broken. Then the record is made on the lowest 512 bytes of the stack, which nobody uses
 /// unless the stack has overflowed. No interrupt comes between: it has the priority of a hard fault. A second fault in
 /// here locks the processor up until the watchdog resets it.
 extern "C" [[gnu::naked]] void fault_handler() {
@@ -25,26 +79,37 @@ extern "C" [[gnu::naked]] void fault_handler() {
       "ldr r2, =%c[legs_b_address] \n"
       "str r3, [r2] \n"
       "mov r0, sp \n"
-      "ldr r1, =stack_bottom + 256 \n"
+      "ldr r1, =stack_bottom + 512 \n"
       "mov sp, r1 \n"
+      "push {r4-r11, lr} \n"
+      "mov r1, sp \n"
       "b record_fault \n"
       ".ltorg \n" ::[enable_address] "i"(bridge_enable_low.address),
       [enable_low] "i"(bridge_enable_low.value), [legs_a_address] "i"(legs_a_off.address),
       [legs_b_address] "i"(legs_b_off.address), [off] "i"(outputs_off));
 }
 
-/// `frame` is what the processor pushed on entry: r0 to r3, r12, lr, pc, status.
-extern "C" [[noreturn, gnu::used]] void record_fault(const std::uint32_t* frame) {
+extern "C" [[noreturn, gnu::used]] void record_fault(const ExceptionFrame* frame, const SavedRegisters* saved) {
   using registers::SCB;
-  constexpr std::uint32_t frame_bytes = 32, link_register = 5, program_counter = 6;
-  const auto address = reinterpret_cast<std::uint32_t>(frame);
-  const bool readable = address % 4 == 0 && address >= reinterpret_cast<std::uint32_t>(stack_bottom) &&
-                        address + frame_bytes <= reinterpret_cast<std::uint32_t>(stack_top);
-
-  std::uint32_t exception = 0;
-  asm volatile("mrs %0, ipsr" : "=r"(exception));
-  drivers::leave_crash_record({exception, readable ? frame[program_counter] : 0, readable ? frame[link_register] : 0,
-                               SCB::CFSR::read(), SCB::HFSR::read(), SCB::BFAR::read()});
+  CrashFacts crash{};
+  asm volatile("mrs %0, ipsr" : "=r"(crash.exception));
+  crash.configurable_fault_status = SCB::CFSR::read();
+  crash.hard_fault_status = SCB::HFSR::read();
+  crash.fault_address =
+      SCB::CFSR::MMARVALID::from(crash.configurable_fault_status) != 0 ? SCB::MMFAR::read() : SCB::BFAR::read();
+  crash.image_check = *image_check;
+  std::copy_n(saved->r4_to_r11, 8, crash.registers + 4);
+  const std::uint32_t address = address_of(frame);
+  if (address % 4 == 0 && address >= address_of(stack_bottom) && address + sizeof *frame <= address_of(stack_top)) {
+    std::copy_n(frame->r0_to_r3, 4, crash.registers);
+    crash.registers[12] = frame->r12;
+    crash.link_register = frame->link_register;
+    crash.program_counter = frame->program_counter;
+    crash.program_status = frame->program_status;
+    crash.stack_pointer = stack_before(frame, saved->exception_return);
+    note_callers(crash);
+  }
+  crash_record.leave(crash);
   drivers::reset_chip();
 }
 

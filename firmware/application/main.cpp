@@ -4,11 +4,11 @@
 #include <board/board.hpp>
 #include <drivers/boot_loader.hpp>
 #include <drivers/clocks.hpp>
-#include <drivers/crash_record.hpp>
 #include <drivers/cycle_counter.hpp>
 #include <drivers/system.hpp>
 #include <usb/device.hpp>
 
+#include "crash.hpp"
 #include "handlers.hpp"
 #include "main_loop.hpp"
 #include "memory_check.hpp"
@@ -39,20 +39,11 @@ bool start_clocks() {
 }
 
 /// What is to be said of how the run before this one ended.
-protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::optional<drivers::CrashRecord>& crash,
+protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash,
                                bool started_late) {
-  if (started_late || (crash && crash->crystal_stopped())) return protocol::Fault::crystal_failed;
+  if (started_late || (crash && crystal_stopped(*crash))) return protocol::Fault::crystal_failed;
   if (crash) return protocol::Fault::processor_fault;
   return cause.watchdog() ? protocol::Fault::watchdog : protocol::Fault::none;
-}
-
-protocol::CrashFacts facts_of(const drivers::CrashRecord& crash) {
-  return {.exception = crash.exception,
-          .program_counter = crash.program_counter,
-          .link_register = crash.link_register,
-          .configurable_fault_status = crash.configurable_fault_status,
-          .hard_fault_status = crash.hard_fault_status,
-          .fault_address = crash.fault_address};
 }
 
 }  // namespace
@@ -62,7 +53,7 @@ int main() {
   using namespace inkwell;
   using namespace inkwell::application;
   const auto reset_cause = drivers::take_reset_cause();
-  const auto crash = drivers::take_crash_record();
+  const auto crash = crash_record.take();
 
   drivers::start_pins();
   drivers::CycleCounter::start();
@@ -78,7 +69,7 @@ int main() {
   analog_inputs.start();
   const protocol::Fault fault = fault_of_start(reset_cause, crash, started_late);
   if (fault != protocol::Fault::none) controller.raise(fault);
-  host_link.black_box.start(fault, crash ? facts_of(*crash) : protocol::CrashFacts{});
+  host_link.black_box.start(fault, crash.value_or(protocol::CrashFacts{}));
   MemoryCheck memory_check;
   host_link.memory_damaged.store(!memory_check.start());
 

@@ -11,18 +11,18 @@ namespace {
 
 struct CrashWord {
   std::string_view label;
-  std::uint32_t drivers::CrashRecord::*word;
+  std::uint32_t protocol::CrashFacts::*word;
 };
 
 constexpr CrashWord crash_words[] = {
-    {", exception ", &drivers::CrashRecord::exception}, {" at ", &drivers::CrashRecord::program_counter},
-    {" from ", &drivers::CrashRecord::link_register},   {" status ", &drivers::CrashRecord::configurable_fault_status},
-    {" ", &drivers::CrashRecord::hard_fault_status},    {" address ", &drivers::CrashRecord::fault_address},
+    {", exception ", &protocol::CrashFacts::exception}, {" at ", &protocol::CrashFacts::program_counter},
+    {" from ", &protocol::CrashFacts::link_register},   {" status ", &protocol::CrashFacts::configurable_fault_status},
+    {" ", &protocol::CrashFacts::hard_fault_status},    {" address ", &protocol::CrashFacts::fault_address},
 };
 
 }  // namespace
 
-void report_start(const drivers::ResetCause& cause, const std::optional<drivers::CrashRecord>& crash) {
+void report_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash) {
   console.start(board::apb1_Hz);
   console.write("inkwell " INKWELL_VERSION ", reset cause ");
   console.write_hexadecimal(cause.flags >> 24);

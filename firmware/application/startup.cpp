@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include <drivers/boot_loader.hpp>
+#include <drivers/memory_protection.hpp>
 #include <registers/peripherals.hpp>
 
 #include "handlers.hpp"
@@ -53,6 +54,7 @@ extern "C" [[noreturn, gnu::used]] void start() {
   std::memcpy(interrupt_vectors, &vectors, sizeof vectors);
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");
+  drivers::protect_memory();
   for (auto constructor = constructors_begin; constructor != constructors_end; ++constructor) (*constructor)();
 
   asm volatile("bl main");  // C++ does not let itself call main()

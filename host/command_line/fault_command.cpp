@@ -1,10 +1,12 @@
 #include "commands.hpp"
 
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <crash/crash_text.hpp>
 #include <device/fault_text.hpp>
 #include <protocol/black_box.hpp>
 #include <recording/black_box.hpp>
@@ -24,6 +26,7 @@ using protocol::State;
 
 struct FaultOptions {
   std::string file;
+  std::string elf;
   bool overwrite = false;
 };
 
@@ -31,22 +34,39 @@ double time_s(const BlackBoxReport& box) { return static_cast<double>(box.fault_
 
 bool has_crash(const BlackBoxReport& box) { return box.crash.exception != 0; }
 
-std::string crash_text(const protocol::CrashFacts& crash) {
-  const std::string where = crash.program_counter == 0 ? "at an unknown place, for its stack could not be read"
-                                                       : fmt::format("at 0x{:08x}, called from 0x{:08x}",
-                                                                     crash.program_counter, crash.link_register & ~1u);
-  const std::string names = crash.program_counter == 0
-                                ? ""
-                                : fmt::format(
-                                      " `arm-none-eabi-addr2line -fiCe inkwell.elf 0x{:08x} 0x{:08x}` names the "
-                                      "functions, with the firmware's own ELF.",
-                                      crash.program_counter, crash.link_register & ~1u);
-  return fmt::format("The processor met exception {} {}. CFSR 0x{:08x}, HFSR 0x{:08x}, BFAR 0x{:08x}.{}",
-                     crash.exception, where, crash.configurable_fault_status, crash.hard_fault_status,
-                     crash.fault_address, names);
+using Image = std::optional<crash::FirmwareImage>;
+
+/// The ELF that the user has given, if it is the one that crashed.
+Image image_of(const BlackBoxReport& box, const FaultOptions& options) {
+  if (options.elf.empty()) return std::nullopt;
+  crash::FirmwareImage image(options.elf);
+  if (has_crash(box)) crash::require_image_of(box.crash, image);
+  return image;
 }
 
-ordered_json to_json(const BlackBoxReport& box) {
+void print_crash(const BlackBoxReport& box, const Image& image) {
+  if (has_crash(box)) fmt::print("{}\n", crash::text(box.crash, image ? &*image : nullptr));
+}
+
+ordered_json crash_json(const protocol::CrashFacts& crash, const Image& image) {
+  ordered_json chain = ordered_json::array();
+  for (const std::uint32_t address : crash::chain(crash))
+    chain.push_back({{"address", address}, {"place", image ? image->place(address - (chain.empty() ? 0 : 2)) : ""}});
+  return {{"exception", crash.exception},
+          {"cause", crash::cause(crash)},
+          {"chain", chain},
+          {"program_counter", crash.program_counter},
+          {"link_register", crash.link_register},
+          {"program_status", crash.program_status},
+          {"stack_pointer", crash.stack_pointer},
+          {"registers", crash.registers},
+          {"configurable_fault_status", crash.configurable_fault_status},
+          {"hard_fault_status", crash.hard_fault_status},
+          {"fault_address", crash.fault_address},
+          {"image_check", crash.image_check}};
+}
+
+ordered_json to_json(const BlackBoxReport& box, const Image& image) {
   if (box.fault == Fault::none) return nullptr;
   ordered_json json{{"fault", info(box.fault).name},
                     {"time_s", time_s(box)},
@@ -55,32 +75,26 @@ ordered_json to_json(const BlackBoxReport& box) {
                     {"complete", box.is_complete != 0},
                     {"restart", box.is_restart != 0},
                     {"crash", nullptr}};
-  if (has_crash(box))
-    json["crash"] = {{"exception", box.crash.exception},
-                     {"program_counter", box.crash.program_counter},
-                     {"link_register", box.crash.link_register},
-                     {"configurable_fault_status", box.crash.configurable_fault_status},
-                     {"hard_fault_status", box.crash.hard_fault_status},
-                     {"fault_address", box.crash.fault_address}};
+  if (has_crash(box)) json["crash"] = crash_json(box.crash, image);
   return json;
 }
 
-void print(const BlackBoxReport& box) {
+void print(const BlackBoxReport& box, const Image& image) {
   if (box.fault == Fault::none) return;
   fmt::print(
       "A black box is kept: every signal around {} at {:.3f} s, each millisecond, {} rows before it and {} from "
       "then on{}. `inkwell fault --out FILE` saves it; it goes when the force is switched on.\n",
       info(box.fault).name, time_s(box), box.rows_before, box.row_count - box.rows_before,
       box.is_restart ? ", where the board was restarted" : "");
-  if (has_crash(box)) fmt::print("{}\n", crash_text(box.crash));
+  print_crash(box, image);
 }
 
-void tell_fault(const DeviceOptions& options, const PoseReport& pose, const BlackBoxReport& box) {
+void tell_fault(const DeviceOptions& options, const PoseReport& pose, const BlackBoxReport& box, const Image& image) {
   const bool is_fault = pose.state == State::fault;
   if (options.json) {
     fmt::print("{}\n", ordered_json{{"state", info(pose.state).name},
                                     {"fault", info(is_fault ? pose.fault : Fault::none).name},
-                                    {"black_box", to_json(box)}}
+                                    {"black_box", to_json(box, image)}}
                            .dump());
     return;
   }
@@ -88,13 +102,14 @@ void tell_fault(const DeviceOptions& options, const PoseReport& pose, const Blac
     fmt::print("{}\n", device::fault_line(pose.fault));
   else
     fmt::print("No fault. The device is {}: {}\n", info(pose.state).name, info(pose.state).meaning);
-  print(box);
+  print(box, image);
 }
 
-int show_fault(const DeviceOptions& options) {
-  const auto connection = connect(options);
+int show_fault(const DeviceOptions& device_options, const FaultOptions& options) {
+  const auto connection = connect(device_options);
   const auto pose = next_pose(*connection.device);
-  tell_fault(options, pose, connection.device->black_box());
+  const auto box = connection.device->black_box();
+  tell_fault(device_options, pose, box, image_of(box, options));
   return 0;
 }
 
@@ -124,19 +139,20 @@ int save_black_box(const DeviceOptions& device_options, const FaultOptions& opti
   const auto connection = connect(device_options);
   device::Device& device = *connection.device;
   const auto box = complete_black_box(device);
+  const auto image = image_of(box, options);
   const auto recording = recording::of_black_box(
       box, device.black_box_rows(box),
       recording::describe(device.information(), device.parameters(), recording::black_box_signals(),
                           arm_name(device_options), connection.endpoint.is_virtual));
   recording::save(recording, options.file);
   if (device_options.json) {
-    fmt::print("{}\n", ordered_json{{"file", options.file}, {"black_box", to_json(box)}}.dump());
+    fmt::print("{}\n", ordered_json{{"file", options.file}, {"black_box", to_json(box, image)}}.dump());
     return 0;
   }
   fmt::print("{}: {} at {:.3f} s, {} samples of {} signals, {} before it, {} lost\n", options.file,
              info(box.fault).name, time_s(box), recording.size(), recording.columns.size(), box.rows_before,
              recording.lost());
-  if (has_crash(box)) fmt::print("{}\n", crash_text(box.crash));
+  print_crash(box, image);
   return 0;
 }
 
@@ -152,7 +168,7 @@ int clear_fault(const DeviceOptions& options) {
   while (was_fault && pose.time_periods - begin_periods < patience_periods) pose = next_pose(device);
   if (pose.state == State::fault)
     throw device::Error(fmt::format("The fault is there again. {}", device::fault_line(pose.fault)));
-  tell_fault(options, pose, device.black_box());
+  tell_fault(options, pose, device.black_box(), std::nullopt);
   return 0;
 }
 
@@ -168,15 +184,23 @@ void add_fault_command(const Place& place) {
                                 "Save the black box, every signal around the last fault, as a recording: .h5 or .csv")
                    ->type_name("FILE");
   command->add_flag("--overwrite", fault_options->overwrite, "Replace a file of that name")->needs(file);
-  add_examples(*command, "inkwell fault\ninkwell fault --out fault.h5\ninkwell fault clear");
+  auto* elf = command
+                  ->add_option("--elf", fault_options->elf,
+                               "Name the functions and lines of a crash with the ELF of the firmware that was flashed")
+                  ->type_name("FILE")
+                  ->check(CLI::ExistingFile);
+  add_examples(
+      *command,
+      "inkwell fault\ninkwell fault --elf build/board/inkwell.elf\ninkwell fault --out fault.h5\ninkwell fault clear");
   command->callback([place, command, file, fault_options] {
     if (!command->get_subcommands().empty()) return;
     place.action = [&options = place.device, file, fault_options] {
-      return file->count() == 0 ? show_fault(options) : save_black_box(options, *fault_options);
+      return file->count() == 0 ? show_fault(options, *fault_options) : save_black_box(options, *fault_options);
     };
   });
   auto* cleared = command->add_subcommand("clear", "Clears it once its cause is gone; the force stays off");
   cleared->excludes(file);
+  cleared->excludes(elf);
   add_examples(*cleared, "inkwell fault clear");
   cleared->callback([place] { place.action = [&options = place.device] { return clear_fault(options); }; });
 }

@@ -1,9 +1,12 @@
 // What the board keeps of the time around a fault: its cause is to be seen in it, also after a crash.
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <string>
 
 #include <board/board.hpp>
+#include <crash/crash_text.hpp>
+#include <device/error.hpp>
 
 #include "firmware_image.hpp"
 #include "hazards.hpp"
@@ -120,8 +123,23 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
   CHECK(shown.exit_code == 0);
   CHECK(shown.out.find("every signal around processor_fault") != std::string::npos);
   CHECK(shown.out.find("where the board was restarted") != std::string::npos);
-  CHECK(shown.out.find("exception 3 at 0x60000000") != std::string::npos);
-  CHECK(shown.out.find("arm-none-eabi-addr2line -fiCe inkwell.elf 0x60000000") != std::string::npos);
+  CHECK(shown.out.find("it went to run from where nothing is") != std::string::npos);
+  CHECK(shown.out.find("at   0x60000000\n") != std::string::npos);
+  CHECK(shown.out.find("`inkwell fault --elf FILE`") != std::string::npos);
+  const auto image = std::filesystem::path(build_directory()) / ".." / "board" / "inkwell.elf";
+  const auto named = run_program("inkwell", {"fault", "--usbip", address, "--elf", image.string()});
+  INFO(named.out, named.err);
+  CHECK(named.exit_code == 0);
+  CHECK(named.out.find(" main (main.cpp:") != std::string::npos);
+  const auto other_image = image.parent_path() / "force-law-magnet.elf";
+  const auto refused = run_program("inkwell", {"fault", "--usbip", address, "--elf", other_image.string()});
+  CHECK(refused.exit_code == 1);
+  CHECK(refused.err.find("This ELF has no checksum") != std::string::npos);
+  const crash::FirmwareImage flashed(image);
+  crash::require_image_of(box.crash, flashed);
+  auto of_another = box.crash;
+  of_another.image_check ^= 1;
+  CHECK_THROWS_AS(crash::require_image_of(of_another, flashed), device::Error);
   const auto saved = run_program("inkwell", {"fault", "--usbip", address, "--out", directory.file("crash.h5")});
   INFO(saved.err);
   CHECK(saved.exit_code == 0);

@@ -23,11 +23,18 @@ inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + bl
 /// What the processor noted as it crashed (ARMv7-M, "Fault handling"); all 0 if it did not.
 struct CrashFacts {
   std::uint32_t exception;        ///< its number: 2 NMI, 3 hard fault, from 16 on an unexpected interrupt
-  std::uint32_t program_counter;  ///< 0 if the stack could not be read
+  std::uint32_t program_counter;  ///< 0 if the stack could not be read, and so are those that follow up to r3
   std::uint32_t link_register;
+  std::uint32_t program_status;             ///< xPSR
+  std::uint32_t stack_pointer;              ///< before the exception
+  std::uint32_t registers[13];              ///< r0 to r12
   std::uint32_t configurable_fault_status;  ///< CFSR
   std::uint32_t hard_fault_status;          ///< HFSR
-  std::uint32_t fault_address;              ///< BFAR
+  std::uint32_t fault_address;              ///< MMFAR or BFAR, if CFSR says that it holds
+  /// What the link register and the stack hold that lies behind a call, the newest first: where the calls came from,
+  /// and perhaps some of older ones. 0 from the end on.
+  std::uint32_t callers[8];
+  std::uint32_t image_check;  ///< of the image that ran: the word that its ELF has in .image_check
 };
 
 /// Feature report, get.
@@ -69,7 +76,7 @@ struct BlackBoxRowsReport {
   BlackBoxRow rows[black_box_report_rows];
 };
 
-static_assert(sizeof(BlackBoxReport) == 40);
+static_assert(sizeof(CrashFacts) == 120 && sizeof(BlackBoxReport) == 136);
 static_assert(sizeof(BlackBoxRequest) == 4);
 static_assert(sizeof(BlackBoxRow) == 4 + 4 * (signal_count + force_law_signals_maximum));
 static_assert(sizeof(BlackBoxRowsReport) == 8 + black_box_report_rows * sizeof(BlackBoxRow) &&

@@ -17,7 +17,13 @@ namespace {
 
 constexpr std::uint32_t step = protocol::black_box_step_periods;
 constexpr std::size_t rows_before = 5, rows_from_fault = 4;
-constexpr protocol::CrashFacts crash{3, 0x0800'1234, 0x0800'5679, 0x8200, 0x4000'0000, 0x6000'0000};
+constexpr protocol::CrashFacts crash{.exception = 3,
+                                     .program_counter = 0x0800'1234,
+                                     .link_register = 0x0800'5679,
+                                     .configurable_fault_status = 0x8200,
+                                     .hard_fault_status = 0x4000'0000,
+                                     .fault_address = 0x6000'0000,
+                                     .callers = {0x0800'5678, 0x0800'2222}};
 
 float value_at(std::uint32_t period, std::size_t signal) {
   return static_cast<float>(period % 100'000) + 0.125f * static_cast<float>(signal % 8);

@@ -47,6 +47,7 @@
   X(NVIC, NestedVectoredInterruptController, 0xE000E100) \
   X(SCB, SystemControlBlock, 0xE000ED00)                 \
   X(FPU_CPACR, CoprocessorAccess, 0xE000ED88)            \
+  X(MPU, MemoryProtectionUnit, 0xE000ED90)               \
   X(CORE_DEBUG, CoreDebug, 0xE000EDF0)                   \
   X(DBG, DebugSupport, 0xE0042000)
 

@@ -13,9 +13,32 @@ struct SystemControlBlock {
     using SYSRESETREQ = Field<AIRCR, 2, 1>;
     using VECTKEY = Field<AIRCR, 16, 16>;
   };
-  struct CFSR : Register<base + 0x28> {};
+  struct CFSR : Register<base + 0x28> {
+    using MMARVALID = Field<CFSR, 7, 1>;
+  };
   struct HFSR : Register<base + 0x2C> {};
+  struct MMFAR : Register<base + 0x34> {};
   struct BFAR : Register<base + 0x38> {};
+};
+
+template <std::uint32_t base>
+struct MemoryProtectionUnit {
+  struct CTRL : Register<base + 0x04> {
+    using ENABLE = Field<CTRL, 0, 1>;
+    using PRIVDEFENA = Field<CTRL, 2, 1>;
+  };
+  struct RNR : Register<base + 0x08> {
+    using REGION = Field<RNR, 0, 8>;
+  };
+  struct RBAR : Register<base + 0x0C> {};
+  struct RASR : Register<base + 0x10> {
+    using ENABLE = Field<RASR, 0, 1>;
+    using SIZE = Field<RASR, 1, 5>;
+    using C = Field<RASR, 17, 1>;
+    using S = Field<RASR, 18, 1>;
+    using AP = Field<RASR, 24, 3>;
+    using XN = Field<RASR, 28, 1>;
+  };
 };
 
 template <std::uint32_t base>

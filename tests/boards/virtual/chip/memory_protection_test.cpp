@@ -48,6 +48,19 @@ TEST_SUITE("virtual chip: memory protection") {
     }
   }
 
+  TEST_CASE("the firmware's protection lets its own accesses pass, and nothing that only an error does") {
+    for (const Mode mode : {Mode::exact, Mode::fast}) {
+      CAPTURE(static_cast<int>(mode));
+      ChipUnderTest test("guarded_memory", mode);
+      test.run_for(0.001);
+      REQUIRE(test.result(0) == finished);
+      check_results(test, 1, {passes, passes, passes, passes, passes, passes, passes});
+      check_results(test, 8,
+                    {refused, refused, refused_instruction, refused, refused, refused, refused, refused_instruction,
+                     refused, refused});
+    }
+  }
+
   TEST_CASE("a region that the manual leaves open is told") {
     for (unsigned number = 0; number < 8; ++number) {
       CAPTURE(number);

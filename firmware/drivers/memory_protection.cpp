@@ -1,0 +1,51 @@
+#include <drivers/memory_protection.hpp>
+
+#include <cstdint>
+
+#include <registers/peripherals.hpp>
+
+namespace inkwell::drivers {
+namespace {
+
+using registers::MPU;
+
+enum class Use { none, data, code };
+
+struct Region {
+  std::uint32_t base;       ///< a multiple of the size
+  std::uint32_t size_bits;  ///< logarithm of the size in bytes
+  Use use;
+  bool is_shared;  ///< as the manual has it for SRAM (PM0214, table "Memory region attributes for STM32")
+};
+
+constexpr std::uint32_t bits_of_16_KB = 14, bits_of_128_KB = 17, bits_of_1_MB = 20, bits_of_32_MB = 25,
+                        bits_of_128_MB = 27;
+
+/// Of regions that lie one in another the last counts. What lies in none is as without the unit (RM0090, "Memory map").
+constexpr Region regions[] = {
+    {0x0000'0000, bits_of_128_MB, Use::none, false},  // the flash once more
+    {0x0800'0000, bits_of_128_MB, Use::none, false},  //
+    {0x0800'0000, bits_of_1_MB, Use::code, false},    // flash
+    {0x2000'0000, bits_of_128_KB, Use::data, true},   // SRAM1 and SRAM2
+    {0x2001'C000, bits_of_16_KB, Use::code, true},    // SRAM2: what runs in interrupts
+    {0x2200'0000, bits_of_32_MB, Use::none, true},    // each bit of the SRAM once more
+};
+
+}  // namespace
+
+void protect_memory() {
+  constexpr std::uint32_t nobody = 0b000, reads_and_writes = 0b011, reads = 0b110;
+  std::uint32_t number = 0;
+  for (const Region& region : regions) {
+    const std::uint32_t access = region.use == Use::none ? nobody : region.use == Use::data ? reads_and_writes : reads;
+    MPU::RNR::write(MPU::RNR::REGION(number++));
+    MPU::RBAR::write(region.base);
+    MPU::RASR::write(MPU::RASR::ENABLE(1), MPU::RASR::SIZE(region.size_bits - 1), MPU::RASR::C(1),
+                     MPU::RASR::S(region.is_shared ? 1 : 0), MPU::RASR::AP(access),
+                     MPU::RASR::XN(region.use == Use::code ? 0 : 1));
+  }
+  MPU::CTRL::write(MPU::CTRL::ENABLE(1), MPU::CTRL::PRIVDEFENA(1));
+  asm volatile("dsb\n isb" ::: "memory");
+}
+
+}  // namespace inkwell::drivers
