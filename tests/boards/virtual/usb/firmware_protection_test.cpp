@@ -1,0 +1,79 @@
+// The flashed firmware is led astray, and its protection of the memory stops it.
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include <chip/debug_port.hpp>
+#include <chip/memory_map.hpp>
+#include <protocol/black_box.hpp>
+
+#include "firmware_on_bus.hpp"
+
+namespace inkwell::virtual_usb_test {
+namespace {
+
+using virtual_board::CoreRegisters;
+
+constexpr std::uint16_t load_by_r0 = 0x6800, store_by_r0 = 0x6000;  // ldr r0, [r0]; str r0, [r0]
+
+/// Where half a word of the flash is this instruction, whatever it was meant to be.
+std::uint32_t place_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
+  for (std::uint32_t address = virtual_board::flash_base; address < virtual_board::flash_base + 0x10000; address += 2)
+    if ((bus.chip.memory_word(address & ~3u) >> 8 * (address & 2) & 0xFFFF) == instruction) return address;
+  return 0;
+}
+
+/// What the board keeps of a crash, after the restart that follows.
+protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
+  FirmwareOnBus bus(flashed_image());
+  bus.connect();
+  CoreRegisters registers = bus.chip.debug_port().core_registers();
+  registers.general[0] = r0;
+  registers.general[CoreRegisters::pc] = program_counter;
+  bus.chip.debug_port().set_core_registers(registers);
+  bus.run_for(0.2);
+  bus.connect();
+  const auto answer = bus.control(0xA1, 1, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::black_box), 0,
+                                  sizeof(protocol::BlackBoxReport));
+  protocol::BlackBoxReport report;
+  REQUIRE(answer.data.size() == sizeof report);
+  std::memcpy(&report, answer.data.data(), sizeof report);
+  return report.crash;
+}
+
+}  // namespace
+
+TEST_CASE("what only an error does with the memory is a fault, and the board says where") {
+  const FirmwareOnBus bus(flashed_image());
+  const std::uint32_t load = place_of(bus, load_by_r0), store = place_of(bus, store_by_r0);
+  REQUIRE(load != 0);
+  REQUIRE(store != 0);
+  constexpr std::uint32_t no_instruction = 1, no_data = 2, valid_address = 0x80;
+  struct Error {
+    std::string name;
+    std::uint32_t program_counter, r0, status;
+  };
+  const Error errors[] = {
+      {"a null pointer is read", load, 0, no_data | valid_address},
+      {"a null pointer is written", store, 8, no_data | valid_address},
+      {"the flash is written", store, 0x0800'8000, no_data | valid_address},
+      {"behind the flash", load, 0x0810'0000, no_data | valid_address},
+      {"the code of interrupts is written", store, 0x2001'C100, no_data | valid_address},
+      {"its last word", store, 0x2001'FFFC, no_data | valid_address},
+      {"a bit's alias", store, 0x2200'0004, no_data | valid_address},
+      {"data are run", 0x2000'0100, 0, no_instruction},
+      {"null is run", 0x0000'0100, 0, no_instruction},
+  };
+  for (const Error& error : errors) {
+    CAPTURE(error.name);
+    const auto crash = crash_at(error.program_counter, error.r0);
+    CHECK(crash.exception == 3);
+    CHECK(crash.configurable_fault_status == error.status);
+    CHECK(crash.program_counter == error.program_counter);
+    if ((error.status & valid_address) != 0) CHECK(crash.fault_address == error.r0);
+  }
+}
+
+}  // namespace inkwell::virtual_usb_test
