@@ -1,6 +1,7 @@
 // The control interrupt: 20 000 times a second, from the sensors to the bridges.
 #include <control/encoders.hpp>
 #include <drivers/cycle_counter.hpp>
+#include <drivers/logic_supply.hpp>
 #include <placement/interrupt.hpp>
 
 #include "handlers.hpp"
@@ -30,6 +31,7 @@ INKWELL_INTERRUPT control::Samples read_samples() {
                                  .supply_V = analog_inputs.supply_V(),
                                  .switches = switch_bits(switches.read()),
                                  .bridge_fault = bridges.fault(),
+                                 .logic_supply_low = drivers::LogicSupply::is_low(),
                                  .slow_age_periods = analog_inputs.slow_age_periods()};
   analog_inputs.start_slow_conversions();
   return samples;

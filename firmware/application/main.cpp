@@ -5,6 +5,7 @@
 #include <drivers/boot_loader.hpp>
 #include <drivers/clocks.hpp>
 #include <drivers/cycle_counter.hpp>
+#include <drivers/logic_supply.hpp>
 #include <drivers/system.hpp>
 #include <usb/device.hpp>
 
@@ -60,6 +61,7 @@ int main() {
   status_led.start();
   const bool started_late = !start_clocks();
   report_start(reset_cause, crash);
+  drivers::LogicSupply::start();
 
   // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
   analog_inputs.start_clocks();

@@ -45,7 +45,8 @@ constexpr Code faults[] = {CODE(FAULT_NONE),
                            CODE(FAULT_FORCE_LAW),
                            CODE(FAULT_MOTOR_HOT),
                            CODE(FAULT_MEMORY_DAMAGED),
-                           CODE(FAULT_MOTOR_IMPLAUSIBLE)};
+                           CODE(FAULT_MOTOR_IMPLAUSIBLE),
+                           CODE(FAULT_LOGIC_SUPPLY_LOW)};
 static_assert(std::ranges::equal(faults, protocol::fault_table, [](const Code& c, const protocol::CodeInfo& row) {
   return c.value == row.code && is_capital_of(c.name, "FAULT_", row.name);
 }));

@@ -12,7 +12,7 @@ struct PowerRegisters {
         pvde{"PVDE", 4}, pls{"PLS", 5, 3}, dbp{"DBP", 8}, fpds{"FPDS", 9}, vos{"VOS", 14};
   } cr{{"CR", 0x00, 0x4000}};
   struct : Register {
-    Field ewup{"EWUP", 8}, bre{"BRE", 9}, vosrdy{"VOSRDY", 14, 1, Access::r};
+    Field pvdo{"PVDO", 2, 1, Access::r}, ewup{"EWUP", 8}, bre{"BRE", 9}, vosrdy{"VOSRDY", 14, 1, Access::r};
   } csr{{"CSR", 0x04}};
 };
 inline constexpr PowerRegisters pwr;
@@ -23,11 +23,12 @@ class PowerControl final : public RegisterBlock {
   void reset() override {
     control_ = pwr.cr.reset_value;
     status_ = 0;
+    was_low_ = false;
   }
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override {
-    if (offset == pwr.csr) return status_ | pwr.csr.vosrdy.mask();
+    if (offset == pwr.csr) return status_ | pwr.csr.vosrdy.mask() | pwr.csr.pvdo.with(supply_is_low());
     return stored(offset);
   }
   void write_word(std::uint32_t offset, std::uint32_t value) override {
@@ -44,6 +45,15 @@ class PowerControl final : public RegisterBlock {
   std::span<const MapEntry> registers() const override { return shown<pwr>(); }
 
  private:
+  /// Typical thresholds of the data sheet (V_PVD), falling; the supply must rise by a tenth of a volt more.
+  bool supply_is_low() {
+    constexpr double falling_V[] = {2.04, 2.19, 2.35, 2.51, 2.66, 2.82, 2.92, 3.03}, hysteresis_V = 0.1;
+    const double threshold_V = falling_V[pwr.cr.pls.of(control_)] + (was_low_ ? hysteresis_V : 0.0);
+    was_low_ = pwr.cr.pvde.in(control_) && machine_.supply_V < threshold_V;
+    return was_low_;
+  }
+
+  bool was_low_ = false;
   Machine& machine_;
   std::uint32_t control_ = pwr.cr.reset_value, status_ = 0;
 };

@@ -287,15 +287,10 @@ void OtgFs::begin_receive(unsigned endpoint) {
 
 void OtgFs::cancel(std::uint8_t endpoint_address) { stop_in(number_of(endpoint_address)); }
 
-// The global OUT NAK is in effect when its word is taken from the receive FIFO (RM0090, "Setting the global OUT NAK").
-// The words before it end transfers, and their packets are lost with them.
+// NAK stands on every OUT endpoint. The words end transfers, and their packets are lost with them.
 void OtgFs::empty_receive_fifo() {
-  Device::DCTL::modify(Device::DCTL::SGONAK(1));
-  static_cast<void>(wait_for(core_answer_cycles, [] {
-    if (Core::GINTSTS::RXFLVL::is_set()) read_packet({}, Core::GRXSTSP::BCNT::read());
-    return Core::GINTSTS::GOUTNAKEFF::is_set();
-  }));
-  Device::DCTL::modify(Device::DCTL::CGONAK(1));
+  for (std::size_t i = 0; i < fifo_memory::receive_words && Core::GINTSTS::RXFLVL::is_set(); ++i)
+    read_packet({}, Core::GRXSTSP::BCNT::read());
 }
 
 void OtgFs::stop_in(unsigned endpoint) {

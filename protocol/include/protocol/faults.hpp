@@ -33,7 +33,8 @@ inline constexpr float samples_stale_s = 0.001f;
   X(15, force_law, "The force law of this image gave a force that is no finite number.", "Look in the force law for a division by zero, the root of a negative number or a state that grows without end, or put its parameters back to their defaults. Then clear the fault.") \
   X(16, motor_hot, "A motor is {motor_heat_beyond_percent} % hotter than it bears, although its current is held back.", "Let it cool below {motor_heat_holds_back_percent} %; while it does, check its wiring and its current sensor, or what tested it. Then clear the fault.") \
   X(17, memory_damaged, "A bit of the firmware, or of the parameters that it works with, has changed by itself in memory.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
-  X(18, motor_implausible, "A motor's voltage, current and speed do not belong together.", "Check the motor's wires, its shunt amplifier and its encoder. `inkwell tune current-loop` measures the motor's resistance, by which this is judged. Then clear the fault.")
+  X(18, motor_implausible, "A motor's voltage, current and speed do not belong together.", "Check the motor's wires, its shunt amplifier and its encoder. `inkwell tune current-loop` measures the motor's resistance, by which this is judged. Then clear the fault.") \
+  X(19, logic_supply_low, "The chip's own supply of 3.3 V has fallen below 2.9 V.", "Check the board's regulator and what it is fed from, and whether something shorts the 3.3 V. Then clear the fault.")
 
 /// X(code, name, cause, remedy)
 #define INKWELL_REFUSALS(X)                                                                                                       \

@@ -202,6 +202,7 @@ inline constexpr auto watch_table = [] {
       {Fault::servo_overrun, every, at_once, coast},
       {Fault::not_finite, every, when_gone, coast},
       {Fault::force_law, every, at_once, brake},
+      {Fault::logic_supply_low, every, when_gone, coast},
       {Fault::current_sensor, every, by_reset, coast},
       {Fault::samples_stale, started, when_gone, coast},
       {Fault::supply_low, started, when_gone, coast},

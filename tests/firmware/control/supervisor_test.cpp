@@ -85,7 +85,8 @@ std::vector<FaultCase> fault_cases() {
           {Fault::supply_high, started, false},   {Fault::bridge_fault, started, false},
           {Fault::over_current, started, false},  {Fault::motor_implausible, force, true},
           {Fault::motor_hot, started, false},     {Fault::encoder_implausible, moving, true},
-          {Fault::over_speed, force, true},       {Fault::host_silent, force, true}};
+          {Fault::over_speed, force, true},       {Fault::host_silent, force, true},
+          {Fault::logic_supply_low, all, false}};
 }
 
 TEST_CASE("each fault is looked for in its states and in no other") {

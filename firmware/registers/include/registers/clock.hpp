@@ -64,7 +64,12 @@ struct ResetAndClockControl {
 template <std::uint32_t base>
 struct PowerControl {
   struct CR : Register<base + 0x00> {
+    using PVDE = Field<CR, 4, 1>;
+    using PLS = Field<CR, 5, 3>;
     using VOS = Field<CR, 14, 1>;
+  };
+  struct CSR : Register<base + 0x04> {
+    using PVDO = Field<CSR, 2, 1>;
   };
 };
 

@@ -21,7 +21,6 @@ struct UsbGlobal {
   };
   struct GINTSTS : Register<base + 0x14> {
     using RXFLVL = Field<GINTSTS, 4, 1>;
-    using GOUTNAKEFF = Field<GINTSTS, 7, 1>;
     using USBRST = Field<GINTSTS, 12, 1>;
     using ENUMDNE = Field<GINTSTS, 13, 1>;
   };
@@ -68,8 +67,6 @@ struct UsbDevice {
   struct DCTL : Register<base + 0x04> {
     using SDIS = Field<DCTL, 1, 1>;
     using CGINAK = Field<DCTL, 8, 1>;
-    using SGONAK = Field<DCTL, 9, 1>;
-    using CGONAK = Field<DCTL, 10, 1>;
   };
   struct DSTS : Register<base + 0x08> {
     using SUSPSTS = Field<DSTS, 0, 1>;

@@ -64,7 +64,7 @@ class HostileHost {
   std::optional<std::string> recover() {
     leave_packets_behind();
     reset();
-    if (any_endpoint_enabled()) return "an endpoint is still enabled after a bus reset";
+    if (any_endpoint_open()) return "an endpoint still takes or sends packets after a bus reset";
     address_ = 0;
     if (!control_without_data(request(0x00, 5, own_address, 0, 0))) return "SET_ADDRESS is not answered";
     address_ = own_address;
@@ -138,11 +138,16 @@ class HostileHost {
     bus_.cable.in(address_, 0, data);
   }
   /// None may be before the device is configured, but for endpoint 0, on which the core itself decides.
-  bool any_endpoint_enabled() {
-    constexpr std::uint32_t in_control = 0x900, out_control = 0xB00, epena = 1u << 31;
+  /// A packet could go over one that the host has not yet configured again.
+  bool any_endpoint_open() {
+    constexpr std::uint32_t in_control = 0x900, out_control = 0xB00, naksts = 1u << 17, epena = 1u << 31;
+    const auto is_open = [this](std::uint32_t control) {
+      const std::uint32_t bits = bus_.core.read(control, 4);
+      return (bits & epena) != 0 && (bits & naksts) == 0;
+    };
     bool any = (bus_.core.read(in_control, 4) & epena) != 0;
     for (std::uint32_t i = 1; i < OtgFsDevice::endpoint_count; ++i)
-      any |= ((bus_.core.read(in_control + 0x20 * i, 4) | bus_.core.read(out_control + 0x20 * i, 4)) & epena) != 0;
+      any |= is_open(in_control + 0x20 * i) || is_open(out_control + 0x20 * i);
     return any;
   }
 
