@@ -1,7 +1,6 @@
 // The control interrupt: 20 000 times a second, from the sensors to the bridges.
 #include <control/encoders.hpp>
 #include <drivers/cycle_counter.hpp>
-#include <drivers/logic_supply.hpp>
 #include <placement/interrupt.hpp>
 
 #include "handlers.hpp"
@@ -31,7 +30,6 @@ INKWELL_INTERRUPT control::Samples read_samples() {
                                  .supply_V = analog_inputs.supply_V(),
                                  .switches = switch_bits(switches.read()),
                                  .bridge_fault = bridges.fault(),
-                                 .logic_supply_low = drivers::LogicSupply::is_low(),
                                  .slow_age_periods = analog_inputs.slow_age_periods()};
   analog_inputs.start_slow_conversions();
   return samples;
@@ -63,7 +61,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
   if (host_link.update_asked.load()) controller.leave_for_update();
-  if (host_link.memory_damaged.load()) controller.raise(protocol::Fault::memory_damaged);
+  controller.raise(host_link.found_in_main_loop.load());
 
   write_bridges(controller.step(samples, settings, clock));
 

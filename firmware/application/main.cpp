@@ -73,7 +73,13 @@ int main() {
   if (fault != protocol::Fault::none) controller.raise(fault);
   host_link.black_box.start(fault, crash.value_or(protocol::CrashFacts{}));
   MemoryCheck memory_check;
-  host_link.memory_damaged.store(!memory_check.start());
+  bool memory_sound = memory_check.start();
+  const auto look_for_faults = [&memory_sound] {
+    host_link.found_in_main_loop.store(
+        protocol::watch(protocol::Fault::memory_damaged, !memory_sound) |
+        protocol::watch(protocol::Fault::logic_supply_low, drivers::LogicSupply::is_low()));
+  };
+  look_for_faults();
 
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up();
@@ -94,7 +100,8 @@ int main() {
       drivers::start_boot_loader();
     host_link.scope.pack();
     host_link.black_box.follow();
-    if (!memory_check.step()) host_link.memory_damaged.store(true);
+    memory_sound = memory_check.step();
+    look_for_faults();
     feed_watchdog();
     show_state();
     drivers::sleep_unless([periods] { return completed_periods.load() != periods; });

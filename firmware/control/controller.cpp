@@ -87,8 +87,6 @@ void Controller::replace_shapes(const Shapes& shapes) {
   world_changed_ = true;
 }
 
-void Controller::raise(Fault fault) { asked_.found |= watch(fault); }
-
 void Controller::condition_samples(const Samples& samples, const Settings& settings) {
   if (periods_ == 0)
     for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
@@ -215,7 +213,6 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   const protocol::Watches found =
       asked_.found | watch(Fault::not_finite, !is_finite(sum_of_all)) |
       watch(Fault::current_sensor, offsets_.measured() && !offsets_.plausible) |
-      watch(Fault::logic_supply_low, samples.logic_supply_low) |
       watch(Fault::samples_stale, samples.slow_age_periods > SupplyFilter::stale_periods) |
       watch(Fault::supply_low, supply_.supply_V < board_.supply_minimum_V) |
       watch(Fault::supply_high, supply_.supply_V > board_.supply_maximum_V) |

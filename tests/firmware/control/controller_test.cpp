@@ -196,7 +196,6 @@ struct BadSample {
 TEST_CASE("what the samples can show wrong switches the bridges off with the right fault") {
   const BadSample cases[] = {
       {Fault::bridge_fault, [](Samples& s) { s.bridge_fault = true; }, 1},
-      {Fault::logic_supply_low, [](Samples& s) { s.logic_supply_low = true; }, 1},
       {Fault::over_current, [](Samples& s) { s.current_A[2] = -3.8f; }, 1},
       {Fault::supply_low, [](Samples& s) { s.supply_V = 9.0f; }, 60},
       {Fault::supply_high, [](Samples& s) { s.supply_V = 27.0f; }, 60},

@@ -67,8 +67,9 @@ class Controller {
   void replace_shapes(const Shapes& shapes);
   /// The board is about to start its boot loader; called in each period in which it is.
   void leave_for_update() { asked_.events |= protocol::events(protocol::Event::update); }
-  /// Reports a fault found outside the signal path; it switches the bridges off in the next step.
-  void raise(protocol::Fault fault);
+  /// Reports faults found outside the signal path; they switch the bridges off in the next step.
+  void raise(protocol::Watches found) { asked_.found |= found; }
+  void raise(protocol::Fault fault) { raise(protocol::watch(fault)); }
 
   /// The signals of the last step. Before finish(), the cycles of the last stage and of all stages are those of the
   /// period before.

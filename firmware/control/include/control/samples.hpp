@@ -16,7 +16,6 @@ struct Samples {
   float supply_V;                  ///< of the bridges
   std::uint8_t switches;           ///< bits of protocol::Switch, 1 is closed, not debounced
   bool bridge_fault;               ///< a bridge pulls the fault line
-  bool logic_supply_low;           ///< the chip's own supply is about to fail
   std::uint32_t slow_age_periods;  ///< since gimbal and supply were measured
 };
 

@@ -8,7 +8,7 @@
 //   if (target = link.program.take_force()) controller.drive(*target, link.parameters.settings())
 //   if (shapes = link.program.take_shapes()) controller.replace_shapes(*shapes)
 //   if (link.update_asked) controller.leave_for_update()
-//   if (link.memory_damaged) controller.raise(memory_damaged)
+//   controller.raise(link.found_in_main_loop)
 //   controller.step(...)
 //   controller.write_signals(link.samples.next().signals)
 //   link.samples.next().summary = {...}; link.samples.record(); link.poses.note_load(cycles)
@@ -46,8 +46,8 @@ struct Link {
   ScopeRecorder scope;
   BlackBox black_box;
   ServoStatus status;
-  Shared<bool> update_asked{false};    ///< the host wants the boot loader
-  Shared<bool> memory_damaged{false};  ///< a bit has changed by itself
+  Shared<bool> update_asked{false};                 ///< the host wants the boot loader
+  Shared<protocol::Watches> found_in_main_loop{0};  ///< faults that a control period's delay makes no worse
 };
 
 }  // namespace inkwell::link
