@@ -86,6 +86,8 @@ Handle Devices::open(const char* given) {
     device->set_scheduler_runs(scheduler_runs_);
     devices_[handle] = std::move(device);
     current_ = handle;
+    // Programs take what is on the stack now for this call's. Who had the handle before is gone.
+    forget_errors_of(handle);
     return handle;
   } catch (const std::exception& error) {
     raise(device_fault, invalid_handle, error.what());

@@ -81,6 +81,12 @@ ErrorInfo take_error() {
   return newest;
 }
 
+void forget_errors_of(Handle device) {
+  auto& self = stack();
+  const std::lock_guard lock(self.mutex);
+  std::erase_if(self.errors, [device](const ErrorInfo& error) { return error.device == device; });
+}
+
 const char* error_text(unsigned code) {
   for (const auto& text : texts) {
     if (text.code != code) continue;

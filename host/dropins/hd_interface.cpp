@@ -64,6 +64,7 @@ const char* hdGetErrorString(unsigned code) { return error_text(code); }
 
 void hdStartScheduler(void) {
   try {
+    stop_callbacks_at_exit();
     runtime().scheduler.start();
     const std::lock_guard lock(runtime().devices.mutex());
     runtime().devices.set_scheduler_runs(true);

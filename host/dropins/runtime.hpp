@@ -16,4 +16,8 @@ struct Runtime {
 /// Lives until the process ends, because programs call in from their last destructors.
 Runtime& runtime();
 
+/// A program that ends without a word is called no more before its own static objects go. Call it before the scheduler
+/// starts: what was made until then lives as long as the callbacks do.
+void stop_callbacks_at_exit();
+
 }  // namespace inkwell::dropins

@@ -96,6 +96,10 @@ TEST_CASE("a device is opened once, by any name, and may be opened again after i
   CHECK(only_error() == HD_SUCCESS);
   CHECK(hdInitDevice("Left") == 0);
   CHECK(hdGetString(HD_DEVICE_SERIAL_NUMBER) == serial_number);
+  hdEndFrame(0);  // an error that the program never asks for
+  hdDisableDevice(0);
+  CHECK(hdInitDevice("Left") == 0);
+  CHECK(only_error() == HD_SUCCESS);
   hdDisableDevice(0);
   hdDisableDevice(0);
   CHECK(only_error() == HD_BAD_HANDLE);

@@ -136,6 +136,14 @@ TEST_CASE("the page's program pulls the hand to the middle of the box until Ente
   CHECK(well.wait() == 0);
 }
 
+TEST_CASE("a program that leaves main() with a callback listed ends well, though its objects take their time to go") {
+  Board board;
+  board.hold();
+  RunningProgram leaving({program("drop-in-leaves")});
+  CHECK(leaving.read_line() == "called");
+  CHECK(leaving.wait() == 0);
+}
+
 TEST_CASE("a program that ends between the beginning and the end of a frame: its force fades") {
   Board board;
   board.hold();
