@@ -213,7 +213,7 @@ static_assert(report_size <= protocol::force_law_report_maximum,
 #define INKWELL_IN_FLASH
 #endif
 
-INKWELL_IN_FLASH constexpr auto report = [] {
+INKWELL_IN_FLASH constexpr auto report = []() {
   std::array<std::byte, report_size> bytes{};
   write_report(bytes.data(), report_size);
   return bytes;
@@ -221,7 +221,7 @@ INKWELL_IN_FLASH constexpr auto report = [] {
 
 }  // namespace
 
-INKWELL_IN_FLASH constinit const InstalledForceLaw installed_force_law = [] {
+INKWELL_IN_FLASH constinit const InstalledForceLaw installed_force_law = []() {
   InstalledForceLaw law{parameters.size(), signals.size(), {}, report.data(), report.size()};
   for (std::size_t i = 0; i < parameters.size(); ++i)
     law.ranges[i] = {parameters[i].minimum, parameters[i].maximum, parameters[i].default_value};

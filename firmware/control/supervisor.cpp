@@ -26,7 +26,7 @@ struct OfState {
   const Way* ways_end = nullptr;
 };
 
-constexpr auto of_state = [] {
+constexpr auto of_state = []() {
   std::array<OfState, protocol::state_count> result{};
   for (std::size_t i = 0; i < result.size(); ++i) {
     const auto state = static_cast<State>(i);
@@ -52,14 +52,14 @@ constexpr bool every_way_is_closed_at_rest() {
 }
 static_assert(every_way_is_closed_at_rest());
 
-constexpr auto faults = [] {
+constexpr auto faults = []() {
   std::array<Fault, protocol::watch_table.size()> result{};
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = protocol::watch_table[i].fault;
   return result;
 }();
 
 /// By the fault's code: what hinders it from being cleared.
-constexpr auto hindrance = [] {
+constexpr auto hindrance = []() {
   std::array<Watches, protocol::fault_table.size()> result{};
   for (const auto& row : protocol::watch_table)
     if (row.clearing != protocol::Clearing::at_once)

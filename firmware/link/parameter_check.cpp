@@ -27,7 +27,7 @@ struct Limits {
   float maximum;
 };
 
-constexpr std::array<Limits, parameter_count> table_limits = [] {
+constexpr std::array<Limits, parameter_count> table_limits = []() {
   std::array<Limits, parameter_count> rows{};
   for (std::size_t i = 0; i < parameter_count; ++i) {
     const protocol::ParameterInfo& row = protocol::parameter_table[i];

@@ -5,7 +5,7 @@ namespace inkwell::link {
 namespace {
 
 /// The columns of the table of signals that recording needs; the texts stay out of the image.
-constexpr std::array<protocol::SignalWire, protocol::signal_count> wires = [] {
+constexpr std::array<protocol::SignalWire, protocol::signal_count> wires = []() {
   std::array<protocol::SignalWire, protocol::signal_count> rows{};
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = protocol::signal_table[i].wire;
   return rows;

@@ -148,7 +148,7 @@ constexpr std::uint8_t hid_class = 0x03, application_class = 0xFE, vendor_class 
 constexpr std::uint8_t firmware_update_subclass = 1, run_time_protocol = 1;
 
 /// DFU 1.1, section 4.1.3: the board leaves the bus by itself; the boot loader that then comes says how much it takes.
-constexpr auto firmware_update = [] {
+constexpr auto firmware_update = []() {
   constexpr std::uint8_t can_download = 1, can_upload = 2, will_detach = 8;
   constexpr std::size_t detach_timeout_ms = 255, transfer_size = 2048;
   return bytes(9, type(DescriptorType::firmware_update), can_download | can_upload | will_detach,
@@ -183,7 +183,7 @@ constexpr auto windows_8_1 = bytes(0x00, 0x00, 0x03, 0x06);
 constexpr auto property_name = utf16<1>("DeviceInterfaceGUIDs");
 constexpr auto property_value = utf16<2>("{5A1E7D6B-3C0F-4E59-9B7C-0D2B6C1F8A44}");
 
-constexpr auto registry_property = [] {
+constexpr auto registry_property = []() {
   constexpr std::size_t size = 10 + property_name.size() + property_value.size();
   constexpr std::uint8_t multiple_strings = 7;
   return join(bytes(low(size), high(size), 4, 0, multiple_strings, 0, low(property_name.size()), 0), property_name,
@@ -192,7 +192,7 @@ constexpr auto registry_property = [] {
 
 constexpr auto compatible_id = bytes(20, 0, 3, 0, 'W', 'I', 'N', 'U', 'S', 'B', 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
 
-constexpr auto microsoft_set = [] {
+constexpr auto microsoft_set = []() {
   constexpr std::size_t function_size = 8 + compatible_id.size() + registry_property.size();
   constexpr std::size_t subset_size = 8 + function_size;
   constexpr std::size_t size = 10 + subset_size;
@@ -203,7 +203,7 @@ constexpr auto microsoft_set = [] {
 }();
 
 /// Platform capability with the identifier that Microsoft gave to its OS 2.0 descriptors.
-constexpr auto object_store = [] {
+constexpr auto object_store = []() {
   constexpr std::size_t capability_size = 28, size = 5 + capability_size;
   constexpr std::uint8_t platform = 5;
   return join(bytes(5, type(DescriptorType::binary_object_store), size, 0, 1),

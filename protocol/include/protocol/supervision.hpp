@@ -74,7 +74,7 @@ class States {
   std::uint32_t bits_ = 0;
 };
 
-inline constexpr States with_force = [] {
+inline constexpr States with_force = []() {
   States states;
   for (std::size_t i = 0; i < state_count; ++i)
     if (state_table[i].force_is_on) states = states | States(static_cast<State>(i));
@@ -188,7 +188,7 @@ struct Watch {
 
 /// Of several in one period the first is shown, because it explains the others. The first that was shown stays until
 /// it is cleared.
-inline constexpr auto watch_table = [] {
+inline constexpr auto watch_table = []() {
   constexpr States moving = States(State::ready) | with_force;
   constexpr States started = States(State::unreferenced) | moving;
   constexpr States every = States(State::starting) | started;
@@ -223,7 +223,7 @@ static_assert(watch_table.size() <= 32);
 
 namespace detail {
 /// By the fault's code. A search would not be over before the firmware runs once the table is long.
-inline constexpr auto places = [] {
+inline constexpr auto places = []() {
   std::array<std::uint8_t, fault_table.size()> result{};
   result.fill(static_cast<std::uint8_t>(watch_table.size()));
   for (std::size_t i = 0; i < watch_table.size(); ++i)

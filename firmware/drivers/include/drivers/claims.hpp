@@ -47,7 +47,7 @@ constexpr bool holds(const Claims& claims, const Claim& wanted) {
 
 template <class One, class Other>
 struct Apart {
-  static constexpr bool share = [] {
+  static constexpr bool share = []() {
     for (const Claim& claim : One::claims)
       if (holds(Other::claims, claim)) return true;
     return false;
