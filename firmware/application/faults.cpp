@@ -65,8 +65,8 @@ void note_callers(CrashFacts& crash) {
 
 /// Switches the motors off with three stores before it trusts anything else, the stack included: that may be what is
 /// broken. Then the record is made on the lowest 512 bytes of the stack, which nobody uses
-/// unless the stack has overflowed. No interrupt comes between: it has the priority of a hard fault. A second fault in
-/// here locks the processor up until the watchdog resets it.
+/// unless the stack has overflowed. No interrupt comes between: none is before a fault. A second fault in here begins
+/// anew as a hard fault, and one in that locks the processor up until the watchdog resets it.
 extern "C" [[gnu::naked]] void fault_handler() {
   using namespace drivers;
   asm volatile(

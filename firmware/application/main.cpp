@@ -10,7 +10,6 @@
 #include <usb/device.hpp>
 
 #include "crash.hpp"
-#include "handlers.hpp"
 #include "main_loop.hpp"
 #include "memory_check.hpp"
 #include "parts.hpp"
@@ -61,7 +60,7 @@ int main() {
   status_led.start();
   const bool started_late = !start_clocks();
   report_start(reset_cause, crash);
-  drivers::LogicSupply::start();
+  drivers::start_logic_supply_watch();
 
   // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
   analog_inputs.start_clocks();
@@ -77,7 +76,7 @@ int main() {
   const auto look_for_faults = [&memory_sound] {
     host_link.found_in_main_loop.store(
         protocol::watch(protocol::Fault::memory_damaged, !memory_sound) |
-        protocol::watch(protocol::Fault::logic_supply_low, drivers::LogicSupply::is_low()));
+        protocol::watch(protocol::Fault::logic_supply_low, drivers::logic_supply_is_low()));
   };
   look_for_faults();
 

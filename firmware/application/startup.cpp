@@ -55,6 +55,9 @@ extern "C" [[noreturn, gnu::used]] void start() {
   SCB::VTOR::write(reinterpret_cast<std::uint32_t>(interrupt_vectors));
   asm volatile("dsb\n isb" ::: "memory");
   drivers::protect_memory();
+  // Faults have handlers of their own, before any interrupt: one whose frame finds no stack still becomes a hard fault,
+  // and that is not lost. A hard fault without a stack would lock the processor up.
+  SCB::SHCSR::modify(SCB::SHCSR::MEMFAULTENA(1), SCB::SHCSR::BUSFAULTENA(1), SCB::SHCSR::USGFAULTENA(1));
   for (auto constructor = constructors_begin; constructor != constructors_end; ++constructor) (*constructor)();
 
   asm volatile("bl main");  // C++ does not let itself call main()

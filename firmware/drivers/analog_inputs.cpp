@@ -137,8 +137,9 @@ INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {
 }
 
 // The way back of RM0090, "Overrun detection", in two periods: a stream that is told to stop first finishes its
-// transfer, and nothing waits here.
+// transfer, and nothing waits here. Without requests none is left over for the stream when it starts again.
 INKWELL_INTERRUPT void AnalogInputs::stop_slow() {
+  ADC1::CR2::write(adc1_armed & ~ADC1::CR2::DMA::mask);
   DMA2::S0CR::write(0);
   slow_stopped_ = true;
 }

@@ -24,7 +24,7 @@ constexpr std::uint32_t bits_of_16_KB = 14, bits_of_128_KB = 17, bits_of_1_MB = 
 /// Of regions that lie one in another the last counts. What lies in none is as without the unit (RM0090, "Memory map").
 constexpr Region regions[] = {
     {0x0000'0000, bits_of_128_MB, Use::none, false},  // the flash once more
-    {0x0800'0000, bits_of_128_MB, Use::none, false},  //
+    {0x0800'0000, bits_of_128_MB, Use::none, false},  // up to the stack's end
     {0x0800'0000, bits_of_1_MB, Use::code, false},    // flash
     {0x2000'0000, bits_of_128_KB, Use::data, true},   // SRAM1 and SRAM2
     {0x2001'C000, bits_of_16_KB, Use::code, true},    // SRAM2: what runs in interrupts

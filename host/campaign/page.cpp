@@ -133,8 +133,7 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::supply_sag:
     case InjectedFault::supply_spike:
     case InjectedFault::supply_cut: return "The capacitors bear it for that long.";
-    case InjectedFault::logic_sag:
-      return "The flash was still read right, and no brown-out level of the option bytes lies above that voltage.";
+    case InjectedFault::logic_sag: return "The voltage is above 2.9 V, or it was over before the main loop looked.";
     case InjectedFault::crystal_stop: return "None is known: the clock's own guard sees it.";
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
     case InjectedFault::usb_cut:

@@ -9,24 +9,24 @@
 namespace inkwell::crash {
 namespace {
 
-/// A bit of CFSR and what it means (ARMv7-M, B3.2.15).
+/// A bit of CFSR and what it means (ARMv7-M, B3.2.15). A lost stack explains what comes with it.
 struct FaultBit {
   unsigned bit;
   const char* meaning;
 };
 
 constexpr FaultBit fault_bits[] = {
-    {0, "it went to run what is no code"},
-    {1, "it used memory in a way that is not allowed there"},
     {3, "memory protection refused the stack on the way out of an interrupt"},
     {4, "memory protection refused the stack on the way into an interrupt: it has overflowed or been lost"},
     {5, "memory protection refused the stack for the floats of an interrupted program"},
-    {8, "it went to run from where nothing is"},
-    {9, "nothing answered at the address"},
-    {10, "a store came to where nothing is, some instructions before"},
     {11, "the stack lay where nothing is on the way out of an interrupt"},
     {12, "the stack lay where nothing is on the way into an interrupt: it has overflowed or been lost"},
     {13, "the stack lay where nothing is for the floats of an interrupted program"},
+    {0, "it went to run what is no code"},
+    {1, "it used memory in a way that is not allowed there"},
+    {8, "it went to run from where nothing is"},
+    {9, "nothing answered at the address"},
+    {10, "a store came to where nothing is, some instructions before"},
     {16, "it met what is no instruction"},
     {17, "it left the instruction set that it has"},
     {18, "it returned from an exception in a way that does not exist"},
@@ -55,7 +55,7 @@ std::string cause(const protocol::CrashFacts& crash) {
 }
 
 std::vector<std::uint32_t> chain(const protocol::CrashFacts& crash) {
-  if (crash.program_counter == 0) return {};
+  if (crash.stack_pointer == 0) return {};
   std::vector<std::uint32_t> places{crash.program_counter};
   for (const std::uint32_t caller : crash.callers)
     if (caller != 0 && caller != places.back()) places.push_back(caller);
@@ -89,7 +89,7 @@ std::string text(const protocol::CrashFacts& crash, const FirmwareImage* image) 
                          places[i], name.empty() ? "" : " ", name);
   }
   for (std::size_t i = 0; !places.empty() && i < std::size(crash.registers); ++i)
-    lines += fmt::format("{}r{:<2} {:08x}{}", i % 5 == 0 ? "  " : "  ", i, crash.registers[i],
+    lines += fmt::format("  r{:<2} {:08x}{}", i, crash.registers[i],
                          i % 5 == 4 || i + 1 == std::size(crash.registers) ? "\n" : "");
   lines +=
       fmt::format("  sp {:08x}  lr {:08x}  xPSR {:08x}  CFSR {:08x}  HFSR {:08x}", crash.stack_pointer,

@@ -1,6 +1,7 @@
 #include <crash/firmware_image.hpp>
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 
@@ -16,9 +17,13 @@
 namespace inkwell::crash {
 namespace {
 
+int no_other_file(Dwfl_Module*, void**, const char*, Dwarf_Addr, const char*, const char*, GElf_Word, char**) {
+  return -1;
+}
+
 /// Nothing but the file itself is looked at.
 const Dwfl_Callbacks callbacks{.find_elf = dwfl_build_id_find_elf,
-                               .find_debuginfo = dwfl_standard_find_debuginfo,
+                               .find_debuginfo = no_other_file,
                                .section_address = dwfl_offline_section_address,
                                .debuginfo_path = nullptr};
 

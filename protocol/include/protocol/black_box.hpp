@@ -23,10 +23,10 @@ inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + bl
 /// What the processor noted as it crashed (ARMv7-M, "Fault handling"); all 0 if it did not.
 struct CrashFacts {
   std::uint32_t exception;        ///< its number: 2 NMI, 3 hard fault, from 16 on an unexpected interrupt
-  std::uint32_t program_counter;  ///< 0 if the stack could not be read, and so are those that follow up to r3
+  std::uint32_t program_counter;  ///< of what follows, only r4 to r11 hold if the stack could not be read
   std::uint32_t link_register;
   std::uint32_t program_status;             ///< xPSR
-  std::uint32_t stack_pointer;              ///< before the exception
+  std::uint32_t stack_pointer;              ///< before the exception; 0 if the stack could not be read
   std::uint32_t registers[13];              ///< r0 to r12
   std::uint32_t configurable_fault_status;  ///< CFSR
   std::uint32_t hard_fault_status;          ///< HFSR

@@ -25,6 +25,8 @@ TEST_CASE("the cause of a crash is a sentence, with the address where the proces
   CHECK(cause({.exception = 3, .configurable_fault_status = 1u << 12, .fault_address = 0x1234}) ==
         "The processor could not go on: the stack lay where nothing is on the way into an interrupt: it has overflowed "
         "or been lost.");
+  CHECK(cause({.exception = 3, .configurable_fault_status = 1u << 1 | 1u << 4 | address_of_protection})
+            .find("overflowed") != std::string::npos);
   CHECK(cause({.exception = 3, .configurable_fault_status = 1u << 25}) ==
         "The processor could not go on: it divided by zero.");
   CHECK(cause({.exception = 7}) == "The processor met exception 7.");
@@ -32,8 +34,10 @@ TEST_CASE("the cause of a crash is a sentence, with the address where the proces
 
 TEST_CASE("the chain of calls begins where the crash was, and ends with the first that is missing") {
   CHECK(chain({.exception = 3}).empty());
-  const CrashFacts crash{.exception = 3, .program_counter = 0x100, .callers = {0x200, 0x200, 0x300}};
+  CrashFacts crash{.exception = 3, .program_counter = 0x100, .stack_pointer = 0x1000, .callers = {0x200, 0x200, 0x300}};
   CHECK(chain(crash) == std::vector<std::uint32_t>{0x100, 0x200, 0x300});
+  crash.program_counter = 0;  // a call of nothing
+  CHECK(chain(crash) == std::vector<std::uint32_t>{0, 0x200, 0x300});
 }
 
 TEST_CASE("without an image the text has the places, the registers and how to get names") {

@@ -15,11 +15,13 @@ class InterruptsHeld {
   InterruptsHeld& operator=(const InterruptsHeld&) = delete;
 };
 
-/// A line as its driver has it. There is one, so that priorities are none.
+/// A line as its driver has it. There is one, and faults interrupt it.
 template <class Driver, Interrupt line>
 struct InterruptLine {
   static void enable() {
     require_claim<Driver, interrupt(line)>();
+    constexpr std::uint8_t behind_faults = 0x10;
+    registers::NVIC::IPR::write(position, behind_faults);
     registers::NVIC::ISER::write(position / 32, 1u << position % 32);
   }
 

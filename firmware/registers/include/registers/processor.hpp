@@ -13,6 +13,11 @@ struct SystemControlBlock {
     using SYSRESETREQ = Field<AIRCR, 2, 1>;
     using VECTKEY = Field<AIRCR, 16, 16>;
   };
+  struct SHCSR : Register<base + 0x24> {
+    using MEMFAULTENA = Field<SHCSR, 16, 1>;
+    using BUSFAULTENA = Field<SHCSR, 17, 1>;
+    using USGFAULTENA = Field<SHCSR, 18, 1>;
+  };
   struct CFSR : Register<base + 0x28> {
     using MMARVALID = Field<CFSR, 7, 1>;
   };
@@ -51,6 +56,7 @@ struct CoprocessorAccess {
 template <std::uint32_t base>
 struct NestedVectoredInterruptController {
   struct ISER : RegisterArray<base + 0x000, 4, 3> {};
+  struct IPR : RegisterArray<base + 0x300, 1, 82, std::uint8_t> {};
 };
 
 template <std::uint32_t base>

@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
-#include <optional>
 #include <string>
 
 #include <chip/debug_port.hpp>
@@ -25,22 +24,32 @@ std::uint32_t place_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
   return 0;
 }
 
-/// What the board keeps of a crash, after the restart that follows.
-protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
-  FirmwareOnBus bus(flashed_image());
-  bus.connect();
-  CoreRegisters registers = bus.chip.debug_port().core_registers();
-  registers.general[0] = r0;
-  registers.general[CoreRegisters::pc] = program_counter;
-  bus.chip.debug_port().set_core_registers(registers);
-  bus.run_for(0.2);
-  bus.connect();
+/// What the board keeps of a crash.
+protocol::CrashFacts crash_of(FirmwareOnBus& bus) {
   const auto answer = bus.control(0xA1, 1, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::black_box), 0,
                                   sizeof(protocol::BlackBoxReport));
   protocol::BlackBoxReport report;
   REQUIRE(answer.data.size() == sizeof report);
   std::memcpy(&report, answer.data.data(), sizeof report);
   return report.crash;
+}
+
+/// Of one with this program counter and r0.
+protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
+  FirmwareOnBus bus(flashed_image());
+  bus.connect();
+  CoreRegisters registers = bus.chip.debug_port().core_registers();
+  for (std::uint32_t i = 1; i <= 12; ++i) registers.general[i] = 0x1111'1111 * i;
+  registers.general[0] = r0;
+  registers.general[CoreRegisters::pc] = program_counter;
+  bus.chip.debug_port().set_core_registers(registers);
+  bus.run_for(0.2);
+  bus.connect();
+  const auto crash = crash_of(bus);
+  CHECK(crash.stack_pointer == registers.general[CoreRegisters::sp]);
+  CHECK(crash.registers[0] == r0);
+  for (std::uint32_t i = 1; i <= 12; ++i) CHECK(crash.registers[i] == 0x1111'1111 * i);
+  return crash;
 }
 
 }  // namespace
@@ -64,16 +73,35 @@ TEST_CASE("what only an error does with the memory is a fault, and the board say
       {"its last word", store, 0x2001'FFFC, no_data | valid_address},
       {"a bit's alias", store, 0x2200'0004, no_data | valid_address},
       {"data are run", 0x2000'0100, 0, no_instruction},
-      {"null is run", 0x0000'0100, 0, no_instruction},
+      {"null is run", 0x0000'0000, 0, no_instruction},
   };
   for (const Error& error : errors) {
     CAPTURE(error.name);
     const auto crash = crash_at(error.program_counter, error.r0);
-    CHECK(crash.exception == 3);
+    CHECK(crash.exception == 4);  // MemManage
     CHECK(crash.configurable_fault_status == error.status);
     CHECK(crash.program_counter == error.program_counter);
     if ((error.status & valid_address) != 0) CHECK(crash.fault_address == error.r0);
   }
+}
+
+TEST_CASE("a stack that overflows switches the bridges off at once, although nothing can be stacked any more") {
+  FirmwareOnBus bus(flashed_image());
+  bus.connect();
+  bus.chip.clear_counters();
+  CoreRegisters registers = bus.chip.debug_port().core_registers();
+  registers.general[CoreRegisters::sp] = virtual_board::ccm_base + 16;
+  bus.chip.debug_port().set_core_registers(registers);
+  bus.run_for(0.001);  // long before the watchdog
+  using virtual_board::ResetCause;
+  CHECK(bus.chip.counters().resets[static_cast<std::size_t>(ResetCause::software)] == 1);
+  bus.run_for(0.2);
+  bus.connect();
+  const auto crash = crash_of(bus);
+  CHECK(crash.exception == 3);
+  constexpr std::uint32_t not_stacked = 1u << 4;
+  CHECK((crash.configurable_fault_status & not_stacked) != 0);
+  CHECK(crash.stack_pointer == 0);
 }
 
 }  // namespace inkwell::virtual_usb_test

@@ -137,8 +137,8 @@ class HostileHost {
     std::array<std::byte, full_speed_packet_maximum> data;
     bus_.cable.in(address_, 0, data);
   }
-  /// None may be before the device is configured, but for endpoint 0, on which the core itself decides.
-  /// A packet could go over one that the host has not yet configured again.
+  /// None may take or send packets before the device is configured, but endpoint 0 OUT, on which the core itself
+  /// decides.
   bool any_endpoint_open() {
     constexpr std::uint32_t in_control = 0x900, out_control = 0xB00, naksts = 1u << 17, epena = 1u << 31;
     const auto is_open = [this](std::uint32_t control) {
