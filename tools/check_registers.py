@@ -89,6 +89,7 @@ def known_differences() -> list[Known]:
         Known("SCB", "CFSR", "IACCVIOL", None, "the SVD has it at bit 1; ARMv7-M, B3.2.15: bit 0"),
         Known("SCB", "HFSR", "DEBUGEVT", "DEBUG_VT", "ARMv7-M calls it DEBUGEVT"),
         Known("SCB", "DFSR", None, None, "not in the SVD; ARMv7-M: 0xE000ED30"),
+        Known("MPU", "CTRL|RNR|RBAR|RASR", None, "MPU_{}", "the SVD repeats the unit's name"),
         Known("FPU", "FPDSCR", None, None, "the SVD has a register of the core there; ARMv7-M: FPDSCR at 0xE000EF3C"),
         Known("FPU", "MVFR[01]", None, None, "not in the SVD; ARMv7-M: 0xE000EF40 and 0xE000EF44"),
         Known("SCB", "CFSR", None, "CFSR_UFSR_BFSR_MMFSR", "the SVD spells out the three status registers in it"),
