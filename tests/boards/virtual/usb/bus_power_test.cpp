@@ -1,6 +1,9 @@
 // The flashed firmware and the cable's supply: USB 2.0, section 7.1.5.
 #include <doctest/doctest.h>
 
+#include <array>
+#include <span>
+
 #include "firmware_on_bus.hpp"
 
 namespace inkwell::virtual_usb_test {
@@ -30,6 +33,25 @@ TEST_CASE("D+ is pulled up only while the cable brings VBUS") {
   CHECK(bus.core.attachment() == 0);
   bus.plug(true);
   CHECK(enumerates(bus));
+  CHECK(bus.violations().empty());
+}
+
+TEST_CASE("a bus that falls asleep with the cable in stops the scope, and poses come again when it wakes") {
+  FirmwareOnBus bus(flashed_image());
+  bus.connect();
+  int frames = 0, poses = 0;
+  bus.on_scope_frame = [&](std::span<const std::byte>) { ++frames; };
+  bus.on_pose = [&](const protocol::PoseReport&) { ++poses; };
+  bus.keep_asking_for_poses();
+  bus.stream_scope(std::array{protocol::Signal::position_x_m});
+  bus.run_for(0.05);
+  CHECK(frames > 5);
+  bus.core.suspend();  // the next start of frame wakes it
+  bus.run_for(0.02);   // what was on its way may still come
+  frames = poses = 0;
+  bus.run_for(0.05);
+  CHECK(frames == 0);
+  CHECK(poses >= 48);
   CHECK(bus.violations().empty());
 }
 
