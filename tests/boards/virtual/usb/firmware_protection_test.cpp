@@ -85,23 +85,40 @@ TEST_CASE("what only an error does with the memory is a fault, and the board say
   }
 }
 
-TEST_CASE("a stack that overflows switches the bridges off at once, although nothing can be stacked any more") {
-  FirmwareOnBus bus(flashed_image());
-  bus.connect();
-  bus.chip.clear_counters();
-  CoreRegisters registers = bus.chip.debug_port().core_registers();
-  registers.general[CoreRegisters::sp] = virtual_board::ccm_base + 16;
-  bus.chip.debug_port().set_core_registers(registers);
-  bus.run_for(0.001);  // long before the watchdog
-  using virtual_board::ResetCause;
-  CHECK(bus.chip.counters().resets[static_cast<std::size_t>(ResetCause::software)] == 1);
-  bus.run_for(0.2);
-  bus.connect();
-  const auto crash = crash_of(bus);
-  CHECK(crash.exception == 3);
-  constexpr std::uint32_t not_stacked = 1u << 4;
-  CHECK((crash.configurable_fault_status & not_stacked) != 0);
-  CHECK(crash.stack_pointer == 0);
+TEST_CASE("without a stack the bridges go off at once, although nothing can be stacked any more") {
+  constexpr std::uint16_t undefined = 0xDEFF;
+  constexpr std::uint32_t behind_ram = 0x2002'0000;
+  struct Loss {
+    std::string name;
+    std::uint32_t stack_pointer;
+    bool is_at_undefined;
+    std::uint32_t status, exception;
+  };
+  const Loss losses[] = {
+      {"it overflows", virtual_board::ccm_base + 16, false, 1u << 4, 3},
+      {"it lies where nothing is", behind_ram + 0x1000, false, 1u << 12, 3},
+      {"the same, and then no instruction", behind_ram + 0x1000, true, 1u << 12 | 1u << 16,
+       5},  // the stack's, a BusFault
+  };
+  for (const Loss& loss : losses) {
+    CAPTURE(loss.name);
+    FirmwareOnBus bus(flashed_image());
+    bus.connect();
+    bus.chip.clear_counters();
+    CoreRegisters registers = bus.chip.debug_port().core_registers();
+    registers.general[CoreRegisters::sp] = loss.stack_pointer;
+    if (loss.is_at_undefined) registers.general[CoreRegisters::pc] = place_of(bus, undefined);
+    bus.chip.debug_port().set_core_registers(registers);
+    bus.run_for(0.001);  // long before the watchdog
+    using virtual_board::ResetCause;
+    CHECK(bus.chip.counters().resets[static_cast<std::size_t>(ResetCause::software)] == 1);
+    bus.run_for(0.2);
+    bus.connect();
+    const auto crash = crash_of(bus);
+    CHECK(crash.exception == loss.exception);
+    CHECK((crash.configurable_fault_status & loss.status) == loss.status);
+    CHECK(crash.stack_pointer == 0);
+  }
 }
 
 }  // namespace inkwell::virtual_usb_test
