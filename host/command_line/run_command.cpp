@@ -47,6 +47,8 @@ void say_which_device(const device::Endpoint& endpoint, const std::string& addre
 
 int run(const DeviceOptions& options, std::vector<std::string> words) {
   if (words.empty()) throw UsageError("No program is named. Give one: inkwell run [--virtual] PROGRAM [ARGUMENTS].");
+  if (words.front().starts_with('-'))
+    throw UsageError(fmt::format("There is no option {}. inkwell run --help lists them.", words.front()));
   const auto libraries = device::own_directory() / "dropins";
   if (!std::filesystem::exists(libraries / "libHD.so"))
     throw device::Error(
@@ -96,9 +98,12 @@ void add_run_command(const Place& place) {
   command->fallthrough(false);
   own->add_to(*command);
   command->prefix_command();
+  // Behind "--" CLI11 hands what is left to the program's own parser.
+  command->preparse_callback([&parser = place.program](std::size_t) { parser.prefix_command(); });
   add_examples(*command, "inkwell run ./01-mydevice\ninkwell run --virtual ./HelloHapticDevice");
   command->callback([place, own, command] {
-    place.action = [&given = place.device, own, words = command->remaining()] {
+    const bool marked = command->remaining().empty();
+    place.action = [&given = place.device, own, words = (marked ? place.program : *command).remaining()] {
       const bool before = given.is_virtual || !given.usbip.empty() || !given.serial_number.empty();
       return run(before ? given : *own, words);
     };

@@ -71,6 +71,10 @@ TEST_CASE("`inkwell run` gives the program a virtual board, tells which, and end
   CHECK(run_program("inkwell", {"run", "--virtual", "sh", "-c", "kill -9 $$"}).exit_code == 137);
   CHECK(run_program("inkwell", {"--virtual", "run", "sh", "-c", "test \"$1\" = --help", "sh", "--help"}).exit_code ==
         0);
+  CHECK(run_program("inkwell", {"run", "--virtual", "--", "sh", "-c", "test \"$1\" = --help", "sh", "--help"})
+            .exit_code == 0);
+  CHECK(run_program("inkwell", {"run", "--virtual", "--"}).exit_code == 2);
+  CHECK(run_program("inkwell", {"run", "--virtaul", "true"}).exit_code == 2);
   const auto missing = run_program("inkwell", {"run", "--virtual", "/no/such/program"});
   CHECK(missing.exit_code == 1);
   CHECK(missing.err.find("/no/such/program can not be started") != std::string::npos);
