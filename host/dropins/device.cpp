@@ -156,11 +156,12 @@ void Device::end_frame() {
                            .limits_speed = capabilities.velocity_limit,
                            .limits_change = capabilities.impulse_limit};
   const auto answer = guard_.step(demand, limits);
-  if (answer.error != success) raise(answer.error);
+  if (std::exchange(dropped_for_, answer.error) != answer.error && answer.error != success) raise(answer.error);
   now_.command.force_N = answer.force_N;
   if (!wants_force()) return;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // A lost link has been told by the frame's beginning.
+  // A lost link has been told by the frame's beginning; who asks for the force is to see that there is none.
+  if (result == INKWELL_DISCONNECTED) now_.command.force_N = Vector{};
   if (result != INKWELL_OK && result != INKWELL_DISCONNECTED) raise(force_error, inkwell_error_text(), result);
 }
 

@@ -122,6 +122,7 @@ class Device {
   bool in_frame_ = false;
   std::optional<std::uint64_t> begun_in_tick_;
   ForceGuard guard_;
+  ErrorCode dropped_for_ = success;  ///< why the last frame's force was dropped
   bool scheduler_runs_ = false;
   bool was_referenced_ = false, was_warm_ = false;
   int fault_ = 0;

@@ -30,6 +30,8 @@ inkwell_address_kind kind_of(const std::string& address) {
 /// Each opening of such an address makes a board of its own.
 bool makes_a_board(const std::string& address) { return kind_of(address) == INKWELL_OWN_BOARD; }
 
+thread_local Handle current_here = invalid_handle;
+
 std::vector<inkwell_device> list_arms() {
   std::size_t count = 0;
   if (inkwell_list_devices(nullptr, 0, &count) != INKWELL_OK) return {};
@@ -85,7 +87,7 @@ Handle Devices::open(const char* given) {
     if (handle == devices_.size()) devices_.emplace_back();
     device->set_scheduler_runs(scheduler_runs_);
     devices_[handle] = std::move(device);
-    current_ = handle;
+    current_ = current_here = handle;
     // Programs take what is on the stack now for this call's. Who had the handle before is gone.
     forget_errors_of(handle);
     return handle;
@@ -120,14 +122,20 @@ void Devices::close_all() {
 }
 
 Device* Devices::find(Handle handle) {
-  if (handle < devices_.size() && devices_[handle]) return devices_[handle].get();
+  if (is_open(handle)) return devices_[handle].get();
   raise(bad_handle, handle);
   return nullptr;
 }
 
+Handle Devices::current_handle() const { return is_open(current_here) ? current_here : current_; }
+
+void Devices::make_current_here(Handle handle) {
+  if (is_open(handle)) current_here = handle;
+}
+
 bool Devices::make_current(Handle handle) {
   if (find(handle) == nullptr) return false;
-  current_ = handle;
+  current_ = current_here = handle;
   return true;
 }
 

@@ -26,19 +26,24 @@ class Devices {
 
   /// The device under the handle; NULL, and BAD_HANDLE is raised, if there is none.
   Device* find(Handle handle);
-  Device* current() { return find(current_); }
-  Handle current_handle() const { return current_; }
+  /// What the calling thread made current, so that no other thread's frames take it away; before it made any, what the
+  /// program did last.
+  Handle current_handle() const;
+  Device* current() { return find(current_handle()); }
   bool make_current(Handle handle);
+  /// Only for the calling thread; nothing if there is no such device.
+  void make_current_here(Handle handle);
   void set_scheduler_runs(bool runs);
   /// The first device that sends poses, by which the scheduler is paced; none if there is none.
   std::shared_ptr<Device> pacing();
 
  private:
+  bool is_open(Handle handle) const { return handle < devices_.size() && devices_[handle] != nullptr; }
   std::string address_for(const std::string& name) const;
 
   std::mutex mutex_, opening_;
   std::vector<std::shared_ptr<Device>> devices_;  ///< by handle; empty places were closed
-  Handle current_ = invalid_handle;
+  Handle current_ = invalid_handle;               ///< for threads that made none current
   bool scheduler_runs_ = false;
 };
 

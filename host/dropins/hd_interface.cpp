@@ -20,6 +20,28 @@ Handle current_handle() {
   return runtime().devices.current_handle();
 }
 
+/// A callback that acts for a thread that waits for it: it begins with that thread's current device, and that thread
+/// goes on with the callback's.
+struct ForCaller {
+  HdCallback callback;
+  void* user;
+  Handle current = current_handle();
+
+  static HdEnum call(void* self) {
+    auto& me = *static_cast<ForCaller*>(self);
+    const Handle servo_thread = current_handle();
+    make_current_here(me.current);
+    const auto code = me.callback(me.user);
+    me.current = current_handle();
+    make_current_here(servo_thread);
+    return code;
+  }
+  static void make_current_here(Handle handle) {
+    const std::lock_guard lock(runtime().devices.mutex());
+    runtime().devices.make_current_here(handle);
+  }
+};
+
 template <class Action>
 void with_device(Handle handle, Action action) {
   guarded([&] {
@@ -46,7 +68,7 @@ HdHandle hdGetCurrentDevice(void) { return current_handle(); }
 
 void hdBeginFrame(HdHandle handle) {
   with_device(handle, [&](Device& device) {
-    runtime().devices.make_current(handle);
+    runtime().devices.make_current_here(handle);
     device.begin_frame(runtime().scheduler.tick_of_caller());
   });
 }
@@ -100,7 +122,10 @@ HdTask hdScheduleAsynchronous(HdCallback callback, void* user, unsigned short pr
 
 void hdScheduleSynchronous(HdCallback callback, void* user, unsigned short priority) {
   if (callback == nullptr) return raise(invalid_value, current_handle(), "The callback is NULL. Give one.");
-  if (!runtime().scheduler.run_until_done(callback, user, priority)) raise(scheduler_full, current_handle());
+  ForCaller for_caller{callback, user};
+  if (!runtime().scheduler.run_until_done(&ForCaller::call, &for_caller, priority))
+    raise(scheduler_full, current_handle());
+  ForCaller::make_current_here(for_caller.current);
 }
 
 void hdUnschedule(HdTask task) {

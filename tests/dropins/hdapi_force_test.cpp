@@ -85,6 +85,29 @@ TEST_CASE("too much force is clamped, or told and dropped") {
   CHECK(sent_N[2] == 0.0);
 }
 
+TEST_CASE("a stylus that is too fast is told once, not at each frame") {
+  Held held;
+  hdEnable(HD_FORCE_OUTPUT);
+  CHECK(held.pulls(0, 0.0028, 0.0038, [] { set_force({1, 0, 0}); }));
+  forget_errors();
+  held.control.hand_path({{0.0, held.rest_m}, {2.0, {held.rest_m[0] - 0.06, held.rest_m[1], held.rest_m[2]}}});
+  const double limit_mm_per_s[]{5};
+  int fast_frames = 0, told = 0;
+  CHECK(until([&] {
+    double velocity_mm_per_s[3];
+    held.frame([&] {
+      hdSetDoublev(HD_SOFTWARE_VELOCITY_LIMIT, limit_mm_per_s);
+      hdGetDoublev(HD_CURRENT_VELOCITY, velocity_mm_per_s);
+      set_force({0.1, 0, 0});
+    });
+    fast_frames += velocity_mm_per_s[0] < -2 * limit_mm_per_s[0] ? 1 : 0;
+    while (const auto error = hdGetError().errorCode) told += error == HD_EXCEEDED_MAX_VELOCITY ? 1 : 0;
+    return fast_frames == 200;
+  }));
+  CHECK(told >= 1);
+  CHECK(told < 20);  // near the limit it may be fast and slow again
+}
+
 TEST_CASE("a callback that sleeps loses the force, and it comes back") {
   Held held;
   hdEnable(HD_FORCE_OUTPUT);

@@ -2,9 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <thread>
 
 #include "held.hpp"
 
@@ -222,6 +224,47 @@ TEST_CASE("two devices, with frames of one inside frames of the other") {
   CHECK(only_error() == HD_SUCCESS);
   hdStopScheduler();
   hdDisableDevice(right);
+  unsetenv("INKWELL_DEVICE");
+}
+
+TEST_CASE("a thread's current device is not taken away by another thread's frames") {
+  setenv("INKWELL_DEVICE", "virtual", 1);
+  forget_errors();
+  struct State {
+    HHD left = hdInitDevice("Left"), right = hdInitDevice("Right");
+    std::atomic<int> frames = 0;
+  } state;
+  hdMakeCurrentDevice(state.left);
+  const auto frames = hdScheduleAsynchronous(
+      [](void* user) {
+        auto& self = *static_cast<State*>(user);
+        hdBeginFrame(self.right);
+        hdEndFrame(self.right);
+        ++self.frames;
+        return HD_CALLBACK_CONTINUE;
+      },
+      &state, HD_DEFAULT_SCHEDULER_PRIORITY);
+  hdStartScheduler();
+  while (state.frames < 10) CHECK(hdGetCurrentDevice() == state.left);
+  std::jthread([&] { CHECK(hdGetCurrentDevice() == state.left); }).join();  // it made none current: the program's
+
+  // A callback for a thread that waits acts for that thread.
+  std::array<HHD, 2> seen{};
+  CHECK(until([&] {
+    seen[0] = hdGetCurrentDevice();
+    hdMakeCurrentDevice(state.right);
+    return true;
+  }));
+  CHECK(seen[0] == state.left);
+  CHECK(hdGetCurrentDevice() == state.right);
+  hdDisableDevice(state.right);
+  CHECK(hdGetCurrentDevice() == HD_INVALID_HANDLE);
+  hdMakeCurrentDevice(state.left);
+  CHECK(hdGetCurrentDevice() == state.left);
+  hdUnschedule(frames);
+  hdStopScheduler();
+  hdDisableDevice(state.left);
+  forget_errors();  // of frames of the device that went
   unsetenv("INKWELL_DEVICE");
 }
 
