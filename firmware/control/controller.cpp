@@ -66,6 +66,7 @@ void Controller::carry_out(const protocol::CommandReport& command) {
   switch (command.command) {
     case Command::enable_force: asked_.events |= events(Event::enable); break;
     case Command::disable_force: asked_.events |= events(Event::disable); break;
+    case Command::stop: asked_.events |= events(Event::stop); break;
     case Command::clear_fault: asked_.events |= events(Event::clear); break;
     case Command::test_current:
     case Command::test_voltage:
@@ -138,6 +139,7 @@ void Controller::render_force(const Settings& settings) {
     force_limit_N_ = settings.force_limit_N;
     touched_N_ = {};
     transition_ = {};
+    reserve_ = {settings.energy.reserve_J, probe_.position_m};
     return;
   }
   Vector3 touched_N = shapes_.any() ? shapes_.force_N(probe_.position_m, probe_.velocity_m_per_s) : Vector3{};
@@ -156,12 +158,41 @@ void Controller::render_force(const Settings& settings) {
     transition_ = over(bounded(touched_N_, force_limit_N_).force_N - touched_N, settings.recovery_N_per_period);
   touched_N_ = touched_N + transition_.force_N();
   advance(transition_);
-  force_gain_ = std::min(force_gain_ + settings.ramp_per_period, 1.0f);
+  force_gain_ = supervisor_.state == State::landing ? std::max(force_gain_ - settings.landing_per_period, 0.0f)
+                                                    : std::min(force_gain_ + settings.ramp_per_period, 1.0f);
   // A limit that is lowered holds at once.
   force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
   const Force force = bounded(touched_N_ + program_.force_N, force_limit_N_);
   limits_ = bit(Limit::force, force.magnitude_N >= force_limit_N_ && force.magnitude_N > 0.0f);
-  force_ = scaled(force, force_gain_);
+  give(scaled(force, force_gain_), settings);
+}
+
+/// What the hand gets of a force: no more energy than it may have, and no faster than it may change.
+void Controller::give(Force asked, const Settings& settings) {
+  account(reserve_, force_.force_N, probe_.position_m, settings.energy);
+  const float power_W = dot(asked.force_N, probe_.velocity_m_per_s);
+  if (const float part = gives_way(reserve_, power_W, settings.energy); part > 0.0f) [[unlikely]] {
+    asked = bounded(without_drive(asked.force_N, power_W, probe_.velocity_m_per_s, part), force_limit_N_);
+    limits_ |= bit(Limit::energy, true);
+  }
+  const Vector3 change_N = asked.force_N - force_.force_N;
+  if (dot(change_N, change_N) > settings.change_squared_N2) [[unlikely]] {
+    asked = nearer(force_, asked.force_N, settings.change_squared_N2);
+    limits_ |= bit(Limit::change, true);
+  }
+  force_ = asked;
+}
+
+/// From a force towards another, further away than the change that may be made in a period. A limit that is lowered
+/// holds at once, whatever the force was.
+Force Controller::nearer(const Force& before, const Vector3& to_N, float change_squared_N2) const {
+  const Vector3 from_N =
+      before.magnitude_N > force_limit_N_ ? bounded(before.force_N, force_limit_N_).force_N : before.force_N;
+  const Vector3 way_N = to_N - from_N;
+  const float squared_N2 = dot(way_N, way_N);
+  if (squared_N2 <= change_squared_N2) return bounded(to_N, force_limit_N_);
+  const float part = change_squared_N2 * reciprocal_square_root(change_squared_N2 * squared_N2);
+  return bounded(from_N + part * way_N, force_limit_N_);
 }
 
 void Controller::find_current_references(const Settings& settings) {
@@ -226,7 +257,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       watch(Fault::host_silent, host_silence_periods_ > settings.limits.host_timeout_periods);
   const protocol::Events now = asked_.events | when(Event::measured, offsets_.measured()) |
                                when(Event::referenced, reference_.valid) | when(Event::risen, force_gain_ == 1.0f) |
-                               when(Event::held_back, limits_ != 0);
+                               when(Event::landed, force_gain_ == 0.0f) | when(Event::held_back, limits_ != 0);
   asked_ = {};
   if (!surely_stays(supervisor_.state, {now, found})) [[unlikely]]
     change_state(advance(supervisor_, {now, found}));

@@ -126,9 +126,17 @@ ProgramForceLimits program_force(const ParameterSet& set) {
 /// limit is over in 25 ms.
 constexpr float recovery_per_s = 0.04f * 1000.0f;
 
-/// Rise of the force's gain in one period; a ramp of less than a period is a step.
+/// Rise or fall of the force's gain in one period; a ramp of less than a period is a step.
 float ramp_per_period(float ramp_s) {
   return ramp_s > protocol::servo_period_s ? protocol::servo_period_s / ramp_s : 1.0f;
+}
+
+float squared(float value) { return value * value; }
+
+EnergyLimits energy(const ParameterSet& set) {
+  const float reserve_J = set[Parameter::energy_reserve_J];
+  return {reserve_J, set[Parameter::power_given_W] * protocol::servo_period_s,
+          1.0f / (EnergyReserve::low_part * reserve_J)};
 }
 
 }  // namespace
@@ -144,6 +152,9 @@ Settings prepare(const ParameterSet& parameters) {
           .recovery_N_per_period = recovery_per_s * protocol::servo_period_s * parameters[Parameter::force_limit_N],
           .program_force = program_force(parameters),
           .ramp_per_period = ramp_per_period(parameters[Parameter::force_ramp_s]),
+          .landing_per_period = ramp_per_period(parameters[Parameter::soft_landing_s]),
+          .change_squared_N2 = squared(parameters[Parameter::force_change_N_per_s] * protocol::servo_period_s),
+          .energy = energy(parameters),
           .motors = motors(parameters),
           .heat = heat(parameters),
           .motor_model = motor_model(parameters),

@@ -39,7 +39,8 @@ std::optional<protocol::CommandReport> decode_command(std::span<const std::byte>
     case Command::heartbeat:
     case Command::enable_force:
     case Command::disable_force:
-    case Command::clear_fault: return command;
+    case Command::clear_fault:
+    case Command::stop: return command;
     case Command::select_signals: return sound(command.selection) ? std::optional(command) : std::nullopt;
     case Command::test_current:
     case Command::test_voltage: return sound(command.test) ? std::optional(command) : std::nullopt;
@@ -75,8 +76,8 @@ INKWELL_INTERRUPT const protocol::CommandReport* CommandQueue::take() {
   if (host_gone_.load()) {
     host_gone_.store(false);
     taken_.store(forgotten_.load());
-    disable_force_.token = last_token_;  // the host asked for nothing, so nothing new is acknowledged
-    return &disable_force_;
+    stop_.token = last_token_;  // the host asked for nothing, so nothing new is acknowledged
+    return &stop_;
   }
   if (taken == pushed_.load()) return nullptr;
   const protocol::CommandReport& command = commands_[taken % capacity];

@@ -34,9 +34,9 @@ bool PoseRecorder::read(protocol::PoseReport& report) const {
   copy_three(report.gimbal_rad, Signal::gimbal_1_rad);
   copy_three(report.force_N, Signal::force_x_N);
   copy_three(report.joint_rad, Signal::joint_1_rad);
-  report.switches = summary.switches & 7u;
-  report.force_sources = summary.force_sources & 7u;
-  report.limits = summary.limits & 3u;
+  report.limits = summary.limits;
+  report.switches = summary.switches & 15u;
+  report.force_sources = summary.force_sources & 15u;
   report.servo_load = saturate_to_byte(static_cast<float>(longest_cycles_.load()) * load_per_cycle_);
   report.command_token = summary.command_token;
   report.supply_dV = saturate_to_byte(signals[Signal::supply_V] * 10.0f + 0.5f);

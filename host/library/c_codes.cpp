@@ -56,7 +56,7 @@ static_assert(std::ranges::equal(sources, protocol::force_source_table, [](const
   return c.value == static_cast<int>(row.source) && is_capital_of(c.name, "", row.name);
 }));
 
-constexpr Code limits[] = {CODE(LIMIT_FORCE), CODE(LIMIT_CURRENT)};
+constexpr Code limits[] = {CODE(LIMIT_FORCE), CODE(LIMIT_CURRENT), CODE(LIMIT_CHANGE), CODE(LIMIT_ENERGY)};
 static_assert(std::ranges::equal(limits, protocol::limit_table, [](const Code& c, const auto& row) {
   return c.value == static_cast<int>(row.limit) && is_capital_of(c.name, "LIMIT_", row.name);
 }));

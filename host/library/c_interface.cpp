@@ -157,6 +157,10 @@ inkwell_result inkwell_disable_force(inkwell_arm* arm) {
   return guarded([&] { arm_of(arm).disable_force(); });
 }
 
+inkwell_result inkwell_stop(inkwell_arm* arm) {
+  return guarded([&] { arm_of(arm).device().send(protocol::Command::stop); });
+}
+
 inkwell_result inkwell_clear_fault(inkwell_arm* arm) {
   return guarded([&] { arm_of(arm).device().send(protocol::Command::clear_fault); });
 }

@@ -119,9 +119,22 @@ Answers pose(const Arguments& arguments) {
   inkwell_pose pose;
   require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));
   static const char* const states[] = {"starting", "unreferenced", "ready", "active", "fault"};
-  const char* names[] = {"time_s",     "state",     "fault_text", "position_m",       "velocity_m_s",       "rotation",
-                         "gimbal_rad", "joint_rad", "force_N",    "limited_by_force", "limited_by_current", "button_1",
-                         "button_2",   "in_inkwell"};
+  const char* names[] = {"time_s",
+                         "state",
+                         "fault_text",
+                         "position_m",
+                         "velocity_m_s",
+                         "rotation",
+                         "gimbal_rad",
+                         "joint_rad",
+                         "force_N",
+                         "limited_by_force",
+                         "limited_by_current",
+                         "limited_by_change",
+                         "limited_by_energy",
+                         "button_1",
+                         "button_2",
+                         "in_inkwell"};
   mxArray* told = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
   mxArray* rotation = mxCreateDoubleMatrix(3, 3, mxREAL);
   for (int row = 0; row < 3; ++row)
@@ -137,6 +150,8 @@ Answers pose(const Arguments& arguments) {
                        column(pose.force_N, 3),
                        mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_FORCE) != 0),
                        mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_CURRENT) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_CHANGE) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_ENERGY) != 0),
                        mxCreateLogicalScalar(pose.button_1 != 0),
                        mxCreateLogicalScalar(pose.button_2 != 0),
                        mxCreateLogicalScalar(pose.in_inkwell != 0)};

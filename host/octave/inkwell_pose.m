@@ -9,6 +9,8 @@ function pose = inkwell_pose(arm)
 %   pose.gimbal_rad, pose.joint_rad, pose.force_N    3 x 1
 %   pose.limited_by_force     true while it is held at force_limit_N, or is on its way up to it
 %   pose.limited_by_current   true while a motor gives all the current that it may; all give way together
+%   pose.limited_by_change    true while the force changes as fast as force_change_N_per_s lets it
+%   pose.limited_by_energy    true while the hand got all the energy that it may: what drives the motion gives way
 %   pose.button_1, pose.button_2, pose.in_inkwell    true or false
   pose = inkwell_mex('pose', arm);
 end

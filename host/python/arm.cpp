@@ -126,6 +126,11 @@ void Arm::disable_force() {
   call([&] { return inkwell_disable_force(arm); });
 }
 
+void Arm::stop() {
+  const Use arm(*this);
+  call([&] { return inkwell_stop(arm); });
+}
+
 void Arm::clear_fault() {
   const Use arm(*this);
   call([&] { return inkwell_clear_fault(arm); });

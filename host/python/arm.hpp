@@ -32,6 +32,7 @@ class Arm {
 
   void enable_force(double timeout_s);
   void disable_force();
+  void stop();
   void clear_fault();
   void set_force_mode(inkwell_force_mode mode);
   void set_force(const std::array<double, 3>& force_N);

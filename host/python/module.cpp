@@ -148,6 +148,10 @@ void define_structs(py::module_& module) {
       .def_property_readonly("feels_program", &feels<INKWELL_PROGRAM>, "forces of a program are felt")
       .def_property_readonly("limited_by_force", &is_limited<INKWELL_LIMIT_FORCE>,
                              "the force is held at force_limit_N, or on its way up to it")
+      .def_property_readonly("limited_by_change", &is_limited<INKWELL_LIMIT_CHANGE>,
+                             "the force changes as fast as force_change_N_per_s lets it")
+      .def_property_readonly("limited_by_energy", &is_limited<INKWELL_LIMIT_ENERGY>,
+                             "the hand got all the energy that it may: what drives the motion gives way")
       .def_property_readonly("limited_by_current", &is_limited<INKWELL_LIMIT_CURRENT>,
                              "a motor gives all the current that it may, and all give way together")
       .def_property_readonly("button_1", flag_of(&inkwell_pose::button_1), "pressed")
@@ -194,6 +198,7 @@ void define_arm(py::module_& module) {
       .def("information", &Arm::information)
       .def("enable_force", &Arm::enable_force)
       .def("disable_force", &Arm::disable_force)
+      .def("stop", &Arm::stop)
       .def("clear_fault", &Arm::clear_fault)
       .def("set_force_mode", &Arm::set_force_mode)
       .def("set_force", &Arm::set_force)

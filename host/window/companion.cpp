@@ -45,7 +45,7 @@ void Companion::use_theme(Theme theme) {
 
 void Companion::stop() {
   column_.cancel();
-  desk_.session().send(protocol::Command::disable_force);
+  desk_.session().send(protocol::Command::stop);
 }
 
 void Companion::key(int key, bool down) {

@@ -71,7 +71,7 @@ TEST_CASE("a law is felt while the force is on, and begins anew each time that i
   rig.run(100);
   CHECK(rig.force_z_N() == 0.5f);
   CHECK(rig.law_periods() == 99.0f);
-  rig.controller.carry_out(tests::command(Command::disable_force));
+  rig.controller.carry_out(tests::command(Command::stop));
   rig.run(10);
   CHECK(rig.force_z_N() == 0.0f);
   CHECK(rig.law_periods() == 0.0f);
@@ -104,6 +104,9 @@ TEST_CASE("a force that is infinite or no number is not felt, and the fault is t
     rig.run(1);
     CHECK(rig.controller.state() == State::fault);
     CHECK(rig.controller.fault() == Fault::force_law);
+    CHECK(rig.force_z_N() <= 0.5f);  // what it was, or on its way to nothing
+    CHECK_FALSE(rig.controller.force_is_on());
+    rig.run(1);
     CHECK(rig.force_z_N() == 0.0f);
   }
 }

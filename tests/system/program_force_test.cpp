@@ -122,6 +122,55 @@ TEST_CASE("what the board would refuse is refused with a sentence before it is s
   CHECK(rig.device->information().report.force_reports == 0);
 }
 
+TEST_CASE("a program that pushes along with every motion gives the hand no more than the reserve") {
+  const auto given_J = [](float power_given_W) {
+    ProgramRig rig;
+    rig.set({{Parameter::power_given_W, power_given_W}});
+    std::vector<device::HandWaypoint> path;
+    for (int i = 1; i <= 8; ++i)
+      path.push_back({0.15 * i, {free_point_m[0] + (i % 2 == 0 ? -0.03 : 0.03), free_point_m[1], free_point_m[2]}});
+    rig.control.hand_path(path);
+    rig.control.meter_start();
+    double before_m = free_point_m[0];
+    bool told = false;
+    for (int i = 0; i < 1200; ++i) {
+      const auto pose = rig.pose();
+      const double moved_m = pose.position_m[0] - before_m;
+      before_m = pose.position_m[0];
+      const float push_N = moved_m < 0.0 ? -2.5f : 2.5f;
+      rig.device->send_force({.force_N = {push_N, 0.0f, 0.0f}, .mode = ForceMode::instead_of_walls});
+      for (const auto& seen : rig.millisecond()) told |= protocol::is_reached(seen.limits, protocol::Limit::energy);
+    }
+    CHECK(told == (power_given_W == 0.0f));
+    return rig.control.meter_read().energy_J;
+  };
+  const double bounded_J = given_J(0.0f), unbounded_J = given_J(20.0f);
+  MESSAGE("simulation: given to the hand in 1.2 s: ", bounded_J, " J, without the bound ", unbounded_J, " J");
+  CHECK(bounded_J < 0.5 * unbounded_J);
+}
+
+TEST_CASE("in an orderly end the force leaves a pressing hand softly, a stop takes it at once") {
+  ProgramRig rig;
+  rig.set({{Parameter::box_minimum_z_m, -0.015f}});
+  rig.run(0.1);
+  const double pressed_N = length(rig.pose().force_N);
+  REQUIRE(pressed_N > 1.0);
+  rig.device->send(protocol::Command::disable_force);
+  std::vector<protocol::PoseReport> seen{rig.pose()};
+  for (int i = 0; i < 80; ++i)
+    for (const auto& pose : rig.millisecond()) seen.push_back(pose);
+  CHECK(length(seen.back().force_N) == 0.0);
+  CHECK(seen.back().state == protocol::State::ready);
+  CHECK(largest_step_N(seen) < 0.05 * force_limit_N);
+
+  rig.make_active();
+  rig.run(0.1);
+  REQUIRE(length(rig.pose().force_N) > 0.9 * pressed_N);
+  rig.device->send(protocol::Command::stop);
+  rig.run(0.01);  // the command's way to the board, and the pose's back
+  CHECK(length(rig.pose().force_N) == 0.0);
+}
+
 TEST_CASE("a floor that moves 5 mm under a hand that presses with 1 N never kicks") {
   ProgramRig rig;
   constexpr float stiffness_N_per_m = 800;

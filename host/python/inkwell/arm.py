@@ -134,8 +134,12 @@ class Arm:
         self._native.enable_force(timeout_s)
 
     def disable_force(self) -> None:
-        """Switches the force off."""
+        """Lets the force fall to nothing within soft_landing_s."""
         self._native.disable_force()
+
+    def stop(self) -> None:
+        """Takes the force away at once."""
+        self._native.stop()
 
     def clear_fault(self) -> None:
         """Clears a fault whose cause is gone."""

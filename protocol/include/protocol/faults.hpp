@@ -52,7 +52,7 @@ inline constexpr float samples_stale_s = 0.001f;
   X(11, force_is_on, "The arm's geometry cannot change while the force is on.", "Switch the force off first.")
 // clang-format on
 
-enum class Fault : std::uint16_t {
+enum class Fault : std::uint8_t {
 #define X(code, name, ...) name = code,
   INKWELL_FAULTS(X)
 #undef X

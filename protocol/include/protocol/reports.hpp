@@ -32,7 +32,7 @@ static_assert(std::endian::native == std::endian::little, "the structures go ove
 #endif
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 9 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
+inline constexpr std::uint16_t protocol_version = 10 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -92,7 +92,9 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
 /// X(bit, name, meaning)
 #define INKWELL_LIMITS(X)                                          \
   X(1, force, "The force is held at force_limit_N, or on its way up to it.")               \
-  X(2, current, "A motor gives all the current that it may; a hot one may give less. All motors give way together, so the force is weaker but keeps its direction.")
+  X(2, current, "A motor gives all the current that it may; a hot one may give less. All motors give way together, so the force is weaker but keeps its direction.") \
+  X(4, change, "The force changes as fast as force_change_N_per_s lets it.") \
+  X(8, energy, "The arm would give the hand more energy than it may: what of the force drives the motion gives way.")
 // clang-format on
 
 /// What makes the force smaller than what the hand touches: bits of PoseReport::limits. None of them is a fault.
@@ -130,15 +132,15 @@ struct PoseReport {
   ReportId report_id = ReportId::pose;
   State state;
   Fault fault;
+  std::uint8_t limits;         ///< bits of Limit
   std::uint32_t sequence;      ///< frames of the bus since it runs; a gap is a frame without a report
   std::uint32_t time_periods;  ///< control periods since the board started; wraps after 59 hours
   float position_m[3];
   float gimbal_rad[3];
   float force_N[3];
   float joint_rad[3];
-  std::uint8_t switches : 3;       ///< bits of Switch, 1 is pressed
-  std::uint8_t force_sources : 3;  ///< bits of ForceSource
-  std::uint8_t limits : 2;         ///< bits of Limit
+  std::uint8_t switches : 4;       ///< bits of Switch, 1 is pressed
+  std::uint8_t force_sources : 4;  ///< bits of ForceSource
   std::uint8_t servo_load;         ///< longest control interrupt since the last report, 255 is the whole period
   std::uint8_t command_token;      ///< token of the last command carried out
   std::uint8_t supply_dV;          ///< supply of the bridges in tenths of a volt
@@ -160,11 +162,12 @@ struct ControllerReport {
 enum class Command : std::uint8_t {
   heartbeat = 0,       ///< nothing but a sign of life
   enable_force = 1,    ///< from ready on, by a ramp
-  disable_force = 2,   ///< at once
+  disable_force = 2,   ///< by a ramp, soft_landing_s
   clear_fault = 3,     ///< if its cause is gone
   select_signals = 4,  ///< starts the scope with these signals; none stops it
   test_current = 5,    ///< in `ready`: one pulse of current in one motor, then zero for as long
   test_voltage = 6,    ///< in `ready`: one pulse of voltage on one motor, then zero volts for as long
+  stop = 7,            ///< switches the force off at once
 };
 
 inline constexpr std::size_t scope_signals_maximum = 32;

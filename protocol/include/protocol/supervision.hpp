@@ -23,7 +23,8 @@ namespace inkwell::protocol {
   X(4, fault, false, "The motors are off because of the fault shown.")                                             \
   X(5, ramping, true, "The pose is valid. The force is on and rises to its full strength.")                        \
   X(6, limited, true, "The pose is valid. The force is on, and a limit holds it back.")                            \
-  X(7, update, false, "The motors are off: the board is about to start its boot loader.")
+  X(7, update, false, "The motors are off: the board is about to start its boot loader.")                          \
+  X(8, landing, true, "The pose is valid. The force falls softly to nothing.")
 // clang-format on
 
 /// What the device is doing.
@@ -92,12 +93,14 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
   X(1, measured, "the offsets of the current sensors are known")                      \
   X(2, referenced, "the stylus has rested in the inkwell")                            \
   X(4, enable, "the command enable_force came")                                       \
-  X(8, disable, "the command disable_force came, or the host is gone")                \
+  X(8, disable, "the command disable_force came")                                     \
   X(16, clear, "the command clear_fault came")                                        \
   X(32, cause, "the fault's cause is still there")                                    \
   X(64, risen, "the force has risen to its full strength")                            \
   X(128, held_back, "a limit holds the force back")                                   \
-  X(256, update, "the host has asked for the boot loader, and not reset the bus since")
+  X(256, update, "the host has asked for the boot loader, and not reset the bus since") \
+  X(512, stop, "the command stop came, or the host is gone")                          \
+  X(1024, landed, "the force has fallen to nothing")
 // clang-format on
 
 /// What the supervisor decides by.
@@ -145,16 +148,23 @@ inline constexpr auto way_table = std::to_array<Way>({
     {State::unreferenced, State::ready, events(Event::referenced), 0},
     {State::ready, State::update, events(Event::update), 0},
     {State::ready, State::unreferenced, 0, events(Event::referenced)},
-    {State::ready, State::ramping, events(Event::enable), events(Event::disable)},
+    {State::ready, State::ramping, events(Event::enable), events(Event::disable, Event::stop)},
     {State::ramping, State::update, events(Event::update), 0},
-    {State::ramping, State::ready, events(Event::disable), 0},
+    {State::ramping, State::ready, events(Event::stop), 0},
+    {State::ramping, State::landing, events(Event::disable), 0},
     {State::ramping, State::active, events(Event::risen), 0},
     {State::active, State::update, events(Event::update), 0},
-    {State::active, State::ready, events(Event::disable), 0},
+    {State::active, State::ready, events(Event::stop), 0},
+    {State::active, State::landing, events(Event::disable), 0},
     {State::active, State::limited, events(Event::held_back), 0},
     {State::limited, State::update, events(Event::update), 0},
-    {State::limited, State::ready, events(Event::disable), 0},
+    {State::limited, State::ready, events(Event::stop), 0},
+    {State::limited, State::landing, events(Event::disable), 0},
     {State::limited, State::active, 0, events(Event::held_back)},
+    {State::landing, State::update, events(Event::update), 0},
+    {State::landing, State::ready, events(Event::stop), 0},
+    {State::landing, State::ramping, events(Event::enable), events(Event::disable)},
+    {State::landing, State::ready, events(Event::landed), 0},
     {State::fault, State::update, events(Event::update), 0},
     {State::fault, State::starting, events(Event::clear), events(Event::cause, Event::measured)},
     {State::fault, State::unreferenced, events(Event::clear, Event::measured), events(Event::cause, Event::referenced)},
@@ -190,6 +200,7 @@ struct Watch {
 /// it is cleared.
 inline constexpr auto watch_table = []() {
   constexpr States moving = States(State::ready) | with_force;
+  constexpr States driven{State::ramping, State::active, State::limited};
   constexpr States started = States(State::unreferenced) | moving;
   constexpr States every = States(State::starting) | started;
   using enum Clearing;
@@ -213,7 +224,7 @@ inline constexpr auto watch_table = []() {
       {Fault::motor_hot, started, when_gone, coast},
       {Fault::encoder_implausible, moving, at_once, coast},
       {Fault::over_speed, with_force, at_once, brake},
-      {Fault::host_silent, with_force, at_once, brake},
+      {Fault::host_silent, driven, at_once, brake},
   });
 }();
 

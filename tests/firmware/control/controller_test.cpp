@@ -160,7 +160,7 @@ TEST_CASE("the force ramps in over force_ramp_s and goes off at once") {
   run_with_host(controller, samples, settings, 1'100);
   CHECK(controller.signals()[Signal::force_N] == doctest::Approx(800.0f * depth_m).epsilon(1e-3));
 
-  controller.carry_out(tests::command(Command::disable_force));
+  controller.carry_out(tests::command(Command::stop));
   const Drive drive = tests::run(controller, samples, settings, 1);
   CHECK_FALSE(drive.enabled);
   CHECK(drive.duty == control::Triple{});

@@ -217,7 +217,7 @@ TEST_CASE("what holds the force back is told") {
   CHECK(limits_with(Parameter::current_limit_2_A, 0.01f) == bit_of(protocol::Limit::current));
   CHECK(arm.controller.signals()[Signal::limits] == 2.0f);
   CHECK(std::fabs(arm.controller.signals()[Signal::current_reference_2_A]) == doctest::Approx(0.01f));
-  arm.controller.carry_out(tests::command(protocol::Command::disable_force));
+  arm.controller.carry_out(tests::command(protocol::Command::stop));
   arm.run(2);
   CHECK(arm.controller.limits() == 0);
 
@@ -282,7 +282,7 @@ TEST_CASE("what is left of a jump is forgotten when the force goes off") {
   arm.controller.replace_shapes(shapes);
   arm.run(1);
   CHECK(arm.force_N().z == doctest::Approx(1.0f).epsilon(0.02));
-  arm.controller.carry_out(tests::command(protocol::Command::disable_force));
+  arm.controller.carry_out(tests::command(protocol::Command::stop));
   arm.run(2);
   arm.controller.carry_out(tests::command(protocol::Command::enable_force));
   arm.run(21);

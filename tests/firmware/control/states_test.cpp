@@ -60,9 +60,57 @@ TEST_CASE("the force rises, is there, is held back and free again, without a per
   step_to(State::limited, pushed);
   controller.settings_changed();
   step_to(State::active, free);
-  controller.carry_out(tests::command(Command::disable_force));
+  controller.carry_out(tests::command(Command::stop));
   CHECK_FALSE(tests::run(controller, samples, free, 1).enabled);
   CHECK(controller.state() == State::ready);
+}
+
+TEST_CASE("in an orderly end the force falls as softly as it is told, and only then the bridges go off") {
+  protocol::ParameterSet set = parameters();
+  constexpr int landing_periods = 400;
+  set[soft_landing_s] = landing_periods * protocol::servo_period_s;
+  set[box_minimum_x_m] = set[box_minimum_y_m] = set[box_minimum_z_m] = 0.4f;
+  set[box_maximum_x_m] = set[box_maximum_y_m] = set[box_maximum_z_m] = 0.5f;
+  const Settings pushed = control::prepare(set);
+  const Samples samples = tests::samples_at_rest();
+  Controller controller = tests::active_controller(pushed);
+  tests::run(controller, samples, pushed, 2 * ramp_periods);
+  const auto force_N = [&] { return controller.signals()[protocol::Signal::force_N]; };
+  CHECK(force_N() == doctest::Approx(set[force_limit_N]));
+  controller.carry_out(tests::command(Command::disable_force));
+  tests::run(controller, samples, pushed, 1);
+  CHECK(controller.state() == State::landing);
+  for (int period = 1; period < landing_periods; ++period) {
+    CHECK(tests::run(controller, samples, pushed, 1).enabled);
+    CHECK(force_N() ==
+          doctest::Approx(set[force_limit_N] * static_cast<float>(landing_periods - period) / landing_periods)
+              .epsilon(1e-3));
+  }
+  CHECK_FALSE(tests::run(controller, samples, pushed, 2).enabled);  // a rounding may take one more
+  CHECK(controller.state() == State::ready);
+
+  SUBCASE("a stop in its middle takes away what is left") {
+    controller.carry_out(tests::command(Command::enable_force));
+    tests::run(controller, samples, pushed, 2 * ramp_periods);
+    controller.carry_out(tests::command(Command::disable_force));
+    tests::run(controller, samples, pushed, landing_periods / 2);
+    CHECK(force_N() > 1.0f);
+    controller.carry_out(tests::command(Command::stop));
+    CHECK_FALSE(tests::run(controller, samples, pushed, 1).enabled);
+  }
+  SUBCASE("one that is asked for again rises from where it is") {
+    controller.carry_out(tests::command(Command::enable_force));
+    tests::run(controller, samples, pushed, 2 * ramp_periods);
+    controller.carry_out(tests::command(Command::disable_force));
+    tests::run(controller, samples, pushed, landing_periods / 2);
+    const float left_N = force_N();
+    controller.carry_out(tests::command(Command::enable_force));
+    CHECK(tests::run(controller, samples, pushed, 3).enabled);
+    CHECK(controller.state() == State::ramping);
+    CHECK(force_N() == doctest::Approx(left_N).epsilon(0.02));
+    tests::run(controller, samples, pushed, 10);
+    CHECK(force_N() > left_N);
+  }
 }
 
 TEST_CASE("while the force rises a limit is not told") {

@@ -43,11 +43,21 @@ TEST_CASE("a limit is told once the force has risen, for as long as it holds") {
   CHECK(next(State::limited, good | events(Event::risen)) == State::active);
 }
 
-TEST_CASE("from every state with force to disable leads to ready, whatever else was asked") {
-  for (const State state : {State::ready, State::ramping, State::active, State::limited})
+TEST_CASE("from every state with force stop leads to ready and disable to landing, whatever else was asked") {
+  for (const State state : {State::ready, State::ramping, State::active, State::limited, State::landing})
     for (const Events also :
-         {Events{0}, events(Event::enable), events(Event::risen), events(Event::risen, Event::held_back)})
-      CHECK(next(state, good | events(Event::disable) | also) == State::ready);
+         {Events{0}, events(Event::enable), events(Event::risen), events(Event::risen, Event::held_back)}) {
+      CHECK(next(state, good | events(Event::disable) | also) == (state == State::ready ? state : State::landing));
+      CHECK(next(state, good | events(Event::stop) | also) == State::ready);
+      CHECK(next(state, good | events(Event::stop, Event::disable) | also) == State::ready);
+    }
+}
+
+TEST_CASE("a landing ends in ready, or in a new rise") {
+  CHECK(next(State::landing, good) == State::landing);
+  CHECK(next(State::landing, good | events(Event::landed)) == State::ready);
+  CHECK(next(State::landing, good | events(Event::enable)) == State::ramping);
+  CHECK(next(State::ramping, good | events(Event::landed)) == State::ramping);
 }
 
 TEST_CASE("a reference that is lost has to be taken anew") {
@@ -56,7 +66,7 @@ TEST_CASE("a reference that is lost has to be taken anew") {
 
 TEST_CASE("for the boot loader every state is left, and the device is where it was if the host thinks better of it") {
   for (const State state : {State::starting, State::unreferenced, State::ready, State::ramping, State::active,
-                            State::limited, State::fault, State::update}) {
+                            State::limited, State::landing, State::fault, State::update}) {
     CHECK(next(state, good | events(Event::update)) == State::update);
     CHECK(next(state, good | events(Event::update, Event::enable, Event::clear)) == State::update);
   }
@@ -72,11 +82,13 @@ struct FaultCase {
 };
 
 std::vector<FaultCase> fault_cases() {
-  const std::vector<State> force{State::ramping, State::active, State::limited};
-  const std::vector<State> moving{State::ready, State::ramping, State::active, State::limited};
-  const std::vector<State> started{State::unreferenced, State::ready, State::ramping, State::active, State::limited};
-  const std::vector<State> all{State::starting, State::unreferenced, State::ready,
-                               State::ramping,  State::active,       State::limited};
+  const std::vector<State> driven{State::ramping, State::active, State::limited};
+  const std::vector<State> force{State::ramping, State::active, State::limited, State::landing};
+  const std::vector<State> moving{State::ready, State::ramping, State::active, State::limited, State::landing};
+  const std::vector<State> started{State::unreferenced, State::ready,   State::ramping,
+                                   State::active,       State::limited, State::landing};
+  const std::vector<State> all{State::starting, State::unreferenced, State::ready,  State::ramping,
+                               State::active,   State::limited,      State::landing};
   return {{Fault::memory_damaged, all, false},    {Fault::crystal_failed, all, true},
           {Fault::processor_fault, all, true},    {Fault::watchdog, all, true},
           {Fault::servo_overrun, all, true},      {Fault::not_finite, all, false},
@@ -85,7 +97,7 @@ std::vector<FaultCase> fault_cases() {
           {Fault::supply_high, started, false},   {Fault::bridge_fault, started, false},
           {Fault::over_current, started, false},  {Fault::motor_implausible, force, true},
           {Fault::motor_hot, started, false},     {Fault::encoder_implausible, moving, true},
-          {Fault::over_speed, force, true},       {Fault::host_silent, force, true},
+          {Fault::over_speed, force, true},       {Fault::host_silent, driven, true},
           {Fault::logic_supply_low, all, false}};
 }
 
@@ -93,7 +105,7 @@ TEST_CASE("each fault is looked for in its states and in no other") {
   CHECK(fault_cases().size() + 1 == protocol::fault_table.size());
   for (const FaultCase& row : fault_cases())
     for (const State state : {State::starting, State::unreferenced, State::ready, State::active, State::ramping,
-                              State::limited, State::update}) {
+                              State::limited, State::landing, State::update}) {
       CAPTURE(static_cast<int>(row.fault));
       CAPTURE(static_cast<int>(state));
       Events now = state == State::starting ? 0 : state == State::unreferenced ? events(Event::measured) : good;

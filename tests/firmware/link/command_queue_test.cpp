@@ -27,7 +27,7 @@ bool sound(const CommandReport& report) { return decode_command(std::as_bytes(st
 
 TEST_CASE("sound commands are decoded as they are") {
   for (const Command command :
-       {Command::heartbeat, Command::enable_force, Command::disable_force, Command::clear_fault}) {
+       {Command::heartbeat, Command::enable_force, Command::disable_force, Command::clear_fault, Command::stop}) {
     const CommandReport report = make(command, 77);
     const auto decoded = decode_command(std::as_bytes(std::span(&report, 1)));
     REQUIRE(decoded.has_value());
@@ -48,7 +48,7 @@ TEST_CASE("a command of another length, report, version or kind is ignored") {
   bad = good;
   bad.report_id = protocol::ReportId::pose;
   CHECK_FALSE(sound(bad));
-  for (int command = static_cast<int>(Command::test_voltage) + 1; command < 256; ++command)
+  for (int command = static_cast<int>(Command::stop) + 1; command < 256; ++command)
     CHECK_FALSE(sound(make(static_cast<Command>(command))));
 }
 
@@ -150,7 +150,7 @@ TEST_CASE("when the host is gone, the next thing that happens is that the force 
   CHECK(queue.push(make(Command::clear_fault, 7)));  // the next host, before the interrupt came
   const CommandReport* command = queue.take();
   REQUIRE(command != nullptr);
-  CHECK(command->command == Command::disable_force);
+  CHECK(command->command == Command::stop);
   CHECK(command->token == 5);  // the command that was thrown away is not acknowledged
   CHECK(queue.last_token() == 5);
   command = queue.take();

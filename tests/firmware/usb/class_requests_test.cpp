@@ -197,7 +197,7 @@ TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
   bench.configure();
   CHECK(bench.port.out(1, bytes_of(command(protocol::Command::clear_fault, 11))) == Handshake::ack);
   bench.device.poll();
-  bench.run(2);  // the first command is the reset's disable_force
+  bench.run(2);  // the first command is the reset's stop
   REQUIRE(bench.last_command.has_value());
   CHECK(bench.last_command->token == 11);
   CHECK(bench.link.commands.take_sign_of_life());
@@ -211,7 +211,7 @@ TEST_CASE("HID: commands come by the interrupt endpoint and by SET_REPORT") {
 TEST_CASE("HID: a program's forces come by the interrupt endpoint and by SET_REPORT, and are signs of life") {
   DeviceBench bench;
   bench.configure();
-  bench.run(1);  // the reset's disable_force is taken
+  bench.run(1);  // the reset's stop is taken
   protocol::ForceReport force{};
   force.mode = protocol::ForceMode::beside_walls;
   force.interval_ms = 1;
@@ -301,7 +301,7 @@ TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
 TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, and nothing happens") {
   DeviceBench bench;
   bench.configure();
-  bench.run(1);  // the reset's disable_force is taken
+  bench.run(1);  // the reset's stop is taken
   bench.last_command.reset();
   const protocol::CommandReport good = command(protocol::Command::enable_force, 1);
 

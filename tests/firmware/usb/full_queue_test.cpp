@@ -21,7 +21,7 @@ struct FullQueue : test::DeviceBench {
 
   explicit FullQueue(const protocol::CommandReport& held = command(Command::enable_force, 9)) {
     configure();
-    run(1);  // the reset's disable_force is taken
+    run(1);  // the reset's stop is taken
     for (std::uint32_t i = 0; i < link::CommandQueue::capacity; ++i)
       REQUIRE(offer(Command::heartbeat) == Handshake::ack);
     REQUIRE(port.out(1, bytes_of(held)) == Handshake::ack);
@@ -56,7 +56,7 @@ struct FullQueue : test::DeviceBench {
   void check_all_is_forgotten() {
     device.poll();
     run(3);
-    CHECK(last_command->command == Command::disable_force);
+    CHECK(last_command->command == Command::stop);
     CHECK(offer(Command::clear_fault) == Handshake::ack);
     run(1);
     CHECK(last_command->command == Command::clear_fault);

@@ -77,7 +77,7 @@ protocol::ScopeFrameHeader header_of(const Bytes& frame) {
 bool force_goes_off(DeviceBench& bench) {
   bench.last_command.reset();
   bench.run(1);
-  return bench.last_command && bench.last_command->command == protocol::Command::disable_force;
+  return bench.last_command && bench.last_command->command == protocol::Command::stop;
 }
 
 /// A frame of the bus as the main loop sees it: it looks after every control period.

@@ -6,6 +6,7 @@
 
 #include <control/brake.hpp>
 #include <control/conditioning.hpp>
+#include <control/energy_reserve.hpp>
 #include <control/felt_force_law.hpp>
 #include <control/program_force.hpp>
 #include <control/samples.hpp>
@@ -96,6 +97,8 @@ class Controller {
   void condition_samples(const Samples& samples, const Settings& settings);
   void find_pose(const Settings& settings);
   void render_force(const Settings& settings);
+  void give(Force asked, const Settings& settings);
+  Force nearer(const Force& before, const Vector3& to_N, float change_squared_N2) const;
   void find_current_references(const Settings& settings);
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
@@ -127,6 +130,7 @@ class Controller {
   bool law_rendered_ = true;    ///< not while a program asked for its force instead
   Vector3 touched_N_;           ///< of law, shapes and transition, in the period before
   Transition transition_;
+  EnergyReserve reserve_;
   std::uint32_t late_force_reports_ = 0;
   std::uint32_t host_silence_periods_ = 0;
 

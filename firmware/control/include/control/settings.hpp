@@ -6,6 +6,7 @@
 #include <control/contact.hpp>
 #include <control/current_loop.hpp>
 #include <control/encoders.hpp>
+#include <control/energy_reserve.hpp>
 #include <control/installed_force_law.hpp>
 #include <control/kinematics.hpp>
 #include <control/motor_heat.hpp>
@@ -42,7 +43,10 @@ struct Settings {
   float force_limit_N;          ///< bound of the magnitude of all that is rendered together
   float recovery_N_per_period;  ///< how fast a force gets over a jump of what it is made of (Transition)
   ProgramForceLimits program_force;
-  float ramp_per_period;  ///< rise of the force's gain in one control period
+  float ramp_per_period;     ///< rise of the force's gain in one control period
+  float landing_per_period;  ///< its fall in an orderly end
+  float change_squared_N2;   ///< square of the most by which the force changes in a period, whatever it comes from
+  EnergyLimits energy;
   Motors motors;
   HeatScale heat;
   MotorModel motor_model;

@@ -35,7 +35,7 @@ class CommandQueue {
   /// Whether such a command waits for the interrupt.
   bool waiting(protocol::Command command) const;
 
-  /// The host is gone: what is queued is forgotten, and the interrupt's next command is disable_force.
+  /// The host is gone: what is queued is forgotten, and the interrupt's next command is stop.
   void host_gone();
 
   // ---- control interrupt ----
@@ -61,7 +61,7 @@ class CommandQueue {
   Shared<bool> host_gone_{false};
   Shared<bool> sign_of_life_{false};
   std::uint8_t last_token_ = 0;
-  protocol::CommandReport disable_force_{.command = protocol::Command::disable_force};  ///< for a host that is gone
+  protocol::CommandReport stop_{.command = protocol::Command::stop};  ///< for a host that is gone
 };
 
 }  // namespace inkwell::link

@@ -158,8 +158,10 @@ enum inkwell_force_source {
 
 /* What makes the force smaller than what the hand touches: bits of inkwell_pose::limits. None of them is a fault. */
 enum inkwell_limit {
-  INKWELL_LIMIT_FORCE = 1,  /* the force is held at force_limit_N, or on its way up to it */
-  INKWELL_LIMIT_CURRENT = 2 /* a motor gives all that it may; all give way together, so the direction stays */
+  INKWELL_LIMIT_FORCE = 1,   /* the force is held at force_limit_N, or on its way up to it */
+  INKWELL_LIMIT_CURRENT = 2, /* a motor gives all that it may; all give way together, so the direction stays */
+  INKWELL_LIMIT_CHANGE = 4,  /* the force changes as fast as force_change_N_per_s lets it */
+  INKWELL_LIMIT_ENERGY = 8   /* the hand got all the energy that it may: what drives the motion gives way */
 };
 
 /* What the board reports in a millisecond of the bus. */
@@ -202,8 +204,10 @@ INKWELL_API const char* inkwell_fault_name(int fault);
 /* Switches the force on: this is where the program says that a hand may feel it. Waits until the device is active. In
  * a fault or before the stylus was in the inkwell it is INKWELL_REFUSED. */
 INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout_s);
-/* At once. */
+/* Lets the force fall to nothing within the parameter soft_landing_s. */
 INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
+/* Takes the force away at once. */
+INKWELL_API inkwell_result inkwell_stop(inkwell_arm* arm);
 /* Clears a fault whose cause is gone. */
 INKWELL_API inkwell_result inkwell_clear_fault(inkwell_arm* arm);
 

@@ -1,0 +1,163 @@
+// What the arm may give the hand: the sum of it, what gives way, and how fast a force may change.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <control/energy_reserve.hpp>
+#include <firmware/control/arms.hpp>
+#include <firmware/control/simulated_arm.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::EnergyReserve;
+using control::Vector3;
+using protocol::Limit;
+using protocol::Parameter;
+using protocol::Signal;
+
+constexpr control::EnergyLimits limits{.reserve_J = 0.04f, .given_J_per_period = 5e-5f, .low_reserves_per_J = 100.0f};
+
+TEST_CASE("what the force gave on the probe's way is taken out, and what the hand gave is put in") {
+  EnergyReserve reserve{0.02f, {0.1f, 0.0f, 0.0f}};
+  account(reserve, {2.0f, 1.0f, 0.0f}, {0.101f, 0.0f, 0.0f}, limits);
+  CHECK(reserve.left_J == doctest::Approx(0.02f - 0.002f + 5e-5f));
+  account(reserve, {2.0f, 1.0f, 0.0f}, {0.101f, -0.004f, 0.0f}, limits);
+  CHECK(reserve.left_J == doctest::Approx(0.018f + 0.004f + 1e-4f));
+  for (int i = 0; i < 100; ++i) account(reserve, {}, reserve.position_m, limits);
+  CHECK(reserve.left_J == doctest::Approx(0.0221f + 100 * 5e-5f));
+
+  account(reserve, {-8.0f, 0.0f, 0.0f}, {0.2f, -0.004f, 0.0f}, limits);  // a hand that presses for long
+  CHECK(reserve.left_J == limits.reserve_J);
+  account(reserve, {8.0f, 0.0f, 0.0f}, {0.3f, -0.004f, 0.0f}, limits);
+  CHECK(reserve.left_J == 0.0f);
+}
+
+TEST_CASE("only what drives the motion gives way, from a quarter of the reserve on, all of it at none") {
+  CHECK(gives_way({0.04f, {}}, 1.0f, limits) == 0.0f);
+  CHECK(gives_way({0.01f, {}}, 1.0f, limits) == 0.0f);
+  CHECK(gives_way({0.005f, {}}, 1.0f, limits) == doctest::Approx(0.5f));
+  CHECK(gives_way({0.0f, {}}, 1.0f, limits) == 1.0f);
+  CHECK(gives_way({0.0f, {}}, -1.0f, limits) == 0.0f);
+
+  const Vector3 force_N{2.0f, -1.0f, 0.5f}, velocity_m_per_s{0.4f, 0.0f, 0.3f};
+  const float power_W = dot(force_N, velocity_m_per_s);
+  CHECK(dot(without_drive(force_N, power_W, velocity_m_per_s, 0.5f), velocity_m_per_s) ==
+        doctest::Approx(0.5f * power_W).epsilon(2e-3));
+  const Vector3 rest_N = without_drive(force_N, power_W, velocity_m_per_s, 1.0f);
+  CHECK(dot(rest_N, velocity_m_per_s) < 2e-3f * power_W);
+  CHECK(rest_N.y == force_N.y);  // across the motion nothing changes
+  // At rest there is no direction, so there is no jump when a hand turns round.
+  const Vector3 still_N = without_drive(force_N, 2e-6f, {1e-6f, 0.0f, 0.0f}, 1.0f);
+  CHECK(still_N.x == doctest::Approx(force_N.x));
+}
+
+/// The waist turns to and fro by 12 degrees, once a second, with the force on; no walls, and a program that asks for
+/// what `force_N` makes of the velocity.
+struct TurningArm {
+  protocol::ParameterSet set = free_space();
+  control::Settings settings = control::prepare(set);
+  control::Controller controller = tests::active_controller(settings);
+  control::Samples samples = tests::samples_at_rest();
+  Vector3 position_m = position();
+  float given_J = 0.0f;
+  float largest_change_N = 0.0f;
+  std::uint8_t limits = 0;
+
+  static protocol::ParameterSet free_space() {
+    protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
+    set[Parameter::wall_stiffness_N_per_m] = set[Parameter::wall_damping_Ns_per_m] = 0.0f;
+    set[Parameter::program_force_change_N_per_s] = 20'000.0f;
+    set[Parameter::force_ramp_s] = 0.0f;
+    set[Parameter::voltage_limit_V] = 0.5f;  // with the back EMF still less than may be missed in a motor
+    return set;
+  }
+  Vector3 three(Signal first) const {
+    const auto signals = controller.signals();
+    const auto at = [&](std::size_t i) { return signals.values[static_cast<std::size_t>(first) + i]; };
+    return {at(0), at(1), at(2)};
+  }
+  Vector3 position() const { return three(Signal::position_x_m); }
+
+  template <class Law>
+  void turn(float duration_s, Law force_N) {
+    const auto periods = static_cast<int>(duration_s * protocol::servo_rate_Hz);
+    for (int i = 0; i < periods; ++i) {
+      const float phase_rad = 6.2832f * static_cast<float>(i) / protocol::servo_rate_Hz;
+      samples.encoder_counts[0] = static_cast<std::int32_t>(640.0f * std::sin(phase_rad));
+      controller.host_alive();
+      if (i % 20 == 0)
+        controller.drive({force_N(three(Signal::velocity_x_m_s)), protocol::ForceMode::beside_walls, 20, 0.05f},
+                         settings);
+      const Vector3 felt_N = three(Signal::force_x_N);
+      tests::run(controller, samples, settings, 1);
+      const Vector3 now_m = position();
+      given_J += dot(felt_N, now_m - position_m);
+      position_m = now_m;
+      const Vector3 change_N = three(Signal::force_x_N) - felt_N;
+      largest_change_N = std::max(largest_change_N, std::sqrt(dot(change_N, change_N)));
+      limits |= controller.limits();
+    }
+    CAPTURE(protocol::info(controller.fault()).name);
+    REQUIRE(controller.force_is_on());
+  }
+  bool reached(Limit limit) const { return protocol::is_reached(limits, limit); }
+};
+
+Vector3 along(const Vector3& velocity_m_per_s, float force_N) {
+  const float speed_m_per_s = std::sqrt(dot(velocity_m_per_s, velocity_m_per_s));
+  return speed_m_per_s > 0.01f ? (force_N / speed_m_per_s) * velocity_m_per_s : Vector3{};
+}
+
+TEST_CASE("a program that pushes along with every motion gives the reserve and the power, and no more") {
+  TurningArm arm;
+  arm.set[Parameter::power_given_W] = 0.1f;
+  arm.settings = control::prepare(arm.set);
+  const auto pushes = [](const Vector3& velocity_m_per_s) { return along(velocity_m_per_s, 2.0f); };
+  arm.turn(4.0f, pushes);
+  MESSAGE("given in 4 s: ", arm.given_J, " J");
+  CHECK(arm.given_J > 0.9f * (0.05f + 4.0f * 0.1f));  // it may have that
+  CHECK(arm.given_J < 0.05f + 4.0f * 0.1f + 0.01f);   // what an arm that turns round gives at its slowest
+  CHECK(arm.reached(Limit::energy));
+
+  TurningArm unbounded;
+  unbounded.set[Parameter::power_given_W] = 20.0f;
+  unbounded.settings = control::prepare(unbounded.set);
+  unbounded.turn(4.0f, pushes);
+  CHECK(unbounded.given_J > 0.8f);  // what it would have given
+  CHECK_FALSE(unbounded.reached(Limit::energy));
+}
+
+TEST_CASE("a program that brakes, and one that springs, lose nothing") {
+  TurningArm arm;
+  arm.set[Parameter::power_given_W] = 0.0f;
+  arm.settings = control::prepare(arm.set);
+  arm.turn(3.0f, [](const Vector3& velocity_m_per_s) { return along(velocity_m_per_s, -2.0f); });
+  CHECK(arm.given_J < -0.5f);
+  const Vector3 middle_m = arm.position();
+  arm.turn(3.0f, [&](const Vector3&) { return 20.0f * (middle_m - arm.position()); });
+  CHECK_FALSE(arm.reached(Limit::energy));
+}
+
+TEST_CASE("whatever a force comes from, it changes by no more than it may") {
+  TurningArm arm;
+  arm.set[Parameter::force_change_N_per_s] = 2'000.0f;
+  arm.settings = control::prepare(arm.set);
+  float sign = 1.0f;
+  const auto throws = [&](const Vector3&) { return Vector3{0.0f, (sign = -sign) * 3.0f, 0.0f}; };
+  arm.turn(0.2f, throws);
+  CHECK(arm.largest_change_N == doctest::Approx(0.1f).epsilon(0.01));
+  CHECK(arm.reached(Limit::change));
+
+  // Its limit holds at once all the same.
+  arm.turn(0.1f, [](const Vector3&) { return Vector3{0.0f, 3.0f, 0.0f}; });
+  CHECK(arm.controller.signals()[Signal::force_N] > 2.5f);
+  arm.set[Parameter::force_limit_N] = 1.0f;
+  arm.settings = control::prepare(arm.set);
+  arm.controller.settings_changed();
+  tests::run(arm.controller, arm.samples, arm.settings, 1);
+  CHECK(arm.controller.signals()[Signal::force_N] <= 1.001f);
+}
+
+}  // namespace
