@@ -111,6 +111,8 @@ TEST_CASE("an arm that is too fast is braked by its motors' own voltage until it
   CHECK(bridges_enabled(rig.control));
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
   CHECK(largest_current_A(rig.control) > 0.05);
+  const auto truth = rig.control.truth();
+  CHECK(truth.at("bridges_driven_until_s").get<double>() < truth.at("board_time_s").get<double>() - control_period_s);
   rig.run(0.3);
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK(largest_current_A(rig.control) < 0.02);

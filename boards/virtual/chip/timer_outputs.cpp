@@ -9,8 +9,9 @@ namespace inkwell::virtual_board {
 
 bool Timer::compare_level(unsigned i, std::uint32_t count) const {
   const std::uint32_t compare = channels_[i].active_compare;
-  // PWM mode 1 upward: active while CNT < CCR; downward: inactive while CNT > CCR.
-  const bool active = down_ ? count <= compare : count < compare;
+  // PWM mode 1 upward: active while CNT < CCR; downward: inactive while CNT > CCR. A centre-aligned counter is at 0 on
+  // its way up, so that CCR = 0 is never active (RM0090, PWM mode: OCxREF is held at 0).
+  const bool active = down_ ? count <= compare && !(centre_aligned() && compare == 0) : count < compare;
   return output_mode(i) == pwm_2 ? !active : active;
 }
 
