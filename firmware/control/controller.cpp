@@ -235,8 +235,17 @@ void Controller::regulate_currents(const Settings& settings) {
   drive_.enabled = true;
 }
 
+// A current limit that is lowered holds for the references at once, but a current takes time to follow: the loop's, and
+// the winding's where the voltage is bounded.
+void Controller::follow_over_current(const Settings& settings) {
+  constexpr float fall_A = 0.02f;  // in a period: from the largest limit to the smallest in 10 ms
+  for (std::size_t i = 0; i < 3; ++i)
+    over_current_A_[i] = std::max(settings.limits.over_current_A[i], over_current_A_[i] - fall_A);
+}
+
 void Controller::supervise(const Samples& samples, const Settings& settings) {
   ++host_silence_periods_;
+  follow_over_current(settings);
   // Force and torques are in the references, as far as a motor takes part.
   const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
@@ -249,7 +258,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       watch(Fault::supply_high, supply_.supply_V > board_.supply_maximum_V) |
       watch(Fault::bridge_fault, samples.bridge_fault) |
       watch(Fault::over_current,
-            over_current(current_A_, settings.limits.over_current_A, samples.current_A, board_.current_measurable_A)) |
+            over_current(current_A_, over_current_A_, samples.current_A, board_.current_measurable_A)) |
       watch(Fault::motor_hot, heat_.too_hot) |
       watch(Fault::encoder_implausible,
             joints_implausible(probe_.joint_rad, settings.arm.transmission, settings.limits)) |

@@ -306,6 +306,37 @@ TEST_CASE("a reading near a rail of its sensor is an over-current whatever the o
   }
 }
 
+TEST_CASE("a current limit that is lowered gives the current time to follow, and then holds for it") {
+  Settings settings = settings_near_wall();
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  constexpr float current_A = 2.0f;
+  samples.current_A[1] = current_A;
+  tests::run(controller, samples, settings, 10);
+  REQUIRE(controller.state() == State::ready);
+  constexpr float lowered_A = 0.5f;
+  settings.limits.over_current_A[1] = lowered_A;
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.state() == State::ready);
+  // A current that falls by 15 mA in a period.
+  for (float left_A = current_A; left_A > lowered_A; left_A -= 0.015f) {
+    samples.current_A[1] = left_A;
+    tests::run(controller, samples, settings, 1);
+    REQUIRE(controller.state() == State::ready);
+  }
+  samples.current_A[1] = lowered_A - 0.01f;
+  tests::run(controller, samples, settings, 300);
+  CHECK(controller.state() == State::ready);
+  // Raised, it holds at once.
+  settings.limits.over_current_A[1] = current_A + 0.01f;
+  samples.current_A[1] = current_A;
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.state() == State::ready);
+  settings.limits.over_current_A[1] = lowered_A;
+  tests::run(controller, samples, settings, 200);
+  CHECK(controller.fault() == Fault::over_current);
+}
+
 TEST_CASE("every signal of the table is written, stage times of this period and of the one before") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::ready_controller(settings);

@@ -102,6 +102,7 @@ class Controller {
   void find_current_references(const Settings& settings);
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
+  void follow_over_current(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void change_state(const Supervisor& next);
 
@@ -118,6 +119,7 @@ class Controller {
   std::array<CurrentLoop, 3> loops_{};
   MotorHeat heat_;
   MotorWatch motor_watch_;
+  Triple over_current_A_{};  ///< a measured current beyond it is a fault
   TestPulse test_;
   Supervisor supervisor_;
   Situation asked_;  ///< requests and faults from outside, since the period before

@@ -28,7 +28,7 @@ struct GimbalCurve {
 struct Limits {
   Triple joint_minimum_rad;  ///< third entry: the elbow, relative to link 2 on every arm
   Triple joint_maximum_rad;
-  Triple over_current_A;  ///< a measured current beyond it is a fault
+  Triple over_current_A;  ///< a measured current beyond it is a fault, once it had time to fall below
   float speed_limit_squared_m2_per_s2;
   std::uint32_t host_timeout_periods;
 };
