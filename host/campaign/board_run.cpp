@@ -1,7 +1,8 @@
-#include "board_run.hpp"
+#include <campaign/board_run.hpp>
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 #include <vector>
 
 namespace inkwell::campaign {
@@ -48,10 +49,21 @@ void BoardRun::let_go_of_device() {
   pose_.reset();
 }
 
+void BoardRun::drop_device() {
+  let_go_of_device();
+  // Board time stands still meanwhile, so that it does not matter how soon the board's program hears of it.
+  constexpr int tries = 5000;
+  for (int i = 0; i < tries && control_.status().all.at("usb").at("imported").get<bool>(); ++i)
+    std::this_thread::sleep_for(1ms);
+}
+
 void BoardRun::read_poses() {
   if (!device_) return;
   try {
-    while (const auto pose = device_->read_pose(0ms)) pose_ = pose;
+    while (const auto pose = device_->read_pose(0ms)) {
+      pose_ = pose;
+      if (watch_) watch_(*pose);
+    }
   } catch (const device::Error&) {
     let_go_of_device();
   }

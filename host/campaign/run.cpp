@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include <campaign/board_run.hpp>
+#include <campaign/handling.hpp>
 #include <experiment/wall.hpp>
 #include <protocol/reports.hpp>
-
-#include "board_run.hpp"
 
 namespace inkwell::campaign {
 namespace {
@@ -19,13 +19,9 @@ using protocol::Parameter;
 using protocol::ParameterSet;
 using protocol::State;
 
-// A relaxed hand.
-constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
 constexpr double push_part_of_limit = 0.75;
 constexpr double longest_case_s = 60;  // of board time
 constexpr double longest_phase_s = 0.1;
-// A bridge that switches has a leg at the supply in each PWM period of 17 us.
-constexpr double still_driving_s = 200e-6;
 
 struct NotReached : device::Error {
   using Error::Error;
@@ -39,32 +35,10 @@ bool is_about_the_host(const CaseFault& fault) {
   return fault.fault == InjectedFault::usb_cut || fault.fault == InjectedFault::host_silent;
 }
 
-Vector3 middle_of_box_m(const ParameterSet& parameters) {
-  Vector3 middle{};
-  for (int axis = 0; axis < 3; ++axis)
-    middle[static_cast<std::size_t>(axis)] =
-        (experiment::wall_position_m(parameters, {axis, 1}) + experiment::wall_position_m(parameters, {axis, -1})) / 2;
-  return middle;
-}
-
-/// Beyond the wall, so far that hand and wall in series press with part of the force limit.
-Vector3 into_wall_m(const ParameterSet& parameters) {
-  const experiment::BoxWall wall = experiment::forward_wall(parameters);
+/// The wall in front of the arm, pressed with a part of the force limit.
+Vector3 beyond_forward_wall_m(const ParameterSet& parameters) {
   const double force_N = push_part_of_limit * static_cast<double>(parameters[Parameter::force_limit_N]);
-  const double stiffness_N_per_m = static_cast<double>(parameters[Parameter::wall_stiffness_N_per_m]);
-  const double contact_m = experiment::wall_position_m(parameters, wall) -
-                           wall.side * static_cast<double>(parameters[Parameter::sphere_radius_m]);
-  Vector3 target_m = middle_of_box_m(parameters);
-  target_m[static_cast<std::size_t>(wall.axis)] =
-      contact_m + wall.side * (force_N / hand_stiffness_N_per_m + force_N / stiffness_N_per_m);
-  return target_m;
-}
-
-void take_by_hand(BoardRun& board, Vector3 target_m, double duration_s) {
-  const Vector3 here_m = board.true_position_m();
-  board.control().hand({true, here_m, hand_stiffness_N_per_m, hand_damping_Ns_per_m});
-  board.control().dock(false);
-  board.control().hand_path({{0.0, here_m}, {duration_s, target_m}});
+  return into_wall_m(parameters, experiment::forward_wall(parameters), force_N);
 }
 
 void bring_into(BoardRun& board, const Case& the_case) {
@@ -98,7 +72,7 @@ void bring_into(BoardRun& board, const Case& the_case) {
   board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
   const Vector3 middle_m = middle_of_box_m(parameters);
   if (situation == CaseSituation::wall) {
-    board.control().hand_path({{0.0, middle_m}, {0.3, into_wall_m(parameters)}});
+    board.control().hand_path({{0.0, middle_m}, {0.3, beyond_forward_wall_m(parameters)}});
     board.run(0.45);
   }
   if (situation == CaseSituation::motion) {
@@ -118,10 +92,6 @@ void bring_into(BoardRun& board, const Case& the_case) {
 double phase_s(const Case& the_case) {
   std::mt19937 random(100 * static_cast<unsigned>(the_case.situation) + the_case.phase);
   return longest_phase_s * static_cast<double>(random() >> 8) / static_cast<double>(1u << 24);
-}
-
-bool bridges_drive(const nlohmann::json& truth) {
-  return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>() < still_driving_s;
 }
 
 void observe(BoardRun& board, const Case& the_case, Result& result) {
@@ -155,30 +125,12 @@ void note_fault(const BoardRun& board, std::string& name) {
   if (name.empty() && board.is(State::fault)) name = protocol::info(board.pose()->fault).name;
 }
 
-/// Clears the fault and switches the force on, by way of the inkwell if the board does not know where the arm is.
-bool works(BoardRun& board) {
-  if (!board.connected() && !board.connect(0.5)) return false;
-  board.set({{Parameter::host_timeout_s, 0.5f}});
-  board.run(0.02);
-  if (board.is(State::fault)) {
-    board.command(Command::clear_fault);
-    if (!board.wait_for([](const auto& pose) { return pose.state != State::fault; }, 0.3)) return false;
-  }
-  if (board.is(State::starting)) board.run(0.3);
-  if (board.is(State::unreferenced)) {
-    board.control().dock(true);
-    if (!board.wait_for(State::ready, 2.0)) return false;
-  }
-  if (board.is(State::ready)) board.command(Command::enable_force);
-  if (!board.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5)) return false;
-  board.run(0.1);
-  return board.force_is_on() && bridges_drive(board.control().truth());
-}
-
 /// True if that went without an error: a device that goes away meanwhile does not work either.
 bool tries_to_work(BoardRun& board) {
   try {
-    return works(board);
+    if (!board.connected() && !board.connect(0.5)) return false;
+    board.set({{Parameter::host_timeout_s, 0.5f}});
+    return regains_force(board);
   } catch (const device::Error&) {
     return false;
   }

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <device/control_client.hpp>
 #include <device/device.hpp>
@@ -22,6 +23,10 @@ class BoardRun {
   bool connected() const { return device_ != nullptr; }
   device::Device& device() { return *device_; }
   void set(std::initializer_list<device::ParameterChange> changes);
+  /// Lets go of the device without a word, as a program does that is killed, and waits until the board's USB knows it.
+  void drop_device();
+  /// Called with every pose that is read from now on.
+  void watch_poses(std::function<void(const protocol::PoseReport&)> watch) { watch_ = std::move(watch); }
 
   /// Lets board time pass, with the host's signs of life or without, and reads every pose. A device that is gone is
   /// let go of.
@@ -51,6 +56,7 @@ class BoardRun {
   device::ControlClient control_;
   std::unique_ptr<device::Device> device_;
   std::optional<protocol::PoseReport> pose_;
+  std::function<void(const protocol::PoseReport&)> watch_;
   unsigned slices_ = 0;
 };
 

@@ -1,0 +1,65 @@
+#include <campaign/handling.hpp>
+
+#include <cstddef>
+
+namespace inkwell::campaign {
+namespace {
+
+using device::Vector3;
+using protocol::Command;
+using protocol::Parameter;
+using protocol::ParameterSet;
+using protocol::State;
+
+// A bridge that switches has a leg at the supply in each PWM period of 17 us.
+constexpr double still_driving_s = 200e-6;
+
+}  // namespace
+
+Vector3 middle_of_box_m(const ParameterSet& parameters) {
+  Vector3 middle{};
+  for (int axis = 0; axis < 3; ++axis)
+    middle[static_cast<std::size_t>(axis)] =
+        (experiment::wall_position_m(parameters, {axis, 1}) + experiment::wall_position_m(parameters, {axis, -1})) / 2;
+  return middle;
+}
+
+Vector3 into_wall_m(const ParameterSet& parameters, experiment::BoxWall wall, double force_N) {
+  const double stiffness_N_per_m = static_cast<double>(parameters[Parameter::wall_stiffness_N_per_m]);
+  const double contact_m = experiment::wall_position_m(parameters, wall) -
+                           wall.side * static_cast<double>(parameters[Parameter::sphere_radius_m]);
+  Vector3 target_m = middle_of_box_m(parameters);
+  target_m[static_cast<std::size_t>(wall.axis)] =
+      contact_m + wall.side * (force_N / hand_stiffness_N_per_m + force_N / stiffness_N_per_m);
+  return target_m;
+}
+
+void take_by_hand(BoardRun& board, Vector3 target_m, double duration_s) {
+  const Vector3 here_m = board.true_position_m();
+  board.control().hand({true, here_m, hand_stiffness_N_per_m, hand_damping_Ns_per_m});
+  board.control().dock(false);
+  board.control().hand_path({{0.0, here_m}, {duration_s, target_m}});
+}
+
+bool bridges_drive(const nlohmann::json& truth) {
+  return truth.at("board_time_s").get<double>() - truth.at("bridges_driven_until_s").get<double>() < still_driving_s;
+}
+
+bool regains_force(BoardRun& board) {
+  board.run(0.02);
+  if (board.is(State::fault)) {
+    board.command(Command::clear_fault);
+    if (!board.wait_for([](const auto& pose) { return pose.state != State::fault; }, 0.3)) return false;
+  }
+  if (board.is(State::starting)) board.run(0.3);
+  if (board.is(State::unreferenced)) {
+    board.control().dock(true);
+    if (!board.wait_for(State::ready, 2.0)) return false;
+  }
+  if (board.is(State::ready)) board.command(Command::enable_force);
+  if (!board.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5)) return false;
+  board.run(0.1);
+  return board.force_is_on() && bridges_drive(board.control().truth());
+}
+
+}  // namespace inkwell::campaign

@@ -1,0 +1,25 @@
+// What a user does with hand and host: takes the stylus, presses it into a wall, switches the force on again.
+#pragma once
+
+#include <campaign/board_run.hpp>
+#include <experiment/wall.hpp>
+#include <protocol/parameters.hpp>
+
+namespace inkwell::campaign {
+
+// A relaxed hand.
+inline constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
+
+device::Vector3 middle_of_box_m(const protocol::ParameterSet& parameters);
+/// Where the hand pulls to, beyond the wall, so that hand and wall in series press with this force.
+device::Vector3 into_wall_m(const protocol::ParameterSet& parameters, experiment::BoxWall wall, double force_N);
+/// Takes the stylus where it is, out of the inkwell if it is there, and brings it to the target.
+void take_by_hand(BoardRun& board, device::Vector3 target_m, double duration_s);
+
+/// By `truth` of the control socket: a leg was at the supply just now.
+bool bridges_drive(const nlohmann::json& truth);
+/// Clears the fault and switches the force on, by way of the inkwell if the board does not know where the arm is. False
+/// if it does not go on or the device is gone; throws device::Error if it goes away meanwhile.
+bool regains_force(BoardRun& board);
+
+}  // namespace inkwell::campaign
