@@ -34,6 +34,7 @@ struct Place {
   X(reference)              \
   X(experiment)             \
   X(campaign)               \
+  X(soak)                   \
   X(calibrate)              \
   X(tune)                   \
   X(check)                  \

@@ -1,0 +1,295 @@
+#include "bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <campaign/handling.hpp>
+#include <experiment/wall.hpp>
+
+namespace inkwell::soak {
+namespace {
+
+using device::Vector3;
+using protocol::Command;
+using protocol::Parameter;
+using protocol::State;
+
+constexpr double look_s = 0.005;
+constexpr double close_look_s = 0.1;
+
+float at(const nlohmann::json& truth, const char* name, std::size_t axis) {
+  std::string member = name;
+  member.replace(member.find('#'), 1, std::to_string(axis + 1));
+  return truth.at(member).get<float>();
+}
+
+control::Vector3 cross(const control::Vector3& a, const control::Vector3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+bool force_on(const protocol::PoseReport& pose) { return protocol::force_is_on(pose.state); }
+
+}  // namespace
+
+Bench::Bench(unsigned number, const Choices& choices_, const device::VirtualBoardOptions& options)
+    : random(choices_.seed, number), board(options), choices(choices_) {
+  sitting.number = number;
+  board.watch_poses([this](const auto& pose) { oracle.see(pose); });
+  connect();
+  defaults = accepted = board.device().parameters();
+  arm_ = control::prepare(defaults).arm;
+  oracle.limit_force(static_cast<double>(defaults[Parameter::force_limit_N]));
+}
+
+void Bench::fail(Complaint complaint, const std::string& text) {
+  oracle.complain(complaint, text);
+  throw PhaseFailed(text);
+}
+
+// ---- time ----------------------------------------------------------------------------------------------------
+
+/// What the motors' true torques put on the probe: J^T F = tau, solved for F.
+double Bench::motor_force_N(const nlohmann::json& truth) const {
+  control::Triple joint_rad{}, torque_Nm{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    joint_rad[i] = at(truth, "true_joint_#_rad", i);
+    torque_Nm[i] = at(truth, "true_torque_#_Nm", i);
+  }
+  const auto& column = control::forward_kinematics(joint_rad, arm_).jacobian.column;
+  const control::Vector3 normals[] = {cross(column[1], column[2]), cross(column[2], column[0]),
+                                      cross(column[0], column[1])};
+  const float determinant = dot(column[0], normals[0]);
+  constexpr float singular_m3 = 1e-5f;  // the middle of an Omni's reach has 2e-3
+  if (std::fabs(determinant) < singular_m3) return 0.0;
+  control::Vector3 force_N{};
+  for (std::size_t i = 0; i < 3; ++i) force_N = force_N + (torque_Nm[i] / determinant) * normals[i];
+  return std::sqrt(static_cast<double>(dot(force_N, force_N)));
+}
+
+void Bench::pass(double time_s, bool gives_sign_of_life) {
+  for (double left_s = time_s; left_s > 1e-9; left_s -= look_s) {
+    const bool was_connected = board.connected();
+    const double step_s = std::min(left_s, look_s);
+    board.run(step_s, gives_sign_of_life);
+    look();
+    until_close_look_s_ -= step_s;
+    if (until_close_look_s_ <= 0) look_closely();
+    if (was_connected && !board.connected() && is_sound() && !device_may_go)
+      fail(Complaint::no_answer, "the device went away");
+  }
+}
+
+void Bench::look() {
+  const auto truth = board.control().truth();
+  oracle.see(Look{truth.at("board_time_s"), truth.at("bridges_driven_until_s"), motor_force_N(truth)});
+}
+
+void Bench::look_closely() {
+  until_close_look_s_ = close_look_s;
+  const auto status = board.control().status().all;
+  unsigned long broken_rules = 0;
+  std::string rule;
+  for (const auto& violation : status.at("violations")) {
+    broken_rules += violation.at("count").get<unsigned long>();
+    rule = fmt::format("{} {}", violation.value("sentence", ""), violation.value("code", ""));
+  }
+  if (oracle.see_counts(status.value("resets", 0u), broken_rules, rule)) forget_parameters();
+  if (is_sound() && status.contains("locked_up")) fail(Complaint::no_answer, "the processor is locked up");
+}
+
+/// The pose is a little older than the truth.
+void Bench::check_pose() {
+  if (!board.pose() || board.is(State::starting) || board.is(State::unreferenced)) return;
+  const auto truth = board.control().truth();
+  double squares_m2 = 0, squares_m2_per_s2 = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string letter(1, experiment::axis_letter(static_cast<int>(axis)));
+    const double true_m = truth.at("true_position_" + letter + "_m");
+    squares_m2 += std::pow(static_cast<double>(board.pose()->position_m[axis]) - true_m, 2);
+    squares_m2_per_s2 += std::pow(truth.at("true_velocity_" + letter + "_m_s").get<double>(), 2);
+  }
+  constexpr double allowed_m = 0.001, age_s = 0.003;
+  const double error_m = std::sqrt(squares_m2);
+  if (error_m > allowed_m + age_s * std::sqrt(squares_m2_per_s2))
+    oracle.complain(Complaint::wrong_pose, fmt::format("it is {:.1f} mm away from there", 1e3 * error_m));
+}
+
+void Bench::disturb(Disturbance disturbance) {
+  disturbance_ = disturbance;
+  oracle.disturb(disturbance);
+}
+
+void Bench::check_all() {
+  look_closely();
+  if (!board.connected()) fail(Complaint::no_answer, "there is no device at the end of the phase");
+  if (board.is(State::fault)) throw PhaseFailed("the fault was told");  // so the next phase begins without it
+  pass(look_s);
+  check_pose();
+  check_parameters();
+}
+
+// ---- parameters ----------------------------------------------------------------------------------------------
+
+/// A limit that is lowered holds at once; the currents need a moment.
+void Bench::limit_changes(float force_limit_N) {
+  const auto limit_N = static_cast<double>(force_limit_N);
+  if (limit_N == oracle.force_limit_N()) return;
+  if (limit_N < oracle.force_limit_N()) board.run(look_s);
+  oracle.limit_force(limit_N);
+}
+
+void Bench::set(std::span<const device::ParameterChange> changes) {
+  ++sitting.transactions;
+  try {
+    const float limit_N = with(accepted, changes)[Parameter::force_limit_N];
+    if (static_cast<double>(limit_N) > oracle.force_limit_N()) limit_changes(limit_N);
+    board.device().set_parameters(changes);
+  } catch (const device::Refused& refused) {
+    fail(Complaint::wrong_answer, fmt::format("a legal transaction was refused: {}", refused.what()));
+  }
+  accepted = with(accepted, changes);
+  limit_changes(accepted[Parameter::force_limit_N]);
+}
+
+void Bench::try_illegal() {
+  ++sitting.transactions;
+  const bool active = board.force_is_on();
+  const Illegal illegal = illegal_changes(random, accepted, active);
+  try {
+    board.device().set_parameters(illegal.changes);
+  } catch (const device::Refused& refused) {
+    ++sitting.refused_transactions;
+    if (refused.report.refusal != illegal.refusal)
+      fail(Complaint::wrong_answer, fmt::format("refused as {} what is {}", protocol::info(refused.report.refusal).name,
+                                                protocol::info(illegal.refusal).name));
+    return;
+  }
+  fail(Complaint::wrong_answer, fmt::format("accepted what is {}", protocol::info(illegal.refusal).name));
+}
+
+void Bench::restore_defaults() {
+  ++sitting.transactions;
+  board.device().restore_default_parameters();
+  accepted = defaults;
+  limit_changes(accepted[Parameter::force_limit_N]);
+}
+
+void Bench::check_parameters() {
+  const auto held = board.device().parameters();
+  if (held == accepted) return;
+  const auto rows = protocol::known_parameters();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (held.values[i] != accepted.values[i])
+      fail(Complaint::wrong_parameters,
+           fmt::format("{} is {}, but {} was accepted last", rows[i].name, held.values[i], accepted.values[i]));
+}
+
+void Bench::forget_parameters() {
+  accepted = defaults;
+  oracle.limit_force(static_cast<double>(accepted[Parameter::force_limit_N]));
+}
+
+// ---- what a user does ----------------------------------------------------------------------------------------
+
+void Bench::connect(double limit_s) {
+  oracle.connected();
+  if (!board.connect(limit_s)) fail(Complaint::no_answer, "the device did not come back");
+  pass(2 * look_s);
+}
+
+Vector3 Bench::free_point_m() {
+  constexpr double margin_m = 0.02;
+  Vector3 point_m{};
+  for (int axis = 0; axis < 3; ++axis)
+    point_m[static_cast<std::size_t>(axis)] = random.from(experiment::wall_position_m(defaults, {axis, -1}) + margin_m,
+                                                          experiment::wall_position_m(defaults, {axis, 1}) - margin_m);
+  return point_m;
+}
+
+Vector3 Bench::wall_point_m(double force_N) {
+  const experiment::BoxWall wall{static_cast<int>(random.below(3)), random.chance(0.5) ? 1 : -1};
+  Vector3 point_m = free_point_m();
+  const auto axis = static_cast<std::size_t>(wall.axis);
+  point_m[axis] = campaign::into_wall_m(defaults, wall, force_N)[axis];
+  return point_m;
+}
+
+void Bench::move_hand(Vector3 to_m, double duration_s) { board.control().hand_path({{duration_s, to_m}}); }
+
+void Bench::take_out() {
+  campaign::take_by_hand(board, free_point_m(), 0.5);
+  pass(0.6);
+}
+
+void Bench::dock() {
+  // A reference is taken anew once the arm has been still in the inkwell for a while.
+  constexpr double longest_s = 2.0, look_every_s = 0.02, rest_s = 0.3;
+  board.control().dock(true);
+  for (double waited_s = 0; waited_s < longest_s; waited_s += look_every_s) {
+    pass(look_every_s);
+    if (board.is(State::ready) && board.control().truth().at("inkwell_switch").get<bool>()) return pass(rest_s);
+  }
+  fail(Complaint::no_answer, "the board did not find its reference in the inkwell");
+}
+
+void Bench::give_up_force() {
+  board.command(Command::disable_force);
+  oracle.give_up_force(0.0);
+  pass(0.03);
+}
+
+void Bench::make_ready() {
+  if (!board.connected()) connect();
+  if (board.is(State::fault)) fail(Complaint::no_answer, "the phase before left a fault");
+  if (board.force_is_on()) give_up_force();
+  if (board.is(State::starting)) pass(0.3);
+  if (board.is(State::unreferenced)) dock();
+  const auto truth = board.control().truth();
+  if (!truth.at("hand_holds").get<bool>() || truth.at("inkwell_switch").get<bool>()) take_out();
+  if (!board.is(State::ready)) fail(Complaint::no_answer, "the board is not ready");
+}
+
+void Bench::make_active() {
+  if (!board.connected() || !board.force_is_on()) {
+    make_ready();
+    oracle.ask_for_force();
+    board.command(Command::enable_force);
+    for (double waited_s = 0; waited_s < 0.1 && !(board.pose() && force_on(*board.pose())); waited_s += look_s)
+      pass(look_s);
+    if (!board.force_is_on()) fail(Complaint::no_answer, "the force did not go on");
+  }
+  pass(random.chance(0.5) ? static_cast<double>(accepted[Parameter::force_ramp_s]) : 0.02);
+}
+
+void Bench::go_on() {
+  if (!board.connected()) connect();
+  if (board.is(State::fault)) {
+    board.command(Command::clear_fault);
+    pass(0.05);
+    if (board.is(State::fault))
+      fail(Complaint::no_way_back, fmt::format("{} cannot be cleared", protocol::info(board.pose()->fault).name));
+  }
+  oracle.allow_no_fault();
+  make_active();
+}
+
+void Bench::reset() {
+  oracle.expect_restart();
+  oracle.give_up_force(0.0);
+  board.reset();
+  look_closely();
+  board.control().hand({});
+  connect();
+}
+
+void Bench::fidget() {
+  if (random.chance(0.03)) board.control().buttons(random.chance(0.5), random.chance(0.5));
+  if (random.chance(0.03)) board.control().gimbal({random.from(-2, 2), random.from(-0.4, 1.5), random.from(-2, 2)});
+  if (random.chance(0.01)) board.device().information();
+  if (random.chance(0.01)) board.device().frame();
+  if (random.chance(0.01)) check_parameters();
+}
+
+}  // namespace inkwell::soak

@@ -1,0 +1,65 @@
+// What a soak does: the kinds of its phases, how often each comes, and which faults a board may tell in it.
+//
+// A fault that the board tells in a phase of a kind that does not name it is a false trip. So use keeps to what a user
+// may do without one: the hand stays slower than the speed limit but where a phase is about that limit; parameters that
+// make a sound arm look like a broken one (the arm's own measures, wrong resistances, gains that ring) change only
+// while the force is off, or stay near what is right (storm.hpp).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <protocol/supervision.hpp>
+#include <soak/random.hpp>
+
+namespace inkwell::soak {
+
+// clang-format off
+/// X(name, cards in a deck, faults that may be told, what is done)
+#define INKWELL_SOAK_KINDS(X)                                                                                          \
+  X(docking, 1, 0, "The stylus is put into the inkwell and taken out again, then the force is switched on.")            \
+  X(free_space, 1, 0, "The hand wanders through free space, presses buttons, turns the stylus.")                       \
+  X(walls, 2, 0, "The hand presses into walls and slides along them, with up to the force limit.")                     \
+  X(fast, 1, 0, "The hand moves fast, below the speed limit.")                                                         \
+  X(program, 2, 0, "A program sends forces in every mode and places shapes.")                                          \
+  X(scope, 1, 0, "The scope runs and changes its signals.")                                                            \
+  X(recording, 1, 0, "The scope is recorded into a file that is read again.")                                          \
+  X(live_storm, 2, 0, "Parameters change under the hand, legal ones and illegal ones.")                                \
+  X(wide_storm, 1, protocol::watch(protocol::Fault::encoder_implausible),                                              \
+    "Any legal values of all parameters, and illegal ones, with the force off; stops and scales of the joints among them.") \
+  X(cable, 1, protocol::watch(protocol::Fault::host_silent), "The cable is pulled and put back.")                      \
+  X(silence, 1, protocol::watch(protocol::Fault::host_silent), "The host is silent, shorter and longer than it may.")  \
+  X(killed, 1, protocol::watch(protocol::Fault::host_silent), "The program is killed while the force is on.")          \
+  X(reset, 1, 0, "The board is reset at any time.")                                                                    \
+  X(too_fast, 1, protocol::watch(protocol::Fault::over_speed), "The hand is faster than a speed limit that was lowered.") \
+  X(fault, 4, ~protocol::Watches{0}, "A fault of the table is put in and healed.")
+// clang-format on
+
+enum class Kind : std::uint8_t {
+#define X(name, ...) name,
+  INKWELL_SOAK_KINDS(X)
+#undef X
+};
+
+struct KindInfo {
+  std::string_view name;
+  unsigned cards;
+  protocol::Watches may_tell;
+  std::string_view meaning;
+};
+
+inline constexpr auto kind_table = std::to_array<KindInfo>({
+#define X(name, cards, may_tell, meaning) {#name, cards, may_tell, meaning},
+    INKWELL_SOAK_KINDS(X)
+#undef X
+});
+
+constexpr const KindInfo& info(Kind kind) { return kind_table[static_cast<std::size_t>(kind)]; }
+
+/// As many of each kind as it has cards, in random order: each kind comes in every deck.
+std::vector<Kind> shuffled_deck(Random& random);
+
+}  // namespace inkwell::soak

@@ -1,0 +1,122 @@
+#include <soak/oracle.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace inkwell::soak {
+namespace {
+
+using protocol::Fault;
+using protocol::State;
+
+/// A pose may be of the milliseconds before what was done, and so may what the bridges did.
+constexpr double behind_s = 0.01;
+
+}  // namespace
+
+std::string_view name_of(Complaint complaint) {
+  constexpr std::string_view names[] = {
+#define X(name, ...) #name,
+      INKWELL_SOAK_COMPLAINTS(X)
+#undef X
+  };
+  return names[static_cast<std::size_t>(complaint)];
+}
+
+void Oracle::begin(unsigned phase, Kind kind) {
+  phase_ = phase;
+  kind_ = kind;
+  may_tell_ = info(kind).may_tell;
+  told_.clear();
+}
+
+void Oracle::ask_for_force() { asked_ = true; }
+
+void Oracle::give_up_force(double grace_s) { take_back_permission(grace_s + behind_s); }
+
+void Oracle::take_back_permission(double grace_s) {
+  if (!std::exchange(asked_, false)) return;
+  may_drive_until_s_ = now_s_ + grace_s;
+}
+
+void Oracle::see(const protocol::PoseReport& pose) {
+  ++poses_;
+  if (sequence_) poses_lost_ += pose.sequence - *sequence_ - 1;
+  sequence_ = pose.sequence;
+
+  if (disturbance_ == Disturbance::none)
+    longest_interrupt_part_ = std::max(longest_interrupt_part_, pose.servo_load / 255.0);
+  const State before = std::exchange(state_, pose.state);
+  const Fault fault_before = std::exchange(fault_, pose.fault);
+  if (pose.state == State::fault && (before != State::fault || fault_before != pose.fault)) {
+    tell(pose.fault);
+    take_back_permission(behind_s);
+  }
+  if (disturbance_ == Disturbance::program) return;
+  if (protocol::force_is_on(pose.state)) {
+    if (!asked_ && now_s_ > may_drive_until_s_)
+      complain(Complaint::unasked_force,
+               fmt::format("the state is {} without anybody having asked", protocol::info(pose.state).name));
+  } else if (protocol::force_is_on(before) && pose.state != State::fault && asked_ &&
+             disturbance_ == Disturbance::none) {
+    complain(Complaint::lost_force,
+             fmt::format("from {} to {}", protocol::info(before).name, protocol::info(pose.state).name));
+  }
+}
+
+void Oracle::see(const Look& look) {
+  now_s_ = look.board_time_s;
+  if (disturbance_ != Disturbance::none) return;
+  if (!asked_ && look.driven_until_s > may_drive_until_s_ + behind_s)
+    complain(Complaint::unasked_force,
+             fmt::format("a leg was at the supply at {:.4f} s; it may have been until {:.4f} s", look.driven_until_s,
+                         may_drive_until_s_));
+  // Of an arm that is braked, the speed decides how much its motors press.
+  if (!protocol::force_is_on(state_)) return;
+  peak_motor_force_N_ = std::max(peak_motor_force_N_, look.motor_force_N);
+  if (force_limit_N_ > 0) peak_part_ = std::max(peak_part_, look.motor_force_N / force_limit_N_);
+  // The ripple of the bridges and the noise of the current sensors, which is all that a limit of next to nothing shows.
+  constexpr double ripple_N = 0.1;
+  if (look.motor_force_N > force_tolerance * force_limit_N_ + ripple_N)
+    complain(Complaint::too_much_force,
+             fmt::format("the motors press with {:.2f} N, the limit is {:.2f} N", look.motor_force_N, force_limit_N_));
+}
+
+bool Oracle::see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule) {
+  if (broken_rules > rules_ && disturbance_ != Disturbance::program) complain(Complaint::broken_rule, newest_rule);
+  rules_ = broken_rules;
+  const bool restarted = restarts > restarts_;
+  if (restarted) {
+    const unsigned wanted = std::exchange(restart_expected_, false) ? 1 : 0;
+    if (disturbance_ == Disturbance::none && restarts > restarts_ + wanted)
+      complain(Complaint::restart, fmt::format("{} of them", restarts - restarts_ - wanted));
+    state_ = State::starting;
+    take_back_permission(behind_s);
+  }
+  restarts_ = restarts;
+  return restarted;
+}
+
+void Oracle::must_have_told(Fault fault) {
+  if (std::ranges::find(told_, fault) == told_.end())
+    complain(Complaint::missed_fault, fmt::format("{} was not told", protocol::info(fault).name));
+}
+
+void Oracle::tell(Fault fault) {
+  told_.push_back(fault);
+  ++faults_told_[std::string(protocol::info(fault).name)];
+  if ((may_tell_ & protocol::watch(fault)) == 0)
+    complain(Complaint::false_trip, fmt::format("{}", protocol::info(fault).name));
+}
+
+void Oracle::complain(Complaint complaint, std::string text) {
+  // One of a kind in a phase tells enough: the first.
+  for (const Finding& finding : findings_)
+    if (finding.phase == phase_ && finding.complaint == name_of(complaint)) return;
+  findings_.push_back(
+      {phase_, std::string(info(kind_).name), now_s_, std::string(name_of(complaint)), std::move(text)});
+}
+
+}  // namespace inkwell::soak

@@ -1,0 +1,122 @@
+#include <soak/run.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bench.hpp"
+
+namespace inkwell::soak {
+namespace {
+
+/// Longer than any sitting; a processor that is locked up does not stop the time then.
+constexpr double board_lives_s = 1e6;
+
+class Run {
+ public:
+  Run(unsigned number, const Choices& choices, const device::VirtualBoardOptions& board,
+      const std::function<void(const std::string&)>& tell)
+      : bench_(number, choices, board), tell_(tell) {}
+
+  Sitting all() {
+    std::vector<Kind> deck = shuffled_deck(bench_.random);
+    const std::size_t first_deck = deck.size();
+    bool goes_on = true;
+    while (goes_on &&
+           (bench_.sitting.phases.size() < first_deck || bench_.oracle.board_time_s() < bench_.choices.sitting_s)) {
+      if (deck.empty()) deck = shuffled_deck(bench_.random);
+      goes_on = phase(deck.back());
+      deck.pop_back();
+    }
+    return take_together();
+  }
+
+ private:
+  /// False if the board cannot be used any more.
+  bool phase(Kind kind) {
+    PhaseResult result{.number = static_cast<unsigned>(bench_.sitting.phases.size() + 1),
+                       .kind = std::string(info(kind).name),
+                       .begin_s = bench_.oracle.board_time_s()};
+    bench_.oracle.begin(result.number, kind);
+    bool goes_on = true;
+    try {
+      result.what = play(bench_, kind);
+      bench_.check_all();
+    } catch (const PhaseFailed& failure) {
+      goes_on = begin_anew();
+    } catch (const device::Error& error) {
+      bench_.oracle.complain(Complaint::no_answer, error.what());
+      goes_on = begin_anew();
+    }
+    result.duration_s = bench_.oracle.board_time_s() - result.begin_s;
+    bench_.sitting.phases.push_back(result);
+    if (tell_) tell_(line_of(bench_.sitting, result) + new_findings());
+    return goes_on;
+  }
+
+  /// After a phase that failed, so that the next one is not blamed.
+  bool begin_anew() {
+    try {
+      bench_.device_may_go = false;
+      bench_.board.control().heal_all();
+      bench_.board.control().usb(true);
+      bench_.look_closely();
+    } catch (const device::Error&) {  // told already
+    }
+    try {
+      bench_.disturb(Disturbance::none);
+      bench_.reset();
+      bench_.make_active();
+      return true;
+    } catch (const device::Error& error) {
+      bench_.oracle.complain(Complaint::no_way_back, fmt::format("after a phase that failed: {}", error.what()));
+      return false;
+    }
+  }
+
+  std::string new_findings() {
+    std::string text;
+    const auto& findings = bench_.oracle.findings();
+    for (; told_ < findings.size(); ++told_)
+      text += fmt::format("    {} at {:.3f} s: {}\n", findings[told_].complaint, findings[told_].board_time_s,
+                          findings[told_].text);
+    return text;
+  }
+
+  Sitting take_together() {
+    Sitting sitting = bench_.sitting;
+    const Oracle& oracle = bench_.oracle;
+    sitting.board_time_s = oracle.board_time_s();
+    sitting.findings = oracle.findings();
+    sitting.faults_told = oracle.faults_told();
+    sitting.restarts = oracle.restarts();
+    sitting.peak_motor_force_N = oracle.peak_motor_force_N();
+    sitting.peak_part_of_limit = oracle.peak_part_of_limit();
+    sitting.longest_interrupt_part = oracle.longest_interrupt_part();
+    sitting.poses = oracle.poses();
+    sitting.lost.poses = oracle.poses_lost();
+    return sitting;
+  }
+
+  Bench bench_;
+  const std::function<void(const std::string&)>& tell_;
+  std::size_t told_ = 0;
+};
+
+}  // namespace
+
+Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoardOptions board,
+                    const std::function<void(const std::string&)>& tell) {
+  board.real_time = false;
+  board.paused = true;
+  board.seconds = board_lives_s;
+  board.seed = choices.seed + number;
+  return Run(number, choices, board, tell).all();
+}
+
+unsigned sittings_in(double board_time_s, const Choices& choices) {
+  return static_cast<unsigned>(std::max(1.0, std::ceil(board_time_s / choices.sitting_s)));
+}
+
+}  // namespace inkwell::soak

@@ -1,0 +1,226 @@
+// The judge of a soak, told what boards might do.
+#include <soak/oracle.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace inkwell;
+using namespace inkwell::soak;
+using protocol::Fault;
+using protocol::State;
+
+namespace {
+
+/// A board that is looked at every 5 ms; its poses come once in between.
+struct Watched {
+  Oracle oracle;
+  double now_s = 1.0;
+  double driven_until_s = 0.0;
+  double motor_force_N = 0.0;
+  std::uint32_t sequence = 100;
+
+  explicit Watched(Kind kind = Kind::free_space) {
+    oracle.limit_force(3.3);
+    oracle.begin(1, kind);
+    step(State::ready);
+  }
+  void step(State state, Fault fault = Fault::none) {
+    protocol::PoseReport pose{};
+    pose.state = state;
+    pose.fault = fault;
+    pose.sequence = ++sequence;
+    pose.servo_load = 51;
+    oracle.see(pose);
+    now_s += 0.005;
+    if (protocol::force_is_on(state)) driven_until_s = now_s;
+    oracle.see(Look{now_s, driven_until_s, motor_force_N});
+  }
+  void steps(int count, State state, Fault fault = Fault::none) {
+    for (int i = 0; i < count; ++i) step(state, fault);
+  }
+  void switch_on() {
+    oracle.ask_for_force();
+    steps(10, State::active);
+  }
+  void check_only(Complaint complaint) const {
+    REQUIRE(oracle.findings().size() == 1);
+    CHECK(oracle.findings()[0].complaint == name_of(complaint));
+  }
+  void check_nothing() const { CHECK(oracle.findings().empty()); }
+};
+
+}  // namespace
+
+TEST_CASE("force that is asked for, given up, and asked for again is no finding") {
+  Watched board;
+  board.switch_on();
+  board.oracle.give_up_force(0.0);
+  board.step(State::active);  // a pose of before
+  board.steps(20, State::ready);
+  board.switch_on();
+  board.check_nothing();
+  CHECK(board.oracle.poses() == 42);
+  CHECK(board.oracle.longest_interrupt_part() == doctest::Approx(0.2));
+}
+
+TEST_CASE("force that nobody asked for is told by the state, and by the bridges alone") {
+  Watched by_state;
+  by_state.switch_on();
+  by_state.oracle.give_up_force(0.0);
+  by_state.steps(10, State::ready);
+  by_state.step(State::ramping);
+  CHECK(by_state.oracle.findings().at(0).complaint == name_of(Complaint::unasked_force));
+
+  Watched by_bridges;
+  by_bridges.switch_on();
+  by_bridges.oracle.give_up_force(0.0);
+  by_bridges.steps(10, State::ready);
+  by_bridges.check_nothing();
+  by_bridges.driven_until_s = by_bridges.now_s;
+  by_bridges.step(State::ready);
+  by_bridges.check_only(Complaint::unasked_force);
+}
+
+TEST_CASE("a host that goes silently leaves the force on for its timeout and no longer") {
+  Watched board(Kind::killed);
+  board.switch_on();
+  board.oracle.give_up_force(0.05);
+  board.steps(10, State::active);
+  board.check_nothing();
+  board.steps(10, State::active);
+  board.check_only(Complaint::unasked_force);
+}
+
+TEST_CASE("a fault takes the permission away: force that comes back with it cleared is not asked for") {
+  Watched board(Kind::silence);
+  board.switch_on();
+  board.steps(10, State::fault, Fault::host_silent);
+  board.steps(10, State::ready);
+  board.check_nothing();
+  board.step(State::active);
+  CHECK(board.oracle.findings().at(0).complaint == name_of(Complaint::unasked_force));
+}
+
+TEST_CASE("a fault is a false trip unless its phase may have it, and until its cause is gone") {
+  Watched plain;
+  plain.switch_on();
+  plain.steps(3, State::fault, Fault::over_current);
+  plain.check_only(Complaint::false_trip);
+  CHECK(plain.oracle.faults_told().at("over_current") == 1);
+
+  Watched cable(Kind::cable);
+  cable.step(State::fault, Fault::host_silent);
+  cable.check_nothing();
+  cable.step(State::fault, Fault::over_speed);
+  cable.check_only(Complaint::false_trip);
+
+  Watched healed(Kind::fault);
+  healed.oracle.disturb(Disturbance::hardware);
+  healed.step(State::fault, Fault::bridge_fault);
+  healed.oracle.disturb(Disturbance::none);
+  healed.oracle.allow_no_fault();
+  healed.step(State::ready);
+  healed.check_nothing();
+  healed.step(State::fault, Fault::bridge_fault);
+  healed.check_only(Complaint::false_trip);
+}
+
+TEST_CASE("a fault whose cause was there is missed when nothing or another one is told") {
+  Watched board(Kind::too_fast);
+  board.step(State::fault, Fault::over_speed);
+  board.oracle.must_have_told(Fault::over_speed);
+  board.check_nothing();
+  board.oracle.begin(2, Kind::silence);
+  board.oracle.must_have_told(Fault::host_silent);
+  board.check_only(Complaint::missed_fault);
+}
+
+TEST_CASE("force that goes off by itself is a finding, in a phase without anything put in") {
+  Watched board;
+  board.switch_on();
+  board.oracle.disturb(Disturbance::hardware);
+  board.step(State::ready);
+  board.check_nothing();
+  board.step(State::active);
+  board.oracle.disturb(Disturbance::none);
+  board.step(State::ready);
+  board.check_only(Complaint::lost_force);
+}
+
+TEST_CASE("motors may press with the limit and 5 %, and with more where something is put in or an arm is braked") {
+  Watched board;
+  board.switch_on();
+  board.motor_force_N = 3.3 * 1.05;
+  board.step(State::active);
+  CHECK(board.oracle.peak_part_of_limit() == doctest::Approx(1.05));
+  board.motor_force_N = 5.0;
+  board.oracle.disturb(Disturbance::hardware);
+  board.step(State::active);
+  board.oracle.disturb(Disturbance::none);
+  board.oracle.limit_force(6.0);
+  board.step(State::active);
+  board.check_nothing();
+  board.oracle.limit_force(3.3);
+  board.step(State::active);
+  board.check_only(Complaint::too_much_force);
+
+  Watched braked(Kind::too_fast);
+  braked.switch_on();
+  braked.motor_force_N = 5.0;
+  braked.step(State::fault, Fault::over_speed);
+  braked.check_nothing();
+}
+
+TEST_CASE(
+    "a restart is a finding unless it was wanted or something is put in; a wanted one takes the force's permission") {
+  Watched board;
+  board.switch_on();
+  CHECK_FALSE(board.oracle.see_counts(0, 0, ""));
+  board.oracle.expect_restart();
+  CHECK(board.oracle.see_counts(1, 0, ""));
+  CHECK_FALSE(board.oracle.force_is_asked_for());
+  board.oracle.disturb(Disturbance::hardware);
+  CHECK(board.oracle.see_counts(3, 0, ""));
+  board.oracle.disturb(Disturbance::none);
+  board.check_nothing();
+  board.oracle.see_counts(4, 0, "");
+  board.check_only(Complaint::restart);
+  CHECK(board.oracle.restarts() == 4);
+}
+
+TEST_CASE("a rule that the firmware breaks is a finding even with broken hardware, but not of a program gone astray") {
+  Watched board(Kind::fault);
+  board.oracle.disturb(Disturbance::program);
+  board.oracle.see_counts(0, 2, "a rule");
+  board.check_nothing();
+  board.oracle.disturb(Disturbance::hardware);
+  board.oracle.see_counts(0, 2, "a rule");
+  board.check_nothing();
+  board.oracle.see_counts(0, 3, "a rule");
+  board.check_only(Complaint::broken_rule);
+}
+
+TEST_CASE("poses that are missing within a connection are counted, those between two connections are not") {
+  Watched board;
+  board.sequence += 3;
+  board.step(State::ready);
+  CHECK(board.oracle.poses_lost() == 3);
+  board.oracle.connected();
+  board.sequence += 1000;
+  board.step(State::ready);
+  CHECK(board.oracle.poses_lost() == 3);
+  board.check_nothing();
+}
+
+TEST_CASE("of several complaints of a kind in a phase the first is kept") {
+  Watched board;
+  board.step(State::fault, Fault::over_current);
+  board.step(State::ready);
+  board.step(State::fault, Fault::motor_hot);
+  board.check_only(Complaint::false_trip);
+  CHECK(board.oracle.findings()[0].text == "over_current");
+  CHECK(board.oracle.findings()[0].kind == "free_space");
+  board.oracle.begin(2, Kind::walls);
+  board.step(State::ready);
+  board.step(State::fault, Fault::motor_hot);
+  CHECK(board.oracle.findings().size() == 2);
+}
