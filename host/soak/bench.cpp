@@ -235,9 +235,10 @@ void Bench::dock() {
 }
 
 void Bench::give_up_force() {
+  const auto landing_s = static_cast<double>(accepted[Parameter::soft_landing_s]);
   board.command(Command::disable_force);
-  oracle.give_up_force(0.0);
-  pass(0.03);
+  oracle.give_up_force(landing_s);
+  pass(landing_s + 0.03);
 }
 
 void Bench::make_ready() {

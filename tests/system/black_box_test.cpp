@@ -103,7 +103,7 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
   rig.run(0.3);
   const auto box = rig.device->black_box();
   CHECK(box.fault == Fault::processor_fault);
-  // A BusFault; where the main loop goes to sleep with interrupts held back, it is told as the HardFault that it becomes.
+  // A BusFault; where the main loop goes to sleep with interrupts held back, the HardFault that it becomes.
   CHECK((box.crash.exception == 5 || box.crash.exception == 3));
   CHECK(box.crash.program_counter == nothing_there);
   CHECK(box.crash.configurable_fault_status == 1u << 8);

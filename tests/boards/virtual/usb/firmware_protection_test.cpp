@@ -78,7 +78,8 @@ TEST_CASE("what only an error does with the memory is a fault, and the board say
   for (const Error& error : errors) {
     CAPTURE(error.name);
     const auto crash = crash_at(error.program_counter, error.r0);
-    CHECK(crash.exception == 4);  // MemManage
+    // A MemManage fault; where the main loop goes to sleep with interrupts held back, the HardFault that it becomes.
+    CHECK((crash.exception == 4 || crash.exception == 3));
     CHECK(crash.configurable_fault_status == error.status);
     CHECK(crash.program_counter == error.program_counter);
     if ((error.status & valid_address) != 0) CHECK(crash.fault_address == error.r0);
