@@ -5,17 +5,16 @@
 #include <device/address.hpp>
 #include <device/device.hpp>
 
+#include "text_copy.hpp"
+
 namespace inkwell::library {
 namespace {
 
-thread_local std::string error_text;
+// Plain memory: a program's last destructors are refused things after the thread's own objects are gone.
+thread_local char error_text[sentence_maximum];
 
 inkwell_result fail(inkwell_result result, const char* sentence) {
-  try {
-    error_text = sentence;
-  } catch (...) {
-    error_text.clear();
-  }
+  copy_text(sentence, error_text);
   return result;
 }
 
@@ -53,4 +52,4 @@ inkwell_result result_of_exception() noexcept {
 
 }  // namespace inkwell::library
 
-const char* inkwell_error_text(void) { return inkwell::library::error_text.c_str(); }
+const char* inkwell_error_text(void) { return inkwell::library::error_text; }

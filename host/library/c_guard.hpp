@@ -7,10 +7,12 @@
 
 #include "arm.hpp"
 #include "errors.hpp"
+#include "seen_poses.hpp"
 
 struct inkwell_arm {
   explicit inkwell_arm(const std::string& address) : arm(address) {}
   inkwell::library::Arm arm;
+  inkwell::library::SeenPoses seen;
 };
 
 namespace inkwell::library {

@@ -1,7 +1,6 @@
 // Devices, pose, force and shapes of the C interface. Parameters, signals and the scope are in c_tables.cpp.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 
 #include <device/fault_text.hpp>
@@ -17,9 +16,6 @@ namespace device = inkwell::device;
 namespace protocol = inkwell::protocol;
 
 namespace {
-
-/// The newest pose that this thread has waited for, for each arm.
-thread_local std::map<const inkwell_arm*, std::uint32_t> seen_sequences;
 
 std::array<float, 3> floats(const double (&values)[3]) {
   return {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
@@ -74,7 +70,6 @@ inkwell_result inkwell_close(inkwell_arm* arm) {
     if (arm == nullptr) return;
     if (arm->arm.servo().is_caller())
       throw NotNow("A servo can not close its arm. End the servo, and close the arm elsewhere.");
-    seen_sequences.erase(arm);
     delete arm;
   });
 }
@@ -108,10 +103,8 @@ inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose) {
 inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose) {
   return guarded([&] {
     required(pose, "The place for the pose");
-    const auto seen = seen_sequences.find(required(arm, "The arm"));
-    *pose =
-        arm->arm.wait_for_pose(timeout_s, seen == seen_sequences.end() ? std::nullopt : std::optional(seen->second));
-    seen_sequences[arm] = pose->sequence;
+    *pose = arm_of(arm).wait_for_pose(timeout_s, arm->seen.newest());
+    arm->seen.note(pose->sequence);
   });
 }
 
@@ -138,13 +131,13 @@ const char* inkwell_fault_name(int fault) {
 }
 
 const char* inkwell_fault_text(int fault) {
-  thread_local std::string text;
-  const auto result = guarded([&] {
+  thread_local char text[sentence_maximum];  // plain memory, as that of inkwell_error_text()
+  text[0] = '\0';
+  guarded([&] {
     const bool known = fault >= 0 && fault <= 0xFFFF;
-    text = device::fault_line(static_cast<protocol::Fault>(known ? fault : 0xFFFF));
+    copy_text(device::fault_line(static_cast<protocol::Fault>(known ? fault : 0xFFFF)), text);
   });
-  if (result != INKWELL_OK) text.clear();
-  return text.c_str();
+  return text;
 }
 
 // ---- force -------------------------------------------------------------------------------------------------

@@ -38,11 +38,12 @@ inkwell_parameter row_of(const protocol::ParameterInfo& row) {
 }
 inkwell_signal row_of(const protocol::SignalInfo& row) { return {row.name.data(), row.unit.data(), row.help.data()}; }
 
-/// A row as C knows it; null beyond the end. A row stays where it is: those of a force law come behind the table's.
+/// A row as C knows it; null beyond the end. A row stays where it is until the process ends: those of a force law come
+/// behind the table's, and programs look at rows in their last destructors.
 template <class Row, class Table>
 const Row* row_at(const Table& table, std::size_t index) {
   static std::mutex mutex;
-  static std::deque<Row> rows;
+  static auto& rows = *new std::deque<Row>;
   const std::lock_guard lock(mutex);
   if (index >= table.size()) return nullptr;
   if (index >= rows.size()) rows.resize(index + 1);

@@ -148,6 +148,15 @@ TEST_CASE("a program that leaves main() with a callback listed ends well, though
   CHECK(leaving.wait() == 0);
 }
 
+TEST_CASE("a program whose callback ends it ends well, too, and its arm is free") {
+  Board board;
+  board.hold();
+  for (int times = 0; times < 2; ++times) {
+    RunningProgram leaving({program("drop-in-leaves"), "exits-in-callback"});
+    CHECK(leaving.wait() == 3);
+  }
+}
+
 TEST_CASE("a program that ends between the beginning and the end of a frame: its force fades") {
   Board board;
   board.hold();
