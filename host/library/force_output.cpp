@@ -53,7 +53,8 @@ void ForceOutput::send(const double (&force_N)[3]) {
   for (std::size_t i = 0; i < 3; ++i) {
     // What float can not hold is as huge as the largest that it can: the board bounds it.
     constexpr double largest_N = 1e30;
-    if (std::isnan(force_N[i])) throw BadArgument("The force is not a number on one axis. Give finite numbers.");
+    if (!std::isfinite(force_N[i]))
+      throw BadArgument("The force is not a finite number on one axis. Give finite numbers.");
     request.force_N[i] = static_cast<float>(std::clamp(force_N[i], -largest_N, largest_N));
   }
   {

@@ -20,7 +20,7 @@ class ForceOutput {
   ~ForceOutput();
 
   void set_mode(protocol::ForceMode mode);
-  /// Throws BadArgument for what is no number.
+  /// Throws BadArgument for what is no finite number.
   void send(const double (&force_N)[3]);
   /// The force is over, and fades.
   void let_go();

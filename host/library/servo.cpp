@@ -84,9 +84,9 @@ void Servo::call(const Function& function) {
     seen = pose.sequence;
     double force_N[3]{};
     goes_on = function(pose, force_N);
-    // A force that is no number is none; the device would refuse it and let the one before expire.
+    // A force that is no finite number is none; refused, it would let the one before expire.
     for (double& value : force_N)
-      if (std::isnan(value)) value = 0.0;
+      if (!std::isfinite(value)) value = 0.0;
     output_(force_N);
   }
 }

@@ -22,7 +22,8 @@ Vector force_of(const py::object& answer) {
                          ". Let it return three numbers, the force in N, or None.");
   }
   for (const double value : force_N)
-    if (std::isnan(value)) throw py::value_error("The servo returned a force that is not a number on one axis.");
+    if (!std::isfinite(value))
+      throw py::value_error("The servo returned a force that is not a finite number on one axis.");
   return force_N;
 }
 

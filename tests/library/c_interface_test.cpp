@@ -170,7 +170,7 @@ TEST_CASE("forces without a servo: felt while they are renewed, bounded, refused
   VirtualArm virtual_arm;
   virtual_arm.make_active();
   REQUIRE(inkwell_set_force_mode(virtual_arm.arm, INKWELL_BESIDE_WALLS) == INKWELL_OK);
-  const double huge_N[3]{std::numeric_limits<double>::infinity(), 0, 0};
+  const double huge_N[3]{1e300, 0, 0};
   const auto felt = virtual_arm.wait_until([&](const auto& pose) {
     REQUIRE(inkwell_set_force(virtual_arm.arm, huge_N) == INKWELL_OK);
     return std::abs(pose.force_N[0]) > 3.0;
@@ -178,9 +178,12 @@ TEST_CASE("forces without a servo: felt while they are renewed, bounded, refused
   CHECK(felt.force_N[0] < 3.31);
   CHECK(felt.force_sources == (INKWELL_PROGRAM | INKWELL_WALLS));
   virtual_arm.wait_until([](const auto& pose) { return (pose.force_sources & INKWELL_PROGRAM) == 0; });
-  const double none_N[3]{0, std::numeric_limits<double>::quiet_NaN(), 0};
-  CHECK(inkwell_set_force(virtual_arm.arm, none_N) == INKWELL_BAD_ARGUMENT);
-  CHECK(says("not a number"));
+  constexpr double infinite_N = std::numeric_limits<double>::infinity();
+  for (const double wrong_N : {std::numeric_limits<double>::quiet_NaN(), infinite_N, -infinite_N}) {
+    const double none_N[3]{0, wrong_N, 0};
+    CHECK(inkwell_set_force(virtual_arm.arm, none_N) == INKWELL_BAD_ARGUMENT);
+    CHECK(says("not a finite number"));
+  }
   CHECK(inkwell_set_force_mode(virtual_arm.arm, static_cast<inkwell_force_mode>(7)) == INKWELL_BAD_ARGUMENT);
 }
 

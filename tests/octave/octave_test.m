@@ -55,7 +55,8 @@ do
   pose = inkwell_pose(arm);
 until norm(pose.position_m(1:2)) < 0.004
 inkwell_enable(arm);
-refused(@() inkwell_force(arm, [NaN 0 0]), 'not a number');
+refused(@() inkwell_force(arm, [NaN 0 0]), 'not a finite number');
+refused(@() inkwell_force(arm, [0 -Inf 0]), 'not a finite number');
 refused(@() inkwell_force(arm, [1 2]), 'Three numbers');
 pose = inkwell_pose(arm);
 begin_s = pose.time_s;

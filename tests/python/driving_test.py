@@ -71,7 +71,9 @@ class Driving(unittest.TestCase):
         self.assertIn("ZeroDivisionError", raised.exception.__notes__[0])
 
     def test_what_is_no_force_ends_the_servo(self):
-        for answer, error, words in ((math.nan, 0, 0), ValueError, "not a number"), ((1, 2), TypeError, "three numbers"):
+        for answer, error, words in (((math.nan, 0, 0), ValueError, "not a finite number"),
+                                     ((0, math.inf, 0), ValueError, "not a finite number"),
+                                     ((1, 2), TypeError, "three numbers")):
             with self.subTest(answer), self.assertRaisesRegex(error, words):
                 self.arm.servo(lambda pose: answer)
                 self.arm.wait_for_servo(60)
@@ -99,15 +101,16 @@ class Driving(unittest.TestCase):
         self.arm.set_force_mode(inkwell.ForceMode.BESIDE_WALLS)
 
         def pushed(pose):
-            self.arm.set_force([math.inf, 0, 0])
+            self.arm.set_force([1e300, 0, 0])
             return abs(pose.force_N[0]) > 3
 
         felt = wait_until(self.arm, pushed)
         self.assertLess(felt.force_N[0], 3.31)
         self.assertTrue(felt.feels_program and felt.feels_walls)
         wait_until(self.arm, lambda pose: not pose.feels_program)
-        with self.assertRaisesRegex(inkwell.BadArgument, "not a number"):
-            self.arm.set_force((0, math.nan, 0))
+        for wrong in math.nan, math.inf, -math.inf:
+            with self.assertRaisesRegex(inkwell.BadArgument, "not a finite number"):
+                self.arm.set_force((0, wrong, 0))
         for wrong in (1, 2), "xyz", None:
             with self.assertRaises(TypeError):
                 self.arm.set_force(wrong)

@@ -221,12 +221,14 @@ typedef enum inkwell_force_mode INKWELL_AS_INT {
 INKWELL_API inkwell_result inkwell_set_force_mode(inkwell_arm* arm, inkwell_force_mode mode);
 
 /* The force on the hand until the next call. It goes out within a millisecond, at most one in each. The board moves to
- * it in a line; without another call it fades after program_force_expiry_s. Another program that drives the arm makes
+ * it in a line, no further than its limit; without another call it fades after program_force_expiry_s. A value that is
+ * infinite or no number is INKWELL_BAD_ARGUMENT, and the force before stays. Another program that drives the arm makes
  * it INKWELL_IN_USE. In the servo, return the force instead. */
 INKWELL_API inkwell_result inkwell_set_force(inkwell_arm* arm, const double force_N[3]);
 
 /* Called at each pose, a thousand times a second, in a thread of the library. Writes the force on the hand, which is
- * 0 before. Returns 0 to go on, anything else to end the servo. Another program that drives the arm ends it. */
+ * 0 before and where it is infinite or no number. Returns 0 to go on, anything else to end the servo. Another program
+ * that drives the arm ends it. */
 typedef int (*inkwell_servo)(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user);
 /* Has `servo` called from now on, with `user` as it was given. */
 INKWELL_API inkwell_result inkwell_start_servo(inkwell_arm* arm, inkwell_servo servo, void* user);
