@@ -231,10 +231,12 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
   report.command = Command::select_signals;
   report.selection.count = static_cast<std::uint8_t>(signals.size());
   for (std::size_t i = 0; i < signals.size(); ++i) report.selection.signals[i] = static_cast<std::uint8_t>(signals[i]);
-  return implementation_->send(report, [&] {
+  const auto token = implementation_->send(report, [&] {
     const std::lock_guard lock(implementation_->scope_mutex);
     implementation_->decoder.expect(report.token, {signals.begin(), signals.end()});
   });
+  if (signals.empty()) implementation_->transport->release_scope();
+  return token;
 }
 
 void Device::send_force(const ForceRequest& request) {

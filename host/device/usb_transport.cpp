@@ -140,7 +140,7 @@ class BulkReader {
     const bool goes_on = transfer.status == LIBUSB_TRANSFER_COMPLETED && !stopping_;
     if (goes_on && libusb_submit_transfer(&transfer) == 0) return;
     --under_way_;
-    queue_.close(unplugged);
+    if (!stopping_) queue_.close(unplugged);
   }
 
   libusb_context* context_ = nullptr;
@@ -173,6 +173,7 @@ class UsbTransport : public Transport {
   void claim_scope() override {
     if (!scope_) scope_ = std::make_unique<BulkReader>(endpoint_.serial_number, bulk_);
   }
+  void release_scope() override { scope_.reset(); }
   std::size_t read_bulk(std::span<std::byte> buffer, std::chrono::milliseconds timeout) override {
     const auto transfer = bulk_.pop(timeout);
     if (!transfer) return 0;
@@ -202,7 +203,7 @@ class UsbTransport : public Transport {
   Endpoint endpoint_;
   std::unique_ptr<hid_device, decltype(&hid_close)> hid_;
   TransferQueue bulk_;
-  std::unique_ptr<BulkReader> scope_;  ///< once it is claimed
+  std::unique_ptr<BulkReader> scope_;  ///< while it is claimed
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <condition_variable>
+#include <list>
 #include <utility>
 
 #include <fmt/format.h>
@@ -75,18 +76,43 @@ class UsbipTransport : public Transport {
   }
 
   void claim_scope() override {
-    if (scope_claimed_) return;
     {
       const std::lock_guard lock(bulk_mutex_);
+      if (scope_claimed_) return;
       bulk_denied_ = false;
+      scope_claimed_ = true;
       ask_for_bulk();
     }
     // Orders are looked at one after the other: with this answer a refusal of the request before has come, too.
-    connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18));
+    try {
+      connection_.control_in(setup::get_descriptor(setup::DescriptorType::device, 0, 18));
+    } catch (...) {
+      release_scope();
+      throw;
+    }
     const std::lock_guard lock(bulk_mutex_);
-    if (bulk_denied_) throw InUse(scope_in_use);
-    scope_claimed_ = true;
+    if (bulk_denied_) {
+      scope_claimed_ = false;
+      throw InUse(scope_in_use);
+    }
     for (int i = 1; i < bulk_transfers; ++i) ask_for_bulk();
+  }
+
+  /// The scope is free once a transfer was taken back and none is left; who only lets them end keeps it.
+  void release_scope() override {
+    std::unique_lock lock(bulk_mutex_);
+    if (!std::exchange(scope_claimed_, false)) return;
+    bulk_owed_ = 0;
+    bulk_taken_back_ = bulk_denied_ = false;
+    const auto is_over = [this] { return bulk_lost_ || bulk_under_way_.empty(); };
+    const auto give_up_at = std::chrono::steady_clock::now() + silence;
+    ask_again([&] {
+      while (!bulk_lost_ && !bulk_taken_back_ && !bulk_denied_) {
+        if (bulk_under_way_.empty()) ask_for_bulk();
+        for (const auto sequence : bulk_under_way_) connection_.unlink(sequence);
+        if (!bulk_changed_.wait_until(lock, give_up_at, is_over)) return;
+      }
+    });
   }
 
   std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) override {
@@ -142,24 +168,39 @@ class UsbipTransport : public Transport {
     });
   }
 
+  /// Called with bulk_mutex_ held.
   void ask_for_bulk() {
-    newest_bulk_ = connection_.submit_in(layout_.scope_in_endpoint, protocol::scope_frame_maximum,
-                                         [this](UsbipConnection::Completion done) { take_bulk(std::move(done)); });
+    const auto place = bulk_under_way_.insert(bulk_under_way_.end(), 0);
+    try {
+      *place =
+          connection_.submit_in(layout_.scope_in_endpoint, protocol::scope_frame_maximum,
+                                [this, place](UsbipConnection::Completion done) { take_bulk(std::move(done), place); });
+    } catch (...) {
+      bulk_under_way_.erase(place);
+      throw;
+    }
   }
 
-  void take_bulk(UsbipConnection::Completion done) {
+  void take_bulk(UsbipConnection::Completion done, std::list<std::uint32_t>::iterator place) {
+    const std::lock_guard lock(bulk_mutex_);
+    bulk_under_way_.erase(place);
+    bulk_taken_back_ = bulk_taken_back_ || done.status == -ECONNRESET;
+    bulk_changed_.notify_one();
     if (done.status == -EBUSY) {
-      const std::lock_guard lock(bulk_mutex_);
       bulk_denied_ = true;
       return;
     }
-    if (done.status != 0 && done.status != -ECONNRESET) return lose(unplugged);
+    if (done.status != 0 && done.status != -ECONNRESET) {
+      bulk_lost_ = true;
+      return lose(unplugged);
+    }
+    if (!scope_claimed_) return;
     if (!done.data.empty()) bulk_.push(std::move(done.data));
-    const std::lock_guard lock(bulk_mutex_);
     if (bulk_.size() < bulk_kept) return ask_again([this] { ask_for_bulk(); });
     // A virtual board takes the silence of a streaming host for that of a busy computer, and waits, but not for one
     // that takes a request back.
-    if (bulk_owed_++ == 0) ask_again([this] { connection_.unlink(newest_bulk_); });
+    if (bulk_owed_++ == 0 && !bulk_under_way_.empty())
+      ask_again([this] { connection_.unlink(bulk_under_way_.back()); });
   }
 
   /// Submitting from the receiving thread fails when the connection just broke; `lose` is called for that anyway.
@@ -195,11 +236,14 @@ class UsbipTransport : public Transport {
   Endpoint endpoint_;
   UsbLayout layout_;
   TransferQueue reports_, bulk_;
+  std::mutex bulk_mutex_;  ///< guards the next seven
+  std::condition_variable bulk_changed_;
   bool scope_claimed_ = false;
-  std::mutex bulk_mutex_;          ///< guards the next three
-  bool bulk_denied_ = false;       ///< another program has it
-  int bulk_owed_ = 0;              ///< transfers not under way because the reader is behind
-  std::uint32_t newest_bulk_ = 0;  ///< sequence of the transfer that was asked for last
+  bool bulk_denied_ = false;                 ///< another program has it
+  bool bulk_lost_ = false;                   ///< the device is gone
+  bool bulk_taken_back_ = false;             ///< a transfer was, since the scope was to be released
+  int bulk_owed_ = 0;                        ///< transfers not under way because the reader is behind
+  std::list<std::uint32_t> bulk_under_way_;  ///< sequences of the transfers, the newest last
   std::mutex writes_mutex_;
   std::condition_variable writes_changed_;
   std::size_t writes_ = 0;

@@ -173,6 +173,23 @@ class Programs(unittest.TestCase):
             with inkwell.open(board.address) as second, self.assertRaises(inkwell.InUse):
                 second.set_force((0, 0, 0))
 
+    def test_the_scope_is_free_after_its_use(self):
+        with VirtualBoard(BUILD) as board, inkwell.open(board.address) as first, inkwell.open(board.address) as second:
+            for arm in first, second:
+                self.assertEqual(len(arm.capture("supply_V", duration_s=0.05)), 1000)
+            first.select_signals("supply_V")
+            with self.assertRaisesRegex(inkwell.InUse, "scope is in use"):
+                second.capture("supply_V", duration_s=0.05)
+
+    def test_samples_that_stop_midway_are_no_capture(self):
+        with VirtualBoard(BUILD) as board, inkwell.open(board.address) as arm:
+            arm.select_signals("supply_V")
+            board.let_pass(0.1)
+            board.call("pause")
+            with self.assertRaisesRegex(inkwell.TimedOut, r"^Of 100000 samples \d{3,5} came, then none for 0.2 s"):
+                arm._samples(100_000, 0.2, True)  # as capture() does
+            board.call("resume")
+
     def test_ctrl_c(self):
         program = subprocess.Popen(
             [sys.executable, "-c", textwrap.dedent("""

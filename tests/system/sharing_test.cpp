@@ -63,7 +63,9 @@ TEST_CASE("a program drives while another has the scope, the poses and the param
   CHECK(rig.device->parameters()[Parameter::wall_stiffness_N_per_m] == 444.0f);
 }
 
-TEST_CASE("the scope is one program's; when it goes the other may have it, and neither disturbs the other's poses") {
+TEST_CASE(
+    "the scope is one program's; when it goes or selects nothing the other may have it, and neither disturbs the "
+    "other's poses") {
   BoardRig rig;
   const auto endpoint = rig.board.find();
   REQUIRE(endpoint.has_value());
@@ -72,7 +74,8 @@ TEST_CASE("the scope is one program's; when it goes the other may have it, and n
   CHECK_THROWS_WITH_AS(rig.device->select_signals(scope_signals),
                        "The arm's scope is in use. Close the other program that records it or shows its signals.",
                        device::InUse);
-  first.reset();
+  SUBCASE("it goes") { first.reset(); }
+  SUBCASE("it selects nothing") { first->select_signals({}); }
   rig.run(0.05);
   rig.device->select_signals(scope_signals);
   rig.run(0.05);

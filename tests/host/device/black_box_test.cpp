@@ -56,6 +56,7 @@ class KeepingTransport final : public device::Transport {
   std::size_t read_report(std::span<std::byte>, std::chrono::milliseconds) override { return 0; }
   void write_report(std::span<const std::byte>) override {}
   void claim_scope() override {}
+  void release_scope() override {}
   std::size_t read_bulk(std::span<std::byte>, std::chrono::milliseconds) override { return 0; }
   const device::Endpoint& endpoint() const override { return endpoint_; }
 

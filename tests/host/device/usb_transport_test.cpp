@@ -109,6 +109,26 @@ TEST_CASE("a scope that another program has claimed costs only the scope") {
   CHECK(usb.open_things == 0);
 }
 
+TEST_CASE("a scope that was given back is another program's to claim, and may be had again") {
+  FakeUsb usb;
+  auto& arm = usb.add_arm("A");
+  {
+    const auto transport = device::open_transport(arm.endpoint());
+    std::array<std::byte, 200> buffer{};
+    for (int times = 1; times < 3; ++times) {
+      transport->claim_scope();
+      usb.send_bulk(arm, bulk_number(times));
+      REQUIRE(transport->read_bulk(buffer, 5s) == 100);
+      CHECK(std::to_integer<int>(buffer[0]) == times);
+      transport->release_scope();
+      CHECK(arm.claimed.empty());
+      CHECK(usb.endpoints_under_way(arm).empty());
+      CHECK(transport->read_bulk(buffer, 1ms) == 0);
+    }
+  }
+  CHECK(usb.open_things == 0);
+}
+
 TEST_CASE("a session goes on without the scope while another program has it, says so, and asks again") {
   FakeUsb usb;
   auto& arm = usb.add_arm("A");

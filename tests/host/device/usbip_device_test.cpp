@@ -432,6 +432,40 @@ TEST_CASE("a reader who stops reading the scope says so by taking a transfer bac
   CHECK(server.transfers_taken_back() == 1);
 }
 
+TEST_CASE("who selects no signals any more has given the scope back, and may have it again") {
+  FakeUsbipServer server;
+  const auto arm = device::Device::open(server.endpoint());
+  constexpr std::size_t under_way = 21;
+  const std::vector<protocol::Signal> signals{protocol::Signal::force_N};
+  arm->select_signals(signals);
+  REQUIRE(eventually([&] { return server.waiting_transfers(2) == under_way; }));
+  arm->select_signals({});
+  CHECK(server.waiting_transfers(2) == 0);
+  CHECK(server.transfers_taken_back() == under_way);
+  server.send(2, scope_frame(1, 1, 1.0f));
+  const auto token = arm->select_signals(signals);
+  server.send(2, scope_frame(token, 5, 2.5f));
+  CHECK(arm->read_scope(60s)->first_period == 5);
+  CHECK(eventually([&] { return server.waiting_transfers(2) == under_way; }));
+}
+
+TEST_CASE("the scope is given back by a transfer that is taken back, also where all had ended") {
+  FakeUsbipServer server;
+  const auto transport = device::open_transport(server.endpoint());
+  transport->release_scope();  // which it does not have
+  transport->claim_scope();
+  constexpr std::size_t kept = 682, under_way = 21;
+  for (std::size_t i = 0; i < kept; ++i) server.send(2, Bytes(4));
+  REQUIRE(eventually([&] { return server.transfers_taken_back() == 1; }));
+  for (std::size_t i = 0; i < under_way - 2; ++i) server.send(2, Bytes(4));
+  REQUIRE(eventually([&] { return server.waiting_transfers(2) == 0; }));
+  transport->release_scope();
+  CHECK(server.transfers_taken_back() == 2);
+  CHECK(server.waiting_transfers(2) == 0);
+  server.hang_up();
+  transport->release_scope();
+}
+
 TEST_CASE("a connection that breaks is told as Disconnected, in every call") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());

@@ -25,6 +25,7 @@ class SilentTransport final : public device::Transport {
   void set_feature(std::span<const std::byte>) override {}
   void write_report(std::span<const std::byte>) override {}
   void claim_scope() override {}
+  void release_scope() override {}
   const device::Endpoint& endpoint() const override { return endpoint_; }
 
  private:

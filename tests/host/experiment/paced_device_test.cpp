@@ -41,6 +41,7 @@ class SlowTransport final : public device::Transport {
   std::size_t get_feature(std::span<std::byte>) override { return 0; }
   void set_feature(std::span<const std::byte>) override {}
   void claim_scope() override {}
+  void release_scope() override {}
   std::size_t read_bulk(std::span<std::byte>, std::chrono::milliseconds) override { return 0; }
   const device::Endpoint& endpoint() const override { return endpoint_; }
 

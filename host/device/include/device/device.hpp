@@ -66,7 +66,7 @@ class Device {
   /// Belongs in the loop that reads poses.
   void keep_alive();
   std::uint8_t send(protocol::Command command, const protocol::TestPulse& pulse);
-  /// None stops the scope. Throws InUse if another program has it.
+  /// None stops the scope, and another program may have it. Throws InUse if another program has it.
   std::uint8_t select_signals(std::span<const protocol::Signal> signals);
 
   /// The force from now on, until the next one or its expiry. A sign of life. Throws Error for one that the board would

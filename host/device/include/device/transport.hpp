@@ -43,6 +43,8 @@ class Transport {
   virtual void set_feature(std::span<const std::byte> report) = 0;
   /// Makes the scope's bulk stream this program's own; only one program can have it. Throws InUse if another has.
   virtual void claim_scope() = 0;
+  /// Another program may have the stream from now on. Nothing if it is not this program's.
+  virtual void release_scope() = 0;
   /// Waits for one bulk transfer of the scope; none come before it is claimed. Returns its length, 0 on time-out.
   /// Enough transfers are kept under way that a reader who is late by 100 ms loses nothing.
   virtual std::size_t read_bulk(std::span<std::byte> transfer, std::chrono::milliseconds timeout) = 0;

@@ -316,7 +316,8 @@ INKWELL_API size_t inkwell_signal_count(void);
 /* Row `index` of the table; NULL beyond its end. */
 INKWELL_API const inkwell_signal* inkwell_signal_at(size_t index);
 
-/* Streams these signals at every control period from now on; none stops it. Only one program can have the scope. */
+/* Streams these signals at every control period from now on; none stops it. Only one program can have the scope: from
+ * its first selection until it selects none. */
 INKWELL_API inkwell_result inkwell_select_signals(inkwell_arm* arm, const char* const* names, size_t count);
 
 /* Takes samples that have come: waits until there are some, then writes at most `capacity` rows of one value for each
