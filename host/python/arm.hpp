@@ -51,8 +51,8 @@ class Arm {
   void press_virtual_buttons(bool button_1, bool button_2);
 
   void select_signals(const std::vector<std::string>& names);
-  /// (values, periods, lost): at most `rows` rows of one value for each signal; with `fill` all of them, unless none
-  /// comes within the time.
+  /// (values, periods, lost): at most `rows` rows of one value for each signal, and none after a time-out; with `fill`
+  /// all of them, or TimedOut if none comes for so long.
   py::tuple read_scope(std::size_t rows, double timeout_s, bool fill);
   void start_recording(const std::string& path);
   /// (samples, lost)

@@ -51,6 +51,11 @@ py::tuple Arm::read_scope(std::size_t rows, double timeout_s, bool fill) {
       if (changed) raise(INKWELL_REFUSED, "Other signals were selected while their samples were read. Read again.");
       timed_out = error.matches(PyExc_TimeoutError);
       if (!timed_out) throw;
+      if (fill)
+        raise(INKWELL_TIMED_OUT,
+              py::str("Of {} samples {} came, then none for {:g} s. Reset the board, or let a paused "
+                      "virtual board run.")
+                  .format(rows, count, timeout_s));
     }
     if (!fill) break;
   }

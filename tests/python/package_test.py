@@ -16,6 +16,7 @@ import sys
 import tempfile
 import textwrap
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -118,6 +119,16 @@ class Reading(unittest.TestCase):
         self.assertAlmostEqual(samples.time_s[-1], samples.periods[-1] / 2e4 - samples.periods[0] / 2e4)
         with self.assertRaises(KeyError):
             samples["force_x_N"]
+        for wrong_s in -1, 0, math.nan, math.inf, "long", None:
+            with self.assertRaisesRegex(inkwell.BadArgument, "duration is .*Give seconds, more than 0"):
+                self.arm.capture("supply_V", duration_s=wrong_s)
+        with self.assertRaisesRegex(inkwell.BadArgument, "No signal is named"):
+            self.arm.capture(duration_s=1)
+        with mock.patch.object(self.arm, "_samples", side_effect=KeyboardInterrupt), \
+                self.assertRaises(KeyboardInterrupt):
+            self.arm.capture("supply_V", duration_s=1)
+        with self.assertRaisesRegex(inkwell.Refused, "No signals are selected"):
+            self.arm.read_scope()
         self.arm.select_signals("supply_V")
         some = self.arm.read_scope(rows=37)
         self.assertTrue(0 < len(some) <= 37)

@@ -2,6 +2,7 @@
 
 import atexit
 import contextlib
+import math
 import os
 import time
 import types
@@ -216,12 +217,21 @@ class Arm:
         return self._samples(rows, timeout_s, False)
 
     def capture(self, *names: str, duration_s: float, timeout_s: float = 10.0) -> Samples:
-        """Selects these signals and takes samples for `duration_s` of board time. Raises TimedOut if none comes for
-        `timeout_s`."""
+        """Selects these signals, takes samples for `duration_s` of board time, all that there are, and selects none
+        again. Raises TimedOut if none comes for `timeout_s`."""
+        try:
+            is_a_time = math.isfinite(duration_s) and duration_s > 0
+        except TypeError:
+            is_a_time = False
+        if not is_a_time:
+            raise errors.BadArgument(f"The duration is {duration_s!r}. Give seconds, more than 0.")
+        if not names:
+            raise errors.BadArgument("No signal is named. Give one at least; inkwell.signals() lists them.")
         self.select_signals(*names)
-        samples = self._samples(round(duration_s * self._servo_rate_Hz), timeout_s, True)
-        self.select_signals()
-        return samples
+        try:
+            return self._samples(max(1, round(duration_s * self._servo_rate_Hz)), timeout_s, True)
+        finally:
+            self.select_signals()
 
     def _samples(self, rows: int, timeout_s: float, fill: bool) -> Samples:
         signals = self._signals
