@@ -112,8 +112,8 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
     loaded = device::load_parameters(file);
   }
   for (const auto& name : loaded.unknown)
-    fmt::print(stderr, "inkwell: {} is not a parameter of this version and is passed over; the nearest is {}.\n", name,
-               device::nearest_parameter_name(name));
+    fmt::print(stderr, "inkwell: {} is not a parameter of this version and is passed over.{}\n", name,
+               device::parameter_suggestion(name));
   if (loaded.changes.empty())
     throw device::Error(fmt::format("{} holds no parameter that this version knows. Nothing was sent.", file));
   if (!connection) connection = connect(options);

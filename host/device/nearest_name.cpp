@@ -1,5 +1,6 @@
 #include <device/nearest_name.hpp>
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -18,6 +19,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
+}
+
+bool is_near(std::string_view name, std::string_view typed) {
+  constexpr std::size_t telling = 3;  // a letter or two are in many names
+  if (typed.size() < telling) return false;
+  return name.find(typed) != std::string_view::npos || edit_distance(typed, name) <= typed.size() / 3 ||
+         edit_distance(typed, name.substr(0, typed.size())) <= typed.size() / 4;
 }
 
 }  // namespace inkwell::device

@@ -34,14 +34,12 @@ std::string format_value(Parameter parameter, float value) {
   return text;
 }
 
-std::string_view nearest_parameter_name(std::string_view name) {
-  return nearest_name(protocol::known_parameters(), name);
-}
+std::string parameter_suggestion(std::string_view name) { return suggestion(protocol::known_parameters(), name); }
 
 Parameter parameter_named(std::string_view name) {
   if (const auto parameter = protocol::find_parameter(name)) return *parameter;
-  throw UnknownName(fmt::format("There is no parameter {}. Did you mean {}? `inkwell parameters` lists them all.", name,
-                                nearest_parameter_name(name)));
+  throw UnknownName(fmt::format("There is no parameter {}.{} `inkwell parameters` lists them all.", name,
+                                parameter_suggestion(name)));
 }
 
 void check_value(Parameter parameter, float value) {

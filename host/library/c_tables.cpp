@@ -18,14 +18,14 @@ namespace {
 protocol::Parameter parameter_named(const char* name) {
   if (const auto parameter = protocol::find_parameter(std::string_view(required(name, "A parameter's name"))))
     return *parameter;
-  throw BadArgument(fmt::format("There is no parameter {}. Did you mean {}?", name,
-                                device::nearest_name(protocol::known_parameters(), name)));
+  throw BadArgument(fmt::format("There is no parameter {}.{} `inkwell parameters` lists them all.", name,
+                                device::suggestion(protocol::known_parameters(), name)));
 }
 
 protocol::Signal signal_named(const char* name) {
   if (const auto signal = protocol::find_signal(std::string_view(required(name, "A signal's name")))) return *signal;
-  throw BadArgument(fmt::format("There is no signal {}. Did you mean {}?", name,
-                                device::nearest_name(protocol::known_signals(), name)));
+  throw BadArgument(fmt::format("There is no signal {}.{} `inkwell signals` lists them all.", name,
+                                device::suggestion(protocol::known_signals(), name)));
 }
 
 void require_at_most(std::size_t maximum, std::size_t count, const char* what) {

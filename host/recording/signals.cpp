@@ -55,9 +55,8 @@ std::vector<Signal> parse_signals(std::string_view names) {
   for (const auto name : split(names)) {
     const auto signal = protocol::find_signal(name);
     if (!signal)
-      throw device::UnknownName(
-          fmt::format("There is no signal `{}`. Did you mean {}? `inkwell signals` lists them all.", name,
-                      device::nearest_name(protocol::known_signals(), name)));
+      throw device::UnknownName(fmt::format("There is no signal `{}`.{} `inkwell signals` lists them all.", name,
+                                            device::suggestion(protocol::known_signals(), name)));
     add_once(signals, *signal);
   }
   if (signals.size() > protocol::scope_signals_maximum)
@@ -80,8 +79,8 @@ std::vector<Quantity> parse_quantities(std::string_view names) {
     else if (const auto simulated = protocol::find_simulated_quantity(name))
       add_once(quantities, Quantity(*simulated));
     else
-      throw device::Error(
-          fmt::format("There is no signal `{}`. Did you mean {}?", name, device::nearest_name(known, name)));
+      throw device::Error(fmt::format("There is no signal `{}`.{} `inkwell signals` lists them all.", name,
+                                      device::suggestion(known, name)));
   }
   return quantities;
 }

@@ -112,7 +112,7 @@ class Driving(unittest.TestCase):
             with self.assertRaisesRegex(inkwell.BadArgument, "not a finite number"):
                 self.arm.set_force((0, wrong, 0))
         for wrong in (1, 2), "xyz", None:
-            with self.assertRaises(TypeError):
+            with self.assertRaisesRegex(TypeError, "^What was given is .*Give three numbers, the force in N"):
                 self.arm.set_force(wrong)
 
     def test_forces_of_two_threads_faster_than_the_usb(self):
@@ -149,6 +149,9 @@ class Driving(unittest.TestCase):
                 self.arm.place_shapes(*wrong)
         with self.assertRaises(TypeError):
             self.arm.place_shapes("a plane")
+        for wrong in inkwell.Plane((0, 0), (0, 0, 1)), inkwell.Sphere(FREE_POINT_M, "wide"):
+            with self.assertRaisesRegex(TypeError, "A value of a shape has a wrong type"):
+                self.arm.place_shapes(wrong)
         self.assertTrue(self.arm.wait_for_pose(10).feels_shapes)
         self.arm.place_shapes()
         wait_until(self.arm, lambda pose: not pose.feels_shapes)

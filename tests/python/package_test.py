@@ -104,6 +104,27 @@ class Reading(unittest.TestCase):
         with self.assertRaisesRegex(inkwell.BadArgument, "Did you mean wall_stiffness_N_per_m?"):
             self.arm.parameters.set(wall_stifness_N_per_m=1)
         self.assertFalse(hasattr(self.arm.parameters, "_repr_html_"))
+        with self.assertRaises(AttributeError) as raised:
+            self.arm.parameters.nope
+        self.assertEqual(str(raised.exception), "There is no parameter nope. `inkwell parameters` lists them all.")
+
+    def test_what_is_of_a_wrong_type_is_told_in_a_sentence(self):
+        arm = self.arm
+        for attempt, words in ((lambda: inkwell.open(5), "is 5. Give the address as text"),
+                               (lambda: arm.servo(1), "1 can not be called. Give a function"),
+                               (lambda: arm.set_force("abc"), "is 'abc'. Give three numbers"),
+                               (lambda: arm.set_force_mode(3), "inkwell.ForceMode"),
+                               (lambda: arm.wait_for_pose("long"), "is 'long'. Give seconds"),
+                               (lambda: arm.enable_force(None), "is None. Give seconds"),
+                               (lambda: arm.select_signals(7), "names of signals"),
+                               (lambda: arm.read_scope(rows=-1), "how many rows"),
+                               (lambda: arm.virtual_hand.move((0, 0)), "three numbers, the place in m"),
+                               (lambda: arm.virtual_hand.press("a"), "True or False"),
+                               (lambda: arm.parameters.set(force_limit_N=()), "force_limit_N is given as ()")):
+            with self.assertRaises(TypeError) as raised:
+                attempt()
+            self.assertIn(words, str(raised.exception))
+            self.assertNotIn("incompatible", str(raised.exception))
 
     def test_scope(self):
         with self.assertRaises(inkwell.BadArgument):

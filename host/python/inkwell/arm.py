@@ -8,7 +8,7 @@ import time
 import types
 import weakref
 from collections.abc import Callable, Iterator, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +22,19 @@ from .shapes import Plane, Sphere
 Vector = Sequence[float] | npt.NDArray[np.floating]
 """Three numbers along the axes of the workspace."""
 Servo = TypeVar("Servo", bound=Callable[[Pose], Vector | None])
+
+
+def _call(function: Callable[..., Any], *arguments: object, wants: str) -> Any:
+    """Calls the library, and says in a sentence what it can not take."""
+    try:
+        return function(*arguments)
+    except TypeError:
+        given = ", ".join(repr(each) for each in arguments)
+        raise TypeError(f"What was given is {given}. Give {wants}.") from None
+
+
+_SECONDS = "seconds, a number"
+_FORCE = "three numbers, the force in N along x, y and z"
 
 _open: "weakref.WeakSet[Arm]" = weakref.WeakSet()
 # An arm that drives stays open, even if no name is left for it.
@@ -45,7 +58,8 @@ class VirtualHand:
     def move(self, target_m: Vector, stiffness_N_per_m: float = 300.0) -> None:
         """Takes the stylus out of the inkwell and pulls the probe to `target_m` (m) as a spring does, with a hundredth
         of its stiffness as damping."""
-        self._arm.move_virtual_hand(target_m, stiffness_N_per_m)
+        _call(self._arm.move_virtual_hand, target_m, stiffness_N_per_m,
+              wants="three numbers, the place in m along x, y and z, and the stiffness in N/m")
 
     def release(self) -> None:
         """Lets go, so that the arm falls as a real one would."""
@@ -53,7 +67,7 @@ class VirtualHand:
 
     def press(self, button_1: bool = False, button_2: bool = False) -> None:
         """Presses the buttons that are True and lets go of the others."""
-        self._arm.press_virtual_buttons(button_1, button_2)
+        _call(self._arm.press_virtual_buttons, button_1, button_2, wants="True or False for each button")
 
 
 class Recording:
@@ -76,7 +90,7 @@ class Arm:
     """
 
     def __init__(self, address: str | None = None) -> None:
-        self._native = _native.Arm(address or "")
+        self._native = _call(_native.Arm, "" if address is None else address, wants="the address as text, or None")
         self._signals: tuple[str, ...] = ()
         self._servo_rate_Hz = self._native.information().servo_rate_Hz
         self.parameters = Parameters(self._native)
@@ -118,7 +132,7 @@ class Arm:
 
     def wait_for_pose(self, timeout_s: float = 10.0) -> Pose:
         """The next pose that this thread has not seen. Raises TimedOut."""
-        return self._native.wait_for_pose(timeout_s)
+        return _call(self._native.wait_for_pose, timeout_s, wants=_SECONDS)
 
     def poses(self, duration_s: float = float("inf")) -> Iterator[Pose]:
         """Each next pose, for so much board time; those that come while the loop's body runs are passed over."""
@@ -132,7 +146,7 @@ class Arm:
     def enable_force(self, timeout_s: float = 5.0) -> None:
         """Switches the force on: here the program says that a hand may feel it. Waits for the device, which has to know
         where it is. Raises Refused with the remedy."""
-        self._native.enable_force(timeout_s)
+        _call(self._native.enable_force, timeout_s, wants=_SECONDS)
 
     def disable_force(self) -> None:
         """Lets the force fall to nothing within soft_landing_s."""
@@ -148,12 +162,12 @@ class Arm:
 
     def set_force_mode(self, mode: ForceMode) -> None:
         """How this program's forces and the board's walls go together; INSTEAD_OF_WALLS unless it is set."""
-        self._native.set_force_mode(mode)
+        _call(self._native.set_force_mode, mode, wants="one of inkwell.ForceMode")
 
     def set_force(self, force_N: Vector) -> None:
         """The force on the hand (N; shape (3,)) until the next call. Without another call it fades after
         program_force_expiry_s. Raises InUse if another program drives the arm. In a servo, return the force instead."""
-        self._native.set_force(force_N)
+        _call(self._native.set_force, force_N, wants=_FORCE)
 
     def servo(self, function: Servo) -> Servo:
         """Decorates the function that is called at each pose, a thousand times a second, and returns the force on the
@@ -166,6 +180,8 @@ class Arm:
         It is called in a thread of its own until stop_servo() or the end of `with`, which raise what it raised. It
         shares the interpreter with the other threads, so let it be short.
         """
+        if not callable(function):
+            raise TypeError(f"{function!r} can not be called. Give a function that takes a pose and returns a force.")
         self._native.start_servo(function)
         _driving.add(self)
         return function
@@ -202,13 +218,17 @@ class Arm:
             raise TypeError("A shape is an inkwell.Plane or an inkwell.Sphere.")
         if len(spheres) > 1:
             raise errors.BadArgument(f"{len(spheres)} spheres are too many. Give the nearest.")
-        self._native.place_shapes(planes, spheres[0] if spheres else None)
+        try:
+            self._native.place_shapes(planes, spheres[0] if spheres else None)
+        except RuntimeError:  # of a value that can not be converted
+            raise TypeError("A value of a shape has a wrong type. Give three numbers for a point, a normal or a centre, "
+                            "and one for each of the others.") from None
 
     # ---- scope and recording ---------------------------------------------------------------------------------
 
     def select_signals(self, *names: str) -> None:
         """Streams these signals (inkwell.signals() lists them) at every control period from now on; none stops it."""
-        self._native.select_signals(names)
+        _call(self._native.select_signals, names, wants="names of signals as text, which inkwell.signals() lists")
         self._signals = names
 
     def read_scope(self, rows: int = 4096, timeout_s: float = 1.0) -> Samples:
@@ -235,7 +255,8 @@ class Arm:
 
     def _samples(self, rows: int, timeout_s: float, fill: bool) -> Samples:
         signals = self._signals
-        values, periods, lost = self._native.read_scope(rows, timeout_s, fill)
+        values, periods, lost = _call(self._native.read_scope, rows, timeout_s, fill,
+                                      wants="how many rows, from 0 on, and the time-out in seconds")
         return Samples(signals, values, periods, lost, self._servo_rate_Hz)
 
     @contextlib.contextmanager

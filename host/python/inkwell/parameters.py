@@ -26,6 +26,13 @@ class Parameter(NamedTuple):
 TABLE = {row[0]: Parameter(*row) for row in _native.parameters()}
 
 
+def _number(name: str, value: object) -> float:
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{name} is given as {value!r}. Give a number.") from None
+
+
 class Parameters:
     """The parameters of an arm. Reading one tells its value, setting one sends it to the board:
 
@@ -42,7 +49,7 @@ class Parameters:
 
     def set(self, **values: float) -> None:
         """Sets several: all take effect at one control period, or none does."""
-        self._arm.set_parameters(list(values.items()))
+        self._arm.set_parameters([(name, _number(name, value)) for name, value in values.items()])
 
     def __iter__(self) -> Iterator[str]:
         return (row[0] for row in _native.parameters())
@@ -61,7 +68,7 @@ class Parameters:
             super().__setattr__(name, value)
         else:
             getattr(self, name)  # which knows whether there is such a parameter
-            self._arm.set_parameters([(name, float(value))])
+            self._arm.set_parameters([(name, _number(name, value))])
 
     def __repr__(self) -> str:
         known = (Parameter(*row) for row in _native.parameters())
@@ -74,7 +81,7 @@ def _property(row: Parameter) -> property:
         return self._arm.parameter(row.name)
 
     def write(self: Parameters, value: float) -> None:
-        self._arm.set_parameters([(row.name, float(value))])
+        self._arm.set_parameters([(row.name, _number(row.name, value))])
 
     return property(read, write, doc=row.describe())
 

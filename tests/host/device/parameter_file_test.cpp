@@ -105,11 +105,17 @@ TEST_CASE("changes come in the table's order, in whichever order a file has them
   CHECK(std::is_sorted(file.changes.begin(), file.changes.end()));
 }
 
-TEST_CASE("a mistyped name gets the nearest one suggested") {
-  CHECK(device::nearest_parameter_name("wall_stifness_N_per_m") == "wall_stiffness_N_per_m");
-  CHECK(device::nearest_parameter_name("stiffness") == "wall_stiffness_N_per_m");  // not "frame"
-  CHECK(device::nearest_parameter_name("box_minimum_x") == "box_minimum_x_m");
+TEST_CASE("a mistyped name gets the nearest one suggested, and what is like none gets none") {
+  const std::string stiffness = " Did you mean wall_stiffness_N_per_m?";
+  CHECK(device::parameter_suggestion("wall_stifness_N_per_m") == stiffness);
+  CHECK(device::parameter_suggestion("stiffness") == stiffness);  // not "frame"
+  CHECK(device::parameter_suggestion("wall_stifness") == stiffness);
+  CHECK(device::parameter_suggestion("box_minimum_x") == " Did you mean box_minimum_x_m?");
+  for (const char* const like_none : {"nope", "x", "", "an altogether different thing"})
+    CHECK(device::parameter_suggestion(like_none) == "");
   CHECK(contains(message_of<device::Error>([] { device::parameter_named("force_limit"); }), "force_limit_N"));
+  CHECK(message_of<device::Error>([] { device::parameter_named("nope"); }) ==
+        "There is no parameter nope. `inkwell parameters` lists them all.");
 }
 
 TEST_CASE("NAME=VALUE is read, and refused with what would be right") {

@@ -1,8 +1,8 @@
 // Finds what was probably meant by a name that is misspelt.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -19,17 +19,25 @@ class UnknownName : public Error {
 /// Levenshtein's distance: how many characters must be inserted, removed or exchanged.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The name in a table of rows with a `name` that was probably meant: one that has the typed text in it, else one that
-/// takes few edits. The table must not be empty.
+/// Whether `name` was probably meant by the typed text: it has the text in it, or takes few edits, be it as a whole or
+/// as far as the text goes.
+bool is_near(std::string_view name, std::string_view typed);
+
+/// " Did you mean NAME?" with the name in a table of rows with a `name` that was probably meant: one that has the typed
+/// text in it, else one that takes few edits. Empty if none is near.
 template <class Table>
-std::string_view nearest_name(const Table& table, std::string_view name) {
-  const auto distance = [name](const auto& row) {
-    const bool holds_it = !name.empty() && std::string_view(row.name).find(name) != std::string_view::npos;
-    return std::pair(!holds_it, edit_distance(name, row.name));
-  };
-  return std::min_element(std::begin(table), std::end(table),
-                          [&](const auto& a, const auto& b) { return distance(a) < distance(b); })
-      ->name;
+std::string suggestion(const Table& table, std::string_view typed) {
+  const std::string_view* nearest = nullptr;
+  std::pair<bool, std::size_t> shortest;
+  for (const auto& row : table) {
+    const std::string_view& name = row.name;
+    if (!is_near(name, typed)) continue;
+    const std::pair distance(name.find(typed) == std::string_view::npos, edit_distance(typed, name));
+    if (nearest != nullptr && shortest <= distance) continue;
+    nearest = &name;
+    shortest = distance;
+  }
+  return nearest == nullptr ? "" : " Did you mean " + std::string(*nearest) + "?";
 }
 
 }  // namespace inkwell::device

@@ -44,10 +44,10 @@ std::optional<float> parse_number(std::string_view text);
 float parse_value(protocol::Parameter parameter, std::string_view number);
 /// "NAME=VALUE". Throws Error with the nearest name, or the range, if it cannot be meant.
 ParameterChange parse_change(std::string_view text);
-/// Throws Error with the nearest name if there is none of this name.
+/// Throws Error, with the nearest name if one is near, if there is none of this name.
 protocol::Parameter parameter_named(std::string_view name);
-/// The known name with the fewest edits, to be suggested.
-std::string_view nearest_parameter_name(std::string_view name);
+/// " Did you mean NAME?" with a known name that is near; empty if none is.
+std::string parameter_suggestion(std::string_view name);
 /// Throws Error that says the range if the value is not finite, outside it, or not whole where it must be.
 void check_value(protocol::Parameter parameter, float value);
 
