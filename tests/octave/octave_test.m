@@ -46,6 +46,13 @@ assert(size(samples), [2000 2]);
 assert(samples(:, 2), 18 * ones(2000, 1), 1);
 assert(time_s(end), (1999 + lost) / 20000, 1e-9);
 refused(@() inkwell_capture(arm, {'position_z_mm'}, 0.1), 'Did you mean position_z_m?');
+for wrong = {-1, 0, NaN, Inf, 'long', [1 2]}
+  refused(@() inkwell_capture(arm, {'position_x_m'}, wrong{1}), 'The duration is no time');
+end
+for wrong = {{}, '', 7}
+  refused(@() inkwell_capture(arm, wrong{1}, 1), 'No signal is named');
+end
+refused(@() inkwell_mex('read', arm, 1, 1), 'No signals are selected');
 
 % A force pulls the hand: between springs of 300 and 100 N/m, 20 mm apart.
 target_m = [0.02; 0; -0.03];
