@@ -187,6 +187,27 @@ TEST_CASE("forces without a servo: felt while they are renewed, bounded, refused
   CHECK(inkwell_set_force_mode(virtual_arm.arm, static_cast<inkwell_force_mode>(7)) == INKWELL_BAD_ARGUMENT);
 }
 
+TEST_CASE("a limit that holds the force back is told while it does") {
+  VirtualArm virtual_arm;
+  virtual_arm.make_active();
+  const auto push_until = [&](double force_N, auto condition) {
+    return virtual_arm.wait_until([&](const auto& pose) {
+      const double to_the_right_N[3]{force_N, 0, 0};
+      REQUIRE(inkwell_set_force(virtual_arm.arm, to_the_right_N) == INKWELL_OK);
+      return condition(pose);
+    });
+  };
+  push_until(100.0, [](const auto& pose) {
+    return (pose.limits & INKWELL_LIMIT_FORCE) != 0 && std::abs(pose.force_N[0] - 3.3) < 0.01;
+  });
+  push_until(0.5, [](const auto& pose) { return pose.limits == 0; });
+  const char* const name = "current_limit_1_A";
+  const double little_A = 0.02;
+  REQUIRE(inkwell_set_parameters(virtual_arm.arm, &name, &little_A, 1) == INKWELL_OK);
+  push_until(0.5, [](const auto& pose) { return pose.limits == INKWELL_LIMIT_CURRENT; });
+  push_until(0.0, [](const auto& pose) { return pose.limits == 0; });
+}
+
 TEST_CASE("a plane holds the probe up, and a set that is not sound changes nothing") {
   VirtualArm virtual_arm;
   virtual_arm.make_active();

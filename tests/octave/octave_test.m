@@ -76,6 +76,24 @@ assert(pose.force_N(1), 1.5, 0.2);
 assert(! pose.limited_by_force);
 assert(pose.state, 'active');
 
+% A limit that holds the force back is told.
+function push_until(arm, force_N, condition)
+  pose = inkwell_pose(arm);
+  begin_s = pose.time_s;
+  while ! condition(pose)
+    assert(pose.time_s < begin_s + 10, 'no limit was told: %s', func2str(condition));
+    inkwell_force(arm, [force_N 0 0]);
+    pose = inkwell_pose(arm);
+  end
+end
+push_until(arm, 100, @(pose) pose.limited_by_force);
+push_until(arm, 0.5, @(pose) ! pose.limited_by_force && ! pose.limited_by_current);
+inkwell_parameters(arm, 'current_limit_1_A', 0.02);
+push_until(arm, 0.5, @(pose) pose.limited_by_current && ! pose.limited_by_force);
+push_until(arm, 0, @(pose) ! pose.limited_by_current);
+table = inkwell_parameters();
+inkwell_parameters(arm, 'current_limit_1_A', table(strcmp({table.name}, 'current_limit_1_A')).default_value);
+
 % A recording of the command line is loaded whole, and its marks are text.
 [programs, ~] = fileparts(fileparts(which('inkwell_mex')));
 file = [tempname() '.h5'];

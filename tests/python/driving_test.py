@@ -115,6 +115,21 @@ class Driving(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "^What was given is .*Give three numbers, the force in N"):
                 self.arm.set_force(wrong)
 
+    def test_a_limit_that_holds_the_force_back_is_told(self):
+        make_active(self.arm)
+
+        def push_until(force_N, condition):
+            def pushed(pose):
+                self.arm.set_force((force_N, 0, 0))
+                return condition(pose)
+            wait_until(self.arm, pushed)
+
+        push_until(100, lambda pose: pose.limited_by_force)
+        push_until(0.5, lambda pose: not pose.limited_by_force and not pose.limited_by_current)
+        self.arm.parameters.current_limit_1_A = 0.02
+        push_until(0.5, lambda pose: pose.limited_by_current and not pose.limited_by_force)
+        push_until(0, lambda pose: not pose.limited_by_current)
+
     def test_forces_of_two_threads_faster_than_the_usb(self):
         make_active(self.arm)
         before = self.arm.information
