@@ -81,10 +81,15 @@ ErrorInfo take_error() {
   return newest;
 }
 
-void forget_errors_of(Handle device) {
+bool forget_errors_of(Handle device, ErrorCode looked_for) {
   auto& self = stack();
   const std::lock_guard lock(self.mutex);
-  std::erase_if(self.errors, [device](const ErrorInfo& error) { return error.device == device; });
+  bool was_there = false;
+  std::erase_if(self.errors, [&](const ErrorInfo& error) {
+    was_there = was_there || (error.device == device && error.code == looked_for);
+    return error.device == device;
+  });
+  return was_there;
 }
 
 const char* error_text(unsigned code) {

@@ -14,8 +14,8 @@ void raise(ErrorCode code, Handle device, const std::string& sentence = {}, int 
 /// Takes the newest off; `success` when there is none.
 ErrorInfo take_error();
 
-/// Takes those of one device off that were raised before.
-void forget_errors_of(Handle device);
+/// Takes those of one device off that were raised before, and tells whether `looked_for` was among them.
+bool forget_errors_of(Handle device, ErrorCode looked_for = success);
 
 /// "HD_DEVICE_FAULT: ..." with the newest sentence that was raised under this code. Never NULL; stays valid.
 const char* error_text(unsigned code);

@@ -82,6 +82,8 @@ void hdEndFrame(HdHandle handle) {
 HdErrorInfo hdGetError(void) { return take_error(); }
 const char* hdGetErrorString(unsigned code) { return error_text(code); }
 
+HdBoolean hdInkwellForgetErrors(HdHandle device) { return forget_errors_of(device, comm_error) ? 1 : 0; }
+
 // ---- scheduler ---------------------------------------------------------------------------------------------
 
 void hdStartScheduler(void) {

@@ -54,4 +54,8 @@ INKWELL_HD void hdUpdateCalibrationMessage(HdEnum style);
 
 INKWELL_HD HdBoolean hdDeploymentLicense(const char* vendor, const char* application, const char* password);
 INKWELL_HD HdBoolean hdScaleGimbalAngles(double x, double y, double z, double transform[16]);
+
+/// Not of HDAPI, but for libhdPhantom.so, whose frames the program knows nothing of: takes the errors of one device off
+/// the stack. 1 if the loss of its link was among them.
+INKWELL_HD HdBoolean hdInkwellForgetErrors(HdHandle device);
 }

@@ -89,10 +89,10 @@ unsigned tick(void*) {
   }
   for (auto* phantom : open) frame(*phantom);
   const std::lock_guard lock(servo().mutex);
-  for (auto* phantom : open) ++phantom->frames;
-  for (auto error = hdGetError(); error.code != success; error = hdGetError())
-    for (auto* phantom : open)
-      if (error.code == comm_error && error.device == phantom->handle) phantom->is_lost = true;
+  for (auto* phantom : open) {
+    ++phantom->frames;
+    if (hdInkwellForgetErrors(phantom->handle) != 0) phantom->is_lost = true;
+  }
   servo().ticked.notify_all();
   return callback_continue;
 }

@@ -45,6 +45,7 @@ TEST_CASE("a program in CHAI3D's manner gets an Omni in its own axes, paced and 
   CHECK(told(held.out, "open") == "-1 0");
   CHECK(told(held.out, "refused") == "0");
   CHECK(told(held.out, "buttons") == "0");
+  CHECK(told(held.out, "error") == "0x104 77");  // which was not libhdPhantom's to take
   CHECK(told(held.out, "close") == "0");
   CHECK(told(held.out, "late") == "-1");
   const Place place(told(held.out, "position")), turn(told(held.out, "rotation"));

@@ -1,13 +1,17 @@
 // Looks for a device and drives it as CHAI3D 3 does: both libraries by dlopen(), every symbol, and in its order.
-// Tells what it saw, a line each; with an argument it asks for that many newtons to the right.
+// Makes a mistake of its own beside it. Tells what it saw, a line each; with an argument it asks for that many newtons
+// to the right.
 #include <dlfcn.h>
 
 #include <cstdio>
 #include <cstdlib>
 
+#include "../hdapi.hpp"
+
 namespace {
 
 void* library = nullptr;
+constexpr HHD no_device = 77;
 
 template <class Function>
 Function* symbol(const char* name) {
@@ -57,6 +61,7 @@ int main(int count, char** arguments) {
   const int has_radius = get_radius(0, &radius), has_type = get_type(0, type);
   std::printf("radius %d %.4f\ntype %d %s\n", has_radius, radius, has_type, type);
   std::printf("open %d %d\n", open(devices), open(0));
+  symbol<decltype(hdEndFrame)>("hdEndFrame")(no_device);  // an error of the program's own
   const double force = count > 1 ? std::atof(arguments[1]) : 0.0, none = 0.0;
   int refused = 0;
   for (int i = 0; i < 1000; ++i) refused += set_force_and_torque(0, &none, &force, &none, &none, &none, &none) != 0;
@@ -66,6 +71,8 @@ int main(int count, char** arguments) {
   const int turns = get_rotation(0, r, r + 1, r + 2, r + 3, r + 4, r + 5, r + 6, r + 7, r + 8);
   std::printf("rotation %d %.3f %.3f %.3f\n", turns, r[0], r[4], r[8]);
   std::printf("buttons %d\n", get_buttons(0));
+  const auto error = symbol<decltype(hdGetError)>("hdGetError")();
+  std::printf("error %#x %u\n", error.errorCode, error.hHD);
   std::printf("close %d\n", close(0));
   stop_servo();
   std::printf("late %d\n", get_position(0, &x, &y, &z));
