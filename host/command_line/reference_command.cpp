@@ -14,6 +14,7 @@
 #include <protocol/usb_identity.hpp>
 
 #include "help.hpp"
+#include "wire_reference.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -54,9 +55,8 @@ constexpr ReportRow reports[] = {
 
 void print_reports() {
   fmt::print(
-      "## Reports of the HID interface\n\nLittle-endian and without gaps; their fields are in "
-      "`protocol/include/protocol/reports.hpp`. The scope's frames go over interface {}, endpoint 0x{:02x}: "
-      "`protocol/scope.hpp`.\n\n| id | report | way | bytes | what it is |\n| --- | --- | --- | --- | --- |\n",
+      "## Reports of the HID interface\n\nTheir fields, and those of the scope's frames, which go over interface {}, "
+      "endpoint 0x{:02x}, are below.\n\n| id | report | way | bytes | what it is |\n| --- | --- | --- | --- | --- |\n",
       protocol::usb::scope_interface, protocol::usb::scope_in_endpoint);
   for (const auto& row : reports)
     fmt::print("| 0x{:02x} | {} | {} | {} | {} |\n", static_cast<unsigned>(row.id), row.name, row.way, row.bytes,
@@ -139,16 +139,18 @@ void print_tables() {
     fmt::print("| {} | `{}` | {} | {:g} to {:g} | {:g} | {} |\n", row.id, row.name, row.unit, row.minimum, row.maximum,
                row.default_value, row.help);
   fmt::print(
-      "\n## Signals of the scope\n\n| id | signal | unit | bytes | what it is |\n| --- | --- | --- | --- | --- |\n");
+      "\n## Signals of the scope\n\n| id | signal | unit | on the wire | what it is |\n| --- | --- | --- | --- | --- "
+      "|\n");
   for (const auto& row : protocol::signal_table)
-    fmt::print("| {} | `{}` | {} | {} | {} |\n", row.id, row.name, row.unit, protocol::wire_size(row.wire), row.help);
+    fmt::print("| {} | `{}` | {} | {} | {} |\n", row.id, row.name, row.unit, name_of(row.wire), row.help);
 }
 
 }  // namespace
 
 void add_reference_command(const Place& place) {
-  auto* command = place.program.add_subcommand(
-      "reference", "The protocol as Markdown: reports, supervision, codes, parameters and signals; needs no device");
+  auto* command = place.program.add_subcommand("reference",
+                                               "The protocol as Markdown: reports and their fields, supervision, "
+                                               "codes, parameters and signals; needs no device");
   add_examples(*command, "inkwell reference > protocol.md");
   command->callback([place] {
     place.action = [] {
@@ -157,6 +159,7 @@ void add_reference_command(const Place& place) {
           "and companion share.\n\n",
           protocol::protocol_version, protocol::usb::vendor_id, protocol::usb::product_id);
       print_reports();
+      print_wire();
       print_supervision();
       print_codes();
       print_tables();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
 #include <protocol/black_box.hpp>
+#include <protocol/scope.hpp>
 #include <recording/recording.hpp>
 
 #include <stepped_board.hpp>
@@ -142,6 +144,35 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
   CHECK(rig.run({"force", "on", "--seconds", "0.1"}).exit_code == 0);
   std::filesystem::remove(file);
   check_none();
+}
+
+TEST_CASE("the reference alone tells where each field of what goes over the wire is, and what it means") {
+  const auto reference = run_program("inkwell", {"reference"}).out;
+  const auto row_of = [&](const std::string& structure, const std::string& field) {
+    const auto section = reference.find("\n### " + structure + ", ");
+    REQUIRE(section != std::string::npos);
+    const auto name = reference.find(" | `" + field + "` | ", section);
+    REQUIRE(name < reference.find("\n### ", section + 1));
+    const auto begin = reference.rfind('\n', name) + 1;
+    return reference.substr(begin, reference.find('\n', begin) - begin);
+  };
+  using protocol::PoseReport, protocol::ScopeFrameHeader, protocol::CommandReport;
+  CHECK(row_of("PoseReport", "force_N") ==
+        fmt::format("| {} | 12 | float[3] | `force_N` |  |", offsetof(PoseReport, force_N)));
+  CHECK(row_of("PoseReport", "limits") ==
+        fmt::format("| {} | 1 | bits 6 to 7 | `limits` | bits of Limit |", offsetof(PoseReport, servo_load) - 1));
+  CHECK(row_of("CommandReport", "report_id") == "| 0 | 1 | ReportId | `report_id` | always `ReportId::command` |");
+  for (const std::string member : {"selection", "test"})
+    CHECK(row_of("CommandReport", member).starts_with(fmt::format("| {} | ", offsetof(CommandReport, test))));
+  CHECK(row_of("ScopeFrameHeader", "first_period") ==
+        fmt::format("| {} | 4 | uint32 | `first_period` | control period of the first sample, as "
+                    "PoseReport::time_periods |",
+                    offsetof(ScopeFrameHeader, first_period)));
+  for (const std::string line : {"| 4 | select_signals | starts the scope with these signals; none stops it |",
+                                 "| 1 | current_int16 | 2 bytes, in steps of `current_step_A` |",
+                                 "    A frame is one bulk transfer: a header and"})
+    CHECK_MESSAGE(reference.find("\n" + line) != std::string::npos, line);
+  CHECK(reference.find(fmt::format("| `scope_magic` | {} |", protocol::scope_magic)) != std::string::npos);
 }
 
 TEST_CASE("the arms that are there are listed by serial number") {
