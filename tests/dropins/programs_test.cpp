@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include <device/device.hpp>
 #include <system/program.hpp>
 
 #include "board.hpp"
@@ -125,6 +126,37 @@ TEST_CASE("two programs that both drive: the second is told of the first, and ma
   const HHD device = hdInitDevice(nullptr);
   CHECK_MESSAGE(device == 0, std::string(hdGetErrorString(HD_DEVICE_FAULT)));
   hdDisableDevice(device);
+}
+
+TEST_CASE("a program that hangs loses its force by the board's own clock, and holds nobody up") {
+  Board board;
+  const auto watcher = device::Device::open(*board.board.find());
+  const auto next_pose = [&] {
+    const auto pose = watcher->read_pose(60s);
+    REQUIRE_MESSAGE(pose.has_value(), "board time stands");
+    return *pose;
+  };
+  while (next_pose().state != protocol::State::ready) continue;
+  board.hold();
+  const double expiry_s = watcher->parameters()[protocol::Parameter::program_force_expiry_s];
+  RunningProgram hanging({program("drop-in-as-hdapi")});
+  CHECK(hanging.read_line() == "drives");
+  while (next_pose().force_N[0] < 0.9f) continue;
+  kill(hanging.process(), SIGSTOP);
+  const double stopped_s = board.time_s();  // the board has all that the program had sent
+  CHECK(board.control.status().all["usb"]["waits_for"].empty());
+  double time_s = 0;
+  do {
+    const auto pose = next_pose();
+    time_s = pose.time_periods / double{protocol::servo_rate_Hz};
+    if (pose.force_N[0] == 0.0f) break;
+  } while (time_s < stopped_s + 1.0);
+  CHECK(time_s < stopped_s + expiry_s + 0.010);
+  const auto information = run_program("inkwell", {"info", "--usbip", board.address.substr(6)});
+  CHECK_MESSAGE(information.exit_code == 0, information.err);
+  kill(hanging.process(), SIGCONT);
+  hanging.write_line("");
+  CHECK(hanging.wait() == 0);
 }
 
 TEST_CASE("the page's program pulls the hand to the middle of the box until Enter") {

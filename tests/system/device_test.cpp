@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <board/board.hpp>
+#include <failure.hpp>
 
 #include <stepped_board.hpp>
 
@@ -199,22 +200,39 @@ TEST_CASE("a host that does not read the scope loses the oldest samples, counted
   CHECK(gaps == 0);
 }
 
-TEST_CASE("a program that the computer stops for a while loses nothing, however long that is") {
+TEST_CASE(
+    "a program that the computer stops for a while loses nothing, and the control socket says who is waited for") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("whole.csv");
-  RunningProgram program(
-      {build_directory() + "/inkwell", "--virtual", "--real-time", "record", file, "--seconds", "2", "--json"});
+  device::VirtualBoardOptions options;
+  options.real_time = false;
+  device::VirtualBoard board(options);
+  while (!board.find()) std::this_thread::sleep_for(5ms);
+  RunningProgram program({build_directory() + "/inkwell", "record", "--usbip",
+                          "127.0.0.1:" + std::to_string(board.usbip_port()), file, "--seconds", "2", "--json"});
   std::error_code error;
   while (std::filesystem::file_size(file, error) < 100'000 || error) {
     REQUIRE(kill(program.process(), 0) == 0);
     std::this_thread::sleep_for(1ms);
   }
   kill(program.process(), SIGSTOP);
-  std::this_thread::sleep_for(5s);  // longer than all buffers on the way hold, and than anyone's patience
+  auto control = board.control();
+  device::BoardStatus status;
+  // Longer than anyone's patience.
+  do status = control.status();
+  while (status.all["usb"]["waits_for"].empty());
+  CHECK(status.all["usb"]["waits_for"][0] == "inkwell (process " + std::to_string(program.process()) + ")");
+  std::this_thread::sleep_for(2s);  // longer than all buffers on the way hold
+  CHECK(control.status().board_time_s - status.board_time_s < 0.1);
+  CHECK(contains(message_of<device::Error>([&] {
+                   for (;;) control.supply(18.0);  // the first may come before a frame
+                 }),
+                 "board time waits for inkwell (process "));
   kill(program.process(), SIGCONT);
-  const auto status = nlohmann::json::parse(program.read_line());
-  CHECK(status["samples"] == 2 * protocol::servo_rate_Hz);
-  CHECK(status["lost"] == 0);
+  const auto recorded = nlohmann::json::parse(program.read_line());
+  CHECK(recorded["samples"] == 2 * protocol::servo_rate_Hz);
+  CHECK(recorded["lost"] == 0);
+  CHECK(control.status().all["usb"]["waits_for"].empty());
 }
 
 TEST_CASE("pulling the USB cable ends the connection, plugging it in brings the device back") {

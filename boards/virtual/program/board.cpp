@@ -57,6 +57,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{} (--usbip gives it)", error.what()));
   }
+  if (options.real_time) usb_->limit_waiting();
   chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_->core());
   chip_.on_injected_sequence = [this](std::uint64_t index, Ticks when) {
     if (trace_.is_running()) trace_.record(index, plant_.truth(when));

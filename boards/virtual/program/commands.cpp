@@ -78,7 +78,8 @@ json status(const json&, Simulation& simulation) {
       {"usb",
        {{"connected", board.usb().connected()},
         {"enumerated", board.usb().enumerated()},
-        {"imported", board.usb().imported()}}},
+        {"imported", board.usb().imported()},
+        {"waits_for", board.usb().late_hosts()}}},
       {"trace",
        {{"running", board.trace().is_running()},
         {"rows", board.trace().waiting()},
@@ -217,18 +218,23 @@ struct Command {
   std::vector<std::string_view> keys;  ///< that it knows besides "command"
   std::string_view help;
   json (*carry_out)(const json& request, Simulation& simulation);
+  bool is_for_any_time = false;  ///< also in the middle of a frame
 };
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = {
-      {"status", {}, "time, mode, resets, USB, registers that are not modelled", status},
+      {"status",
+       {},
+       "time, mode, resets, USB, whom board time waits for, registers that are not modelled",
+       status,
+       true},
       {"truth", {}, "every true quantity, the levels on the bridges' inputs included", truth},
       {"pause", {}, "board time stands still", pause},
       {"stand_by", {}, "it stands still, but passes while a USB control transfer is under way", stand_by},
       {"run", {"for_s"}, "it passes for a while; answered when that is over", run},
       {"resume", {}, "it passes freely", resume},
       {"reset", {}, "the reset pin", reset},
-      {"quit", {}, "the end of this program", quit},
+      {"quit", {}, "the end of this program", quit, true},
       {"usb", {"connected"}, "plug or pull the cable, and with it VBUS", usb},
       {"buttons", {"pressed"}, "of the stylus: [true,false]", buttons},
       {"supply", {"voltage_V"}, "of the bridges", supply},
@@ -252,7 +258,7 @@ const std::vector<Command>& commands() {
   return table;
 }
 
-json carry_out_checked(const std::string& line, Simulation& simulation) {
+json carry_out_checked(const std::string& line, Simulation& simulation, bool is_within_frame) {
   const json request = json::parse(line, nullptr, false);
   if (request.is_discarded() || !request.is_object())
     throw Refused("a command is one JSON object in one line, such as {\"command\":\"status\"}");
@@ -267,7 +273,20 @@ json carry_out_checked(const std::string& line, Simulation& simulation) {
     if (key != "command" && std::ranges::find(command->keys, key) == command->keys.end())
       throw Refused(fmt::format("\"{}\" does not know the key \"{}\"; it knows {}", command->name, key,
                                 command->keys.empty() ? "none" : fmt::format("{}", fmt::join(command->keys, ", "))));
+  if (is_within_frame && !command->is_for_any_time)
+    throw Refused(fmt::format("board time waits for {}, which has stopped; let it go on or end it, then ask again",
+                              fmt::join(simulation.board().usb().late_hosts(), ", ")));
   return command->carry_out(request, simulation);
+}
+
+json answer(const std::string& line, Simulation& simulation, bool is_within_frame) {
+  try {
+    json reply = carry_out_checked(line, simulation, is_within_frame);
+    reply["ok"] = true;
+    return reply;
+  } catch (const Refused& refused) {
+    return {{"ok", false}, {"error", refused.what()}};
+  }
 }
 
 }  // namespace
@@ -283,14 +302,7 @@ std::string explain_commands() {
   return text;
 }
 
-json carry_out(const std::string& line, Simulation& simulation) {
-  try {
-    json reply = carry_out_checked(line, simulation);
-    reply["ok"] = true;
-    return reply;
-  } catch (const Refused& refused) {
-    return {{"ok", false}, {"error", refused.what()}};
-  }
-}
+json carry_out(const std::string& line, Simulation& simulation) { return answer(line, simulation, false); }
+json carry_out_within_frame(const std::string& line, Simulation& simulation) { return answer(line, simulation, true); }
 
 }  // namespace inkwell::virtual_board

@@ -166,6 +166,8 @@ std::string footer() {
          "Board time waits for the program that uses the device on USB when it owes the next request of a "
          "stream, until\n"
          "it asks for more or is gone. So a busy computer, or a debugger that stops that program, loses no data.\n"
+         "With --real-time, or where several programs use it, it waits for 3 s of the clock on the wall and passes "
+         "on.\n"
          "\n"
          "Faults that can be put in, with what they are put into and the amount; its range, and what it is "
          "unless given:\n" +

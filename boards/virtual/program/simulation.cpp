@@ -31,6 +31,10 @@ Simulation::Simulation(const Options& options, Board& board, ControlServer& serv
       uarts_(uarts),
       gdb_(board.chip()),
       passing_(options.paused ? Passing::not_at_all : Passing::freely) {
+  board_.usb().on_late_host([this] {
+    answer_within_frame();
+    return !quit_;
+  });
   start_pacing();
 }
 
@@ -95,6 +99,12 @@ void Simulation::serve(ControlRequest request) {
     return;
   }
   request.reply.set_value(std::move(reply));
+}
+
+/// While board time stands still in the middle of a frame, because a program does not take its transfers.
+void Simulation::answer_within_frame() {
+  while (auto request = server_.take(Clock::time_point::min()))
+    request->reply.set_value(carry_out_within_frame(request->line, *this));
 }
 
 void Simulation::advance() {

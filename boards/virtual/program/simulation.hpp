@@ -2,7 +2,9 @@
 //
 // It passes in slices of a millisecond. Between two slices, and only there, what programs of this computer ask
 // for takes effect: transfers on USB and commands of the control socket. How long a slice takes makes no difference
-// then: a program that waits for each answer before it asks again finds the same board each time.
+// then: a program that waits for each answer before it asks again finds the same board each time. While board time
+// waits for a program that has stopped, in the middle of a slice, commands that change nothing are answered all the
+// same.
 #pragma once
 
 #include <atomic>
@@ -61,6 +63,7 @@ class Simulation {
   bool ends_by_violation() const;
   void list_violations() const;
   void serve(ControlRequest request);
+  void answer_within_frame();
   void advance();
   void pace();
   void start_pacing();

@@ -10,10 +10,10 @@ namespace {
 constexpr std::uint8_t set_configuration_request = 9;
 constexpr std::uint8_t to_device = 0x00;
 
-std::uint8_t setup_byte(const Urb& urb, std::size_t index) { return std::to_integer<std::uint8_t>(urb.setup[index]); }
+std::uint8_t request_byte(const Urb& urb, std::size_t index) { return std::to_integer<std::uint8_t>(urb.setup[index]); }
 
 bool sets_configuration(const Urb& urb) {
-  return urb.endpoint == 0 && setup_byte(urb, 0) == to_device && setup_byte(urb, 1) == set_configuration_request;
+  return urb.endpoint == 0 && request_byte(urb, 0) == to_device && request_byte(urb, 1) == set_configuration_request;
 }
 
 }  // namespace
@@ -142,7 +142,7 @@ void SharedPort::completed(Urb&& urb, std::int32_t status) {
   const Owner owner = found->second;
   owners_.erase(found);
   urb.sequence = owner.sequence;
-  if (sets_configuration(urb) && status == transfer_status::success) configuration_ = setup_byte(urb, 2);
+  if (sets_configuration(urb) && status == transfer_status::success) configuration_ = request_byte(urb, 2);
   client_.completed(owner.session, std::move(urb), status);
 }
 

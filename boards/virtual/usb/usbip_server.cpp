@@ -291,8 +291,15 @@ bool UsbIpServer::handle_operation(Connection& connection, std::span<const std::
   }
   append_imported(connection.to_send, *device);
   connection.import.emplace(++sessions_);
-  give({Order::Kind::import, sessions_, {}});
+  give({.kind = Order::Kind::import, .session = sessions_, .urb = {}, .client_port = port_of(connection)});
   return true;
+}
+
+std::uint16_t UsbIpServer::port_of(const Connection& connection) {
+  sockaddr_in address{};
+  socklen_t length = sizeof address;
+  ::getpeername(connection.socket.number(), reinterpret_cast<sockaddr*>(&address), &length);
+  return ntohs(address.sin_port);
 }
 
 bool UsbIpServer::handle_command(Connection& connection, std::span<const std::byte> bytes) {

@@ -32,6 +32,7 @@ class UsbIpServer {
     std::uint32_t session;
     Urb urb;  ///< of a submit; its `sequence` is also that of an unlink
     std::uint32_t unlink_sequence = 0;
+    std::uint16_t client_port = 0;  ///< of an import
   };
   struct Result {
     enum class Kind : std::uint8_t { submitted, unlinked };
@@ -97,6 +98,7 @@ class UsbIpServer {
   void handle_received(Connection& connection);
   bool handle_operation(Connection& connection, std::span<const std::byte> bytes);
   bool handle_command(Connection& connection, std::span<const std::byte> bytes);
+  static std::uint16_t port_of(const Connection& connection);
   void deliver_results();
   std::optional<DeviceDescription> offered();
   void give(Order&& order);

@@ -5,11 +5,13 @@
 #include <iostream>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <virtual_usb/host_pace.hpp>
 
+#include "client_name.hpp"
 #include "shared_port.hpp"
 #include "usbip_server.hpp"
 
@@ -28,42 +30,56 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
         is_ending(std::move(ends)),
         server(tcp_port, std::move(on_request)) {}
 
-  void between_transactions() override { wait_while(&HostPace::is_starved); }
+  void between_transactions() override { wait_while(&HostPace::is_starved, go_on_while_late); }
 
-  bool any(bool (HostPace::*condition)() const) const {
+  using Condition = bool (HostPace::*)() const;
+
+  bool any(Condition condition) const {
     return std::ranges::any_of(paces, [&](const auto& entry) { return (entry.second.*condition)(); });
   }
   /// Whether a program that board time waits for is waited for no longer than a while.
-  bool is_limited(bool (HostPace::*condition)() const) const {
+  bool is_limited(Condition condition) const {
+    if (has_limit || paces.size() > 1) return any(condition);
     return std::ranges::any_of(paces, [&](const auto& entry) {
       return (entry.second.*condition)() && !entry.second.is_waited_for_without_limit();
     });
+  }
+  /// Those that are waited for.
+  std::vector<std::string> names(Condition condition) const {
+    std::vector<std::string> names;
+    for (const auto& [session, pace] : paces)
+      if ((pace.*condition)()) names.push_back(client_name(client_ports.at(session)));
+    return names;
   }
 
   void serve() {
     server.take(orders);
     for (UsbIpServer::Order& order : orders) carry_out(std::move(order));
+    if (!orders.empty()) late.clear();
     orders.clear();
   }
 
-  void wait_while(bool (HostPace::*condition)() const) {
+  /// Waits, but without a limit only as long as `goes_on` says so, which is asked once it lasts.
+  void wait_while(Condition condition, const std::function<bool()>& goes_on) {
     if (!any(condition)) return;
-    bool has_told = false;
     std::optional<bool> was_limited;
     Clock::time_point late_at;
     while (any(condition) && !is_ending()) {
       const bool limited = is_limited(condition);
       if (was_limited != limited) late_at = Clock::now() + HostPace::patience;
       was_limited = limited;
+      if (!late.empty() && !limited && !goes_on()) return;
       if (server.wait_for_order(Clock::now() + attention)) {
         serve();
       } else if (Clock::now() >= late_at && limited) {
-        std::cerr << "USB/IP: the client does not ask for more; board time no longer waits for it.\n";
+        for (const auto& name : names(condition))
+          std::cerr << "USB/IP: " << name << " does not ask for more; board time no longer waits for it.\n";
         for (auto& [session, pace] : paces)
           if ((pace.*condition)()) pace.lose_patience();
-      } else if (Clock::now() >= late_at && !has_told) {
-        std::cerr << "USB/IP: the client has stopped; board time waits until it goes on or is gone.\n";
-        has_told = true;
+      } else if (Clock::now() >= late_at && late.empty()) {
+        late = names(condition);
+        for (const auto& name : late)
+          std::cerr << "USB/IP: " << name << " has stopped; board time waits until it goes on or is gone.\n";
       }
     }
   }
@@ -73,10 +89,12 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
     switch (order.kind) {
       case Kind::import:
         paces[order.session] = {};
+        client_ports[order.session] = order.client_port;
         port.import(order.session);
         break;
       case Kind::release:
         paces.erase(order.session);
+        client_ports.erase(order.session);
         port.release(order.session);
         break;
       case Kind::submit:
@@ -109,6 +127,10 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   OtgFsDevice core;
   SharedPort port;
   std::map<std::uint32_t, HostPace> paces;  ///< of each program that has imported the device
+  std::map<std::uint32_t, std::uint16_t> client_ports;
+  bool has_limit = false;         ///< every program is waited for no longer than a while
+  std::vector<std::string> late;  ///< programs that are waited for without a limit, and have been for a while
+  std::function<bool()> go_on_while_late = [] { return true; };
   std::function<bool()> is_ending;
   std::vector<UsbIpServer::Order> orders;
   UsbIpServer server;
@@ -128,8 +150,11 @@ void VirtualUsb::serve() { implementation_->serve(); }
 void VirtualUsb::settle() {
   implementation_->server.exchange_all();
   implementation_->serve();
-  implementation_->wait_while(&HostPace::is_owed);
+  implementation_->wait_while(&HostPace::is_owed, [] { return false; });
 }
+void VirtualUsb::limit_waiting() { implementation_->has_limit = true; }
+void VirtualUsb::on_late_host(std::function<bool()> goes_on) { implementation_->go_on_while_late = std::move(goes_on); }
+std::vector<std::string> VirtualUsb::late_hosts() const { return implementation_->late; }
 bool VirtualUsb::is_asked() const { return implementation_->any(&HostPace::is_asked); }
 void VirtualUsb::connect() { implementation_->port.plug(true); }
 void VirtualUsb::disconnect() { implementation_->port.plug(false); }

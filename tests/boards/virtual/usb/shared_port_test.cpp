@@ -151,6 +151,24 @@ TEST_CASE("a program that goes leaves the others as they are; with the last the 
   board.call([&] { CHECK(board.firmware.resets == resets + 1); });
 }
 
+TEST_CASE("a program that takes no more reports is waited for, but not for ever while others want theirs") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  Program stopped(board), other(board);
+  for (std::uint32_t sequence = 60; sequence < 62; ++sequence) stopped.ask_for_report(sequence);
+  for (std::uint32_t sequence = 60; sequence < 63; ++sequence) other.ask_for_report(sequence);
+  for (int i = 0; i < 3; ++i) send_report(board, 90 + i);
+  for (int i = 0; i < 3; ++i) CHECK(other.read_report() == 90 + i);
+  other.ask_for_report(63);
+  send_report(board, 93);
+  CHECK(other.read_report() == 93);
+  for (int i = 0; i < 2; ++i) CHECK(stopped.read_report() == 90 + i);  // and it missed the others
+  stopped.ask_for_report(62);
+  other.ask_for_report(64);
+  send_report(board, 94);
+  CHECK(stopped.read_report() == 94);
+}
+
 TEST_CASE("unplugged, every program is told, and all may come back") {
   LiveBoard board;
   REQUIRE(board.wait_until_enumerated());

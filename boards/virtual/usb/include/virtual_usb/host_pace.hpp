@@ -10,8 +10,11 @@
 //     asked again for every answer: then it knows all that happened, and what it does next is the same each time.
 //   - A host that has several requests under way at a time streams. It is waited for until it asks again, takes a
 //     request back or is gone: a program that the computer or a debugger stops, for however long, loses nothing.
+//     Commands of the control socket are answered meanwhile, but after `patience`.
 //   - One that asks one by one may have read all that it wanted, and one that waits for a control transfer may do so
 //     before it asks again. These are waited for no longer than `patience` of the clock on the wall.
+//   - So is every host on a board that keeps step with that clock, and where there are several: a program that hangs
+//     shall not hold up the others, nor the board, which takes its force away. A real bus waits for nobody.
 //   - It is not waited for at endpoints that it never kept, at which it took a request back or got an error, or after
 //     it was waited for too long; there it starts anew as at an import.
 //   - Control and OUT transfers are never waited for: a host that says nothing is silent, also for the firmware.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <chip/violations.hpp>
 #include <virtual_usb/otg_fs_device.hpp>
@@ -30,8 +32,17 @@ class VirtualUsb {
   /// Takes up what the host asked for. It then takes effect in board time, which stands still meanwhile.
   void serve();
   /// Takes up everything that the host sent before this call, and waits until the host has everything that happened
-  /// and asks again, as host_pace.hpp has it.
+  /// and asks again, as host_pace.hpp has it, but no longer than HostPace::patience.
   void settle();
+
+  /// No program is waited for longer than HostPace::patience from now on, as where there are several.
+  void limit_waiting();
+  /// Called some twenty times a second while board time has been waiting for a program for longer than that, in the
+  /// middle of a frame. If it returns false, board time passes on.
+  void on_late_host(std::function<bool()> goes_on);
+  /// The programs that have been waited for longer than that, for sentences.
+  std::vector<std::string> late_hosts() const;
+
   /// A control transfer is under way: the host waits for its answer.
   bool is_asked() const;
 

@@ -1,0 +1,55 @@
+#include "client_name.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <system_error>
+
+namespace inkwell::virtual_board {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the files of a process that has this socket open are links to; empty if no socket has this port.
+std::string link_of_socket(std::uint16_t port) {
+  std::ostringstream address;
+  address << "0100007F:" << std::uppercase << std::hex << std::setw(4) << std::setfill('0') << port;
+  std::ifstream table("/proc/net/tcp");
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream words(line);
+    std::string number, local, ignored, inode;
+    words >> number >> local;
+    for (int i = 0; i < 7; ++i) words >> ignored;
+    if (words >> inode && local == address.str()) return "socket:[" + inode + "]";
+  }
+  return {};
+}
+
+bool has_open(const fs::path& process, const std::string& link) {
+  std::error_code error;  // of processes that end meanwhile or are another user's
+  for (fs::directory_iterator file(process / "fd", error), end; !error && file != end; file.increment(error)) {
+    std::error_code unreadable;
+    if (fs::read_symlink(*file, unreadable) == link) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string client_name(std::uint16_t port) {
+  const std::string link = link_of_socket(port);
+  std::error_code error;
+  for (fs::directory_iterator process("/proc", error), end; !link.empty() && !error && process != end;
+       process.increment(error)) {
+    const std::string number = process->path().filename();
+    if (number.find_first_not_of("0123456789") != std::string::npos || !has_open(process->path(), link)) continue;
+    std::string name;
+    std::getline(std::ifstream(process->path() / "comm"), name);
+    return name + " (process " + number + ")";
+  }
+  return "the client with port " + std::to_string(port);
+}
+
+}  // namespace inkwell::virtual_board
