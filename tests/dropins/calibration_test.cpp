@@ -1,7 +1,9 @@
 // Whether the arm knows where it is, as HDAPI asks it, also in faults, in which the board does not tell.
 #include <doctest/doctest.h>
 
+#include <device/device.hpp>
 #include <dropins/device.hpp>
+#include <protocol/reports.hpp>
 #include <protocol/supervision.hpp>
 
 #include "held.hpp"
