@@ -40,13 +40,11 @@ struct CrashFacts {
 /// Feature report, get.
 struct BlackBoxReport {
   ReportId report_id = ReportId::black_box;
-  std::uint8_t is_complete;  ///< 1: nothing more will come; 0: rows are still being added
-  std::uint8_t is_restart;   ///< 1: the board's time ended with the last row; the start after it told the fault
-  std::uint8_t reserved = 0;
-  Fault fault;                ///< `none` if no black box is kept; then the rest is 0
-  std::uint16_t rows_before;  ///< how many of the rows are from before the fault; the first ones
-  std::uint16_t row_count;    ///< up to black_box_rows_maximum
-  std::uint16_t reserved_2 = 0;
+  std::uint8_t is_complete;     ///< 1: nothing more will come; 0: rows are still being added
+  std::uint8_t is_restart;      ///< 1: the board's time ended with the last row; the start after it told the fault
+  Fault fault;                  ///< `none` if no black box is kept; then the rest is 0
+  std::uint16_t rows_before;    ///< how many of the rows are from before the fault; the first ones
+  std::uint16_t row_count;      ///< up to black_box_rows_maximum
   std::uint32_t fault_periods;  ///< the control period of the fault, or of the last row before a restart
   CrashFacts crash;             ///< of the restart
 };
@@ -76,7 +74,7 @@ struct BlackBoxRowsReport {
   BlackBoxRow rows[black_box_report_rows];
 };
 
-static_assert(sizeof(CrashFacts) == 120 && sizeof(BlackBoxReport) == 136);
+static_assert(sizeof(CrashFacts) == 120 && sizeof(BlackBoxReport) == 132);
 static_assert(sizeof(BlackBoxRequest) == 4);
 static_assert(sizeof(BlackBoxRow) == 4 + 4 * (signal_count + force_law_signals_maximum));
 static_assert(sizeof(BlackBoxRowsReport) == 8 + black_box_report_rows * sizeof(BlackBoxRow) &&
