@@ -40,6 +40,7 @@ TEST_CASE("an arm that lost counts does not know any more where it is") {
   held.control.inject({.fault = "encoder_slip", .of = "1", .amount = 20'000});
   CHECK(until([] { return hdCheckCalibration() != HD_CALIBRATION_OK; }));
   CHECK(hdCheckCalibration() == HD_CALIBRATION_NEEDS_MANUAL_INPUT);
+  held.frame([] {});
   CHECK(says(HD_FORCE_ERROR, "encoder"));
 }
 

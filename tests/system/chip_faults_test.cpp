@@ -198,7 +198,7 @@ TEST_CASE("a host that gives signs of life keeps the force, and loses it without
 TEST_CASE("force that is switched off leaves no leg of a bridge on") {
   BoardRig rig;
   press_into_wall(rig);
-  rig.command(protocol::Command::disable_force);
+  rig.command(protocol::Command::stop);
   rig.run(0.02);
   CHECK(rig.pose().state == State::ready);
   check_bridges_off(rig);

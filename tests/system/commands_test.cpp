@@ -159,8 +159,9 @@ TEST_CASE("the reference alone tells where each field of what goes over the wire
   using protocol::PoseReport, protocol::ScopeFrameHeader, protocol::CommandReport;
   CHECK(row_of("PoseReport", "force_N") ==
         fmt::format("| {} | 12 | float[3] | `force_N` |  |", offsetof(PoseReport, force_N)));
-  CHECK(row_of("PoseReport", "limits") ==
-        fmt::format("| {} | 1 | bits 6 to 7 | `limits` | bits of Limit |", offsetof(PoseReport, servo_load) - 1));
+  CHECK(row_of("PoseReport", "force_sources") ==
+        fmt::format("| {} | 1 | bits 4 to 7 | `force_sources` | bits of ForceSource |",
+                    offsetof(PoseReport, servo_load) - 1));
   CHECK(row_of("CommandReport", "report_id") == "| 0 | 1 | ReportId | `report_id` | always `ReportId::command` |");
   for (const std::string member : {"selection", "test"})
     CHECK(row_of("CommandReport", member).starts_with(fmt::format("| {} | ", offsetof(CommandReport, test))));

@@ -460,7 +460,7 @@ TEST_CASE("the scope is given back by a transfer that is taken back, also where 
   for (std::size_t i = 0; i < under_way - 2; ++i) server.send(2, Bytes(4));
   REQUIRE(eventually([&] { return server.waiting_transfers(2) == 0; }));
   transport->release_scope();
-  CHECK(server.transfers_taken_back() == 2);
+  CHECK(server.transfers_taken_back() >= 2);  // more, if some of those were sent before the client had asked for them
   CHECK(server.waiting_transfers(2) == 0);
   server.hang_up();
   transport->release_scope();
