@@ -64,6 +64,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   controller.raise(host_link.found_in_main_loop.load());
 
   write_bridges(controller.step(samples, settings, clock));
+  if (controller.state() == protocol::State::testing) [[unlikely]]
+    host_link.self_test.exchange(controller);
 
   link::Sample& sample = host_link.samples.next();
   controller.write_signals(sample.signals);

@@ -79,6 +79,7 @@ int main() {
         protocol::watch(protocol::Fault::logic_supply_low, drivers::logic_supply_is_low()));
   };
   look_for_faults();
+  host_link.self_test.note(protocol::SelfTestItem::flash, memory_sound);
 
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up();
@@ -101,6 +102,7 @@ int main() {
     host_link.black_box.follow();
     memory_sound = memory_check.step();
     look_for_faults();
+    follow_self_test();
     feed_watchdog();
     show_state();
     drivers::sleep_unless([periods] { return completed_periods.load() != periods; });

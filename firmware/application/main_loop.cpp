@@ -8,13 +8,31 @@ namespace {
 drivers::LedPattern led_pattern(protocol::State state) {
   switch (state) {
     case protocol::State::starting:
+    case protocol::State::testing:
     case protocol::State::unreferenced: return drivers::LedPattern::slow_blink;
     case protocol::State::fault: return drivers::LedPattern::fast_blink;
     default: return drivers::LedPattern::steady;
   }
 }
 
+bool floats(protocol::SelfTestItem wire) {
+  using enum protocol::SelfTestItem;
+  switch (wire) {
+    case bridge_fault_tim1: return bridges.fault_wire_of_tim1_floats();
+    case bridge_fault_tim8: return bridges.fault_wire_of_tim8_floats();
+    default: break;
+  }
+  const std::size_t number = static_cast<std::size_t>(wire) - static_cast<std::size_t>(encoder_1_a);
+  return number % 2 == 0 ? encoders.wire_a_floats(number / 2) : encoders.wire_b_floats(number / 2);
+}
+
 }  // namespace
+
+void follow_self_test() {
+  link::SelfTest& test = host_link.self_test;
+  test.follow(controller, host_link.parameters.settings(), analog_inputs.gimbal_ratio());
+  if (const auto wire = test.wanted_wire()) test.note_wire(floats(*wire));
+}
 
 void feed_watchdog() {
   static std::uint32_t fed_at_periods = 0;

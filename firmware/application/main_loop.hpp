@@ -6,6 +6,9 @@ namespace inkwell::application {
 /// The watchdog is fed by the main loop, and only if the control interrupt ran: it bites when either hangs.
 void feed_watchdog();
 
+/// Goes on with the self-test, if there is one.
+void follow_self_test();
+
 /// By the status LED.
 void show_state();
 

@@ -68,6 +68,7 @@ void Controller::carry_out(const protocol::CommandReport& command) {
     case Command::disable_force: asked_.events |= events(Event::disable); break;
     case Command::stop: asked_.events |= events(Event::stop); break;
     case Command::clear_fault: asked_.events |= events(Event::clear); break;
+    case Command::self_test: asked_.events |= events(Event::self_test); break;
     case Command::test_current:
     case Command::test_voltage:
       if (supervisor_.state == State::ready)
@@ -221,6 +222,8 @@ void Controller::regulate_currents(const Settings& settings) {
   drive_ = {};
   if (!force_is_on() && !test_.runs()) {
     loops_ = {};
+    if (pulses_.runs()) [[unlikely]]
+      drive_pulses(settings);
     return;
   }
   const float supply_bound_V = board_.duty_limit * supply_.supply_V;
@@ -241,6 +244,17 @@ void Controller::follow_over_current(const Settings& settings) {
   constexpr float fall_A = 0.02f;  // in a period: from the largest limit to the smallest in 10 ms
   for (std::size_t i = 0; i < 3; ++i)
     over_current_A_[i] = std::max(settings.limits.over_current_A[i], over_current_A_[i] - fall_A);
+}
+
+void Controller::drive_pulses(const Settings& settings) {
+  const Triple voltage_V = pulses_.step(current_A_, encoder_counts_,
+                                        {.resistance_ohm = settings.motor_model.resistance_ohm,
+                                         .current_limit_A = settings.motors.current_limit_A,
+                                         .supply_V = supply_.supply_V,
+                                         .dead_time_part = board_.dead_time_part});
+  for (std::size_t i = 0; i < 3; ++i)
+    drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
+  drive_.enabled = true;
 }
 
 void Controller::supervise(const Samples& samples, const Settings& settings) {
@@ -267,9 +281,9 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   const protocol::Events now = asked_.events | when(Event::measured, offsets_.measured()) |
                                when(Event::referenced, reference_.valid) | when(Event::risen, force_gain_ == 1.0f) |
                                when(Event::landed, force_gain_ == 0.0f) | when(Event::held_back, limits_ != 0);
-  asked_ = {};
   if (!surely_stays(supervisor_.state, {now, found})) [[unlikely]]
     change_state(advance(supervisor_, {now, found}));
+  asked_ = {.events = lasting_events_};
   if (test_.runs()) --test_.remaining_periods;
   if (brake_.is_on()) [[unlikely]] {
     advance(brake_, speed_squared_m2_per_s2, found);
@@ -284,6 +298,11 @@ void Controller::change_state(const Supervisor& next) {
   // A change of state switches off in the period in which it is decided, not one later.
   if (!(force_was_on && force_is_on_)) drive_ = {};
   if (next.state != State::ready) test_ = {};
+  pulses_.stop();
+  if (next.state == State::testing) {
+    ++self_tests_;
+    lasting_events_ = 0;
+  }
   if (force_was_on && next.state == State::fault)
     brake_.begin();
   else

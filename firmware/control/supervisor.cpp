@@ -60,7 +60,7 @@ constexpr auto faults = []() {
 
 /// By the fault's code: what hinders it from being cleared.
 constexpr auto hindrance = []() {
-  std::array<Watches, protocol::fault_table.size()> result{};
+  std::array<Watches, protocol::fault_code_end> result{};
   for (const auto& row : protocol::watch_table)
     if (row.clearing != protocol::Clearing::at_once)
       result[static_cast<std::size_t>(row.fault)] = protocol::watch(row.fault);

@@ -3,6 +3,7 @@
 #include <board/board.hpp>
 #include <drivers/bridges_off.hpp>
 #include <drivers/cycle_counter.hpp>
+#include <drivers/interrupts.hpp>
 #include <drivers/leg_compares.hpp>
 #include <drivers/peripheral_clocks.hpp>
 #include <drivers/pins.hpp>
@@ -60,6 +61,9 @@ void start_together() {
   static_cast<void>(TIM1::CR1::read());
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_update));
 }
+
+/// Four microseconds: a hundred picofarads.
+constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 
 void connect_pins() {
   // At 60 kHz nothing asks for fast edges, and slow ones disturb the shunt amplifiers less. The pull-downs hold the
@@ -130,6 +134,16 @@ INKWELL_INTERRUPT void Bridges::disable() {
 INKWELL_INTERRUPT bool Bridges::fault() const {
   const bool low_now = !DigitalInput<Bridges, board::bridge_fault_tim1.pin>::is_high();
   return low_now || (enabled_ && (TIM1::SR::BIF::is_set() || TIM8::SR::BIF::is_set()));
+}
+
+bool Bridges::fault_wire_of_tim1_floats() const {
+  const InterruptsHeld held;
+  return follows_pulls<Bridges, board::bridge_fault_tim1.pin>(fault_pull_cycles);
+}
+
+bool Bridges::fault_wire_of_tim8_floats() const {
+  const InterruptsHeld held;
+  return follows_pulls<Bridges, board::bridge_fault_tim8.pin>(fault_pull_cycles);
 }
 
 INKWELL_INTERRUPT void Bridges::begin_period() { TIM1::SR::write(~TIM1::SR::UIF::mask); }

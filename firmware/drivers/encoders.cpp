@@ -32,7 +32,26 @@ void connect_encoder() {
   connect<Encoders, wiring.b>(Pull::up, Speed::low);
 }
 
+/// Ten microseconds: a quarter of a nanofarad.
+constexpr std::uint32_t pull_cycles = board::processor_Hz / 100'000;
+
 }  // namespace
+
+bool Encoders::wire_a_floats(std::size_t encoder) const {
+  switch (encoder) {
+    case 0: return follows_pulls<Encoders, board::encoders[0].a.pin>(pull_cycles);
+    case 1: return follows_pulls<Encoders, board::encoders[1].a.pin>(pull_cycles);
+    default: return follows_pulls<Encoders, board::encoders[2].a.pin>(pull_cycles);
+  }
+}
+
+bool Encoders::wire_b_floats(std::size_t encoder) const {
+  switch (encoder) {
+    case 0: return follows_pulls<Encoders, board::encoders[0].b.pin>(pull_cycles);
+    case 1: return follows_pulls<Encoders, board::encoders[1].b.pin>(pull_cycles);
+    default: return follows_pulls<Encoders, board::encoders[2].b.pin>(pull_cycles);
+  }
+}
 
 void Encoders::start() {
   start_clocks_of<Encoders, registers::TIM3, registers::TIM4, registers::TIM5>();

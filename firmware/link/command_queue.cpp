@@ -40,7 +40,8 @@ std::optional<protocol::CommandReport> decode_command(std::span<const std::byte>
     case Command::enable_force:
     case Command::disable_force:
     case Command::clear_fault:
-    case Command::stop: return command;
+    case Command::stop:
+    case Command::self_test: return command;
     case Command::select_signals: return sound(command.selection) ? std::optional(command) : std::nullopt;
     case Command::test_current:
     case Command::test_voltage: return sound(command.test) ? std::optional(command) : std::nullopt;

@@ -97,6 +97,7 @@ Answer Device::get_report(const SetupPacket& setup) {
     }
     case report_value(feature_report, ReportId::force_law):
       return Answer::send(std::span(control::installed_force_law.report, control::installed_force_law.report_size));
+    case report_value(feature_report, ReportId::self_test): return send(link_.self_test.report());
     case report_value(feature_report, ReportId::black_box): return send(link_.black_box.report());
     case report_value(feature_report, ReportId::black_box_rows): return send(link_.black_box.rows());
     default: return Answer::stall();

@@ -6,6 +6,7 @@
 
 #include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/self_test.hpp>
 #include <protocol/usb_identity.hpp>
 #include <usb/port.hpp>
 
@@ -82,6 +83,7 @@ constexpr auto report_descriptor =
          report(ReportId::force_law, 10, feature_item, protocol::force_law_report_maximum),
          report(ReportId::black_box, 11, feature_item, sizeof(protocol::BlackBoxReport)),
          report(ReportId::black_box_rows, 12, feature_item, sizeof(protocol::BlackBoxRowsReport)),
+         report(ReportId::self_test, 13, feature_item, sizeof(protocol::SelfTestReport)),
          bytes(0xC0));  // end of the collection
 
 // ---- and that of the controller (HID usage tables 1.12, section 4) ------------------------------------

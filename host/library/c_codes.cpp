@@ -46,7 +46,8 @@ constexpr Code faults[] = {CODE(FAULT_NONE),
                            CODE(FAULT_MOTOR_HOT),
                            CODE(FAULT_MEMORY_DAMAGED),
                            CODE(FAULT_MOTOR_IMPLAUSIBLE),
-                           CODE(FAULT_LOGIC_SUPPLY_LOW)};
+                           CODE(FAULT_LOGIC_SUPPLY_LOW),
+                           CODE(FAULT_SELF_TEST_FAILED)};
 static_assert(std::ranges::equal(faults, protocol::fault_table, [](const Code& c, const protocol::CodeInfo& row) {
   return c.value == row.code && is_capital_of(c.name, "FAULT_", row.name);
 }));

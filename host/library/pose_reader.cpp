@@ -9,7 +9,7 @@ namespace {
 inkwell_state state_of(protocol::State state) {
   if (protocol::force_is_on(state)) return INKWELL_ACTIVE;
   // Not to be used for now, and nobody has to do anything about it.
-  if (state == protocol::State::update) return INKWELL_STARTING;
+  if (state == protocol::State::update || state == protocol::State::testing) return INKWELL_STARTING;
   return static_cast<inkwell_state>(state);
 }
 

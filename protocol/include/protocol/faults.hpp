@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -34,7 +35,8 @@ inline constexpr float samples_stale_s = 0.001f;
   X(16, motor_hot, "A motor is {motor_heat_beyond_percent} % hotter than it bears, although its current is held back.", "Let it cool below {motor_heat_holds_back_percent} %; while it does, check its wiring and its current sensor, or what tested it. Then clear the fault.") \
   X(17, memory_damaged, "A bit of the firmware, or of the parameters that it works with, has changed by itself in memory.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
   X(18, motor_implausible, "A motor's voltage, current and speed do not belong together.", "Check the motor's wires, its shunt amplifier and its encoder. `inkwell tune current-loop` measures the motor's resistance, by which this is judged. Then clear the fault.") \
-  X(19, logic_supply_low, "The chip's own supply of 3.3 V has fallen below 2.9 V.", "Check the board's regulator and what it is fed from, and whether something shorts the 3.3 V. Then clear the fault.")
+  X(19, logic_supply_low, "The chip's own supply of 3.3 V has fallen below 2.9 V.", "Check the board's regulator and what it is fed from, and whether something shorts the 3.3 V. Then clear the fault.") \
+  X(24, self_test_failed, "The self-test has found something without which there is no force.", "`inkwell self-test --last` names it and says what to do. Then `inkwell self-test` tests again; the fault goes if it passes.")
 
 /// X(code, name, cause, remedy)
 #define INKWELL_REFUSALS(X)                                                                                                       \
@@ -82,6 +84,9 @@ inline constexpr auto refusal_table = std::to_array<CodeInfo>({
     INKWELL_REFUSALS(X)
 #undef X
 });
+
+/// One more than the last code.
+inline constexpr std::size_t fault_code_end = std::size_t{fault_table.back().code} + 1;
 
 inline constexpr CodeInfo unknown_code{0xFFFF, "unknown", "The device sent a code that this companion does not know.",
                                        "Use the companion that belongs to this firmware."};

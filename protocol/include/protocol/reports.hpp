@@ -8,6 +8,7 @@
 //   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all; ShapesReport,
 //                                    likewise
 //   both             feature report  those of the black box: protocol/black_box.hpp
+//   host <- device   feature report  that of the self-test: protocol/self_test.hpp
 //
 // And, over an interface of its own, ControllerReport: what any program reads that knows joysticks.
 #pragma once
@@ -52,6 +53,7 @@ enum class ReportId : std::uint8_t {
   force_law = 0x15,       ///< feature, get
   black_box = 0x16,       ///< feature, get: protocol/black_box.hpp
   black_box_rows = 0x17,  ///< feature, get and set
+  self_test = 0x18,       ///< feature, get: protocol/self_test.hpp
 };
 
 /// Bits of PoseReport::switches.
@@ -168,6 +170,7 @@ enum class Command : std::uint8_t {
   test_current = 5,    ///< in `ready`: one pulse of current in one motor, then zero for as long
   test_voltage = 6,    ///< in `ready`: one pulse of voltage on one motor, then zero volts for as long
   stop = 7,            ///< switches the force off at once
+  self_test = 8,       ///< in `unreferenced`, `ready`, and in a fault before the first test that passes
 };
 
 inline constexpr std::size_t scope_signals_maximum = 32;

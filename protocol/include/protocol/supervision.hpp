@@ -24,7 +24,8 @@ namespace inkwell::protocol {
   X(5, ramping, true, "The pose is valid. The force is on and rises to its full strength.")                        \
   X(6, limited, true, "The pose is valid. The force is on, and a limit holds it back.")                            \
   X(7, update, false, "The motors are off: the board is about to start its boot loader.")                          \
-  X(8, landing, true, "The pose is valid. The force falls softly to nothing.")
+  X(8, landing, true, "The pose is valid. The force falls softly to nothing.") \
+  X(9, testing, false, "The board tests itself, with small pulses on the motors. Hold the arm still.")
 // clang-format on
 
 /// What the device is doing.
@@ -100,7 +101,9 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
   X(128, held_back, "a limit holds the force back")                                   \
   X(256, update, "the host has asked for the boot loader, and not reset the bus since") \
   X(512, stop, "the command stop came, or the host is gone")                          \
-  X(1024, landed, "the force has fallen to nothing")
+  X(1024, landed, "the force has fallen to nothing") \
+  X(2048, tested, "the self-test has come to its end, and nothing that takes the force away has failed") \
+  X(4096, self_test, "the command self_test came")
 // clang-format on
 
 /// What the supervisor decides by.
@@ -143,11 +146,15 @@ struct Way {
 /// leads to `fault`, before any of these.
 inline constexpr auto way_table = std::to_array<Way>({
     {State::starting, State::update, events(Event::update), 0},
-    {State::starting, State::unreferenced, events(Event::measured), 0},
+    {State::starting, State::testing, events(Event::measured), 0},
+    {State::testing, State::update, events(Event::update), 0},
+    {State::testing, State::unreferenced, events(Event::tested), 0},
     {State::unreferenced, State::update, events(Event::update), 0},
+    {State::unreferenced, State::testing, events(Event::self_test), 0},
     {State::unreferenced, State::ready, events(Event::referenced), 0},
     {State::ready, State::update, events(Event::update), 0},
     {State::ready, State::unreferenced, 0, events(Event::referenced)},
+    {State::ready, State::testing, events(Event::self_test), 0},
     {State::ready, State::ramping, events(Event::enable), events(Event::disable, Event::stop)},
     {State::ramping, State::update, events(Event::update), 0},
     {State::ramping, State::ready, events(Event::stop), 0},
@@ -167,11 +174,14 @@ inline constexpr auto way_table = std::to_array<Way>({
     {State::landing, State::ready, events(Event::landed), 0},
     {State::fault, State::update, events(Event::update), 0},
     {State::fault, State::starting, events(Event::clear), events(Event::cause, Event::measured)},
-    {State::fault, State::unreferenced, events(Event::clear, Event::measured), events(Event::cause, Event::referenced)},
-    {State::fault, State::ready, events(Event::clear, Event::measured, Event::referenced), events(Event::cause)},
+    {State::fault, State::testing, events(Event::clear, Event::measured), events(Event::cause, Event::tested)},
+    {State::fault, State::testing, events(Event::self_test, Event::measured), events(Event::cause, Event::tested)},
+    {State::fault, State::unreferenced, events(Event::clear, Event::tested), events(Event::cause, Event::referenced)},
+    {State::fault, State::ready, events(Event::clear, Event::tested, Event::referenced), events(Event::cause)},
     {State::update, State::starting, 0, events(Event::update, Event::measured)},
-    {State::update, State::unreferenced, events(Event::measured), events(Event::update, Event::referenced)},
-    {State::update, State::ready, events(Event::measured, Event::referenced), events(Event::update)},
+    {State::update, State::testing, events(Event::measured), events(Event::update, Event::tested)},
+    {State::update, State::unreferenced, events(Event::tested), events(Event::update, Event::referenced)},
+    {State::update, State::ready, events(Event::tested, Event::referenced), events(Event::update)},
 });
 
 // ---- what is watched ---------------------------------------------------------------------------------------
@@ -201,7 +211,7 @@ struct Watch {
 inline constexpr auto watch_table = []() {
   constexpr States moving = States(State::ready) | with_force;
   constexpr States driven{State::ramping, State::active, State::limited};
-  constexpr States started = States(State::unreferenced) | moving;
+  constexpr States started = States(State::testing, State::unreferenced) | moving;
   constexpr States every = States(State::starting) | started;
   using enum Clearing;
   using enum Off;
@@ -220,6 +230,7 @@ inline constexpr auto watch_table = []() {
       {Fault::supply_high, started, when_gone, coast},
       {Fault::bridge_fault, started, when_gone, coast},
       {Fault::over_current, started, when_gone, coast},
+      {Fault::self_test_failed, State::testing, when_gone, coast},
       {Fault::motor_implausible, with_force, at_once, coast},
       {Fault::motor_hot, started, when_gone, coast},
       {Fault::encoder_implausible, moving, at_once, coast},
@@ -235,7 +246,7 @@ static_assert(watch_table.size() <= 32);
 namespace detail {
 /// By the fault's code. A search would not be over before the firmware runs once the table is long.
 inline constexpr auto places = []() {
-  std::array<std::uint8_t, fault_table.size()> result{};
+  std::array<std::uint8_t, fault_code_end> result{};
   result.fill(static_cast<std::uint8_t>(watch_table.size()));
   for (std::size_t i = 0; i < watch_table.size(); ++i)
     result[static_cast<std::size_t>(watch_table[i].fault)] = static_cast<std::uint8_t>(i);

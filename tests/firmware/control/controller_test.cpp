@@ -61,7 +61,10 @@ TEST_CASE("from power-up through the inkwell to force, with the bridges off unti
   CHECK(controller.state() == State::starting);
   CHECK_FALSE(tests::run(controller, samples, settings, 1'000).enabled);
   CHECK(controller.state() == State::starting);
-  CHECK_FALSE(tests::run(controller, samples, settings, 1'100).enabled);
+  CHECK_FALSE(tests::run(controller, samples, settings, 1'099).enabled);
+  CHECK(controller.state() == State::testing);
+  controller.pass_self_test();
+  CHECK_FALSE(tests::run(controller, samples, settings, 1).enabled);
   CHECK(controller.state() == State::unreferenced);
   controller.carry_out(tests::command(Command::enable_force));
   CHECK_FALSE(tests::run(controller, samples, settings, 10).enabled);
@@ -243,7 +246,8 @@ TEST_CASE("offsets of the current sensors are taken off, and a broken sensor is 
   samples.current_A = {0.05f, -0.03f, 0.0f};
   Controller controller{tests::board_limits};
   tests::run(controller, samples, settings, 2'100);
-  CHECK(controller.state() == State::unreferenced);
+  CHECK(controller.state() == State::testing);
+  CHECK(controller.current_offsets_A()[0] == doctest::Approx(0.05));
   CHECK(std::abs(controller.signals()[Signal::current_1_A]) < 1e-4f);
   CHECK(std::abs(controller.signals()[Signal::current_2_A]) < 1e-4f);
 
@@ -296,10 +300,10 @@ TEST_CASE("a reading near a rail of its sensor is an over-current whatever the o
     samples.current_A[1] = offset_A;
     Controller controller{tests::board_limits};
     tests::run(controller, samples, settings, 2'100);
-    REQUIRE(controller.state() == State::unreferenced);
+    REQUIRE(controller.state() == State::testing);
     samples.current_A[1] = std::copysign(tests::board_limits.current_measurable_A - 0.01f, offset_A);
     tests::run(controller, samples, settings, 1);
-    CHECK(controller.state() == State::unreferenced);
+    CHECK(controller.state() == State::testing);
     samples.current_A[1] = std::copysign(tests::board_limits.current_measurable_A + 0.01f, offset_A);
     tests::run(controller, samples, settings, 1);
     CHECK(controller.fault() == Fault::over_current);

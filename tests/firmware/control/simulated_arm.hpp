@@ -15,7 +15,8 @@ struct FakeClock {
 inline constexpr control::BoardLimits board_limits{.supply_minimum_V = board::supply_minimum_V,
                                                    .supply_maximum_V = board::supply_maximum_V,
                                                    .duty_limit = board::duty_limit,
-                                                   .current_measurable_A = board::current_measurable_A};
+                                                   .current_measurable_A = board::current_measurable_A,
+                                                   .dead_time_part = board::bridge_dead_time_part};
 
 inline control::Samples samples_at_rest() {
   return {.encoder_counts = {},
@@ -51,10 +52,12 @@ inline control::Drive run(control::Controller& controller, const control::Sample
   return drive;
 }
 
-/// Past the measurement of the offsets: state `unreferenced`.
+/// Past the measurement of the offsets and a self-test that passes: state `unreferenced`.
 inline control::Controller started_controller(const control::Settings& settings) {
   control::Controller controller{board_limits};
-  run(controller, samples_at_rest(), settings, control::CurrentOffsets::duration_periods + 1);
+  run(controller, samples_at_rest(), settings, control::CurrentOffsets::duration_periods);
+  controller.pass_self_test();
+  run(controller, samples_at_rest(), settings, 1);
   return controller;
 }
 

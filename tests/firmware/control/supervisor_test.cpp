@@ -18,7 +18,7 @@ using protocol::Fault;
 using protocol::State;
 using protocol::watch;
 
-constexpr Events good = events(Event::measured, Event::referenced);
+constexpr Events good = events(Event::measured, Event::tested, Event::referenced);
 
 Supervisor in(State state) { return {state, Fault::none}; }
 State next(State state, Events now) { return advance(in(state), {now, 0}).state; }
@@ -26,8 +26,10 @@ Supervisor faulty(Fault fault) { return {State::fault, fault}; }
 
 TEST_CASE("the way from power-up to force") {
   CHECK(next(State::starting, events(Event::enable)) == State::starting);
-  CHECK(next(State::starting, events(Event::enable, Event::measured)) == State::unreferenced);
-  CHECK(next(State::unreferenced, events(Event::enable, Event::measured)) == State::unreferenced);
+  CHECK(next(State::starting, events(Event::enable, Event::measured)) == State::testing);
+  CHECK(next(State::testing, events(Event::enable, Event::measured)) == State::testing);
+  CHECK(next(State::testing, events(Event::enable, Event::measured, Event::tested)) == State::unreferenced);
+  CHECK(next(State::unreferenced, events(Event::enable, Event::measured, Event::tested)) == State::unreferenced);
   CHECK(next(State::unreferenced, good) == State::ready);
   CHECK(next(State::ready, good) == State::ready);
   CHECK(next(State::ready, good | events(Event::enable)) == State::ramping);
@@ -64,14 +66,29 @@ TEST_CASE("a reference that is lost has to be taken anew") {
   CHECK(next(State::ready, events(Event::measured, Event::enable)) == State::unreferenced);
 }
 
+TEST_CASE("a test on command begins while the force is off, and in a fault only before one has passed") {
+  const Events asked = good | events(Event::self_test);
+  CHECK(next(State::unreferenced, events(Event::measured, Event::tested, Event::self_test)) == State::testing);
+  CHECK(next(State::ready, asked) == State::testing);
+  for (const State state : {State::ramping, State::active, State::limited, State::update})
+    CHECK(next(state, asked) != State::testing);
+  const Supervisor failed = faulty(Fault::self_test_failed);
+  const Events untested = events(Event::measured, Event::referenced, Event::self_test);
+  CHECK(advance(failed, {untested, 0}) == in(State::testing));
+  CHECK(advance(faulty(Fault::supply_low), {untested, watch(Fault::supply_low)}) == faulty(Fault::supply_low));
+  CHECK(advance(faulty(Fault::over_speed), {asked, 0}) == faulty(Fault::over_speed));
+  CHECK(advance(failed, {events(Event::referenced, Event::self_test), 0}) == failed);
+}
+
 TEST_CASE("for the boot loader every state is left, and the device is where it was if the host thinks better of it") {
-  for (const State state : {State::starting, State::unreferenced, State::ready, State::ramping, State::active,
-                            State::limited, State::landing, State::fault, State::update}) {
+  for (const State state : {State::starting, State::testing, State::unreferenced, State::ready, State::ramping,
+                            State::active, State::limited, State::landing, State::fault, State::update}) {
     CHECK(next(state, good | events(Event::update)) == State::update);
     CHECK(next(state, good | events(Event::update, Event::enable, Event::clear)) == State::update);
   }
   CHECK(next(State::update, 0) == State::starting);
-  CHECK(next(State::update, events(Event::measured)) == State::unreferenced);
+  CHECK(next(State::update, events(Event::measured)) == State::testing);
+  CHECK(next(State::update, events(Event::measured, Event::tested)) == State::unreferenced);
   CHECK(next(State::update, good) == State::ready);
 }
 
@@ -85,10 +102,10 @@ std::vector<FaultCase> fault_cases() {
   const std::vector<State> driven{State::ramping, State::active, State::limited};
   const std::vector<State> force{State::ramping, State::active, State::limited, State::landing};
   const std::vector<State> moving{State::ready, State::ramping, State::active, State::limited, State::landing};
-  const std::vector<State> started{State::unreferenced, State::ready,   State::ramping,
-                                   State::active,       State::limited, State::landing};
-  const std::vector<State> all{State::starting, State::unreferenced, State::ready,  State::ramping,
-                               State::active,   State::limited,      State::landing};
+  const std::vector<State> started{State::testing, State::unreferenced, State::ready,  State::ramping,
+                                   State::active,  State::limited,      State::landing};
+  const std::vector<State> all{State::starting, State::testing, State::unreferenced, State::ready,
+                               State::ramping,  State::active,  State::limited,      State::landing};
   return {{Fault::memory_damaged, all, false},    {Fault::crystal_failed, all, true},
           {Fault::processor_fault, all, true},    {Fault::watchdog, all, true},
           {Fault::servo_overrun, all, true},      {Fault::not_finite, all, false},
@@ -98,17 +115,20 @@ std::vector<FaultCase> fault_cases() {
           {Fault::over_current, started, false},  {Fault::motor_implausible, force, true},
           {Fault::motor_hot, started, false},     {Fault::encoder_implausible, moving, true},
           {Fault::over_speed, force, true},       {Fault::host_silent, driven, true},
-          {Fault::logic_supply_low, all, false}};
+          {Fault::logic_supply_low, all, false},  {Fault::self_test_failed, {State::testing}, false}};
 }
 
 TEST_CASE("each fault is looked for in its states and in no other") {
   CHECK(fault_cases().size() + 1 == protocol::fault_table.size());
   for (const FaultCase& row : fault_cases())
-    for (const State state : {State::starting, State::unreferenced, State::ready, State::active, State::ramping,
-                              State::limited, State::landing, State::update}) {
+    for (const State state : {State::starting, State::testing, State::unreferenced, State::ready, State::active,
+                              State::ramping, State::limited, State::landing, State::update}) {
       CAPTURE(static_cast<int>(row.fault));
       CAPTURE(static_cast<int>(state));
-      Events now = state == State::starting ? 0 : state == State::unreferenced ? events(Event::measured) : good;
+      Events now = good;
+      if (state == State::starting) now = 0;
+      if (state == State::testing) now = events(Event::measured);
+      if (state == State::unreferenced) now = events(Event::measured, Event::tested);
       if (state == State::limited) now |= events(Event::held_back);
       if (state == State::update) now |= events(Event::update);
       bool expected = false;
@@ -135,7 +155,8 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
 TEST_CASE("where a cleared fault leads to") {
   const Supervisor found = faulty(Fault::processor_fault);
   CHECK(advance(found, {events(Event::clear), 0}) == in(State::starting));
-  CHECK(advance(found, {events(Event::clear, Event::measured), 0}) == in(State::unreferenced));
+  CHECK(advance(found, {events(Event::clear, Event::measured), 0}) == in(State::testing));
+  CHECK(advance(found, {events(Event::clear, Event::measured, Event::tested), 0}) == in(State::unreferenced));
   CHECK(advance(found, {good | events(Event::clear), 0}) == in(State::ready));
 }
 
@@ -152,7 +173,7 @@ TEST_CASE("of several faults the one that explains the others is shown, and the 
 TEST_CASE("the short look never says that a state stays which the tables leave") {
   int stays = 0;
   for (std::size_t i = 0; i < protocol::state_count; ++i)
-    for (Events now = 0; now < 2u * events(Event::update); ++now)
+    for (Events now = 0; now < 2u * events(Event::self_test); ++now)
       for (const auto found :
            {protocol::Watches{0}, watch(Fault::over_speed), watch(Fault::supply_low), watch(Fault::crystal_failed)}) {
         const Supervisor here{static_cast<State>(i), Fault::none};

@@ -298,6 +298,20 @@ TEST_CASE("HID: the black box is read row by row, as often as the host likes") {
   CHECK(head().fault == protocol::Fault::none);
 }
 
+TEST_CASE("HID: the report of the self-test, with what start-up has found") {
+  DeviceBench bench;
+  bench.configure();
+  bench.link.self_test.note(protocol::SelfTestItem::ram, false);
+  bench.link.self_test.note(protocol::SelfTestItem::gimbal_3, true, 0.25f);
+  const auto report = bench.get_feature<protocol::SelfTestReport>(protocol::ReportId::self_test);
+  CHECK(report.report_id == protocol::ReportId::self_test);
+  CHECK(report.item_count == protocol::self_test_item_count);
+  CHECK(report.entries[static_cast<std::size_t>(protocol::SelfTestItem::ram)].result ==
+        protocol::SelfTestResult::failed);
+  CHECK(report.entries[static_cast<std::size_t>(protocol::SelfTestItem::gimbal_3)].figure == 0.25f);
+  CHECK(protocol::takes_force(report));
+}
+
 TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, and nothing happens") {
   DeviceBench bench;
   bench.configure();
@@ -332,7 +346,7 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
     for (unsigned id = 0; id < 256; ++id) {
       const unsigned value = type << 8 | id;
       if (value == 0x0101 || value == 0x0310 || value == 0x0311 || value == 0x0312 || value == 0x0313 ||
-          value == 0x0315 || value == 0x0316 || value == 0x0317)
+          value == 0x0315 || value == 0x0316 || value == 0x0317 || value == 0x0318)
         continue;
       CHECK(bench.get_report(static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(id), 64) == stall_result);
     }

@@ -196,6 +196,8 @@ inline constexpr float duty_limit = 0.92f;
 constexpr float time_to_next_edge_s(float duty) { return (1.0f - duty) / (4.0f * pwm_Hz); }
 /// Made by the bridge itself; the firmware does not add to it.
 inline constexpr float bridge_dead_time_s = 0.2e-6f;
+/// What it takes from a motor's voltage, in parts of the supply: both legs wait once in each PWM period.
+inline constexpr float bridge_dead_time_part = 2.0f * pwm_Hz * bridge_dead_time_s;
 
 // ---- analogue scales ---------------------------------------------------------------------------------
 

@@ -10,6 +10,7 @@
 #include <control/felt_force_law.hpp>
 #include <control/program_force.hpp>
 #include <control/samples.hpp>
+#include <control/self_test_pulses.hpp>
 #include <control/settings.hpp>
 #include <control/shapes.hpp>
 #include <control/supervisor.hpp>
@@ -23,7 +24,7 @@ namespace inkwell::control {
 
 /// Everything between the samples and the duties. Single-threaded: all but the constructor is called in the
 /// control interrupt, in the order settings_changed / carry_out / host_alive / drive / replace_shapes /
-/// leave_for_update / raise, step, finish.
+/// leave_for_update / raise, self-test, step, finish.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board) : board_(board) {}
@@ -72,6 +73,17 @@ class Controller {
   void raise(protocol::Watches found) { asked_.found |= found; }
   void raise(protocol::Fault fault) { raise(protocol::watch(fault)); }
 
+  // ---- while the state is `testing`, likewise before step ----
+  /// Sends a round of pulses to the motors.
+  void start_pulses() { pulses_.start(); }
+  bool pulses_run() const { return pulses_.runs(); }
+  const PulseRound& pulse_round() const { return pulses_.round(); }
+  const Triple& current_offsets_A() const { return offsets_.offset_A; }
+  /// The self-test is over, and nothing has failed that takes the force away.
+  void pass_self_test() { asked_.events |= lasting_events_ = protocol::events(protocol::Event::tested); }
+  /// It has begun so many times since the start.
+  std::uint32_t self_tests() const { return self_tests_; }
+
   /// The signals of the last step. Before finish(), the cycles of the last stage and of all stages are those of the
   /// period before.
   void write_signals(protocol::SignalValues& signals) const;
@@ -103,6 +115,7 @@ class Controller {
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
   void follow_over_current(const Settings& settings);
+  void drive_pulses(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void change_state(const Supervisor& next);
 
@@ -121,8 +134,11 @@ class Controller {
   MotorWatch motor_watch_;
   Triple over_current_A_{};  ///< a measured current beyond it is a fault
   TestPulse test_;
+  SelfTestPulses pulses_;
+  std::uint32_t self_tests_ = 0;
   Supervisor supervisor_;
-  Situation asked_;  ///< requests and faults from outside, since the period before
+  Situation asked_;                      ///< requests and faults from outside, since the period before
+  protocol::Events lasting_events_ = 0;  ///< what is asked in every period
   bool force_is_on_ = false;
   Brake brake_;
   float force_gain_ = 0.0f;

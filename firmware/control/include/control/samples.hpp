@@ -32,6 +32,7 @@ struct BoardLimits {
   float supply_maximum_V;      ///< above it: fault supply_high
   float duty_limit;            ///< largest magnitude of a duty, 0..1
   float current_measurable_A;  ///< beyond it a sensor may show less than there is: fault over_current
+  float dead_time_part;        ///< of the supply: what the bridges' dead time takes from a motor's voltage
 };
 
 }  // namespace inkwell::control

@@ -48,6 +48,11 @@ class Bridges {
   /// The fault wire has been low since the bridges were enabled, or is low now.
   bool fault() const;
 
+  /// Whether the fault wire does as the own pulls of TIM1's pin, or of TIM8's, do: it reaches neither bridges nor its
+  /// pull-up. While the bridges are off; no interrupt, which might take that for a fault, comes for 8 us.
+  bool fault_wire_of_tim1_floats() const;
+  bool fault_wire_of_tim8_floats() const;
+
   /// An update came since the last call of begin_period(): called at the end of the control interrupt, it tells
   /// that the interrupt took longer than its period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }

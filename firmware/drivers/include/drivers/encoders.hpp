@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <drivers/claims.hpp>
@@ -21,6 +22,11 @@ class Encoders {
 
   /// The timers' counts, which wrap at 16 bits (TIM5 could do more; all three are alike on purpose).
   std::array<std::uint16_t, 3> read() const;
+
+  /// Whether a wire of `encoder`, 0..2, does as the pin's own pulls do, so that no encoder drives it: A, or B. Takes
+  /// 20 us.
+  bool wire_a_floats(std::size_t encoder) const;
+  bool wire_b_floats(std::size_t encoder) const;
 };
 
 }  // namespace inkwell::drivers

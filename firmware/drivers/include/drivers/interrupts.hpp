@@ -6,7 +6,7 @@
 
 namespace inkwell::drivers {
 
-/// No interrupt comes while it lives, which may be a microsecond, or a sleep that an interrupt ends.
+/// No interrupt comes while it lives, which may be some microseconds, or a sleep that an interrupt ends.
 class InterruptsHeld {
  public:
   InterruptsHeld() { asm volatile("cpsid i" ::: "memory"); }

@@ -6,6 +6,7 @@
 
 #include <board/board.hpp>
 #include <drivers/claims.hpp>
+#include <drivers/cycle_counter.hpp>
 #include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
@@ -71,6 +72,22 @@ void connect(Pull pull, Speed speed) {
 template <class Driver, board::AnalogInput input>
 void connect_analog() {
   detail::configure<Driver, input.pin>(detail::Mode::analog, Pull::none, Speed::low);
+}
+
+/// Whether the level of a pin with a pull-up follows its own pulls: nothing drives it from outside. A pull of some 40 k
+/// has this many cycles for what hangs on the pin.
+template <class Driver, board::Pin number>
+bool follows_pulls(std::uint32_t settle_cycles) {
+  require_claim<Driver, pin(number)>();
+  using Io = detail::Registers<number>;
+  const auto level_with = [&](Pull pull) {
+    Io::PUPDR::modify(detail::PinField<typename Io::PUPDR, number, 2>(static_cast<std::uint32_t>(pull)));
+    wait(settle_cycles);
+    return (Io::IDR::read() >> number.number & 1u) != 0;
+  };
+  const bool low_with_pull_down = !level_with(Pull::down);
+  const bool high_with_pull_up = level_with(Pull::up);
+  return low_with_pull_down && high_with_pull_up;
 }
 
 template <class Driver, board::Pin pin>

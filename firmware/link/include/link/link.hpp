@@ -10,6 +10,7 @@
 //   if (link.update_asked) controller.leave_for_update()
 //   controller.raise(link.found_in_main_loop)
 //   controller.step(...)
+//   if (controller.state() is testing) link.self_test.exchange(controller)
 //   controller.write_signals(link.samples.next().signals)
 //   link.samples.next().summary = {...}; link.samples.record(); link.poses.note_load(cycles)
 //   link.status.record(controller.state(), motor_heat, cycles, late_force_reports, overrun)
@@ -27,6 +28,7 @@
 #include <link/program_requests.hpp>
 #include <link/sample_ring.hpp>
 #include <link/scope_recorder.hpp>
+#include <link/self_test.hpp>
 #include <link/servo_status.hpp>
 #include <link/shared.hpp>
 
@@ -36,7 +38,7 @@ struct Link {
   /// `cycles_per_period`: processor cycles of one control period.
   template <std::size_t before, std::size_t after>
   Link(std::uint32_t cycles_per_period, ScopeFrames& frames, BlackBoxMemory<before, after>& memory)
-      : poses(samples, cycles_per_period), scope(samples, frames), black_box(samples, memory) {}
+      : poses(samples, cycles_per_period), scope(samples, frames), black_box(samples, memory), self_test(samples) {}
 
   ParameterStore parameters;
   CommandQueue commands;
@@ -45,6 +47,7 @@ struct Link {
   PoseRecorder poses;
   ScopeRecorder scope;
   BlackBox black_box;
+  SelfTest self_test;
   ServoStatus status;
   Shared<bool> update_asked{false};                 ///< the host wants the boot loader
   Shared<protocol::Watches> found_in_main_loop{0};  ///< faults that a control period's delay makes no worse

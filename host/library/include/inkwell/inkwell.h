@@ -146,7 +146,8 @@ typedef enum inkwell_fault INKWELL_AS_INT {
   INKWELL_FAULT_MOTOR_HOT = 16,
   INKWELL_FAULT_MEMORY_DAMAGED = 17,
   INKWELL_FAULT_MOTOR_IMPLAUSIBLE = 18,
-  INKWELL_FAULT_LOGIC_SUPPLY_LOW = 19
+  INKWELL_FAULT_LOGIC_SUPPLY_LOW = 19,
+  INKWELL_FAULT_SELF_TEST_FAILED = 24
 } inkwell_fault;
 
 /* Whose force the hand feels: bits of inkwell_pose::force_sources. */

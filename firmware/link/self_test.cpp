@@ -1,0 +1,156 @@
+#include <link/self_test.hpp>
+
+#include <placement/interrupt.hpp>
+
+namespace inkwell::link {
+namespace {
+
+using Item = protocol::SelfTestItem;
+using Result = protocol::SelfTestResult;
+
+/// In the order in which they are looked at.
+constexpr Item wires[] = {Item::encoder_1_a, Item::encoder_1_b, Item::encoder_2_a,       Item::encoder_2_b,
+                          Item::encoder_3_a, Item::encoder_3_b, Item::bridge_fault_tim1, Item::bridge_fault_tim8};
+
+/// What start-up looks at once is all before them.
+constexpr Item first_of_each_test = Item::current_offsets;
+
+constexpr std::uint32_t orders = 4;
+
+}  // namespace
+
+void SelfTest::note(Item item, Result result, float figure) {
+  entry(item).result = result;
+  entry(item).figure = figure;
+}
+
+std::optional<Item> SelfTest::wanted_wire() const {
+  if (phase_ != Phase::wires) return std::nullopt;
+  return wires[wire_];
+}
+
+void SelfTest::note_wire(bool follows) {
+  if (follows && ++looks_ < wire_looks) return;
+  note(wires[wire_], !follows);
+  looks_ = 0;
+  if (++wire_ < std::size(wires)) return;
+  begin_round();
+}
+
+void SelfTest::follow(const control::Controller& controller, const control::Settings& settings,
+                      const control::Triple& gimbal_ratio) {
+  const std::uint32_t recorded = samples_.recorded();
+  if (recorded == 0) return;
+  const auto& [signals, now] = samples_[recorded - 1];
+  if (now.fault == protocol::Fault::current_sensor) note(Item::current_offsets, Result::failed, 0.0f);
+  if (begun_.load() != test_) begin(gimbal_ratio, controller.current_offsets_A());
+  if (now.state != protocol::State::testing) {
+    if (phase_ != Phase::idle && phase_ != Phase::verdict) break_off();
+    phase_ = Phase::idle;
+  } else if (phase_ == Phase::rest) {
+    wait_for_rest(signals, settings.motor_model);
+  } else if (phase_ == Phase::pulses && round_is_over_.load()) {
+    end_round(judge(controller.pulse_round(), settings));
+  }
+}
+
+void SelfTest::begin(const control::Triple& gimbal_ratio, const control::Triple& offset_A) {
+  test_ = begun_.load();
+  for (std::size_t i = static_cast<std::size_t>(first_of_each_test); i < entries_.size(); ++i) entries_[i] = {};
+  float largest_A = 0.0f;
+  for (const float each_A : offset_A) largest_A = each_A * each_A > largest_A * largest_A ? each_A : largest_A;
+  note(Item::current_offsets, Result::passed, largest_A);  // others have a fault of their own, and are never tested
+  for (std::size_t i = 0; i < gimbal_ratio.size(); ++i)
+    note(of_axis(Item::gimbal_1, i), gimbal_ratio[i] > gimbal_rail_part && gimbal_ratio[i] < 1.0f - gimbal_rail_part,
+         gimbal_ratio[i]);
+  wire_ = 0;
+  looks_ = rounds_ = failures_ = 0;
+  phase_ = Phase::wires;
+}
+
+void SelfTest::break_off() {
+  for (auto& entry : entries_)
+    if (entry.result == Result::not_done && &entry >= &this->entry(first_of_each_test))
+      entry.result = Result::broken_off;
+}
+
+void SelfTest::begin_round() {
+  phase_ = Phase::rest;
+  waits_since_ = samples_.recorded();
+}
+
+void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model) {
+  bool rests = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float back_emf_V = signals[of_axis(protocol::Signal::joint_speed_1_rad_s, i)] * model.back_emf_Vs_per_rad[i];
+    rests = rests && back_emf_V < rest_V && back_emf_V > -rest_V;
+  }
+  if (rests) {
+    phase_ = Phase::pulses;
+    give(Order::pulses);
+  } else if (samples_.recorded() - waits_since_ > rest_patience_periods) {
+    end_round(PulseJudgement::moved());
+  }
+}
+
+void SelfTest::end_round(const PulseJudgement& judgement) {
+  note_pulses(judgement);
+  if (judgement.any(Result::failed) && !judgement.any(Result::moved)) ++failures_;
+  const bool is_told = !judgement.any(Result::failed) && !judgement.any(Result::moved);
+  if (is_told || failures_ == failures_to_believe || ++rounds_ == rounds_maximum)
+    give_verdict();
+  else
+    begin_round();
+}
+
+void SelfTest::note_pulses(const PulseJudgement& judgement) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    note(of_axis(Item::motor_1, i), judgement.motors[i].result, judgement.motors[i].figure);
+    note(of_axis(Item::bridge_1, i), judgement.bridges[i].result, judgement.bridges[i].figure);
+  }
+  note(Item::current_wires, judgement.wires.result, judgement.wires.figure);
+}
+
+void SelfTest::give_verdict() {
+  ++tests_ended_;
+  phase_ = Phase::verdict;
+  give(protocol::takes_force(report()) ? Order::fail : Order::pass);
+}
+
+void SelfTest::give(Order order) {
+  round_is_over_.store(false);
+  order_.store(test_ * orders + static_cast<std::uint32_t>(order));
+}
+
+protocol::SelfTestReport SelfTest::report() const {
+  protocol::SelfTestReport report{};
+  report.is_running = phase_ != Phase::idle;
+  report.tests_begun = test_;
+  report.tests_ended = tests_ended_;
+  report.time_periods = samples_.recorded();
+  for (std::size_t i = 0; i < entries_.size(); ++i) report.entries[i] = entries_[i];
+  return report;
+}
+
+INKWELL_INTERRUPT void SelfTest::exchange(control::Controller& controller) {
+  const std::uint32_t number = controller.self_tests();
+  if (begun_.load() != number) {
+    begun_.store(number);
+    pulses_run_ = false;
+  }
+  if (pulses_run_ && !controller.pulses_run()) {
+    pulses_run_ = false;
+    round_is_over_.store(true);
+  }
+  const std::uint32_t order = order_.load();
+  if (order / orders != number) return;
+  order_.store(0);
+  switch (static_cast<Order>(order % orders)) {
+    case Order::none: return;
+    case Order::pulses: pulses_run_ = true; return controller.start_pulses();
+    case Order::pass: return controller.pass_self_test();
+    case Order::fail: return controller.raise(protocol::Fault::self_test_failed);
+  }
+}
+
+}  // namespace inkwell::link

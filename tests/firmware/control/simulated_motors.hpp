@@ -1,0 +1,60 @@
+// Three motors at rest behind their bridges and shunts, for tests of what pulses them.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include <board/board.hpp>
+#include <control/vector.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell::tests {
+
+struct SimulatedMotor {
+  float resistance_ohm = 2.27f;  ///< that of the Omni's motors, with shunt and switches
+  float inductance_H = 0.238e-3f;
+  float dead_V = board::bridge_dead_time_part * board::supply_nominal_V;
+  float back_emf_V = 0.0f;
+  float back_emf_V_per_s = 0.0f;
+  float sensor_gain = 1.0f;
+  std::size_t sensor = 0;  ///< that its shunt is wired to, 0..2
+  bool is_open = false;
+  float current_A = 0.0f;
+};
+
+class SimulatedMotors {
+ public:
+  SimulatedMotors() {
+    for (std::size_t i = 0; i < 3; ++i) motors[i].sensor = i;
+  }
+
+  /// One control period: the voltages that were told in the period before act, these act in the next.
+  control::Triple step(const control::Triple& told_V) {
+    control::Triple reading_A{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      SimulatedMotor& motor = motors[i];
+      reading_A[motor.sensor] += motor.sensor_gain * motor.current_A;
+      advance(motor, acting_V_[i]);
+    }
+    acting_V_ = told_V;
+    return reading_A;
+  }
+
+  std::array<SimulatedMotor, 3> motors;
+
+ private:
+  // The dead time takes from a voltage what drives the current, and all of a small one.
+  static void advance(SimulatedMotor& motor, float voltage_V) {
+    motor.back_emf_V += motor.back_emf_V_per_s * protocol::servo_period_s;
+    if (motor.is_open) return;
+    const float driving_V = voltage_V - motor.back_emf_V;
+    const float size_V = std::fmax(std::fabs(driving_V) - motor.dead_V, 0.0f);
+    const float final_A = std::copysign(size_V, driving_V) / motor.resistance_ohm;
+    const float decay = std::exp(-protocol::servo_period_s * motor.resistance_ohm / motor.inductance_H);
+    motor.current_A = final_A + (motor.current_A - final_A) * decay;
+  }
+
+  control::Triple acting_V_{};
+};
+
+}  // namespace inkwell::tests
