@@ -27,6 +27,7 @@ struct Place {
   X(info)                   \
   X(devices)                \
   X(fault)                  \
+  X(self_test)              \
   X(force)                  \
   X(watch)                  \
   X(parameters)             \

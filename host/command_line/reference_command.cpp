@@ -10,6 +10,7 @@
 #include <device/fault_text.hpp>
 #include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/self_test.hpp>
 #include <protocol/supervision.hpp>
 #include <protocol/usb_identity.hpp>
 
@@ -49,6 +50,8 @@ constexpr ReportRow reports[] = {
      "whether a black box is kept, of which fault, and where the processor crashed"},
     {ReportId::black_box_rows, "BlackBoxRowsReport", "feature, get", sizeof(protocol::BlackBoxRowsReport),
      "some rows of the black box: every signal of a control period each"},
+    {ReportId::self_test, "SelfTestReport", "feature, get", sizeof(protocol::SelfTestReport),
+     "what the board's self-test has found"},
     {ReportId::black_box_rows, "BlackBoxRequest", "feature, set", sizeof(protocol::BlackBoxRequest),
      "the first row that is wanted"},
 };
@@ -114,6 +117,18 @@ void print_supervision() {
                row.off == protocol::Off::brake ? "is braked" : "coasts");
 }
 
+void print_self_test() {
+  fmt::print(
+      "\n## Self-test\n\nAfter each start, and on command. An item that fails takes the force away where the table "
+      "says "
+      "so.\n\n| item | figure | takes the force | what it looks at | remedy |\n| --- | --- | --- | --- | --- |\n");
+  for (const auto& row : protocol::self_test_item_table)
+    fmt::print("| {} | {} | {} | {} | {} |\n", row.name, row.unit, row.takes_force ? "yes" : "no", row.meaning,
+               row.remedy);
+  fmt::print("\n| result | meaning |\n| --- | --- |\n");
+  for (const auto& row : protocol::self_test_result_table) fmt::print("| {} | {} |\n", row.name, row.meaning);
+}
+
 void print_codes() {
   fmt::print("\n## Whose force is felt\n\n| bit | source | meaning |\n| --- | --- | --- |\n");
   for (const auto& row : protocol::force_source_table)
@@ -161,6 +176,7 @@ void add_reference_command(const Place& place) {
       print_reports();
       print_wire();
       print_supervision();
+      print_self_test();
       print_codes();
       print_tables();
       return 0;

@@ -18,6 +18,7 @@ using protocol::ReportId;
 constexpr auto heartbeat_interval = 10ms;
 constexpr std::uint32_t heartbeat_periods = protocol::servo_rate_Hz / 100;
 constexpr auto busy_timeout = 2s;
+constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
 
 std::string refusal_sentence(const protocol::TransactionReport& report) {
   const auto& refusal = protocol::info(report.refusal);
@@ -321,6 +322,33 @@ std::vector<protocol::BlackBoxRow> Device::black_box_rows(const protocol::BlackB
     rows.insert(rows.end(), report.rows, report.rows + count);
   }
   return rows;
+}
+
+protocol::SelfTestReport Device::read_self_test() {
+  const std::lock_guard lock(implementation_->feature_mutex);
+  protocol::SelfTestReport report{};
+  implementation_->get(report, "self-test");
+  return report;
+}
+
+protocol::SelfTestReport Device::self_test() {
+  protocol::SelfTestReport report = read_self_test();
+  const auto wait_while = [&](auto&& condition) {
+    const std::uint32_t begin_periods = report.time_periods;
+    while (condition() && report.time_periods - begin_periods < self_test_patience_periods) report = read_self_test();
+    return !condition();
+  };
+  const auto it_runs = [&] { return report.is_running != 0; };
+  wait_while(it_runs);  // the one after the start
+  const std::uint32_t begun_before = report.tests_begun;
+  send(Command::self_test);
+  if (!wait_while([&] { return report.tests_begun == begun_before; }))
+    throw Error(
+        "The board does not test itself now. Switch the force off; if a fault is shown, see to that first: `inkwell "
+        "fault` tells.");
+  if (!wait_while(it_runs))
+    throw Error("The board's self-test does not come to an end. Report this with the firmware version.");
+  return report;
 }
 
 std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout) {

@@ -217,7 +217,7 @@ TEST_CASE("every command explains itself") {
       "parameters save", "parameters diff", "parameters arm", "experiment", "experiment wall", "calibrate", "tune",
       "tune current-loop", "check", "check connection", "check directions", "record", "replay", "plot",
       "reference", "signals", "run", "campaign", "campaign list", "campaign run", "campaign merge", "soak", "devices", "fault",
-      "fault clear", "force", "force on", "force off"};
+      "fault clear", "self-test", "force", "force on", "force off"};
   // clang-format on
   const auto help_of = [](const std::string& command) {
     std::vector<std::string> words;

@@ -17,6 +17,7 @@
 #include <device/transport.hpp>
 #include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/self_test.hpp>
 
 namespace inkwell::device {
 
@@ -84,6 +85,12 @@ class Device {
   protocol::BlackBoxReport black_box();
   /// The rows of this one, in the order of time. Throws Error if the board gave it up meanwhile.
   std::vector<protocol::BlackBoxRow> black_box_rows(const protocol::BlackBoxReport& box);
+
+  /// The newest result of each item of the board's self-test.
+  protocol::SelfTestReport read_self_test();
+  /// Lets the board test itself, which takes a twentieth of a second, and returns what it found. Throws Error if the
+  /// board does not: the force is on, or a fault is shown.
+  protocol::SelfTestReport self_test();
 
   /// Waits for the next scope frame; none on time-out.
   std::optional<ScopeSamples> read_scope(std::chrono::milliseconds timeout);
