@@ -13,6 +13,7 @@
 #include "main_loop.hpp"
 #include "memory_check.hpp"
 #include "parts.hpp"
+#include "ram_test.hpp"
 #include "start_report.hpp"
 
 namespace inkwell::application {
@@ -61,6 +62,7 @@ int main() {
   const bool started_late = !start_clocks();
   report_start(reset_cause, crash);
   drivers::start_logic_supply_watch();
+  if (reset_cause.power_on()) host_link.self_test.note(protocol::SelfTestItem::ram, ram_keeps_pattern());
 
   // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
   analog_inputs.start_clocks();

@@ -30,6 +30,7 @@ bool floats(protocol::SelfTestItem wire) {
 
 void follow_self_test() {
   link::SelfTest& test = host_link.self_test;
+  if (!test.goes_on()) return;
   test.follow(controller, host_link.parameters.settings(), analog_inputs.gimbal_ratio());
   if (const auto wire = test.wanted_wire()) test.note_wire(floats(*wire));
 }

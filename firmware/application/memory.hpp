@@ -12,6 +12,7 @@
 
 extern "C" {
 extern std::uint32_t stack_bottom[], stack_top[];
+extern std::uint32_t core_coupled_end[], ram_begin[], ram_end[];
 extern std::uint32_t data_begin[], data_end[], zero_begin[], zero_end[];
 extern std::uint32_t core_coupled_data_begin[], core_coupled_data_end[], core_coupled_zero_begin[],
     core_coupled_zero_end[];

@@ -39,10 +39,7 @@ void SelfTest::note_wire(bool follows) {
 
 void SelfTest::follow(const control::Controller& controller, const control::Settings& settings,
                       const control::Triple& gimbal_ratio) {
-  const std::uint32_t recorded = samples_.recorded();
-  if (recorded == 0) return;
-  const auto& [signals, now] = samples_[recorded - 1];
-  if (now.fault == protocol::Fault::current_sensor) note(Item::current_offsets, Result::failed, 0.0f);
+  const auto& [signals, now] = samples_[samples_.recorded() - 1];
   if (begun_.load() != test_) begin(gimbal_ratio, controller.current_offsets_A());
   if (now.state != protocol::State::testing) {
     if (phase_ != Phase::idle && phase_ != Phase::verdict) break_off();
@@ -129,6 +126,8 @@ protocol::SelfTestReport SelfTest::report() const {
   report.tests_ended = tests_ended_;
   report.time_periods = samples_.recorded();
   for (std::size_t i = 0; i < entries_.size(); ++i) report.entries[i] = entries_[i];
+  if (report.time_periods > 0 && samples_[report.time_periods - 1].summary.fault == protocol::Fault::current_sensor)
+    report.entries[static_cast<std::size_t>(Item::current_offsets)].result = Result::failed;
   return report;
 }
 

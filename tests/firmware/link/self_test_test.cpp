@@ -41,6 +41,7 @@ struct Board {
   }
 
   void main_loop() {
+    if (!link.self_test.goes_on()) return;
     link.self_test.follow(controller, settings, samples.gimbal_ratio);
     if (const auto wire = link.self_test.wanted_wire()) {
       CHECK_FALSE(drive.enabled);
@@ -261,6 +262,17 @@ TEST_CASE("without a supply there are no pulses, the items say so, and the test 
   board.run_while(State::testing);
   CHECK(board.controller.state() == State::unreferenced);
   CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::passed);
+}
+
+TEST_CASE("a current sensor that is off zero is told by its item as well, although there is no test then") {
+  Board board;
+  for (int i = 0; i < 2'100; ++i) {
+    board.motors.motors[1].current_A = 3.0f;
+    board.run(1);
+  }
+  CHECK(board.controller.fault() == Fault::current_sensor);
+  CHECK(board.result(SelfTestItem::current_offsets) == SelfTestResult::failed);
+  CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::not_done);
 }
 
 TEST_CASE("a fault in the middle of the pulses switches off at once, and the next test begins with the first motor") {

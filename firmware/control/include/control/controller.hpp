@@ -134,7 +134,6 @@ class Controller {
   MotorWatch motor_watch_;
   Triple over_current_A_{};  ///< a measured current beyond it is a fault
   TestPulse test_;
-  SelfTestPulses pulses_;
   std::uint32_t self_tests_ = 0;
   Supervisor supervisor_;
   Situation asked_;                      ///< requests and faults from outside, since the period before
@@ -172,6 +171,7 @@ class Controller {
   // The large ones at the end, so that an instruction reaches all that is before them.
   TouchedShapes shapes_;
   FeltForceLaw law_;
+  SelfTestPulses pulses_;
 };
 
 }  // namespace inkwell::control

@@ -12,6 +12,7 @@ namespace inkwell::drivers {
 /// Flags of RCC_CSR: why the chip started.
 struct ResetCause {
   std::uint32_t flags;
+  bool power_on() const { return registers::RCC::CSR::PORRSTF::from(flags) != 0; }
   bool watchdog() const { return registers::RCC::CSR::IWDGRSTF::from(flags) != 0; }
 };
 

@@ -44,8 +44,10 @@ class SelfTest {
   /// Whether that wire's level followed the pulls of its pin.
   void note_wire(bool follows);
 
-  /// Goes on with the test, if there is one. Call it every time that the main loop comes round. `gimbal_ratio`: voltage
-  /// of each potentiometer as a part of its supply.
+  /// Whether there is a test that wants follow(). Ask every time that the main loop comes round.
+  bool goes_on() const { return phase_ != Phase::idle || begun_.load() != test_; }
+
+  /// Goes on with it. `gimbal_ratio`: voltage of each potentiometer as a part of its supply.
   void follow(const control::Controller& controller, const control::Settings& settings,
               const control::Triple& gimbal_ratio);
 

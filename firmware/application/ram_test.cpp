@@ -1,0 +1,33 @@
+#include "ram_test.hpp"
+
+#include <link/ram_pattern.hpp>
+
+#include <array>
+#include <span>
+
+#include "memory.hpp"
+
+namespace inkwell::application {
+namespace {
+
+/// Below the room on the stack: what its function keeps there as well, and what the march needs.
+constexpr std::ptrdiff_t words_of_callees = 64;
+
+std::span<volatile std::uint32_t> between(std::uint32_t* begin, std::uint32_t* end) {
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+}  // namespace
+
+bool ram_keeps_pattern() {
+  std::array<std::uint32_t, 128> room;
+  std::uint32_t* stack = room.data();
+  asm("" : "+r"(stack));  // the compiler is not to know that what lies before it is no part of the array
+  bool is_sound = link::keeps_pattern(std::span<volatile std::uint32_t>(room));
+  is_sound &= link::keeps_pattern(between(stack_bottom, stack - words_of_callees), std::span(room));
+  is_sound &= link::keeps_pattern(between(stack_top, core_coupled_end), std::span(room));
+  is_sound &= link::keeps_pattern(between(ram_begin, ram_end), std::span(room));
+  return is_sound;
+}
+
+}  // namespace inkwell::application
