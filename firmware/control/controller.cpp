@@ -173,7 +173,7 @@ void Controller::give(Force asked, const Settings& settings) {
   account(reserve_, force_.force_N, probe_.position_m, settings.energy);
   const float power_W = dot(asked.force_N, probe_.velocity_m_per_s);
   if (const float part = gives_way(reserve_, power_W, settings.energy); part > 0.0f) [[unlikely]] {
-    asked = bounded(without_drive(asked.force_N, power_W, probe_.velocity_m_per_s, part), force_limit_N_);
+    asked = less_driving(asked, power_W, part);
     limits_ |= bit(Limit::energy, true);
   }
   const Vector3 change_N = asked.force_N - force_.force_N;
@@ -182,6 +182,10 @@ void Controller::give(Force asked, const Settings& settings) {
     limits_ |= bit(Limit::change, true);
   }
   force_ = asked;
+}
+
+Force Controller::less_driving(const Force& asked, float power_W, float part) const {
+  return bounded(without_drive(asked.force_N, power_W, probe_.velocity_m_per_s, part), force_limit_N_);
 }
 
 /// From a force towards another, further away than the change that may be made in a period. A limit that is lowered

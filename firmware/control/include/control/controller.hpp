@@ -60,11 +60,11 @@ class Controller {
   /// is got over without a kick; a motor's own current limit holds at once.
   void settings_changed() { world_changed_ = true; }
   /// Carries out a command that the link has validated, in the next step. Counts as a sign of life.
-  void carry_out(const protocol::CommandReport& command);
+  [[gnu::cold]] void carry_out(const protocol::CommandReport& command);
   /// The host was heard: any output report came in.
   void host_alive() { host_silence_periods_ = 0; }
   /// A program on the PC asks for a force.
-  void drive(const ForceTarget& target, const Settings& settings);
+  [[gnu::cold]] void drive(const ForceTarget& target, const Settings& settings);
   /// A program on the PC has placed other shapes; they must stay as they are until the next call.
   void replace_shapes(const Shapes& shapes);
   /// The board is about to start its boot loader; called in each period in which it is.
@@ -110,12 +110,14 @@ class Controller {
   void find_pose(const Settings& settings);
   void render_force(const Settings& settings);
   void give(Force asked, const Settings& settings);
-  Force nearer(const Force& before, const Vector3& to_N, float change_squared_N2) const;
+  // What is rare is compiled to be short: the interrupts' memory is small.
+  [[gnu::cold]] Force less_driving(const Force& asked, float power_W, float part) const;
+  [[gnu::cold]] Force nearer(const Force& before, const Vector3& to_N, float change_squared_N2) const;
   void find_current_references(const Settings& settings);
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
   void follow_over_current(const Settings& settings);
-  void drive_pulses(const Settings& settings);
+  [[gnu::cold]] void drive_pulses(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void change_state(const Supervisor& next);
 

@@ -38,6 +38,6 @@ inline float gives_way(const EnergyReserve& reserve, float power_W, const Energy
 }
 
 /// The force without so large a part of what drives the motion.
-Vector3 without_drive(const Vector3& force_N, float power_W, const Vector3& velocity_m_per_s, float part);
+[[gnu::cold]] Vector3 without_drive(const Vector3& force_N, float power_W, const Vector3& velocity_m_per_s, float part);
 
 }  // namespace inkwell::control

@@ -43,7 +43,7 @@ struct ProgramForce {
 
 /// Heads for a new report: a line to it in the program's interval, or for longer if the force would change too fast.
 /// A report that is too large keeps its direction. Returns whether the report came more than a millisecond late.
-bool head_for(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits);
+[[gnu::cold]] bool head_for(ProgramForce& program, const ForceTarget& target, const ProgramForceLimits& limits);
 
 /// One control period further. When the reports stay away the force fades and the program no longer drives.
 void advance(ProgramForce& program, const ProgramForceLimits& limits);

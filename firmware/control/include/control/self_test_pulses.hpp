@@ -64,13 +64,14 @@ class SelfTestPulses {
   bool runs() const { return runs_; }
 
   /// One control period of a round: the voltage of each motor for the next one.
-  Triple step(const Triple& current_A, const std::array<std::int32_t, 3>& encoder_counts, const PulseScale& scale);
+  [[gnu::cold]] Triple step(const Triple& current_A, const std::array<std::int32_t, 3>& encoder_counts,
+                            const PulseScale& scale);
 
   /// Whole once a round that was started runs no more.
   const PulseRound& round() const { return round_; }
 
  private:
-  void size_pulses(const PulseScale& scale);
+  [[gnu::cold]] void size_pulses(const PulseScale& scale);
 
   PulseRound round_;
   std::size_t motor_ = 0;

@@ -70,7 +70,7 @@ class TouchedShapes {
   bool any() const { return sphere_lives_ || any_plane_lives_; }
 
  private:
-  void list_alive();
+  [[gnu::cold]] void list_alive();
 
   const Shapes* shapes_ = nullptr;
   std::uint32_t age_periods_ = 0;

@@ -21,6 +21,6 @@ struct Supervisor {
 bool surely_stays(protocol::State state, const Situation& situation);
 
 /// The state in the next period. `Event::cause` is added here.
-Supervisor advance(const Supervisor& supervisor, const Situation& situation);
+[[gnu::cold]] Supervisor advance(const Supervisor& supervisor, const Situation& situation);
 
 }  // namespace inkwell::control
