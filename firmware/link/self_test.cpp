@@ -92,7 +92,7 @@ void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const contro
 
 void SelfTest::end_round(const PulseJudgement& judgement) {
   note_pulses(judgement);
-  if (judgement.any(Result::failed) && !judgement.any(Result::moved)) ++failures_;
+  if (judgement.any(Result::failed)) ++failures_;
   const bool is_told = !judgement.any(Result::failed) && !judgement.any(Result::moved);
   if (is_told || failures_ == failures_to_believe || ++rounds_ == rounds_maximum)
     give_verdict();

@@ -27,7 +27,9 @@ struct Board {
   tests::FakeClock clock;
   control::Drive drive;
   std::optional<SelfTestItem> floating;  ///< a wire that nothing drives
-  int follows_by_chance = 0;             ///< looks in which a sound wire follows
+  std::uint32_t follows_by_chance = 0;   ///< looks in which a sound wire follows
+  std::optional<SelfTestItem> looked_at;
+  std::uint32_t looks = 0;
   std::uint32_t driven_periods = 0;
 
   void interrupt() {
@@ -45,7 +47,9 @@ struct Board {
     link.self_test.follow(controller, settings, samples.gimbal_ratio);
     if (const auto wire = link.self_test.wanted_wire()) {
       CHECK_FALSE(drive.enabled);
-      link.self_test.note_wire(wire == floating || follows_by_chance-- > 0);
+      looks = wire == looked_at ? looks + 1 : 1;
+      looked_at = wire;
+      link.self_test.note_wire(wire == floating || looks <= follows_by_chance);
     }
   }
 
