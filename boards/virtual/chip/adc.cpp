@@ -119,7 +119,8 @@ void Adc::begin_conversion(Ticks now) {
 }
 
 std::uint32_t Adc::convert(double voltage_V) const {
-  const double counts = std::floor(voltage_V / logic_supply_V * 4096.0);
+  constexpr double least_V = 1e-3;  // a converter without a reference shows what is there as more than it can
+  const double counts = std::floor(voltage_V / std::max(machine_.analog_supply_V, least_V) * 4096.0);
   return static_cast<std::uint32_t>(std::clamp(counts, 0.0, 4095.0)) >> (12 - resolution_bits());
 }
 
@@ -137,18 +138,35 @@ double Adc::charge(double pin_V, const AnalogSource& source, double time_s) {
   return sampled_V_;
 }
 
+/// No value that firmware could take for a true one for long.
+std::uint32_t Adc::nonsense(Ticks now) const {
+  return static_cast<std::uint32_t>(now * 2'654'435'761u >> 16 & 0xFFF) >> (12 - resolution_bits());
+}
+
+/// Temperature sensor and reference want 10 us, to start and for each sample (data sheet, their characteristics).
+std::uint32_t Adc::sample_internal(double volts, Ticks now) {
+  if (index_ != 0) return 0;
+  if (!adcs_.temperature_on()) {
+    machine_.violations.violate(Rule::reference_off, name());
+    return 0;
+  }
+  const bool hurried = now - began_ < internal_source_time || began_ < adcs_.internal_ready_at();
+  if (hurried) machine_.violations.violate(Rule::reference_hurried, name());
+  sampled_V_ = volts;
+  return hurried || spoilt_ ? nonsense(now) : convert(volts);
+}
+
 std::uint32_t Adc::sample(unsigned channel, Ticks now) {
-  // Typical values of the data sheet at 25 C; VBAT is divided by 2.
-  if (channel == 16) return index_ == 0 && adcs_.temperature_on() ? convert(0.76) : 0;
-  if (channel == 17) return index_ == 0 && adcs_.temperature_on() ? convert(1.21) : 0;
+  constexpr double temperature_sensor_V = 0.76;  // typical at 25 C
+  if (channel == 16) return sample_internal(temperature_sensor_V, now);
+  if (channel == 17) return sample_internal(internal_reference_V, now);
+  // VBAT, divided by 2.
   if (channel == 18) return index_ == 0 && adcs_.battery_on() ? convert(logic_supply_V / 2) : 0;
   if (channel > 18) return 0;
   const AnalogPin pin = index_ == 2 ? analog_pins_3[channel] : analog_pins_12[channel];
   const bool analog = machine_.pins->is_analog(static_cast<unsigned>(pin.port - 'A'), pin.pin);
   if (!analog) machine_.violations.violate(Rule::analog_pin_mode, std::string{'P', pin.port} + std::to_string(pin.pin));
-  // No value that firmware could take for a true one for long.
-  if (!analog || spoilt_)
-    return static_cast<std::uint32_t>(now * 2'654'435'761u >> 16 & 0xFFF) >> (12 - resolution_bits());
+  if (!analog || spoilt_) return nonsense(now);
   return convert(charge(machine_.circuit.analog_V(pin.port, pin.pin, now),
                         machine_.circuit.analog_source(pin.port, pin.pin),
                         seconds(duration(sampling_cycles(channel)))));

@@ -14,6 +14,14 @@ namespace inkwell::virtual_board {
 
 class Adcs;
 
+/// This part's own VREFINT, at any supply; the data sheet allows 1.18 V to 1.24 V.
+inline constexpr double internal_reference_V = 1.19;
+/// That and the temperature sensor take as long to start, and to be sampled.
+inline constexpr Ticks internal_source_time = 10 * (ticks_per_s / 1'000'000);
+/// What its maker has measured of it, in counts of a converter with a reference of 3.3 V.
+inline constexpr auto internal_reference_calibration =
+    static_cast<std::uint16_t>(internal_reference_V / logic_supply_V * 4096.0);
+
 class Adc final : public TimedPart {
  public:
   Adc(Machine& machine, Adcs& adcs, unsigned index);
@@ -58,6 +66,8 @@ class Adc final : public TimedPart {
   void check_start(Ticks now);
   std::uint32_t convert(double voltage_V) const;
   std::uint32_t sample(unsigned channel, Ticks now);
+  std::uint32_t sample_internal(double volts, Ticks now);
+  std::uint32_t nonsense(Ticks now) const;
   double charge(double pin_V, const AnalogSource& source, double time_s);
   void watch(unsigned channel);
   void idle();
@@ -102,6 +112,8 @@ class Adcs final : public RegisterBlock {
   void connect_triggers();
   unsigned prescaler() const { return 2 * (adc_common.ccr.adcpre.of(ccr_) + 1); }
   bool temperature_on() const { return adc_common.ccr.tsvrefe.in(ccr_); }
+  /// Temperature sensor and internal reference have started.
+  Ticks internal_ready_at() const { return internal_ready_at_; }
   bool battery_on() const { return adc_common.ccr.vbate.in(ccr_); }
   /// Results of regular groups go through the common data register (CCR.DMA).
   bool shares_dma() const { return adc_common.ccr.dma.in(ccr_) && converts_together(); }
@@ -138,6 +150,7 @@ class Adcs final : public RegisterBlock {
   std::deque<Adc> adcs_;
   const std::uint32_t* enable_register_ = nullptr;
   std::uint32_t ccr_ = 0;
+  Ticks internal_ready_at_ = 0;
   std::deque<std::uint32_t> shared_;  ///< results that wait to go through the common data register
   std::uint32_t common_data_ = 0;
   std::uint64_t injected_sequences_ = 0;

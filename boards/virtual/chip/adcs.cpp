@@ -183,7 +183,9 @@ void Adcs::write_word(std::uint32_t offset, std::uint32_t value) {
     return;
   }
   if (offset != common + adc_common.ccr) return machine_.log.note("ADC common", offset, true, value);
+  const bool was_on = temperature_on();
   ccr_ = value & writable(adc_common.ccr);
+  if (temperature_on() && !was_on) internal_ready_at_ = machine_.timeline.now() + internal_source_time;
   shared_.clear();
   if (adc_common.ccr.multi.of(ccr_) != 0 && !injected_simultaneous() && !converts_together())
     machine_.log.note("ADC alternate-trigger mode,", offset, true, value);

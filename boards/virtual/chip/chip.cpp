@@ -76,13 +76,14 @@ void Chip::glitch(char port, unsigned pin, Ticks duration) {
 }
 void Chip::set_supply_V(double volts) {
   auto& machine = parts_->machine;
-  machine.supply_V = volts;
+  machine.supply_V = machine.analog_supply_V = volts;
   const auto threshold = parts_->flash.brown_out();
   const bool was_low = machine.supply_is_low;
   machine.supply_is_low = volts < (was_low ? threshold.rising_V : threshold.falling_V);
   if (machine.supply_is_low != was_low) reset(ResetCause::brown_out);
   parts_->flash.check_wait_states();
 }
+void Chip::set_analog_supply_V(double volts) { parts_->machine.analog_supply_V = volts; }
 void Chip::lose_exception(unsigned exception, bool lost) { parts_->machine.nvic.lose(exception, lost); }
 void Chip::delay_exception(unsigned exception, std::uint32_t cycles) {
   parts_->late_cycles[exception] = cycles;

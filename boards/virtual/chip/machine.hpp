@@ -78,7 +78,7 @@ struct Machine {
   Rcc* rcc = nullptr;
   Timers* timers = nullptr;
 
-  double supply_V = logic_supply_V;
+  double supply_V = logic_supply_V, analog_supply_V = logic_supply_V;
   bool supply_is_low = false;        ///< the brown-out reset holds the chip
   bool flash_is_misread = false;     ///< too few wait states for HCLK
   bool traps_zero_division = false;  ///< CCR.DIV_0_TRP

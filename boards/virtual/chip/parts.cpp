@@ -116,7 +116,7 @@ ChipParts::ChipParts(Circuit& circuit, const ChipOptions& options) : machine(cir
   std::uint8_t* system = machine.memory.system();
   std::memcpy(system + 0x7A10, options.unique_id.data(), 12);
   // Counts at 3.3 V, as the converter below shows them: reference, temperature sensor at 30 C and at 110 C.
-  const std::uint16_t calibration[] = {1501, 958, 1207};
+  const std::uint16_t calibration[] = {internal_reference_calibration, 958, 1207};
   std::memcpy(system + 0x7A2A, calibration, sizeof calibration);
   const std::uint16_t flash_kilobytes = flash_bytes / 1024;
   std::memcpy(system + 0x7A22, &flash_kilobytes, 2);

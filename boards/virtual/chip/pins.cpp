@@ -149,6 +149,7 @@ PinLevel Pins::outside(unsigned port, unsigned pin) const {
 
 PinLevel Pins::level(unsigned port, unsigned pin) const {
   const State& s = states_[port * 16 + pin];
+  if (s.held != PinLevel::floating) return s.held;
   return s.output != PinLevel::floating ? s.output : outside(port, pin);
 }
 
@@ -181,6 +182,13 @@ void Pins::update(unsigned port, unsigned pin, Ticks since) {
 void Pins::invert(unsigned port, unsigned pin, bool inverted) {
   state(port, pin).inverted = inverted;
   update(port, pin);
+}
+
+void Pins::hold(char port, unsigned pin, PinLevel level) {
+  const auto index = static_cast<unsigned>(port - 'A');
+  if (index >= ports || pin > 15) return;
+  state(index, pin).held = level;
+  update(index, pin);
 }
 
 void Pins::drive(char port, unsigned pin, PinLevel level, Ticks since) {

@@ -56,6 +56,7 @@ class Pins final : public InputPins {
   }
   bool is_analog(unsigned port, unsigned pin) const { return ports_[port].mode(pin) == GpioPort::Mode::analog; }
   void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) override;
+  void hold(char port, unsigned pin, PinLevel level) override;
   /// What comes in from outside is the opposite of what the circuit drives, or no longer.
   void invert(unsigned port, unsigned pin, bool inverted);
   /// What a meter would show at the pin.
@@ -85,6 +86,7 @@ class Pins final : public InputPins {
   };
   struct State {
     PinLevel driven = PinLevel::floating;  ///< by the circuit
+    PinLevel held = PinLevel::floating;    ///< by what it touches, stronger than the chip's output
     PinLevel output = PinLevel::floating;  ///< by the chip, as the circuit was told
     PinLevel level = PinLevel::floating;   ///< as on_level was told
     bool input = false;

@@ -49,6 +49,11 @@ void Wires::set(PinName wire, WireFault fault) {
   s.frozen_V = s.newest_V;
   s.since = now_;
   s.fault = fault;
+  // What a wire touches wins against the chip's output as well.
+  const bool touches = fault == WireFault::low || fault == WireFault::high;
+  if (chip_ != nullptr)
+    chip_->hold(wire.port, wire.pin,
+                touches ? arriving(wire, &State::by_chip, &State::frozen_by_chip) : PinLevel::floating);
   tell_both(wire);
 }
 

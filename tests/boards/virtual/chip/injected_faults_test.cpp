@@ -1,5 +1,6 @@
 // What is put into the chip from outside: late interrupts, stopped converters and DMA, flipped bits, a crystal that
 // drifts.
+#include <array>
 #include <cmath>
 
 #include "chip_fixture.hpp"
@@ -35,6 +36,33 @@ TEST_CASE("an exception comes as late as it was told to, in each period, and in 
     test.run_for(0.001);
     CHECK(test.result(5) == doctest::Approx(in_time).epsilon(0.05));
   }
+}
+
+TEST_CASE("a pin that touches something is at its level, whatever the chip drives it with") {
+  ChipUnderTest test("converters");  // which toggles B2
+  std::array<unsigned, 3> seen{};
+  const auto look = [&] {
+    seen.fill(0);
+    for (int i = 0; i < 200; ++i) {
+      test.run_for(5e-6);
+      ++seen[static_cast<std::size_t>(test.chip.pin_level('B', 2))];
+    }
+  };
+  test.run_for(0.003);
+  look();
+  CHECK(seen[0] > 20);
+  CHECK(seen[1] > 20);
+  test.chip.input_pins().hold('B', 2, PinLevel::high);
+  look();
+  CHECK(seen[1] == 200);
+  test.chip.input_pins().hold('B', 2, PinLevel::low);
+  look();
+  CHECK(seen[0] == 200);
+  test.chip.input_pins().hold('B', 2, PinLevel::floating);
+  look();
+  CHECK(seen[1] > 20);
+  test.chip.input_pins().hold('Z', 2, PinLevel::low);  // no pin
+  test.chip.input_pins().hold('B', 16, PinLevel::low);
 }
 
 TEST_CASE("a converter that has stopped starts no conversion; its register keeps the last") {

@@ -47,6 +47,9 @@ constexpr Case cases[] = {
     {30, Rule::stream_flags_left},
     {31, Rule::usart_pin},
     {32, Rule::usart_divider},
+    {33, Rule::reference_off},
+    {34, Rule::reference_hurried},
+    {35, Rule::reference_hurried},
 };
 
 /// The firmware with one fault, and the USB core with a host that resets the bus once it sees a device.
@@ -76,6 +79,7 @@ struct Planted {
 };
 
 constexpr std::uint32_t one_volt = 1241;
+constexpr std::uint32_t reference = 1477;  // 1.19 V
 
 }  // namespace
 
@@ -86,6 +90,7 @@ TEST_SUITE("virtual chip: rules of silicon") {
       CHECK(none.test.result(0) == finished);
       CHECK(none.test.chip.violations().empty());
       for (unsigned converter = 0; converter < 3; ++converter) CHECK(none.converted(converter) == one_volt);
+      CHECK(none.test.result(8) == reference);
       CHECK(none.host_is_answered());
     }
   }
@@ -151,6 +156,10 @@ TEST_SUITE("virtual chip: rules of silicon") {
     }
     SUBCASE("a converter that is too fast, not stable or at a digital pin gives nonsense") {
       for (const unsigned number : {10u, 12u, 13u}) CHECK(Planted(number).converted(0) != one_volt);
+    }
+    SUBCASE("an internal reference that is off or hurried gives nonsense") {
+      CHECK(Planted(33).test.result(8) == 0);
+      for (const unsigned number : {34u, 35u}) CHECK(Planted(number).test.result(8) != reference);
     }
     SUBCASE("the host sees no device without pins, and hears none without 48 MHz") {
       CHECK_FALSE(Planted(3).host_is_answered());

@@ -20,7 +20,8 @@ class TwoEnds final : public Circuit, public InputPins {
     seen[{port, pin}] = level;
     newest = since;
   }
-  std::map<std::pair<char, unsigned>, PinLevel> heard, seen;
+  void hold(char port, unsigned pin, PinLevel level) override { held[{port, pin}] = level; }
+  std::map<std::pair<char, unsigned>, PinLevel> heard, seen, held;
   std::map<std::pair<char, unsigned>, double> volts;
   Ticks newest = 0;
 };
@@ -65,6 +66,21 @@ TEST_CASE("a digital wire that is broken, shorted or frozen, in both directions,
     w.wires.set(a0, WireFault::sound);
     CHECK(w.ends.seen[{'A', 0}] == PinLevel::high);
     CHECK(w.ends.heard[{'A', 0}] == PinLevel::high);
+  }
+}
+
+TEST_CASE("a wire that touches ground or 3.3 V holds the chip's pin there, any other leaves it to the chip") {
+  for (const auto& [fault, level] : {std::pair{WireFault::low, PinLevel::low},
+                                     {WireFault::high, PinLevel::high},
+                                     {WireFault::open, PinLevel::floating},
+                                     {WireFault::frozen, PinLevel::floating}}) {
+    CAPTURE(static_cast<int>(fault));
+    Wired w;
+    w.wires.output_changed('A', 0, PinLevel::low, 1);
+    w.wires.set(a0, fault);
+    CHECK(w.ends.held[{'A', 0}] == level);
+    w.wires.set(a0, WireFault::sound);
+    CHECK(w.ends.held[{'A', 0}] == PinLevel::floating);
   }
 }
 

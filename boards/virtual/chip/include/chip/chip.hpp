@@ -148,7 +148,10 @@ class Chip {
   /// Neither DMA takes a request any more, or both do again.
   void stop_dma(bool stopped);
   /// The supply of the chip, 3.3 V to begin with. Below the brown-out level of the option bytes it is held in reset.
+  /// VDDA goes with it.
   void set_supply_V(double volts);
+  /// VDDA alone, the reference of the converters.
+  void set_analog_supply_V(double volts);
   /// The crystal stops, or swings again.
   void let_crystal_swing(bool swings);
   /// It swings faster than its name by so many parts in a million; ChipOptions::crystal_ppm to begin with.

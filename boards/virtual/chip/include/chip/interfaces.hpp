@@ -18,7 +18,7 @@ inline constexpr Ticks ticks_per_s = 8'400'000'000;
 constexpr double seconds(Ticks ticks) { return static_cast<double>(ticks) / static_cast<double>(ticks_per_s); }
 constexpr Ticks ticks(double time_s) { return static_cast<Ticks>(time_s * static_cast<double>(ticks_per_s) + 0.5); }
 
-/// Of the chip, and of its converters' reference, unless something is wrong with it.
+/// Of the chip, and of its converters' reference VDDA, unless something is wrong with them.
 inline constexpr double logic_supply_V = 3.3;
 
 /// Events in the order of board time; equal times run in the order in which they were asked for.
@@ -104,6 +104,8 @@ class InputPins {
   /// A circuit that looks back, as one that moves in steps does, tells since when the level has been so. Calls for one
   /// pin come in the order of these times.
   virtual void drive(char port, unsigned pin, PinLevel level, Ticks since = just_now) = 0;
+  /// The pin touches something that wins against the chip's own output; `floating` is nothing any more.
+  virtual void hold(char /*port*/, unsigned /*pin*/, PinLevel /*level*/) {}
 };
 
 }  // namespace inkwell::virtual_board

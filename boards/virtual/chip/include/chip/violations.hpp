@@ -57,6 +57,12 @@ namespace inkwell::virtual_board {
        "conversions are wrong", "raise ADCPRE")                                                                        \
   RULE(converter_not_stable, "ADC_CR2", "STM32F405 data sheet, ADC characteristics",                                   \
        "A conversion starts less than 3 us after ADON", "its result is wrong", "wait 3 us")                            \
+  RULE(reference_off, "ADC_CCR", "RM0090, Temperature sensor",                                                         \
+       "The temperature sensor or the internal reference is converted while TSVREFE is 0", "its result means nothing", \
+       "set TSVREFE first")                                                                                            \
+  RULE(reference_hurried, "ADC_SMPR1", "STM32F405 data sheet, Embedded internal reference voltage",                    \
+       "The temperature sensor or the internal reference is sampled in less than 10 us, or that soon after TSVREFE",   \
+       "its result is wrong", "set SMP16 or SMP17 for the ADC's clock, and wait 10 us for it to start")                \
   RULE(analog_pin_mode, "GPIOx_MODER", "RM0090, Analog configuration",                                                 \
        "The ADC samples a pin that is not in analogue mode",                                                           \
        "the pull resistors and the input stage spoil the result", "set MODER to 0b11")                                 \
