@@ -133,7 +133,9 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::supply_sag:
     case InjectedFault::supply_spike:
     case InjectedFault::supply_cut: return "The capacitors bear it for that long.";
+    case InjectedFault::supply_ripple: return "Nothing looks for it.";
     case InjectedFault::logic_sag: return "The voltage is above 2.9 V, or it was over before the main loop looked.";
+    case InjectedFault::analog_sag: return "Nothing compares the reference with another.";
     case InjectedFault::crystal_stop: return "None is known: the clock's own guard sees it.";
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
     case InjectedFault::usb_cut:

@@ -24,6 +24,7 @@ InjectedFault kind(InjectedFault fault) {
     case InjectedFault::leg_open: return InjectedFault::leg_high;
     case InjectedFault::supply_spike:
     case InjectedFault::supply_cut: return InjectedFault::supply_sag;
+    case InjectedFault::analog_sag: return InjectedFault::logic_sag;
     default: return fault;
   }
 }
@@ -229,7 +230,13 @@ void Injector::put_into_chip(const Injection& injection, bool in) {
     case InjectedFault::supply_sag:
     case InjectedFault::supply_spike: return supply_V(amount);
     case InjectedFault::supply_cut: return supply_V(0.0);
-    case InjectedFault::logic_sag: return chip.set_supply_V(in ? amount : logic_supply_V);
+    case InjectedFault::supply_ripple: return plant.swing_supply_by_V(in ? amount : 0.0);
+    case InjectedFault::logic_sag:
+      plant.set_analog_supply_V(in ? amount : logic_supply_V);
+      return chip.set_supply_V(in ? amount : logic_supply_V);
+    case InjectedFault::analog_sag:
+      plant.set_analog_supply_V(in ? amount : logic_supply_V);
+      return chip.set_analog_supply_V(in ? amount : logic_supply_V);
     case InjectedFault::crystal_stop: return chip.let_crystal_swing(!in);
     case InjectedFault::crystal_drift:
       return chip.drift_crystal(in ? static_cast<std::int32_t>(amount) : victims_.crystal_ppm);

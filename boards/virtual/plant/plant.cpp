@@ -53,6 +53,9 @@ std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) 
 
 constexpr double reference_V = static_cast<double>(board::adc_reference_V);
 
+constexpr double supply_divider = static_cast<double>(board::supply_divider);
+constexpr double supply_divider_ohm = static_cast<double>(board::supply_upper_ohm) / supply_divider;
+
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
 /// A bare contact to ground; the chip's own pull-up makes the high level.
 PinLevel contact(bool closed) { return closed ? PinLevel::low : PinLevel::floating; }
@@ -66,6 +69,8 @@ Plant::Plant(const arms::Description& arm, const PlantOptions& options)
       motors_{motor_drive(arm, 0, imperfections_), motor_drive(arm, 1, imperfections_),
               motor_drive(arm, 2, imperfections_)},
       supply_(imperfections_, static_cast<double>(board::supply_nominal_V)),
+      supply_divided_V_(supply_.bus_V() / supply_divider),
+      analog_supply_V_(reference_V),
       windings_{with_shunt(arm, 0), with_shunt(arm, 1), with_shunt(arm, 2)},
       torque_per_A_{sound_torque_per_A(arm, 0), sound_torque_per_A(arm, 1), sound_torque_per_A(arm, 2)},
       arm_(arm, inkwell_joints_rad(arm)),
@@ -157,11 +162,11 @@ void Plant::update_legs(unsigned motor, Ticks now) {
 
 double Plant::shunt_V(unsigned motor) {
   constexpr double lower_V = static_cast<double>(board::shunt_amplifier_headroom_V);
-  constexpr double upper_V = reference_V - lower_V;
+  const double upper_V = std::max(lower_V, analog_supply_V_ - lower_V);
   constexpr double V_per_A = static_cast<double>(board::shunt_ohm * board::shunt_amplifier_gain);
   const ShuntFault& fault = shunt_faults_[motor];
   const double volts =
-      static_cast<double>(board::shunt_amplifier_offset_V) + imperfections_.amplifier_offset_V[motor] +
+      0.5 * analog_supply_V_ + imperfections_.amplifier_offset_V[motor] +
       V_per_A * (1.0 + imperfections_.amplifier_gain_error[motor]) * fault.read_A(motors_[motor].amplifier_A()) +
       noise(imperfections_.amplifier_noise_V);
   switch (fault.output) {
@@ -182,12 +187,10 @@ double Plant::analog_V(char port, unsigned pin, Ticks now) {
       return shunt_V(i);
     }
     if (board::gimbal[i].pin == wanted)
-      return std::clamp(gimbal_V(i) + noise(imperfections_.wiper_noise_V), 0.0, reference_V);
+      return std::clamp(gimbal_V(i) + noise(imperfections_.wiper_noise_V), 0.0, analog_supply_V_);
   }
-  if (board::supply.pin == wanted) {
-    const double volts = supply_.bus_V() / static_cast<double>(board::supply_divider);
-    return std::clamp(volts + noise(imperfections_.supply_reading_noise_V), 0.0, reference_V);
-  }
+  if (board::supply.pin == wanted)
+    return std::clamp(supply_divided_V_ + noise(imperfections_.supply_reading_noise_V), 0.0, analog_supply_V_);
   return 0.0;  // nothing is wired there; the board's ground plane is near
 }
 
@@ -199,8 +202,7 @@ AnalogSource Plant::analog_source(char port, unsigned pin) const {
     if (board::gimbal[i].pin == wanted) return {board::gimbal_track_ohm / 4, board::gimbal_filter_F};
   }
   if (board::supply.pin != wanted) return {};
-  return {board::supply_upper_ohm * board::supply_lower_ohm / (board::supply_upper_ohm + board::supply_lower_ohm),
-          board::supply_filter_F};
+  return {supply_divider_ohm, board::supply_filter_F};
 }
 
 double Plant::gimbal_V(unsigned axis) {
@@ -212,7 +214,7 @@ double Plant::gimbal_V(unsigned axis) {
     const double root = std::sqrt(std::max(slope * slope - 4.0 * square * constant, 0.0));
     ratio = -2.0 * constant / (slope + std::copysign(root, slope));  // the root that the line above goes over into
   }
-  return std::clamp(ratio, 0.0, 1.0) * static_cast<double>(board::adc_reference_V);
+  return std::clamp(ratio, 0.0, 1.0) * analog_supply_V_;
 }
 
 void Plant::advance(Ticks now) {
@@ -250,6 +252,9 @@ void Plant::step() {
   inkwell_.advance(duration_s, probe_m_);
   if (carrier_.holds()) finish_docking();
   supply_.advance(duration_s, supply_charge_As);
+  static const double divider_follows =
+      1.0 - std::exp(-duration_s / (supply_divider_ohm * static_cast<double>(board::supply_filter_F)));
+  supply_divided_V_ += (supply_.bus_V() / supply_divider - supply_divided_V_) * divider_follows;
   for (unsigned i = 0; i < 3; ++i) {
     motors_[i].set_back_emf_V(torque_per_A(i) * arm_.joint_speeds_rad_s()[i]);
     motors_[i].set_bus_V(supply_.bus_V());

@@ -1,6 +1,8 @@
 #include <plant/supply.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace inkwell::virtual_board {
 
@@ -11,15 +13,26 @@ Supply::Supply(const Imperfections& imperfections, double source_V)
       source_V_(source_V),
       bus_V_(source_V) {}
 
+void Supply::swing_by_V(double amplitude_V) {
+  swing_V_ = amplitude_V;
+  swinging_s_ = 0.0;
+}
+
+double Supply::source_V() const {
+  constexpr double swing_Hz = 100.0;
+  return failed_V_.value_or(source_V_) + swing_V_ * std::sin(2.0 * std::numbers::pi * swing_Hz * swinging_s_);
+}
+
 void Supply::advance(double duration_s, double charge_As) {
   // Implicit Euler: stable for any source resistance and capacitor.
   const auto next_V = [&](double source_S) {
     const double charge = capacitance_F_ * bus_V_ - charge_As + duration_s * source_S * source_V();
     return charge / (capacitance_F_ + duration_s * (source_S + quiescent_conductance_S_));
   };
+  swinging_s_ += duration_s;
   const double fed_V = next_V(source_conductance_S_);
-  // Above its own voltage the source blocks.
-  bus_V_ = fed_V <= source_V() ? fed_V : std::max(source_V(), next_V(0.0));
+  // Above its own voltage a source that does not hunt blocks.
+  bus_V_ = fed_V <= source_V() || swing_V_ != 0.0 ? fed_V : std::max(source_V(), next_V(0.0));
   // Below ground the diodes of the bridges conduct.
   bus_V_ = std::max(bus_V_, 0.0);
 }

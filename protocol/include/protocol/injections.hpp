@@ -54,7 +54,9 @@ inline constexpr double wire_spike_s = 2e-6;
   X(supply_sag, none, "V", 0, 18, 10, "The source of the bridges falls to this.")                                       \
   X(supply_spike, none, "V", 18, 36, 30, "It rises to this.")                                                           \
   X(supply_cut, none, "", 0, 0, 0, "It is gone.")                                                                       \
-  X(logic_sag, none, "V", 0, 3.3, 2, "The chip's 3.3 V fall to this.")                                                  \
+  X(supply_ripple, none, "V", 0, 6, 3, "It swings by so much to either side, 100 times a second.")                      \
+  X(logic_sag, none, "V", 0, 3.3, 2, "The chip's 3.3 V fall to this, and VDDA with them.")                              \
+  X(analog_sag, none, "V", 0, 3.6, 3, "VDDA alone is at this: reference of converters and amplifiers.")                 \
   X(crystal_stop, none, "", 0, 0, 0, "The crystal stops.")                                                              \
   X(crystal_drift, none, "ppm", -10000, 10000, 5000, "It swings so much faster than its name.")                         \
   X(usb_cut, none, "", 0, 0, 0, "The cable is out.")                                                                    \

@@ -286,6 +286,30 @@ TEST_CASE("supplies") {
   rig.run(0.01);
   CHECK(bus_V() == doctest::Approx(18.0).epsilon(0.01));
 
+  const auto swing_V = [&] {
+    double lowest_V = 99.0, highest_V = 0.0;
+    for (int i = 0; i < 20; ++i) {
+      rig.run(0.0005);
+      lowest_V = std::min(lowest_V, bus_V());
+      highest_V = std::max(highest_V, bus_V());
+    }
+    return highest_V - lowest_V;
+  };
+  rig.inject("supply_ripple=2");
+  CHECK(swing_V() == doctest::Approx(4.0).epsilon(0.05));
+  rig.injector.heal_all();
+  rig.run(0.3);
+  CHECK(swing_V() < 0.1);
+
+  const auto wiper_V = [&] { return rig.read_V(board::gimbal[0]); };
+  for (const char* fault : {"analog_sag=3", "logic_sag=3"}) {
+    rig.inject(fault);
+    CHECK(wiper_V() == doctest::Approx(1.5).epsilon(0.01));
+  }
+  CHECK(rig.injector.active().size() == 1);  // one takes the other's place
+  rig.injector.heal_all();
+  CHECK(wiper_V() == doctest::Approx(1.65).epsilon(0.01));
+
   rig.inject("logic_sag=2@0.001+0.001");
   rig.run(0.0015);
   CHECK(rig.chip.counters().resets[static_cast<std::size_t>(ResetCause::brown_out)] == 1);

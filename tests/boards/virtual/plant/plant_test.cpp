@@ -184,6 +184,51 @@ TEST_CASE("the supply sags under load, rises while the arm is braked, and is mea
   CHECK(driven.plant.truth(driven.now).supply_V < 12.0);
 }
 
+TEST_CASE("the supply's reading follows through its divider's 0.9 ms") {
+  DrivenPlant driven(test::omni());
+  driven.idle(0.01);
+  driven.plant.fail_supply_at_V(24.0);
+  driven.idle(0.0025);  // the bus itself takes a third of a millisecond
+  const double bus_V = driven.plant.truth(driven.now).supply_V;
+  CHECK(bus_V == doctest::Approx(24.0).epsilon(0.005));
+  // A rise by exp(-t / 0.33 ms), seen by a filter of 0.909 ms.
+  CHECK(driven.read_V(board::supply) * 11.0 == doctest::Approx(24.0 - 6.0 * 0.10).epsilon(0.004));
+}
+
+TEST_CASE("a supply that hunts swings the bus to both sides, a hundred times a second, and comes to rest again") {
+  DrivenPlant driven(test::omni());
+  driven.plant.swing_supply_by_V(3.0);
+  int rises = 0;
+  double lowest_V = 99.0, highest_V = 0.0, before_V = 18.0;
+  for (int i = 0; i < 2'000; ++i) {
+    driven.idle(0.00005);
+    const double bus_V = driven.plant.truth(driven.now).supply_V;
+    rises += before_V < 18.0 && bus_V >= 18.0;
+    lowest_V = std::min(lowest_V, bus_V);
+    highest_V = std::max(highest_V, bus_V);
+    before_V = bus_V;
+  }
+  CHECK(std::abs(rises - 10) <= 1);
+  CHECK(lowest_V == doctest::Approx(15.0).epsilon(0.01));
+  CHECK(highest_V == doctest::Approx(21.0).epsilon(0.01));
+  driven.plant.swing_supply_by_V(0.0);
+  driven.idle(0.3);
+  CHECK(driven.plant.truth(driven.now).supply_V == doctest::Approx(18.0).epsilon(0.01));
+}
+
+TEST_CASE("amplifiers and potentiometers go with VDDA, the supply's divider does not") {
+  DrivenPlant driven(test::omni());
+  driven.idle(0.001);
+  driven.plant.set_analog_supply_V(3.0);
+  for (const auto& current : board::motor_current) CHECK(driven.read_V(current) == doctest::Approx(1.5).epsilon(0.005));
+  for (const auto& wiper : board::gimbal) CHECK(driven.read_V(wiper) == doctest::Approx(1.5).epsilon(0.01));
+  CHECK(driven.read_V(board::supply) == doctest::Approx(18.0 / 11.0).epsilon(0.01));
+  driven.plant.set_shunt_fault(0, {.output = ShuntFault::Output::upper_rail});
+  CHECK(driven.read_V(board::motor_current[0]) == doctest::Approx(2.8));
+  driven.plant.set_analog_supply_V(0.0);
+  for (const auto& wiper : board::gimbal) CHECK(driven.read_V(wiper) == 0.0);
+}
+
 TEST_CASE("potentiometers invert the gimbal's characteristic, with wiper noise") {
   using protocol::Parameter;
   auto arm = test::omni();

@@ -75,6 +75,10 @@ class Plant final : public Circuit {
   }
   /// The source of the bridges gives this whatever it was set to; none heals it.
   void fail_supply_at_V(std::optional<double> volts) { supply_.fail_at_V(volts); }
+  /// It swings by so much to either side, 100 times a second; 0 heals it.
+  void swing_supply_by_V(double amplitude_V) { supply_.swing_by_V(amplitude_V); }
+  /// What amplifiers and potentiometers are fed with, 3.3 V to begin with.
+  void set_analog_supply_V(double volts) { analog_supply_V_ = volts; }
 
   /// Measures what the hand gets, from now on.
   void start_meter() { meter_.start(probe_m_, now_); }
@@ -114,6 +118,8 @@ class Plant final : public Circuit {
   std::array<std::array<PinLevel, 2>, 3> leg_pins_;
   bool bridges_enabled_ = false, bridge_fault_ = false;
   Supply supply_;
+  double supply_divided_V_;  ///< at the pin, behind the divider and its capacitor
+  double analog_supply_V_;
   std::array<MotorConstants, 3> windings_;  ///< and shunts, of sound motors
   std::array<MotorFault, 3> motor_faults_{};
   std::array<ShuntFault, 3> shunt_faults_{};

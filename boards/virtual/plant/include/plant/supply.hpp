@@ -15,7 +15,9 @@ class Supply {
   void set_source_V(double volts) { source_V_ = volts; }
   /// A fault of the source: it gives this instead, until there is none.
   void fail_at_V(std::optional<double> volts) { failed_V_ = volts; }
-  double source_V() const { return failed_V_.value_or(source_V_); }
+  /// Another one: it hunts, by so much to either side and 100 times a second, and takes back what it gave before.
+  void swing_by_V(double amplitude_V);
+  double source_V() const;
   double bus_V() const { return bus_V_; }
 
   /// One step of `duration_s` in which the bridges drew `charge_As` (negative while they feed back).
@@ -25,6 +27,7 @@ class Supply {
   double source_conductance_S_, quiescent_conductance_S_, capacitance_F_;
   double source_V_, bus_V_;
   std::optional<double> failed_V_;
+  double swing_V_ = 0.0, swinging_s_ = 0.0;  ///< amplitude, and for how long
 };
 
 }  // namespace inkwell::virtual_board
