@@ -311,8 +311,7 @@ void Controller::change_state(const Supervisor& next) {
     brake_.begin();
   else
     brake_ = {};
-  // Counts were lost, so the reference is void: only the inkwell can tell again where the arm is.
-  if (next.fault == Fault::encoder_implausible) forget(reference_);
+  if (protocol::voids_reference(next.fault)) forget(reference_);
 }
 
 void Controller::write_signals(protocol::SignalValues& signals) const {

@@ -113,7 +113,8 @@ void print_supervision() {
       "shorted through the low sides of its bridge until the arm is slow.\n\n"
       "| fault | watched while | can be cleared | an arm that moves |\n| --- | --- | --- | --- |\n");
   for (const auto& row : protocol::watch_table)
-    fmt::print("| {} | {} | {} | {} |\n", info(row.fault).name, names_of(row.watched_in), text(row.clearing),
+    fmt::print("| {} | {} | {}{} | {} |\n", info(row.fault).name, names_of(row.watched_in), text(row.clearing),
+               row.voids_reference ? ", and asks for the inkwell anew" : "",
                row.off == protocol::Off::brake ? "is braked" : "coasts");
 }
 

@@ -27,7 +27,7 @@ glm::vec3 up_of(control::Frame frame) {
 
 bool is_referenced(const protocol::PoseReport& pose) {
   return pose.state == protocol::State::ready || protocol::force_is_on(pose.state) ||
-         (pose.state == protocol::State::fault && pose.fault != protocol::Fault::encoder_implausible);
+         (pose.state == protocol::State::fault && !protocol::voids_reference(pose.fault));
 }
 
 glm::mat3 workspace_to_view(control::Frame frame) {

@@ -204,6 +204,7 @@ struct Watch {
   States watched_in;
   Clearing clearing;
   Off off;
+  bool voids_reference = false;  ///< counts were lost: only the inkwell can tell again where the arm is
 };
 
 /// Of several in one period the first is shown, because it explains the others. The first that was shown stays until
@@ -233,7 +234,7 @@ inline constexpr auto watch_table = []() {
       {Fault::self_test_failed, State::testing, when_gone, coast},
       {Fault::motor_implausible, with_force, at_once, coast},
       {Fault::motor_hot, started, when_gone, coast},
-      {Fault::encoder_implausible, moving, at_once, coast},
+      {Fault::encoder_implausible, moving, at_once, coast, true},
       {Fault::over_speed, with_force, at_once, brake},
       {Fault::host_silent, driven, at_once, brake},
   });
@@ -269,6 +270,19 @@ constexpr Watches watches(Predicate is_so) {
   for (std::size_t i = 0; i < watch_table.size(); ++i)
     if (is_so(watch_table[i])) bits |= 1u << i;
   return bits;
+}
+
+/// Whether the place of the arm has to be learnt anew after this fault. No table is read for it.
+constexpr bool voids_reference(Fault fault) {
+  constexpr std::uint32_t codes = []() {
+    std::uint32_t bits = 0;
+    for (const Watch& row : watch_table)
+      if (row.voids_reference) bits |= 1u << static_cast<unsigned>(row.fault);
+    return bits;
+  }();
+  static_assert(fault_table.size() <= 32);
+  const auto code = static_cast<unsigned>(fault);
+  return code < fault_table.size() && (codes >> code & 1u) != 0;
 }
 
 // ---- the tables are whole ----------------------------------------------------------------------------------

@@ -152,6 +152,14 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
   }
 }
 
+TEST_CASE("the place of the arm is void after faults of its encoders and after no other") {
+  for (const FaultCase& row : fault_cases()) {
+    CAPTURE(static_cast<int>(row.fault));
+    CHECK(protocol::voids_reference(row.fault) == (row.fault == Fault::encoder_implausible));
+  }
+  CHECK_FALSE(protocol::voids_reference(Fault::none));
+}
+
 TEST_CASE("where a cleared fault leads to") {
   const Supervisor found = faulty(Fault::processor_fault);
   CHECK(advance(found, {events(Event::clear), 0}) == in(State::starting));
