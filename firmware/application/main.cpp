@@ -9,9 +9,9 @@
 #include <drivers/system.hpp>
 #include <usb/device.hpp>
 
+#include "background_watch.hpp"
 #include "crash.hpp"
 #include "main_loop.hpp"
-#include "memory_check.hpp"
 #include "parts.hpp"
 #include "ram_test.hpp"
 #include "start_report.hpp"
@@ -73,15 +73,8 @@ int main() {
   const protocol::Fault fault = fault_of_start(reset_cause, crash, started_late);
   if (fault != protocol::Fault::none) controller.raise(fault);
   host_link.black_box.start(fault, crash.value_or(protocol::CrashFacts{}));
-  MemoryCheck memory_check;
-  bool memory_sound = memory_check.start();
-  const auto look_for_faults = [&memory_sound] {
-    host_link.found_in_main_loop.store(
-        protocol::watch(protocol::Fault::memory_damaged, !memory_sound) |
-        protocol::watch(protocol::Fault::logic_supply_low, drivers::logic_supply_is_low()));
-  };
-  look_for_faults();
-  host_link.self_test.note(protocol::SelfTestItem::flash, memory_sound);
+  BackgroundWatch background_watch;
+  host_link.self_test.note(protocol::SelfTestItem::flash, background_watch.start());
 
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up();
@@ -102,8 +95,7 @@ int main() {
       drivers::start_boot_loader();
     host_link.scope.pack();
     host_link.black_box.follow();
-    memory_sound = memory_check.step();
-    look_for_faults();
+    background_watch.look();
     follow_self_test();
     feed_watchdog();
     show_state();

@@ -18,16 +18,42 @@ using DMA2 = RegistersOfStream<AnalogInputs, registers::DMA2, 0>;
 /// JEXTSEL and JEXTEN (RM0090, ADC_CR2).
 constexpr std::uint32_t trigger_tim1_trgo = 0b0001, rising_edge = 0b01;
 
-/// 144 cycles as a code of ADC_SMPRx. The shunt amplifiers are fast and low in impedance, and are sampled for the 3
-/// cycles that a reset leaves; potentiometers of 10 k and the supply's divider are neither.
-constexpr std::uint32_t sample_144_cycles = 0b110;
-static_assert(4.0f * (144 + 12) / board::adc_Hz < 0.8f / board::servo_rate_Hz,
+/// How long a channel is sampled: a code of ADC_SMPRx, and what it stands for. The shunt amplifiers, which are fast,
+/// have the 3 cycles that a reset leaves.
+struct Sampling {
+  std::uint32_t code, cycles;
+  constexpr float time_s() const { return static_cast<float>(cycles) / board::adc_Hz; }
+  /// With the conversion behind it.
+  constexpr std::uint32_t whole_cycles() const { return cycles + 12; }
+};
+/// Potentiometers and the supply's divider are slow, but a capacitor at the pin gives what the sampling capacitor
+/// takes.
+constexpr Sampling wiper_sampling{0b011, 56}, supply_sampling = wiper_sampling;
+/// The internal reference wants 10 us (data sheet, "Embedded internal reference voltage").
+constexpr Sampling reference_sampling{0b111, 480};
+static_assert(reference_sampling.time_s() > 10e-6f);
+
+constexpr std::uint32_t slow_channels = 5;
+constexpr std::uint32_t reference_channel = 17;
+static_assert(static_cast<float>(3 * wiper_sampling.whole_cycles() + supply_sampling.whole_cycles() +
+                                 reference_sampling.whole_cycles()) /
+                      board::adc_Hz <
+                  0.8f / board::servo_rate_Hz,
               "the slow conversions must be over when the next injected ones come");
 
-constexpr std::uint32_t slow_channels = 4;
+/// The converter's own, at their worst (data sheet, ADC characteristics). The capacitor at the pin must lose less than
+/// half a step to it, whatever the channel before left in it, and the switch between the two ten time constants.
+constexpr float switch_ohm = 6000.0f, sampling_F = 4e-12f;
+constexpr bool is_settled(const Sampling& sampling, float filter_F) {
+  return filter_F > 2.0f * board::adc_counts * sampling_F && sampling.time_s() > 10.0f * switch_ohm * sampling_F;
+}
+static_assert(is_settled(wiper_sampling, board::gimbal_filter_F) && is_settled(supply_sampling, board::supply_filter_F),
+              "a channel would show in the next one's reading");
 
 /// Place of a channel's sampling time in SMPR2 (channels 0 to 9) or SMPR1 (10 to 18).
-constexpr std::uint32_t sampling(std::uint8_t channel, std::uint32_t code) { return code << channel % 10 * 3; }
+constexpr std::uint32_t sampling(std::uint32_t channel, const Sampling& sampling) {
+  return sampling.code << channel % 10 * 3;
+}
 
 constexpr bool in_first_register(const board::AnalogInput& input) { return input.channel >= 10; }
 static_assert(in_first_register(board::motor_current[0]) && in_first_register(board::motor_current[1]) &&
@@ -53,13 +79,15 @@ float take_current_A() {
 }
 
 void set_up_slow_sequence() {
-  ADC1::SMPR1::write(sampling(board::gimbal[0].channel, sample_144_cycles) |
-                     sampling(board::gimbal[1].channel, sample_144_cycles) |
-                     sampling(board::gimbal[2].channel, sample_144_cycles));
-  ADC1::SMPR2::write(sampling(board::supply.channel, sample_144_cycles));
+  ADC1::SMPR1::write(
+      sampling(board::gimbal[0].channel, wiper_sampling) | sampling(board::gimbal[1].channel, wiper_sampling) |
+      sampling(board::gimbal[2].channel, wiper_sampling) | sampling(reference_channel, reference_sampling));
+  ADC1::SMPR2::write(sampling(board::supply.channel, supply_sampling));
   ADC1::SQR1::write(ADC1::SQR1::L(slow_channels - 1));
+  // The supply comes last: what it leaves in the sampling capacitor is near the middle of the range, as a current is.
   ADC1::SQR3::write(ADC1::SQR3::SQ1(board::gimbal[0].channel), ADC1::SQR3::SQ2(board::gimbal[1].channel),
-                    ADC1::SQR3::SQ3(board::gimbal[2].channel), ADC1::SQR3::SQ4(board::supply.channel));
+                    ADC1::SQR3::SQ3(board::gimbal[2].channel), ADC1::SQR3::SQ4(reference_channel),
+                    ADC1::SQR3::SQ5(board::supply.channel));
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
@@ -104,7 +132,8 @@ void AnalogInputs::start() {
 
   static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
                 board::adc_divider == 8);
-  ADC_COMMON::CCR::write(ADC_COMMON::CCR::ADCPRE(board::adc_divider / 2 - 1));
+  // The reference takes 10 us to start, and has them before arm() (data sheet, "Embedded internal reference voltage").
+  ADC_COMMON::CCR::write(ADC_COMMON::CCR::ADCPRE(board::adc_divider / 2 - 1), ADC_COMMON::CCR::TSVREFE(1));
   set_up_injected<ADC1>(board::motor_current[0]);
   set_up_injected<ADC2>(board::motor_current[1]);
   set_up_injected<ADC3>(board::motor_current[2]);
@@ -159,6 +188,9 @@ INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::gimbal_ratio() const {
           static_cast<float>(slow_[2]) * per_count};
 }
 
-INKWELL_INTERRUPT float AnalogInputs::supply_V() const { return static_cast<float>(slow_[3]) * board::supply_step_V; }
+INKWELL_INTERRUPT float AnalogInputs::supply_V() const { return static_cast<float>(slow_[4]) * board::supply_step_V; }
+
+static_assert(board::adc_reference_V == 3.3f, "the reference's calibration is for 3.3 V");
+std::uint16_t AnalogInputs::calibrated_reference_counts() { return registers::SIGNATURE::VREFIN_CAL::read(); }
 
 }  // namespace inkwell::drivers

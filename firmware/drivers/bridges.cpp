@@ -47,6 +47,14 @@ void write_legs(const LegCompares& legs) {
   TIM8::CCR::write(place, legs.leg_b);
 }
 
+/// All legs A are at one port and all legs B at another, so that each is looked at by one access.
+template <board::Pin first, board::Pin second, board::Pin third>
+bool any_is_high() {
+  static_assert(first.port == second.port && first.port == third.port);
+  constexpr std::uint32_t pins = 1u << first.number | 1u << second.number | 1u << third.number;
+  return (DigitalInput<Bridges, first>::read_port() & pins) != 0;
+}
+
 /// Starts both counters together: TIM8 waits for the trigger output of TIM1, which is its internal trigger 0
 /// (RM0090, "TIMx internal trigger connection"). It comes some two cycles late, 12 ns, by which the legs of a
 /// bridge stay apart; the bridge's own dead time is 17 times that.
@@ -144,6 +152,14 @@ bool Bridges::fault_wire_of_tim1_floats() const {
 bool Bridges::fault_wire_of_tim8_floats() const {
   const InterruptsHeld held;
   return follows_pulls<Bridges, board::bridge_fault_tim8.pin>(fault_pull_cycles);
+}
+
+bool Bridges::enable_is_high() const { return DigitalInput<Bridges, board::bridge_enable>::is_high(); }
+
+bool Bridges::a_leg_is_high() const {
+  using board::bridges;
+  return any_is_high<bridges[0].leg_a.pin, bridges[1].leg_a.pin, bridges[2].leg_a.pin>() ||
+         any_is_high<bridges[0].leg_b.pin, bridges[1].leg_b.pin, bridges[2].leg_b.pin>();
 }
 
 INKWELL_INTERRUPT void Bridges::begin_period() { TIM1::SR::write(~TIM1::SR::UIF::mask); }

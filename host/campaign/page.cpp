@@ -86,11 +86,13 @@ std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
 /// Why a wire may be broken unnoticed, by what it is for.
 std::string_view reason_of_wire(std::string_view wire) {
   if (wire.starts_with("encoders"))
-    return "No second sensor knows the joint; only an angle far beyond its stop, or a speed that cannot be, "
-           "is noticed.";
-  if (wire.starts_with("bridges")) return "While no current is asked of the motor, none is missed.";
+    return "A dead wire shows by a count that goes to and fro, and that only while the joint moves.";
+  if (wire.starts_with("bridges"))
+    return "While no current is asked of the motor, none is missed, and the legs' levels are looked at while the "
+           "bridges "
+           "are off only.";
   if (wire.starts_with("bridge_fault")) return "It stands as with sound bridges; nothing tests it.";
-  if (wire == "bridge_enable") return "It stands as with the force on; nothing reads it back.";
+  if (wire == "bridge_enable") return "It stands as with the force on, and so does the chip's own pin.";
   if (wire.starts_with("motor_current"))
     return "The reading stays near what is asked for, or what it leads to within what a hot motor may differ by.";
   if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
@@ -133,9 +135,10 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::supply_sag:
     case InjectedFault::supply_spike:
     case InjectedFault::supply_cut: return "The capacitors bear it for that long.";
-    case InjectedFault::supply_ripple: return "Nothing looks for it.";
+    case InjectedFault::supply_ripple:
+      return "It swings by less than a volt, which sound motors may bring about, or has not swung often enough.";
     case InjectedFault::logic_sag: return "The voltage is above 2.9 V, or it was over before the main loop looked.";
-    case InjectedFault::analog_sag: return "Nothing compares the reference with another.";
+    case InjectedFault::analog_sag: return "Within what a sound regulator and the reference may be off.";
     case InjectedFault::crystal_stop: return "None is known: the clock's own guard sees it.";
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
     case InjectedFault::usb_cut:

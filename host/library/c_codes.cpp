@@ -47,6 +47,11 @@ constexpr Code faults[] = {CODE(FAULT_NONE),
                            CODE(FAULT_MEMORY_DAMAGED),
                            CODE(FAULT_MOTOR_IMPLAUSIBLE),
                            CODE(FAULT_LOGIC_SUPPLY_LOW),
+                           CODE(FAULT_SUPPLY_RIPPLE),
+                           CODE(FAULT_ENCODER_WIRE),
+                           CODE(FAULT_BRIDGE_WIRE),
+                           CODE(FAULT_ANALOG_SUPPLY),
+
                            CODE(FAULT_SELF_TEST_FAILED)};
 static_assert(std::ranges::equal(faults, protocol::fault_table, [](const Code& c, const protocol::CodeInfo& row) {
   return c.value == row.code && is_capital_of(c.name, "FAULT_", row.name);

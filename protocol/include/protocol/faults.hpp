@@ -12,6 +12,10 @@ namespace inkwell::protocol {
 inline constexpr float over_current_ratio = 1.5f;
 /// Supply and gimbal are not known any more if they were not measured for longer.
 inline constexpr float samples_stale_s = 0.001f;
+/// The supply of the bridges swings by more to either side of its mean (control/supply_ripple.hpp).
+inline constexpr float supply_ripple_V = 1.0f;
+/// The converters' reference is off by a larger part of what it should be (control/analog_supply.hpp).
+inline constexpr float analog_supply_bearable = 0.05f;
 
 // clang-format off
 /// X(code, name, cause, remedy). A name in braces stands for that figure: device::fault_text() writes it.
@@ -36,6 +40,10 @@ inline constexpr float samples_stale_s = 0.001f;
   X(17, memory_damaged, "A bit of the firmware, or of the parameters that it works with, has changed by itself in memory.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
   X(18, motor_implausible, "A motor's voltage, current and speed do not belong together.", "Check the motor's wires, its shunt amplifier and its encoder. `inkwell tune current-loop` measures the motor's resistance, by which this is judged. Then clear the fault.") \
   X(19, logic_supply_low, "The chip's own supply of 3.3 V has fallen below 2.9 V.", "Check the board's regulator and what it is fed from, and whether something shorts the 3.3 V. Then clear the fault.") \
+  X(20, supply_ripple, "The supply of the bridges swings by more than {supply_ripple_V} V to either side, again and again.", "Check the bulk capacitor at the bridges, the {supply_nominal_V} V supply and the plugs between the two. Then clear the fault.") \
+  X(21, encoder_wire, "An encoder's count goes to and fro by one and no further, faster than anything can shake the arm: one of its two signal wires is dead.", "Check that encoder's plug and both of its signal wires, put the stylus into the inkwell, then clear the fault.") \
+  X(22, bridge_wire, "The enable wire or a leg's wire of the bridges is not at the level that the chip gives it.", "Look for a wire between the chip and the bridges that touches ground, a supply or another wire. Then clear the fault.") \
+  X(23, analog_supply, "The converters' reference VDDA, which feeds amplifiers and potentiometers too, is more than {analog_supply_percent} % off its 3.3 V.", "Check the board's regulator, and the ferrite and the capacitors of VDDA. Then clear the fault.") \
   X(24, self_test_failed, "The self-test has found something without which there is no force.", "`inkwell self-test --last` names it and says what to do. Then `inkwell self-test` tests again; the fault goes if it passes.")
 
 /// X(code, name, cause, remedy)

@@ -115,7 +115,10 @@ std::vector<FaultCase> fault_cases() {
           {Fault::over_current, started, false},  {Fault::motor_implausible, force, true},
           {Fault::motor_hot, started, false},     {Fault::encoder_implausible, moving, true},
           {Fault::over_speed, force, true},       {Fault::host_silent, driven, true},
-          {Fault::logic_supply_low, all, false},  {Fault::self_test_failed, {State::testing}, false}};
+          {Fault::logic_supply_low, all, false},  {Fault::supply_ripple, started, false},
+          {Fault::encoder_wire, moving, true},    {Fault::bridge_wire, all, false},
+          {Fault::analog_supply, all, false},
+          {Fault::self_test_failed, {State::testing}, false}};
 }
 
 TEST_CASE("each fault is looked for in its states and in no other") {
@@ -155,7 +158,8 @@ TEST_CASE("a fault stays until it is cleared, and is cleared only when its cause
 TEST_CASE("the place of the arm is void after faults of its encoders and after no other") {
   for (const FaultCase& row : fault_cases()) {
     CAPTURE(static_cast<int>(row.fault));
-    CHECK(protocol::voids_reference(row.fault) == (row.fault == Fault::encoder_implausible));
+    CHECK(protocol::voids_reference(row.fault) ==
+          (row.fault == Fault::encoder_implausible || row.fault == Fault::encoder_wire));
   }
   CHECK_FALSE(protocol::voids_reference(Fault::none));
 }

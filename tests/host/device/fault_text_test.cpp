@@ -23,6 +23,12 @@ TEST_CASE("the supply's faults name the limits at which the firmware switches of
   CHECK(device::fault_text(Fault::current_sensor).remedy.find("its 1.65 V reference") != std::string::npos);
 }
 
+TEST_CASE("the faults of ripple and of the reference name what is borne") {
+  CHECK(device::fault_text(Fault::supply_ripple).cause ==
+        "The supply of the bridges swings by more than 1 V to either side, again and again.");
+  CHECK(device::fault_text(Fault::analog_supply).cause.find("is more than 5 % off its 3.3 V") != std::string::npos);
+}
+
 TEST_CASE("the faults of the motors and of old samples name the figures that the firmware goes by") {
   CHECK(device::fault_text(Fault::over_current).cause.find("exceeded 150 % of its limit") != std::string::npos);
   CHECK(device::fault_text(Fault::samples_stale).cause == "Supply and gimbal were not measured for 1 ms.");

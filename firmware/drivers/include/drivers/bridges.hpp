@@ -52,6 +52,11 @@ class Bridges {
   /// pull-up. While the bridges are off; no interrupt, which might take that for a fault, comes for 8 us.
   bool fault_wire_of_tim1_floats() const;
   bool fault_wire_of_tim8_floats() const;
+  /// What the enable wire and the legs' wires are, at the chip's pins, whoever drives them there.
+  bool enable_is_high() const;
+  bool a_leg_is_high() const;
+  /// As the control interrupt has left them.
+  bool are_on() const { return enabled_; }
 
   /// An update came since the last call of begin_period(): called at the end of the control interrupt, it tells
   /// that the interrupt took longer than its period.

@@ -35,6 +35,7 @@ struct AnalogConverter {
     using SQ2 = Field<SQR3, 5, 5>;
     using SQ3 = Field<SQR3, 10, 5>;
     using SQ4 = Field<SQR3, 15, 5>;
+    using SQ5 = Field<SQR3, 20, 5>;
   };
   struct JSQR : Register<base + 0x38> {
     using JSQ4 = Field<JSQR, 15, 5>;
@@ -50,6 +51,7 @@ template <std::uint32_t base>
 struct AnalogConverterCommon {
   struct CCR : Register<base + 0x04> {
     using ADCPRE = Field<CCR, 16, 2>;
+    using TSVREFE = Field<CCR, 23, 1>;
   };
 };
 

@@ -88,6 +88,7 @@ struct DebugSupport {
 template <std::uint32_t base>
 struct DeviceSignature {
   struct U_ID : RegisterArray<base + 0x00, 4, 3> {};
+  struct VREFIN_CAL : Register<base + 0x1A, std::uint16_t> {};
 };
 
 }  // namespace inkwell::registers

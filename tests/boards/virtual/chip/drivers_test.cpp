@@ -26,6 +26,7 @@ struct SlowConversions : ChipUnderTest {
   void check_shown(double supply_V, double gimbal_ratio) {
     CHECK(result(4) == doctest::Approx(1000 * supply_V).epsilon(0.002));
     CHECK(result(5) == doctest::Approx(1000 * gimbal_ratio).epsilon(0.002));
+    CHECK(result(8) == doctest::Approx(supply_V / 11 / 3.3 * 4096).epsilon(0.002));
   }
 };
 
@@ -50,6 +51,22 @@ TEST_CASE("supply and gimbal are measured again after an overrun and after an er
   CHECK(test.result(2) < 10);
   CHECK(test.result(3) == 0);
   test.check_shown(21.0, 0.75);
+}
+
+TEST_CASE("the internal reference reads less of a VDDA that is higher, and its calibration is read for 3.3 V") {
+  constexpr double counts_V = 1.19 * 4096;  // of the virtual chip's reference
+  SlowConversions test;
+  for (const double analog_supply_V : {3.3, 3.0, 3.6}) {
+    CAPTURE(analog_supply_V);
+    test.chip.set_analog_supply_V(analog_supply_V);
+    test.run_to_period(test.result(1) + 5);
+    CHECK(test.result(6) == doctest::Approx(counts_V / analog_supply_V).epsilon(0.001));
+    CHECK(test.result(7) == doctest::Approx(counts_V / 3.3).epsilon(0.001));
+  }
+  // The chip's own supply takes VDDA along.
+  test.chip.set_supply_V(3.1);
+  test.run_to_period(test.result(1) + 5);
+  CHECK(test.result(6) == doctest::Approx(counts_V / 3.1).epsilon(0.001));
 }
 
 TEST_CASE("an interrupt between the question and the sleep ends the sleep at once") {

@@ -65,7 +65,10 @@ TEST_CASE("a supply that falls is a fault before the brown-out, with its name, a
     return pose.fault;
   };
   using protocol::Fault;
-  CHECK(fault_at(2.95) == Fault::none);
+  CHECK(fault_at(3.2) == Fault::none);
+  CHECK(fault_at(2.95) == Fault::analog_supply);  // the converters' reference falls with it
+  CHECK(fault_at(3.3) == Fault::analog_supply);
+  CHECK(clear() == Fault::none);
   CHECK(fault_at(2.9) == Fault::logic_supply_low);
   CHECK(clear() == Fault::logic_supply_low);
   CHECK(fault_at(3.0) == Fault::logic_supply_low);

@@ -20,12 +20,15 @@ void period() {
   results[3] = age;
   results[4] = static_cast<std::uint32_t>(analog_inputs.supply_V() * 1000.0f);
   results[5] = static_cast<std::uint32_t>(analog_inputs.gimbal_ratio()[0] * 1000.0f);
+  results[6] = analog_inputs.reference_counts();
+  results[7] = AnalogInputs::calibrated_reference_counts();
+  results[8] = analog_inputs.supply_counts();
   analog_inputs.start_slow_conversions();
   results[1] = results[1] + 1;
 }
 
 void stop_stream_in_the_middle() {
-  while (DMA2::S0NDTR::read() == 4) {
+  while (DMA2::S0NDTR::read() == slow_channels) {
   }
   DMA2::S0CR::write(0);
 }

@@ -1,0 +1,55 @@
+#include "background_watch.hpp"
+
+#include <drivers/logic_supply.hpp>
+
+#include "parts.hpp"
+
+namespace inkwell::application {
+
+using protocol::Fault;
+using protocol::watch;
+
+bool BackgroundWatch::start() {
+  analog_supply_ = control::analog_supply(drivers::AnalogInputs::calibrated_reference_counts());
+  const bool memory_sound = memory_check_.start();
+  tell(watch(Fault::memory_damaged, !memory_sound));
+  return memory_sound;
+}
+
+// Every 0.15 ms is often enough for all but the memory, whose check takes small steps. In each round they would take
+// the main loop a tenth of its time, and its code in the flash out of the cache. What is found stands for three rounds,
+// in which the control interrupt sees it.
+void BackgroundWatch::look() {
+  const bool memory_sound = memory_check_.step();
+  if (++rounds_ < rounds_per_look) return;
+  rounds_ = 0;
+  tell(watch(Fault::memory_damaged, !memory_sound) | found_of_supplies() | found_of_encoders() | found_of_bridges());
+}
+
+void BackgroundWatch::tell(protocol::Watches found) { host_link.found_in_main_loop.store(found); }
+
+protocol::Watches BackgroundWatch::found_of_supplies() {
+  const bool swings = ripples(supply_ripple_, analog_inputs.supply_counts(), completed_periods.load());
+  return watch(Fault::logic_supply_low, drivers::logic_supply_is_low()) |
+         watch(Fault::analog_supply, is_off(analog_supply_, analog_inputs.reference_counts())) |
+         watch(Fault::supply_ripple, swings);
+}
+
+protocol::Watches BackgroundWatch::found_of_encoders() {
+  const std::uint32_t now_periods = completed_periods.load();
+  const auto timer_counts = encoders.read();
+  bool dead = false;
+  for (std::size_t i = 0; i < timer_counts.size(); ++i)
+    dead |= is_dead(encoder_wires_[i], timer_counts[i], now_periods);
+  return watch(Fault::encoder_wire, dead);
+}
+
+protocol::Watches BackgroundWatch::found_of_bridges() {
+  const std::uint32_t periods_before = completed_periods.load();
+  const control::BridgePins pins{bridges.are_on(), bridges.enable_is_high(), bridges.a_leg_is_high()};
+  // If a control interrupt came in between, the bridges may have been told something else than the pins showed.
+  if (completed_periods.load() == periods_before) look_at(bridge_wire_, pins);
+  return watch(Fault::bridge_wire, touches(bridge_wire_));
+}
+
+}  // namespace inkwell::application

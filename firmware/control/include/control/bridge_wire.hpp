@@ -1,0 +1,38 @@
+// Whether the wires to the bridges are at the levels that the chip gives them. A pin can be read while the chip drives
+// it, and shows what is at its pad: a wire that touches ground or a supply wins against the chip's output.
+//
+// While the bridges are off the enable wire and all legs must be low, and while they are on the enable wire must be
+// high. The legs then switch and tell nothing; that a motor does as they say is what control/motor_watch.hpp looks at.
+#pragma once
+
+#include <cstdint>
+
+namespace inkwell::control {
+
+/// All of one instant.
+struct BridgePins {
+  bool on;  ///< what the control interrupt told the bridges
+  bool enable_is_high;
+  bool a_leg_is_high;
+};
+
+struct BridgeWire {
+  /// In a row. A wire settles within a microsecond; one look may meet a spike.
+  static constexpr std::uint32_t bearable_looks = 2;
+
+  std::uint32_t wrong_looks = 0;
+};
+
+/// Whether a wire has not been at its level for more than the bearable looks.
+constexpr bool touches(const BridgeWire& wire) { return wire.wrong_looks > BridgeWire::bearable_looks; }
+
+/// One look.
+constexpr void look_at(BridgeWire& wire, const BridgePins& pins) {
+  const bool wrong = pins.on ? !pins.enable_is_high : pins.enable_is_high || pins.a_leg_is_high;
+  if (!wrong)
+    wire.wrong_looks = 0;
+  else if (!touches(wire))
+    ++wire.wrong_looks;
+}
+
+}  // namespace inkwell::control

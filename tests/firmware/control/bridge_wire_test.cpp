@@ -1,0 +1,59 @@
+// At which levels of their pins the bridges' wires touch something.
+#include <doctest/doctest.h>
+
+#include <control/bridge_wire.hpp>
+
+namespace {
+
+using inkwell::control::BridgePins;
+using inkwell::control::BridgeWire;
+using inkwell::control::look_at;
+using inkwell::control::touches;
+
+/// How many looks at the same pins it takes; 0 is never.
+int looks(const BridgePins& pins) {
+  BridgeWire wire;
+  for (int look = 1; look < 1'000; ++look) {
+    look_at(wire, pins);
+    if (touches(wire)) return look;
+  }
+  return 0;
+}
+
+TEST_CASE("while the bridges are off every wire must be low, while they are on the enable wire must be high") {
+  struct Row {
+    BridgePins pins;
+    bool sound;
+  };
+  constexpr Row rows[] = {{{.on = false, .enable_is_high = false, .a_leg_is_high = false}, true},
+                          {{.on = false, .enable_is_high = true, .a_leg_is_high = false}, false},
+                          {{.on = false, .enable_is_high = false, .a_leg_is_high = true}, false},
+                          {{.on = false, .enable_is_high = true, .a_leg_is_high = true}, false},
+                          {{.on = true, .enable_is_high = true, .a_leg_is_high = false}, true},
+                          {{.on = true, .enable_is_high = true, .a_leg_is_high = true}, true},
+                          {{.on = true, .enable_is_high = false, .a_leg_is_high = false}, false},
+                          {{.on = true, .enable_is_high = false, .a_leg_is_high = true}, false}};
+  for (const Row& row : rows) {
+    CAPTURE(row.pins.on);
+    CAPTURE(row.pins.enable_is_high);
+    CAPTURE(row.pins.a_leg_is_high);
+    CHECK(looks(row.pins) == (row.sound ? 0 : 3));
+  }
+}
+
+TEST_CASE("two wrong looks in a row are borne, and a right one makes up for all before it") {
+  constexpr BridgePins sound{false, false, false}, wrong{false, true, false};
+  BridgeWire wire;
+  for (int i = 0; i < 100; ++i) {
+    look_at(wire, wrong);
+    look_at(wire, wrong);
+    CHECK_FALSE(touches(wire));
+    look_at(wire, sound);
+  }
+  for (int i = 0; i < 3; ++i) look_at(wire, wrong);
+  CHECK(touches(wire));
+  look_at(wire, sound);
+  CHECK_FALSE(touches(wire));
+}
+
+}  // namespace

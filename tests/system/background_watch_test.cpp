@@ -1,0 +1,289 @@
+// What the main loop watches: a supply that swings, dead wires of encoders, wires of the bridges that touch something,
+// a reference that is off. Each is noticed in time, and nothing that a hand and a program do is taken for one of them.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include <control/encoder_wire.hpp>
+#include <control/supply_ripple.hpp>
+
+#include "hazards.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using namespace std::chrono_literals;
+using protocol::Fault;
+using protocol::ForceMode;
+using protocol::Parameter;
+using protocol::Signal;
+using protocol::State;
+
+namespace {
+
+device::Vector3 beside(double x_m, double y_m, double z_m) {
+  return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
+}
+
+/// Fast free motion of all joints, as in the campaign.
+void swing(BoardRig& rig, int times) {
+  std::vector<device::HandWaypoint> path;
+  for (int i = 1; i <= times; ++i)
+    path.push_back({0.15 * i, i % 2 == 0 ? beside(-0.03, -0.03, -0.03) : beside(0.03, 0.03, 0.03)});
+  rig.control.hand_path(path);
+}
+
+void check_told(BoardRig& rig, Fault fault) {
+  rig.run(0.01);
+  CHECK(rig.pose().state == State::fault);
+  CHECK(protocol::info(rig.pose().fault).name == protocol::info(fault).name);
+}
+
+/// After which time the bridges are off, to a tenth of what it may be.
+double off_after_s(BoardRig& rig, double limit_s) {
+  const double begin_s = rig.board_time_s();
+  for (int i = 0; i < 20 && bridges_enabled(rig.control); ++i) rig.control.run(0.1 * limit_s);
+  const double after_s = rig.board_time_s() - begin_s;
+  CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
+  return after_s;
+}
+
+/// The cause is still there: it cannot be cleared. Then it is gone.
+void check_clears_when_gone(BoardRig& rig, State then) {
+  rig.command(protocol::Command::clear_fault);
+  rig.run(0.02);
+  CHECK(rig.pose().state == State::fault);
+  rig.control.heal_all();
+  rig.run(0.15);
+  rig.command(protocol::Command::clear_fault);
+  rig.run_until([then](const auto& pose) { return pose.state == then; });
+}
+
+}  // namespace
+
+TEST_CASE("a supply that swings by three volts is noticed within 50 ms, one that swings by less than one is borne") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.inject({.fault = "supply_ripple", .amount = 0.9});
+  rig.run(0.3);
+  CHECK(protocol::force_is_on(rig.pose().state));
+  rig.control.inject({.fault = "supply_ripple"});
+  CHECK(off_after_s(rig, 0.05) < 0.0501);
+  check_told(rig, Fault::supply_ripple);
+  CHECK(largest_current_A(rig.control) < 0.02);
+  check_clears_when_gone(rig, State::ready);
+}
+
+TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, and voids the place of the arm") {
+  constexpr std::array wires{"encoders[0].a", "encoders[1].b", "encoders[2].a",
+                             "encoders[0].b", "encoders[1].a", "encoders[2].b"};
+  constexpr std::array faults{"wire_open", "wire_low", "wire_high", "wire_frozen"};
+  for (std::size_t i = 0; i < wires.size(); ++i) {
+    CAPTURE(wires[i]);
+    BoardRig rig;
+    rig.make_active();
+    rig.take_to(free_point_m);
+    rig.set({{Parameter::speed_limit_m_per_s, 10.0f}});
+    rig.control.inject({.fault = faults[i % faults.size()], .of = wires[i]});
+    rig.run(0.2);
+    REQUIRE(protocol::force_is_on(rig.pose().state));
+    swing(rig, 4);
+    CHECK(off_after_s(rig, 0.25) < 0.2501);
+    check_told(rig, Fault::encoder_wire);
+    rig.command(protocol::Command::clear_fault);
+    rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
+  }
+}
+
+TEST_CASE("without the force a dead wire of an encoder is noticed too, once the place of the arm is known") {
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  rig.take_to(free_point_m);
+  rig.control.inject({.fault = "wire_low", .of = "encoders[1].a"});
+  swing(rig, 4);
+  rig.run(0.3);
+  check_told(rig, Fault::encoder_wire);
+}
+
+TEST_CASE("a wire of the bridges that touches 3.3 V is noticed while they are off, one that is low stays as it is") {
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  for (const char* wire : {"bridge_enable", "bridges[0].leg_a", "bridges[0].leg_b", "bridges[1].leg_a",
+                           "bridges[1].leg_b", "bridges[2].leg_a", "bridges[2].leg_b"}) {
+    CAPTURE(wire);
+    for (const char* borne : {"wire_low", "wire_open"}) {
+      rig.control.inject({.fault = borne, .of = wire});
+      rig.run(0.02);
+      CHECK(rig.pose().state == State::ready);
+    }
+    rig.control.inject({.fault = "wire_high", .of = wire});
+    rig.control.run(12 * control_period_s);
+    rig.command(protocol::Command::enable_force);  // comes too late
+    check_told(rig, Fault::bridge_wire);
+    check_clears_when_gone(rig, State::ready);
+  }
+}
+
+TEST_CASE("before the arm knows its place a wire of the bridges is watched as well") {
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  rig.take_to(free_point_m);
+  rig.control.reset();
+  rig.control.inject({.fault = "wire_high", .of = "bridges[2].leg_b"});
+  reconnect(rig);
+  check_told(rig, Fault::bridge_wire);
+  check_clears_when_gone(rig, State::unreferenced);
+}
+
+TEST_CASE("an enable wire that touches ground is noticed within twelve control periods of the force") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.inject({.fault = "wire_low", .of = "bridge_enable"});
+  rig.control.run(12 * control_period_s);
+  CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
+  check_told(rig, Fault::bridge_wire);
+  // With the bridges off it is where it should be.
+  rig.command(protocol::Command::clear_fault);
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+}
+
+TEST_CASE("a reference that is 4.5 % off is borne, one that is 5.5 % off is noticed within 5 ms") {
+  for (const double sign : {-1.0, 1.0}) {
+    CAPTURE(sign);
+    BoardRig rig;
+    press_into_wall(rig);
+    rig.control.inject({.fault = "analog_sag", .amount = 3.3 * (1.0 + 0.045 * sign)});
+    rig.run(0.1);
+    CHECK(protocol::force_is_on(rig.pose().state));
+    rig.control.inject({.fault = "analog_sag", .amount = 3.3 * (1.0 + 0.055 * sign)});
+    CHECK(off_after_s(rig, 0.005) < 0.00501);
+    check_told(rig, Fault::analog_supply);
+    check_clears_when_gone(rig, State::ready);
+  }
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  rig.control.inject({.fault = "logic_sag", .amount = 3.1});  // which VDDA hangs on
+  check_told(rig, Fault::analog_supply);
+}
+
+namespace {
+
+/// How near honest use comes to a fault.
+class HonestRig : public BoardRig {
+ public:
+  HonestRig() {
+    set({{Parameter::force_ramp_s, 0.0f},
+         {Parameter::speed_limit_m_per_s, 10.0f},
+         {Parameter::force_limit_N, 8.0f},
+         {Parameter::program_force_change_N_per_s, 20'000.0f}});
+    take_to(free_point_m);
+    make_active();
+    control.hand({true, free_point_m, 600, 8});
+    device->select_signals(std::array{Signal::encoder_1_counts, Signal::encoder_2_counts, Signal::encoder_3_counts});
+    run(0.2);
+    control.trace_start();
+  }
+
+  template <class Action>
+  void use(double time_s, const Action& each_millisecond) {
+    for (auto left = std::lround(1000 * time_s); left > 0; --left) {
+      each_millisecond();
+      control.run(0.001);
+      while (const auto pose = device->read_pose(0ms)) {
+        CHECK(pose->fault == Fault::none);
+        force_is_on = protocol::force_is_on(pose->state);
+      }
+      while (const auto samples = device->read_scope(0ms)) look_at(*samples);
+    }
+    look_at_supply();
+  }
+  void use(double time_s) {
+    int millisecond = 0;
+    use(time_s, [this, &millisecond] {
+      if (++millisecond % 10 == 0) command(protocol::Command::heartbeat);
+    });
+  }
+
+  void check(const std::string& what) {
+    MESSAGE("simulation, ", what, ": a count went to and fro ", most_changes, " times in 0.1 s, ",
+            control::EncoderWire::dead_changes, " are a dead wire; the supply swung by at most ", largest_swing_V,
+            " V to both sides within 15 ms, ", protocol::supply_ripple_V, " V to either are ripple");
+    CHECK(force_is_on);
+    CHECK(most_changes <= control::EncoderWire::dead_changes * 9 / 10);
+    CHECK(largest_swing_V < static_cast<double>(protocol::supply_ripple_V));
+    most_changes = 0;
+    largest_swing_V = 0.0;
+  }
+
+ private:
+  void look_at(const device::ScopeSamples& samples) {
+    REQUIRE(samples.lost_before == 0);
+    for (std::size_t row = 0; row < samples.count; ++row, ++period_)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto count = static_cast<std::int32_t>(samples.values[3 * row + i]);
+        is_dead(wires_[i], static_cast<std::uint16_t>(count), period_);
+        most_changes = std::max(most_changes, wires_[i].changes);
+      }
+  }
+
+  /// The slowest ripple turns each 14 ms, so half of what the true supply goes through in that time is what may count.
+  void look_at_supply() {
+    const device::Trace trace = control.trace_read(100'000);
+    const auto column = std::ranges::find(trace.columns, "true_supply_V");
+    REQUIRE(column != trace.columns.end());
+    constexpr std::size_t rows_together = 300;
+    double lowest_V = 1e9, highest_V = 0.0;
+    for (std::size_t row = 0; row < trace.row_count(); ++row) {
+      const double supply_V =
+          trace.values[row * trace.columns.size() + static_cast<std::size_t>(column - trace.columns.begin())];
+      if (row % rows_together == 0) lowest_V = highest_V = supply_V;
+      lowest_V = std::min(lowest_V, supply_V);
+      highest_V = std::max(highest_V, supply_V);
+      largest_swing_V = std::max(largest_swing_V, 0.5 * (highest_V - lowest_V));
+    }
+  }
+
+  std::array<control::EncoderWire, 3> wires_{};
+  std::uint32_t period_ = 0, most_changes = 0;
+  double largest_swing_V = 0.0;
+  bool force_is_on = false;
+};
+
+}  // namespace
+
+TEST_CASE("forces that a program turns round, at any rate and as strong as can be, are neither ripple nor dead wires") {
+  HonestRig rig;
+  for (const int half_period_ms : {20, 12, 5, 2, 1}) {
+    int millisecond = 0;
+    rig.use(0.3, [&] {
+      const float sign = millisecond++ / half_period_ms % 2 == 0 ? 1.0f : -1.0f;
+      rig.device->send_force({.force_N = {4.6f * sign, 4.6f * sign, 4.6f * sign}, .mode = ForceMode::beside_walls});
+    });
+    rig.check("forces turned round each " + std::to_string(half_period_ms) + " ms");
+  }
+}
+
+TEST_CASE("a hand that shakes the arm, and one that knocks on the hardest walls, break no wire") {
+  HonestRig rig;
+  rig.set({{Parameter::wall_stiffness_N_per_m, 3'000.0f}});
+  rig.control.hand({true, free_point_m, 4'000, 30});
+  swing(rig, 4);
+  rig.use(0.6);
+  rig.check("shaken");
+  rig.control.hand({true, free_point_m, 1'500, 12});
+  rig.control.hand_path({{0.1, beside(0.0, 0.0, -0.10)}, {0.2, free_point_m}, {0.3, beside(0.0, 0.0, -0.10)}});
+  rig.use(0.4);
+  rig.check("knocked on a wall");
+  // Held loosely where the walls begin, which is where they may buzz.
+  rig.set({{Parameter::box_minimum_z_m, -0.0301f}});
+  for (const double stiffness_N_per_m : {50.0, 200.0}) {
+    rig.control.hand({true, free_point_m, stiffness_N_per_m, 0.5});
+    rig.use(0.4);
+  }
+  rig.check("held at a wall's edge");
+}
