@@ -9,8 +9,9 @@ using Item = protocol::SelfTestItem;
 using Result = protocol::SelfTestResult;
 
 /// In the order in which they are looked at.
-constexpr Item wires[] = {Item::encoder_1_a, Item::encoder_1_b, Item::encoder_2_a,       Item::encoder_2_b,
-                          Item::encoder_3_a, Item::encoder_3_b, Item::bridge_fault_tim1, Item::bridge_fault_tim8};
+constexpr Item looked_at_wires[] = {Item::encoder_1_a,       Item::encoder_1_b,      Item::encoder_2_a,
+                                    Item::encoder_2_b,       Item::encoder_3_a,      Item::encoder_3_b,
+                                    Item::bridge_fault_tim1, Item::bridge_fault_tim8};
 
 /// What start-up looks at once is all before them.
 constexpr Item first_of_each_test = Item::current_offsets;
@@ -26,14 +27,14 @@ void SelfTest::note(Item item, Result result, float figure) {
 
 std::optional<Item> SelfTest::wanted_wire() const {
   if (phase_ != Phase::wires) return std::nullopt;
-  return wires[wire_];
+  return looked_at_wires[wire_];
 }
 
 void SelfTest::note_wire(bool follows) {
   if (follows && ++looks_ < wire_looks) return;
-  note(wires[wire_], !follows);
+  note(looked_at_wires[wire_], !follows);
   looks_ = 0;
-  if (++wire_ < std::size(wires)) return;
+  if (++wire_ < std::size(looked_at_wires)) return;
   begin_round();
 }
 

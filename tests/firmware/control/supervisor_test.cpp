@@ -117,8 +117,7 @@ std::vector<FaultCase> fault_cases() {
           {Fault::over_speed, force, true},       {Fault::host_silent, driven, true},
           {Fault::logic_supply_low, all, false},  {Fault::supply_ripple, started, false},
           {Fault::encoder_wire, moving, true},    {Fault::bridge_wire, all, false},
-          {Fault::analog_supply, all, false},
-          {Fault::self_test_failed, {State::testing}, false}};
+          {Fault::analog_supply, all, false},     {Fault::self_test_failed, {State::testing}, false}};
 }
 
 TEST_CASE("each fault is looked for in its states and in no other") {
