@@ -134,10 +134,7 @@ protocol::SelfTestReport SelfTest::report() const {
 
 INKWELL_INTERRUPT void SelfTest::exchange(control::Controller& controller) {
   const std::uint32_t number = controller.self_tests();
-  if (begun_.load() != number) {
-    begun_.store(number);
-    pulses_run_ = false;
-  }
+  begun_.store(number);
   if (pulses_run_ && !controller.pulses_run()) {
     pulses_run_ = false;
     round_is_over_.store(true);

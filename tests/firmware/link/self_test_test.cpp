@@ -297,6 +297,37 @@ TEST_CASE("a fault in the middle of the pulses switches off at once, and the nex
   CHECK(board.driven_periods == 130 + control::SelfTestPulses::round_periods);
 }
 
+TEST_CASE("a test that is broken off has no results of the one before") {
+  Board board;
+  board.run_while(State::starting);
+  board.run_while(State::testing);
+  CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::passed);
+  board.controller.carry_out(tests::command(Command::self_test));
+  board.run(20);
+  board.samples.bridge_fault = true;
+  board.run(2);
+  CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::broken_off);
+  CHECK(board.result(SelfTestItem::encoder_1_a) == SelfTestResult::passed);
+}
+
+TEST_CASE("an order of a test that a fault has ended is none of the next one") {
+  Board board;
+  board.run_while(State::starting);
+  while (!board.link.self_test.wanted_wire()) board.run(1);
+  while (board.link.self_test.wanted_wire()) board.main_loop();
+  board.main_loop();  // asks for the pulses
+  board.samples.bridge_fault = true;
+  board.interrupt();
+  board.samples.bridge_fault = false;
+  board.controller.carry_out(tests::command(Command::clear_fault));
+  board.interrupt();
+  CHECK(board.controller.state() == State::testing);
+  for (int i = 0; i < 5; ++i) board.interrupt();
+  CHECK(board.driven_periods == 0);
+  board.run_while(State::testing);
+  CHECK(board.controller.state() == State::unreferenced);
+}
+
 TEST_CASE("a main loop that misses the fault between two tests begins the second one anew") {
   Board board;
   board.run_while(State::starting);
