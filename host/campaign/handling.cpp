@@ -51,7 +51,7 @@ bool regains_force(BoardRun& board) {
     board.command(Command::clear_fault);
     if (!board.wait_for([](const auto& pose) { return pose.state != State::fault; }, 0.3)) return false;
   }
-  if (board.is(State::starting)) board.run(0.3);
+  if (board.is(State::starting) || board.is(State::testing)) board.run(0.3);
   if (board.is(State::unreferenced)) {
     board.control().dock(true);
     if (!board.wait_for(State::ready, 2.0)) return false;

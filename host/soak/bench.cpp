@@ -83,7 +83,8 @@ void Bench::pass(double time_s, bool gives_sign_of_life) {
 
 void Bench::look() {
   const auto truth = board.control().truth();
-  oracle.see(Look{truth.at("board_time_s"), truth.at("bridges_driven_until_s"), motor_force_N(truth)});
+  oracle.see(
+      Look{truth.at("board_time_s"), truth.at("bridges_driven_until_s"), truth.at("resets"), motor_force_N(truth)});
 }
 
 void Bench::look_closely() {
@@ -101,7 +102,7 @@ void Bench::look_closely() {
 
 /// The pose is a little older than the truth.
 void Bench::check_pose() {
-  if (!board.pose() || board.is(State::starting) || board.is(State::unreferenced)) return;
+  if (!board.pose() || board.is(State::starting) || board.is(State::testing) || board.is(State::unreferenced)) return;
   const auto truth = board.control().truth();
   double squares_m2 = 0, squares_m2_per_s2 = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -245,7 +246,7 @@ void Bench::make_ready() {
   if (!board.connected()) connect();
   if (board.is(State::fault)) fail(Complaint::no_answer, "the phase before left a fault");
   if (board.force_is_on()) give_up_force();
-  if (board.is(State::starting)) pass(0.3);
+  if (board.is(State::starting) || board.is(State::testing)) pass(0.3);
   if (board.is(State::unreferenced)) dock();
   const auto truth = board.control().truth();
   if (!truth.at("hand_holds").get<bool>() || truth.at("inkwell_switch").get<bool>()) take_out();

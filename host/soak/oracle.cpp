@@ -54,6 +54,7 @@ void Oracle::see(const protocol::PoseReport& pose) {
     tell(pose.fault);
     take_back_permission(behind_s);
   }
+  follow_self_test(pose.state == State::starting || pose.state == State::testing);
   if (disturbance_ == Disturbance::program) return;
   if (protocol::force_is_on(pose.state)) {
     if (!asked_ && now_s_ > may_drive_until_s_)
@@ -66,10 +67,17 @@ void Oracle::see(const protocol::PoseReport& pose) {
   }
 }
 
+void Oracle::follow_self_test(bool may_test_itself) {
+  test_is_over_ |= may_test_itself_ && !may_test_itself;
+  may_test_itself_ = may_test_itself;
+}
+
 void Oracle::see(const Look& look) {
   now_s_ = look.board_time_s;
+  if (std::exchange(restarts_looked_at_, look.restarts) != look.restarts) follow_self_test(true);
+  if (std::exchange(test_is_over_, false)) may_drive_until_s_ = std::max(may_drive_until_s_, now_s_);
   if (disturbance_ != Disturbance::none) return;
-  if (!asked_ && look.driven_until_s > may_drive_until_s_ + behind_s)
+  if (!asked_ && !may_test_itself_ && look.driven_until_s > may_drive_until_s_ + behind_s)
     complain(Complaint::unasked_force,
              fmt::format("a leg was at the supply at {:.4f} s; it may have been until {:.4f} s", look.driven_until_s,
                          may_drive_until_s_));

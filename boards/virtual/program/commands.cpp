@@ -49,8 +49,6 @@ json status(const json&, Simulation& simulation) {
   Board& board = simulation.board();
   const Chip& chip = board.chip();
   const Counters& counters = chip.counters();
-  std::uint32_t resets = 0;
-  for (const auto count : counters.resets) resets += count;
   unsigned longest = exception_interrupt_0;
   for (unsigned exception = exception_interrupt_0; exception < exception_numbers; ++exception)
     if (counters.exceptions[exception].longest_cycles > counters.exceptions[longest].longest_cycles)
@@ -69,7 +67,7 @@ json status(const json&, Simulation& simulation) {
       {"sleep_share", counters.sleep_share()},
       {"exception", chip.current_exception()},
       {"processor_clock_Hz", chip.clocks().hclk_Hz},
-      {"resets", resets},
+      {"resets", counters.all_resets()},
       {"watchdog_resets", of(ResetCause::independent_watchdog) + of(ResetCause::window_watchdog)},
       {"unmodelled", chip.unmodelled_accesses()},
       {"violations", violations_of(board)},

@@ -30,6 +30,7 @@ json truth(const json&, Simulation& simulation) {
              {"bridge_fault", t.bridge_fault},
              {"buttons", t.buttons},
              {"bridges_enabled", t.bridges_enabled},
+             {"resets", simulation.board().chip().counters().all_resets()},
              {"bridges_driven_until_s", seconds(t.driven_until)},
              {"injected", injected(simulation.board())}};
   for (const auto& legs : t.leg_levels) reply["bridge_legs"].push_back({name_of(legs[0]), name_of(legs[1])});

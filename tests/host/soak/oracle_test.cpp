@@ -16,6 +16,7 @@ struct Watched {
   double now_s = 1.0;
   double driven_until_s = 0.0;
   double motor_force_N = 0.0;
+  unsigned restarts = 0;
   std::uint32_t sequence = 100;
 
   explicit Watched(Kind kind = Kind::free_space) {
@@ -32,7 +33,7 @@ struct Watched {
     oracle.see(pose);
     now_s += 0.005;
     if (protocol::force_is_on(state)) driven_until_s = now_s;
-    oracle.see(Look{now_s, driven_until_s, motor_force_N});
+    oracle.see(Look{now_s, driven_until_s, restarts, motor_force_N});
   }
   void steps(int count, State state, Fault fault = Fault::none) {
     for (int i = 0; i < count; ++i) step(state, fault);
@@ -60,6 +61,29 @@ TEST_CASE("force that is asked for, given up, and asked for again is no finding"
   board.check_nothing();
   CHECK(board.oracle.poses() == 42);
   CHECK(board.oracle.longest_interrupt_part() == doctest::Approx(0.2));
+}
+
+TEST_CASE("a board drives for its self-test after a start and on command, and not a moment longer") {
+  const auto drive = [](Watched& board, State state) {
+    board.driven_until_s = board.now_s;
+    board.step(state);
+  };
+  Watched on_command;
+  drive(on_command, State::testing);
+  on_command.steps(5, State::ready);
+  on_command.check_nothing();
+  drive(on_command, State::ready);
+  on_command.check_only(Complaint::unasked_force);
+
+  Watched anew;
+  ++anew.restarts;
+  anew.oracle.see(Look{anew.now_s += 0.005, 0.0, anew.restarts, 0.0});
+  anew.oracle.see(Look{anew.now_s += 0.1, anew.now_s - 0.001, anew.restarts, 0.0});  // no pose yet
+  drive(anew, State::starting);
+  anew.steps(5, State::unreferenced);
+  anew.check_nothing();
+  drive(anew, State::unreferenced);
+  anew.check_only(Complaint::unasked_force);
 }
 
 TEST_CASE("force that nobody asked for is told by the state, and by the bridges alone") {

@@ -51,6 +51,7 @@ struct Finding {
 struct Look {
   double board_time_s = 0;
   double driven_until_s = 0;  ///< the last time that a leg was at the supply
+  unsigned restarts = 0;      ///< since the simulation's start
   double motor_force_N = 0;   ///< that the true torques of the motors put on the probe
 };
 
@@ -107,6 +108,7 @@ class Oracle {
  private:
   void tell(protocol::Fault fault);
   void take_back_permission(double grace_s);
+  void follow_self_test(bool may_test_itself);
 
   unsigned phase_ = 0;
   Kind kind_ = Kind::docking;
@@ -116,6 +118,9 @@ class Oracle {
   double now_s_ = 0;
   bool asked_ = false;
   double may_drive_until_s_ = 0;  ///< without having been asked
+  bool may_test_itself_ = true;   ///< it drives for its self-test, from its start until it tells that it is past that
+  bool test_is_over_ = false;     ///< since the last look
+  unsigned restarts_looked_at_ = 0;
   double force_limit_N_ = 0;
   bool restart_expected_ = false;
   std::optional<std::uint32_t> sequence_;

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -77,6 +78,7 @@ struct Counters {
   Ticks asleep = 0;
   std::array<ExceptionCounters, exception_numbers> exceptions{};
   std::array<std::uint32_t, reset_causes> resets{};  ///< by ResetCause
+  std::uint32_t all_resets() const { return std::accumulate(resets.begin(), resets.end(), 0u); }
   double sleep_share() const {
     return duration == 0 ? 0.0 : static_cast<double>(asleep) / static_cast<double>(duration);
   }
