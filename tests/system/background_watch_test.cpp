@@ -165,10 +165,33 @@ TEST_CASE("a reference that is 4.5 % off is borne, one that is 5.5 % off is noti
     check_told(rig, Fault::analog_supply);
     check_clears_when_gone(rig, State::ready);
   }
+}
+
+TEST_CASE(
+    "a supply of the chip that falls is a fault before the brown-out, with its name, and clears when it has risen") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
-  rig.control.inject({.fault = "logic_sag", .amount = 3.1});  // which VDDA hangs on
-  check_told(rig, Fault::analog_supply);
+  const auto fault_at = [&](double supply_V) {
+    rig.control.inject({.fault = "logic_sag", .amount = supply_V});
+    rig.run(0.01);
+    return rig.pose().fault;
+  };
+  const auto clear = [&] {
+    rig.command(protocol::Command::clear_fault);
+    rig.run(0.01);
+    return rig.pose().fault;
+  };
+  CHECK(fault_at(3.2) == Fault::none);
+  CHECK(fault_at(2.95) == Fault::analog_supply);  // the converters' reference falls with it
+  CHECK(fault_at(3.3) == Fault::analog_supply);
+  CHECK(clear() == Fault::none);
+  CHECK(fault_at(2.9) == Fault::logic_supply_low);
+  CHECK(clear() == Fault::logic_supply_low);
+  CHECK(fault_at(3.0) == Fault::logic_supply_low);
+  CHECK(clear() == Fault::logic_supply_low);  // it must rise further than it fell
+  CHECK(fault_at(3.3) == Fault::logic_supply_low);
+  CHECK(clear() == Fault::none);
+  CHECK(rig.control.status().all.at("resets").get<unsigned>() == 0);
 }
 
 namespace {

@@ -45,40 +45,6 @@ TEST_CASE("brown-out level 3 holds the chip in reset before the flash is misread
   CHECK(bus.violations().empty());
 }
 
-TEST_CASE("a supply that falls is a fault before the brown-out, with its name, and clears when it has risen again") {
-  FirmwareOnBus bus(flashed_image(), 0.0, {.brown_out_level = 3});
-  bus.connect();
-  protocol::PoseReport pose{};
-  bus.on_pose = [&](const protocol::PoseReport& newest) { pose = newest; };
-  bus.keep_asking_for_poses();
-  const auto fault_at = [&](double supply_V) {
-    bus.chip.set_supply_V(supply_V);
-    bus.run_for(0.005);
-    return pose.fault;
-  };
-  const auto clear = [&] {
-    protocol::CommandReport report{};
-    report.command = protocol::Command::clear_fault;
-    report.token = 1;
-    bus.send_report(report);
-    bus.run_for(0.01);
-    return pose.fault;
-  };
-  using protocol::Fault;
-  CHECK(fault_at(3.2) == Fault::none);
-  CHECK(fault_at(2.95) == Fault::analog_supply);  // the converters' reference falls with it
-  CHECK(fault_at(3.3) == Fault::analog_supply);
-  CHECK(clear() == Fault::none);
-  CHECK(fault_at(2.9) == Fault::logic_supply_low);
-  CHECK(clear() == Fault::logic_supply_low);
-  CHECK(fault_at(3.0) == Fault::logic_supply_low);
-  CHECK(clear() == Fault::logic_supply_low);  // it must rise further than it fell
-  CHECK(fault_at(3.3) == Fault::logic_supply_low);
-  CHECK(clear() == Fault::none);
-  CHECK(brown_outs(bus) == 0);
-  CHECK(bus.violations().empty());
-}
-
 TEST_CASE("without a brown-out level the flash is misread at 168 MHz below 2.7 V") {
   FirmwareOnBus bus(flashed_image());
   bus.connect();
