@@ -89,7 +89,7 @@ void ControlClient::glitch(const std::string& pin, double duration_s) {
 void ControlClient::gimbal(const Vector3& angles_rad) { call({{"command", "gimbal"}, {"angles_rad", angles_rad}}); }
 void ControlClient::dock(bool docked) { call({{"command", "dock"}, {"docked", docked}}); }
 
-double ControlClient::inject(const InjectionRequest& fault) {
+double ControlClient::inject(const protocol::InjectionRequest& fault) {
   json request{{"command", "inject"}, {"fault", fault.fault}, {"after_s", fault.after_s}};
   if (!fault.of.empty()) request["of"] = fault.of;
   if (fault.amount) request["amount"] = *fault.amount;

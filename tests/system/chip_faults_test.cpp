@@ -222,7 +222,7 @@ TEST_CASE("gimbal and supply are measured again after a transfer that failed for
   BoardRig rig;
   rig.run(0.1);
   for (int failure = 0; failure < 10; ++failure) {
-    device::InjectionRequest fault{"dma_stopped"};
+    protocol::InjectionRequest fault{"dma_stopped"};
     fault.for_s = 0.5 * static_cast<double>(protocol::samples_stale_s);
     rig.control.inject(fault);
     rig.run(0.03);

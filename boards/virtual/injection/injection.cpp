@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,7 +35,7 @@ unsigned whole_number(const std::string& text, unsigned minimum, unsigned maximu
 PinName wire(const std::string& text) {
   for (const board::PinUse& use : board::pin_uses) {
     if (use.name != text) continue;
-    if (use.pin == board::usb_minus.pin || use.pin == board::usb_plus.pin)
+    if (board::is_usb_data(use.pin))
       throw InvalidInjection(fmt::format("the wire {} is not modelled by itself; usb_cut takes the cable out", text));
     return {use.pin.port, use.pin.number};
   }
@@ -64,39 +65,34 @@ std::uint32_t address(const std::string& text) {
   return value;
 }
 
-std::string_view example_of(InjectionPlace place) {
-  switch (place) {
-    case InjectionPlace::motor: return "the motor: 1, 2 or 3";
-    case InjectionPlace::leg: return "the leg: 1A, 1B, 2A, 2B, 3A or 3B";
-    case InjectionPlace::wire: return "the wire: a pin, such as PA0, or encoders[0].a";
-    case InjectionPlace::wires: return "two wires, such as encoders[0].a+encoders[0].b";
-    case InjectionPlace::exception: return "the exception: 16 is interrupt 0";
-    case InjectionPlace::converter: return "the converter: 1, 2 or 3";
-    case InjectionPlace::none:
-    case InjectionPlace::address: break;
-  }
-  return "";
+/// Which of the names it is, from 0 on.
+unsigned one_of(std::span<const std::string_view> names, const std::string& text, std::string_view what) {
+  const auto found = std::ranges::find(names, text);
+  if (found == names.end())
+    throw InvalidInjection(fmt::format("\"{}\" is no {}; there are {}", text, what, fmt::join(names, ", ")));
+  return static_cast<unsigned>(found - names.begin());
 }
 
 void check_target(Injection& injection, const std::string& of) {
   const auto& info = protocol::info(injection.fault);
   if (of.empty() && info.place != InjectionPlace::none && info.place != InjectionPlace::address)
-    throw InvalidInjection(fmt::format("{} must say what it is put into, {}", info.name, example_of(info.place)));
+    throw InvalidInjection(fmt::format("{} must say what it is put into, {}", info.name, wanted_place(info.place)));
   injection.of = of;
+  const auto names = protocol::names_of_places(info.place);
   switch (info.place) {
     case InjectionPlace::none:
       if (!of.empty())
         throw InvalidInjection(fmt::format("{} is not put into anything; leave \"{}\" out", info.name, of));
       return;
-    case InjectionPlace::motor: injection.number = whole_number(of, 1, 3, "motor") - 1; return;
-    case InjectionPlace::converter: injection.number = whole_number(of, 1, 3, "converter"); return;
+    case InjectionPlace::motor: injection.number = one_of(names, of, "motor"); return;
+    case InjectionPlace::converter: injection.number = 1 + one_of(names, of, "converter"); return;
     case InjectionPlace::exception: injection.number = whole_number(of, 2, exception_numbers - 1, "exception"); return;
-    case InjectionPlace::leg:
-      if (of.size() != 2 || of[0] < '1' || of[0] > '3' || (of[1] != 'A' && of[1] != 'B'))
-        throw InvalidInjection(fmt::format("\"{}\" is no leg of a bridge; there are 1A, 1B, 2A, 2B, 3A and 3B", of));
-      injection.number = static_cast<unsigned>(of[0] - '1');
-      injection.leg = of[1] == 'B';
+    case InjectionPlace::leg: {
+      const unsigned leg = one_of(names, of, "leg of a bridge");
+      injection.number = leg / 2;
+      injection.leg = leg % 2;
       return;
+    }
     case InjectionPlace::wire:
       injection.wires[0] = wire(of);
       injection.of = name_of(injection.wires[0]);
@@ -117,13 +113,14 @@ void check_target(Injection& injection, const std::string& of) {
 }
 
 void check_time(double time_s, std::string_view what) {
-  if (!(time_s >= 0.0 && time_s <= latest_injection_s))
-    throw InvalidInjection(fmt::format("{} is {} s, which is outside 0 to {}", what, time_s, latest_injection_s));
+  if (!(time_s >= 0.0 && time_s <= protocol::latest_injection_s))
+    throw InvalidInjection(
+        fmt::format("{} is {} s, which is outside 0 to {}", what, time_s, protocol::latest_injection_s));
 }
 
 }  // namespace
 
-Injection checked(const InjectionRequest& request) {
+Injection checked(const protocol::InjectionRequest& request) {
   const auto fault = protocol::find_injection(request.fault);
   if (!fault) {
     std::vector<std::string_view> names;
@@ -148,7 +145,7 @@ Injection checked(const InjectionRequest& request) {
 }
 
 Injection parse_injection(std::string_view text) {
-  InjectionRequest parts;
+  protocol::InjectionRequest parts;
   std::string_view rest = text;
   // From behind, because the names of two wires have a plus between them as well.
   const auto cut = [&](char mark, std::string_view what) -> std::optional<double> {
@@ -195,8 +192,7 @@ std::string explain_injections() {
     std::string usage = fmt::format("{}{}", row.name, of[static_cast<std::size_t>(row.place)]);
     if (row.has_amount()) usage += "=" + std::string(row.unit.empty() ? "N" : row.unit);
     constexpr std::size_t column = 30;
-    const std::string help =
-        fmt::format(fmt::runtime(row.help), fmt::arg("wire_spike_us", 1e6 * protocol::wire_spike_s));
+    const std::string help = protocol::help_of(row);
     text += usage.size() < column ? fmt::format("  {:<{}}{}", usage, column, help)
                                   : fmt::format("  {}\n  {:{}}{}", usage, "", column, help);
     if (row.has_amount()) text += fmt::format(" {} to {}; {}", row.minimum, row.maximum, row.otherwise);

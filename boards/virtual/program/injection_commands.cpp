@@ -29,14 +29,14 @@ std::string text_or_number(const json& request, const char* key, const char* wha
   throw Refused(fmt::format("\"{}\" must be {}", key, what));
 }
 
-InjectionRequest injection_request(const json& request) {
+protocol::InjectionRequest injection_request(const json& request) {
   constexpr double largest = 1e12;
-  InjectionRequest wanted;
+  protocol::InjectionRequest wanted;
   wanted.fault = text_or_number(request, "fault", "the name of a fault, such as \"encoder_stuck\"");
   if (request.contains("of")) wanted.of = text_or_number(request, "of", "a number or a name, such as 2 or \"PA0\"");
   if (request.contains("amount")) wanted.amount = number(request, "amount", -largest, largest);
-  wanted.after_s = number_or(request, "after_s", 0.0, 0.0, latest_injection_s);
-  if (request.contains("for_s")) wanted.for_s = number(request, "for_s", 0.0, latest_injection_s);
+  wanted.after_s = number_or(request, "after_s", 0.0, 0.0, protocol::latest_injection_s);
+  if (request.contains("for_s")) wanted.for_s = number(request, "for_s", 0.0, protocol::latest_injection_s);
   return wanted;
 }
 
@@ -70,7 +70,7 @@ json heal(const json& request, Simulation& simulation) {
     return {{"healed", healed}};
   }
   try {
-    const InjectionRequest wanted = injection_request(request);
+    const protocol::InjectionRequest wanted = injection_request(request);
     const auto fault = protocol::find_injection(wanted.fault);
     // Any place will do, if none is named.
     const std::string of = fault && wanted.of.empty() ? wanted.of : checked(wanted).of;

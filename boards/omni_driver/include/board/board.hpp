@@ -113,6 +113,9 @@ inline constexpr PinUse pin_uses[] = {
 };
 #undef INKWELL_USE
 
+/// One of the cable's two wires of data.
+constexpr bool is_usb_data(Pin pin) { return pin == usb_minus.pin || pin == usb_plus.pin; }
+
 namespace detail {
 constexpr bool pins_are_distinct() {
   for (const auto& a : pin_uses)

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <device/error.hpp>
+#include <protocol/injection_request.hpp>
 
 namespace inkwell::device {
 
@@ -31,15 +32,6 @@ struct Hand {
 struct HandWaypoint {
   double after_s = 0;
   Vector3 target_m{};
-};
-
-/// Asks for a fault of protocol/injections.hpp, under its name.
-struct InjectionRequest {
-  std::string fault;
-  std::string of = {};  ///< what it is put into, such as "2", "1A" or "encoders[0].a"; empty where there is one only
-  std::optional<double> amount = {};  ///< none: the table's own
-  double after_s = 0;
-  std::optional<double> for_s = {};  ///< none: until it is healed
 };
 
 /// A pin of the chip: "high", "low" or "floating".
@@ -100,7 +92,7 @@ class ControlClient {
   PinLevels drive_pin(const std::string& pin, const std::string& level);
   void glitch(const std::string& pin, double duration_s);  ///< a pin ("PA0") is the opposite of what drives it
   /// Puts a fault in; the board time at which it comes, s.
-  double inject(const InjectionRequest& fault);
+  double inject(const protocol::InjectionRequest& fault);
   void heal(const std::string& fault, const std::string& of = {});  ///< takes it out, anywhere if no place is named
   void heal_all();
   void hand(const Hand& hand);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <chip/pin_name.hpp>
-#include <protocol/injections.hpp>
+#include <protocol/injection_request.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -19,18 +19,6 @@ namespace inkwell::virtual_board {
 class InvalidInjection : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-};
-
-/// No fault comes later, or lasts longer.
-inline constexpr double latest_injection_s = 1e6;
-
-/// As it was written.
-struct InjectionRequest {
-  std::string fault;
-  std::string of;  ///< what it is put into; empty: not said
-  std::optional<double> amount;
-  double after_s = 0.0;
-  std::optional<double> for_s;
 };
 
 struct Injection {
@@ -46,7 +34,7 @@ struct Injection {
 };
 
 /// Both throw InvalidInjection.
-Injection checked(const InjectionRequest& request);
+Injection checked(const protocol::InjectionRequest& request);
 /// NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2; times in seconds.
 Injection parse_injection(std::string_view text);
 /// One a line; what follows a # is a comment. Names the line that is wrong.
