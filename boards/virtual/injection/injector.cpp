@@ -54,7 +54,7 @@ void flip_bit(Chip& chip, const Injection& injection) {
 
 }  // namespace
 
-void Injector::add(const Injection& injection) {
+unsigned Injector::add(const Injection& injection) {
   if (injection.address) {
     const bool flash = is_within(*injection.address, flash_base, flash_bytes);
     const bool ram =
@@ -67,10 +67,12 @@ void Injector::add(const Injection& injection) {
                             : "memory",
                       *injection.address, flash_base, sram_base, ccm_base));
   }
+  const unsigned number = ++last_number_;
   if (injection.after_s > 0.0)
-    planned_.push_back({injection, victims_.chip.now() + ticks(injection.after_s)});
+    planned_.push_back({number, injection, victims_.chip.now() + ticks(injection.after_s)});
   else
-    put_in(injection);
+    put_in(number, injection);
+  return number;
 }
 
 Ticks Injector::next() const {
@@ -91,13 +93,13 @@ void Injector::carry_out() {
       ++i;
       continue;
     }
-    const Injection due = planned_[i].injection;
+    const auto [number, due, at] = planned_[i];
     planned_.erase(planned_.begin() + static_cast<std::ptrdiff_t>(i));
-    put_in(due);
+    put_in(number, due);
   }
 }
 
-void Injector::put_in(Injection injection) {
+void Injector::put_in(unsigned number, Injection injection) {
   choose_place(injection);
   if (!is_momentary(injection.fault))
     std::erase_if(active_, [&](const Active& active) {
@@ -107,7 +109,7 @@ void Injector::put_in(Injection injection) {
     });
   const Ticks now = victims_.chip.now();
   put(injection, true);
-  active_.push_back({injection, now, {}});
+  active_.push_back({number, injection, now, {}});
   if (injection.for_s) active_.back().until = now + ticks(*injection.for_s);
 }
 

@@ -60,6 +60,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
   if (options.real_time) usb_->limit_waiting();
   chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_->core());
   chip_.on_injected_sequence = [this](std::uint64_t index, Ticks when) {
+    control_period_ = {index, when};
     if (trace_.is_running()) trace_.record(index, plant_.truth(when));
   };
   chip_.on_console = [this](std::uint8_t byte) { console(byte); };

@@ -36,6 +36,12 @@ class Board {
   Injector& injector() { return *injector_; }
   VirtualUsb& usb() { return *usb_; }
   Trace& trace() { return trace_; }
+  struct ControlPeriod {
+    std::uint64_t number = 0;  ///< from 0 on since the last reset
+    Ticks began = 0;
+  };
+  /// The newest. Firmware whose core was never kept from its control interrupt counts them alike.
+  const ControlPeriod& control_period() const { return control_period_; }
   const Profile& profile() const { return profile_; }
   /// The function that holds `address`; empty if the ELF does not say.
   std::string name_of_code(std::uint32_t address) const { return symbols_.name(address); }
@@ -56,6 +62,7 @@ class Board {
   std::optional<VirtualUsb> usb_;     ///< there from construction to destruction
   std::optional<Injector> injector_;  ///< likewise
   Trace trace_;
+  ControlPeriod control_period_;
   Profile profile_;
   std::string console_line_;
   bool locked_up_ = false;

@@ -72,6 +72,9 @@ json status(const json&, Simulation& simulation) {
       {"unmodelled", chip.unmodelled_accesses()},
       {"violations", violations_of(board)},
       {"injected", injected(board)},
+      {"still_to_come", still_to_come(board)},
+      {"control_period",
+       {{"number", board.control_period().number}, {"board_time_s", seconds(board.control_period().began)}}},
       {"longest_interrupt", {{"exception", longest}, {"cycles", counters.exceptions[longest].longest_cycles}}},
       {"usb",
        {{"connected", board.usb().connected()},
@@ -223,7 +226,7 @@ const std::vector<Command>& commands() {
   static const std::vector<Command> table = {
       {"status",
        {},
-       "time, mode, resets, USB, whom board time waits for, registers that are not modelled",
+       "time, mode, resets, USB, whom board time waits for, faults in and to come, unmodelled registers",
        status,
        true},
       {"truth", {}, "every true quantity, the levels on the bridges' inputs included", truth},

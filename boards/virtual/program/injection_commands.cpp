@@ -12,13 +12,25 @@ using nlohmann::json;
 
 namespace {
 
-json told(const Injector::Active& active) {
-  const Injection& injection = active.injection;
+json told(unsigned number, const Injection& injection) {
   const auto& info = protocol::info(injection.fault);
-  json told{{"fault", info.name}, {"since_s", seconds(active.since)}};
+  json told{{"number", number}, {"fault", info.name}};
   if (!injection.of.empty()) told["of"] = injection.of;
   if (info.has_amount()) told["amount"] = injection.amount;
+  return told;
+}
+
+json told(const Injector::Active& active) {
+  json told = virtual_board::told(active.number, active.injection);
+  told["since_s"] = seconds(active.since);
   if (active.until) told["until_s"] = seconds(*active.until);
+  return told;
+}
+
+json told(const Injector::Planned& planned) {
+  json told = virtual_board::told(planned.number, planned.injection);
+  told["at_s"] = seconds(planned.at);
+  if (planned.injection.for_s) told["until_s"] = seconds(planned.at) + *planned.injection.for_s;
   return told;
 }
 
@@ -48,14 +60,20 @@ json injected(Board& board) {
   return list;
 }
 
+json still_to_come(Board& board) {
+  json list = json::array();
+  for (const Injector::Planned& planned : board.injector().planned()) list.push_back(told(planned));
+  return list;
+}
+
 json inject(const json& request, Simulation& simulation) {
   Board& board = simulation.board();
   try {
     const Injection injection = checked(injection_request(request));
     if (injection.fault == protocol::InjectedFault::program_astray && board.locked_up())
       throw Refused("the processor is locked up; reset it first");
-    board.injector().add(injection);
-    return {{"at_s", seconds(board.chip().now()) + injection.after_s}};
+    const unsigned number = board.injector().add(injection);
+    return {{"at_s", seconds(board.chip().now()) + injection.after_s}, {"number", number}};
   } catch (const InvalidInjection& error) {
     throw Refused(error.what());
   }

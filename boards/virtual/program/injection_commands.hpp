@@ -7,8 +7,9 @@
 
 namespace inkwell::virtual_board {
 
-/// What is in now.
+/// What is in now, and what is still to come.
 nlohmann::json injected(Board& board);
+nlohmann::json still_to_come(Board& board);
 nlohmann::json inject(const nlohmann::json& request, Simulation& simulation);
 nlohmann::json heal(const nlohmann::json& request, Simulation& simulation);
 

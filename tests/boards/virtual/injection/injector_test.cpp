@@ -93,6 +93,23 @@ TEST_CASE("every fault of the table goes in, is told with its place, and is no l
   }
 }
 
+TEST_CASE("each fault has a number of its own, from when it is asked for until it is healed") {
+  Rig rig;
+  const unsigned now = rig.injector.add(parse_injection("encoder_slip:2"));
+  const unsigned again = rig.injector.add(parse_injection("encoder_slip:2"));
+  const unsigned later = rig.injector.add(parse_injection("motor_open:1@0.001"));
+  CHECK(again == now + 1);
+  CHECK(later == again + 1);
+  REQUIRE(rig.injector.planned().size() == 1);
+  CHECK(rig.injector.planned()[0].number == later);
+  CHECK(rig.injector.planned()[0].at == rig.chip.now() + ticks(0.001));
+  rig.run(0.002);
+  CHECK(rig.injector.planned().empty());
+  REQUIRE(rig.injector.active().size() == 3);
+  CHECK(rig.injector.active()[0].number == now);
+  CHECK(rig.injector.active()[2].number == later);
+}
+
 TEST_CASE("a fault comes at its time, to the tick, and goes after its duration") {
   Rig rig;
   const Ticks begin = rig.chip.now();

@@ -27,16 +27,25 @@ class Injector {
   };
   /// A fault that is in, or has happened.
   struct Active {
+    unsigned number;      ///< see add()
     Injection injection;  ///< with the place and the bit that the seed chose
     Ticks since;
     std::optional<Ticks> until;
   };
 
+  /// One that is still to come.
+  struct Planned {
+    unsigned number;
+    Injection injection;
+    Ticks at;
+  };
+
   Injector(Victims victims, std::uint64_t seed) : victims_(std::move(victims)), random_(seed) {}
 
   /// At once, or when its time has come: see next(). Takes the place of one of its kind at the same place. Throws
-  /// InvalidInjection if there is nothing at its address. Not from inside Chip::run_until().
-  void add(const Injection& injection);
+  /// InvalidInjection if there is nothing at its address. Not from inside Chip::run_until(). Returns a number by which
+  /// it is told from all others, also of the same name and place.
+  unsigned add(const Injection& injection);
   /// When something is to be done, at the earliest. The board runs as far, then calls carry_out().
   Ticks next() const;
   void carry_out();
@@ -48,13 +57,11 @@ class Injector {
 
   /// In the order in which they came.
   const std::vector<Active>& active() const { return active_; }
+  /// In the order in which they were asked for.
+  const std::vector<Planned>& planned() const { return planned_; }
 
  private:
-  struct Planned {
-    Injection injection;
-    Ticks at;
-  };
-  void put_in(Injection injection);
+  void put_in(unsigned number, Injection injection);
   void choose_place(Injection& injection);
   void put(const Injection& injection, bool in);
   void put_into_wire(const Injection& injection, bool in);
@@ -64,6 +71,7 @@ class Injector {
 
   Victims victims_;
   std::mt19937_64 random_;
+  unsigned last_number_ = 0;
   std::vector<Planned> planned_;
   std::vector<Active> active_;
   struct Spikes {
