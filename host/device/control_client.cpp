@@ -3,6 +3,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -33,6 +34,21 @@ struct ControlClient::Implementation {
   }
 };
 
+namespace {
+
+PutInFault put_in_fault(const json& told, const char* time_key) {
+  PutInFault fault{.number = told.at("number").get<unsigned>(),
+                   .fault = told.at("fault").get<std::string>(),
+                   .of = told.value("of", std::string()),
+                   .at_s = told.at(time_key).get<double>(),
+                   .has_come = std::string_view(time_key) == "since_s"};
+  if (told.contains("amount")) fault.amount = told["amount"].get<double>();
+  if (told.contains("until_s")) fault.until_s = told["until_s"].get<double>();
+  return fault;
+}
+
+}  // namespace
+
 ControlClient::ControlClient(const std::string& host, std::uint16_t port)
     : implementation_(new Implementation{Socket(host, port), {}}) {}
 ControlClient::~ControlClient() = default;
@@ -49,9 +65,11 @@ json ControlClient::call(const json& request) {
   } catch (const json::exception&) {
     throw Error("What answers at the control port is not a virtual board. Give the control port that it printed.");
   }
-  throw Error(fmt::format("The virtual board refused {}: {}", request.at("command").dump(),
-                          reply.value("error", std::string("it gave no reason."))));
+  throw CommandRefused(fmt::format("The virtual board refused {}: {}", request.at("command").dump(),
+                                   reply.value("error", std::string("it gave no reason."))));
 }
+
+void ControlClient::wait_at_most(std::chrono::milliseconds limit) { implementation_->socket.wait_at_most(limit); }
 
 BoardStatus ControlClient::status() {
   BoardStatus status;
@@ -89,12 +107,20 @@ void ControlClient::glitch(const std::string& pin, double duration_s) {
 void ControlClient::gimbal(const Vector3& angles_rad) { call({{"command", "gimbal"}, {"angles_rad", angles_rad}}); }
 void ControlClient::dock(bool docked) { call({{"command", "dock"}, {"docked", docked}}); }
 
-double ControlClient::inject(const protocol::InjectionRequest& fault) {
+PutInFault ControlClient::inject(const protocol::InjectionRequest& fault) {
   json request{{"command", "inject"}, {"fault", fault.fault}, {"after_s", fault.after_s}};
   if (!fault.of.empty()) request["of"] = fault.of;
   if (fault.amount) request["amount"] = *fault.amount;
   if (fault.for_s) request["for_s"] = *fault.for_s;
-  return call(request).value("at_s", 0.0);
+  const json reply = call(request);
+  PutInFault put_in{.number = reply.value("number", 0u),
+                    .fault = fault.fault,
+                    .of = fault.of,
+                    .amount = fault.amount,
+                    .at_s = reply.value("at_s", 0.0),
+                    .has_come = fault.after_s == 0.0};
+  if (fault.for_s) put_in.until_s = put_in.at_s + *fault.for_s;
+  return put_in;
 }
 
 void ControlClient::heal(const std::string& fault, const std::string& of) {
@@ -103,6 +129,22 @@ void ControlClient::heal(const std::string& fault, const std::string& of) {
   call(request);
 }
 void ControlClient::heal_all() { call({{"command", "heal"}}); }
+
+Injections ControlClient::injections() {
+  const json reply = call({{"command", "status"}});
+  Injections now;
+  try {
+    const json& period = reply.at("control_period");
+    now.board_time_s = reply.at("board_time_s").get<double>();
+    now.period = period.at("number").get<std::uint64_t>();
+    now.period_at_s = period.at("board_time_s").get<double>();
+    for (const json& each : reply.at("injected")) now.faults.push_back(put_in_fault(each, "since_s"));
+    for (const json& each : reply.at("still_to_come")) now.faults.push_back(put_in_fault(each, "at_s"));
+  } catch (const json::exception&) {
+    throw Error("The virtual board does not say which faults are in. Build it again.");
+  }
+  return now;
+}
 
 void ControlClient::hand(const Hand& hand) {
   json request{{"command", "hand"}, {"holds", hand.holds}};

@@ -125,6 +125,7 @@ struct Session::Implementation {
         last_pose = Clock::now();
         ++poses_in_window;
         take_pose(*pose, sequence);
+        follow_fault(*served, *pose, refreshed_at_periods ? std::optional(newest_periods) : std::nullopt);
         newest_periods = pose->time_periods;
         if (!refreshed_at_periods) refreshed_at_periods = newest_periods;
       }
@@ -159,6 +160,39 @@ struct Session::Implementation {
     ++state.poses_received;
     if (sequence) state.poses_lost += pose.sequence - *sequence - 1;
     sequence = pose.sequence;
+  }
+
+  /// `before_periods`: of the pose before this one, if there was one.
+  void follow_fault(Device& from, const protocol::PoseReport& pose, std::optional<std::uint32_t> before_periods) {
+    std::optional<NoticedFault> known;
+    {
+      const std::lock_guard lock(mutex);
+      known = state.fault;
+    }
+    if (pose.state == protocol::State::fault) {
+      if (known && known->fault == pose.fault) return;
+      known = {pose.fault, noticed_at_periods(from, pose, before_periods)};
+    } else if (!known) {
+      return;
+    } else {
+      known.reset();
+    }
+    const std::lock_guard lock(mutex);
+    state.fault = known;
+  }
+
+  /// The black box knows the very period, unless it still keeps an older fault.
+  static std::uint32_t noticed_at_periods(Device& by, const protocol::PoseReport& pose,
+                                          std::optional<std::uint32_t> before_periods) {
+    const auto comes_after = [](std::uint32_t a, std::uint32_t b) { return static_cast<std::int32_t>(a - b) > 0; };
+    try {
+      const protocol::BlackBoxReport box = by.black_box();
+      if (box.fault == pose.fault && box.is_restart == 0 && !comes_after(box.fault_periods, pose.time_periods) &&
+          (!before_periods || comes_after(box.fault_periods, *before_periods)))
+        return box.fault_periods;
+    } catch (const Stalled&) {  // then the pose tells it as well as one can
+    }
+    return pose.time_periods;
   }
 
   void send_requests(Device& to) {
@@ -259,6 +293,7 @@ struct Session::Implementation {
     device.reset();
     state.information.reset();
     state.applied_at_periods.reset();
+    state.fault.reset();
     state.pose_rate_Hz = 0;
     newest.reset();
     if (state.connection == Connection::connected) state.connection = Connection::searching;

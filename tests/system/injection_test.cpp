@@ -34,10 +34,15 @@ TEST_CASE("a fault put in by the control socket comes at its time, is told, is n
   BoardRig rig;
   rig.make_active();
   const double begin_s = rig.board_time_s();
-  CHECK(rig.control.inject({.fault = "bridge_fault", .after_s = 0.0123, .for_s = 0.05}) ==
+  CHECK(rig.control.inject({.fault = "bridge_fault", .after_s = 0.0123, .for_s = 0.05}).at_s ==
         doctest::Approx(begin_s + 0.0123));
   rig.control.run(0.0122);
   CHECK(rig.control.status().all.at("injected").empty());
+  const auto planned = rig.control.injections().faults;
+  REQUIRE(planned.size() == 1);
+  CHECK_FALSE(planned[0].has_come);
+  CHECK(planned[0].at_s == doctest::Approx(begin_s + 0.0123));
+  CHECK(*planned[0].until_s == doctest::Approx(begin_s + 0.0623));
   CHECK(bridges_enabled(rig.control));
   rig.control.run(0.0001 + 2 * control_period_s);
   const auto injected = rig.control.truth().at("injected");
@@ -60,6 +65,19 @@ TEST_CASE("a fault put in by the control socket comes at its time, is told, is n
   CHECK_THROWS_WITH_AS(rig.control.heal("shunt_high", "2"), doctest::Contains("is not put in"), device::Error);
   rig.control.heal_all();
   CHECK(rig.control.status().all.at("injected").empty());
+}
+
+TEST_CASE("the board tells the control period of its firmware, so that a pose's time is a board time") {
+  BoardRig rig;
+  rig.make_active();
+  const auto put_in = rig.control.inject({.fault = "bridge_fault", .after_s = 0.00731});
+  rig.run(0.05);
+  const auto box = rig.device->black_box();
+  REQUIRE(box.fault == protocol::Fault::bridge_fault);
+  const auto now = rig.control.injections();
+  const double noticed_s = now.period_at_s - static_cast<double>(now.period - box.fault_periods) * control_period_s;
+  CHECK(noticed_s > put_in.at_s - control_period_s);
+  CHECK(noticed_s < put_in.at_s + 2 * control_period_s);
 }
 
 TEST_CASE("the control socket refuses what is no fault with a sentence") {

@@ -1,6 +1,7 @@
 // The client of a virtual board's control socket: what it asks, and what it makes of each kind of answer.
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <string>
 
 #include <device/control_client.hpp>
@@ -44,6 +45,38 @@ TEST_CASE("a refusal tells the command and the board's reason") {
   CHECK(contains(message, "refused \"trace\""));
   CHECK(contains(message, "No trace runs."));
   CHECK(contains(failure_at(R"({"ok": false})"), "it gave no reason"));
+}
+
+TEST_CASE("a refusal leaves the connection as it was; no answer in time is another error") {
+  FakeControlServer server([](const json& request) {
+    if (request.at("command") == "reset") return std::string();
+    return request.at("command") == "run" ? std::string("{\"ok\": false, \"error\": \"no\"}\n") : "{\"ok\": true}\n";
+  });
+  auto client = client_of(server);
+  CHECK_THROWS_AS(client.run(1), device::CommandRefused);
+  client.pause();
+  client.wait_at_most(std::chrono::milliseconds(1));
+  CHECK(contains(message_of<device::Error>([&] { client.reset(); }), "gives no answer"));
+}
+
+TEST_CASE("what is in a board and what is still to come are taken from its status") {
+  const std::string line =
+      R"({"ok": true, "board_time_s": 2.5, "control_period": {"number": 40000, "board_time_s": 2.25}, "injected": [)"
+      R"({"number": 1, "fault": "motor_open", "of": "2", "since_s": 1.5, "until_s": 3.5}], "still_to_come": [)"
+      R"({"number": 2, "fault": "supply_sag", "amount": 9.5, "at_s": 4.5}]})";
+  FakeControlServer server([&](const json&) { return line + "\n"; });
+  const auto now = client_of(server).injections();
+  CHECK(now.board_time_s == 2.5);
+  CHECK(now.period == 40'000);
+  CHECK(now.period_at_s == 2.25);
+  REQUIRE(now.faults.size() == 2);
+  CHECK(
+      now.faults[0] ==
+      device::PutInFault{.number = 1, .fault = "motor_open", .of = "2", .at_s = 1.5, .until_s = 3.5, .has_come = true});
+  CHECK(now.faults[1] ==
+        device::PutInFault{.number = 2, .fault = "supply_sag", .amount = 9.5, .at_s = 4.5, .has_come = false});
+  FakeControlServer older([](const json&) { return "{\"ok\": true, \"injected\": []}\n"; });
+  CHECK(contains(message_of<device::Error>([&] { client_of(older).injections(); }), "which faults are in"));
 }
 
 TEST_CASE("what answers but is no virtual board is told so") {

@@ -291,6 +291,7 @@ std::optional<Bytes> FakeUsbipServer::feature_report(protocol::ReportId id) {
     case protocol::ReportId::information: return bytes_of(information);
     case protocol::ReportId::transaction: return bytes_of(transaction_);
     case protocol::ReportId::frame: return bytes_of(frame);
+    case protocol::ReportId::black_box: return black_box ? std::optional(bytes_of(*black_box)) : std::nullopt;
     case protocol::ReportId::force_law:
       return Bytes(control::installed_force_law.report,
                    control::installed_force_law.report + control::installed_force_law.report_size);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <device/transport.hpp>
+#include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
 
 #include "local_server.hpp"
@@ -45,6 +46,7 @@ class FakeUsbipServer {
   Bytes configuration;  ///< descriptor
   protocol::InformationReport information{};
   protocol::FrameReport frame{};
+  std::optional<protocol::BlackBoxReport> black_box;  ///< none: the request is stalled
   protocol::ParameterSet parameters = protocol::default_parameters();
   /// What becomes of a transaction; called with its entries.
   std::function<protocol::Refusal(const protocol::ParametersReport&)> judge = [](const protocol::ParametersReport&) {

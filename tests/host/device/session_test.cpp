@@ -62,6 +62,38 @@ TEST_CASE("a session connects, shows pose and parameters, and gives its sign of 
   CHECK(session.status().poses_lost == 3);
 }
 
+TEST_CASE("a fault is told with the control period that noticed it, as far as that is known") {
+  const auto told_at = [](std::optional<std::uint32_t> box_periods, protocol::Fault box_fault, bool is_restart,
+                          std::optional<std::uint32_t> pose_before) {
+    FakeUsbipServer server;
+    if (box_periods) {
+      server.black_box = {.is_complete = 1, .fault = box_fault, .fault_periods = *box_periods};
+      server.black_box->is_restart = is_restart ? 1 : 0;
+    }
+    device::Session session([&] { return std::optional(server.endpoint()); });
+    if (pose_before) server.send(1, bytes_of(pose_at(*pose_before)));
+    auto pose = pose_at(1000);
+    pose.state = protocol::State::fault;
+    pose.fault = protocol::Fault::supply_low;
+    server.send(1, bytes_of(pose));
+    REQUIRE(eventually([&] { return session.status().fault.has_value(); }));
+    CHECK(session.status().fault->fault == protocol::Fault::supply_low);
+    const auto at_periods = session.status().fault->at_periods;
+    pose.state = protocol::State::ready;
+    server.send(1, bytes_of(pose));
+    CHECK(eventually([&] { return !session.status().fault; }));
+    return at_periods;
+  };
+  using protocol::Fault;
+  CHECK(told_at(990, Fault::supply_low, false, 980) == 990);
+  CHECK(told_at(990, Fault::supply_low, false, {}) == 990);
+  CHECK(told_at(970, Fault::supply_low, false, 980) == 1000);   // of an older fault
+  CHECK(told_at(1001, Fault::supply_low, false, 980) == 1000);  // of an earlier run
+  CHECK(told_at(990, Fault::over_speed, false, 980) == 1000);
+  CHECK(told_at(990, Fault::supply_low, true, 980) == 1000);
+  CHECK(told_at({}, Fault::none, false, 980) == 1000);
+}
+
 TEST_CASE("changes asked for in a burst go out together, the last value of each parameter") {
   FakeUsbipServer server;
   std::atomic<int> entries = 0;

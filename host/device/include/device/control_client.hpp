@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -34,6 +35,28 @@ struct HandWaypoint {
   Vector3 target_m{};
 };
 
+/// A fault that is in a virtual board, or still to come.
+struct PutInFault {
+  unsigned number;  ///< tells it from all others of this board
+  std::string fault;
+  std::string of;  ///< what it was put into; empty where there is one only
+  std::optional<double> amount = {};
+  double at_s;                         ///< board time at which it came, or will
+  std::optional<double> until_s = {};  ///< none: until it is healed
+  bool has_come;
+  bool operator==(const PutInFault&) const = default;
+};
+
+/// What is in a virtual board at one instant.
+struct Injections {
+  double board_time_s = 0;
+  /// The newest control period, counted from 0 since the last reset, and when it began. The firmware's `time_periods`
+  /// is the same number, as long as its core was never kept from the control interrupt.
+  std::uint64_t period = 0;
+  double period_at_s = 0;
+  std::vector<PutInFault> faults;  ///< those that are in, then those to come
+};
+
 /// A pin of the chip: "high", "low" or "floating".
 struct PinLevels {
   std::string level;        ///< what a meter would show
@@ -63,7 +86,13 @@ struct Trace {
   std::size_t row_count() const { return columns.empty() ? 0 : values.size() / columns.size(); }
 };
 
-/// Not for use by two threads at once: make one client for each. Every call throws Error if the board
+/// The board does not do what was asked for; the connection is as good as before.
+class CommandRefused : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Not for use by two threads at once: make one client for each. Every call throws CommandRefused if the board
 /// refuses it, and Disconnected if the board is gone.
 class ControlClient {
  public:
@@ -71,6 +100,9 @@ class ControlClient {
   ~ControlClient();
   ControlClient(ControlClient&&) noexcept;
   ControlClient& operator=(ControlClient&&) noexcept;
+
+  /// An answer that takes longer is an Error, after which this client is of no more use. For ever unless said.
+  void wait_at_most(std::chrono::milliseconds limit);
 
   BoardStatus status();
   nlohmann::json truth();
@@ -91,10 +123,11 @@ class ControlClient {
   /// The same after it is driven from outside: "high", "low" or "floating".
   PinLevels drive_pin(const std::string& pin, const std::string& level);
   void glitch(const std::string& pin, double duration_s);  ///< a pin ("PA0") is the opposite of what drives it
-  /// Puts a fault in; the board time at which it comes, s.
-  double inject(const protocol::InjectionRequest& fault);
+  /// Puts a fault in, and says when it comes.
+  PutInFault inject(const protocol::InjectionRequest& fault);
   void heal(const std::string& fault, const std::string& of = {});  ///< takes it out, anywhere if no place is named
   void heal_all();
+  Injections injections();
   void hand(const Hand& hand);
   void hand_path(const std::vector<HandWaypoint>& path);  ///< minimum jerk between the waypoints
   void gimbal(const Vector3& angles_rad);                 ///< turns the stylus: yaw, pitch, roll

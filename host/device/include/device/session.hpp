@@ -16,6 +16,14 @@ namespace inkwell::device {
 
 enum class Connection : std::uint8_t { searching, connected, incompatible, no_permission };
 
+/// A fault that the device is in.
+struct NoticedFault {
+  protocol::Fault fault;
+  /// The control period that noticed it, or, of a fault that a start tells afterwards, that of the first pose with it.
+  std::uint32_t at_periods;
+  bool operator==(const NoticedFault&) const = default;
+};
+
 struct SessionStatus {
   Connection connection = Connection::searching;
   std::string message;                     ///< a sentence for the user, with the remedy where there is one
@@ -23,6 +31,7 @@ struct SessionStatus {
   bool is_simulation = false;              ///< connected to a virtual board
   /// The control period at which the newest transaction of this session took effect; none before the first.
   std::optional<std::uint32_t> applied_at_periods;
+  std::optional<NoticedFault> fault;  ///< none: the device is in no fault
   double pose_rate_Hz = 0;
   std::uint64_t poses_received = 0;
   std::uint64_t poses_lost = 0;
