@@ -52,6 +52,8 @@ void Companion::key(int key, bool down) {
   const bool types = ImGui::GetIO().WantTextInput;
   if (down && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_F12 || (key == GLFW_KEY_SPACE && !types))) stop();
   if (down && key == GLFW_KEY_F1) key_help_.open();
+  if (down && key >= GLFW_KEY_F2 && key < GLFW_KEY_F12 && !is_dialog_open())
+    column_.show(static_cast<std::size_t>(key - GLFW_KEY_F2));
   if (!hand_ || (down && types)) return;
   if (key == GLFW_KEY_1) button_1_ = down;
   if (key == GLFW_KEY_2) button_2_ = down;

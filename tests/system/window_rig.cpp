@@ -23,17 +23,16 @@ device::VirtualBoardOptions board_options() {
 }
 
 std::vector<std::string> window_words(const device::VirtualBoard& board, const std::string& parameters_file,
-                                      const std::vector<std::string>& options) {
+                                      const std::vector<std::string>& options, bool tells_control_port) {
   device::save_parameters(parameters_file, WindowRig::parameters_at_start());
   std::vector<std::string> words{build_directory() + "/inkwell",
                                  "--usbip",
                                  fmt::format("127.0.0.1:{}", board.usbip_port()),
-                                 "--control",
-                                 std::to_string(board.control_port()),
                                  "--parameters",
                                  parameters_file,
                                  "--forget-settings",
                                  "--inspect"};
+  if (tells_control_port) words.insert(words.end(), {"--control", std::to_string(board.control_port())});
   words.insert(words.end(), options.begin(), options.end());
   return words;
 }
@@ -53,12 +52,12 @@ bool Sight::says(const std::string& part) const {
 
 // The display says its number in a line of its own, once it is ready; what it says of numbers taken is no error. Its
 // keys do not repeat (-r): between press and release a busy computer may take longer than a finger.
-WindowRig::WindowRig(const std::vector<std::string>& options)
+WindowRig::WindowRig(const std::vector<std::string>& options, bool tells_control_port)
     : board(board_options()),
       control(board.control()),
       display_({"sh", "-c", "exec Xvfb -r -displayfd 1 -screen 0 1280x800x24 -nolisten tcp 2>/dev/null"}),
       display_name_("DISPLAY=:" + display_.read_line()),
-      window_(window_words(board, directory_.file("parameters.toml"), options),
+      window_(window_words(board, directory_.file("parameters.toml"), options, tells_control_port),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {
   look_until("the device is ready and has the parameters",
              [](const Sight& sight) { return sight.state() == "ready" && sight.applied_at_periods() != 0; });

@@ -41,6 +41,8 @@ struct Sight {
   /// Throws if it cannot be seen, with what can.
   Item item(const std::string& name) const;
   bool can_click(const std::string& name) const { return has(name) && item(name).enabled; }
+  /// Whether it has the keyboard, or the mouse holds it.
+  bool is_active(const std::string& name) const { return has(name) && all.at("items").at(name).at("active"); }
   /// Whether a text that contains this stands anywhere in the window.
   bool says(const std::string& part) const;
 };
@@ -49,7 +51,8 @@ class WindowRig {
  public:
   /// Starts everything and waits until the window is connected and its device knows where it is. `options`:
   /// of the window; with flat colours a picture's pixels have exactly the colours of palette.hpp.
-  explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"});
+  /// Without the control port the window knows no more of the virtual board than of a real one.
+  explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true);
 
   /// A frame that began after all events so far.
   Sight look();

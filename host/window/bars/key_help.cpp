@@ -32,8 +32,9 @@ constexpr Row rows[] = {
     {"Drag a circle of the box", "Move that wall"},
     {"Drag the sphere", "Move the simulated hand; the wheel changes its depth"},
     {"1, 2", "Press the buttons of the simulated stylus"},
-    {"Help", ""},
+    {"Window", ""},
     {"F1, ?", "This page"},
+    {"F2, F3, ...", "Show the pane under the first tab, the second, ..."},
 };
 
 constexpr const char* title = "Keys and mouse";
@@ -52,7 +53,7 @@ void KeyHelp::draw(const Style& style) {
     text(style.fonts.strong, palette.accent, title);
     for (const Row& row : rows) {
       if (row.what_happens.empty()) {
-        ImGui::Dummy({0, style.points(4)});
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + style.points(4));
         text(style.fonts.strong, palette.text, row.what_one_does);
         continue;
       }

@@ -35,14 +35,15 @@ std::string_view name_in(std::string_view label) {
   return label.starts_with("##") ? label.substr(2) : label.substr(0, label.find("##"));
 }
 
-void note(std::string_view name, const ImRect& place) {
+void note(std::string_view name, const ImRect& place, bool active) {
   const ImGuiWindow& pane = *ImGui::GetCurrentWindow()->RootWindow;
   const bool enabled = (GImGui->CurrentItemFlags & ImGuiItemFlags_Disabled) == 0;
   notes->items[fmt::format("{}/{}", pane.Name, name_in(name))] = {{"x", place.Min.x + notes->origin.x},
                                                                   {"y", place.Min.y + notes->origin.y},
                                                                   {"width", place.GetWidth()},
                                                                   {"height", place.GetHeight()},
-                                                                  {"enabled", enabled}};
+                                                                  {"enabled", enabled},
+                                                                  {"active", active}};
 }
 
 }  // namespace
@@ -51,11 +52,11 @@ void note_item(std::string_view name) {
   if (notes == nullptr) return;
   ImRect seen = GImGui->LastItemData.Rect;
   seen.ClipWith(ImGui::GetCurrentWindow()->ClipRect);
-  if (seen.GetWidth() > 1.0f && seen.GetHeight() > 1.0f) note(name, seen);
+  if (seen.GetWidth() > 1.0f && seen.GetHeight() > 1.0f) note(name, seen, ImGui::IsItemActive());
 }
 
 void note_place(std::string_view name, ImVec2 minimum, ImVec2 maximum) {
-  if (notes != nullptr) note(name, {minimum, maximum});
+  if (notes != nullptr) note(name, {minimum, maximum}, false);
 }
 
 void note_text(std::string_view text) {

@@ -76,6 +76,12 @@ void PaneColumn::cancel() {
   for (const auto& pane : panes_) pane->cancel();
 }
 
+void PaneColumn::show(std::size_t tab) {
+  if (tab >= panes_.size()) return;
+  shown_ = tab;
+  panes_[shown_]->take_keyboard();
+}
+
 PaneStream PaneColumn::stream(const std::vector<protocol::Signal>& scope_signals) const {
   for (const auto& pane : panes_)
     if (PaneStream stream = pane->stream(); !stream.signals.empty()) return stream;

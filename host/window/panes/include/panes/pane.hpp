@@ -24,7 +24,8 @@ struct PaneSurroundings {
   /// The parameter file that was loaded or saved last; remembered from one time to the next.
   std::filesystem::path& parameters_file;
   std::filesystem::path parameters_to_send;  ///< once a device is connected; empty: none
-  /// Control port of the virtual board whose simulated hand can do the user's part; 0 for a real device.
+  /// Control port of the virtual board whose simulated hand can do the user's part, and which can be given faults; 0
+  /// for a real device.
   std::uint16_t control_port = 0;
   /// The arm of that board, if it is known otherwise than from the device.
   std::optional<protocol::ParameterSet> simulated_arm;
@@ -59,6 +60,8 @@ class Pane {
 
   /// Stands on its tab, and names it for inspections in small letters.
   virtual std::string_view title() const = 0;
+  /// It has come to be shown by a key, and may take the keyboard.
+  virtual void take_keyboard() {}
   /// Once a frame, whether the pane is shown or not.
   virtual void follow(const PaneNews&) {}
   /// Draws what is in it while it is shown; its ImGui window is open.
