@@ -84,7 +84,8 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
   program.add_flag("--flat-colours", window.flat_colours, "Draw the scene without lighting")->group(group);
   program.add_flag("--forget-settings", settings->forget, "Neither read nor write the window's settings")->group(group);
   program
-      .add_option("--control", settings->control_port, "Control port of the virtual board at --usbip, for the mouse")
+      .add_option("--control", settings->control_port,
+                  "Control port of the virtual board at --usbip, for the mouse and for faults")
       ->type_name("PORT")
       ->group(group);
   const OpenWindow open = [&options, settings](const std::filesystem::path& recording) {

@@ -130,6 +130,32 @@ TEST_CASE("pictures: a guide with its result" * doctest::skip()) {
   rig.picture(picture_file("guide"));
 }
 
+TEST_CASE("pictures: faults put into the simulation, dark and light, large and small" * doctest::skip()) {
+  for (const std::string theme : {"dark", "light"})
+    for (const bool is_small : {false, true}) {
+      WindowRig rig({"--layout", "paper", "--theme", theme, "--width", is_small ? "900" : "1280", "--height",
+                     is_small ? "560" : "800"});
+      const std::string name = "faults " + theme + (is_small ? " small" : "");
+      rig.click("tabs/Faults");
+      rig.move_to(aside);
+      rig.picture(picture_file(name + ", none"));
+      rig.switch_force_on();
+      rig.control.inject({.fault = "encoder_lost_counts", .of = "2"});
+      rig.control.inject({.fault = "shunt_high", .of = "1"});
+      rig.look_until("it is noticed", [](const Sight& now) { return now.says("Told since: "); });
+      rig.enter("faults/search", "leg");
+      rig.press_key("Down");
+      rig.press_key("Down");
+      rig.press_key("Return");
+      rig.look_until("the place is asked for", [](const Sight& now) { return now.is_active("faults/place"); });
+      rig.type("9Z");
+      rig.press_key("Return");
+      rig.look_until("it is refused", [](const Sight& now) { return now.says("is no leg"); });
+      rig.move_to(aside);
+      rig.picture(picture_file(name));
+    }
+}
+
 TEST_CASE("pictures: recording and replay" * doctest::skip()) {
   const TemporaryDirectory directory;
   WindowRig rig({"--layout", "paper"});

@@ -4,7 +4,8 @@
 #define INKWELL_PANES(PANE) \
   PANE(tuning_pane)         \
   PANE(guides_pane)         \
-  PANE(recording_pane)
+  PANE(recording_pane)      \
+  PANE(faults_pane)
 
 namespace inkwell::window {
 

@@ -1,0 +1,44 @@
+// The fields of one fault: its place, amount and times, and the button that puts it in.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <frame/style.hpp>
+#include <panes/fault_choice.hpp>
+
+namespace inkwell::window {
+
+class FaultForm {
+ public:
+  FaultForm(protocol::InjectedFault fault, std::string of) : typed_{fault, std::move(of), {}, {}, {}} {}
+
+  const TypedFault& typed() const { return typed_; }
+  /// The first field gets the keyboard when it is drawn next.
+  void take_keyboard() { takes_keyboard_ = true; }
+  /// True if the user wants it to be put in now.
+  bool draw(const Style& style);
+
+ private:
+  struct Field {
+    const char* label;
+    const char* name;  ///< for inspections
+    std::string hint;
+    float beside;  ///< room that it leaves at its right
+  };
+
+  // True if Enter ended one of them.
+  bool draw_place(const Style& style);
+  bool draw_field(const Field& field, std::string& typed, const Style& style);
+  bool draw_number(const char* label, const char* name, const std::string& hint, std::string_view unit,
+                   std::string_view help, std::string& typed, const Style& style);
+  void draw_names(std::span<const std::string_view> names, const Style& style);
+  void draw_wires(const Style& style);
+
+  TypedFault typed_;
+  bool takes_keyboard_ = false;
+};
+
+}  // namespace inkwell::window

@@ -1,0 +1,179 @@
+// The pane that puts faults into the virtual board, played as a user does.
+#include <doctest/doctest.h>
+
+#include <csignal>
+#include <string>
+
+#include "window_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+namespace {
+
+void open_pane(WindowRig& rig) { rig.click("tabs/Faults"); }
+
+void look_for(WindowRig& rig, const std::string& text) {
+  rig.look_until("it says " + text, [&](const Sight& now) { return now.says(text); });
+}
+
+/// What is typed before a field has the keyboard is lost.
+void wait_for_keyboard(WindowRig& rig, const std::string& field) {
+  rig.look_until(field + " has the keyboard", [&](const Sight& now) { return now.is_active(field); });
+}
+
+/// A list that pops up has a name of ImGui's.
+void click_in_list(WindowRig& rig, const std::string& name) {
+  std::string item;
+  rig.look_until(name + " is in the list", [&](const Sight& now) {
+    for (const auto& each : now.all.at("items").items())
+      if (each.key().starts_with("##Popup") && each.key().ends_with("/" + name)) item = each.key();
+    return !item.empty();
+  });
+  rig.click(item);
+}
+
+std::size_t count_in(WindowRig& rig) { return rig.control.status().all.at("injected").size(); }
+
+}  // namespace
+
+TEST_CASE("a fault is chosen in the table, put in, told with what the board noticed, and healed") {
+  WindowRig rig;
+  open_pane(rig);
+  CHECK(rig.look().says("SIMULATION"));
+  rig.click("faults/Supply");
+  rig.click("faults/supply_sag");
+  CHECK(rig.look().says("The source of the bridges falls to this."));
+  CHECK(rig.look().says("0 to 18"));
+  rig.enter("faults/amount", "6");
+  rig.click("faults/Inject");
+  look_for(rig, "6 V, in since");
+  look_for(rig, "Told since: supply_low, after ");
+  CHECK(rig.look().state() == "fault");
+  const auto injected = rig.control.status().all.at("injected");
+  REQUIRE(injected.size() == 1);
+  CHECK(injected[0].at("fault") == "supply_sag");
+  CHECK(injected[0].at("amount") == 6.0);
+  rig.click("faults/Heal supply_sag");
+  look_for(rig, "over");
+  CHECK(count_in(rig) == 0);
+  CHECK(rig.look().says("Told since: supply_low"));
+  CHECK_FALSE(rig.look().can_click("faults/Heal all"));
+}
+
+TEST_CASE("without a control port there is nothing to put faults into, and the pane says why") {
+  WindowRig rig({"--flat-colours"}, false);
+  rig.press_key("F6");  // no tab
+  CHECK(rig.look().has("tuning/wall_stiffness_N_per_m"));
+  rig.press_key("F5");
+  look_for(rig, "does not know the control port");
+  CHECK_FALSE(rig.look().has("faults/search"));
+  rig.press_key("ctrl+Delete");
+  CHECK_FALSE(rig.look().says("SIMULATION"));
+}
+
+TEST_CASE("the pane is worked by the keyboard alone") {
+  WindowRig rig;
+  rig.press_key("F5");
+  wait_for_keyboard(rig, "faults/search");
+  rig.type("slip");
+  rig.press_key("Down");
+  rig.press_key("Return");
+  wait_for_keyboard(rig, "faults/place");
+  rig.type("3");
+  rig.type("\t");  // in one go: a Tab that is held goes on
+  wait_for_keyboard(rig, "faults/amount");
+  rig.type("-250");
+  rig.press_key("Return");
+  look_for(rig, "motor 3, -250 counts");
+  const auto injected = rig.control.status().all.at("injected");
+  REQUIRE(injected.size() == 1);
+  CHECK(injected[0].at("of") == "3");
+  rig.press_key("ctrl+Delete");
+  look_for(rig, "over");
+  CHECK(count_in(rig) == 0);
+}
+
+TEST_CASE("what the board refuses, or is no number, is told in a sentence") {
+  WindowRig rig;
+  open_pane(rig);
+  rig.enter("faults/search", "motor_hot");
+  rig.click("faults/motor_hot");
+  rig.click("faults/Inject");
+  look_for(rig, "must say what it is put into, the motor: 1, 2 or 3");
+  rig.click("faults/2");
+  rig.enter("faults/amount", "1,5");
+  rig.click("faults/Inject");
+  look_for(rig, "`1,5` is not a number");
+  CHECK_FALSE(rig.look().says("must say what"));
+  rig.enter("faults/amount", "400");
+  rig.click("faults/Inject");
+  look_for(rig, "motor_hot 400 K is outside 0 to 300");
+  CHECK(count_in(rig) == 0);
+  rig.enter("faults/amount", "40");
+  rig.click("faults/Inject");
+  look_for(rig, "motor 2, 40 K, in since");
+  CHECK_FALSE(rig.look().says("is outside"));
+}
+
+TEST_CASE("what another program puts in and heals is seen, also what is still to come") {
+  WindowRig rig;
+  open_pane(rig);
+  rig.control.pause();
+  rig.control.inject({.fault = "wire_low", .of = "button_1", .after_s = 0.5});
+  look_for(rig, "button_1, comes at");
+  rig.control.run(0.6);
+  look_for(rig, "button_1, in since");
+  look_for(rig, "Nothing told since");
+  rig.control.heal_all();
+  look_for(rig, "over");
+}
+
+TEST_CASE("the same fault again takes the place of the first, and outlasts a reset") {
+  WindowRig rig;
+  open_pane(rig);
+  rig.enter("faults/search", "motor_hot");
+  rig.click("faults/motor_hot");
+  rig.click("faults/2");
+  for (const std::string amount : {"40", "50"}) {
+    rig.enter("faults/amount", amount);
+    rig.click("faults/Inject");
+    look_for(rig, "motor 2, " + amount + " K, in since");
+  }
+  look_for(rig, "motor 2, 40 K, came at");
+  CHECK(count_in(rig) == 1);
+  rig.control.reset();
+  rig.look_until("the device is gone", [](const Sight& now) { return !now.connected(); });
+  rig.look_until("it is back", [](const Sight& now) { return now.connected(); });
+  CHECK(rig.look().says("motor 2, 50 K, in since"));
+  rig.click("faults/Heal all");
+  look_for(rig, "motor 2, 50 K, came at");
+  CHECK(count_in(rig) == 0);
+}
+
+TEST_CASE("a wire is chosen from the board's, two of them one after the other") {
+  WindowRig rig;
+  open_pane(rig);
+  rig.enter("faults/search", "shorted wires touch");
+  rig.click("faults/wires_shorted");
+  for (const char* wire : {"encoders[0].a", "encoders[0].b"}) {
+    rig.click("faults/wires");
+    click_in_list(rig, wire);
+  }
+  rig.click("faults/Inject");
+  look_for(rig, "encoders[0].a+encoders[0].b, in since");
+}
+
+TEST_CASE("a device that is pulled or a board that is gone leaves a pane that says so") {
+  WindowRig rig;
+  open_pane(rig);
+  rig.enter("faults/search", "usb_cut");
+  rig.click("faults/usb_cut");
+  rig.click("faults/Inject");
+  rig.look_until("the device is gone", [](const Sight& now) { return !now.connected(); });
+  rig.click("faults/Heal usb_cut");
+  rig.look_until("it is back", [](const Sight& now) { return now.connected(); });
+  rig.control.quit();
+  look_for(rig, "The virtual board does not answer.");
+  CHECK_FALSE(rig.look().can_click("faults/Inject"));
+}
