@@ -67,6 +67,7 @@ bool read_changes(Reader& reader, ScopeSamples& samples) {
 
 void ScopeDecoder::expect(std::uint8_t token, std::vector<protocol::Signal> signals) {
   token_ = token;
+  if (signals_.empty()) may_begin_with_rest_ = true;
   signals_ = std::move(signals);
   selection_ = {};
   selection_.count = static_cast<std::uint8_t>(signals_.size());
@@ -79,6 +80,11 @@ std::optional<ScopeSamples> ScopeDecoder::refuse() {
   return std::nullopt;
 }
 
+std::optional<ScopeSamples> ScopeDecoder::refuse_all_but_a_rest() {
+  if (!std::exchange(may_begin_with_rest_, false)) return refuse();
+  return std::nullopt;
+}
+
 std::uint64_t ScopeDecoder::lost_before(const protocol::ScopeFrameHeader& header) const {
   if (!next_period_) return header.sequence;
   return header.first_period - *next_period_;  // unsigned: right across the wrap of the period counter
@@ -86,10 +92,13 @@ std::uint64_t ScopeDecoder::lost_before(const protocol::ScopeFrameHeader& header
 
 std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> frame) {
   protocol::ScopeFrameHeader header;
-  if (frame.size() < sizeof header || frame.size() > protocol::scope_frame_maximum) return refuse();
+  if (frame.size() > protocol::scope_frame_maximum) return refuse();
+  if (frame.size() < sizeof header) return refuse_all_but_a_rest();
   std::memcpy(&header, frame.data(), sizeof header);
-  if (header.magic != protocol::scope_magic || header.length != frame.size()) return refuse();
+  if (header.magic != protocol::scope_magic) return refuse_all_but_a_rest();
+  if (header.length != frame.size()) return refuse();
   if (token_ != header.selection_token) return std::nullopt;
+  may_begin_with_rest_ = false;
   if (header.signal_count != signals_.size() || header.encoding != encoding_for(selection_) ||
       header.sample_count == 0 || signals_.empty())
     return refuse();

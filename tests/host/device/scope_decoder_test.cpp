@@ -143,6 +143,7 @@ TEST_CASE("no frame is longer than there are, and none belongs to a selection of
 
 TEST_CASE("malformed frames are refused, counted, and do not spoil the next one") {
   auto decoder = decoder_for(few);
+  REQUIRE(decoder.decode(full_frame(0, 900)));
   auto frame = full_frame(0, 1000);
   const auto damage = [&](std::size_t at, std::uint8_t value) { frame[at] = std::byte{value}; };
   SUBCASE("shorter than its header") { frame.resize(10); }
@@ -158,6 +159,36 @@ TEST_CASE("malformed frames are refused, counted, and do not spoil the next one"
   CHECK_FALSE(decoder.decode(frame));
   CHECK(decoder.malformed_frames() == 1);
   CHECK(decoder.decode(full_frame(0, 1000)));
+}
+
+TEST_CASE("the rest of a frame that was begun for another reader is not malformed") {
+  auto decoder = decoder_for(few);
+  const auto frame = full_frame(0, 500, 40);
+  const std::vector<std::byte> rest(frame.begin() + 64, frame.end());
+  SUBCASE("of many bytes") { CHECK_FALSE(decoder.decode(rest)); }
+  SUBCASE("shorter than a header") { CHECK_FALSE(decoder.decode(std::vector(frame.end() - 10, frame.end()))); }
+  SUBCASE("after whole frames that were left over") {
+    decoder.expect(8, {});
+    decoder.expect(9, few);
+    CHECK_FALSE(decoder.decode(frame));
+    CHECK_FALSE(decoder.decode(rest));
+  }
+  CHECK(decoder.malformed_frames() == 0);
+}
+
+TEST_CASE("where no reader was before, or the rest has come, nothing without a header is the rest of a frame") {
+  auto decoder = decoder_for(few);
+  const auto frame = full_frame(0, 500, 40);
+  const std::vector<std::byte> rest(frame.begin() + 64, frame.end());
+  SUBCASE("it came") { CHECK_FALSE(decoder.decode(rest)); }
+  SUBCASE("a frame came") { REQUIRE(decoder.decode(frame)); }
+  SUBCASE("the scope was not given up") {
+    REQUIRE(decoder.decode(frame));
+    decoder.expect(8, few);
+  }
+  CHECK(decoder.malformed_frames() == 0);
+  CHECK_FALSE(decoder.decode(rest));
+  CHECK(decoder.malformed_frames() == 1);
 }
 
 TEST_CASE("a frame of changes with an impossible mask is refused") {

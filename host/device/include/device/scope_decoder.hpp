@@ -32,18 +32,24 @@ class ScopeDecoder {
   ///
   /// `lost_before` counts the control periods between the last frame decoded and this one. If the very first
   /// frames of a selection are missing nobody can know their samples; each then counts as one.
+  ///
+  /// Who gives the scope up takes its transfers back, maybe amid a frame, the rest of which the device still sends to
+  /// the next reader. So one transfer without a header is none that is malformed before the first frame of a selection
+  /// that follows on none.
   std::optional<ScopeSamples> decode(std::span<const std::byte> frame);
 
   std::uint64_t malformed_frames() const { return malformed_frames_; }
 
  private:
   std::optional<ScopeSamples> refuse();
+  std::optional<ScopeSamples> refuse_all_but_a_rest();
   std::uint64_t lost_before(const protocol::ScopeFrameHeader& header) const;
 
   std::vector<protocol::Signal> signals_;
   protocol::SignalSelection selection_{};
   std::optional<std::uint8_t> token_;
   std::optional<std::uint32_t> next_period_;
+  bool may_begin_with_rest_ = false;  ///< of a frame whose begin went to the reader before
   std::uint64_t malformed_frames_ = 0;
 };
 
