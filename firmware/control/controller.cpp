@@ -177,8 +177,11 @@ void Controller::give(Force asked, const Settings& settings) {
     limits_ |= bit(Limit::energy, true);
   }
   const Vector3 change_N = asked.force_N - force_.force_N;
-  if (dot(change_N, change_N) > settings.change_squared_N2) [[unlikely]] {
-    asked = nearer(force_, asked.force_N, settings.change_squared_N2);
+  const float squared_N2 = dot(change_N, change_N);
+  if (squared_N2 > settings.change_squared_N2) [[unlikely]] {
+    const float part = settings.change_squared_N2 * reciprocal_square_root(settings.change_squared_N2 * squared_N2);
+    // A limit that is lowered holds at once, whatever the force was.
+    asked = bounded(force_.force_N + part * change_N, force_limit_N_);
     limits_ |= bit(Limit::change, true);
   }
   force_ = asked;
@@ -186,18 +189,6 @@ void Controller::give(Force asked, const Settings& settings) {
 
 Force Controller::less_driving(const Force& asked, float power_W, float part) const {
   return bounded(without_drive(asked.force_N, power_W, probe_.velocity_m_per_s, part), force_limit_N_);
-}
-
-/// From a force towards another, further away than the change that may be made in a period. A limit that is lowered
-/// holds at once, whatever the force was.
-Force Controller::nearer(const Force& before, const Vector3& to_N, float change_squared_N2) const {
-  const Vector3 from_N =
-      before.magnitude_N > force_limit_N_ ? bounded(before.force_N, force_limit_N_).force_N : before.force_N;
-  const Vector3 way_N = to_N - from_N;
-  const float squared_N2 = dot(way_N, way_N);
-  if (squared_N2 <= change_squared_N2) return bounded(to_N, force_limit_N_);
-  const float part = change_squared_N2 * reciprocal_square_root(change_squared_N2 * squared_N2);
-  return bounded(from_N + part * way_N, force_limit_N_);
 }
 
 void Controller::find_current_references(const Settings& settings) {

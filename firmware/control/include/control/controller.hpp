@@ -112,7 +112,6 @@ class Controller {
   void give(Force asked, const Settings& settings);
   // What is rare is compiled to be short: the interrupts' memory is small.
   [[gnu::cold]] Force less_driving(const Force& asked, float power_W, float part) const;
-  [[gnu::cold]] Force nearer(const Force& before, const Vector3& to_N, float change_squared_N2) const;
   void find_current_references(const Settings& settings);
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
