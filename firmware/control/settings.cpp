@@ -62,6 +62,8 @@ Motors motors(const ParameterSet& set) {
     const float more_A = motors.current_limit_A[i] - continuous_A[i];
     motors.ampere_per_heat[i] = more_A > 0.0f ? more_A / (1.0f - protocol::motor_heat_holds_back_from) : 0.0f;
   }
+  const bool idle_2 = motors.current_limit_A[1] == 0.0f, idle_3 = motors.current_limit_A[2] == 0.0f;
+  if (idle_2 != idle_3) motors.idle = idle_2 ? 1 : 2;
   return motors;
 }
 

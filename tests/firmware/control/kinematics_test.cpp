@@ -160,6 +160,31 @@ TEST_CASE("virtual work: the torques' work in the joints is the force's work at 
   }
 }
 
+TEST_CASE("without one of the links' torques the force is the nearest that needs none, so never larger") {
+  for (const ArmCase& arm : arm_cases()) {
+    CAPTURE(arm.name);
+    const control::Settings settings = control::prepare(arm.parameters);
+    tests::Random random{4};
+    float worst_Nm = 0.0f;
+    for (int i = 0; i < pose_count / 10; ++i) {
+      const Triple q = tests::random_joints(arm.parameters, random);
+      const Vector3 force_N{random.between(-3.3f, 3.3f), random.between(-3.3f, 3.3f), random.between(-3.3f, 3.3f)};
+      const control::Jacobian jacobian = control::forward_kinematics(q, settings.arm).jacobian;
+      const Triple whole_Nm = control::joint_torques(jacobian, force_N);
+      for (const std::size_t idle : {1u, 2u}) {
+        const Vector3& way = jacobian.column[idle];
+        if (control::dot(way, way) < 1e-4f) continue;
+        const Vector3 nearest_N = force_N - (control::dot(force_N, way) / control::dot(way, way)) * way;
+        const Triple nearest_Nm = control::joint_torques(jacobian, nearest_N);
+        const Triple torque_Nm = control::torques_without(idle, whole_Nm, jacobian);
+        for (std::size_t joint = 0; joint < 3; ++joint)
+          worst_Nm = std::max(worst_Nm, std::fabs(torque_Nm[joint] - nearest_Nm[joint]));
+      }
+    }
+    CHECK(worst_Nm < 1e-5f);
+  }
+}
+
 TEST_CASE("the links' ends: constant lengths, and the last one is the probe") {
   for (const ArmCase& arm : arm_cases()) {
     CAPTURE(arm.name);

@@ -228,6 +228,27 @@ TEST_CASE("what holds the force back is told") {
   CHECK(free.controller.limits() == 0);
 }
 
+TEST_CASE("without a motor the others make the nearest force that they can") {
+  StillArm arm;
+  arm.change(Parameter::current_limit_2_A, 0.0f);
+  arm.drive({1.0f, 1.0f, 1.0f}, ForceMode::instead_of_walls);
+  arm.run(500);
+  const auto signals = arm.controller.signals();
+  const control::Triple joint_rad{signals[Signal::joint_1_rad], signals[Signal::joint_2_rad],
+                                  signals[Signal::joint_3_rad]};
+  const auto jacobian = control::forward_kinematics(joint_rad, arm.settings.arm).jacobian;
+  const Vector3 asked_N = arm.force_N(), idle = jacobian.column[1];
+  const Vector3 nearest_N = asked_N - (control::dot(asked_N, idle) / control::dot(idle, idle)) * idle;
+  const control::Triple nearest_Nm = control::joint_torques(jacobian, nearest_N);
+  const float torque_1 = signals[Signal::current_reference_1_A] / arm.settings.motors.ampere_per_Nm[0];
+  const float torque_3 = signals[Signal::current_reference_3_A] / arm.settings.motors.ampere_per_Nm[2];
+  CHECK(signals[Signal::current_reference_2_A] == 0.0f);
+  REQUIRE(std::fabs(torque_1) > 1e-5f);
+  CHECK(torque_3 / torque_1 == doctest::Approx(nearest_Nm[2] / nearest_Nm[0]).epsilon(1e-3));
+  CHECK(signals[Signal::torque_3_Nm] / signals[Signal::torque_1_Nm] !=
+        doctest::Approx(nearest_Nm[2] / nearest_Nm[0]).epsilon(0.01));
+}
+
 TEST_CASE("a wall that went while no force was allowed is not felt when one is") {
   StillArm arm;
   arm.change(Parameter::force_limit_N, 0.0f);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <control/vector.hpp>
@@ -65,6 +66,11 @@ Vector3 probe_velocity(const Jacobian& jacobian, const Triple& joint_speed_rad_p
 
 /// Joint torques that put `force_N` on the hand: tau = J^T F, from tau . dq = F . dx.
 Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N);
+
+/// What joint 2 or 3 (`idle` is 1 or 2) does not make of these torques, the other one makes up for as well as it can:
+/// the force is the nearest that needs no torque at the idle joint, and never larger. Joint 1 has no part in that,
+/// because it moves the probe at right angles to both.
+Triple torques_without(std::size_t idle, Triple torque_Nm, const Jacobian& jacobian);
 
 /// Angle between link 3 and link 2 as the stops of the elbow know it: joint 3 less joint 2 on a parallelogram.
 float elbow_rad(const Triple& joint_rad, Transmission transmission);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <control/trigonometry.hpp>
 #include <control/vector.hpp>
@@ -14,6 +15,7 @@ struct Motors {
   Triple ampere_per_Nm;    ///< 1 / (gear ratio * torque constant), negative for a reversed motor
   Triple current_limit_A;  ///< bound of each reference; a motor with 0 takes no part
   Triple ampere_per_heat;  ///< how much the limit falls for each 1 of MotorHeat::beyond
+  std::uint32_t idle = 0;  ///< 1 or 2: of the motors that move the links this one alone takes no part
 
   float allowed_A(std::size_t motor, const Triple& heat_beyond) const {
     return std::max(0.0f, current_limit_A[motor] - ampere_per_heat[motor] * heat_beyond[motor]);
