@@ -146,6 +146,13 @@ TEST_CASE("a fault is a false trip unless its phase may have it, and until its c
   healed.check_nothing();
   healed.step(State::fault, Fault::bridge_fault);
   healed.check_only(Complaint::false_trip);
+
+  Watched lost(Kind::fault);
+  lost.oracle.allow_lost_counts();
+  lost.step(State::fault, Fault::encoder_implausible);
+  lost.check_nothing();
+  lost.step(State::fault, Fault::bridge_fault);
+  lost.check_only(Complaint::false_trip);
 }
 
 TEST_CASE("a fault whose cause was there is missed when nothing or another one is told") {

@@ -69,6 +69,9 @@ class Oracle {
   void begin(unsigned phase, Kind kind);
   /// The cause is gone: nothing may be told any more in this phase.
   void allow_no_fault() { may_tell_ = 0; }
+  /// The cause is gone, but not what it did to a reference: counts that were lost may be noticed until there is
+  /// another.
+  void allow_lost_counts() { may_tell_ = protocol::watch(protocol::Fault::encoder_implausible); }
   void disturb(Disturbance disturbance) { disturbance_ = disturbance; }
 
   /// Asked for from now on.
