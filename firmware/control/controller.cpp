@@ -194,9 +194,8 @@ Force Controller::less_driving(const Force& asked, float power_W, float part) co
 void Controller::find_current_references(const Settings& settings) {
   torque_Nm_ = joint_torques(jacobian_, force_.force_N);
   // One link's torque without the other's makes another force, which may be larger.
-  const std::uint32_t idle = settings.motors.idle;
-  const Triple made_Nm = idle == 0 ? torque_Nm_ : torques_without(idle, torque_Nm_, jacobian_);
-  const CurrentReferences references = current_references(made_Nm, settings.motors, heat_.beyond);
+  if (settings.motors.idle != 0) leave_out(settings.motors.idle, torque_Nm_, jacobian_);
+  const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.beyond);
   reference_A_ = references.reference_A;
   limits_ |= bit(Limit::current, references.limited);
   if (!test_.runs() || test_.quantity != TestPulse::Quantity::current) return;

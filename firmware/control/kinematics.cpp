@@ -67,14 +67,13 @@ Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N) {
   return {dot(jacobian.column[0], force_N), dot(jacobian.column[1], force_N), dot(jacobian.column[2], force_N)};
 }
 
-Triple torques_without(std::size_t idle, Triple torque_Nm, const Jacobian& jacobian) {
+void leave_out(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian) {
   constexpr float no_lever_m2_per_rad2 = 1e-12f;  // keeps the division from 0
   const std::size_t other = 3 - idle;
   const Vector3& lever = jacobian.column[idle];
   const float part = dot(lever, jacobian.column[other]) * reciprocal(dot(lever, lever) + no_lever_m2_per_rad2);
   torque_Nm[other] -= part * torque_Nm[idle];
   torque_Nm[idle] = 0.0f;
-  return torque_Nm;
 }
 
 float elbow_rad(const Triple& joint_rad, Transmission transmission) {

@@ -66,8 +66,8 @@ struct FaultCase {
   bool takes_force = true;
 };
 
-device::InjectionRequest injection(const FaultCase& the_case) {
-  device::InjectionRequest request{.fault = the_case.fault, .of = the_case.of};
+protocol::InjectionRequest injection(const FaultCase& the_case) {
+  protocol::InjectionRequest request{.fault = the_case.fault, .of = the_case.of};
   if (the_case.amount != 0.0) request.amount = the_case.amount;
   return request;
 }

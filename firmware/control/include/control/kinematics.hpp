@@ -70,7 +70,7 @@ Triple joint_torques(const Jacobian& jacobian, const Vector3& force_N);
 /// What joint 2 or 3 (`idle` is 1 or 2) does not make of these torques, the other one makes up for as well as it can:
 /// the force is the nearest that needs no torque at the idle joint, and never larger. Joint 1 has no part in that,
 /// because it moves the probe at right angles to both.
-Triple torques_without(std::size_t idle, Triple torque_Nm, const Jacobian& jacobian);
+[[gnu::cold]] void leave_out(std::size_t idle, Triple& torque_Nm, const Jacobian& jacobian);
 
 /// Angle between link 3 and link 2 as the stops of the elbow know it: joint 3 less joint 2 on a parallelogram.
 float elbow_rad(const Triple& joint_rad, Transmission transmission);
