@@ -51,6 +51,15 @@ void run_into_main_loop(FirmwareOnBus& bus) {
   while (bus.chip.current_exception() != 0) bus.run_for(1e-6);
 }
 
+/// Nothing takes from the stack there before an interrupt puts something on it.
+void run_into_sleep(FirmwareOnBus& bus) {
+  constexpr double step_s = 1e-6;
+  for (Ticks before = 0; bus.chip.counters().asleep - before < virtual_board::ticks(step_s);) {
+    before = bus.chip.counters().asleep;
+    bus.run_for(step_s);
+  }
+}
+
 /// Of one with this program counter and r0.
 protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
   FirmwareOnBus bus(flashed_image());
@@ -104,19 +113,23 @@ TEST_CASE("what only an error does with the memory is a fault, and the board say
 }
 
 TEST_CASE("without a stack the bridges go off at once, although nothing can be stacked any more") {
-  constexpr std::uint16_t undefined = 0xDEFF;
-  constexpr std::uint32_t behind_ram = 0x2002'0000;
+  constexpr std::uint32_t in_guard = virtual_board::ccm_base + 16, behind_ram = 0x2002'1000;
+  constexpr std::uint16_t push = 0xB510, undefined = 0xDEFF;
+  enum class Place { main_loop, control_interrupt, sleep };
   struct Loss {
     std::string name;
     std::uint32_t stack_pointer;
-    bool is_in_interrupt, is_at_undefined;
+    Place place;
+    std::uint16_t instruction;  ///< that the core comes to; 0: whatever it was going to do
     std::uint32_t status, exception;
   };
   const Loss losses[] = {
-      {"it overflows", virtual_board::ccm_base + 16, false, false, 1u << 4, 3},
-      {"the same in the control interrupt", virtual_board::ccm_base + 16, true, false, 1u << 4, 3},
-      {"it lies where nothing is", behind_ram + 0x1000, false, false, 1u << 12, 3},
-      {"the same, and then no instruction", behind_ram + 0x1000, false, true, 1u << 12 | 1u << 16,
+      {"it overflows by a push", in_guard, Place::main_loop, push, 1u << 4, 3},
+      {"the same in the control interrupt", in_guard, Place::control_interrupt, push, 1u << 4, 3},
+      {"it overflows by an interrupt", in_guard, Place::sleep, 0, 1u << 4, 4},
+      {"it lies where nothing is", behind_ram, Place::main_loop, push, 1u << 12, 3},
+      {"the same, and an interrupt comes", behind_ram, Place::sleep, 0, 1u << 12, 5},
+      {"the same, and then no instruction", behind_ram, Place::main_loop, undefined, 1u << 12 | 1u << 16,
        5},  // the stack's, a BusFault
   };
   for (const Loss& loss : losses) {
@@ -124,14 +137,15 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
     FirmwareOnBus bus(flashed_image());
     bus.run_for(before_self_test_s);
     bus.chip.clear_counters();
-    if (loss.is_in_interrupt)
-      run_into_control_interrupt(bus);
-    else
-      run_into_main_loop(bus);
+    switch (loss.place) {
+      case Place::main_loop: run_into_main_loop(bus); break;
+      case Place::control_interrupt: run_into_control_interrupt(bus); break;
+      case Place::sleep: run_into_sleep(bus); break;
+    }
     CoreRegisters registers = bus.chip.debug_port().core_registers();
     registers.general[CoreRegisters::sp] = loss.stack_pointer;
-    if (loss.is_at_undefined) {
-      registers.general[CoreRegisters::pc] = place_of(bus, undefined);
+    if (loss.instruction != 0) {
+      registers.general[CoreRegisters::pc] = place_of(bus, loss.instruction);
       REQUIRE(registers.general[CoreRegisters::pc] != 0);
     }
     bus.chip.debug_port().set_core_registers(registers);
