@@ -1,7 +1,7 @@
 """Mutants of C++ sources: copies with one thing less or one thing else.
 
 Register mutants take away a write to a register, or one field or one flag of it. Sampled mutants take away a statement,
-or turn a condition round, anywhere else.
+or turn a condition round, anywhere else. Watch mutants take away that one thing is watched.
 """
 
 import random
@@ -119,6 +119,17 @@ def other_mutants(path: str, source: str) -> list[Mutant]:
         line = source.count("\n", 0, found.start()) + 1
         mutants.append(Mutant(path, line, in_one_line(f"if (not ({condition}))"), found.end(), end - 1, f"!({condition})"))
     return mutants
+
+
+NOT_WATCHED = "without watching "
+WATCH = re.compile(r"^ +\{Fault::(?P<fault>\w+), (?P<states>[^{},]+), \w+, \w+(?:, \w+)?\},$", re.MULTILINE)
+
+
+def watch_mutants(path: str, source: str) -> list[Mutant]:
+    """Of the table of what is watched: each row, in no state any more."""
+    return [Mutant(path, source.count("\n", 0, found.start("fault")) + 1, NOT_WATCHED + found["fault"],
+                   found.start("states"), found.end("states"), "States{}")
+            for found in WATCH.finditer(source)]
 
 
 def sample(mutants: list[Mutant], count: int, seed: int) -> list[Mutant]:

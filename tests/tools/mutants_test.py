@@ -46,3 +46,15 @@ others = mutants.other_mutants("a.cpp", SOURCE)
 assert "if (not (count > 3))" in [mutant.what for mutant in others], others
 assert any("if (!(count > 3)) count = 0;" in mutant.applied_to(SOURCE) for mutant in others)
 assert mutants.sample(others, 2, 1) == mutants.sample(others, 2, 1)
+
+TABLE = """
+      {Fault::not_finite, every, when_gone, coast},
+      {Fault::encoder_wire, moving, at_once, coast, true},
+"""
+watches = mutants.watch_mutants("table.hpp", TABLE)
+assert [mutant.what for mutant in watches] == ["without watching not_finite", "without watching encoder_wire"], watches
+assert "{Fault::encoder_wire, States{}, at_once, coast, true}," in watches[1].applied_to(TABLE)
+assert mutants.watch_mutants("table.hpp", "  X(5, ramping, true)") == []
+source = (Path(sys.argv[1]) / "protocol/include/protocol/supervision.hpp").read_text()
+rows = source[source.index("watch_table = []"): source.index("std::to_array", source.index("watch_table = []")) + 4000]
+assert len(mutants.watch_mutants("supervision.hpp", source)) == rows.count("{Fault::"), "a row is written otherwise"
