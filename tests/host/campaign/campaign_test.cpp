@@ -157,8 +157,12 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(plot.find(">to 2</text>") != std::string::npos);
   CHECK(plot.find(">stayed on</text>") != std::string::npos);
   CHECK(content_of(directory / "campaign-force.svg").find("</svg>") != std::string::npos);
-  write_page(std::array{quick}, page);
-  CHECK(content_of(page).find("more than the force limit and a tenth of it: none.") != std::string::npos);
+  Result sound = seen("none", "wall", 1);
+  sound.energy_J = 0.0003;
+  write_page(std::array{quick, sound}, page);
+  CHECK(content_of(page).find("at most 2.49 N (`bridge_fault` in wall), and got at most 1.0 mJ more") !=
+        std::string::npos);
+  CHECK(content_of(page).find("more than the force limit and a twentieth of it: none.") != std::string::npos);
   CHECK_THROWS_AS(write_page({}, page), device::Error);
 }
 
