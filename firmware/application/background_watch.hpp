@@ -27,6 +27,9 @@ class BackgroundWatch {
   /// control interrupt.
   void look();
 
+  /// What is known of VDDA.
+  const control::AnalogSupply& analog_supply() const { return analog_supply_; }
+
  private:
   static constexpr unsigned rounds_per_look = 3;
 

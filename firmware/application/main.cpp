@@ -86,7 +86,7 @@ int main() {
                                .reset_cause = reset_cause.flags >> 24};
   usb::Device usb_device{usb_port, host_link, identity};
   if (!usb_port.start()) give_up();
-  watchdog.start();
+  host_link.self_test.note(protocol::SelfTestItem::watchdog, watchdog.start());
 
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
@@ -96,7 +96,7 @@ int main() {
     host_link.scope.pack();
     host_link.black_box.follow();
     background_watch.look();
-    follow_self_test();
+    follow_self_test(background_watch);
     feed_watchdog();
     show_state();
     drivers::sleep_unless([periods] { return completed_periods.load() != periods; });

@@ -28,10 +28,15 @@ bool floats(protocol::SelfTestItem wire) {
 
 }  // namespace
 
-void follow_self_test() {
+void follow_self_test(const BackgroundWatch& background_watch) {
   link::SelfTest& test = host_link.self_test;
   if (!test.goes_on()) return;
-  test.follow(controller, host_link.parameters.settings(), analog_inputs.gimbal_ratio());
+  const control::AnalogSupply& supply = background_watch.analog_supply();
+  const std::uint16_t reference_counts = analog_inputs.reference_counts();
+  test.follow(controller, host_link.parameters.settings(),
+              {.gimbal_ratio = analog_inputs.gimbal_ratio(),
+               .analog_supply_V = analog_supply_V(supply, reference_counts),
+               .analog_supply_is_right = is_right(supply, reference_counts)});
   if (const auto wire = test.wanted_wire()) test.note_wire(floats(*wire));
 }
 

@@ -17,7 +17,7 @@ constexpr std::uint32_t reload = oscillator_Hz / divider * timeout_ms / 1000 - 1
 
 }  // namespace
 
-void IndependentWatchdog::start() {
+bool IndependentWatchdog::start() {
   using Freeze = registers::DBG::DBGMCU_APB1_FZ;
   Freeze::modify(Freeze::DBG_IWDG_STOP(1));
   // Starting it first starts its oscillator, without which the new values would never be taken over.
@@ -25,8 +25,9 @@ void IndependentWatchdog::start() {
   IWDG::KR::write(key_unlock);
   IWDG::RLR::write(IWDG::RLR::RL(reload));
   // Five of its cycles; if they never end, the default timeout of half a second holds, which is safe as well.
-  static_cast<void>(wait_for(board::processor_Hz / 200, [] { return IWDG::SR::read() == 0; }));
+  const bool is_taken = wait_for(board::processor_Hz / 200, [] { return IWDG::SR::read() == 0; });
   feed();
+  return is_taken && IWDG::RLR::read() == reload;
 }
 
 void IndependentWatchdog::feed() { IWDG::KR::write(key_feed); }

@@ -39,9 +39,9 @@ void SelfTest::note_wire(bool follows) {
 }
 
 void SelfTest::follow(const control::Controller& controller, const control::Settings& settings,
-                      const control::Triple& gimbal_ratio) {
+                      const Readings& readings) {
   const auto& [signals, now] = samples_[samples_.recorded() - 1];
-  if (begun_.load() != test_) begin(gimbal_ratio, controller.current_offsets_A());
+  if (begun_.load() != test_) begin(readings, controller.current_offsets_A());
   if (now.state != protocol::State::testing) {
     if (phase_ != Phase::idle && phase_ != Phase::verdict) break_off();
     phase_ = Phase::idle;
@@ -52,15 +52,17 @@ void SelfTest::follow(const control::Controller& controller, const control::Sett
   }
 }
 
-void SelfTest::begin(const control::Triple& gimbal_ratio, const control::Triple& offset_A) {
+void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) {
   test_ = begun_.load();
   for (std::size_t i = static_cast<std::size_t>(first_of_each_test); i < entries_.size(); ++i) entries_[i] = {};
   float largest_A = 0.0f;
   for (const float each_A : offset_A) largest_A = each_A * each_A > largest_A * largest_A ? each_A : largest_A;
   note(Item::current_offsets, Result::passed, largest_A);  // others have a fault of their own, and are never tested
-  for (std::size_t i = 0; i < gimbal_ratio.size(); ++i)
-    note(of_axis(Item::gimbal_1, i), gimbal_ratio[i] > gimbal_rail_part && gimbal_ratio[i] < 1.0f - gimbal_rail_part,
-         gimbal_ratio[i]);
+  note(Item::analog_supply, readings.analog_supply_is_right, readings.analog_supply_V);
+  for (std::size_t i = 0; i < readings.gimbal_ratio.size(); ++i) {
+    const float ratio = readings.gimbal_ratio[i];
+    note(of_axis(Item::gimbal_1, i), ratio > gimbal_rail_part && ratio < 1.0f - gimbal_rail_part, ratio);
+  }
   wire_ = 0;
   looks_ = rounds_ = failures_ = 0;
   phase_ = Phase::wires;

@@ -110,6 +110,8 @@ TEST_CASE("a board that starts has tested itself, and passes on command where it
   CHECK(rig.device->read_self_test().tests_begun == 1);
   CHECK(of(rig.device->read_self_test(), SelfTestItem::flash).result == SelfTestResult::passed);
   CHECK(of(rig.device->read_self_test(), SelfTestItem::ram).result == SelfTestResult::passed);
+  CHECK(of(rig.device->read_self_test(), SelfTestItem::watchdog).result == SelfTestResult::passed);
+  CHECK(of(rig.device->read_self_test(), SelfTestItem::analog_supply).figure == doctest::Approx(3.3).epsilon(0.01));
   const auto report = rig.device->self_test();
   check_passed(report);
   CHECK(report.tests_ended == 2);
@@ -307,10 +309,10 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   CHECK(open.out.find("motor_2 has failed, and without it there is no force.") != std::string::npos);
   const auto json = nlohmann::json::parse(run({"--last", "--json"}).out);
   CHECK(json.at("well") == false);
-  CHECK(json.at("items").at(15).at("item") == "motor_2");
-  CHECK(json.at("items").at(15).at("result") == "failed");
-  CHECK(json.at("items").at(14).at("figure").get<double>() == doctest::Approx(2.3).epsilon(0.1));
-  CHECK(json.at("items").at(3).at("figure").is_null());
+  CHECK(json.at("items").at(17).at("item") == "motor_2");
+  CHECK(json.at("items").at(17).at("result") == "failed");
+  CHECK(json.at("items").at(16).at("figure").get<double>() == doctest::Approx(2.3).epsilon(0.1));
+  CHECK(json.at("items").at(5).at("figure").is_null());
 }
 
 }  // namespace inkwell::tests

@@ -1,7 +1,7 @@
 // The board's self-test: what it looks at, what it found of each, and the report that tells.
 //
-// It runs by itself after each start, once the current sensors are measured, and on command: state `testing`. Flash
-// and RAM are looked at only as the board starts; what they gave then stays in the report.
+// It runs by itself after each start, once the current sensors are measured, and on command: state `testing`. Flash,
+// RAM and watchdog are looked at only as the board starts; what they gave then stays in the report.
 #pragma once
 
 #include <array>
@@ -37,25 +37,27 @@ inline constexpr std::string_view bridge_remedy =
 #define INKWELL_SELF_TEST_ITEMS(X)                                                                                     \
   X(0, flash, "", true, "The firmware in the flash, and its copies in the RAM, are those that were built.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
   X(1, ram, "", true, "The RAM keeps each bit of a pattern. It is looked at when the power comes, not at a reset.", "Switch the power off and on. If it comes back, replace the chip.") \
-  X(2, current_offsets, "A", true, "With the bridges off the current sensors read zero, in the middle of the converters' range.", "Check the shunt amplifiers and their reference, then reset the board.") \
-  X(3, encoder_1_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
-  X(4, encoder_1_b, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
-  X(5, encoder_2_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
-  X(6, encoder_2_b, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
-  X(7, encoder_3_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
-  X(8, encoder_3_b, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
-  X(9, bridge_fault_tim1, "", true, self_test_text::fault_wire, self_test_text::fault_wire_remedy)                    \
-  X(10, bridge_fault_tim8, "", true, self_test_text::fault_wire, self_test_text::fault_wire_remedy)                    \
-  X(11, gimbal_1, "of its track", false, self_test_text::wiper, self_test_text::wiper_remedy)                          \
-  X(12, gimbal_2, "of its track", false, self_test_text::wiper, self_test_text::wiper_remedy)                          \
-  X(13, gimbal_3, "of its track", false, self_test_text::wiper, self_test_text::wiper_remedy)                          \
-  X(14, motor_1, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
-  X(15, motor_2, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
-  X(16, motor_3, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
-  X(17, current_wires, "A", true, "A motor's current is seen by its own sensor alone.", "Check the wires from the shunt amplifiers to the chip: two of them are swapped or touch.") \
-  X(18, bridge_1, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)                                   \
-  X(19, bridge_2, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)                                   \
-  X(20, bridge_3, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)
+  X(2, watchdog, "", true, "The watchdog's own oscillator runs, and it has taken the time after which it bites.", "Switch the power off and on. If it comes back, replace the chip.") \
+  X(3, current_offsets, "A", true, "With the bridges off the current sensors read zero, in the middle of the converters' range.", "Check the shunt amplifiers and their reference, then reset the board.") \
+  X(4, analog_supply, "V", true, "VDDA, the reference of converters, amplifiers and potentiometers, is right by the chip's own reference.", "Check VDDA's ferrite bead and capacitors, and the 3.3 V regulator.") \
+  X(5, encoder_1_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
+  X(6, encoder_1_b, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
+  X(7, encoder_2_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
+  X(8, encoder_2_b, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
+  X(9, encoder_3_a, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
+  X(10, encoder_3_b, "", true, self_test_text::encoder, self_test_text::encoder_remedy)                                 \
+  X(11, bridge_fault_tim1, "", true, self_test_text::fault_wire, self_test_text::fault_wire_remedy)                    \
+  X(12, bridge_fault_tim8, "", true, self_test_text::fault_wire, self_test_text::fault_wire_remedy)                    \
+  X(13, gimbal_1, "of its track", false, self_test_text::wiper, self_test_text::wiper_remedy)                          \
+  X(14, gimbal_2, "of its track", false, self_test_text::wiper, self_test_text::wiper_remedy)                          \
+  X(15, gimbal_3, "of its track", false, self_test_text::wiper, self_test_text::wiper_remedy)                          \
+  X(16, motor_1, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
+  X(17, motor_2, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
+  X(18, motor_3, "ohm", true, self_test_text::motor, self_test_text::motor_remedy)                                     \
+  X(19, current_wires, "A", true, "A motor's current is seen by its own sensor alone.", "Check the wires from the shunt amplifiers to the chip: two of them are swapped or touch.") \
+  X(20, bridge_1, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)                                   \
+  X(21, bridge_2, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)                                   \
+  X(22, bridge_3, "V", false, self_test_text::bridge, self_test_text::bridge_remedy)
 
 /// X(id, name, meaning)
 #define INKWELL_SELF_TEST_RESULTS(X)                                                                                   \

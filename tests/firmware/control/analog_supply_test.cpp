@@ -60,6 +60,13 @@ TEST_CASE("a reference that reads nothing, or all there is, is off") {
   CHECK(looks(0.1f, 1.21f, 1'501) == noticed);
 }
 
+TEST_CASE("the reading of the reference gives VDDA") {
+  const AnalogSupply supply = analog_supply(counts_of(1.22f, nominal_V));
+  for (const float analog_V : {3.0f, 3.3f, 3.5f})
+    CHECK(control::analog_supply_V(supply, counts_of(1.22f, analog_V)) == doctest::Approx(analog_V).epsilon(0.001));
+  CHECK(control::analog_supply_V(supply, 0) == 0.0f);
+}
+
 TEST_CASE("twelve wrong looks in a row are borne, and a right one makes up for all before it") {
   const std::uint16_t right = counts_of(1.21f, nominal_V), wrong = counts_of(1.21f, 3.0f);
   AnalogSupply supply = analog_supply(right);

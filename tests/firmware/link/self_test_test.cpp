@@ -23,6 +23,8 @@ struct Board {
   control::Controller controller{tests::board_limits};
   control::Settings settings = control::prepare(tests::omni_parameters());
   control::Samples samples = tests::samples_at_rest();
+  float analog_supply_V = 3.3f;
+  bool analog_supply_is_right = true;
   tests::SimulatedMotors motors;
   tests::FakeClock clock;
   control::Drive drive;
@@ -44,7 +46,7 @@ struct Board {
 
   void main_loop() {
     if (!link.self_test.goes_on()) return;
-    link.self_test.follow(controller, settings, samples.gimbal_ratio);
+    link.self_test.follow(controller, settings, {samples.gimbal_ratio, analog_supply_V, analog_supply_is_right});
     if (const auto wire = link.self_test.wanted_wire()) {
       CHECK_FALSE(drive.enabled);
       looks = wire == looked_at ? looks + 1 : 1;
@@ -234,15 +236,28 @@ TEST_CASE("a wiper at an end of its track is told, and takes no force away") {
   }
 }
 
-TEST_CASE("what start-up has found counts: RAM that fails takes the force away at each test") {
+TEST_CASE("what start-up has found counts: RAM or a watchdog that fails takes the force away at each test") {
+  for (const SelfTestItem item : {SelfTestItem::ram, SelfTestItem::watchdog}) {
+    Board board;
+    board.link.self_test.note(item, false);
+    board.link.self_test.note(SelfTestItem::flash, true);
+    board.run_while(State::starting);
+    board.run_while(State::testing);
+    CHECK(board.controller.fault() == Fault::self_test_failed);
+    CHECK(board.result(item) == SelfTestResult::failed);
+    CHECK(board.result(SelfTestItem::flash) == SelfTestResult::passed);
+  }
+}
+
+TEST_CASE("a reference that is off takes the force away, and its voltage is told") {
   Board board;
-  board.link.self_test.note(SelfTestItem::ram, false);
-  board.link.self_test.note(SelfTestItem::flash, true);
+  board.analog_supply_V = 3.0f;
+  board.analog_supply_is_right = false;
   board.run_while(State::starting);
   board.run_while(State::testing);
   CHECK(board.controller.fault() == Fault::self_test_failed);
-  CHECK(board.result(SelfTestItem::ram) == SelfTestResult::failed);
-  CHECK(board.result(SelfTestItem::flash) == SelfTestResult::passed);
+  CHECK(board.result(SelfTestItem::analog_supply) == SelfTestResult::failed);
+  CHECK(board.figure(SelfTestItem::analog_supply) == 3.0f);
 }
 
 TEST_CASE("without a supply there are no pulses, the items say so, and the test is made once there is one") {

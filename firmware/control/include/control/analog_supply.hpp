@@ -22,8 +22,11 @@
 
 namespace inkwell::control {
 
+constexpr float nominal_analog_supply_V = 3.3f;
 /// What a converter of 12 bits shows of a voltage while VDDA is right.
-constexpr std::uint16_t counts_at_nominal(float volts) { return static_cast<std::uint16_t>(volts / 3.3f * 4096.0f); }
+constexpr std::uint16_t counts_at_nominal(float volts) {
+  return static_cast<std::uint16_t>(volts / nominal_analog_supply_V * 4096.0f);
+}
 
 struct AnalogSupply {
   /// Of all parts, by the data sheet.
@@ -51,16 +54,26 @@ constexpr AnalogSupply analog_supply(std::uint16_t calibrated_counts) {
   return {.bearable_per_mille = bearable_per_mille + spread_per_mille};
 }
 
-/// One look at the reading of VREFINT. True while it has been off for more than the bearable looks.
-inline bool is_off(AnalogSupply& supply, std::uint16_t reference_counts) {
+/// Whether this reading of VREFINT says that VDDA is what it should be.
+inline bool is_right(const AnalogSupply& supply, std::uint16_t reference_counts) {
   // VDDA over its nominal value is the expected reading over this one.
   const std::int32_t off_counts = std::abs(supply.expected_counts - reference_counts);
-  const bool wrong = 1000 * off_counts > supply.bearable_per_mille * reference_counts;
-  if (!wrong)
+  return 1000 * off_counts <= supply.bearable_per_mille * reference_counts;
+}
+
+/// One look at the reading of VREFINT. True while it has been off for more than the bearable looks.
+inline bool is_off(AnalogSupply& supply, std::uint16_t reference_counts) {
+  if (is_right(supply, reference_counts))
     supply.wrong_looks = 0;
   else if (supply.wrong_looks <= AnalogSupply::bearable_looks)
     ++supply.wrong_looks;
   return supply.wrong_looks > AnalogSupply::bearable_looks;
+}
+
+/// VDDA, by this reading of VREFINT; 0 if that is 0, which no VDDA gives.
+inline float analog_supply_V(const AnalogSupply& supply, std::uint16_t reference_counts) {
+  if (reference_counts == 0) return 0.0f;
+  return nominal_analog_supply_V * static_cast<float>(supply.expected_counts) / static_cast<float>(reference_counts);
 }
 
 }  // namespace inkwell::control

@@ -11,8 +11,9 @@ class IndependentWatchdog {
   static constexpr std::array claims{peripheral<registers::IWDG>()};
 
   /// Once started it cannot be stopped. It bites after 20 ms, 14 to 38 ms over the spread of its oscillator. A
-  /// debugger that halts the processor halts it too.
-  void start();
+  /// debugger that halts the processor halts it too. False if it has not taken that time, because its oscillator does
+  /// not run.
+  bool start();
 
   void feed();
 };

@@ -47,9 +47,15 @@ class SelfTest {
   /// Whether there is a test that wants follow(). Ask every time that the main loop comes round.
   bool goes_on() const { return phase_ != Phase::idle || begun_.load() != test_; }
 
-  /// Goes on with it. `gimbal_ratio`: voltage of each potentiometer as a part of its supply.
-  void follow(const control::Controller& controller, const control::Settings& settings,
-              const control::Triple& gimbal_ratio);
+  /// What the converters read as the test begins.
+  struct Readings {
+    control::Triple gimbal_ratio;  ///< voltage of each potentiometer as a part of its supply
+    float analog_supply_V;
+    bool analog_supply_is_right;
+  };
+
+  /// Goes on with it.
+  void follow(const control::Controller& controller, const control::Settings& settings, const Readings& readings);
 
   protocol::SelfTestReport report() const;
 
@@ -65,7 +71,7 @@ class SelfTest {
   static Result sound(bool is_sound) { return is_sound ? Result::passed : Result::failed; }
   protocol::SelfTestEntry& entry(Item item) { return entries_[static_cast<std::size_t>(item)]; }
   void note(Item item, Result result, float figure);
-  void begin(const control::Triple& gimbal_ratio, const control::Triple& offset_A);
+  void begin(const Readings& readings, const control::Triple& offset_A);
   void break_off();
   void wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model);
   void begin_round();

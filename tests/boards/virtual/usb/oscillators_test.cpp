@@ -1,10 +1,13 @@
 // The flashed firmware on chips and crystals that are not as their names say, within the data sheets and beyond.
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <board/board.hpp>
+#include <protocol/self_test.hpp>
 
 #include "firmware_on_bus.hpp"
 
@@ -70,6 +73,21 @@ TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fast
     CHECK(other.watchdog_resets() == 0);
     bus.run_for(sort.by_s - sort.not_before_s);
     CHECK(other.watchdog_resets() == 1);
+  }
+}
+
+TEST_CASE("the self-test tells whether the watchdog's oscillator runs") {
+  using protocol::SelfTestResult;
+  for (const auto& [oscillator_Hz, result] :
+       {std::pair{17'000u, SelfTestResult::passed}, {500u, SelfTestResult::failed}}) {
+    OtherBoard other({.low_speed_internal_Hz = oscillator_Hz});
+    other.bus.connect();
+    const auto answer = other.bus.control(0xA1, 1, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::self_test),
+                                          0, sizeof(protocol::SelfTestReport));
+    protocol::SelfTestReport report;
+    REQUIRE(answer.data.size() == sizeof report);
+    std::memcpy(&report, answer.data.data(), sizeof report);
+    CHECK(report.entries[static_cast<std::size_t>(protocol::SelfTestItem::watchdog)].result == result);
   }
 }
 
