@@ -177,7 +177,9 @@ Description read(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file))
     throw DescriptionError(fmt::format(
-        "{}: this arm description cannot be read. Check the path; boards/arms/ holds examples.", file.string()));
+        "{}: this arm description cannot be read. Check the path; examples are in boards/arms of the sources and in "
+        "share/inkwell/arms of an installation.",
+        file.string()));
   std::stringstream text;
   text << stream.rdbuf();
   return parse(text.str(), file.string());

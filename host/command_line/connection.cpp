@@ -7,7 +7,7 @@ namespace inkwell::command_line {
 void DeviceOptions::add_to(CLI::App& app) {
   auto* is_virtual_flag = app.add_flag("--virtual", is_virtual, "Start a virtual board (a simulation) and use its arm");
   const char* group = "Virtual board (with --virtual)";
-  app.add_option("--elf", elf, "Firmware that it runs; the one built beside this program unless given")
+  app.add_option("--elf", elf, "Firmware that it runs; the one that belongs to this program unless given")
       ->type_name("FILE")
       ->needs(is_virtual_flag)
       ->group(group);

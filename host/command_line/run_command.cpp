@@ -16,6 +16,8 @@
 
 #include <fmt/format.h>
 
+#include <installation/places.hpp>
+
 #include "help.hpp"
 
 namespace inkwell::command_line {
@@ -49,10 +51,10 @@ int run(const DeviceOptions& options, std::vector<std::string> words) {
   if (words.empty()) throw UsageError("No program is named. Give one: inkwell run [--virtual] PROGRAM [ARGUMENTS].");
   if (words.front().starts_with('-'))
     throw UsageError(fmt::format("There is no option {}. inkwell run --help lists them.", words.front()));
-  const auto libraries = device::own_directory() / "dropins";
+  const auto libraries = installation::dropins();
   if (!std::filesystem::exists(libraries / "libHD.so"))
-    throw device::Error(
-        fmt::format("The libraries in {} are missing. Build them with tools/build.", libraries.string()));
+    throw device::Error(fmt::format(
+        "The libraries in {} are missing. Build them with tools/build, or install Inkwell again.", libraries.string()));
 
   auto connection = connect(options, BoardPace::real_time);
   const auto address = device::address_of(connection.endpoint);

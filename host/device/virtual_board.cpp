@@ -1,6 +1,5 @@
 #include <device/virtual_board.hpp>
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -16,11 +15,12 @@
 #include <cstring>
 #include <mutex>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include <installation/places.hpp>
 
 namespace inkwell::device {
 namespace {
@@ -76,19 +76,6 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
 }
 
 }  // namespace
-
-std::filesystem::path own_directory() {
-  std::error_code code;
-  // Of a program the loader knows only the name that it was called by.
-  Dl_info here{};
-  if (dladdr(reinterpret_cast<void*>(&own_directory), &here) != 0 && here.dli_fname != nullptr &&
-      std::string_view(here.dli_fname).find(".so") != std::string_view::npos) {
-    const auto library = std::filesystem::canonical(here.dli_fname, code);
-    if (!code) return library.parent_path();
-  }
-  const auto executable = std::filesystem::read_symlink("/proc/self/exe", code);
-  return code ? std::filesystem::current_path() : executable.parent_path();
-}
 
 struct VirtualBoard::Implementation {
   Pipe output, log;
@@ -170,14 +157,16 @@ struct VirtualBoard::Implementation {
 };
 
 VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_(std::make_unique<Implementation>()) {
-  const auto directory = own_directory();
-  const auto program = options.program.empty() ? directory / "virtual-board" : options.program;
-  const auto elf = options.elf.empty() ? (directory / "../board/inkwell.elf").lexically_normal() : options.elf;
+  const auto program = options.program.empty() ? installation::virtual_board() : options.program;
+  const auto elf = options.elf.empty() ? installation::firmware() : options.elf;
   if (access(program.c_str(), X_OK) != 0)
-    throw Error(fmt::format("The program {} is missing. Build it with tools/build.", program.string()));
+    throw Error(fmt::format("The program {} is missing. Build it with tools/build, or install Inkwell again.",
+                            program.string()));
   if (access(elf.c_str(), R_OK) != 0)
     throw Error(
-        fmt::format("The firmware {} is missing. Build it with tools/build, or name one with --elf.", elf.string()));
+        fmt::format("The firmware {} is missing. Build it with tools/build, install Inkwell again, or name one with "
+                    "--elf.",
+                    elf.string()));
   auto& self = *implementation_;
   self.start(arguments_of(options, program, elf));
   const std::string line = self.read_ready_line();

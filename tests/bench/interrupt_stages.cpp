@@ -99,7 +99,7 @@ class PressedBoard {
 
 void print_interrupt_stages() {
   PressedBoard likely(device::CyclePricing::likely);
-  PressedBoard conservative(device::CyclePricing::conservative, device::own_directory() / "interrupt.profile");
+  PressedBoard conservative(device::CyclePricing::conservative, INKWELL_BUILD_DIRECTORY "/interrupt.profile");
   const auto likely_cycles = likely.press(), conservative_cycles = conservative.press();
   std::printf("Control interrupt on the virtual board (simulation), pressed into three walls, %zu signals:\n",
               selected);

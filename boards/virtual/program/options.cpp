@@ -1,6 +1,5 @@
 #include "options.hpp"
 
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -9,17 +8,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <installation/places.hpp>
+
 #include "commands.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
-
-std::filesystem::path default_arm() {
-  if (const char* directory = std::getenv("INKWELL_ARMS")) return std::filesystem::path(directory) / "omni.toml";
-  std::error_code error;
-  const auto executable = std::filesystem::read_symlink("/proc/self/exe", error);
-  return (executable.parent_path() / "../../boards/arms/omni.toml").lexically_normal();
-}
 
 /// As it was written, until all of it is read.
 struct Given {
@@ -42,9 +36,7 @@ constexpr const char* description =
 
 void add_files_and_ports(CLI::App& app, Given& given) {
   app.add_option("--elf", given.options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
-  app.add_option("--arm", given.options.arm,
-                 "arm description (default: omni.toml from $INKWELL_ARMS or ../../boards/arms)")
-      ->type_name("FILE");
+  app.add_option("--arm", given.options.arm, "arm description; the Omni unless given")->type_name("FILE");
   const auto port = CLI::Range(0, 65535).description("");
   app.add_option("--usbip", given.options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")
       ->check(port)
@@ -226,7 +218,7 @@ bool take_over(Given& given) {
 
 CommandLine read_command_line(int argc, char** argv) {
   Given given;
-  given.options.arm = default_arm();
+  given.options.arm = installation::default_arm();
   CLI::App app{description};
   app.name("virtual-board");
   app.get_formatter()->column_width(30);

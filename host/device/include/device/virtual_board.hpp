@@ -24,8 +24,8 @@ enum class CyclePricing : std::uint8_t {
 };
 
 struct VirtualBoardOptions {
-  std::filesystem::path program;  ///< empty: `virtual-board` beside this program or library
-  std::filesystem::path elf;      ///< empty: ../board/inkwell.elf from there
+  std::filesystem::path program;  ///< empty: that of this installation or build
+  std::filesystem::path elf;      ///< empty: the one that is flashed, likewise
   std::filesystem::path arm;      ///< empty: the Omni
   std::filesystem::path profile;  ///< file for the longest interrupt, written at the board's end; empty: none
   SimulationMode mode = SimulationMode::fast;
@@ -62,9 +62,5 @@ class VirtualBoard {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-/// The directory of the program or shared library that this code is part of: there the build, and an installation, put
-/// what belongs together.
-std::filesystem::path own_directory();
 
 }  // namespace inkwell::device

@@ -1,0 +1,36 @@
+# Where an installation has what programs look for at run time, relative to its prefix. host/installation finds it there,
+# packaging/ puts it there.
+include(GNUInstallDirs)
+foreach(kind BIN LIB DATA)
+  if(IS_ABSOLUTE "${CMAKE_INSTALL_${kind}DIR}")
+    message(FATAL_ERROR "CMAKE_INSTALL_${kind}DIR is ${CMAKE_INSTALL_${kind}DIR}. Give a path relative to the prefix, such as "
+                        "lib: an installation that is moved finds its parts relative to its programs.")
+  endif()
+endforeach()
+set(INKWELL_PROGRAMS_PLACE ${CMAKE_INSTALL_BINDIR})
+set(INKWELL_ARMS_PLACE ${CMAKE_INSTALL_DATADIR}/inkwell/arms)
+# Programs and images depend on a processor, and Debian has such files in lib/.
+set(INKWELL_FIRMWARE_PLACE lib/inkwell/firmware)
+set(INKWELL_DROPINS_PLACE lib/inkwell/dropins)
+
+# The firmware comes from the board's build beside this one.
+set(INKWELL_IMAGES ${PROJECT_BINARY_DIR}/../board/inkwell.elf ${PROJECT_BINARY_DIR}/../board/inkwell.bin)
+
+# The build's folder has links in the same places, so that programs of a build find its parts as installed ones do. What
+# a link leads to may be built later.
+function(inkwell_link_places)
+  foreach(link ${INKWELL_PROGRAMS_PLACE}/virtual-board=${PROJECT_BINARY_DIR}/virtual-board
+               ${INKWELL_ARMS_PLACE}=${PROJECT_SOURCE_DIR}/boards/arms
+               ${INKWELL_FIRMWARE_PLACE}=${PROJECT_BINARY_DIR}/../board
+               ${INKWELL_DROPINS_PLACE}=${PROJECT_BINARY_DIR}/dropins)
+    string(REPLACE "=" ";" link ${link})
+    list(GET link 0 place)
+    list(GET link 1 part)
+    cmake_path(ABSOLUTE_PATH place BASE_DIRECTORY ${PROJECT_BINARY_DIR})
+    cmake_path(GET place PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH part BASE_DIRECTORY ${folder})
+    file(MAKE_DIRECTORY ${folder})
+    file(CREATE_LINK ${part} ${place} SYMBOLIC)
+  endforeach()
+endfunction()
+inkwell_link_places()
