@@ -31,6 +31,9 @@ Display::Display(int width, int height, const std::string& title) {
   glfwWindowHint(GLFW_SAMPLES, 0);
   glfwWindowHint(GLFW_DEPTH_BITS, 24);
   glfwWindowHint(GLFW_STENCIL_BITS, 8);
+  // By which a desktop finds the name and the icon (packaging/inkwell.desktop).
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, "inkwell");
+  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "inkwell");
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = last_glfw_error();

@@ -171,8 +171,10 @@ TEST_CASE("an arm that this user may not open is told with the udev line") {
   {
     const auto transport = device::open_transport(arm.endpoint());
     const auto message = message_of<device::NoPermission>([&] { transport->claim_scope(); });
-    CHECK(message.find("1209") != std::string::npos);
-    CHECK(message.find("/etc/udev/rules.d") != std::string::npos);
+    CHECK(
+        message.ends_with("/etc/udev/rules.d/60-inkwell.rules first: SUBSYSTEM==\"usb|hidraw\", "
+                          "SUBSYSTEMS==\"usb\", ATTRS{idVendor}==\"1209\", ATTRS{idProduct}==\"0001\", "
+                          "TAG+=\"uaccess\""));
   }
   CHECK(usb.open_things == 0);
 }
