@@ -19,6 +19,7 @@ function(inkwell_target_lines directory result)
         set(${property} "")
       endif()
     endforeach()
+    string(REGEX REPLACE "\\$<BUILD_INTERFACE:([^>]*)>" "\\1" INTERFACE_INCLUDE_DIRECTORIES "${INTERFACE_INCLUDE_DIRECTORIES}")
     # A library's own private ones stand in its interface once more, for the linker only.
     list(APPEND LINK_LIBRARIES ${INTERFACE_LINK_LIBRARIES})
     list(FILTER LINK_LIBRARIES EXCLUDE REGEX "LINK_ONLY")

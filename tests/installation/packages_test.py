@@ -1,0 +1,84 @@
+"""The Debian packages have what they should, and say what they are.
+
+    packages_test.py BUILD_DIRECTORY WORK_DIRECTORY CPACK VERSION
+"""
+
+import gzip
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+from kinds import DEBIAN, KINDS, differences
+
+BUILD, WORK = (pathlib.Path(argument) for argument in sys.argv[1:3])
+CPACK, VERSION = sys.argv[3:]
+PACKAGES = WORK / "packages"
+
+
+def run(*command) -> str:
+    result = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                            check=False)
+    if result.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, command))} failed:\n{result.stdout}")
+    return result.stdout
+
+
+def package(name: str) -> pathlib.Path:
+    [file] = PACKAGES.glob(f"{name}_{VERSION}_*.deb")
+    return file
+
+
+def content(name: str) -> pathlib.Path:
+    folder = WORK / f"{name}-content"
+    shutil.rmtree(folder, ignore_errors=True)
+    run("dpkg-deb", "-R", package(name), folder)
+    return folder
+
+
+def setUpModule():
+    shutil.rmtree(PACKAGES, ignore_errors=True)
+    # Not compressed, which takes longer than all the rest.
+    run(CPACK, "--config", BUILD / "CPackConfig.cmake", "-B", PACKAGES, "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=none")
+
+
+class Packages(unittest.TestCase):
+    def test_files_are_of_the_kinds_of_their_package(self):
+        for name, kinds in KINDS.items():
+            with self.subTest(name):
+                lines = [line.split(maxsplit=5) for line in run("dpkg-deb", "-c", package(name)).splitlines()]
+                files = [line[5].split(" -> ")[0].removeprefix("./usr/") for line in lines if not line[0].startswith("d")]
+                self.assertEqual([], differences(files, kinds + DEBIAN[name]))
+                self.assertEqual({"root/root"}, {line[1] for line in lines})
+                self.assertEqual([], [line for line in lines if line[0] not in
+                                      ("drwxr-xr-x", "-rw-r--r--", "lrwxrwxrwx") and "/bin/" not in line[5]])
+
+    def test_what_they_are_and_need(self):
+        def field(name: str, key: str) -> str:
+            return run("dpkg-deb", "-f", package(name), key).strip()
+
+        self.assertEqual(f"inkwell (= {VERSION})", field("inkwell-dev", "Depends"))
+        for library in ("libunicorn2", "libusb-1.0-0", "libhidapi-hidraw0", "libgl1"):
+            self.assertRegex(field("inkwell", "Depends"), rf"\b{re.escape(library)}\b")
+        self.assertEqual(("science", "libdevel"), (field("inkwell", "Section"), field("inkwell-dev", "Section")))
+
+    def test_only_the_virtual_board_is_linked_to_unicorn_and_its_licence_is_told(self):
+        folder = content("inkwell")
+        linked = [str(path.relative_to(folder)) for path in folder.rglob("*")
+                  if path.is_file() and not path.is_symlink() and path.read_bytes()[:4] == b"\x7fELF"
+                  and path.suffix != ".elf" and "libunicorn" in run("objdump", "-p", path)]
+        self.assertEqual(["usr/bin/virtual-board"], linked)
+        stanzas = (folder / "usr/share/doc/inkwell/copyright").read_text().split("\n\n")
+        [stanza] = [stanza for stanza in stanzas if stanza.startswith("Files: usr/bin/virtual-board\n")]
+        self.assertIn("\nLicense: GPL-2\n", stanza)
+
+    def test_changelog_begins_with_this_version(self):
+        for name in KINDS:
+            text = gzip.decompress((content(name) / f"usr/share/doc/{name}/changelog.gz").read_bytes()).decode()
+            self.assertRegex(text, rf"^inkwell \({re.escape(VERSION)}\) ")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
