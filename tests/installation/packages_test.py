@@ -62,7 +62,21 @@ class Packages(unittest.TestCase):
         self.assertEqual(f"inkwell (= {VERSION})", field("inkwell-dev", "Depends"))
         for library in ("libunicorn2", "libusb-1.0-0", "libhidapi-hidraw0", "libgl1"):
             self.assertRegex(field("inkwell", "Depends"), rf"\b{re.escape(library)}\b")
+        self.assertIn("gnuplot", field("inkwell", "Recommends"))
         self.assertEqual(("science", "libdevel"), (field("inkwell", "Section"), field("inkwell-dev", "Section")))
+
+    def test_what_the_system_is_told(self):
+        control = content("inkwell") / "DEBIAN"
+        self.assertEqual(f"libinkwell 1 inkwell (>= {VERSION})\n", (control / "shlibs").read_text())
+        self.assertEqual("activate-noawait ldconfig\n", (control / "triggers").read_text())
+        for script in ("postinst", "postrm"):
+            run("sh", "-n", control / script)
+            # Where no udev runs, as in a container, there is nothing to be told.
+            run("env", "PATH=/nowhere", "/bin/sh", control / script, "configure")
+
+    def test_programs_and_libraries_are_stripped(self):
+        for path in [*content("inkwell").glob("usr/bin/*"), *content("inkwell").glob("usr/lib/**/*.so*")]:
+            self.assertIn("no symbols", run("objdump", "-t", path))
 
     def test_only_the_virtual_board_is_linked_to_unicorn_and_its_licence_is_told(self):
         folder = content("inkwell")
