@@ -18,7 +18,7 @@ KINDS = {
         r"share/zsh/vendor-completions/_inkwell", r"share/zsh/vendor-completions/_virtual-board",
         r"share/doc/inkwell/[\w-]+\.md",
         r"share/inkwell/arms/omni\.toml", r"share/inkwell/arms/(?!omni)\w+\.toml",
-        r"share/man/man1/inkwell\.1\.gz", r"share/man/man1/inkwell-\w+\.1\.gz", r"share/man/man1/virtual-board\.1\.gz",
+        r"share/man/man1/inkwell\.1\.gz", r"share/man/man1/inkwell-[\w-]+\.1\.gz", r"share/man/man1/virtual-board\.1\.gz",
     ],
     "inkwell-dev": [
         r"include/inkwell/inkwell\.h", r"include/inkwell/inkwell\.hpp",
