@@ -134,6 +134,7 @@ TEST_CASE("a leg that is half a microsecond slow is told by the bridge's item, a
   const auto judgement = with_second([](auto& motor) { motor.dead_V *= 2.0f; });
   CHECK(judgement.motors[1].result == SelfTestResult::passed);
   CHECK(judgement.bridges[1].result == SelfTestResult::failed);
+  CHECK(judgement.any(SelfTestResult::failed));
   CHECK(judgement.bridges[1].figure == doctest::Approx(0.864).epsilon(0.05));
   CHECK_FALSE(info(protocol::SelfTestItem::bridge_2).takes_force);
 }

@@ -138,6 +138,7 @@ TEST_CASE("what fails takes the force away, is believed the second time, and goe
   CHECK(board.result(SelfTestItem::motor_2) == SelfTestResult::failed);
   CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::passed);
   board.run(100);
+  CHECK(board.result(SelfTestItem::bridge_2) == SelfTestResult::not_done);  // not told without a motor
   for (const Command again : {Command::clear_fault, Command::self_test}) {
     board.controller.carry_out(tests::command(again));
     board.run(1);
@@ -180,28 +181,30 @@ TEST_CASE("an arm that moves all the time is given up, says so, and loses no for
 }
 
 TEST_CASE("a fast arm gets no pulses, because bridges that are on would brake it; one that comes to rest does") {
-  Board board;
-  board.run_while(State::starting);
-  std::uint32_t periods = 0;
-  for (; board.controller.state() == State::testing && periods < 10'000; ++periods) {
-    ++board.samples.encoder_counts[1];
-    board.run(1);
-  }
-  CHECK(board.controller.state() == State::unreferenced);
-  CHECK(board.driven_periods == 0);
-  for (const SelfTestItem item : {SelfTestItem::motor_1, SelfTestItem::bridge_3, SelfTestItem::current_wires})
-    CHECK(board.result(item) == SelfTestResult::moved);
-  CHECK(periods < protocol::servo_rate_Hz / 5);
+  for (const int direction : {1, -1}) {
+    Board board;
+    board.run_while(State::starting);
+    std::uint32_t periods = 0;
+    for (; board.controller.state() == State::testing && periods < 10'000; ++periods) {
+      board.samples.encoder_counts[1] += direction;
+      board.run(1);
+    }
+    CHECK(board.controller.state() == State::unreferenced);
+    CHECK(board.driven_periods == 0);
+    for (const SelfTestItem item : {SelfTestItem::motor_1, SelfTestItem::bridge_3, SelfTestItem::current_wires})
+      CHECK(board.result(item) == SelfTestResult::moved);
+    CHECK(periods < protocol::servo_rate_Hz / 5);
 
-  board.controller.carry_out(tests::command(Command::self_test));
-  for (int i = 0; i < 1'000; ++i) {
-    ++board.samples.encoder_counts[1];
-    board.run(1);
+    board.controller.carry_out(tests::command(Command::self_test));
+    for (int i = 0; i < 1'000; ++i) {
+      board.samples.encoder_counts[1] += direction;
+      board.run(1);
+    }
+    CHECK(board.driven_periods == 0);
+    board.run_while(State::testing);
+    CHECK(board.driven_periods == control::SelfTestPulses::round_periods);
+    CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::passed);
   }
-  CHECK(board.driven_periods == 0);
-  board.run_while(State::testing);
-  CHECK(board.driven_periods == control::SelfTestPulses::round_periods);
-  CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::passed);
 }
 
 TEST_CASE("each wire that follows its pulls every time is told; one that does so by chance is not") {
