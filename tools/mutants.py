@@ -1,7 +1,9 @@
 """Mutants of C++ sources: copies with one thing less or one thing else.
 
 Register mutants take away a write to a register, or one field or one flag of it. Sampled mutants take away a statement,
-or turn a condition round, anywhere else. Watch mutants take away that one thing is watched.
+or turn a condition round, anywhere else. Watch mutants take away that one thing is watched. Safety mutants take away,
+one after the other, every statement, turn every condition round, and leave out every further operand of an "and" and an
+"or", and every way between two states.
 """
 
 import random
@@ -130,6 +132,48 @@ def watch_mutants(path: str, source: str) -> list[Mutant]:
     return [Mutant(path, source.count("\n", 0, found.start("fault")) + 1, NOT_WATCHED + found["fault"],
                    found.start("states"), found.end("states"), "States{}")
             for found in WATCH.finditer(source)]
+
+
+WAY = re.compile(r"^ +\{State::(?P<from>\w+), State::(?P<to>\w+), (?P<needs>0|events\([^()]*\)), (?P<unless>0|events\([^()]*\))\},$",
+                 re.MULTILINE)
+
+
+def way_mutants(path: str, source: str) -> list[Mutant]:
+    """Of the table of the ways between states: each way is never open, or open whatever speaks against it."""
+    mutants = []
+    for found in WAY.finditer(source):
+        line = source.count("\n", 0, found.start("from")) + 1
+        way = f"{found['from']} to {found['to']} by {found['needs']}"
+        mutants.append(Mutant(path, line, f"without the way {way}", found.start("to"), found.end("to"), found["from"]))
+        if found["needs"] != "0" and found["unless"] != "0":
+            mutants.append(Mutant(path, line, f"{way} without unless {found['unless']}", found.start("unless"),
+                                  found.end("unless"), "0"))
+    return mutants
+
+
+OPERATOR = re.compile(r" (?:&&|\|\|) ")
+
+
+def operand_mutants(path: str, source: str) -> list[Mutant]:
+    """Without one operand of an "and" or an "or"; the first of each stays."""
+    mutants = []
+    for found in OPERATOR.finditer(source):
+        line_begin = source.rfind("\n", 0, found.start()) + 1
+        if source[line_begin : found.start()].lstrip().startswith(("//", "static_assert", "requires", "template")):
+            continue
+        end = found.end()
+        while source[end] not in ",;?)}" and not OPERATOR.match(source, end):
+            end = matching(source, end) if source[end] in "([{" else end + 1
+        while source[end - 1].isspace():
+            end -= 1
+        mutants.append(Mutant(path, source.count("\n", 0, found.start()) + 1,
+                              in_one_line(f"without{source[found.start():end]}"), found.start(), end, ""))
+    return mutants
+
+
+def safety_mutants(path: str, source: str) -> list[Mutant]:
+    return sorted(other_mutants(path, source) + operand_mutants(path, source) + way_mutants(path, source),
+                  key=lambda mutant: (mutant.begin, mutant.what))
 
 
 def sample(mutants: list[Mutant], count: int, seed: int) -> list[Mutant]:

@@ -47,6 +47,24 @@ assert "if (not (count > 3))" in [mutant.what for mutant in others], others
 assert any("if (!(count > 3)) count = 0;" in mutant.applied_to(SOURCE) for mutant in others)
 assert mutants.sample(others, 2, 1) == mutants.sample(others, 2, 1)
 
+CODE = """
+bool is_bad(int count, bool known) {
+  if (count > 3 && known) count = 0;
+  return count < 0 || (known && count(known, 2) == 1);
+}
+    {State::ready, State::ramping, events(Event::enable), events(Event::disable, Event::stop)},
+    {State::ready, State::unreferenced, 0, events(Event::referenced)},
+"""
+safety = {mutant.what: mutant.applied_to(CODE) for mutant in mutants.safety_mutants("a.cpp", CODE)}
+assert "if (count > 3) count = 0;" in safety["without && known"]
+assert "return count < 0;" in safety["without || (known && count(known, 2) == 1)"]
+assert "|| (known);" in safety["without && count(known, 2) == 1"]
+assert "if (!(count > 3 && known))" in safety["if (not (count > 3 && known))"]
+assert "{State::ready, State::ready, events(Event::enable)" in safety["without the way ready to ramping by events(Event::enable)"]
+assert "events(Event::enable), 0}" in safety["ready to ramping by events(Event::enable) without unless events(Event::disable, Event::stop)"]
+assert "{State::ready, State::ready, 0" in safety["without the way ready to unreferenced by 0"]
+assert len(safety) == 7, safety
+
 TABLE = """
       {Fault::not_finite, every, when_gone, coast},
       {Fault::encoder_wire, moving, at_once, coast, true},
@@ -58,3 +76,5 @@ assert mutants.watch_mutants("table.hpp", "  X(5, ramping, true)") == []
 source = (Path(sys.argv[1]) / "protocol/include/protocol/supervision.hpp").read_text()
 rows = source[source.index("watch_table = []"): source.index("std::to_array", source.index("watch_table = []")) + 4000]
 assert len(mutants.watch_mutants("supervision.hpp", source)) == rows.count("{Fault::"), "a row is written otherwise"
+assert len([mutant for mutant in mutants.way_mutants("supervision.hpp", source) if mutant.what.startswith("without")]) == \
+    source.count("    {State::"), "a way is written otherwise"
