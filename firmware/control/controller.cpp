@@ -76,7 +76,9 @@ void Controller::carry_out(const protocol::CommandReport& command) {
                                                                                         : TestPulse::Quantity::voltage);
       break;
     case Command::heartbeat:
-    case Command::select_signals: break;
+    case Command::select_signals:
+    case Command::store_parameters:
+    case Command::factory_reset: break;  // the main loop's
   }
 }
 

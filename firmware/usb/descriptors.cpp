@@ -7,6 +7,7 @@
 #include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/self_test.hpp>
+#include <protocol/store.hpp>
 #include <protocol/usb_identity.hpp>
 #include <usb/port.hpp>
 
@@ -84,6 +85,8 @@ constexpr auto report_descriptor =
          report(ReportId::black_box, 11, feature_item, sizeof(protocol::BlackBoxReport)),
          report(ReportId::black_box_rows, 12, feature_item, sizeof(protocol::BlackBoxRowsReport)),
          report(ReportId::self_test, 13, feature_item, sizeof(protocol::SelfTestReport)),
+         report(ReportId::store, 14, feature_item, sizeof(protocol::StoreReport)),
+         report(ReportId::stored, 15, feature_item, sizeof(protocol::ParametersReport)),
          bytes(0xC0));  // end of the collection
 
 // ---- and that of the controller (HID usage tables 1.12, section 4) ------------------------------------

@@ -11,6 +11,7 @@
 #include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/self_test.hpp>
+#include <protocol/store.hpp>
 #include <protocol/supervision.hpp>
 #include <protocol/usb_identity.hpp>
 
@@ -52,6 +53,10 @@ constexpr ReportRow reports[] = {
      "some rows of the black box: every signal of a control period each"},
     {ReportId::self_test, "SelfTestReport", "feature, get", sizeof(protocol::SelfTestReport),
      "what the board's self-test has found"},
+    {ReportId::store, "StoreReport", "feature, get", sizeof(protocol::StoreReport),
+     "what the board has stored, and what became of the last command to store or to forget"},
+    {ReportId::stored, "ParametersReport", "feature, get", sizeof(protocol::ParametersReport),
+     "what the next start would give every parameter"},
     {ReportId::black_box_rows, "BlackBoxRequest", "feature, set", sizeof(protocol::BlackBoxRequest),
      "the first row that is wanted"},
 };
@@ -130,6 +135,16 @@ void print_self_test() {
   for (const auto& row : protocol::self_test_result_table) fmt::print("| {} | {} |\n", row.name, row.meaning);
 }
 
+void print_store() {
+  fmt::print(
+      "\n## Parameter store\n\nWhat became of the last command to store the parameters or to forget them.\n\n"
+      "| result | meaning | remedy |\n| --- | --- | --- |\n");
+  for (const auto& row : protocol::store_result_table)
+    fmt::print("| {} | {} | {} |\n", row.name, row.meaning, row.remedy);
+  fmt::print("\n| contents | meaning |\n| --- | --- |\n");
+  for (const auto& row : protocol::store_contents_table) fmt::print("| {} | {} |\n", row.name, row.meaning);
+}
+
 void print_codes() {
   fmt::print("\n## Whose force is felt\n\n| bit | source | meaning |\n| --- | --- | --- |\n");
   for (const auto& row : protocol::force_source_table)
@@ -178,6 +193,7 @@ void add_reference_command(const Place& place) {
       print_wire();
       print_supervision();
       print_self_test();
+      print_store();
       print_codes();
       print_tables();
       return 0;

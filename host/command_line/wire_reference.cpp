@@ -12,6 +12,7 @@
 #include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/scope.hpp>
+#include <protocol/store.hpp>
 #include <protocol/usb_identity.hpp>
 
 namespace inkwell::protocol::layouts {

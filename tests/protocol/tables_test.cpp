@@ -12,6 +12,7 @@
 #include <protocol/reports.hpp>
 #include <protocol/scope.hpp>
 #include <protocol/signals.hpp>
+#include <protocol/store.hpp>
 
 namespace {
 
@@ -109,6 +110,35 @@ TEST_CASE("every state and event has a meaning, and a state of another version h
   CHECK(info(static_cast<State>(200)).name == "unknown");
   CHECK_FALSE(force_is_on(static_cast<State>(200)));
   CHECK(info(static_cast<State>(state_table.size())).name == "unknown");
+}
+
+TEST_CASE("what becomes of a command to the store has a meaning and a remedy") {
+  std::set<std::string_view> names;
+  for (const StoreResultInfo& row : store_result_table) {
+    CAPTURE(row.name);
+    CHECK(names.insert(row.name).second);
+    CHECK(row.meaning.ends_with('.'));
+    CHECK(row.remedy.ends_with('.'));
+  }
+  for (const StoreContentsInfo& row : store_contents_table) {
+    CHECK(names.insert(row.name).second);
+    CHECK(row.meaning.ends_with('.'));
+  }
+  CHECK(info(StoreResult::no_room).name == "no_room");
+  CHECK(info(StoreContents::other_schema).name == "other_schema");
+  CHECK(info(static_cast<StoreResult>(200)).name == "unknown");
+  CHECK(info(static_cast<StoreContents>(200)).name == "unknown");
+}
+
+TEST_CASE("the store is left alone in every state from which a force may come by itself") {
+  for (std::size_t i = 0; i < state_count; ++i) {
+    const auto state = static_cast<State>(i);
+    CAPTURE(info(state).name);
+    const bool is_still = state == State::unreferenced || state == State::ready || state == State::fault;
+    CHECK(may_store(state) == is_still);
+    if (is_still) CHECK_FALSE(force_is_on(state));
+  }
+  CHECK_FALSE(may_store(static_cast<State>(200)));
 }
 
 template <class Table, class Hash>
@@ -234,6 +264,11 @@ TEST_CASE("the numbers of the protocol, which both ends of another version count
   CHECK(static_cast<int>(ReportId::information) == 16);
   CHECK(static_cast<int>(ReportId::parameters) == 17);
   CHECK(static_cast<int>(ReportId::transaction) == 18);
+  CHECK(static_cast<int>(ReportId::store) == 25);
+  CHECK(static_cast<int>(ReportId::stored) == 26);
+  CHECK(static_cast<int>(Command::store_parameters) == 9);
+  CHECK(static_cast<int>(Command::factory_reset) == 10);
+  CHECK(static_cast<int>(ParameterOperation::restore_stored) == 2);
   CHECK(servo_rate_Hz == 20'000);
   CHECK(servo_period_s == 50e-6f);
   CHECK(std::int16_t{32'767} * current_step_A > 6.5f);
@@ -252,6 +287,9 @@ TEST_CASE("what is on the wire lies where it should") {
   CHECK(offsetof(CommandReport, test) == 4);
   CHECK(offsetof(ParametersReport, entries) == 8);
   CHECK(sizeof(ScopeFrameHeader) == 24);
+  CHECK(offsetof(StoreReport, commands) == 8);
+  CHECK(offsetof(StoreReport, sector_erases) == 16);
+  CHECK(offsetof(StoreReport, unknown_ids) == 44);
 }
 
 TEST_CASE("fourteen floats are the longest selection that goes out in full") {

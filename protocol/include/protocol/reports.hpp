@@ -8,7 +8,8 @@
 //   host -> device   feature report  ParametersReport (set): one transaction, whole or not at all; ShapesReport,
 //                                    likewise
 //   both             feature report  those of the black box: protocol/black_box.hpp
-//   host <- device   feature report  that of the self-test: protocol/self_test.hpp
+//   host <- device   feature report  that of the self-test: protocol/self_test.hpp; that of the parameter store:
+//                                    protocol/store.hpp, and the ParametersReport of what the next start would give
 //
 // And, over an interface of its own, ControllerReport: what any program reads that knows joysticks.
 #pragma once
@@ -33,7 +34,7 @@ static_assert(std::endian::native == std::endian::little, "the structures go ove
 #endif
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 10 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
+inline constexpr std::uint16_t protocol_version = 11 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -54,6 +55,8 @@ enum class ReportId : std::uint8_t {
   black_box = 0x16,       ///< feature, get: protocol/black_box.hpp
   black_box_rows = 0x17,  ///< feature, get and set
   self_test = 0x18,       ///< feature, get: protocol/self_test.hpp
+  store = 0x19,           ///< feature, get: protocol/store.hpp
+  stored = 0x1A,          ///< feature, get: a ParametersReport
 };
 
 /// Bits of PoseReport::switches.
@@ -162,15 +165,17 @@ struct ControllerReport {
 };
 
 enum class Command : std::uint8_t {
-  heartbeat = 0,       ///< nothing but a sign of life
-  enable_force = 1,    ///< from ready on, by a ramp
-  disable_force = 2,   ///< by a ramp, soft_landing_s
-  clear_fault = 3,     ///< if its cause is gone
-  select_signals = 4,  ///< starts the scope with these signals; none stops it
-  test_current = 5,    ///< in `ready`: one pulse of current in one motor, then zero for as long
-  test_voltage = 6,    ///< in `ready`: one pulse of voltage on one motor, then zero volts for as long
-  stop = 7,            ///< switches the force off at once
-  self_test = 8,       ///< in `unreferenced`, `ready`, and in a fault before the first test that passes
+  heartbeat = 0,         ///< nothing but a sign of life
+  enable_force = 1,      ///< from ready on, by a ramp
+  disable_force = 2,     ///< by a ramp, soft_landing_s
+  clear_fault = 3,       ///< if its cause is gone
+  select_signals = 4,    ///< starts the scope with these signals; none stops it
+  test_current = 5,      ///< in `ready`: one pulse of current in one motor, then zero for as long
+  test_voltage = 6,      ///< in `ready`: one pulse of voltage on one motor, then zero volts for as long
+  stop = 7,              ///< switches the force off at once
+  self_test = 8,         ///< in `unreferenced`, `ready`, and in a fault before the first test that passes
+  store_parameters = 9,  ///< keeps the parameters as they are now over a start; where may_store() (protocol/store.hpp)
+  factory_reset = 10,    ///< forgets what is stored, and gives every parameter its default; likewise
 };
 
 inline constexpr std::size_t scope_signals_maximum = 32;
@@ -250,6 +255,7 @@ struct InformationReport {
 enum class ParameterOperation : std::uint8_t {
   set = 0,               ///< the entries take effect together, the other parameters stay
   restore_defaults = 1,  ///< every parameter gets its default; no entries
+  restore_stored = 2,    ///< every parameter gets what the next start would give it; no entries
 };
 
 struct ParameterEntry {
@@ -262,7 +268,8 @@ inline constexpr std::size_t parameter_entries_maximum = 96;
 static_assert(parameter_count + force_law_parameters_maximum <= parameter_entries_maximum);
 
 /// Feature report. On get, the entries are those of the table in its order, then those of the force law. On set,
-/// only the used part is sent: parameters_report_size(count) bytes.
+/// only the used part is sent: parameters_report_size(count) bytes. The same with ReportId::stored, get only, tells
+/// what the next start would give each parameter: what is stored, or its default; its operation is restore_stored.
 struct ParametersReport {
   ReportId report_id = ReportId::parameters;
   ParameterOperation operation;
