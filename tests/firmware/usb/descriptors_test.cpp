@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <protocol/store.hpp>
+
 #include "device_bench.hpp"
 
 namespace inkwell {
