@@ -1,6 +1,7 @@
 // Which accesses fault, and how: where nothing answers, where the memory protection unit says no, where an address is
 // not aligned (ARMv7-M, A3.2.1, B3.1, B3.5).
 #include "bus.hpp"
+#include "flash.hpp"
 #include "processor.hpp"
 
 namespace inkwell::virtual_board {
@@ -42,12 +43,15 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
     if (!core_coupled_on_ && byte - ccm_base < ccm_bytes) machine_.violations.violate(Rule::ccm_clock_off);
     return true;
   }
+  // A read that has begun cannot be given up for an interrupt.
+  if (access == Access::load && flash_is_busy_ && is_in_flash(address)) machine_.flash->hold_up();
   return false;
 }
 
 int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) {
   const auto& protection = machine_.memory_protection;
   if (protection.is_on(role.above_faults) && protection.divides(page, bytes)) return -1;
+  if (flash_is_busy_ && is_in_flash(page)) return -1;
   // The engine asks about the alignment of an access only where it has to ask about each.
   const bool is_memory = machine_.memory.at(page, 1) != nullptr;
   if (is_memory && is_device(page, role)) return -1;

@@ -74,6 +74,10 @@ void Chip::glitch(char port, unsigned pin, Ticks duration) {
   p.pins.invert(index, pin, true);
   p.events.at(now() + duration, [&p, index, pin] { p.pins.invert(index, pin, false); });
 }
+void Chip::cut_power_at_flash_operation(std::uint64_t number) {
+  parts_->flash.cut_power_at(number == 0 ? 0 : parts_->flash.operations() + number);
+}
+std::uint64_t Chip::flash_operations() const { return parts_->flash.operations(); }
 void Chip::set_supply_V(double volts) {
   auto& machine = parts_->machine;
   machine.supply_V = machine.analog_supply_V = volts;
@@ -169,6 +173,8 @@ const std::vector<Violation>& Chip::violations() const { return parts_->machine.
 const std::vector<std::string>& Chip::unmodelled_accesses() const { return parts_->machine.log.lines(); }
 std::vector<RegisterMap> Chip::register_maps() const { return parts_->bus.register_maps(); }
 std::uint32_t Chip::memory_word(std::uint32_t address) const { return parts_->machine.memory.word(address); }
+
+std::span<std::uint8_t> Chip::flash() { return {parts_->machine.memory.flash(), flash_bytes}; }
 
 std::uint64_t Chip::state_hash() const {
   // FNV-1a over the memories and the core's registers.

@@ -90,6 +90,15 @@ std::string check_vectors(const Image& image, const std::string& name, Memory& m
          range_of(ccm_base, ccm_bytes) + "): it is firmware for another chip, unless it sets its stack pointer itself.";
 }
 
+/// As a programmer does; the other sectors stay as they are.
+void erase_sectors_of(const Elf32_Phdr& segment, Memory& memory) {
+  const std::uint32_t first = segment.p_paddr < flash_bytes ? segment.p_paddr : segment.p_paddr - flash_base;
+  for (unsigned i = 0; i < flash_sectors; ++i) {
+    const auto [offset, bytes] = flash_sector(i);
+    if (first < offset + bytes && offset < first + segment.p_filesz) std::memset(memory.flash() + offset, 0xFF, bytes);
+  }
+}
+
 }  // namespace
 
 std::string program_elf(const std::filesystem::path& path, Memory& memory) {
@@ -123,7 +132,7 @@ std::string program_elf(const std::filesystem::path& path, Memory& memory) {
   const std::string oddity = check_vectors({file, segments}, name, memory);
 
   // Only a file that is whole may replace what is in the flash.
-  std::memset(memory.flash(), 0xFF, flash_bytes);
+  for (const auto& segment : segments) erase_sectors_of(segment, memory);
   for (const auto& segment : segments)
     std::memcpy(memory.at(segment.p_paddr, segment.p_filesz), file.data() + segment.p_offset, segment.p_filesz);
   return oddity;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "flash.hpp"
 #include "semihosting.hpp"
 
 namespace inkwell::virtual_board {
@@ -101,7 +102,7 @@ Stop Execution::run_slices(Ticks when) {
     if (timeline.now() >= when) return Stop::time_reached;
 
     if (core_stands()) {
-      stand_until(when);
+      stand_until(when, machine_.clock_is_lost ? never : machine_.core_stalls_until);
       continue;
     }
     if (state_ != State::runs) {
@@ -114,6 +115,11 @@ Stop Execution::run_slices(Ticks when) {
         continue;
       }
     }
+    // Neither a handler's address nor an instruction can be read from a flash that is busy; its end is a wake.
+    if (machine_.flash->busy() && Processor::is_in_flash(system_control_.vector_table())) {
+      stand_until(when, never);
+      continue;
+    }
     if (machine_.nvic.take_newly_pending() && system_control_.sends_event_on_pending()) processor_.set_event_register();
     exception_may_be_due_ |= processor_.take_masks_opened();
     // Interrupts wait until a debugger's step is over.
@@ -122,6 +128,10 @@ Stop Execution::run_slices(Ticks when) {
       if (std::exchange(exception_may_be_due_, false)) take_exception();
     }
     if (state_ != State::runs) continue;
+    if (processor_.waits_for_flash()) {
+      stand_until(when, never);
+      continue;
+    }
 
     const Ticks stop_at = std::min({timeline.next_wake(), when, machine_.last_advance + Machine::advance_period});
     handle(processor_.run(processor_.cycles_until(stop_at)));
@@ -147,11 +157,10 @@ bool Execution::wakes() const {
 }
 
 // Everything but the core goes on. Its own counter of cycles too, as long as it has a clock and no probe halts it.
-void Execution::stand_until(Ticks when) {
+void Execution::stand_until(Ticks when, Ticks goes_on_at) {
   auto& timeline = machine_.timeline;
   const Ticks from = timeline.now();
-  Ticks to = std::min(when, machine_.last_advance + Machine::advance_period);
-  if (!machine_.clock_is_lost) to = std::min(to, machine_.core_stalls_until);
+  Ticks to = std::min({when, goes_on_at, machine_.last_advance + Machine::advance_period});
   if (const Ticks wake = timeline.next_wake(); wake > from) to = std::min(to, wake);
   to = std::max(from, to);
   timeline.catch_up(to);

@@ -49,7 +49,8 @@ class Execution {
   void take_exception();
   void sleep_until(Ticks when);
   bool core_stands() const { return machine_.clock_is_lost || machine_.core_stalls_until > machine_.timeline.now(); }
-  void stand_until(Ticks when);
+  /// The core does nothing until `goes_on_at`, or for a while if that is `never`.
+  void stand_until(Ticks when, Ticks goes_on_at);
   bool wakes() const;
   void handle(Outcome outcome);
   void handle_breakpoint();

@@ -1,5 +1,6 @@
 #include "flash.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -11,16 +12,17 @@ namespace {
 constexpr std::uint32_t errors =
     flash_map.sr.operr.mask() | flash_map.sr.pgaerr.mask() | flash_map.sr.pgperr.mask() | flash_map.sr.pgserr.mask();
 constexpr unsigned position = 4;
-constexpr Ticks millisecond = ticks_per_s / 1000;
+constexpr Ticks millisecond = ticks_per_s / 1000, microsecond = ticks_per_s / 1'000'000;
 
-struct Sector {
-  std::uint32_t base, bytes;
-  Ticks erase_time;  ///< typical, x32 parallelism, data sheet
-};
-constexpr Sector sector(unsigned number) {
-  if (number < 4) return {number * 0x4000, 0x4000, 250 * millisecond};
-  if (number == 4) return {0x1'0000, 0x1'0000, 550 * millisecond};
-  return {(number - 4) * 0x2'0000, 0x2'0000, 1000 * millisecond};
+/// By the parallelism x8, x16, x32, x64 (data sheet, table "Flash memory programming"): typical ones, the slowest take
+/// twice as long, but for a word.
+using Times = std::array<Ticks, 4>;
+constexpr Times small_sector_ms{400, 300, 250, 250}, middle_sector_ms{1200, 700, 550, 550},
+    large_sector_ms{2000, 1300, 1000, 1000}, mass_ms{16'000, 11'000, 8000, 8000};
+constexpr Ticks word_time = 16 * microsecond, slowest_word_time = 100 * microsecond;
+
+constexpr const Times& erase_times_ms(std::uint32_t bytes) {
+  return bytes == 0x4000 ? small_sector_ms : bytes == 0x1'0000 ? middle_sector_ms : large_sector_ms;
 }
 
 }  // namespace
@@ -29,12 +31,15 @@ FlashController::FlashController(Machine& machine)
     : machine_(machine),
       slot_(machine.timeline.add(*this)),
       option_bytes_((flash_map.optcr.reset_value & writable(flash_map.optcr) & ~flash_map.optcr.bor_lev.mask()) |
-                    flash_map.optcr.bor_lev.with(3 - machine.options.brown_out_level)) {
+                    flash_map.optcr.bor_lev.with(3 - machine.options.brown_out_level)),
+      random_(machine.options.random_seed) {
   machine.flash = this;
   machine.clock_users.push_back(this);
 }
 
 void FlashController::reset() {
+  if (operation_) tear();
+  if (busy()) set_busy(false);
   access_ = status_ = 0;
   set_accelerator(0);
   control_ = flash_map.cr.reset_value;
@@ -80,20 +85,64 @@ void FlashController::update_interrupt() {
                                (flash_map.cr.errie.in(control_) && (status_ & errors) != 0));
 }
 
-void FlashController::begin(Ticks duration) {
-  // On silicon a fetch from the flash stalls meanwhile; here the processor goes on and sees BSY.
-  status_ |= flash_map.sr.bsy.mask();
-  const Ticks done = machine_.timeline.now() + duration;
-  machine_.timeline.set(slot_, done, done);
+void FlashController::set_busy(bool busy) {
+  status_ = busy ? status_ | flash_map.sr.bsy.mask() : status_ & ~flash_map.sr.bsy.mask();
+  machine_.processor->set_flash_busy(busy);
+}
+
+void FlashController::begin(Ticks typical, bool erases, std::uint32_t offset, std::uint32_t bytes) {
+  const std::uint8_t* place = machine_.memory.flash() + offset;
+  operation_ = Operation{erases, offset, {place, place + bytes}};
+  Ticks duration = typical;
+  if (machine_.options.slowest_flash) duration = typical == word_time ? slowest_word_time : 2 * typical;
+  if (++operations_ == cut_at_) {
+    std::uniform_real_distribution<double> part(0.02, 0.98);
+    duration = static_cast<Ticks>(part(random_) * static_cast<double>(duration));
+  }
+  set_busy(true);
+  done_ = machine_.processor->now() + duration;
+  machine_.timeline.set(slot_, done_, done_);
 }
 
 void FlashController::step(Ticks) {
-  status_ &= ~flash_map.sr.bsy.mask();
+  set_busy(false);
+  machine_.timeline.set(slot_, never, never);
+  if (operations_ == cut_at_) {
+    cut_at_ = 0;
+    return machine_.request_reset(ResetCause::power_on);  // which finds the operation not ended
+  }
+  operation_.reset();
   if (flash_map.cr.eopie.in(control_)) status_ |= flash_map.sr.eop.mask();
   control_ &= ~flash_map.cr.strt.mask();
   options_start_ = false;
-  machine_.timeline.set(slot_, never, never);
   update_interrupt();
+}
+
+void FlashController::hold_up() {
+  auto& processor = *machine_.processor;
+  while (busy()) {
+    processor.wait(static_cast<unsigned>(processor.cycles_until(done_)));
+    machine_.timeline.catch_up(processor.now());
+  }
+}
+
+// Of a word any of the bits that were to be cleared are; of a sector each word may be as it was, erased, or anything.
+void FlashController::tear() {
+  const auto& before = operation_->before;
+  std::uint8_t* place = machine_.memory.flash() + operation_->offset;
+  enum Extent : unsigned { nothing, all, some, some_too };
+  const auto extent = static_cast<Extent>(random_() / 7 % 4);
+  for (std::size_t i = 0; i < before.size() && extent != all; ++i) {
+    const auto any = static_cast<std::uint8_t>(random_() / 7);
+    const unsigned kind = operation_->erases ? random_() / 7 % 3 : 3;
+    place[i] = extent == nothing ? before[i]
+               : kind == 0       ? before[i]
+               : kind == 1       ? place[i]
+               : kind == 2       ? any
+                                 : static_cast<std::uint8_t>(before[i] & (place[i] | any));
+  }
+  machine_.processor->forget_code(flash_base + operation_->offset, static_cast<std::uint32_t>(before.size()));
+  operation_.reset();
 }
 
 FlashController::Threshold FlashController::brown_out() const {
@@ -115,19 +164,20 @@ void FlashController::write_option_key(std::uint32_t key) {
 
 void FlashController::write_options(std::uint32_t value) {
   if (options_locked_) return machine_.violations.violate(Rule::option_bytes_locked);
-  if (flash_map.sr.bsy.in(status_)) return;
+  hold_up();
   options_ = value & writable(flash_map.optcr);
   options_locked_ = flash_map.optcr.optlock.in(value);
   if (!flash_map.optcr.optstrt.in(value)) return;
   option_bytes_ = options_;
   options_start_ = true;
-  begin(sector(0).erase_time);
+  begin(small_sector_ms[2] * millisecond, false, 0, 0);
 }
 
 std::optional<std::uint32_t> FlashController::program(std::uint32_t address, std::uint32_t value, unsigned size) {
   const std::uint8_t* place = machine_.memory.at(address, size);
   const std::uint32_t offset = address < flash_bytes ? address : address - flash_base;
   if (place == nullptr || offset >= flash_bytes) return {};
+  hold_up();
   std::uint32_t content = 0;
   std::memcpy(&content, place, size);
   const unsigned parallelism = 1u << flash_map.cr.psize.of(control_);
@@ -137,32 +187,31 @@ std::optional<std::uint32_t> FlashController::program(std::uint32_t address, std
     status_ |= flash_map.sr.pgaerr.mask();
   else if (parallelism != size && !(parallelism == 8 && size == 4))
     status_ |= flash_map.sr.pgperr.mask();
-  else {
+  else if (!machine_.reset_requested) {
     content &= value;  // programming only clears bits
-    begin(16 * (ticks_per_s / 1'000'000));
+    begin(word_time, false, offset, size);
   }
   update_interrupt();
   return content;
 }
 
 void FlashController::erase() {
-  if (flash_map.cr.mer.in(control_)) {
-    std::memset(machine_.memory.flash(), 0xFF, flash_bytes);
-    machine_.processor->forget_code(flash_base, flash_bytes);
-    begin(8000 * millisecond);
-    return;
-  }
+  const unsigned parallelism = flash_map.cr.psize.of(control_);
+  const auto erase_range = [&](std::uint32_t base, std::uint32_t bytes, Ticks typical) {
+    begin(typical, true, base, bytes);
+    std::memset(machine_.memory.flash() + base, 0xFF, bytes);
+    machine_.processor->forget_code(flash_base + base, bytes);
+  };
+  if (flash_map.cr.mer.in(control_)) return erase_range(0, flash_bytes, mass_ms[parallelism] * millisecond);
   const unsigned number = flash_map.cr.snb.of(control_);
-  if (!flash_map.cr.ser.in(control_) || number > 11) {
+  if (!flash_map.cr.ser.in(control_) || number >= flash_sectors) {
     status_ |= flash_map.sr.pgserr.mask();
     control_ &= ~flash_map.cr.strt.mask();
     update_interrupt();
     return;
   }
-  const Sector erased = sector(number);
-  std::memset(machine_.memory.flash() + erased.base, 0xFF, erased.bytes);
-  machine_.processor->forget_code(flash_base + erased.base, erased.bytes);
-  begin(erased.erase_time);
+  const auto [base, bytes] = flash_sector(number);
+  erase_range(base, bytes, erase_times_ms(bytes)[parallelism] * millisecond);
 }
 
 std::uint32_t FlashController::stored(std::uint32_t offset) const {
@@ -211,7 +260,8 @@ void FlashController::write_word(std::uint32_t offset, std::uint32_t value) {
       update_interrupt();
       return;
     case flash_map.cr:
-      if (flash_map.cr.lock.in(control_) || flash_map.sr.bsy.in(status_)) return;
+      hold_up();
+      if (flash_map.cr.lock.in(control_)) return;
       control_ = value & (writable(flash_map.cr) | bits_of(flash_map.cr, Access::rs));
       if (flash_map.cr.strt.in(control_)) erase();
       update_interrupt();

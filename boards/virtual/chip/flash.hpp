@@ -1,8 +1,13 @@
 // Flash interface: wait states, lock, sector erase and programming (RM0090, "Embedded Flash memory interface").
+//
+// While it erases or programs, whoever fetches or reads from the flash waits (RM0090, "Read-while-write"); code in RAM
+// goes on. A reset in the middle leaves torn contents.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <random>
+#include <vector>
 
 #include "bus.hpp"
 
@@ -50,6 +55,14 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
     double falling_V, rising_V;
   };
   Threshold brown_out() const;
+  /// It erases or programs.
+  bool busy() const { return flash_map.sr.bsy.in(status_); }
+  /// The core waits until that is over.
+  void hold_up();
+  /// Erases and programmed words since the chip was made.
+  std::uint64_t operations() const { return operations_; }
+  /// The power fails and comes back in the middle of this operation, the first is 1; 0 is none.
+  void cut_power_at(std::uint64_t operation) { cut_at_ = operation; }
   /// What the supply allows has changed.
   void check_wait_states();
 
@@ -64,7 +77,16 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   void write_option_key(std::uint32_t key);
   void write_options(std::uint32_t value);
   void set_accelerator(std::uint32_t access);
-  void begin(Ticks duration);
+  /// What the flash does to `bytes` at `offset`, and for how long.
+  struct Operation {
+    bool erases;
+    std::uint32_t offset;
+    std::vector<std::uint8_t> before;
+  };
+  void begin(Ticks typical, bool erases, std::uint32_t offset, std::uint32_t bytes);
+  /// Of the operation that a reset has come into.
+  void tear();
+  void set_busy(bool busy);
   void update_interrupt();
 
   Machine& machine_;
@@ -76,6 +98,10 @@ class FlashController final : public RegisterBlock, public TimedPart, public Clo
   std::uint32_t options_ = 0;   ///< OPTCR without its lock and its start
   bool options_locked_ = true, options_start_ = false, options_unlock_failed_ = false;
   unsigned options_unlock_step_ = 0;
+  std::optional<Operation> operation_;
+  Ticks done_ = 0;
+  std::uint64_t operations_ = 0, cut_at_ = 0;
+  std::minstd_rand random_;
 };
 
 }  // namespace inkwell::virtual_board

@@ -45,8 +45,8 @@ class Memory {
   std::vector<std::uint8_t> flash_, sram_, ccm_, system_;
 };
 
-/// Erases the flash and writes the load segments of an ELF file by physical address. Throws ChipError. Returns a
-/// sentence about what will hardly work, or nothing.
+/// Writes the load segments of an ELF file by physical address, and erases the sectors of the flash that they touch.
+/// Throws ChipError. Returns a sentence about what will hardly work, or nothing.
 std::string program_elf(const std::filesystem::path& path, Memory& memory);
 
 }  // namespace inkwell::virtual_board

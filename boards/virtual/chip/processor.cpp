@@ -220,6 +220,7 @@ void Processor::block_hook(uc_engine*, std::uint64_t address, std::uint32_t size
   } else {
     if (self.cycles_ >= self.stop_cycle_ || (self.watch_masks_ && self.masks_open())) return self.stop_before(start);
   }
+  if (self.flash_is_busy_ && is_in_flash(start)) return self.stop_before(start);
   if (self.refuses_float_ && self.has_unguarded_float(start, size)) {
     self.guard_address_ = start;
     self.guard_bytes_ = size;

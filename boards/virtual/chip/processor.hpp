@@ -82,6 +82,16 @@ class Processor final : public ClockUser, private EngineCalls {
     rights_changed_ = true;
     end_slice();
   }
+  /// The flash erases or programs, or is done; what wants it meanwhile waits. Reads are asked about as above.
+  void set_flash_busy(bool busy) {
+    flash_is_busy_ = busy;
+    rights_changed();
+  }
+  /// The next instruction is one that the flash has no time for.
+  bool waits_for_flash() const { return flash_is_busy_ && is_in_flash(program_counter_); }
+  static constexpr bool is_in_flash(std::uint32_t address) {
+    return address < flash_bytes || address - flash_base < flash_bytes;
+  }
   /// After instructions in memory changed.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
 
@@ -290,6 +300,7 @@ class Processor final : public ClockUser, private EngineCalls {
   std::set<std::uint32_t> divides_asked_about_;
   std::vector<std::uint32_t> new_divides_;
   bool float_unit_on_ = false, core_coupled_on_ = true, rights_changed_ = false;
+  bool flash_is_busy_ = false;
   /// Lazy stacking is due that could not be done at entry.
   struct UnstackedFloat {
     std::uint32_t address;  ///< FPCAR

@@ -43,13 +43,16 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
                      .crystal_ppm = options.crystal_ppm,
                      .low_speed_internal_Hz = options.low_speed_internal_Hz,
                      .brown_out_level = options.brown_out_level,
+                     .slowest_flash = options.slowest_flash,
                      .unique_id = unique_id_of(options.seed),
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); },
                      .name_of_code = [this](std::uint32_t address) { return symbols_.name(address); },
                      .on_instruction = observer(options)}) {
   if (options.strict) chip_.on_violation = [this](const Violation&) { chip_.request_stop(); };
+  if (!options.flash.empty()) flash_file_.emplace(options.flash, chip_.flash());
   chip_.load_elf(elf_);
+  if (flash_file_) flash_file_->save(chip_.flash());
   symbols_ = Symbols(elf_);
   try {
     usb_.emplace(chip_.connections(), options.usbip_port, options.host_clock_ppm, std::move(on_usb_request),
@@ -89,7 +92,27 @@ std::function<void(std::uint32_t, std::uint64_t)> Board::observer(const Options&
   };
 }
 
+Board::~Board() {
+  if (!flash_file_ || chip_.flash_operations() == flash_saved_) return;
+  try {
+    flash_file_->save(chip_.flash());
+  } catch (const std::runtime_error& error) {
+    log_line(error.what());
+  }
+}
+
+void Board::follow_flash() {
+  if (!flash_file_) return;
+  const std::uint64_t operations = chip_.flash_operations();
+  if (operations != flash_saved_ && operations == flash_seen_) {
+    flash_file_->save(chip_.flash());
+    flash_saved_ = operations;
+  }
+  flash_seen_ = operations;
+}
+
 Stop Board::run_until(Ticks when) {
+  follow_flash();
   for (;;) {
     if (injector_->next() <= chip_.now()) injector_->carry_out();
     const Ticks next = injector_->next();

@@ -12,6 +12,7 @@
 #include <plant/plant.hpp>
 #include <virtual_usb/virtual_usb.hpp>
 
+#include "flash_file.hpp"
 #include "options.hpp"
 #include "profile.hpp"
 
@@ -23,6 +24,9 @@ class Board {
   /// @throws std::runtime_error with a sentence if the arm, the ELF or the USB/IP port is refused.
   /// `on_usb_request` and `is_ending`: see VirtualUsb.
   Board(const Options& options, std::function<void()> on_usb_request, std::function<bool()> is_ending);
+  ~Board();
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
 
   /// Runs until board time `when`, or until the firmware ends or locks up.
   Stop run_until(Ticks when);
@@ -50,6 +54,8 @@ class Board {
 
  private:
   void console(std::uint8_t byte);
+  /// What the firmware has stored goes into the file, once it has stored all of it.
+  void follow_flash();
   Stop run_chip_until(Ticks when);
   std::function<void(std::uint32_t address, std::uint64_t cycles)> observer(const Options& options);
 
@@ -58,6 +64,8 @@ class Board {
   Plant plant_;
   Wires wires_{plant_};
   Chip chip_;
+  std::optional<FlashFile> flash_file_;
+  std::uint64_t flash_seen_ = 0, flash_saved_ = 0;  ///< operations of the flash
   std::optional<Waveform> waveform_;
   std::optional<VirtualUsb> usb_;     ///< there from construction to destruction
   std::optional<Injector> injector_;  ///< likewise

@@ -64,6 +64,7 @@ json status(const json&, Simulation& simulation) {
       {"seed", simulation.options().seed},
       {"instructions", counters.instructions},
       {"cycles", counters.cycles},
+      {"flash_operations", chip.flash_operations()},
       {"sleep_share", counters.sleep_share()},
       {"exception", chip.current_exception()},
       {"processor_clock_Hz", chip.clocks().hclk_Hz},
@@ -117,6 +118,15 @@ json resume(const json&, Simulation& simulation) {
 
 json reset(const json&, Simulation& simulation) {
   simulation.board().reset();
+  return {};
+}
+
+json cut_power(const json& request, Simulation& simulation) {
+  Chip& chip = simulation.board().chip();
+  if (request.contains("at_flash_operation"))
+    chip.cut_power_at_flash_operation(static_cast<std::uint64_t>(number(request, "at_flash_operation", 1.0, 1e9)));
+  else
+    chip.reset(ResetCause::power_on);
   return {};
 }
 
@@ -235,6 +245,11 @@ const std::vector<Command>& commands() {
       {"run", {"for_s"}, "it passes for a while; answered when that is over", run},
       {"resume", {}, "it passes freely", resume},
       {"reset", {}, "the reset pin", reset},
+      {"cut_power",
+       {"at_flash_operation"},
+       "the power fails and is back at once: now, or in the middle of the so many-th word or sector that the flash is "
+       "told to program or erase",
+       cut_power},
       {"quit", {}, "the end of this program", quit, true},
       {"usb", {"connected"}, "plug or pull the cable, and with it VBUS", usb},
       {"buttons", {"pressed"}, "of the stylus: [true,false]", buttons},

@@ -19,7 +19,7 @@ namespace {
 struct Given {
   Options options;
   std::uint16_t gdb_port = 0;
-  std::string mode = "fast", pricing = "likely";
+  std::string mode = "fast", pricing = "likely", flash_times = "typical";
   double seconds = 0.0;
   std::vector<std::string> uarts, pins, injections;
   std::string profile, injection_script;
@@ -37,6 +37,10 @@ constexpr const char* description =
 void add_files_and_ports(CLI::App& app, Given& given) {
   app.add_option("--elf", given.options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
   app.add_option("--arm", given.options.arm, "arm description; the Omni unless given")->type_name("FILE");
+  app.add_option("--flash", given.options.flash,
+                 "the chip's flash is kept in this file from run to run, which is made if it is not there; --elf "
+                 "replaces the\nsectors that it needs, and what the firmware has stored elsewhere stays")
+      ->type_name("FILE");
   const auto port = CLI::Range(0, 65535).description("");
   app.add_option("--usbip", given.options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")
       ->check(port)
@@ -85,6 +89,10 @@ void add_chip(CLI::App& app, Given& given) {
       "--from-boot-loader", given.options.from_boot_loader,
       "the boot loader in the chip starts the firmware, by its command Go, and leaves PLL, vector table and the clock\n"
       "of CCM otherwise than a reset does");
+  app.add_option("--flash-times", given.flash_times, "how long the flash takes to erase and program, by the data sheet")
+      ->check(CLI::IsMember({"typical", "maximum"}).description(""))
+      ->type_name("typical|maximum")
+      ->capture_default_str();
   app.add_option("--brown-out", given.options.brown_out_level,
                  "brown-out level in the chip's option bytes: 0 is off, as in a new chip; 3 is what the board wants")
       ->check(CLI::Range(0, 3).description(""))
@@ -210,6 +218,7 @@ bool take_over(Given& given) {
   }
   given.options.mode = given.mode == "exact" ? Mode::exact : Mode::fast;
   given.options.pricing = given.pricing == "conservative" ? Pricing::conservative : Pricing::likely;
+  given.options.slowest_flash = given.flash_times == "maximum";
   if (*given.seconds_option) given.options.seconds = given.seconds;
   return true;
 }

@@ -17,6 +17,7 @@ namespace inkwell::virtual_board {
 struct Options {
   std::filesystem::path elf;
   std::filesystem::path arm;
+  std::filesystem::path flash;   ///< empty: the flash is forgotten at the end
   std::uint16_t usbip_port = 0;  ///< 0 is any free port
   std::uint16_t control_port = 0;
   std::optional<std::uint16_t> gdb_port;
@@ -30,6 +31,7 @@ struct Options {
   std::uint32_t low_speed_internal_Hz = 32'000;
   bool from_boot_loader = false;
   unsigned brown_out_level = 0;  ///< of the option bytes
+  bool slowest_flash = false;    ///< the longest times to erase and program, not the usual
   double host_clock_ppm = 0.0;   ///< the USB host's clock is faster than board time by so many parts in a million
   bool real_time = false;
   std::uint64_t seed = 1;         ///< of all noise and of the serial number

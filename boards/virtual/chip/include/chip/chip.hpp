@@ -17,6 +17,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <timing/costs.hpp>
@@ -42,8 +43,9 @@ struct ChipOptions {
   std::int32_t crystal_ppm = 0;                  ///< and how much faster than that it swings
   std::uint32_t low_speed_internal_Hz = 32'000;  ///< LSI: 17 to 47 kHz by the data sheet
   unsigned brown_out_level = 0;                  ///< of the option bytes: 0 is off, as in a new chip, to 3
+  bool slowest_flash = false;                    ///< the data sheet's longest times to erase and program, not the usual
   std::array<std::uint32_t, 3> unique_id{0x0031'0042, 0x3133'5107, 0x3932'3539};  ///< RM0090, "Unique device ID"
-  std::uint32_t random_seed = 1;                                                  ///< of the RNG peripheral
+  std::uint32_t random_seed = 1;  ///< of the RNG peripheral, and of what a reset leaves in the flash that was busy
   /// Takes each line of the log (without a newline); by default it goes to stderr.
   std::function<void(const std::string&)> log;
   /// The function at an address, for lines of the log; may give nothing. By default there are no names.
@@ -116,8 +118,9 @@ class Chip {
   Chip(const Chip&) = delete;
   Chip& operator=(const Chip&) = delete;
 
-  /// Erases the flash and programs the ELF's load segments by their physical addresses. Call reset() afterwards.
-  /// Throws ChipError if the file is missing, truncated, not a 32-bit ARM executable, or does not fit.
+  /// Erases the sectors of the flash that the ELF's load segments touch, and programs those by their physical
+  /// addresses. Call reset() afterwards. Throws ChipError if the file is missing, truncated, not a 32-bit ARM
+  /// executable, or does not fit.
   void load_elf(const std::filesystem::path& path);
   /// Resets processor and peripherals as the pin NRST does (board time goes on).
   void reset(ResetCause cause = ResetCause::pin);
@@ -149,6 +152,10 @@ class Chip {
   void stop_converter(unsigned number, bool stopped);
   /// Neither DMA takes a request any more, or both do again.
   void stop_dma(bool stopped);
+  /// The power fails in the middle of so many erases and programmed words from now on, and is back at once; 0 is never.
+  void cut_power_at_flash_operation(std::uint64_t number);
+  /// Erases and programmed words since the chip was made.
+  std::uint64_t flash_operations() const;
   /// The supply of the chip, 3.3 V to begin with. Below the brown-out level of the option bytes it is held in reset.
   /// VDDA goes with it.
   void set_supply_V(double volts);
@@ -218,6 +225,8 @@ class Chip {
 
   /// Memory as a debugger sees it (flash, SRAM, CCM; no registers, no side effects). 0 outside of memory.
   std::uint32_t memory_word(std::uint32_t address) const;
+  /// All of the flash, as a programmer reads and writes it; reset() has to follow.
+  std::span<std::uint8_t> flash();
   /// A number of all of the state that firmware can see in memory and core registers, to compare runs by.
   std::uint64_t state_hash() const;
 

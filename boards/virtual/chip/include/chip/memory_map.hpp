@@ -11,4 +11,14 @@ inline constexpr std::uint32_t ccm_base = 0x1000'0000, ccm_bytes = 64 * 1024;
 inline constexpr std::uint32_t private_bus_base = 0xE000'0000, private_bus_bytes = 0x10'0000;  ///< the core's own
 inline constexpr std::uint32_t system_base = 0x1FFF'0000, system_bytes = 64 * 1024;            ///< with option bytes
 
+struct FlashSector {
+  std::uint32_t offset, bytes;  ///< in the flash
+};
+inline constexpr unsigned flash_sectors = 12;
+constexpr FlashSector flash_sector(unsigned number) {
+  if (number < 4) return {number * 0x4000, 0x4000};
+  if (number == 4) return {0x1'0000, 0x1'0000};
+  return {(number - 4) * 0x2'0000, 0x2'0000};
+}
+
 }  // namespace inkwell::virtual_board

@@ -1,0 +1,65 @@
+#include "flash_file.hpp"
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <chip/memory_map.hpp>
+
+namespace inkwell::virtual_board {
+namespace {
+
+std::uint32_t word_at(const std::vector<char>& content, std::size_t offset) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, content.data() + offset, sizeof word);
+  return word;
+}
+
+/// Erased where it begins, or with a firmware's first instruction there.
+bool begins_as_a_flash(const std::vector<char>& content) {
+  constexpr std::uint32_t erased = 0xFFFF'FFFF;
+  const std::uint32_t stack = word_at(content, 0), first = word_at(content, 4);
+  return (stack == erased && first == erased) || ((first & 1) != 0 && first - flash_base < flash_bytes);
+}
+
+}  // namespace
+
+FlashFile::FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash) : path_(std::move(path)) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path_, ignored)) {
+    save(flash);
+    return;
+  }
+  std::ifstream stream(path_, std::ios::binary);
+  const std::vector<char> content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream.is_open() || std::filesystem::is_directory(path_, ignored))
+    throw std::runtime_error(fmt::format(
+        "--flash: {} cannot be read. Give a file of your own, or one that is not there yet.", path_.string()));
+  if (content.size() != flash.size() || !begins_as_a_flash(content))
+    throw std::runtime_error(fmt::format(
+        "--flash: {} is no flash of an STM32F405: that is {} bytes and begins with a firmware's vectors, or erased. "
+        "It stays as it is; give another file, or one that is not there yet.",
+        path_.string(), flash.size()));
+  std::memcpy(flash.data(), content.data(), content.size());
+}
+
+void FlashFile::save(std::span<const std::uint8_t> flash) const {
+  const std::filesystem::path fresh = path_.string() + ".new";
+  std::ofstream stream(fresh, std::ios::binary | std::ios::trunc);
+  stream.write(reinterpret_cast<const char*>(flash.data()), static_cast<std::streamsize>(flash.size()));
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(fresh, path_, error);
+  if (stream && !error) return;
+  std::error_code ignored;
+  std::filesystem::remove(fresh, ignored);
+  throw std::runtime_error(
+      fmt::format("--flash: {} cannot be written. Look for room and rights in its folder.", path_.string()));
+}
+
+}  // namespace inkwell::virtual_board
