@@ -112,6 +112,33 @@ struct Device::Implementation {
     return report;
   }
 
+  /// The parameters that are held, or those that are stored.
+  protocol::ParameterSet read_parameters(ReportId id) {
+    const std::lock_guard lock(feature_mutex);
+    protocol::ParametersReport report{};
+    report.report_id = id;
+    const std::size_t length = transport->get_feature(writable_bytes(report));
+    const std::size_t count = protocol::parameter_count + (force_law ? force_law->parameters.size() : 0);
+    const bool is_whole = length >= protocol::parameters_report_size(count) &&
+                          report.version == protocol::protocol_version && report.count == count;
+    if (!is_whole)
+      throw Incompatible("The device's parameters do not fit this companion. Flash the firmware that belongs to it.");
+    protocol::ParameterSet set = protocol::default_parameters();
+    for (std::size_t i = 0; i < report.count; ++i)
+      if (const auto parameter = protocol::find_parameter(report.entries[i].id))
+        set[*parameter] = report.entries[i].value;
+    return set;
+  }
+
+  /// A transaction that gives every parameter a value and so has no entries.
+  protocol::TransactionReport transact(protocol::ParameterOperation operation) {
+    protocol::ParametersReport report{};
+    report.report_id = ReportId::parameters;
+    report.operation = operation;
+    report.version = protocol::protocol_version;
+    return transact(report);
+  }
+
   /// The device judges a transaction before it acknowledges its data, so the report read next speaks of this one.
   /// Nothing is read before: that would cost a frame on the way from a slider to the interrupt.
   protocol::TransactionReport transact(const protocol::ParametersReport& report) {
@@ -261,23 +288,9 @@ void Device::place_shapes(const Shapes& shapes) {
   }
 }
 
-protocol::ParameterSet Device::parameters() {
-  const std::lock_guard lock(implementation_->feature_mutex);
-  protocol::ParametersReport report{};
-  report.report_id = ReportId::parameters;
-  const std::size_t length = implementation_->transport->get_feature(writable_bytes(report));
-  const auto& law = implementation_->force_law;
-  const std::size_t count = protocol::parameter_count + (law ? law->parameters.size() : 0);
-  const bool is_whole = length >= protocol::parameters_report_size(count) &&
-                        report.version == protocol::protocol_version && report.count == count;
-  if (!is_whole)
-    throw Incompatible("The device's parameters do not fit this companion. Flash the firmware that belongs to it.");
-  protocol::ParameterSet set = protocol::default_parameters();
-  for (std::size_t i = 0; i < report.count; ++i)
-    if (const auto parameter = protocol::find_parameter(report.entries[i].id))
-      set[*parameter] = report.entries[i].value;
-  return set;
-}
+protocol::ParameterSet Device::parameters() { return implementation_->read_parameters(ReportId::parameters); }
+
+protocol::ParameterSet Device::stored_parameters() { return implementation_->read_parameters(ReportId::stored); }
 
 protocol::TransactionReport Device::set_parameters(std::span<const ParameterChange> changes) {
   if (changes.size() > protocol::parameter_entries_maximum)
@@ -294,11 +307,18 @@ protocol::TransactionReport Device::set_parameters(std::span<const ParameterChan
 }
 
 protocol::TransactionReport Device::restore_default_parameters() {
-  protocol::ParametersReport report{};
-  report.report_id = ReportId::parameters;
-  report.operation = protocol::ParameterOperation::restore_defaults;
-  report.version = protocol::protocol_version;
-  return implementation_->transact(report);
+  return implementation_->transact(protocol::ParameterOperation::restore_defaults);
+}
+
+protocol::TransactionReport Device::restore_stored_parameters() {
+  return implementation_->transact(protocol::ParameterOperation::restore_stored);
+}
+
+protocol::StoreReport Device::store_report() {
+  const std::lock_guard lock(implementation_->feature_mutex);
+  protocol::StoreReport report{};
+  implementation_->get(report, "parameter store");
+  return report;
 }
 
 protocol::BlackBoxReport Device::black_box() {

@@ -60,6 +60,16 @@ Bytes string_descriptor(const std::string& text) {
   return descriptor;
 }
 
+Bytes parameters_report(protocol::ReportId id, const protocol::ParameterSet& set) {
+  protocol::ParametersReport report{};
+  report.report_id = id;
+  report.version = protocol::protocol_version;
+  report.count = protocol::parameter_count;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    report.entries[i] = {protocol::parameter_table[i].id, 0, set.values[i]};
+  return bytes_of(report);
+}
+
 /// As much of a reply as was asked for.
 Bytes limited(const std::uint8_t (&setup)[8], Bytes reply) {
   const std::size_t length = setup[6] | static_cast<std::size_t>(setup[7]) << 8;
@@ -78,6 +88,7 @@ FakeUsbipServer::FakeUsbipServer()
   information.signal_table_hash = protocol::signal_table_hash;
   information.servo_rate_Hz = protocol::servo_rate_Hz;
   transaction_.report_id = protocol::ReportId::transaction;
+  store.report_id = protocol::ReportId::store;
 }
 
 device::Endpoint FakeUsbipServer::endpoint() const {
@@ -195,9 +206,21 @@ void FakeUsbipServer::take_output(const Bytes& data) {
     into.push_back(report);
   };
   if (data[0] == std::byte{static_cast<std::uint8_t>(protocol::ReportId::force)})
-    take(protocol::ForceReport{}, forces_);
-  else
-    take(protocol::CommandReport{}, commands_);
+    return take(protocol::ForceReport{}, forces_);
+  take(protocol::CommandReport{}, commands_);
+  const auto command = commands_.back().command;
+  const bool is_for_store =
+      command == protocol::Command::store_parameters || command == protocol::Command::factory_reset;
+  if (is_for_store && !ignores_store) take_store_command(command);
+}
+
+void FakeUsbipServer::take_store_command(protocol::Command command) {
+  ++store.commands;
+  store.result = judge_store(command);
+  if (store.result != protocol::StoreResult::done) return;
+  ++store.records_written;
+  if (command == protocol::Command::factory_reset) parameters = protocol::default_parameters();
+  at_next_start = parameters;
 }
 
 void FakeUsbipServer::take_back(int client, std::uint32_t sequence, std::uint32_t unlinked_sequence) {
@@ -238,8 +261,7 @@ std::optional<Bytes> FakeUsbipServer::answer_control(const std::uint8_t (&setup)
     switch (setup[3]) {
       case 1: return limited(setup, device_descriptor);
       case 2: return limited(setup, configuration);
-      case 3:
-        return limited(setup, string_descriptor(setup[2] == 3 ? "0123456789ABCDEF01234567" : "Inkwell haptic arm"));
+      case 3: return limited(setup, string_descriptor(setup[2] == 3 ? serial_number : "Inkwell haptic arm"));
       default: return std::nullopt;
     }
   }
@@ -278,6 +300,7 @@ std::optional<Bytes> FakeUsbipServer::answer_report_request(const std::uint8_t (
     if (transaction_.refusal != protocol::Refusal::accepted)
       return stalls_refusals ? std::nullopt : std::optional(Bytes{});
     if (report.operation == protocol::ParameterOperation::restore_defaults) parameters = protocol::default_parameters();
+    if (report.operation == protocol::ParameterOperation::restore_stored) parameters = at_next_start;
     for (std::size_t i = 0; i < report.count; ++i)
       if (const auto parameter = protocol::find_parameter(report.entries[i].id))
         parameters[*parameter] = report.entries[i].value;
@@ -295,15 +318,9 @@ std::optional<Bytes> FakeUsbipServer::feature_report(protocol::ReportId id) {
     case protocol::ReportId::force_law:
       return Bytes(control::installed_force_law.report,
                    control::installed_force_law.report + control::installed_force_law.report_size);
-    case protocol::ReportId::parameters: {
-      protocol::ParametersReport report{};
-      report.report_id = protocol::ReportId::parameters;
-      report.version = protocol::protocol_version;
-      report.count = protocol::parameter_count;
-      for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-        report.entries[i] = {protocol::parameter_table[i].id, 0, parameters.values[i]};
-      return bytes_of(report);
-    }
+    case protocol::ReportId::store: return bytes_of(store);
+    case protocol::ReportId::parameters: return parameters_report(id, parameters);
+    case protocol::ReportId::stored: return parameters_report(id, at_next_start);
     default: return std::nullopt;
   }
 }

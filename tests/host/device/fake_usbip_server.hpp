@@ -15,6 +15,7 @@
 #include <device/transport.hpp>
 #include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/store.hpp>
 
 #include "local_server.hpp"
 
@@ -39,6 +40,7 @@ class FakeUsbipServer {
   std::string path;  ///< of the device on the server
   std::uint16_t vendor_id = 0x1209;
   std::uint16_t product_id = 0x0001;
+  std::string serial_number = "0123456789ABCDEF01234567";
   bool refuses_import = false;
   /// Changes the reply to the first request of a client.
   std::function<void(Bytes&)> spoil_reply = [](Bytes&) {};
@@ -48,6 +50,14 @@ class FakeUsbipServer {
   protocol::FrameReport frame{};
   std::optional<protocol::BlackBoxReport> black_box;  ///< none: the request is stalled
   protocol::ParameterSet parameters = protocol::default_parameters();
+  protocol::StoreReport store{};
+  protocol::ParameterSet at_next_start = protocol::default_parameters();
+  /// What becomes of a command to store or to forget. While it is `under_way`, nothing is written.
+  std::function<protocol::StoreResult(protocol::Command)> judge_store = [](protocol::Command) {
+    return protocol::StoreResult::done;
+  };
+  /// No command to store or to forget is counted.
+  bool ignores_store = false;
   /// What becomes of a transaction; called with its entries.
   std::function<protocol::Refusal(const protocol::ParametersReport&)> judge = [](const protocol::ParametersReport&) {
     return protocol::Refusal::accepted;
@@ -102,6 +112,7 @@ class FakeUsbipServer {
   void take_back(int client, std::uint32_t sequence, std::uint32_t unlinked_sequence);
   void match(std::uint8_t endpoint);
   void take_output(const Bytes& data);
+  void take_store_command(protocol::Command command);
   void answer(int client, std::uint32_t sequence, std::int32_t status, const Bytes& data, std::uint32_t length);
   std::optional<Bytes> answer_report_request(const std::uint8_t (&setup)[8], const Bytes& data);
   std::optional<Bytes> answer_control(const std::uint8_t (&setup)[8], const Bytes& data);

@@ -12,6 +12,7 @@
 #include <device/device.hpp>
 #include <device/session.hpp>
 #include <failure.hpp>
+#include <protocol/store.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "fake_usb.hpp"
@@ -43,6 +44,10 @@ void answer_as_inkwell(FakeUsbDevice& arm) {
   for (std::size_t i = 0; i < protocol::parameter_count; ++i)
     parameters.entries[i] = {protocol::parameter_table[i].id, 0, protocol::default_parameters().values[i]};
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::parameters)] = bytes_of(parameters);
+  parameters.report_id = protocol::ReportId::stored;
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::stored)] = bytes_of(parameters);
+  const protocol::StoreReport store{};
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::store)] = bytes_of(store);
 }
 
 }  // namespace

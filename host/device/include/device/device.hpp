@@ -18,6 +18,7 @@
 #include <protocol/black_box.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/self_test.hpp>
+#include <protocol/store.hpp>
 
 namespace inkwell::device {
 
@@ -80,6 +81,12 @@ class Device {
   /// One transaction: all take effect at one control period, or none does and Refused is thrown.
   protocol::TransactionReport set_parameters(std::span<const ParameterChange> changes);
   protocol::TransactionReport restore_default_parameters();
+  /// Each gets what the board's next start would give it. Throws Refused if the board has stored nothing.
+  protocol::TransactionReport restore_stored_parameters();
+  /// What the board's next start would give each parameter: what it has stored, or the default.
+  protocol::ParameterSet stored_parameters();
+  /// What the board has stored. The commands that change it are in board_store.hpp.
+  protocol::StoreReport store_report();
 
   /// What the board kept of the time around its last fault; its `fault` is none if it keeps nothing.
   protocol::BlackBoxReport black_box();

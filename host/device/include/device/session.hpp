@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <device/device.hpp>
+#include <device/board_store.hpp>
 
 namespace inkwell::device {
 
@@ -32,12 +32,23 @@ struct SessionStatus {
   /// The control period at which the newest transaction of this session took effect; none before the first.
   std::optional<std::uint32_t> applied_at_periods;
   std::optional<NoticedFault> fault;  ///< none: the device is in no fault
+  std::optional<BoardStore> store;    ///< as of the newest second, or of the newest request to change it
+  bool is_storing = false;            ///< a request to store or to forget is on its way
+  /// Why the newest request to store or to forget came to nothing; none once another was made.
+  std::optional<std::string> store_problem;
   double pose_rate_Hz = 0;
   std::uint64_t poses_received = 0;
   std::uint64_t poses_lost = 0;
   std::uint64_t scope_samples_received = 0;
   std::uint64_t scope_samples_lost = 0;
   std::uint64_t scope_frames_malformed = 0;
+};
+
+/// The device that was lost is connected again.
+struct Reconnection {
+  std::uint64_t number = 0;         ///< rises with each
+  protocol::ParameterSet before{};  ///< that it held when it was lost, with what was then on its way to it
+  protocol::ParameterSet after{};   ///< that it held when it came back, which is something else if it lost its power
 };
 
 class Session {
@@ -60,6 +71,13 @@ class Session {
   /// Queues one transaction. Changes queued before the last one was sent are merged into it.
   void set_parameters(std::vector<ParameterChange> changes);
   void restore_default_parameters();
+  /// Has the board store its parameters, once it has those that wait. Nothing without a device, and not
+  /// repeated after a loss.
+  void store_parameters();
+  /// Has the board forget what it has stored and hold its defaults.
+  void factory_reset();
+  /// The newest one, while the device is connected; none before the first, and for another device than the one lost.
+  std::optional<Reconnection> reconnection() const;
   /// The refusal of the newest transaction, if it was refused; empty once another was accepted.
   std::optional<std::string> refusal() const;
 

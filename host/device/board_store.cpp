@@ -1,0 +1,57 @@
+#include <device/board_store.hpp>
+
+#include <fmt/format.h>
+
+namespace inkwell::device {
+namespace {
+
+using protocol::Command;
+using protocol::StoreReport;
+using protocol::StoreResult;
+
+/// Of board time. A set of parameters is written in a part of it.
+constexpr std::uint32_t patience_periods = protocol::servo_rate_Hz;
+
+constexpr std::string_view was_not_stored = "The parameters were not stored.";
+constexpr std::string_view was_not_forgotten = "What is stored was not forgotten.";
+
+bool is_carried_out(StoreResult result) { return result == StoreResult::done || result == StoreResult::nothing_stored; }
+
+/// The count tells the result of this command from that of the one before.
+StoreReport carry_out(Device& device, Command command, std::string_view failure) {
+  const std::uint32_t commands_before = device.store_report().commands;
+  device.send(command);
+  const std::uint32_t begin_periods = device.frame().time_periods;
+  for (;;) {
+    const bool is_late = device.frame().time_periods - begin_periods > patience_periods;
+    const StoreReport report = device.store_report();
+    const bool is_taken = report.commands != commands_before;
+    if (is_taken && is_carried_out(report.result)) return report;
+    if (is_taken && (is_late || report.result != StoreResult::under_way)) throw NotStored(failure, report);
+    if (is_late) throw Error(fmt::format("{} The board does not take the command. Reset it and try again.", failure));
+  }
+}
+
+}  // namespace
+
+NotStored::NotStored(std::string_view what, const StoreReport& told)
+    : Error(fmt::format("{} {} {}", what, info(told.result).meaning, info(told.result).remedy)), report(told) {}
+
+BoardStore read_store(Device& device) {
+  BoardStore store{};
+  store.report = device.store_report();
+  store.at_next_start = device.stored_parameters();
+  return store;
+}
+
+std::vector<protocol::Parameter> not_stored(const protocol::ParameterSet& held, const BoardStore& store) {
+  std::vector<protocol::Parameter> differing;
+  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
+    if (held.values[i] != store.at_next_start.values[i]) differing.push_back(static_cast<protocol::Parameter>(i));
+  return differing;
+}
+
+StoreReport store_parameters(Device& device) { return carry_out(device, Command::store_parameters, was_not_stored); }
+StoreReport factory_reset(Device& device) { return carry_out(device, Command::factory_reset, was_not_forgotten); }
+
+}  // namespace inkwell::device

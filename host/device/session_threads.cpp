@@ -1,0 +1,328 @@
+#include "session_threads.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "thread_precedence.hpp"
+
+namespace inkwell::device {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto search_interval = 200ms;
+/// Another program may have changed the parameters. A second of the device's time: while that stands still, nothing
+/// shall pile up before a change that the user makes.
+constexpr std::uint32_t refresh_periods = protocol::servo_rate_Hz;
+constexpr auto rate_window = 500ms;
+constexpr auto silence_limit = 2s;
+
+}  // namespace
+
+Session::Implementation::Implementation(std::function<std::optional<Endpoint>()> find_device)
+    : find(std::move(find_device)) {
+  report_thread = std::thread([this] { report_loop(); });
+  scope_thread = std::thread([this] { scope_loop(); });
+}
+
+Session::Implementation::~Implementation() {
+  {
+    const std::lock_guard lock(mutex);
+    stopping = true;
+    changed.notify_all();
+  }
+  report_thread.join();
+  scope_thread.join();
+}
+
+// ---- the report thread: connects, reads poses, sends what was asked for --------------------------------
+
+void Session::Implementation::report_loop() {
+  ask_for_precedence();
+  while (!stopping) {
+    try {
+      if (const auto endpoint = find())
+        serve(connect(*endpoint));
+      else
+        set_connection(Connection::searching, "No arm was found. Plug one in, or start a virtual one.");
+    } catch (const NoPermission& error) {
+      set_connection(Connection::no_permission, error.what());
+    } catch (const Incompatible& error) {
+      set_connection(Connection::incompatible, error.what());
+    } catch (const Error& error) {
+      set_connection(Connection::searching, error.what());
+    }
+    forget_device();
+    std::unique_lock lock(mutex);
+    changed.wait_for(lock, search_interval, [&] { return stopping.load(); });
+  }
+}
+
+std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoint) {
+  std::shared_ptr<Device> opened = Device::open(endpoint);
+  const auto information = opened->information();
+  const auto held = opened->parameters();
+  const auto store = read_store(*opened);
+  const std::lock_guard lock(mutex);
+  if (parameter_set && information.serial_number == served_serial_number)
+    newest_reconnection = Reconnection{reconnections + 1, requests.parameters.applied_to(*parameter_set), held};
+  reconnections += newest_reconnection ? 1 : 0;
+  served_serial_number = information.serial_number;
+  state.information = information;
+  state.store = store;
+  state.is_simulation = endpoint.is_virtual;
+  state.connection = Connection::connected;
+  state.message = connected_message();
+  scope_denied = false;
+  parameter_set = held;
+  ++revision;
+  requests.select = !signals.empty();
+  // A command for the device that went away must not reach the one that came; parameter changes may.
+  requests.commands.clear();
+  requests.store.reset();
+  device = opened;
+  changed.notify_all();
+  return opened;
+}
+
+void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
+  std::optional<std::uint32_t> sequence;
+  std::optional<std::uint32_t> refreshed_at_periods;
+  auto window_start = Clock::now(), last_pose = window_start;
+  std::uint64_t poses_in_window = 0;
+  std::uint32_t newest_periods = 0;
+  while (!stopping) {
+    if (const auto pose = served->read_pose(1ms)) {
+      last_pose = Clock::now();
+      ++poses_in_window;
+      take_pose(*pose, sequence);
+      follow_fault(*served, *pose, refreshed_at_periods ? std::optional(newest_periods) : std::nullopt);
+      newest_periods = pose->time_periods;
+      if (!refreshed_at_periods) refreshed_at_periods = newest_periods;
+    }
+    if (lost) throw Disconnected("The device was unplugged. Connect it again.");
+    send_requests(*served);
+    served->keep_alive();
+    const auto now = Clock::now();
+    if (now - window_start >= rate_window) {
+      const std::lock_guard lock(mutex);
+      state.pose_rate_Hz =
+          static_cast<double>(poses_in_window) / std::chrono::duration<double>(now - window_start).count();
+      state.scope_frames_malformed = served->malformed_scope_frames();
+      if (now - last_pose > silence_limit) state.message = "The device is connected but silent: it is paused or stuck.";
+      window_start = now;
+      poses_in_window = 0;
+    }
+    if (refreshed_at_periods && newest_periods - *refreshed_at_periods >= refresh_periods) {
+      refresh_parameters(*served);
+      refresh_information(*served);
+      refresh_store(*served);
+      refreshed_at_periods = newest_periods;
+      const std::lock_guard lock(mutex);
+      if (scope_denied) requests.select = true;  // the other program may be done
+    }
+  }
+  send_requests(*served);  // what was asked for last, such as to put parameters back
+}
+
+void Session::Implementation::take_pose(const protocol::PoseReport& pose, std::optional<std::uint32_t>& sequence) {
+  const std::lock_guard lock(mutex);
+  newest = pose;
+  ++state.poses_received;
+  if (sequence) state.poses_lost += pose.sequence - *sequence - 1;
+  sequence = pose.sequence;
+}
+
+void Session::Implementation::follow_fault(Device& from, const protocol::PoseReport& pose,
+                                           std::optional<std::uint32_t> before_periods) {
+  std::optional<NoticedFault> known;
+  {
+    const std::lock_guard lock(mutex);
+    known = state.fault;
+  }
+  if (pose.state == protocol::State::fault) {
+    if (known && known->fault == pose.fault) return;
+    known = {pose.fault, noticed_at_periods(from, pose, before_periods)};
+  } else if (!known) {
+    return;
+  } else {
+    known.reset();
+  }
+  const std::lock_guard lock(mutex);
+  state.fault = known;
+}
+
+std::uint32_t Session::Implementation::noticed_at_periods(Device& by, const protocol::PoseReport& pose,
+                                                          std::optional<std::uint32_t> before_periods) {
+  const auto comes_after = [](std::uint32_t a, std::uint32_t b) { return static_cast<std::int32_t>(a - b) > 0; };
+  try {
+    const protocol::BlackBoxReport box = by.black_box();
+    if (box.fault == pose.fault && box.is_restart == 0 && !comes_after(box.fault_periods, pose.time_periods) &&
+        (!before_periods || comes_after(box.fault_periods, *before_periods)))
+      return box.fault_periods;
+  } catch (const Stalled&) {  // then the pose tells it as well as one can
+  }
+  return pose.time_periods;
+}
+
+void Session::Implementation::send_requests(Device& to) {
+  Requests taken;
+  std::vector<protocol::Signal> selection;
+  {
+    const std::lock_guard lock(mutex);
+    taken = std::exchange(requests, {});
+    selection = signals;
+  }
+  auto& [restore_defaults, changes] = taken.parameters;
+  bool is_at_parameters = false;
+  try {
+    for (const auto& queued : taken.commands) {
+      if (queued.pulse)
+        to.send(queued.command, *queued.pulse);
+      else
+        to.send(queued.command);
+    }
+    if (taken.select) select(to, selection);
+    is_at_parameters = true;
+    if (restore_defaults) transact(to, [&] { return to.restore_default_parameters(); });
+    restore_defaults = false;
+    if (!changes.empty()) transact(to, [&to, &wanted = changes] { return to.set_parameters(wanted); });
+  } catch (const Stalled&) {
+    // Sent again, it would be refused again; what stands behind it was not sent yet.
+    if (is_at_parameters && !std::exchange(restore_defaults, false)) changes.clear();
+    put_back(std::move(taken.parameters));
+    throw;
+  } catch (const Error&) {
+    put_back(std::move(taken.parameters));
+    throw;
+  }
+  if (taken.store) carry_out(to, *taken.store);
+}
+
+void Session::Implementation::put_back(ParameterRequests unsent) {
+  const std::lock_guard lock(mutex);
+  requests.parameters.put_before(std::move(unsent));
+}
+
+void Session::Implementation::carry_out(Device& by, StoreTask task) {
+  std::optional<std::string> problem;
+  try {
+    if (task == StoreTask::store)
+      device::store_parameters(by);
+    else
+      device::factory_reset(by);
+  } catch (const Disconnected&) {
+    throw;
+  } catch (const Error& error) {
+    problem = error.what();
+  }
+  const auto store = read_store(by);
+  const auto held = by.parameters();
+  const std::lock_guard lock(mutex);
+  state.store = store;
+  state.store_problem = problem;
+  state.is_storing = requests.store.has_value();  // asked for meanwhile
+  if (parameter_set == held) return;
+  parameter_set = held;
+  ++revision;
+}
+
+void Session::Implementation::select(Device& to, const std::vector<protocol::Signal>& selection) {
+  std::optional<std::string> denial;
+  try {
+    to.select_signals(selection);
+  } catch (const InUse& error) {  // all but the scope goes on
+    denial = error.what();
+  }
+  const std::lock_guard lock(mutex);
+  if (denial || scope_denied) state.message = denial.value_or(connected_message());
+  scope_denied = denial.has_value();
+}
+
+void Session::Implementation::refresh_parameters(Device& from) {
+  const auto held = from.parameters();
+  const std::lock_guard lock(mutex);
+  if (parameter_set == held) return;
+  parameter_set = held;
+  ++revision;
+}
+
+void Session::Implementation::refresh_information(Device& from) {
+  const auto information = from.information();
+  const std::lock_guard lock(mutex);
+  state.information = information;
+}
+
+void Session::Implementation::refresh_store(Device& from) {
+  auto store = *state.store;  // which this thread alone changes
+  const auto report = from.store_report();
+  if (report.commands == store.report.commands && report.records_written == store.report.records_written)
+    store.report = report;
+  else
+    store = read_store(from);
+  const std::lock_guard lock(mutex);
+  state.store = store;
+}
+
+void Session::Implementation::set_connection(Connection connection, const std::string& message) {
+  const std::lock_guard lock(mutex);
+  state.connection = connection;
+  state.message = message;
+}
+
+void Session::Implementation::forget_device() {
+  const std::lock_guard lock(mutex);
+  device.reset();
+  state.information.reset();
+  state.store.reset();
+  state.is_storing = false;
+  newest_reconnection.reset();
+  state.applied_at_periods.reset();
+  state.fault.reset();
+  state.pose_rate_Hz = 0;
+  newest.reset();
+  if (state.connection == Connection::connected) state.connection = Connection::searching;
+  lost = false;
+}
+
+void Session::Implementation::ask(StoreTask task) {
+  if (device == nullptr) return;
+  requests.store = task;
+  state.is_storing = true;
+  state.store_problem.reset();
+}
+
+// ---- the scope thread ----------------------------------------------------------------------------------
+
+void Session::Implementation::scope_loop() {
+  while (!stopping) {
+    std::shared_ptr<Device> reading;
+    std::function<void(const ScopeSamples&)> receive;
+    {
+      std::unique_lock lock(mutex);
+      changed.wait_for(lock, search_interval, [&] { return stopping || device != nullptr; });
+      reading = device;
+      receive = receive_scope;
+    }
+    if (reading == nullptr || lost) {
+      std::this_thread::sleep_for(1ms);
+      continue;
+    }
+    try {
+      if (const auto samples = reading->read_scope(20ms)) {
+        {
+          const std::lock_guard lock(mutex);
+          state.scope_samples_received += samples->count;
+          state.scope_samples_lost += samples->lost_before;
+        }
+        if (receive) receive(*samples);
+      }
+    } catch (const Error&) {
+      const std::lock_guard lock(mutex);
+      if (device == reading) lost = true;  // the report thread reconnects, unless it has done so already
+    }
+  }
+}
+
+}  // namespace inkwell::device

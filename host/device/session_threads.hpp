@@ -1,0 +1,103 @@
+// The two threads of a session and what they share.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include <device/session.hpp>
+
+#include "parameter_requests.hpp"
+
+namespace inkwell::device {
+
+struct QueuedCommand {
+  protocol::Command command;
+  std::optional<protocol::TestPulse> pulse;
+};
+
+enum class StoreTask : std::uint8_t { store, forget };
+
+/// What the caller asked for and the report thread has not sent yet.
+struct Requests {
+  std::vector<QueuedCommand> commands;
+  ParameterRequests parameters;
+  std::optional<StoreTask> store;
+  bool select = false;
+};
+
+struct Session::Implementation {
+  explicit Implementation(std::function<std::optional<Endpoint>()> find_device);
+  ~Implementation();
+
+  // ---- the report thread: connects, reads poses, sends what was asked for --------------------------------
+
+  void report_loop();
+  std::shared_ptr<Device> connect(const Endpoint& endpoint);
+  void serve(const std::shared_ptr<Device>& served);
+  void take_pose(const protocol::PoseReport& pose, std::optional<std::uint32_t>& sequence);
+  /// `before_periods`: of the pose before this one, if there was one.
+  void follow_fault(Device& from, const protocol::PoseReport& pose, std::optional<std::uint32_t> before_periods);
+  /// The black box knows the very period, unless it still keeps an older fault.
+  static std::uint32_t noticed_at_periods(Device& by, const protocol::PoseReport& pose,
+                                          std::optional<std::uint32_t> before_periods);
+  void send_requests(Device& to);
+  /// For the next connection. What was asked for since comes after it.
+  void put_back(ParameterRequests unsent);
+  /// What the board refuses is told to the user, and no reason to give the connection up.
+  void carry_out(Device& by, StoreTask task);
+  void select(Device& to, const std::vector<protocol::Signal>& selection);
+  template <class Transaction>
+  void transact(Device& with, Transaction transaction) {
+    std::optional<std::string> refused;
+    std::optional<std::uint32_t> applied_at_periods;
+    try {
+      applied_at_periods = transaction().applied_at_periods;
+    } catch (const Refused& error) {
+      refused = error.what();
+    }
+    const auto held = with.parameters();
+    const std::lock_guard lock(mutex);
+    newest_refusal = refused;
+    if (applied_at_periods) state.applied_at_periods = applied_at_periods;
+    parameter_set = held;
+    ++revision;
+  }
+  void refresh_parameters(Device& from);
+  /// Counters and the motors' heat change; the rest of it stays.
+  void refresh_information(Device& from);
+  /// The stored values change with the count of records only.
+  void refresh_store(Device& from);
+  std::string connected_message() const { return "Connected to " + state.information->serial_number + "."; }
+  void set_connection(Connection connection, const std::string& message);
+  void forget_device();
+  /// With the mutex held. Without a device it would be carried out on whichever comes.
+  void ask(StoreTask task);
+
+  // ---- the scope thread ----------------------------------------------------------------------------------
+
+  void scope_loop();
+
+  std::function<std::optional<Endpoint>()> find;
+  mutable std::mutex mutex;
+  std::condition_variable changed;
+  std::atomic<bool> stopping = false;
+  std::atomic<bool> lost = false;
+  std::shared_ptr<Device> device;
+  SessionStatus state;
+  std::optional<protocol::PoseReport> newest;
+  std::optional<protocol::ParameterSet> parameter_set;
+  std::uint64_t revision = 0;
+  std::string served_serial_number;  ///< of the device that is connected, or was last
+  std::optional<Reconnection> newest_reconnection;
+  std::uint64_t reconnections = 0;
+  std::optional<std::string> newest_refusal;
+  Requests requests;
+  std::vector<protocol::Signal> signals;
+  bool scope_denied = false;  ///< another program has it
+  std::function<void(const ScopeSamples&)> receive_scope;
+  std::thread report_thread, scope_thread;  ///< last: they use all of the above
+};
+
+}  // namespace inkwell::device
