@@ -194,6 +194,23 @@ TEST_CASE("a request to store does not reach the device that comes") {
   CHECK_FALSE(was_sent(Command::store_parameters));
 }
 
+TEST_CASE("a request to store that waits while the connection breaks is forgotten with it") {
+  FakeUsbipServer server;
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  server.on_break = [&] { session.store_parameters(); };
+  server.transactions_to_break_at = 1;
+  session.set_parameters({{Parameter::force_limit_N, 2.5f}});
+  REQUIRE(eventually([&] { return server.imports() == 2 && server.transactions() == 1; }));
+  CHECK_FALSE(session.status().is_storing);
+  session.send(Command::clear_fault);
+  const auto was_sent = [&](Command command) {
+    return std::ranges::any_of(server.commands(), [&](const auto& each) { return each.command == command; });
+  };
+  REQUIRE(eventually([&] { return was_sent(Command::clear_fault); }));
+  CHECK_FALSE(was_sent(Command::store_parameters));
+}
+
 TEST_CASE("after a loss a session tells what the device held before and what it holds now") {
   FakeUsbipServer server;
   std::atomic<bool> is_there = true;
