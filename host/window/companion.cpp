@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <bars/connection_card.hpp>
+#include <bars/return_card.hpp>
 #include <frame/picture_digest.hpp>
 #include <frame/widgets.hpp>
 
@@ -127,6 +128,7 @@ void Companion::follow_parameters(const DeviceView& view, double now_s) {
   if (!refusal.empty() && refusal != seen_refusal_) editor_.refused();
   seen_refusal_ = refusal;
   editor_.forget_unconfirmed(now_s);
+  returned_.follow(view, now_s);
 }
 
 StatusBarOutcome Companion::draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner) {
@@ -151,13 +153,23 @@ bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
   scene_ = layout.scene;
   const bool asks_for_force =
       scene_pane_.draw(scene_.place, scene_.size,
-                       {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr, now_s, replays});
+                       {style_, pose_, shown_parameters(), hand_ && !replays ? &*hand_ : nullptr, now_s, replays,
+                        !returned_.waits_for_user()});
   if (replays) {
     replay_bar_.draw(layout.replay.place, layout.replay.size, style_, scope_pane_);
   } else if (!desk_.view().connected()) {
     draw_connection_card(layout.middle_of_scene(), style_, desk_.view());
+  } else if (returned_.is_shown()) {
+    draw_returned_values(layout, now_s);
   }
   return asks_for_force;
+}
+
+void Companion::draw_returned_values(const WindowLayout& layout, double now_s) {
+  const ReturnChoice choice = draw_return_card(layout.scene.place, layout.scene.size, style_, returned_,
+                                               protocol::force_is_on(desk_.view().state()));
+  if (choice == ReturnChoice::send) editor_.apply("values of before", returned_.changes_back(), now_s);
+  if (choice == ReturnChoice::keep) returned_.dismiss();
 }
 
 void Companion::draw_column(const WindowLayout& layout, ImVec2 window, double now_s) {

@@ -10,6 +10,7 @@
 #include <bars/status_bar.hpp>
 #include <device_desk/device_desk.hpp>
 #include <device_desk/parameter_editor.hpp>
+#include <device_desk/returned_values.hpp>
 #include <frame/frame_loop.hpp>
 #include <frame/style.hpp>
 #include <panes/pane_column.hpp>
@@ -49,6 +50,7 @@ class Companion final : public FrameContent {
   StatusBarOutcome draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner);
   /// True if the user asks there for the force.
   bool draw_scene(const WindowLayout& layout, double now_s);
+  void draw_returned_values(const WindowLayout& layout, double now_s);
   void draw_column(const WindowLayout& layout, ImVec2 window, double now_s);
   void draw_scope(const WindowLayout& layout);
   void judge_motion();
@@ -67,6 +69,7 @@ class Companion final : public FrameContent {
   DeviceDesk desk_;
   std::optional<MouseHand> hand_;
   ParameterEditor editor_;
+  ReturnedValues returned_;
   StatusBar status_bar_;
   ReplayBar replay_bar_;
   KeyHelp key_help_;

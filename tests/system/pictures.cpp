@@ -116,6 +116,38 @@ TEST_CASE("pictures: before the force is on, a number that is typed, and the key
   rig.picture(picture_file("keys"));
 }
 
+TEST_CASE("pictures: values that are not stored, the questions, and a reconnection" * doctest::skip()) {
+  for (const std::string theme : {"dark", "light"})
+    for (const bool is_small : {false, true}) {
+      WindowRig rig({"--layout", "paper", "--theme", theme, "--width", is_small ? "900" : "1280", "--height",
+                     is_small ? "560" : "800"});
+      const std::string name = "store " + theme + (is_small ? " small" : "");
+      const auto photograph = [&](const std::string& what) {
+        rig.move_to(aside);
+        rig.picture(picture_file(name + ", " + what));
+      };
+      rig.click("tuning/Stiff");
+      rig.look_until("they wait", [](const Sight& now) { return now.says("3 values are not stored"); });
+      photograph("waiting");
+      rig.switch_force_on();
+      photograph("force on");
+      rig.press_key("F12");
+      rig.click("tuning/Factory reset");
+      rig.picture(picture_file(name + ", question"));
+      rig.click("factory reset/Cancel");
+      rig.control.reset();
+      rig.look_until("it is back", [](const Sight& now) { return now.says("Connected again, with"); });
+      photograph("again");
+      rig.click("returned/Send the old values");
+      rig.click("tuning/Store on the board");
+      rig.look_until("they are stored", [](const Sight& now) { return now.says("All values are stored"); });
+      photograph("stored");
+      rig.control.reset();
+      rig.look_until("it is back", [](const Sight& now) { return now.says("the same values as before"); });
+      photograph("the same");
+    }
+}
+
 TEST_CASE("pictures: a guide with its result" * doctest::skip()) {
   WindowRig rig({"--layout", "paper"});
   rig.click("tabs/Guides");
@@ -128,6 +160,10 @@ TEST_CASE("pictures: a guide with its result" * doctest::skip()) {
   });
   rig.move_to(aside);
   rig.picture(picture_file("guide"));
+  rig.click("guides/Apply");
+  rig.look_until("it offers to store", [](const Sight& now) { return now.has("guides/Store on the board"); });
+  rig.move_to(aside);
+  rig.picture(picture_file("guide, applied"));
 }
 
 TEST_CASE("pictures: faults put into the simulation, dark and light, large and small" * doctest::skip()) {

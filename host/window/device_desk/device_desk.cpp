@@ -56,6 +56,7 @@ void DeviceDesk::open_session() {
 }
 
 const DeviceView& DeviceDesk::refresh() {
+  view_.reconnection = session_->reconnection();  // first: what is read after it is at least as new
   view_.status = session_->status();
   view_.pose = view_.connected() ? session_->newest_pose() : std::nullopt;
   view_.refusal = session_->refusal();

@@ -170,6 +170,11 @@ std::string label_of(const protocol::ParameterInfo& info) {
   return label;
 }
 
+std::string full_label_of(protocol::ParameterInfo info) {
+  info.group = {};
+  return label_of(info);
+}
+
 int decimals_of(const protocol::ParameterInfo& info) {
   if (info.kind != protocol::ParameterKind::real) return 0;
   const float resolution = std::max(info.maximum - info.minimum, 1e-6f) / 10'000.0f;

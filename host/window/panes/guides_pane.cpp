@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <device/parameter_file.hpp>
+#include <device_desk/stored_values.hpp>
 #include <frame/inspection.hpp>
 #include <frame/value_field.hpp>
 #include <frame/widgets.hpp>
@@ -19,6 +20,8 @@
 #include <guides/simulated_user.hpp>
 #include <panes/pane.hpp>
 #include <plot/plot.hpp>
+
+#include "store_bar.hpp"
 
 namespace inkwell::window {
 namespace {
@@ -57,6 +60,7 @@ class GuidesPane final : public Pane {
   void draw_step(const Style& style);
   void draw_checks(const Style& style);
   void draw_result(const Style& style);
+  void draw_what_lasts(const Style& style) const;
   void draw_curves(const Style& style);
   void draw_buttons(const Style& style);
   guides::SessionPort port();
@@ -216,6 +220,7 @@ void GuidesPane::draw_result(const Style& style) {
   const bool applied = guide_->applied() == guides::Applied::yes;
   wrapped_text(outcome_colour(guide_->phase(), palette),
                applied ? "Finished, and the device holds the proposals." : guide_->outcome());
+  if (applied) draw_what_lasts(style);
   draw_curves(style);
   ImGui::Dummy({0, style.points(4)});
   for (const auto& sentence : guide_->findings().sentences) wrapped_text(palette.text, sentence);
@@ -229,6 +234,18 @@ void GuidesPane::draw_result(const Style& style) {
                              device::format_value(proposal.parameter, proposal.held), proposal.reason));
   }
   if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
+}
+
+/// Of what was applied.
+void GuidesPane::draw_what_lasts(const Style& style) const {
+  const Palette& palette = *style.palette;
+  const DeviceView& view = desk_.view();
+  if (view.status.store_problem)
+    wrapped_text(palette.caution, *view.status.store_problem);
+  else if (not_stored(view).empty())
+    wrapped_text(palette.text_quiet, "It is stored on the board, and outlives its power.");
+  else
+    wrapped_text(palette.caution, "It lasts until the board loses its power, unless you store it.");
 }
 
 void GuidesPane::draw_curves(const Style& style) {
@@ -270,6 +287,12 @@ void GuidesPane::draw_buttons(const Style& style) {
     ImGui::EndDisabled();
     ImGui::SameLine();
     if (button("Cancel", half)) cancel();
+    return;
+  }
+  if (guide_->applied() == guides::Applied::yes) {
+    store_button(desk_, half, style);
+    ImGui::SameLine();
+    if (button("Back", half)) guide_.reset();
     return;
   }
   const bool applicable = guide_->phase() == Phase::finished && !guide_->findings().proposals.empty() &&

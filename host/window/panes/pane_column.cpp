@@ -12,6 +12,7 @@
 #include <panes/pane_stream.hpp>
 
 #include "registry.hpp"
+#include "store_bar.hpp"
 
 namespace inkwell::window {
 
@@ -61,6 +62,14 @@ bool draw_tab(const Pane& pane, bool is_shown, float width, const Style& style) 
   return pressed;
 }
 
+/// In the corner of the tab that was drawn last.
+void mark_values_to_store(const Style& style) {
+  const ImVec2 corner{ImGui::GetItemRectMax().x, ImGui::GetItemRectMin().y};
+  not_stored_mark({corner.x - style.points(7), corner.y + style.points(7)}, style);
+  help_on_hover("", "Values are not stored on the board. They last until it loses its power.", style);
+  note_item("values to store");
+}
+
 }  // namespace
 
 PaneColumn::PaneColumn(const PaneSurroundings& around) : panes_(make_panes(around)) {
@@ -105,6 +114,7 @@ float PaneColumn::draw_tabs(ImVec2 place, float width, const Style& style) {
   for (std::size_t i = 0; i < panes_.size(); ++i) {
     if (i > 0) ImGui::SameLine();
     if (draw_tab(*panes_[i], i == shown_, title_width(*panes_[i], style) + spare / count, style)) shown_ = i;
+    if (i != shown_ && panes_[i]->has_values_to_store()) mark_values_to_store(style);
   }
   end_pane();
   return height;

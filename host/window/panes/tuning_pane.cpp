@@ -11,11 +11,14 @@
 #include <fmt/format.h>
 
 #include <device/parameter_file.hpp>
+#include <device_desk/stored_values.hpp>
 #include <frame/file_chooser.hpp>
 #include <frame/inspection.hpp>
 #include <frame/value_field.hpp>
 #include <frame/widgets.hpp>
 #include <panes/pane.hpp>
+
+#include "store_bar.hpp"
 
 namespace inkwell::window {
 
@@ -71,11 +74,15 @@ bool reset_button(const Style& style) {
 class TuningPane final : public Pane {
  public:
   explicit TuningPane(const PaneSurroundings& around)
-      : desk_(around.desk), file_(around.parameters_file), to_send_(around.parameters_to_send) {}
+      : desk_(around.desk),
+        store_bar_(around.desk),
+        file_(around.parameters_file),
+        to_send_(around.parameters_to_send) {}
 
   std::string_view title() const override { return "Tuning"; }
   void follow(const PaneNews& news) override;
   void draw(const PaneFrame& frame) override;
+  bool has_values_to_store() const override { return !not_stored(desk_.view()).empty(); }
 
  private:
   enum class FileTask : std::uint8_t { load, save };
@@ -96,8 +103,10 @@ class TuningPane final : public Pane {
   void save(const std::filesystem::path& file, const ParameterEditor& editor);
 
   DeviceDesk& desk_;
-  std::filesystem::path& file_;    ///< loaded or saved last
-  std::filesystem::path to_send_;  ///< once a device is connected; empty: none any more
+  StoreBar store_bar_;
+  std::vector<Parameter> not_stored_;  ///< in this frame
+  std::filesystem::path& file_;        ///< loaded or saved last
+  std::filesystem::path to_send_;      ///< once a device is connected; empty: none any more
   ValueFields fields_;
   FileTask task_ = FileTask::load;
   FileChooser chooser_;
@@ -252,9 +261,12 @@ void TuningPane::draw_row(Parameter parameter, const PaneFrame& frame) {
   const std::string label = label_of(info);
   ImGui::AlignTextToFramePadding();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  if (changed)
-    ImGui::GetWindowDrawList()->AddCircleFilled({corner.x - style.points(7), corner.y + 0.5f * ImGui::GetFrameHeight()},
-                                                style.points(2.6f), packed(palette.accent));
+  const ImVec2 mark{corner.x - style.points(7), corner.y + 0.5f * ImGui::GetFrameHeight()};
+  const bool waits = std::ranges::find(not_stored_, parameter) != not_stored_.end();
+  if (waits)
+    not_stored_mark(mark, style);
+  else if (changed)
+    ImGui::GetWindowDrawList()->AddCircleFilled(mark, style.points(2.6f), packed(palette.accent));
   ImGui::PushClipRect(corner, {corner.x + label_width - style.points(4), corner.y + ImGui::GetFrameHeight()}, true);
   text(changed ? palette.text : palette.text_quiet, label);
   ImGui::PopClipRect();
@@ -343,7 +355,9 @@ void TuningPane::draw(const PaneFrame& frame) {
   ImGui::BeginDisabled(!frame.editor.known());
   draw_presets(frame);
   draw_messages(frame);
-  if (ImGui::BeginChild("parameters")) {
+  not_stored_ = frame.is_replay ? std::vector<Parameter>{} : not_stored(desk_.view());
+  const float store_height = frame.is_replay ? 0.0f : store_bar_.height(ImGui::GetContentRegionAvail().x, frame.style);
+  if (ImGui::BeginChild("parameters", {0, -store_height})) {
     std::string_view group;
     for (const protocol::ParameterInfo& info : protocol::known_parameters()) {
       if (info.group == group) continue;
@@ -353,6 +367,7 @@ void TuningPane::draw(const PaneFrame& frame) {
   }
   ImGui::EndChild();
   ImGui::EndDisabled();
+  if (!frame.is_replay) store_bar_.draw(frame.editor, frame.style, frame.now_s);
   draw_file_dialog(frame);
 }
 

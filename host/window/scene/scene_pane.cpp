@@ -254,7 +254,8 @@ void ScenePane::draw_tools(const ScenePaneInput& input) {
 }
 
 bool ScenePane::draw_force_offer(const ScenePaneInput& input) const {
-  if (input.is_replay || !input.pose || input.pose->state != protocol::State::ready) return false;
+  if (!input.offers_force || input.is_replay || !input.pose || input.pose->state != protocol::State::ready)
+    return false;
   const Style& style = input.style;
   const Palette& palette = *style.palette;
   constexpr const char* why = "The force is off: walls do not push back.";

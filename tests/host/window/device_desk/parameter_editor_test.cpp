@@ -136,6 +136,12 @@ TEST_CASE("labels are words without group and unit") {
   CHECK(window::label_of(protocol::info(Parameter::encoder_1_counts_per_turn)) == "Encoder 1 counts per turn");
 }
 
+TEST_CASE("where no heading names the group, the label does") {
+  CHECK(window::full_label_of(protocol::info(Parameter::box_minimum_x_m)) == "Box minimum x");
+  CHECK(window::full_label_of(protocol::info(Parameter::current_limit_1_A)) == "Current limit 1");
+  CHECK(window::full_label_of(protocol::info(stiffness)) == "Wall stiffness");
+}
+
 TEST_CASE("every preset lies in its parameters' ranges") {
   REQUIRE(window::presets().size() == 3);
   for (const window::Preset& preset : window::presets())

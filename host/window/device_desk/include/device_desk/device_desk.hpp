@@ -21,7 +21,8 @@ struct DeviceView {
   std::optional<protocol::ParameterSet> parameters;
   std::uint64_t parameters_revision = 0;
   std::optional<std::string> refusal;
-  std::vector<device::Endpoint> listed;  ///< devices found the last time one looked
+  std::optional<device::Reconnection> reconnection;  ///< the newest
+  std::vector<device::Endpoint> listed;              ///< devices found the last time one looked
   std::string list_error;
 
   bool connected() const { return status.connection == device::Connection::connected; }

@@ -74,6 +74,8 @@ class ParameterEditor {
 
 /// "wall_stiffness_N_per_m" -> "Wall stiffness": the name in words, without its group and the unit it ends in.
 std::string label_of(const protocol::ParameterInfo& info);
+/// The same with its group, for where no heading says that: "Box minimum x".
+std::string full_label_of(protocol::ParameterInfo info);
 
 /// Digits after the decimal point with which a value of this parameter is shown: about a ten-thousandth of its range.
 int decimals_of(const protocol::ParameterInfo& info);

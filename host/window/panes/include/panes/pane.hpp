@@ -76,6 +76,8 @@ class Pane {
   virtual PaneStream stream() const { return {}; }
   /// What goes on in it, in a few characters that stand on its tab; empty: nothing.
   virtual std::string running() const { return {}; }
+  /// Values wait in it to be stored: a mark stands on its tab while another pane is shown.
+  virtual bool has_values_to_store() const { return false; }
   /// Its picture changes by itself.
   virtual bool is_moving() const { return false; }
   /// The first pane of which this is true is shown at the start; the first of all if it is true of none.

@@ -21,7 +21,8 @@ struct ScenePaneInput {
   ParameterEditor& editor;
   MouseHand* hand;  ///< null without a virtual board
   double now_s;
-  bool is_replay = false;  ///< pose and parameters are a recording's
+  bool is_replay = false;    ///< pose and parameters are a recording's
+  bool offers_force = true;  ///< nothing else has to be settled first
 };
 
 class Renderer;

@@ -1,0 +1,153 @@
+// What the window says of values that are not stored on the board, and of those that are others after a loss.
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "window_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using protocol::Parameter;
+
+namespace {
+
+constexpr float stiff_N_per_m = 1500.0f;
+
+const auto says = [](const std::string& words) { return [words](const Sight& now) { return now.says(words); }; };
+
+/// The window sends one value of its own at its start; the preset makes that three.
+void make_stiff(WindowRig& rig) {
+  rig.look_until("one value waits", says("1 value is not stored"));
+  rig.click("tuning/Stiff");
+  rig.look_until("three values wait", says("3 values are not stored"));
+}
+
+void store(WindowRig& rig) {
+  rig.click("tuning/Store on the board");
+  rig.look_until("they are stored", says("All values are stored"));
+}
+
+/// As a power cut does, after which the arm is in its inkwell.
+void restart(WindowRig& rig) {
+  rig.control.reset();
+  rig.look_until("the window is connected again",
+                 [](const Sight& now) { return now.state() == "ready" && now.says("Connected again"); });
+}
+
+float stiffness_held_at_the_end(WindowRig& rig) {
+  return rig.close_and_read_parameters()[Parameter::wall_stiffness_N_per_m];
+}
+
+}  // namespace
+
+TEST_CASE("values that are not stored are counted; stored by a button, they outlive the power") {
+  WindowRig rig;
+  make_stiff(rig);
+  rig.click("tabs/Guides");
+  CHECK(rig.look().has("tabs/values to store"));
+  rig.click("tabs/Tuning");
+  CHECK_FALSE(rig.look().has("tabs/values to store"));
+  store(rig);
+  CHECK_FALSE(rig.look().can_click("tuning/Store on the board"));
+  rig.click("tabs/Guides");
+  CHECK_FALSE(rig.look().has("tabs/values to store"));
+  restart(rig);
+  CHECK(rig.look().says("The board holds the same values as before."));
+  rig.look_until("that is not told for ever", [](const Sight& now) { return !now.says("Connected again"); });
+  CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
+}
+
+TEST_CASE("nothing is stored or forgotten while the force is on, and the window says why") {
+  WindowRig rig;
+  make_stiff(rig);
+  rig.switch_force_on();
+  const std::string why = "They can be stored once the force is off.";
+  const auto sight = rig.look_until("it says why", says(why));
+  CHECK_FALSE(sight.can_click("tuning/Store on the board"));
+  CHECK_FALSE(sight.can_click("tuning/Factory reset"));
+  rig.press_key("F12");
+  rig.look_until("it can be stored", [](const Sight& now) { return now.can_click("tuning/Store on the board"); });
+  CHECK_FALSE(rig.look().says(why));
+}
+
+TEST_CASE("the stored values are given back by a question, as one step that can be undone") {
+  WindowRig rig;
+  rig.look_until("one value waits", says("1 value is not stored"));
+  CHECK_FALSE(rig.look().can_click("tuning/Restore"));  // nothing is stored
+  store(rig);
+  rig.click("tuning/Stiff");
+  rig.look_until("two values wait", says("2 values are not stored"));
+  rig.click("tuning/Restore");
+  CHECK(rig.look().says("Wall stiffness: 1500 N/m, stored is 800"));
+  rig.click("restore stored values/Cancel");
+  CHECK(rig.look().says("2 values are not stored"));
+  rig.click("tuning/Restore");
+  rig.click("restore stored values/Restore");
+  rig.look_until("they are given back", says("All values are stored"));
+  rig.click("tuning/Undo");
+  rig.look_until("the step is undone", says("2 values are not stored"));
+  CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
+}
+
+TEST_CASE("a factory reset asks first, then forgets what is stored and gives the defaults") {
+  WindowRig rig;
+  make_stiff(rig);
+  store(rig);
+  rig.click("tuning/Factory reset");
+  CHECK(rig.look().says("the calibration of this arm is lost"));
+  rig.click("factory reset/Cancel");
+  CHECK(rig.look().says("All values are stored"));
+  rig.click("tuning/Factory reset");
+  rig.click("factory reset/Forget and reset");
+  rig.look_until("the board has forgotten", says("All values are defaults"));
+  CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
+}
+
+TEST_CASE("after a loss of power the window lists what is not as before, and sends it only when asked") {
+  WindowRig rig;
+  make_stiff(rig);
+  restart(rig);
+  const auto sight = rig.look();
+  CHECK(sight.says("Connected again, with 3 other values"));
+  CHECK(sight.says("Wall stiffness"));
+  CHECK(sight.says("800, was 1500 N/m"));
+  rig.control.run(0.5);  // in which something that is sent by itself would arrive
+  rig.control.resume();
+  CHECK(rig.look().applied_at_periods() == 0);
+  SUBCASE("the old ones") {
+    rig.click("returned/Send the old values");
+    rig.look_until("nothing is left to say", [](const Sight& now) { return !now.has("returned/Keep these"); });
+    CHECK(rig.look().applied_at_periods() != 0);
+    CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
+  }
+  SUBCASE("these are kept") {
+    rig.click("returned/Keep these");
+    CHECK_FALSE(rig.look().has("returned/Keep these"));
+    CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
+  }
+}
+
+TEST_CASE("a cable that was out changes nothing, and the window says so") {
+  WindowRig rig;
+  make_stiff(rig);
+  rig.control.usb(false);
+  rig.look_until("the window notices", [](const Sight& now) { return !now.connected(); });
+  rig.control.usb(true);
+  rig.look_until("it says so", says("The board holds the same values as before."));
+  CHECK(stiffness_held_at_the_end(rig) == stiff_N_per_m);
+}
+
+TEST_CASE("a guide ends by offering to store what it has changed") {
+  WindowRig rig;
+  rig.click("tabs/Guides");
+  rig.click("guides/Current-loop tuning");
+  rig.look_until("the guide has finished", [&](const Sight& now) {
+    if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
+    return now.has("guides/Apply");
+  });
+  CHECK_FALSE(rig.look().has("guides/Store on the board"));
+  rig.click("guides/Apply");
+  rig.look_until("it offers to store", says("It lasts until the board loses its power, unless you store it."));
+  rig.click("guides/Store on the board");
+  rig.look_until("it is stored", says("It is stored on the board, and outlives its power."));
+}
