@@ -15,6 +15,10 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->type_name("FILE")
       ->needs(is_virtual_flag)
       ->group(group);
+  app.add_option("--flash", flash, "File of its flash, made if missing: keeps what is stored; --arm is sent over that")
+      ->type_name("FILE")
+      ->needs(is_virtual_flag)
+      ->group(group);
   app.add_option("--mode", mode, "exact: interrupts come at any instruction; fast: between blocks of them, and quicker")
       ->check(CLI::IsMember({"exact", "fast"}))
       ->needs(is_virtual_flag)
@@ -38,6 +42,7 @@ device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode 
   device::VirtualBoardOptions board;
   board.elf = elf;
   board.arm = arm;
+  board.flash = flash;
   board.mode = mode.empty()      ? default_mode
                : mode == "exact" ? device::SimulationMode::exact
                                  : device::SimulationMode::fast;

@@ -32,6 +32,7 @@ struct DeviceOptions {
   bool is_virtual = false;
   std::filesystem::path elf;
   std::filesystem::path arm;
+  std::filesystem::path flash;
   std::string mode;  ///< empty: the command's own choice
   std::uint64_t seed = 1;
   bool real_time = false;

@@ -174,6 +174,22 @@ class GuideRun {
   Clock::time_point heard_at_ = Clock::now();
 };
 
+/// Whether what was changed shall outlive the device's power. Without an answer it is told how.
+bool wants_to_store(const Consent& consent, bool json, const InterruptGuard& interrupt) {
+  if (consent.store) return true;
+  if (json || consent.yes || isatty(STDIN_FILENO) != 1) {
+    fmt::print(stderr, "The changes last until the board loses its power. `inkwell parameters store` keeps them.\n");
+    return false;
+  }
+  fmt::print(stderr, "Store the changes on the board, so that they outlive its power? Type yes: ");
+  std::fflush(stderr);
+  for (;;) {
+    if (const auto line = typed_line()) return *line == "yes" || *line == "y";
+    if (interrupt.was_asked_to_end()) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+}
+
 void print_result(const Guide& guide) {
   for (const auto& sentence : guide.findings().sentences) fmt::print("{}\n", sentence);
   if (guide.phase() != Phase::finished) return;
@@ -190,6 +206,7 @@ void print_result(const Guide& guide) {
 void Consent::add_to(CLI::App& command) {
   command.add_flag("--yes", yes, "Agree to every step beforehand: motors get current without a question");
   command.add_flag("--apply", apply, "Send the proposed changes to the device without a question");
+  command.add_flag("--store", store, "Store the device's parameters at the end, so that they outlive its power");
 }
 
 int run_guides(const DeviceOptions& options, const Consent& consent, const std::vector<const guides::Offer*>& offers,
@@ -198,6 +215,7 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
   GuidedDevice device(options);
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string failure;
+  bool has_changed = false;
   for (const guides::Offer* offer : offers) {
     Guide guide = offer->start(choices);
     GuideRun(device, guide, consent, options.json, interrupt).run();
@@ -205,12 +223,24 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
       results.push_back(to_json(guide));
     else
       print_result(guide);
+    has_changed |= guide.applied() == guides::Applied::yes;
     if (guide.phase() != Phase::finished) failure = guide.outcome();
     if (guide.applied() == guides::Applied::refused) failure = guide.refusal();
     if (guide.applied() == guides::Applied::sent)
       failure = "The device did not confirm the changes. Read them back with `inkwell parameters`.";
     if (!failure.empty()) break;
   }
+  bool is_stored = false;
+  if (failure.empty() && (has_changed || consent.store) && wants_to_store(consent, options.json, interrupt)) {
+    try {
+      device.store_parameters();
+      is_stored = true;
+      if (!options.json) fmt::print("The parameters are stored on the board and outlive its power.\n");
+    } catch (const device::Error& error) {
+      failure = error.what();
+    }
+  }
+  for (auto& result : results) result["stored"] = is_stored;
   if (options.json) fmt::print("{}\n", (offers.size() == 1 ? results[0] : results).dump(2));
   std::fflush(stdout);
   if (!failure.empty()) throw device::Error(failure);

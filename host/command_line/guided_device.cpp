@@ -80,4 +80,12 @@ void GuidedDevice::carry_out(const guides::UserTask& task) {
   if (user_) user_->advance(task);
 }
 
+void GuidedDevice::store_parameters() {
+  session_->store_parameters();
+  while (session_->status().is_storing) std::this_thread::sleep_for(5ms);
+  const auto status = session_->status();
+  if (status.connection != device::Connection::connected) throw device::Error(status.message);
+  if (status.store_problem) throw device::Error(*status.store_problem);
+}
+
 }  // namespace inkwell::command_line

@@ -27,6 +27,8 @@ class GuidedDevice {
   /// Those that came since the last call.
   std::vector<device::ScopeSamples> take_frames();
   void carry_out(const guides::UserTask& task);
+  /// Has the board store its parameters. Throws device::Error with its sentence if it does not.
+  void store_parameters();
 
  private:
   void wait_for_device();

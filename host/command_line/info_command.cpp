@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <device/board_store.hpp>
 #include <device/fault_text.hpp>
 #include <protocol/reports.hpp>
 
@@ -22,7 +23,8 @@ ordered_json law_signals(const device::ForceLaw& law) {
   return json;
 }
 
-ordered_json to_json(const device::Information& information, const std::optional<protocol::PoseReport>& pose) {
+ordered_json to_json(const device::Information& information, const protocol::StoreReport& store,
+                     const std::optional<protocol::PoseReport>& pose) {
   const auto& report = information.report;
   ordered_json json{{"serial_number", information.serial_number},
                     {"firmware_version", information.firmware_version},
@@ -39,7 +41,9 @@ ordered_json to_json(const device::Information& information, const std::optional
                     {"force_reports_late", report.force_reports_late},
                     {"force_reports_refused", report.force_reports_refused},
                     {"reset_cause", report.reset_cause},
-                    {"motor_heat", report.motor_heat}};
+                    {"motor_heat", report.motor_heat},
+                    {"stored", info(store.contents).name},
+                    {"not_stored", store.differing}};
   if (const auto& law = information.force_law)
     json["force_law"] = {{"name", law->name}, {"help", law->help}, {"signals", law_signals(*law)}};
   if (pose) {
@@ -50,7 +54,8 @@ ordered_json to_json(const device::Information& information, const std::optional
   return json;
 }
 
-void print(const device::Information& information, const std::optional<protocol::PoseReport>& pose) {
+void print(const device::Information& information, const protocol::StoreReport& store,
+           const std::optional<protocol::PoseReport>& pose) {
   const auto& report = information.report;
   const double cycles_per_period = static_cast<double>(report.processor_clock_Hz) / std::max(1u, report.servo_rate_Hz);
   fmt::print("serial number       {}\n", information.serial_number);
@@ -70,6 +75,8 @@ void print(const device::Information& information, const std::optional<protocol:
              report.force_reports_lost, report.force_reports_late, report.force_reports_refused);
   fmt::print("motor heat          {:.0f} %, {:.0f} %, {:.0f} % of what the continuous current leads to\n",
              100.0 * report.motor_heat[0], 100.0 * report.motor_heat[1], 100.0 * report.motor_heat[2]);
+  fmt::print("stored parameters   {}{}\n", info(store.contents).meaning,
+             store.differing == 0 ? "" : fmt::format(" {} held values are others.", store.differing));
   if (!pose) {
     fmt::print("state               unknown: the device sends no pose\n");
     return;
@@ -90,10 +97,11 @@ void add_info_command(const Place& place) {
       const auto connection = connect(options);
       const auto pose = connection.device->read_pose(500ms);
       const auto information = connection.device->information();
+      const auto store = connection.device->store_report();
       if (options.json)
-        fmt::print("{}\n", to_json(information, pose).dump(2));
+        fmt::print("{}\n", to_json(information, store, pose).dump(2));
       else
-        print(information, pose);
+        print(information, store, pose);
       return 0;
     };
   });

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <device/board_store.hpp>
 #include <device/parameter_file.hpp>
 
 #include "help.hpp"
+#include "store_commands.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -18,39 +20,50 @@ using nlohmann::ordered_json;
 using protocol::Parameter;
 using protocol::ParameterSet;
 
-ordered_json to_json(Parameter parameter, float value) {
+ordered_json to_json(Parameter parameter, float value, float stored) {
   const auto& row = info(parameter);
-  return {{"id", row.id},     {"name", row.name},       {"value", value},         {"default", row.default_value},
-          {"unit", row.unit}, {"minimum", row.minimum}, {"maximum", row.maximum}, {"group", row.group},
-          {"help", row.help}};
+  return {{"id", row.id},       {"name", row.name}, {"value", value},         {"default", row.default_value},
+          {"stored", stored},   {"unit", row.unit}, {"minimum", row.minimum}, {"maximum", row.maximum},
+          {"group", row.group}, {"help", row.help}};
+}
+
+void explain_marks(std::size_t not_stored) {
+  fmt::print("\n* differs from the default of this companion\n");
+  if (not_stored == 0)
+    fmt::print("The board's next start gives every parameter the value that it has now.\n");
+  else
+    fmt::print("! {} {} not stored, and lost with the board's power unless `inkwell parameters store` keeps {}\n",
+               not_stored, not_stored == 1 ? "value is" : "values are", not_stored == 1 ? "it" : "them");
 }
 
 int list(const DeviceOptions& options) {
   const auto connection = connect(options);
   const ParameterSet held = connection.device->parameters();
+  const device::BoardStore store = read_store(*connection.device);
   ordered_json json = ordered_json::array();
   std::string_view group;
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
     const auto parameter = static_cast<Parameter>(i);
     const auto& row = info(parameter);
     if (options.json) {
-      json.push_back(to_json(parameter, held.values[i]));
+      json.push_back(to_json(parameter, held.values[i], store.at_next_start.values[i]));
       continue;
     }
     if (row.group != group)
-      fmt::print("{}{:<34} {:>14}   {:>12}   {:<24} {}\n", group.empty() ? "" : "\n", row.group, "value", "default",
+      fmt::print("{}{:<34} {:>14}    {:>12}   {:<24} {}\n", group.empty() ? "" : "\n", row.group, "value", "default",
                  "range", "unit");
     group = row.group;
     const std::string range =
         fmt::format("{} to {}", format_value(parameter, row.minimum), format_value(parameter, row.maximum));
-    fmt::print("  {:<32} {:>14} {} {:>12}   {:<24} {}\n", row.name, format_value(parameter, held.values[i]),
-               held.values[i] == row.default_value ? ' ' : '*', format_value(parameter, row.default_value), range,
-               row.unit);
+    fmt::print("  {:<32} {:>14} {}{} {:>12}   {:<24} {}\n", row.name, format_value(parameter, held.values[i]),
+               held.values[i] == row.default_value ? ' ' : '*',
+               held.values[i] == store.at_next_start.values[i] ? ' ' : '!', format_value(parameter, row.default_value),
+               range, row.unit);
   }
   if (options.json)
     fmt::print("{}\n", json.dump(2));
   else
-    fmt::print("\n* differs from the default of this companion\n");
+    explain_marks(not_stored(held, store).size());
   return 0;
 }
 
@@ -158,7 +171,9 @@ int show_differences(const DeviceOptions& options, const std::string& file) {
 
 void add_parameters_command(const Place& place) {
   auto* command = place.program.add_subcommand(
-      "parameters", "Every parameter with value, default, range and unit; or one of the commands below");
+      "parameters",
+      "Every parameter with value, default, range and unit; or one of the commands below\n"
+      "Values last until the board loses its power, unless `inkwell parameters store` keeps them.");
   command->require_subcommand(0, 1);
   const DeviceOptions& options = place.device;
   command->callback([place, command] {
@@ -168,7 +183,8 @@ void add_parameters_command(const Place& place) {
   add_examples(*command,
                "inkwell parameters\n"
                "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
-               "inkwell parameters save soft.toml");
+               "inkwell parameters save soft.toml\n"
+               "inkwell parameters store");
 
   const auto words = std::make_shared<std::vector<std::string>>();
   const auto file = std::make_shared<std::string>();
@@ -209,6 +225,7 @@ void add_parameters_command(const Place& place) {
       [&options, file] { return send(options, connect(options), device::arm_parameters(*file)); })
       ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")
       ->required();
+  add_store_commands(*command, place);
 }
 
 }  // namespace inkwell::command_line

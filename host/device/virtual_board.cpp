@@ -64,6 +64,7 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
                                      "--seed",
                                      std::to_string(options.seed)};
   if (!options.arm.empty()) arguments.insert(arguments.end(), {"--arm", options.arm.string()});
+  if (!options.flash.empty()) arguments.insert(arguments.end(), {"--flash", options.flash.string()});
   if (options.host_clock_ppm != 0.0)
     arguments.insert(arguments.end(), {"--host-clock-ppm", std::to_string(options.host_clock_ppm)});
   if (options.real_time) arguments.push_back("--real-time");

@@ -27,6 +27,7 @@ struct VirtualBoardOptions {
   std::filesystem::path program;  ///< empty: that of this installation or build
   std::filesystem::path elf;      ///< empty: the one that is flashed, likewise
   std::filesystem::path arm;      ///< empty: the Omni
+  std::filesystem::path flash;    ///< file of its flash, made if it is missing; empty: it forgets all at its end
   std::filesystem::path profile;  ///< file for the longest interrupt, written at the board's end; empty: none
   SimulationMode mode = SimulationMode::fast;
   CyclePricing pricing = CyclePricing::likely;

@@ -1,0 +1,186 @@
+// What the board keeps of its parameters over its power, from a terminal: `inkwell parameters store` and its
+// neighbours, beside a board that is switched off and on.
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <device/virtual_board.hpp>
+#include <protocol/parameters.hpp>
+#include <protocol/store.hpp>
+
+#include "program.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+namespace {
+
+/// A board with a flash that stays, and the companion beside it.
+struct RememberingBoard {
+  TemporaryDirectory directory;
+  std::string flash = directory.file("flash.bin");
+  device::VirtualBoard board{{.flash = flash}};
+  device::ControlClient control = board.control();
+
+  RememberingBoard() { wait_for_device(); }
+
+  void wait_for_device() {
+    while (!board.find()) control.run(0.1);
+    control.run(0.5);
+    control.resume();
+  }
+  void restart() {
+    control.reset();
+    control.run(0.05);
+    wait_for_device();
+  }
+  ProgramResult run(std::vector<std::string> words) {
+    words.insert(words.end(), {"--usbip", fmt::format("127.0.0.1:{}", board.usbip_port())});
+    return run_program("inkwell", words);
+  }
+  nlohmann::json json(std::vector<std::string> words) {
+    words.push_back("--json");
+    const auto result = run(words);
+    INFO(result.err);
+    REQUIRE(result.exit_code == 0);
+    return nlohmann::json::parse(result.out);
+  }
+  void done(const std::vector<std::string>& words) {
+    const auto result = run(words);
+    INFO(result.err);
+    REQUIRE(result.exit_code == 0);
+  }
+  double stiffness() { return json({"parameters", "get", "wall_stiffness_N_per_m"}).at("wall_stiffness_N_per_m"); }
+};
+
+const double default_stiffness =
+    static_cast<double>(protocol::info(protocol::Parameter::wall_stiffness_N_per_m).default_value);
+
+}  // namespace
+
+TEST_CASE("values last until the board's power goes, unless they are stored") {
+  RememberingBoard board;
+  board.done({"parameters", "set", "wall_stiffness_N_per_m=600"});
+  board.restart();
+  CHECK(board.stiffness() == default_stiffness);
+
+  board.done({"parameters", "set", "wall_stiffness_N_per_m=600"});
+  CHECK(board.run({"parameters", "store"}).out == "The parameters are stored on the board and outlive its power.\n");
+  board.restart();
+  CHECK(board.stiffness() == 600);
+
+  board.done({"parameters", "set", "wall_stiffness_N_per_m=700"});
+  board.done({"parameters", "restore"});
+  CHECK(board.stiffness() == 600);
+}
+
+TEST_CASE("what is not stored is marked, counted and listed with the value that is") {
+  RememberingBoard board;
+  CHECK(board.run({"parameters"}).out.find("next start gives every parameter the value that it has now") !=
+        std::string::npos);
+  board.done({"parameters", "set", "wall_stiffness_N_per_m=600", "wall_damping_Ns_per_m=3"});
+  board.done({"parameters", "store"});
+  board.done({"parameters", "set", "wall_stiffness_N_per_m=700"});
+
+  const auto listed = board.run({"parameters"}).out;
+  const auto row_of = [&](const std::string& name) {
+    const auto begin = listed.find("  " + name + " ");
+    REQUIRE(begin != std::string::npos);
+    return listed.substr(begin, listed.find('\n', begin) - begin);
+  };
+  CHECK(row_of("wall_stiffness_N_per_m").find("700.0 *!") != std::string::npos);
+  CHECK(row_of("wall_damping_Ns_per_m").find("3.0 * ") != std::string::npos);
+  CHECK(listed.find("! 1 value is not stored") != std::string::npos);
+  for (const auto& row : board.json({"parameters"}))
+    if (row.at("name") == "wall_stiffness_N_per_m") CHECK(row.at("stored") == 600);
+
+  const auto stored = board.json({"parameters", "stored"});
+  CHECK(stored.at("contents") == "parameters");
+  REQUIRE(stored.at("not_stored").size() == 1);
+  CHECK(stored.at("not_stored")[0].at("name") == "wall_stiffness_N_per_m");
+  CHECK(stored.at("not_stored")[0].at("value") == 700);
+  CHECK(stored.at("not_stored")[0].at("stored") == 600);
+  CHECK(stored.at("records_written") == 1);
+  CHECK(stored.at("at_start").at("contents") == "nothing");
+  CHECK(board.run({"parameters", "stored"}).out.find("wall_stiffness_N_per_m") != std::string::npos);
+  const auto told = board.json({"info"});
+  CHECK(told.at("stored") == "parameters");
+  CHECK(told.at("not_stored") == 1);
+
+  board.restart();
+  const auto after = board.json({"parameters", "stored"});
+  CHECK(after.at("not_stored").empty());
+  CHECK(after.at("at_start").at("contents") == "parameters");
+  CHECK(after.at("at_start").at("firmware_version") == board.json({"info"}).at("firmware_version"));
+  CHECK(after.at("at_start").at("unknown") == 0);
+}
+
+TEST_CASE("a factory reset wants a word of yes, forgets what is stored and gives the defaults") {
+  RememberingBoard board;
+  board.done({"parameters", "set", "wall_stiffness_N_per_m=600"});
+  board.done({"parameters", "store"});
+  const auto refused = board.run({"parameters", "factory"});
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.err.find("calibration") != std::string::npos);
+  CHECK(refused.err.find("--yes") != std::string::npos);
+  board.restart();
+  CHECK(board.stiffness() == 600);
+
+  CHECK(board.run({"parameters", "factory", "--yes"}).exit_code == 0);
+  CHECK(board.stiffness() == default_stiffness);
+  board.restart();
+  CHECK(board.stiffness() == default_stiffness);
+  const auto nothing = board.run({"parameters", "restore"});
+  CHECK(nothing.exit_code == 1);
+  CHECK(nothing.err.find("stored nothing that could be restored") != std::string::npos);
+}
+
+TEST_CASE("while the force is on nothing is stored or forgotten, and the board says why") {
+  RememberingBoard board;
+  board.done({"parameters", "set", "wall_stiffness_N_per_m=600", "host_timeout_s=2"});
+  RunningProgram on({build_directory() + "/inkwell", "force", "on", "--usbip",
+                     fmt::format("127.0.0.1:{}", board.board.usbip_port())});
+  REQUIRE(on.read_line() == "The force is on.");
+  const auto& reason = info(protocol::StoreResult::force_is_on);
+  for (const auto& words :
+       std::vector<std::vector<std::string>>{{"parameters", "store"}, {"parameters", "factory", "--yes"}}) {
+    const auto refused = board.run(words);
+    CHECK(refused.exit_code == 1);
+    CHECK(refused.err.find(reason.meaning) != std::string::npos);
+    CHECK(refused.err.find(reason.remedy) != std::string::npos);
+  }
+  board.done({"force", "off"});
+  CHECK(board.stiffness() == 600);
+  CHECK(board.json({"parameters", "stored"}).at("records_written") == 0);
+}
+
+TEST_CASE("a virtual board of one command remembers in a file what was stored") {
+  const TemporaryDirectory directory;
+  const auto run = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"--virtual", "--flash", directory.file("flash.bin")});
+    return run_program("inkwell", words);
+  };
+  const auto tuned = run({"tune", "current-loop", "--motor", "2", "--yes", "--apply", "--store", "--json"});
+  INFO(tuned.err);
+  REQUIRE(tuned.exit_code == 0);
+  const auto guide = nlohmann::json::parse(tuned.out);
+  CHECK(guide.at("stored") == true);
+  for (const auto& proposal : guide.at("proposals")) {
+    const auto held = run({"parameters", "get", proposal.at("parameter")});
+    CHECK(std::stod(held.out) == doctest::Approx(proposal.at("proposed").get<double>()));
+  }
+  const auto again = run({"tune", "current-loop", "--motor", "2", "--yes", "--apply", "--json"});
+  CHECK(nlohmann::json::parse(again.out).at("stored") == false);
+  CHECK(again.err.find("`inkwell parameters store` keeps them") != std::string::npos);
+}
+
+TEST_CASE("a virtual board without a file says that it forgets") {
+  const auto stored = run_program("inkwell", {"parameters", "store", "--virtual"});
+  CHECK(stored.exit_code == 0);
+  CHECK(stored.err.find("--flash FILE") != std::string::npos);
+  CHECK(run_program("inkwell", {"parameters", "store", "--flash", "file"}).exit_code == 2);
+}
