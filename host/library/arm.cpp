@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <device/board_store.hpp>
 #include <device/fault_text.hpp>
 
 #include "errors.hpp"
@@ -128,6 +129,18 @@ void Arm::set_parameters(const std::vector<device::ParameterChange>& changes) {
   const bool changes_arm =
       std::any_of(changes.begin(), changes.end(), [](const auto& change) { return info(change.first).belongs_to_arm; });
   if (changes_arm) connection_.set_geometry(device().parameters());
+}
+
+void Arm::restore_parameters() {
+  const std::lock_guard lock(parameters_mutex_);
+  device().restore_stored_parameters();
+  connection_.set_geometry(device().parameters());
+}
+
+void Arm::factory_reset() {
+  const std::lock_guard lock(parameters_mutex_);
+  device::factory_reset(device());
+  connection_.set_geometry(device().parameters());
 }
 
 }  // namespace inkwell::library

@@ -52,6 +52,8 @@ class Arm {
   void start_servo(Servo::Function function);
 
   void set_parameters(const std::vector<device::ParameterChange>& changes);
+  void restore_parameters();
+  void factory_reset();
   void start_recording(const std::string& path) { scope_.start_recording(path, endpoint().is_virtual); }
 
   /// Hands the control client of the board that was started for this arm to `action`. Throws NotNow if none was.

@@ -6,6 +6,7 @@
 #include <inkwell/inkwell.h>
 #include <protocol/faults.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/store.hpp>
 
 namespace inkwell {
 namespace {
@@ -68,6 +69,13 @@ static_assert(std::ranges::equal(limits, protocol::limit_table, [](const Code& c
 }));
 // The limits came later, into a gap: a program that was built before finds all else where it was.
 static_assert(offsetof(inkwell_pose, position_m) == 24 && sizeof(inkwell_pose) == 240);
+
+constexpr Code stored[] = {CODE(STORED_NOTHING), CODE(STORED_PARAMETERS), CODE(STORED_FACTORY_RESET),
+                           CODE(STORED_OTHER_SCHEMA)};
+static_assert(std::ranges::equal(stored, protocol::store_contents_table, [](const Code& c, const auto& row) {
+  return &row - protocol::store_contents_table.data() == c.value && is_capital_of(c.name, "STORED_", row.name);
+}));
+static_assert(std::size(inkwell_store{}.sector_erases) == protocol::store_sectors);
 
 static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_holds_back_from);
 static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));

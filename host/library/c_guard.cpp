@@ -3,7 +3,7 @@
 #include <exception>
 
 #include <device/address.hpp>
-#include <device/device.hpp>
+#include <device/board_store.hpp>
 
 #include "text_copy.hpp"
 
@@ -34,6 +34,8 @@ inkwell_result result_of_exception() noexcept {
   } catch (const NotNow& error) {
     return fail(INKWELL_REFUSED, error.what());
   } catch (const device::Refused& error) {
+    return fail(INKWELL_REFUSED, error.what());
+  } catch (const device::NotStored& error) {
     return fail(INKWELL_REFUSED, error.what());
   } catch (const device::NoPermission& error) {
     return fail(INKWELL_NO_PERMISSION, error.what());

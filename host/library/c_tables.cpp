@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include <device/board_store.hpp>
 #include <device/nearest_name.hpp>
 
 #include "c_guard.hpp"
@@ -79,6 +80,41 @@ inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names
     for (std::size_t i = 0; i < count; ++i)
       changes.emplace_back(parameter_named(names[i]), static_cast<float>(values[i]));
     arm_of(arm).set_parameters(changes);
+  });
+}
+
+// ---- what outlives the board's power -----------------------------------------------------------------------
+
+inkwell_result inkwell_store_parameters(inkwell_arm* arm) {
+  return guarded([&] { device::store_parameters(arm_of(arm).device()); });
+}
+
+inkwell_result inkwell_restore_parameters(inkwell_arm* arm) {
+  return guarded([&] { arm_of(arm).restore_parameters(); });
+}
+
+inkwell_result inkwell_factory_reset(inkwell_arm* arm) {
+  return guarded([&] { arm_of(arm).factory_reset(); });
+}
+
+inkwell_result inkwell_get_stored_parameter(inkwell_arm* arm, const char* name, double* value) {
+  return guarded([&] {
+    required(value, "The place for the value");
+    const auto parameter = parameter_named(name);
+    *value = arm_of(arm).device().stored_parameters()[parameter];
+  });
+}
+
+inkwell_result inkwell_get_store(inkwell_arm* arm, inkwell_store* store) {
+  return guarded([&] {
+    required(store, "The place for the state of the store");
+    const auto report = arm_of(arm).device().store_report();
+    *store = {};
+    store->contents = static_cast<inkwell_stored>(report.contents);
+    store->not_stored = report.differing;
+    store->stores_left = report.stores_left;
+    store->records_written = report.records_written;
+    std::copy_n(report.sector_erases, protocol::store_sectors, store->sector_erases);
   });
 }
 

@@ -186,6 +186,34 @@ Answers set(const Arguments& arguments) {
   return {};
 }
 
+Answers store(const Arguments& arguments) {
+  require(inkwell_store_parameters(find(arguments)->second));
+  return {};
+}
+
+Answers restore(const Arguments& arguments) {
+  require(inkwell_restore_parameters(find(arguments)->second));
+  return {};
+}
+
+Answers factory_reset(const Arguments& arguments) {
+  require(inkwell_factory_reset(find(arguments)->second));
+  return {};
+}
+
+Answers store_state(const Arguments& arguments) {
+  inkwell_store store;
+  require(inkwell_get_store(find(arguments)->second, &store));
+  static const char* const contents[] = {"nothing", "parameters", "factory reset", "other schema"};
+  const char* names[] = {"contents", "not_stored", "stores_left", "records_written"};
+  mxArray* values[] = {mxCreateString(store.contents >= 0 && store.contents < 4 ? contents[store.contents] : "unknown"),
+                       mxCreateDoubleScalar(store.not_stored), mxCreateDoubleScalar(store.stores_left),
+                       mxCreateDoubleScalar(store.records_written)};
+  mxArray* told = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(told, 0, names[i], values[i]);
+  return {told};
+}
+
 Answers parameters(const Arguments&) {
   const char* names[] = {"name", "unit", "help", "minimum", "maximum", "default_value"};
   mxArray* table = mxCreateStructMatrix(static_cast<mwSize>(inkwell_parameter_count()), 1,
@@ -258,6 +286,10 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"force", force},
     {"get", get},
     {"set", set},
+    {"store", store},
+    {"restore", restore},
+    {"factory_reset", factory_reset},
+    {"store_state", store_state},
     {"select", select},
     {"parameters", parameters},
     {"signals", signals},

@@ -214,6 +214,35 @@ void Arm::set_parameters(const std::vector<std::pair<std::string, double>>& chan
   call([&] { return inkwell_set_parameters(arm, names.data(), values.data(), names.size()); });
 }
 
+double Arm::stored_parameter(const std::string& name) {
+  const Use arm(*this);
+  double value = 0;
+  call([&] { return inkwell_get_stored_parameter(arm, name.c_str(), &value); });
+  return value;
+}
+
+void Arm::store_parameters() {
+  const Use arm(*this);
+  call([&] { return inkwell_store_parameters(arm); });
+}
+
+void Arm::restore_parameters() {
+  const Use arm(*this);
+  call([&] { return inkwell_restore_parameters(arm); });
+}
+
+void Arm::factory_reset() {
+  const Use arm(*this);
+  call([&] { return inkwell_factory_reset(arm); });
+}
+
+inkwell_store Arm::store() {
+  const Use arm(*this);
+  inkwell_store store;
+  call([&] { return inkwell_get_store(arm, &store); });
+  return store;
+}
+
 // ---- the hand of a virtual board ---------------------------------------------------------------------------
 
 void Arm::move_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m) {

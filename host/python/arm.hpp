@@ -45,6 +45,11 @@ class Arm {
 
   double parameter(const std::string& name);
   void set_parameters(const std::vector<std::pair<std::string, double>>& changes);
+  double stored_parameter(const std::string& name);
+  void store_parameters();
+  void restore_parameters();
+  void factory_reset();
+  inkwell_store store();
 
   void move_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m);
   void release_virtual_hand();

@@ -188,6 +188,23 @@ void define_structs(py::module_& module) {
                              "1 is what the continuous current leads to; shape (3,)");
 }
 
+void define_store(py::module_& module) {
+  py::enum_<inkwell_stored>(module, "Stored", "What the board has stored.")
+      .value("NOTHING", INKWELL_STORED_NOTHING)
+      .value("PARAMETERS", INKWELL_STORED_PARAMETERS)
+      .value("FACTORY_RESET", INKWELL_STORED_FACTORY_RESET, "what was stored before is forgotten")
+      .value("OTHER_SCHEMA", INKWELL_STORED_OTHER_SCHEMA, "by a firmware whose records this one cannot read");
+  py::class_<inkwell_store>(module, "Store", "The state of the board's store.")
+      .def_readonly("contents", &inkwell_store::contents)
+      .def_readonly("not_stored", &inkwell_store::not_stored, "parameters that would be lost with the board's power")
+      .def_readonly("stores_left", &inkwell_store::stores_left, "before the board's next start, which makes room")
+      .def_readonly("records_written", &inkwell_store::records_written, "in the board's life")
+      .def_property_readonly(
+          "sector_erases",
+          [](const inkwell_store& store) { return py::make_tuple(store.sector_erases[0], store.sector_erases[1]); },
+          "in the board's life, of each of its two sectors");
+}
+
 void define_arm(py::module_& module) {
   py::class_<Arm>(module, "Arm")
       .def(py::init<const std::string&>())
@@ -208,6 +225,11 @@ void define_arm(py::module_& module) {
       .def("servo_is_running", &Arm::servo_is_running)
       .def("parameter", &Arm::parameter)
       .def("set_parameters", &Arm::set_parameters)
+      .def("stored_parameter", &Arm::stored_parameter)
+      .def("store_parameters", &Arm::store_parameters)
+      .def("restore_parameters", &Arm::restore_parameters)
+      .def("factory_reset", &Arm::factory_reset)
+      .def("store", &Arm::store)
       .def("move_virtual_hand", &Arm::move_virtual_hand)
       .def("release_virtual_hand", &Arm::release_virtual_hand)
       .def("press_virtual_buttons", &Arm::press_virtual_buttons)
@@ -223,6 +245,7 @@ void define_arm(py::module_& module) {
 PYBIND11_MODULE(_native, module) {
   module.doc() = "libinkwell for the package's Python files.";
   inkwell::python::define_structs(module);
+  inkwell::python::define_store(module);
   inkwell::python::define_arm(module);
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,

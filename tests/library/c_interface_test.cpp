@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <fstream>
@@ -57,6 +58,62 @@ TEST_CASE("poses come one after the other, and the velocity is that of the probe
   }
   CHECK(pose.position_m[0] - first.position_m[0] > 0.015);
   CHECK(travelled_m == doctest::Approx(pose.position_m[0] - first.position_m[0]).epsilon(0.1));
+}
+
+TEST_CASE("parameters are stored, restored and forgotten, but not while the force is on") {
+  VirtualArm virtual_arm;
+  inkwell_arm* arm = virtual_arm.arm;
+  const char* const name = "link_2_m";  // which the library itself uses
+  const auto set = [&](double value_m) { REQUIRE(inkwell_set_parameters(arm, &name, &value_m, 1) == INKWELL_OK); };
+  const auto held_m = [&] {
+    double value_m = 0;
+    REQUIRE(inkwell_get_parameter(arm, name, &value_m) == INKWELL_OK);
+    return value_m;
+  };
+  const auto stored_m = [&] {
+    double value_m = 0;
+    REQUIRE(inkwell_get_stored_parameter(arm, name, &value_m) == INKWELL_OK);
+    return value_m;
+  };
+  const auto store = [&] {
+    inkwell_store told;
+    REQUIRE(inkwell_get_store(arm, &told) == INKWELL_OK);
+    return told;
+  };
+  const auto reach_m = [&] {
+    const double joint_rad[3]{};
+    double position_m[3];
+    REQUIRE(inkwell_forward_kinematics(arm, joint_rad, position_m, nullptr) == INKWELL_OK);
+    return std::array{position_m[0], position_m[1], position_m[2]};
+  };
+  const double default_m = held_m();
+  const auto default_reach_m = reach_m();
+  CHECK(inkwell_restore_parameters(arm) == INKWELL_REFUSED);
+  CHECK(says("stored nothing"));
+  CHECK(store().contents == INKWELL_STORED_NOTHING);
+  set(default_m + 0.01);
+  const auto longer_reach_m = reach_m();
+  CHECK(store().not_stored == 1);
+  CHECK(stored_m() == default_m);
+  REQUIRE(inkwell_store_parameters(arm) == INKWELL_OK);
+  CHECK(store().contents == INKWELL_STORED_PARAMETERS);
+  CHECK(store().not_stored == 0);
+  CHECK(store().records_written == 1);
+  CHECK(store().stores_left > 0);
+  CHECK(stored_m() == doctest::Approx(default_m + 0.01));
+  set(default_m + 0.02);
+  REQUIRE(inkwell_restore_parameters(arm) == INKWELL_OK);
+  CHECK(held_m() == doctest::Approx(default_m + 0.01));
+  CHECK(reach_m() == longer_reach_m);
+  REQUIRE(inkwell_factory_reset(arm) == INKWELL_OK);
+  CHECK(held_m() == default_m);
+  CHECK(reach_m() == default_reach_m);
+  CHECK(store().contents == INKWELL_STORED_FACTORY_RESET);
+
+  virtual_arm.make_active();
+  CHECK(inkwell_store_parameters(arm) == INKWELL_REFUSED);
+  CHECK(says("Switch the force off"));
+  CHECK(inkwell_factory_reset(arm) == INKWELL_REFUSED);
 }
 
 TEST_CASE("forward kinematics: the pose's own position, and a Jacobian that agrees with it") {

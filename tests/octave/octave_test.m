@@ -39,6 +39,21 @@ refused(@() inkwell_parameters(arm, 'wall_stifness_N_per_m'), 'Did you mean wall
 refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', NaN), 'wall_stiffness_N_per_m');
 refused(@() inkwell_parameters(arm, 'wall_stiffness_N_per_m', [1 2]), 'as many values');
 
+% What outlives the board's power.
+assert(inkwell_store(arm, 'state').not_stored, 2);
+refused(@() inkwell_store(arm, 'restore'), 'stored nothing');
+inkwell_store(arm);
+assert(inkwell_store(arm, 'state').contents, 'parameters');
+assert(inkwell_store(arm, 'state').not_stored, 0);
+assert(inkwell_store(arm, 'state').records_written, 1);
+inkwell_parameters(arm, 'wall_stiffness_N_per_m', 600);
+inkwell_store(arm, 'restore');
+assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 500);
+inkwell_store(arm, 'factory reset');
+assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 800);
+assert(inkwell_store(arm, 'state').contents, 'factory reset');
+refused(@() inkwell_store(arm, 'nonsense'), 'no such action');
+
 % The scope as a matrix.
 assert(any(strcmp(inkwell_signals(), 'supply_V')));
 [samples, time_s, lost] = inkwell_capture(arm, {'position_z_m', 'supply_V'}, 0.1);

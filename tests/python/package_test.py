@@ -32,6 +32,33 @@ def run(program, *arguments):
     return subprocess.run([sys.executable, "-c", textwrap.dedent(program), *arguments], capture_output=True, text=True)
 
 
+class Storing(unittest.TestCase):
+    def test_what_is_stored_is_told_restored_and_forgotten(self):
+        arm = inkwell.open("virtual")
+        self.addCleanup(arm.close)
+        parameters = arm.parameters
+        default_N_per_m = parameters.wall_stiffness_N_per_m
+        with self.assertRaisesRegex(inkwell.Refused, "stored nothing"):
+            parameters.restore()
+        parameters.wall_stiffness_N_per_m = 500
+        self.assertEqual(parameters.not_stored(), {"wall_stiffness_N_per_m": default_N_per_m})
+        self.assertEqual(parameters.store_state().contents, inkwell.Stored.NOTHING)
+        parameters.store()
+        self.assertEqual(parameters.not_stored(), {})
+        state = parameters.store_state()
+        self.assertEqual(state.contents, inkwell.Stored.PARAMETERS)
+        self.assertEqual(state.not_stored, 0)
+        self.assertEqual(state.records_written, 1)
+        self.assertGreater(state.stores_left, 0)
+        self.assertEqual(len(state.sector_erases), 2)
+        parameters.wall_stiffness_N_per_m = 600
+        parameters.restore()
+        self.assertEqual(parameters.wall_stiffness_N_per_m, 500)
+        parameters.factory_reset()
+        self.assertEqual(parameters.wall_stiffness_N_per_m, default_N_per_m)
+        self.assertEqual(parameters.store_state().contents, inkwell.Stored.FACTORY_RESET)
+
+
 class Reading(unittest.TestCase):
     """What does not drive, on one arm."""
 

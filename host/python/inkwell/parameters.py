@@ -39,7 +39,8 @@ class Parameters:
         arm.parameters.wall_stiffness_N_per_m = 500
         arm.parameters.set(wall_stiffness_N_per_m=500, wall_damping_Ns_per_m=1)   # both at one control period
 
-    print(arm.parameters) shows all values, help(inkwell.Parameters) units, ranges and defaults.
+    They last until the board loses its power, unless store() keeps them. print(arm.parameters) shows all values,
+    help(inkwell.Parameters) units, ranges and defaults.
     """
 
     __slots__ = ("_arm",)
@@ -50,6 +51,30 @@ class Parameters:
     def set(self, **values: float) -> None:
         """Sets several: all take effect at one control period, or none does."""
         self._arm.set_parameters([(name, _number(name, value)) for name, value in values.items()])
+
+    def store(self) -> None:
+        """Has the board keep its parameters as they are now, over its power. Raises Refused while the force is on."""
+        self._arm.store_parameters()
+
+    def restore(self) -> None:
+        """Gives every parameter what is stored. Raises Refused if nothing is."""
+        self._arm.restore_parameters()
+
+    def factory_reset(self) -> None:
+        """Has the board forget what it has stored, the calibration of its arm too; every parameter gets its default.
+        Raises Refused while the force is on."""
+        self._arm.factory_reset()
+
+    def store_state(self) -> _native.Store:
+        """What is stored, how many values are not, and the wear of the flash."""
+        return self._arm.store()
+
+    def not_stored(self) -> dict[str, float]:
+        """The parameters that would be lost with the board's power, with the value that is stored."""
+        if self._arm.store().not_stored == 0:
+            return {}
+        stored = {name: self._arm.stored_parameter(name) for name in self}
+        return {name: value for name, value in stored.items() if value != self._arm.parameter(name)}
 
     def __iter__(self) -> Iterator[str]:
         return (row[0] for row in _native.parameters())

@@ -295,6 +295,40 @@ INKWELL_API inkwell_result inkwell_get_parameter(inkwell_arm* arm, const char* n
 INKWELL_API inkwell_result inkwell_set_parameters(inkwell_arm* arm, const char* const* names, const double* values,
                                                   size_t count);
 
+/* ---- what outlives the board's power ------------------------------------------------------------------------- */
+
+/* Parameters that are set last until the board loses its power, unless they are stored. The board
+ * neither stores nor forgets while the force is on or may come at once: that is INKWELL_REFUSED, with the reason. */
+
+/* Has the board keep its parameters as they are now; they are safe when this returns. */
+INKWELL_API inkwell_result inkwell_store_parameters(inkwell_arm* arm);
+/* Gives every parameter what is stored, in one transaction. INKWELL_REFUSED if nothing is. */
+INKWELL_API inkwell_result inkwell_restore_parameters(inkwell_arm* arm);
+/* Has the board forget what it has stored, the calibration of its arm too; every parameter gets its default. */
+INKWELL_API inkwell_result inkwell_factory_reset(inkwell_arm* arm);
+/* The value that the board's next start gives this parameter: the stored one, or the default. */
+INKWELL_API inkwell_result inkwell_get_stored_parameter(inkwell_arm* arm, const char* name, double* value);
+
+/* What the board has stored. */
+typedef enum inkwell_stored INKWELL_AS_INT {
+  INKWELL_STORED_NOTHING = 0,
+  INKWELL_STORED_PARAMETERS = 1,
+  INKWELL_STORED_FACTORY_RESET = 2, /* what was stored before is forgotten */
+  INKWELL_STORED_OTHER_SCHEMA = 3   /* by a firmware whose records this one cannot read */
+} inkwell_stored;
+
+/* The state of the board's store. */
+typedef struct inkwell_store {
+  inkwell_stored contents;
+  uint32_t not_stored;  /* parameters that would be lost with the power */
+  uint32_t stores_left; /* before the board's next start, which makes room */
+  uint32_t records_written;  /* in the board's life */
+  uint32_t sector_erases[2]; /* likewise, of each of its two sectors */
+} inkwell_store;
+
+/* Asks the device. */
+INKWELL_API inkwell_result inkwell_get_store(inkwell_arm* arm, inkwell_store* store);
+
 /* ---- the hand of a virtual board ------------------------------------------------------------------------------ */
 
 /* The simulated hand takes the stylus out of the inkwell and pulls the probe to `target_m` as a spring of

@@ -114,6 +114,19 @@ class Arm {
     const char* names[] = {name.c_str()};
     require(inkwell_set_parameters(get(), names, &value, 1));
   }
+  void store_parameters() { require(inkwell_store_parameters(get())); }
+  void restore_parameters() { require(inkwell_restore_parameters(get())); }
+  void factory_reset() { require(inkwell_factory_reset(get())); }
+  double stored_parameter(const std::string& name) const {
+    double value = 0;
+    require(inkwell_get_stored_parameter(get(), name.c_str(), &value));
+    return value;
+  }
+  inkwell_store store() const {
+    inkwell_store store;
+    require(inkwell_get_store(get(), &store));
+    return store;
+  }
 
  private:
   struct ServoState {
