@@ -6,16 +6,41 @@
 namespace inkwell::virtual_board {
 namespace {
 
-constexpr std::uint32_t loader_stack = sram_base + 0x2000, loader_entry = system_base + 8 + 1;
+constexpr std::uint32_t loader_stack = sram_base + 0x2000;
 
-constexpr std::uint16_t say_there_is_none[] = {
-    0x2004,  // movs r0, #4: write a text
-    0xA101,  // adr r1, the text
-    0xBEAB,  // bkpt 0xAB
-    0xE7FE,  // b .
+/// The hands of the loader: asks for an order, carries it out, and asks again. R0 is LoaderOrder::Kind, R1 the address,
+/// R2 the word or where the data are, R3 the number of words.
+constexpr std::uint16_t hands[] = {
+    0xF240, 0x1001,  // ask: movw r0, #semihosting_ask_for_order
+    0xBEAB,          // bkpt 0xAB
+    0x4C0E,          // ldr r4, =FLASH_SR
+    0x2801,          // cmp r0, #store
+    0xD008,          // beq store
+    0x2802,          // cmp r0, #program
+    0xD00B,          // beq program
+    0x2803,          // cmp r0, #go
+    0xD013,          // beq go
+    0xF44F, 0x70FA,  // mov r0, #500: a tenth of a millisecond
+    0x3801,          // subs r0, #1
+    0xD1FD,          // bne, one back
+    0xE7F0,          // b ask
+    0x600A,          // store: str r2, [r1]
+    0x6825,          // ldr r5, [r4]
+    0x03ED,          // lsls r5, r5, #15: BSY
+    0xD4FC,          // bmi, two back
+    0xE7EB,          // b ask
+    0xF852, 0x5B04,  // program: ldr r5, [r2], #4
+    0xF841, 0x5B04,  // str r5, [r1], #4
+    0x6825,          // ldr r5, [r4]
+    0x03ED,          // lsls r5, r5, #15: BSY
+    0xD4FC,          // bmi, two back
+    0x3B01,          // subs r3, #1
+    0xD1F6,          // bne program
+    0xE7E1,          // b ask
+    0x4801,          // go: ldr r0, =loader_go
+    0x4700,          // bx r0
 };
-constexpr char there_is_none[] =
-    "The firmware has started the chip's boot loader. This board has none: it waits until it is reset.\n";
+constexpr std::uint32_t hands_literals[] = {0x4002'3C0C, loader_go + 1};
 
 /// Leaves the chip as a loader may: voltage scale 2, 60 MHz from crystal and PLL, the internal oscillator off, no clock
 /// for CCM, the vector table its own, the clock of the USB core's PHY stopped, as while the bus slept.
@@ -94,8 +119,8 @@ std::uint8_t* append(std::uint8_t* to, const T (&words)[n]) {
 }  // namespace
 
 void put_boot_loader(std::uint8_t* system, std::uint32_t crystal_Hz) {
-  const std::uint32_t vectors[] = {loader_stack, loader_entry};
-  append(append(append(system, vectors), say_there_is_none), there_is_none);
+  const std::uint32_t vectors[] = {loader_stack, loader_entry + 1};
+  append(append(append(system, vectors), hands), hands_literals);
   const std::uint32_t literals[] = {0x4002'3800, 0x4000'7000, pll_for_60_MHz(crystal_Hz),
                                     0x4002'3C00, 0xE000'ED08, system_base};
   append(append(system + (loader_go - system_base), go), literals);

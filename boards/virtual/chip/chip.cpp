@@ -24,6 +24,7 @@ Chip::Chip(Circuit& circuit, const ChipOptions& options) : parts_(std::make_uniq
   p.execution.on_console = [this](std::uint8_t byte) {
     if (on_console) on_console(byte);
   };
+  p.execution.on_boot_loader = [this] { return on_boot_loader ? on_boot_loader() : LoaderOrder{}; };
   p.execution.on_reset = [this](ResetCause cause) {
     if (on_reset) on_reset(cause);
   };
@@ -60,6 +61,7 @@ void Chip::reset(ResetCause cause) {
 
 Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
 void Chip::start_by_boot_loader() { jump(loader_go); }
+void Chip::start_boot_loader() { jump(loader_entry); }
 void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
 void Chip::stall(Ticks duration) { parts_->execution.stall(duration); }
 void Chip::halt(Ticks duration) {

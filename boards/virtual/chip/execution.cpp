@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <utility>
 
+#include "boot_loader.hpp"
 #include "flash.hpp"
 #include "semihosting.hpp"
 
@@ -271,6 +273,10 @@ void Execution::handle_breakpoint() {
     return raise_fault(exception_hard_fault, 0, at("breakpoint without a debugger at", address, address));
   }
   const std::uint32_t operation = processor_.read(UC_ARM_REG_R0);
+  if (operation == semihosting_ask_for_order && address - system_base < system_bytes) {
+    order_boot_loader();
+    return processor_.set_program_counter(address + 2);
+  }
   const auto answer = semihosting_call(operation, processor_.read(UC_ARM_REG_R1), machine_.memory, on_console);
   if (!answer.known)
     machine_.log.say_once("semihosting call " + std::to_string(operation) + " is not modelled: answers -1");
@@ -280,6 +286,17 @@ void Execution::handle_breakpoint() {
     exit_code_ = *answer.exit_code;
     state_ = State::exited;
   }
+}
+
+void Execution::order_boot_loader() {
+  const LoaderOrder order = on_boot_loader();
+  const auto bytes = static_cast<std::uint32_t>(order.data.size());
+  if (auto* buffer = machine_.memory.ram_at(loader_buffer, bytes); buffer != nullptr && bytes != 0)
+    std::memcpy(buffer, order.data.data(), bytes);
+  processor_.write(UC_ARM_REG_R0, static_cast<std::uint32_t>(order.kind));
+  processor_.write(UC_ARM_REG_R1, order.address);
+  processor_.write(UC_ARM_REG_R2, order.kind == LoaderOrder::Kind::program ? loader_buffer : order.word);
+  processor_.write(UC_ARM_REG_R3, bytes / 4);
 }
 
 // A frame that can not be read back stays where it is, and the fault of it starts on it (ARMv7-M, B1.5.8 and B1.5.9).

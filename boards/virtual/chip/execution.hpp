@@ -41,6 +41,7 @@ class Execution {
 
   std::function<void(std::uint8_t)> on_console;
   std::function<void(ResetCause)> on_reset;
+  std::function<LoaderOrder()> on_boot_loader;
 
  private:
   enum class State : std::uint8_t { runs, sleeps, waits_for_event, locked_up, exited };
@@ -54,6 +55,7 @@ class Execution {
   bool wakes() const;
   void handle(Outcome outcome);
   void handle_breakpoint();
+  void order_boot_loader();
   void handle_return();
   void raise_fault(unsigned exception, std::uint32_t configurable_bits, const std::string& what);
   void enter(unsigned exception, bool stacks = true);

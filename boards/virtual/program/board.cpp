@@ -61,7 +61,8 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
     throw std::runtime_error(fmt::format("{} (--usbip gives it)", error.what()));
   }
   if (options.real_time) usb_->limit_waiting();
-  chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_->core());
+  chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_->connector());
+  chip_.on_boot_loader = [this] { return usb_->connector().boot_loader_order(chip_.debug_port()); };
   chip_.on_injected_sequence = [this](std::uint64_t index, Ticks when) {
     control_period_ = {index, when};
     if (trace_.is_running()) trace_.record(index, plant_.truth(when));
@@ -75,6 +76,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
   plug(true);
   chip_.reset(ResetCause::power_on);
   if (options.from_boot_loader) chip_.start_by_boot_loader();
+  if (options.boot_loader) chip_.start_boot_loader();
   if (!options.waveform.empty()) waveform_.emplace(options.waveform, options.waveform_pins, chip_);
   for (const Injection& injection : options.injections) injector_->add(injection);
   chip_.clear_counters();  // resets are counted from here on

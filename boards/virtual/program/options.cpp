@@ -93,6 +93,10 @@ void add_chip(CLI::App& app, Given& given) {
       ->check(CLI::IsMember({"typical", "maximum"}).description(""))
       ->type_name("typical|maximum")
       ->capture_default_str();
+  app.add_flag(
+      "--boot0", given.options.boot_loader,
+      "the button BOOT0 is held while the power comes on: the chip's boot loader runs, and waits on USB for a\n"
+      "new firmware");
   app.add_option("--brown-out", given.options.brown_out_level,
                  "brown-out level in the chip's option bytes: 0 is off, as in a new chip; 3 is what the board wants")
       ->check(CLI::Range(0, 3).description(""))

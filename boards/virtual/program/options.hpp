@@ -30,6 +30,7 @@ struct Options {
   std::int32_t crystal_ppm = 0;  ///< the crystal swings faster than its name by so many parts in a million
   std::uint32_t low_speed_internal_Hz = 32'000;
   bool from_boot_loader = false;
+  bool boot_loader = false;      ///< BOOT0 is held while the power comes on
   unsigned brown_out_level = 0;  ///< of the option bytes
   bool slowest_flash = false;    ///< the longest times to erase and program, not the usual
   double host_clock_ppm = 0.0;   ///< the USB host's clock is faster than board time by so many parts in a million

@@ -113,9 +113,9 @@ void OtgFsDevice::check_in_transfer(unsigned number) {
   if (endpoint.bytes_to_send > endpoint.packets * maximum) rules_.violate(Rule::usb_bytes_beyond_packets);
   if (!otg.diepctl.usbaep.in(endpoint.control) && !reset_is_unseen())
     rules_.violate(Rule::usb_inactive_endpoint, "IN " + std::to_string(number));
-  if (otg.diepctl.eptyp.of(endpoint.control) == control && number != 0)
+  if (otg.diepctl.eptyp.of(endpoint.control) == otg_control && number != 0)
     rules_.violate(Rule::usb_endpoint_type, "IN " + std::to_string(number));
-  if (otg.diepctl.eptyp.of(endpoint.control) == isochronous && number != 0)
+  if (otg.diepctl.eptyp.of(endpoint.control) == otg_isochronous && number != 0)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
   if (!transmit_[transmit_fifo_of(number)].empty()) rules_.violate(Rule::usb_stale_words);
   if (transmit_depth(transmit_fifo_of(number)) * 4 < std::min<std::size_t>(endpoint.bytes_to_send, maximum))
@@ -295,9 +295,9 @@ void OtgFsDevice::check_out_transfer(unsigned number) {
   if (maximum == 0 || endpoint.bytes == 0 || endpoint.bytes % maximum != 0) rules_.violate(Rule::usb_out_size);
   if (!otg.doepctl.usbaep.in(endpoint.control) && !reset_is_unseen())
     rules_.violate(Rule::usb_inactive_endpoint, "OUT " + std::to_string(number));
-  if (otg.doepctl.eptyp.of(endpoint.control) == control)
+  if (otg.doepctl.eptyp.of(endpoint.control) == otg_control)
     rules_.violate(Rule::usb_endpoint_type, "OUT " + std::to_string(number));
-  if (otg.doepctl.eptyp.of(endpoint.control) == isochronous)
+  if (otg.doepctl.eptyp.of(endpoint.control) == otg_isochronous)
     note("isochronous endpoints are not modelled", where, true, endpoint.control);
 }
 

@@ -131,7 +131,7 @@ inline constexpr std::uint32_t otg_device_base = 0x800;
 /// DCFG.DSPD and DSTS.ENUMSPD
 inline constexpr std::uint32_t otg_full_speed = 3;
 /// DxEPCTL.EPTYP
-inline constexpr std::uint32_t control = 0, isochronous = 1;
+inline constexpr std::uint32_t otg_control = 0, otg_isochronous = 1;
 /// GRSTCTL.TXFNUM
 inline constexpr std::uint32_t all_transmit_fifos = 0x10;
 

@@ -25,8 +25,8 @@ constexpr std::chrono::milliseconds attention{50};  // how soon a board that wai
 struct VirtualUsb::Implementation final : SharedPort::Client {
   Implementation(const ChipConnections& chip, std::uint16_t tcp_port, double host_clock_ppm,
                  std::function<void()> on_request, std::function<bool()> ends)
-      : core(chip),
-        port(chip.scheduler, core, *this, host_clock_ppm),
+      : connector(chip),
+        port(chip.scheduler, connector, *this, host_clock_ppm),
         is_ending(std::move(ends)),
         server(tcp_port, std::move(on_request)) {}
 
@@ -124,7 +124,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
     server.answer({UsbIpServer::Result::Kind::submitted, session, std::move(urb), status});
   }
 
-  OtgFsDevice core;
+  Connector connector;
   SharedPort port;
   std::map<std::uint32_t, HostPace> paces;  ///< of each program that has imported the device
   std::map<std::uint32_t, std::uint16_t> client_ports;
@@ -144,7 +144,7 @@ VirtualUsb::VirtualUsb(const ChipConnections& chip, std::uint16_t port, double h
 }
 VirtualUsb::~VirtualUsb() = default;
 
-OtgFsDevice& VirtualUsb::core() { return implementation_->core; }
+Connector& VirtualUsb::connector() { return implementation_->connector; }
 std::uint16_t VirtualUsb::port() const { return implementation_->server.port(); }
 void VirtualUsb::serve() { implementation_->serve(); }
 void VirtualUsb::settle() {

@@ -30,12 +30,13 @@ virtual_board::ChipOptions without_log(virtual_board::ChipOptions options) {
 FirmwareOnBus::FirmwareOnBus(const std::filesystem::path& image, double host_clock_ppm,
                              virtual_board::ChipOptions options)
     : chip(circuit, without_log(std::move(options))),
-      core(chip.connections()),
-      registers(core),
-      cable(core),
+      connector(chip.connections()),
+      registers(connector),
+      cable(connector),
       port(chip.connections().scheduler, cable, *this, host_clock_ppm) {
   chip.load_elf(image);
   chip.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", registers);
+  chip.on_boot_loader = [this] { return connector.boot_loader_order(chip.debug_port()); };
   chip.reset(ResetCause::power_on);
   for (const auto& [letter, number] : {std::pair{'B', 12u}, {'A', 6u}, {'B', 13u}, {'B', 14u}, {'B', 15u}})
     chip.input_pins().drive(letter, number, PinLevel::high);

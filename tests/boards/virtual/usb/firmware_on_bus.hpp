@@ -13,7 +13,7 @@
 
 #include <chip/chip.hpp>
 #include <protocol/reports.hpp>
-#include <virtual_usb/otg_fs_device.hpp>
+#include <virtual_usb/connector.hpp>
 #include <virtual_usb/root_port.hpp>
 
 namespace inkwell::virtual_usb_test {
@@ -140,7 +140,8 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
 
   RestingCircuit circuit;
   Chip chip;
-  virtual_board::OtgFsDevice core;
+  virtual_board::Connector connector;
+  virtual_board::OtgFsDevice& core = connector.core();
   WatchedRegisters registers;
   Cable cable;
   virtual_board::RootPort port;

@@ -16,7 +16,7 @@ namespace inkwell::virtual_usb_test {
 LiveBoard::LiveBoard()
     : usb(
           {scheduler, interrupts, log, log, state, triggers}, 0, 0.0, [] {}, [this] { return is_ending.load(); }),
-      firmware(usb.core(), scheduler) {
+      firmware(usb.connector().core(), scheduler) {
   firmware.start();
   thread_ = std::thread([this] { run(); });
 }

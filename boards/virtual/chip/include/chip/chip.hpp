@@ -9,6 +9,7 @@
 #include <chip/debug_port.hpp>
 #include <chip/exception_numbers.hpp>
 #include <chip/interfaces.hpp>
+#include <chip/loader_order.hpp>
 #include <chip/violations.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -131,6 +132,8 @@ class Chip {
   /// Lets the boot loader in the chip start the firmware, after a reset, as it does when it is told to go there
   /// (AN2606): with clocks, CCM and vector table as a loader may leave them, which is not as a reset does.
   void start_by_boot_loader();
+  /// Lets the boot loader run, after a reset, as the chip does that comes out of it with BOOT0 high.
+  void start_boot_loader();
   /// Sets the program counter, as a debugger does between two instructions, or a particle that flips a bit of it.
   /// Not from inside run_until().
   void jump(std::uint32_t address);
@@ -197,6 +200,8 @@ class Chip {
   void watch_exceptions(std::function<void(unsigned exception, Ticks when)> changed);
   /// Called when the firmware breaks a rule, once for each place.
   std::function<void(const Violation& violation)> on_violation;
+  /// Called some thousand times a second, and after each order, while the boot loader in the chip runs: what it does next.
+  std::function<LoaderOrder()> on_boot_loader;
   /// Called after each reset that the firmware or a watchdog causes (and those by reset()).
   std::function<void(ResetCause cause)> on_reset;
 

@@ -1,4 +1,4 @@
-// The board's USB connector: the OTG_FS core, a host controller at the other end of the cable, and the
+// The board's USB connector: the OTG_FS core and the boot loader, a host controller at the other end of the cable, and the
 // USB/IP server that lets programs of this computer use the device.
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <chip/violations.hpp>
-#include <virtual_usb/otg_fs_device.hpp>
+#include <virtual_usb/connector.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -23,8 +23,8 @@ class VirtualUsb {
              std::function<bool()> is_ending);
   ~VirtualUsb();
 
-  /// The peripheral to map at OtgFsDevice::base.
-  OtgFsDevice& core();
+  /// The peripheral to map at OtgFsDevice::base, and the boot loader's place.
+  Connector& connector();
 
   /// The port on which the USB/IP server listens.
   std::uint16_t port() const;

@@ -1,0 +1,136 @@
+// ST's boot loader in the chip's system memory, as a host sees it on USB: DFU 1.1 with ST's extensions (AN3156,
+// AN2606). Its hands are instructions of the virtual chip (chip/loader_order.hpp), so that erasing and programming go
+// through the model of the flash, at its pace.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <chip/debug_port.hpp>
+#include <chip/loader_order.hpp>
+#include <virtual_usb/bus.hpp>
+
+namespace inkwell::virtual_board {
+
+/// A setup packet (USB 2.0, section 9.3).
+struct SetupPacket {
+  std::uint8_t type, request;
+  std::uint16_t value, index, length;
+};
+
+/// What DFU requests mean, without the bus they come over.
+class BootLoaderDfu {
+ public:
+  static constexpr std::uint16_t transfer_bytes = 2048;
+
+  /// As after its start.
+  void start();
+  /// An order for its hands. It reads memory and registers by itself, at no cost of time.
+  LoaderOrder next_order(DebugPort& memory);
+  /// It can not answer now: an order is being carried out.
+  bool is_busy() const { return asked_.has_value() || is_working_; }
+  /// A request without data, or whose data came. False: a stall.
+  bool take(const SetupPacket& request, std::span<const std::byte> data);
+  /// A request for data. Nothing: a stall. It is busy first if it must look something up: ask again then.
+  std::optional<std::vector<std::byte>> answer(const SetupPacket& request);
+  /// It has started the program, or reset the chip.
+  bool has_left() const { return has_left_; }
+
+ private:
+  enum class State : std::uint8_t {  ///< DFU 1.1, appendix A
+    idle = 2,
+    download_sync = 3,
+    download_busy = 4,
+    download_idle = 5,
+    manifest_sync = 6,
+    manifest = 7,
+    upload_idle = 9,
+    error = 10,
+  };
+  enum class Status : std::uint8_t { ok = 0, target = 1, programming = 6, address = 8, vendor = 0xB, stalled = 0xF };
+  struct Operation {
+    enum class Kind : std::uint8_t { set_address, erase, erase_all, write, write_options, read, leave };
+    Kind kind;
+    std::uint32_t address = 0;
+    std::vector<std::byte> data{};
+    std::uint32_t length = 0;
+  };
+  struct Step {
+    LoaderOrder::Kind kind;
+    std::uint32_t address, word;
+    std::vector<std::byte> data{};
+  };
+
+  bool download(std::uint16_t block, std::span<const std::byte> data);
+  std::optional<Operation> command_of(std::span<const std::byte> data);
+  std::vector<std::byte> status();
+  bool fail(Status status);
+  void begin(DebugPort& memory);
+  void unlock();
+  void store(std::uint32_t address, std::uint32_t word);
+  void finish(DebugPort& memory);
+  std::optional<std::vector<std::byte>> read(DebugPort& memory, std::uint32_t address, std::uint32_t length);
+  static unsigned poll_time_ms(const Operation& operation);
+
+  State state_ = State::idle;
+  Status status_ = Status::ok;
+  std::uint32_t pointer_ = 0;
+  std::optional<Operation> waiting_;  ///< until the host asks for the status
+  std::optional<Operation> asked_;    ///< to begin with the next order
+  std::deque<Step> steps_;            ///< of the operation that is under way
+  Step current_{};                    ///< keeps its data until the next order
+  bool is_working_ = false, has_left_ = false;
+  std::optional<std::vector<std::byte>> read_;  ///< what an upload asked for
+};
+
+/// Its device on the bus: endpoint 0, descriptors, standard requests.
+class BootLoader final : public BusDevice {
+ public:
+  /// The loader asks for its next order, so it runs; it connects to the bus if it did not before.
+  LoaderOrder next_order(DebugPort& memory);
+  /// The chip was reset.
+  void stop() { is_running_ = false; }
+  bool is_running() const { return is_running_; }
+
+  std::uint32_t attachment() const override { return is_running_ ? attachments_ : 0; }
+  void set_bus_power(bool) override {}  // ST's loader pulls D+ up whether the cable is there or not
+  void begin_reset() override;
+  void end_reset() override { is_silent_ = false; }
+  void start_of_frame(std::uint16_t) override {}
+  void suspend() override {}
+  void resume() override {}
+  Handshake setup(unsigned address, unsigned endpoint, std::span<const std::byte, 8> request) override;
+  Handshake out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) override;
+  InReply in(unsigned address, unsigned endpoint, std::span<std::byte, full_speed_packet_maximum> data) override;
+  bool finish_in(unsigned endpoint) override;
+
+ private:
+  bool is_addressed(unsigned address, unsigned endpoint) const;
+  bool has_to_wait() const;
+  std::optional<std::vector<std::byte>> answer();
+  std::optional<std::vector<std::byte>> descriptor() const;
+  bool take();
+
+  BootLoaderDfu dfu_;
+  std::string serial_number_;
+  bool is_running_ = false, is_silent_ = true;
+  std::uint32_t attachments_ = 0;
+  unsigned address_ = 0;
+  std::optional<unsigned> next_address_;
+  std::uint8_t configuration_ = 0, alternate_ = 0;
+
+  SetupPacket request_{};
+  std::vector<std::byte> data_;                    ///< that came
+  std::optional<std::vector<std::byte>> to_send_;  ///< once it is known
+  std::size_t sent_ = 0, on_wire_ = 0;
+  bool data1_ = false;
+  bool is_refused_ = false, is_taken_ = false;
+};
+
+}  // namespace inkwell::virtual_board
