@@ -10,6 +10,9 @@
 
 namespace inkwell::board {
 
+/// Of this folder in boards/; an image says it (protocol/image_identity.hpp).
+inline constexpr std::string_view name = "omni_driver";
+
 // ---- pins ------------------------------------------------------------------------------------------
 
 struct Pin {

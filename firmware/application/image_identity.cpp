@@ -1,0 +1,20 @@
+// Where the linker script puts it, whoever flashes the image finds it: protocol/image_identity.hpp.
+#include <board/board.hpp>
+#include <protocol/image_identity.hpp>
+
+#include "vectors.hpp"
+
+namespace inkwell::application {
+
+static_assert(sizeof(VectorTable) == protocol::image_identity_offset);
+static_assert(board::name.size() <= protocol::ImageIdentity::board_name_maximum);
+
+/// Of whole words, as all of the image is.
+struct alignas(4) PlacedIdentity {
+  protocol::ImageIdentity identity;
+};
+
+[[gnu::section(".image_identity"), gnu::used]] constinit const PlacedIdentity placed_identity{
+    protocol::image_identity(board::name, INKWELL_VERSION_NUMBERS)};
+
+}  // namespace inkwell::application

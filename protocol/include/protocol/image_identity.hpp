@@ -1,0 +1,44 @@
+// What an image of the firmware says of itself, at one place in the flash, so that whoever writes it knows what it is.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+#include <protocol/reports.hpp>
+
+namespace inkwell::protocol {
+
+/// Behind the vector table (RM0090, "Vector table for STM32F405xx", on its boundary of 512 bytes).
+inline constexpr std::uint32_t image_begin = 0x0800'0000, image_identity_offset = 512;
+
+struct ImageIdentity {
+  static constexpr char right_mark[8] = {'I', 'n', 'k', 'w', 'e', 'l', 'l', '\n'};
+  static constexpr std::size_t board_name_maximum = 31;
+
+  char mark[8];
+  std::uint16_t protocol_version;
+  std::uint8_t firmware_version[3];
+  std::uint8_t reserved;
+  char board[board_name_maximum + 1];  ///< the folder in boards/ that it is for, with a zero behind it
+
+  bool is_there() const { return std::ranges::equal(mark, right_mark) && board[board_name_maximum] == '\0'; }
+  std::string_view board_name() const { return board; }
+};
+static_assert(sizeof(ImageIdentity) == 46 && std::is_trivially_copyable_v<ImageIdentity>);
+
+constexpr ImageIdentity image_identity(std::string_view board, std::uint8_t major, std::uint8_t minor,
+                                       std::uint8_t patch) {
+  ImageIdentity identity{};
+  std::ranges::copy(ImageIdentity::right_mark, identity.mark);
+  identity.protocol_version = protocol_version;
+  identity.firmware_version[0] = major;
+  identity.firmware_version[1] = minor;
+  identity.firmware_version[2] = patch;
+  std::copy_n(board.begin(), std::min(board.size(), ImageIdentity::board_name_maximum), identity.board);
+  return identity;
+}
+
+}  // namespace inkwell::protocol
