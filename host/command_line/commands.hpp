@@ -42,7 +42,8 @@ struct Place {
   X(record)                 \
   X(replay)                 \
   X(plot)                   \
-  X(run)
+  X(run)                    \
+  X(flash)
 
 #define X(name) void add_##name##_command(const Place& place);
 INKWELL_COMMANDS(X)

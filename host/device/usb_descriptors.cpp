@@ -60,4 +60,14 @@ std::string parse_string(std::span<const std::byte> descriptor) {
   return text;
 }
 
+std::uint8_t name_of_alternate(std::span<const std::byte> configuration, std::uint8_t interface,
+                               std::uint8_t alternate) {
+  const auto at = [&](std::size_t i) { return std::to_integer<std::uint8_t>(configuration[i]); };
+  while (configuration.size() >= 2 && at(0) >= 2 && at(0) <= configuration.size()) {
+    if (at(1) == type_interface && at(0) >= 9 && at(2) == interface && at(3) == alternate) return at(8);
+    configuration = configuration.subspan(at(0));
+  }
+  return 0;
+}
+
 }  // namespace inkwell::device

@@ -24,6 +24,10 @@ UsbLayout parse_configuration(std::span<const std::byte> descriptor);
 /// The text of a string descriptor; characters beyond ASCII become '?'.
 std::string parse_string(std::span<const std::byte> descriptor);
 
+/// The index of the string that names an alternate setting; 0 if there is none. Damage ends the reading.
+std::uint8_t name_of_alternate(std::span<const std::byte> configuration, std::uint8_t interface,
+                               std::uint8_t alternate);
+
 /// Setup packet of a control transfer (USB 2.0, section 9.3).
 struct Setup {
   std::uint8_t request_type;

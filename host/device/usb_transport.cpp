@@ -16,6 +16,7 @@
 
 #include "transfer_queue.hpp"
 #include "usb_descriptors.hpp"
+#include "usb_handle.hpp"
 
 namespace inkwell::device {
 namespace {
@@ -34,10 +35,10 @@ std::string narrow(const wchar_t* text) {
 /// The bulk interface through libusb. The kernel keeps the HID interface, which hidapi uses.
 class BulkReader {
  public:
-  BulkReader(const std::string& serial_number, TransferQueue& queue) : queue_(queue) {
-    if (libusb_init(&context_) != 0) throw Error("libusb does not start. Check that /dev/bus/usb exists.");
+  BulkReader(const std::string& serial_number, TransferQueue& queue)
+      : handle_(identity::vendor_id, identity::product_id, serial_number), queue_(queue) {
     try {
-      open(serial_number);
+      open();
       start();
     } catch (...) {
       stop();
@@ -55,50 +56,20 @@ class BulkReader {
     std::array<unsigned char, protocol::scope_frame_maximum> buffer{};
   };
 
-  void open(const std::string& serial_number) {
-    libusb_device** list = nullptr;
-    const ssize_t count = libusb_get_device_list(context_, &list);
-    int code = LIBUSB_ERROR_NO_DEVICE;
-    for (ssize_t i = 0; i < count && handle_ == nullptr; ++i) {
-      libusb_device_descriptor descriptor{};
-      libusb_get_device_descriptor(list[i], &descriptor);
-      if (descriptor.idVendor != identity::vendor_id || descriptor.idProduct != identity::product_id) continue;
-      libusb_device_handle* handle = nullptr;
-      const int opened = libusb_open(list[i], &handle);
-      if (opened != 0) {
-        code = opened;
-        continue;
-      }
-      std::array<unsigned char, 128> serial{};
-      const int length =
-          libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, serial.data(), serial.size());
-      const std::string found(reinterpret_cast<const char*>(serial.data()),
-                              static_cast<std::size_t>(std::max(length, 0)));
-      if (found == serial_number)
-        handle_ = handle;
-      else
-        libusb_close(handle);
-    }
-    if (list != nullptr) libusb_free_device_list(list, 1);
-    if (handle_ == nullptr && code == LIBUSB_ERROR_ACCESS) throw NoPermission(permission_message("/dev/bus/usb"));
-    if (handle_ == nullptr) throw Disconnected(unplugged);
-
+  void open() {
     std::array<unsigned char, 1024> descriptor{};
-    const int length =
-        libusb_get_descriptor(handle_, LIBUSB_DT_CONFIG, 0, descriptor.data(), static_cast<int>(descriptor.size()));
+    const int length = libusb_get_descriptor(handle_.get(), LIBUSB_DT_CONFIG, 0, descriptor.data(),
+                                             static_cast<int>(descriptor.size()));
     if (length < 0) throw Disconnected(unplugged);
     layout_ = parse_configuration(std::as_bytes(std::span(descriptor.data(), static_cast<std::size_t>(length))));
-    const int result = libusb_claim_interface(handle_, layout_.scope_interface);
-    if (result == LIBUSB_ERROR_BUSY) throw InUse(scope_in_use);
-    if (result != 0) throw Disconnected(unplugged);
-    claimed_ = true;
+    handle_.claim(layout_.scope_interface, scope_in_use);
   }
 
   void start() {
     for (auto& slot : slots_) {
       slot.reader = this;
       slot.transfer = libusb_alloc_transfer(0);
-      libusb_fill_bulk_transfer(slot.transfer, handle_, layout_.scope_in_endpoint, slot.buffer.data(),
+      libusb_fill_bulk_transfer(slot.transfer, handle_.get(), layout_.scope_in_endpoint, slot.buffer.data(),
                                 static_cast<int>(slot.buffer.size()), &BulkReader::on_transfer, &slot, 0);
       if (libusb_submit_transfer(slot.transfer) != 0) throw Disconnected(unplugged);
       ++under_way_;
@@ -110,7 +81,7 @@ class BulkReader {
   void handle_events(Wanted wanted) {
     while (wanted()) {
       timeval wait{0, 50'000};
-      libusb_handle_events_timeout(context_, &wait);
+      libusb_handle_events_timeout(handle_.context(), &wait);
     }
   }
 
@@ -121,9 +92,6 @@ class BulkReader {
       if (slot.transfer != nullptr) libusb_cancel_transfer(slot.transfer);
     handle_events([this] { return under_way_ > 0; });
     for (auto& slot : slots_) libusb_free_transfer(slot.transfer);
-    if (claimed_) libusb_release_interface(handle_, layout_.scope_interface);
-    if (handle_ != nullptr) libusb_close(handle_);
-    libusb_exit(context_);
   }
 
   static void LIBUSB_CALL on_transfer(libusb_transfer* transfer) {
@@ -143,10 +111,8 @@ class BulkReader {
     if (!stopping_) queue_.close(unplugged);
   }
 
-  libusb_context* context_ = nullptr;
-  libusb_device_handle* handle_ = nullptr;
+  UsbHandle handle_;
   UsbLayout layout_;
-  bool claimed_ = false;
   std::array<Slot, bulk_transfers> slots_{};
   std::atomic<int> under_way_ = 0;
   std::atomic<bool> stopping_ = false;

@@ -218,7 +218,8 @@ TEST_CASE("every command explains itself") {
       "parameters stored", "parameters factory", "experiment", "experiment wall", "calibrate", "tune",
       "tune current-loop", "check", "check connection", "check directions", "record", "replay", "plot",
       "reference", "signals", "run", "campaign", "campaign list", "campaign run", "campaign merge", "soak", "devices", "fault",
-      "fault clear", "self-test", "force", "force on", "force off"};
+      "fault clear", "self-test", "force", "force on", "force off",
+      "flash"};
   // clang-format on
   const auto help_of = [](const std::string& command) {
     std::vector<std::string> words;

@@ -5,9 +5,11 @@
 
 namespace inkwell::protocol::usb {
 
-/// pid.codes' vendor identifier with its product identifier for private tests.
+/// pid.codes' vendor identifier with its product identifier for private tests, until Inkwell has one of its own:
+/// docs/flashing.md says what has to be registered for that.
 inline constexpr std::uint16_t vendor_id = 0x1209;
 inline constexpr std::uint16_t product_id = 0x0001;
+inline constexpr bool is_test_identity = true;
 inline constexpr char manufacturer[] = "Inkwell";
 inline constexpr char product[] = "Inkwell haptic arm";
 
@@ -25,6 +27,11 @@ inline constexpr std::uint8_t controller_interval_ms = 8;
 
 /// USB device firmware upgrade 1.1, run-time part: DFU_DETACH starts the boot loader in the chip.
 inline constexpr std::uint8_t firmware_update_interface = 3;
+
+/// The boot loader in the chip (AN2606), which every STM32 has alike.
+inline constexpr std::uint16_t boot_loader_vendor_id = 0x0483;
+inline constexpr std::uint16_t boot_loader_product_id = 0xDF11;
+inline constexpr char boot_loader_product[] = "boot loader";
 
 inline constexpr std::uint8_t interface_count = 4;
 inline constexpr std::uint16_t packet_size = 64;

@@ -1,0 +1,144 @@
+#include "commands.hpp"
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <firmware_update/flash_file.hpp>
+#include <firmware_update/probe.hpp>
+#include <firmware_update/update.hpp>
+#include <installation/places.hpp>
+
+#include "help.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+
+namespace inkwell::command_line {
+namespace {
+
+using NewImage = firmware_update::Image;
+using nlohmann::ordered_json;
+
+struct FlashOptions {
+  std::filesystem::path image;
+  bool by_usb = false, by_probe = false, says_yes = false;
+  std::filesystem::path flash_file;
+  std::string interface = "stlink";
+};
+
+std::string before_text(const std::optional<protocol::ImageIdentity>& before) {
+  return before ? firmware_update::describe(*before)
+                : std::string("nothing that says what it is, so nobody could check that the image is for this board");
+}
+
+ordered_json to_json(const NewImage& image, const std::optional<protocol::ImageIdentity>& before) {
+  const auto text = [](const auto& identity) {
+    return identity ? ordered_json(firmware_update::describe(*identity)) : ordered_json(nullptr);
+  };
+  return {{"image", image.file.string()}, {"written", text(image.identity)}, {"before", text(before)}};
+}
+
+int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
+  const InterruptGuard interrupt;
+  ProgressBar progress;
+  firmware_update::UpdateResult result;
+  try {
+    result = firmware_update::update(options.address(), image,
+                                     {.says_yes = given.says_yes,
+                                      .on_progress = [&](std::string_view step, double done) { progress(step, done); },
+                                      .is_cancelled = [&] { return interrupt.was_asked_to_end(); }});
+  } catch (...) {
+    progress.end();
+    throw;
+  }
+  if (options.json) {
+    auto json = to_json(image, result.before);
+    json["brown_out_level_set"] = result.has_set_brown_out;
+    json["serial_number"] = result.serial_number;
+    json["firmware_version"] = result.firmware_version;
+    json["protocol_version"] = result.protocol_version;
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("The board held {}.\n", before_text(result.before));
+    if (result.has_set_brown_out) fmt::print("Its brown-out level was another one, and is 3 now.\n");
+  }
+  if (result.firmware_version.empty())
+    throw device::Error(
+        "The firmware was written and read back, but the board does not show itself. Switch its power off and on "
+        "again, "
+        "then try `inkwell info`.");
+  if (!options.json)
+    fmt::print("Arm {} runs firmware {} now, protocol {}.\n", result.serial_number, result.firmware_version,
+               result.protocol_version);
+  return 0;
+}
+
+int flash_file(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
+  const auto before = firmware_update::write_flash_file(given.flash_file, image, given.says_yes);
+  if (options.json)
+    fmt::print("{}\n", to_json(image, before).dump(2));
+  else
+    fmt::print("{} holds {} now. Before: {}.\n", given.flash_file.string(),
+               image.identity ? firmware_update::describe(*image.identity) : image.file.string(), before_text(before));
+  return 0;
+}
+
+int write(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
+  if (!given.flash_file.empty()) return flash_file(options, given, image);
+  if (!given.by_probe) return flash_by_usb(options, given, image);
+  firmware_update::update_by_probe(image, given.interface, given.says_yes);
+  fmt::print("{}\n", options.json ? to_json(image, std::nullopt).dump(2)
+                                  : std::string("The firmware was written and read back, and has been started."));
+  return 0;
+}
+
+int flash(const DeviceOptions& options, FlashOptions given) {
+  if (options.is_virtual)
+    throw UsageError(
+        "--virtual in front of `flash` would start a board that ends with this command. Write `inkwell flash --virtual "
+        "FILE` for the flash file of a virtual board, or --usbip HOST:PORT for one that runs.");
+  if (given.image.empty()) given.image = installation::firmware();
+  const NewImage image = firmware_update::read_image(given.image);
+  try {
+    return write(options, given, image);
+  } catch (const firmware_update::Objected& objection) {
+    throw device::Error(fmt::format("{} If you know better, add --yes.", objection.what()));
+  }
+}
+
+}  // namespace
+
+void add_flash_command(const Place& place) {
+  auto* command = place.program.add_subcommand(
+      "flash",
+      "Writes a firmware into a board, reads it back and starts it\n\n"
+      "Over USB the board is asked to leave its firmware for the boot loader in its chip; one that is in it already,\n"
+      "because its button BOOT0 was held while its power came on, is found there. Stored parameters stay. If it is\n"
+      "stopped in the middle, the same command again goes on.");
+  const auto given = std::make_shared<FlashOptions>();
+  command->add_option("IMAGE", given->image, "ELF of a firmware; the one that belongs to this program unless given");
+  auto* by_usb = command->add_flag("--dfu", given->by_usb, "Over USB, which is the choice without any");
+  auto* by_probe =
+      command->add_flag("--swd", given->by_probe, "By a debug probe at the board's SWD connector, with openocd");
+  auto* file =
+      command
+          ->add_option("--virtual", given->flash_file,
+                       "Into the file that virtual-board --flash keeps its flash in, while no board runs on it")
+          ->type_name("FILE");
+  by_usb->excludes(by_probe)->excludes(file);
+  by_probe->excludes(file);
+  command->add_option("--interface", given->interface, "Of --swd: the probe, by the name of openocd's file for it")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->needs(by_probe);
+  command->add_flag("--yes", given->says_yes,
+                    "Write it even if it is for another board, speaks an older protocol, or is damaged");
+  add_examples(*command,
+               "inkwell flash\ninkwell flash build/board/inkwell.elf\ninkwell flash --swd\n"
+               "inkwell flash --swd --interface cmsis-dap\ninkwell flash --virtual board.flash");
+  command->callback(
+      [place, given] { place.action = [&options = place.device, given] { return flash(options, *given); }; });
+}
+
+}  // namespace inkwell::command_line

@@ -1,0 +1,84 @@
+#include "usb_handle.hpp"
+
+#include <libusb-1.0/libusb.h>
+
+#include <algorithm>
+#include <array>
+
+#include "transports.hpp"
+
+namespace inkwell::device {
+namespace {
+
+constexpr char no_libusb[] = "libusb does not start. Check that /dev/bus/usb exists.";
+
+/// Opens each device with these identifiers and hands it over with its serial number; the one that is taken stays open.
+/// Returns why the last of the others could not be opened, 0 if there is no such one.
+template <class Take>
+int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t product_id, Take take) {
+  libusb_device** list = nullptr;
+  const ssize_t count = libusb_get_device_list(context, &list);
+  int reason = 0;
+  for (ssize_t i = 0; i < count; ++i) {
+    libusb_device_descriptor descriptor{};
+    libusb_get_device_descriptor(list[i], &descriptor);
+    if (descriptor.idVendor != vendor_id || descriptor.idProduct != product_id) continue;
+    libusb_device_handle* handle = nullptr;
+    if (const int opened = libusb_open(list[i], &handle); opened != 0) {
+      reason = opened;
+      continue;
+    }
+    std::array<unsigned char, 128> serial{};
+    const int length =
+        libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, serial.data(), serial.size());
+    const std::string found(reinterpret_cast<const char*>(serial.data()),
+                            static_cast<std::size_t>(std::max(length, 0)));
+    if (!take(found, handle)) libusb_close(handle);
+  }
+  if (list != nullptr) libusb_free_device_list(list, 1);
+  return reason;
+}
+
+}  // namespace
+
+UsbHandle::UsbHandle(std::uint16_t vendor_id, std::uint16_t product_id, const std::string& serial_number) {
+  if (libusb_init(&context_) != 0) throw Error(no_libusb);
+  const int reason =
+      open_each(context_, vendor_id, product_id, [&](const std::string& found, libusb_device_handle* handle) {
+        if (handle_ != nullptr || found != serial_number) return false;
+        handle_ = handle;
+        return true;
+      });
+  if (handle_ != nullptr) return;
+  libusb_exit(context_);
+  if (reason == LIBUSB_ERROR_ACCESS) throw NoPermission(permission_message("/dev/bus/usb"));
+  throw Disconnected(unplugged);
+}
+
+UsbHandle::~UsbHandle() {
+  for (const int number : claimed_) libusb_release_interface(handle_, number);
+  libusb_close(handle_);
+  libusb_exit(context_);
+}
+
+void UsbHandle::claim(int interface_number, const char* in_use) {
+  const int result = libusb_claim_interface(handle_, interface_number);
+  if (result == LIBUSB_ERROR_BUSY) throw InUse(in_use);
+  if (result != 0) throw Disconnected(unplugged);
+  claimed_.push_back(interface_number);
+}
+
+std::vector<std::string> usb_serial_numbers(std::uint16_t vendor_id, std::uint16_t product_id) {
+  libusb_context* context = nullptr;
+  if (libusb_init(&context) != 0) throw Error(no_libusb);
+  std::vector<std::string> numbers;
+  const int reason = open_each(context, vendor_id, product_id, [&](const std::string& found, libusb_device_handle*) {
+    numbers.push_back(found);
+    return false;
+  });
+  libusb_exit(context);
+  if (reason == LIBUSB_ERROR_ACCESS) throw NoPermission(permission_message("/dev/bus/usb"));
+  return numbers;
+}
+
+}  // namespace inkwell::device

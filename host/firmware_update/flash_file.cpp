@@ -1,0 +1,65 @@
+#include <firmware_update/flash_file.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include <firmware_update/boot_loader.hpp>
+
+namespace inkwell::firmware_update {
+namespace {
+
+/// Of the STM32F405 with 1 MiB, as its boot loader says.
+constexpr char layout[] = "@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg";
+constexpr std::size_t file_bytes = 1024 * 1024;
+
+std::vector<std::byte> read_flash(const std::filesystem::path& file) {
+  std::error_code code;
+  if (!std::filesystem::exists(file, code)) return std::vector(file_bytes, std::byte{0xFF});
+  if (!std::filesystem::is_regular_file(file, code) || std::filesystem::file_size(file, code) != file_bytes)
+    throw device::Error(fmt::format(
+        "{} is no flash of a virtual board, which has {} bytes. Give the file of virtual-board --flash, or one "
+        "that is not there yet.",
+        file.string(), file_bytes));
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<char> content{std::istreambuf_iterator<char>(stream), {}};
+  if (content.size() != file_bytes) throw device::Error(fmt::format("{} cannot be read.", file.string()));
+  const auto bytes = std::as_bytes(std::span(content));
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Whole or not at all.
+void replace(const std::filesystem::path& file, std::span<const std::byte> content) {
+  auto unfinished = file;
+  unfinished += ".new";
+  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+  stream.write(reinterpret_cast<const char*>(content.data()), static_cast<std::streamsize>(content.size()));
+  stream.close();
+  std::error_code code;
+  if (stream) std::filesystem::rename(unfinished, file, code);
+  if (stream && !code) return;
+  std::filesystem::remove(unfinished, code);
+  throw device::Error(fmt::format("{} cannot be written. Is its disk full, or its folder not yours?", file.string()));
+}
+
+}  // namespace
+
+std::optional<protocol::ImageIdentity> write_flash_file(const std::filesystem::path& file, const Image& image,
+                                                        bool says_yes) {
+  auto flash = read_flash(file);
+  const auto before = identity_in(flash);
+  insist(image, before, says_yes);
+  const auto offset = [](std::uint32_t address) {
+    return static_cast<std::ptrdiff_t>(address - protocol::image_begin);
+  };
+  for (const Sector& sector : sectors_of(image, parse_memory_layout(layout)))
+    std::fill_n(flash.begin() + offset(sector.address), sector.bytes, std::byte{0xFF});
+  for (const Segment& segment : image.segments)
+    std::ranges::copy(segment.bytes, flash.begin() + offset(segment.address));
+  replace(file, flash);
+  return before;
+}
+
+}  // namespace inkwell::firmware_update

@@ -1,0 +1,64 @@
+// ST's boot loader in the chip, over USB: DFU 1.1 with ST's extensions (AN3156). Every STM32F405 has it in its system
+// memory, and nothing that is written to the flash can take it away.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <device/control_channel.hpp>
+#include <firmware_update/image.hpp>
+
+namespace inkwell::firmware_update {
+
+struct Sector {
+  std::uint32_t address, bytes;
+  bool operator==(const Sector&) const = default;
+};
+
+/// Sectors as the name of an alternate setting lists them (UM0424): "@Internal Flash  /0x08000000/04*016Kg,01*064Kg".
+/// Empty if it is none of these names.
+std::vector<Sector> parse_memory_layout(std::string_view name);
+
+/// Those of `all` that the image has bytes in.
+std::vector<Sector> sectors_of(const Image& image, const std::vector<Sector>& all);
+
+/// Throws what ControlChannel throws, and Error with what the loader says of its failure.
+class BootLoader {
+ public:
+  static constexpr std::size_t block_bytes = 2048, option_bytes = 16;
+
+  explicit BootLoader(device::ControlChannel& channel) : channel_(channel) {}
+
+  /// Makes it ready, whatever was done to it before, and reads its flash's sectors.
+  void start();
+  const std::vector<Sector>& sectors() const { return sectors_; }
+
+  void erase(std::uint32_t sector_address);
+  /// At most a block, into erased flash.
+  void write(std::uint32_t address, std::span<const std::byte> data);
+  std::vector<std::byte> read(std::uint32_t address, std::size_t bytes);
+
+  std::array<std::byte, option_bytes> read_options();
+  /// The loader then resets the chip, which starts its firmware.
+  void write_options(std::span<const std::byte, option_bytes> options);
+  /// Starts the program at the begin of the flash.
+  void leave();
+
+ private:
+  struct Status;
+  Status status();
+  void make_idle();
+  void set_address(std::uint32_t address);
+  void download(std::uint16_t block, std::span<const std::byte> data);
+  void wait_until_done();
+
+  device::ControlChannel& channel_;
+  std::vector<Sector> sectors_;
+};
+
+}  // namespace inkwell::firmware_update

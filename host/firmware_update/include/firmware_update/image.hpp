@@ -1,0 +1,76 @@
+// An image of the firmware, from its ELF.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <device/error.hpp>
+#include <protocol/image_identity.hpp>
+
+namespace inkwell::firmware_update {
+
+/// A file that is no program for the flash of an STM32F405.
+class NoImage : public device::Error {
+ public:
+  using Error::Error;
+};
+
+/// The image is not for this board, and no word of yes was given. `what()` holds the reasons.
+class Objected : public device::Error {
+ public:
+  using Error::Error;
+};
+
+struct Segment {
+  std::uint32_t address;
+  std::vector<std::byte> bytes;
+  std::uint32_t end() const { return address + static_cast<std::uint32_t>(bytes.size()); }
+};
+
+struct Image {
+  std::filesystem::path file;
+  std::vector<Segment> segments;                      ///< of the flash, by address, none reaching into another
+  std::optional<protocol::ImageIdentity> identity{};  ///< none: it is not Inkwell's, or older than these
+  bool is_whole = false;                              ///< the checksum at its end is that of its words
+
+  /// The byte at an address, none where the image has nothing.
+  std::optional<std::byte> at(std::uint32_t address) const;
+};
+
+/// Throws NoImage.
+Image read_image(const std::filesystem::path& elf);
+/// The same of a file's content; `name` is for sentences.
+Image read_image(std::span<const std::byte> elf, const std::filesystem::path& name);
+
+/// The identity in the first bytes of a flash, if one is there.
+std::optional<protocol::ImageIdentity> identity_in(std::span<const std::byte> begin_of_flash);
+/// Bytes of a flash that `identity_in` wants.
+inline constexpr std::size_t identity_end = protocol::image_identity_offset + sizeof(protocol::ImageIdentity);
+
+/// "firmware 0.1.0 for omni_driver, protocol 11".
+std::string describe(const protocol::ImageIdentity& identity);
+
+/// Why this image should not go into a board, a sentence each; none if it should. `there` is the identity of the image
+/// that the board has, if it has one.
+std::vector<std::string> objections(const Image& image, const std::optional<protocol::ImageIdentity>& there);
+
+/// Throws Objected with them unless there are none or `says_yes`.
+void insist(const Image& image, const std::optional<protocol::ImageIdentity>& there, bool says_yes);
+
+/// The CRC-32 that the chip counts (RM0090, chapter CRC), of little-endian words; what is left of a word is not
+/// counted.
+class WordChecksum {
+ public:
+  void add(std::uint32_t word);
+  std::uint32_t value() const { return rest_; }
+
+ private:
+  std::uint32_t rest_ = 0xFFFF'FFFF;
+};
+
+}  // namespace inkwell::firmware_update

@@ -1,0 +1,269 @@
+#include <firmware_update/update.hpp>
+
+#include <algorithm>
+#include <set>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include <device/device.hpp>
+
+namespace inkwell::firmware_update {
+namespace {
+
+using namespace std::chrono_literals;
+using device::Address;
+using device::Endpoint;
+
+/// A board needs half a second for it; a virtual one on a busy computer a few.
+constexpr auto change_patience = 20s;
+constexpr auto look_again = 50ms;
+
+constexpr char how_to_go_on[] =
+    "The board is in its boot loader, without a complete firmware, and its bridges are off. Leave its power on and "
+    "give "
+    "the same command again: it goes on from there. If its power was off, hold BOOT0 while it comes on first.";
+
+Address without_number(const Address& address) {
+  return {.kind = address.kind, .host = address.host, .port = address.port};
+}
+
+std::vector<Endpoint> arms_at(const Address& address) {
+  return address.kind == Address::Kind::usbip ? device::find_usbip_devices(address.host, address.port)
+                                              : device::find_arms(address);
+}
+
+/// Those of the address, and of the serial number if it says one.
+std::vector<Endpoint> loaders_at(const Address& address) {
+  auto loaders = device::find_boot_loaders(address);
+  if (!address.serial_number.empty())
+    std::erase_if(loaders, [&](const auto& each) { return each.serial_number != address.serial_number; });
+  return loaders;
+}
+
+[[noreturn]] void complain_of_number(const std::vector<Endpoint>& arms, const std::vector<Endpoint>& loaders) {
+  if (arms.empty() && loaders.empty())
+    throw device::NoDevice(
+        "There is neither an arm nor a boot loader. Plug the board in; if its firmware does not run, hold its button "
+        "BOOT0 "
+        "while its power comes on.");
+  std::string list;
+  for (const auto& each : arms) list += fmt::format(" {} (runs),", each.serial_number);
+  for (const auto& each : loaders) list += fmt::format(" {} (boot loader),", each.serial_number);
+  list.pop_back();
+  throw device::NoDevice(
+      fmt::format("{} boards are plugged in. Choose one with --serial NUMBER:{}.", arms.size() + loaders.size(), list));
+}
+
+template <class Look>
+auto wait_for(Look look) -> decltype(look()) {
+  const auto give_up_at = std::chrono::steady_clock::now() + change_patience;
+  for (;;) {
+    if (auto found = look()) return found;
+    if (std::chrono::steady_clock::now() > give_up_at) return {};
+    std::this_thread::sleep_for(look_again);
+  }
+}
+
+/// A server or a device that just changes may not answer; it is asked again.
+template <class Look>
+auto if_it_answers(Look look) -> decltype(look()) {
+  try {
+    return look();
+  } catch (const device::NoPermission&) {
+    throw;
+  } catch (const device::Error&) {
+    return {};
+  }
+}
+
+/// Out of the firmware into the boot loader.
+Endpoint detach(const Endpoint& arm, const Address& address) {
+  std::set<std::string> known;
+  for (const auto& each : device::find_boot_loaders(address))
+    if (each.kind == Endpoint::Kind::usb) known.insert(each.serial_number);
+  try {
+    device::detach_firmware(arm);
+  } catch (const device::Stalled&) {
+    throw device::Error(
+        "The board does not leave its firmware while the force is on. Switch it off first: inkwell force off.");
+  }
+  const auto loader = wait_for([&] {
+    return if_it_answers([&]() -> std::optional<Endpoint> {
+      for (auto& each : device::find_boot_loaders(address))
+        if (!known.contains(each.serial_number)) return each;
+      return {};
+    });
+  });
+  if (loader) return *loader;
+  throw device::Error(
+      "The board has left its firmware, but its boot loader does not show itself. Switch the board's power off and on "
+      "again: its old firmware is still there.");
+}
+
+/// The boot loader of the board that is meant, and the arms beside it.
+struct Found {
+  Endpoint loader;
+  std::set<std::string> other_arms;
+};
+Found find_loader(const Address& address, const UpdateOptions& options) {
+  const auto arms = arms_at(address);
+  const auto loaders = loaders_at(address);
+  if (arms.size() + loaders.size() != 1) complain_of_number(arms, loaders);
+  Found found;
+  for (const auto& each : arms_at(without_number(address))) found.other_arms.insert(each.serial_number);
+  if (!loaders.empty()) {
+    found.loader = loaders.front();
+    return found;
+  }
+  found.other_arms.erase(arms.front().serial_number);
+  options.on_progress("asking the board to leave its firmware", 0);
+  found.loader = detach(arms.front(), address);
+  return found;
+}
+
+/// Pieces of a block each, the first of the flash last, and none over a gap of the image.
+struct Block {
+  std::uint32_t address;
+  std::span<const std::byte> bytes;
+};
+std::vector<Block> blocks_of(const Image& image) {
+  std::vector<Block> blocks;
+  for (const Segment& segment : image.segments)
+    for (std::size_t at = 0; at < segment.bytes.size(); at += BootLoader::block_bytes)
+      blocks.push_back(
+          {segment.address + static_cast<std::uint32_t>(at),
+           std::span(segment.bytes).subspan(at, std::min(BootLoader::block_bytes, segment.bytes.size() - at))});
+  std::rotate(blocks.begin(), blocks.begin() + 1, blocks.end());
+  return blocks;
+}
+
+/// Steps of one piece of work, in the share of time that they take.
+class Writing {
+ public:
+  Writing(BootLoader& loader, const Image& image, const UpdateOptions& options)
+      : loader_(loader), options_(options), sectors_(sectors_of(image, loader.sectors())), blocks_(blocks_of(image)) {}
+
+  void erase() {
+    for (const Sector& sector : sectors_) {  // the first one first: see update.hpp
+      step(fmt::format("erasing: {} KiB at 0x{:08x}", sector.bytes / 1024, sector.address));
+      loader_.erase(sector.address);
+      done_ += 0.3 / static_cast<double>(sectors_.size());
+    }
+  }
+  void write_and_verify() {
+    const auto last = blocks_.size() - 1;
+    for (std::size_t i = 0; i < last; ++i) write(blocks_[i]);
+    for (std::size_t i = 0; i < last; ++i) verify(blocks_[i]);
+    write(blocks_[last]);
+    verify(blocks_[last]);
+  }
+
+ private:
+  void step(const std::string& text) {
+    if (options_.is_cancelled()) throw device::Error("Stopped as you asked.");
+    options_.on_progress(text, std::min(done_, 0.99));
+  }
+  void write(const Block& block) {
+    step(fmt::format("writing: 0x{:08x}", block.address));
+    loader_.write(block.address, block.bytes);
+    done_ += 0.4 / static_cast<double>(blocks_.size());
+  }
+  void verify(const Block& block) {
+    step(fmt::format("reading back: 0x{:08x}", block.address));
+    const auto read = loader_.read(block.address, block.bytes.size());
+    const auto difference = std::ranges::mismatch(read, block.bytes);
+    if (difference.in2 != block.bytes.end())
+      throw device::Error(fmt::format("The flash differs from the image at 0x{:08x}: it may be worn.",
+                                      block.address + (difference.in2 - block.bytes.begin())));
+    done_ += 0.3 / static_cast<double>(blocks_.size());
+  }
+
+  BootLoader& loader_;
+  const UpdateOptions& options_;
+  const std::vector<Sector> sectors_;
+  const std::vector<Block> blocks_;
+  double done_ = 0;
+};
+
+/// What the board says once it runs again: nothing if it did not come back in time.
+void look_at_result(const Address& address, const std::set<std::string>& other_arms, UpdateResult& result) {
+  wait_for([&] {
+    return if_it_answers([&] {
+      for (const auto& arm : arms_at(without_number(address))) {
+        if (arm.kind == Endpoint::Kind::usb && other_arms.contains(arm.serial_number)) continue;
+        device::Device device(device::open_transport(arm));
+        const auto information = device.information();
+        result.serial_number = information.serial_number;
+        result.firmware_version = information.firmware_version;
+        result.protocol_version = information.protocol_version;
+        return true;
+      }
+      return false;
+    });
+  });
+}
+
+}  // namespace
+
+std::optional<std::array<std::byte, BootLoader::option_bytes>> with_brown_out_level_3(
+    const std::array<std::byte, BootLoader::option_bytes>& options) {
+  constexpr std::byte level_bits{0x0C}, unprotected{0xAA};
+  if (options[1] != unprotected)
+    throw device::Error("The chip's option bytes say that its flash is protected; they are left as they are.");
+  if ((options[0] & level_bits) == std::byte{0}) return {};
+  auto changed = options;
+  changed[0] &= ~level_bits;  // all others as they were: some of them would lock the chip for ever
+  return changed;
+}
+
+Written write_image(BootLoader& loader, const Image& image, const UpdateOptions& options) {
+  Written written;
+  loader.start();
+  written.before = identity_in(loader.read(protocol::image_begin, identity_end));
+  try {
+    insist(image, written.before, options.says_yes);
+  } catch (const Objected&) {
+    loader.leave();  // to what it says it is
+    throw;
+  }
+  if (options.is_cancelled()) {
+    if (written.before) loader.leave();
+    throw device::Error("Stopped as you asked. Nothing was changed.");
+  }
+  const auto options_before = loader.read_options();
+  const auto options_wanted = with_brown_out_level_3(options_before);
+  try {
+    Writing writing(loader, image, options);
+    writing.erase();
+    writing.write_and_verify();
+  } catch (const device::Error& error) {
+    throw Interrupted(fmt::format("{} {}", error.what(), how_to_go_on));
+  }
+  options.on_progress(
+      options_wanted ? "setting the brown-out level, and starting the firmware" : "starting the firmware", 0.99);
+  if (options_wanted) loader.write_options(*options_wanted);
+  if (!options_wanted) loader.leave();
+  written.has_set_brown_out = options_wanted.has_value();
+  return written;
+}
+
+UpdateResult update(const Address& address, const Image& image, const UpdateOptions& options) {
+  // What no board could have is refused before the board leaves its firmware.
+  insist(image, {}, options.says_yes);
+  UpdateResult result;
+  const Found found = find_loader(address, options);
+  {
+    const auto channel = device::open_boot_loader(found.loader);
+    BootLoader loader(*channel);
+    const Written written = write_image(loader, image, options);
+    result.before = written.before;
+    result.has_set_brown_out = written.has_set_brown_out;
+  }
+  options.on_progress("waiting for the board to come back", 0.99);
+  look_at_result(address, found.other_arms, result);
+  options.on_progress("done", 1);
+  return result;
+}
+
+}  // namespace inkwell::firmware_update

@@ -1,0 +1,175 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <failure.hpp>
+#include <firmware_update/boot_loader.hpp>
+#include <firmware_update/flash_file.hpp>
+#include <firmware_update/image.hpp>
+#include <firmware_update/probe.hpp>
+#include <firmware_update/update.hpp>
+#include <temporary_directory.hpp>
+
+#include "made_elf.hpp"
+
+using namespace inkwell;
+using namespace inkwell::firmware_update;
+using inkwell::tests::contains;
+using inkwell::tests::made_elf;
+using inkwell::tests::made_segments;
+using inkwell::tests::message_of;
+
+namespace {
+
+Image image_of(const std::vector<Segment>& segments) { return read_image(made_elf(segments), "made.elf"); }
+
+std::string refusal_of(const std::vector<Segment>& segments) {
+  return message_of<NoImage>([&] { image_of(segments); });
+}
+
+protocol::ImageIdentity identity_of(std::string_view board, int versions_off = 0) {
+  auto identity = protocol::image_identity(board, 1, 2, 3);
+  identity.protocol_version = static_cast<std::uint16_t>(identity.protocol_version + versions_off);
+  return identity;
+}
+
+}  // namespace
+
+TEST_CASE("the firmware's image says what it is, and is whole") {
+  const auto image = read_image(INKWELL_BUILD_DIRECTORY "/../board/inkwell.elf");
+  REQUIRE(image.identity.has_value());
+  CHECK(image.identity->board_name() == "omni_driver");
+  CHECK(image.identity->protocol_version == protocol::protocol_version);
+  CHECK(image.is_whole);
+  CHECK(objections(image, image.identity).empty());
+  CHECK(objections(image, {}).empty());
+}
+
+TEST_CASE("a file that is no program for the chip's flash is refused with a sentence") {
+  CHECK(contains(message_of<NoImage>([] { read_image(std::span<const std::byte>(), "none.elf"); }), "no ELF"));
+  CHECK(contains(message_of<NoImage>([] { read_image("/nowhere/at/all.elf"); }), "no firmware"));
+  CHECK(contains(message_of<NoImage>([] { read_image("/tmp"); }), "no firmware"));
+  CHECK(contains(message_of<NoImage>([] { read_image("/proc/self/exe"); }), "32-bit ARM"));
+  const auto good = made_elf(made_segments(identity_of("omni_driver")));
+  REQUIRE_NOTHROW(read_image(good, "made.elf"));
+  for (std::size_t length = 4; length < good.size(); length += 7)
+    CHECK_THROWS_AS(read_image(std::span(good).first(length), "cut.elf"), NoImage);
+  CHECK(contains(refusal_of({}), "vector table"));
+  CHECK(contains(refusal_of({{0x0800'4000, std::vector<std::byte>(8)}}), "vector table"));
+  CHECK(contains(refusal_of({{0x0800'0000, std::vector<std::byte>(8)}, {0x080F'FFFC, std::vector<std::byte>(8)}}),
+                 "no program for the flash"));
+  CHECK(contains(refusal_of({{0x0800'0000, std::vector<std::byte>(8)}, {0x0800'0004, std::vector<std::byte>(8)}}),
+                 "no program for the flash"));
+  CHECK(contains(refusal_of({{0x2000'0000, std::vector<std::byte>(8)}}), "no program for the flash"));
+}
+
+TEST_CASE("an image is objected to for another board, an older protocol, damage, and for saying nothing") {
+  const auto there = identity_of("omni_driver");
+  CHECK(objections(image_of(made_segments(identity_of("omni_driver"))), there).empty());
+  CHECK(objections(image_of(made_segments(identity_of("omni_driver", +1))), there).empty());
+  CHECK(objections(image_of(made_segments(identity_of("other_board"))), {}).empty());  // nobody knows
+
+  const auto only_objection = [&](const Image& image) {
+    const auto all = objections(image, there);
+    REQUIRE(all.size() == 1);
+    CHECK_NOTHROW(insist(image, there, true));
+    const auto said = message_of<Objected>([&] { insist(image, there, false); });
+    CHECK(contains(said, all[0]));
+    CHECK(contains(said, "Nothing was changed"));
+    return all[0];
+  };
+  CHECK(contains(only_objection(image_of(made_segments(identity_of("other_board")))), "other_board"));
+  CHECK(contains(only_objection(image_of(made_segments(identity_of("omni_driver", -1)))), "version"));
+  auto damaged = made_segments(identity_of("omni_driver"));
+  damaged[1].bytes[5] ^= std::byte{1};
+  CHECK(contains(only_objection(image_of(damaged)), "damaged"));
+  auto nameless = made_segments(identity_of("omni_driver"));
+  nameless[0].bytes[protocol::image_identity_offset] = std::byte{0};
+  CHECK(contains(only_objection(image_of(nameless)), "which board"));
+}
+
+TEST_CASE("memory layouts are read as ST writes them") {
+  const auto sectors = parse_memory_layout("@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg");
+  REQUIRE(sectors.size() == 12);
+  CHECK(sectors[0] == Sector{0x0800'0000, 0x4000});
+  CHECK(sectors[3] == Sector{0x0800'C000, 0x4000});
+  CHECK(sectors[4] == Sector{0x0801'0000, 0x1'0000});
+  CHECK(sectors[11] == Sector{0x080E'0000, 0x2'0000});
+  CHECK(parse_memory_layout("@Option Bytes  /0x1FFFC000/01*016 e") == std::vector{Sector{0x1FFF'C000, 16}});
+  for (const char* text : {"", "Internal Flash", "@Internal Flash", "@F/0x08000000", "@F/0x08000000/",
+                           "@F/08000000/1*1Kg", "@F/0x08000000/99999*1Kg", "@F/0x08000000/1*99999999Kg",
+                           "@F/0x08000000/1*1Kg;", "@F/0x08000000/0*1Kg", "@F/0xFFFFFFFFF/1*1Kg"}) {
+    INFO(text);
+    CHECK(parse_memory_layout(text).empty());
+  }
+  const auto image = image_of(made_segments(identity_of("omni_driver")));
+  CHECK(sectors_of(image, sectors) == std::vector{sectors[0], sectors[4]});  // and none between
+}
+
+TEST_CASE("of the option bytes only the brown-out level changes") {
+  std::array<std::byte, BootLoader::option_bytes> options{};
+  for (std::size_t i = 0; i < options.size(); ++i) options[i] = std::byte(0xE0 + i);
+  options[0] = std::byte{0xEF};
+  options[1] = std::byte{0xAA};
+  const auto changed = with_brown_out_level_3(options);
+  REQUIRE(changed.has_value());
+  CHECK((*changed)[0] == std::byte{0xE3});
+  CHECK(std::equal(changed->begin() + 1, changed->end(), options.begin() + 1));
+  CHECK_FALSE(with_brown_out_level_3(*changed).has_value());
+  // One that is read-protected, or was not read rightly, is left alone: 0xCC would lock the chip for ever.
+  for (const int protection : {0x00, 0xCC, 0xFF, 0x55}) {
+    options[1] = std::byte(protection);
+    CHECK_THROWS_AS(with_brown_out_level_3(options), device::Error);
+  }
+}
+
+TEST_CASE("openocd is called with the image as one word of Tcl") {
+  const auto words = openocd_arguments("/tmp/an [exit] \"image\" $x.elf", "cmsis-dap");
+  REQUIRE(words.size() == 10);
+  CHECK(words[1] == "interface/cmsis-dap.cfg");
+  CHECK(words[3] == "target/stm32f4x.cfg");
+  CHECK(contains(words[5],
+                 "flash write_image erase \"/tmp/an \\[exit\\] \\\"image\\\" \\$x.elf\"; verify_image \"/tmp/an "));
+  CHECK(contains(words[7], "($optcr & 0x0c) != 0"));
+  CHECK(contains(words[9], "reset run"));
+}
+
+TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the others") {
+  const tests::TemporaryDirectory directory;
+  const std::filesystem::path file = directory.file("board.flash");
+  const auto image = image_of(made_segments(identity_of("omni_driver")));
+  CHECK_FALSE(write_flash_file(file, image, false).has_value());
+  REQUIRE(std::filesystem::file_size(file) == 1024 * 1024);
+  const auto content = [&] {
+    std::ifstream stream(file, std::ios::binary);
+    return std::string{std::istreambuf_iterator<char>(stream), {}};
+  };
+  auto flash = content();
+  CHECK(std::memcmp(flash.data(), image.segments[0].bytes.data(), image.segments[0].bytes.size()) == 0);
+  CHECK(std::memcmp(flash.data() + 0x1'0000, image.segments[1].bytes.data(), image.segments[1].bytes.size()) == 0);
+  constexpr std::size_t parameters = 0x8000, unused = 0x1'FFF0;
+  CHECK(flash[parameters] == '\xFF');
+  flash[parameters] = 'p';
+  flash[unused] = 'u';
+  std::ofstream(file, std::ios::binary) << flash;
+  const auto before = write_flash_file(file, image, false);
+  REQUIRE(before.has_value());
+  CHECK(before->board_name() == "omni_driver");
+  CHECK(content()[parameters] == 'p');
+  CHECK(content()[unused] == '\xFF');  // it shares a sector with the image
+
+  const auto other = image_of(made_segments(identity_of("other_board")));
+  CHECK_THROWS_AS(write_flash_file(file, other, false), Objected);
+  CHECK(identity_in(std::as_bytes(std::span(content())))->board_name() == "omni_driver");
+  CHECK_NOTHROW(write_flash_file(file, other, true));
+  CHECK(identity_in(std::as_bytes(std::span(content())))->board_name() == "other_board");
+
+  std::ofstream(file, std::ios::binary) << "a text";
+  CHECK(
+      contains(message_of<device::Error>([&] { write_flash_file(file, image, true); }), "no flash of a virtual board"));
+  CHECK(content() == "a text");
+  CHECK_THROWS_AS(write_flash_file("/nowhere/board.flash", image, true), device::Error);
+}

@@ -1,0 +1,212 @@
+// `inkwell flash` on the virtual board: out of the firmware, through the chip's boot loader, and back.
+#include <doctest/doctest.h>
+
+#include <signal.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <device/control_channel.hpp>
+#include <host/firmware_update/made_elf.hpp>
+
+#include "board_rig.hpp"
+#include "program.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using namespace std::chrono_literals;
+
+namespace {
+
+std::string image(const std::string& name) { return build_directory() + "/../board/" + name; }
+
+/// A virtual board that runs on by itself.
+class FreeBoard {
+ public:
+  explicit FreeBoard(const std::vector<std::string>& more = {}) : program_(words(more)) {
+    const std::string ready = program_.read_line();
+    const auto at = ready.find("usbip=") + 6;
+    port = ready.substr(at, ready.find(' ', at) - at);
+  }
+  device::Address address() const { return device::parse_server(port); }
+  bool runs() const { return !device::find_arms(address()).empty(); }
+  bool is_in_boot_loader() const { return !device::find_boot_loaders(address()).empty(); }
+  void wait_until(bool (FreeBoard::*condition)() const) const {
+    const auto give_up_at = std::chrono::steady_clock::now() + patience;
+    while (!(this->*condition)()) {
+      REQUIRE(std::chrono::steady_clock::now() < give_up_at);
+      std::this_thread::sleep_for(20ms);
+    }
+  }
+  ProgramResult flash(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"flash", "--usbip", port});
+    return run_program("inkwell", words);
+  }
+
+  std::string port;
+
+ private:
+  static std::vector<std::string> words(const std::vector<std::string>& more) {
+    std::vector<std::string> words{build_directory() + "/virtual-board", "--elf", image("inkwell.elf")};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  RunningProgram program_;
+};
+
+bool says(const ProgramResult& result, const std::string& words) {
+  return result.err.find(words) != std::string::npos || result.out.find(words) != std::string::npos;
+}
+
+std::string write_elf(const TemporaryDirectory& directory, const std::vector<firmware_update::Segment>& segments) {
+  const auto file = directory.file("made.elf");
+  const auto elf = made_elf(segments);
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(elf.data()), static_cast<std::streamsize>(elf.size()));
+  return file;
+}
+
+}  // namespace
+
+TEST_CASE("a new version goes into a board that runs, and the old one again") {
+  const FreeBoard board;
+  board.wait_until(&FreeBoard::runs);
+  auto result = board.flash({image("next-protocol.elf"), "--json"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  auto json = nlohmann::json::parse(result.out);
+  CHECK(json.at("protocol_version") == protocol::protocol_version + 1);
+  CHECK(json.at("brown_out_level_set") == true);  // a new chip has it off
+  CHECK(json.at("serial_number") == "000000010000000039323539");
+  CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 1);  // it is another version now
+  for (const char* step : {"asking the board to leave", "erasing", "writing", "reading back", "starting the firmware"})
+    CHECK(says(result, step));
+
+  // Without a name it is the image that belongs to the program, and it finds the board although it cannot talk to it.
+  result = board.flash({"--dfu"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK(says(result, "The board held firmware"));
+  CHECK(says(result, "protocol " + std::to_string(protocol::protocol_version + 1)));
+  CHECK_FALSE(says(result, "brown-out level was another"));  // it has been set, and outlives the firmware
+  CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
+}
+
+TEST_CASE("an image that does not belong on the board is refused, and the old firmware goes on") {
+  const TemporaryDirectory directory;
+  const FreeBoard board;
+  board.wait_until(&FreeBoard::runs);
+  auto identity = protocol::image_identity("omni_driver", 0, 1, 0);
+  SUBCASE("another board's, which only the chip can tell") {
+    const auto result =
+        board.flash({write_elf(directory, made_segments(protocol::image_identity("other_board", 0, 1, 0)))});
+    CHECK(result.exit_code == 1);
+    CHECK(says(result, "is for the board other_board, and this one is omni_driver"));
+    CHECK(says(result, "--yes"));
+  }
+  SUBCASE("an older protocol") {
+    --identity.protocol_version;
+    const auto result = board.flash({write_elf(directory, made_segments(identity))});
+    CHECK(result.exit_code == 1);
+    CHECK(says(result, "they could not work together"));
+  }
+  SUBCASE("damaged") {
+    auto segments = made_segments(identity);
+    segments[1].bytes[100] ^= std::byte{4};
+    const auto result = board.flash({write_elf(directory, segments)});
+    CHECK(result.exit_code == 1);
+    CHECK(says(result, "its checksum is wrong"));
+  }
+  board.wait_until(&FreeBoard::runs);
+  CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
+}
+
+TEST_CASE("a word of yes writes it all the same") {
+  const TemporaryDirectory directory;
+  const FreeBoard board({"--boot0"});
+  board.wait_until(&FreeBoard::is_in_boot_loader);
+  auto identity = protocol::image_identity("omni_driver", 0, 1, 0);
+  --identity.protocol_version;
+  // What it makes of the chip is no firmware: made up here, it only has to get there.
+  const auto result = board.flash({write_elf(directory, made_segments(identity)), "--yes"});
+  CHECK(says(result, "was written and read back, but the board does not show itself"));
+}
+
+TEST_CASE("a flashing that was cut off is repaired by the same command") {
+  const FreeBoard board;
+  board.wait_until(&FreeBoard::runs);
+  SUBCASE("by Ctrl-C") {
+    RunningProgram flash({"sh", "-c", "exec " + build_directory() + "/inkwell flash --usbip " + board.port + " 2>&1"});
+    while (flash.read_line().find("writing") == std::string::npos) {
+    }
+    kill(flash.process(), SIGINT);
+    std::string last;
+    for (std::string line; last.find("The board is in its boot loader") == std::string::npos;) last = flash.read_line();
+    CHECK(last.find("give the same command again") != std::string::npos);
+    CHECK(flash.wait() == 1);
+  }
+  SUBCASE("by a death of the program") {
+    RunningProgram flash({"sh", "-c", "exec " + build_directory() + "/inkwell flash --usbip " + board.port + " 2>&1"});
+    while (flash.read_line().find("reading back") == std::string::npos) {
+    }
+    kill(flash.process(), SIGKILL);
+    flash.wait();
+  }
+  CHECK(board.is_in_boot_loader());
+  const auto result = board.flash({});
+  INFO(result.err);
+  CHECK(result.exit_code == 0);
+  CHECK(says(result, "The board held nothing that says what it is"));  // its begin went first
+  CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
+}
+
+TEST_CASE("the firmware does not leave while the force is on") {
+  BoardRig rig;
+  rig.make_active();
+  CHECK_THROWS_AS(device::detach_firmware(*rig.board.find()), device::Stalled);
+  rig.run(0.05);
+  CHECK(protocol::force_is_on(rig.pose().state));
+}
+
+TEST_CASE("without a board, and without openocd, flashing says what to do") {
+  const auto nobody = run_program("inkwell", {"flash", "--usbip", "1"});
+  CHECK(nobody.exit_code == 1);
+  CHECK(says(nobody, "Nothing answers"));
+  const auto none = run_program("inkwell", {"flash", "nowhere.elf"});
+  CHECK(none.exit_code == 1);
+  CHECK(says(none, "no firmware nowhere.elf"));
+  CHECK(run_program("inkwell", {"--virtual", "flash"}).exit_code == 2);
+  CHECK(run_program("inkwell", {"flash", "--swd", "--dfu"}).exit_code == 2);
+  CHECK(run_program("inkwell", {"flash", "--virtual"}).exit_code == 2);
+  const auto no_probe =
+      run_program("/usr/bin/env", {"PATH=/nowhere", build_directory() + "/inkwell", "flash", "--swd"});
+  CHECK(no_probe.exit_code == 1);
+  CHECK(says(no_probe, "Install it"));
+}
+
+TEST_CASE("a probe's openocd is called with the image, and its failure is told") {
+  const TemporaryDirectory directory;
+  const auto called = directory.file("called");
+  const auto fake = directory.file("openocd");
+  std::ofstream(fake) << "#!/bin/sh\nfor word in \"$@\"; do echo \"$word\"; done >" << called
+                      << "\nexit ${FAKE_RESULT:-0}\n";
+  std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
+  const std::string path = "PATH=" + directory.path() + ":/usr/bin:/bin", companion = build_directory() + "/inkwell";
+  const auto done =
+      run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--interface", "jlink", image("inkwell.elf")});
+  CHECK(done.exit_code == 0);
+  std::ifstream file(called);
+  const std::string words{std::istreambuf_iterator<char>(file), {}};
+  CHECK(words.find("interface/jlink.cfg") != std::string::npos);
+  CHECK(words.find("inkwell.elf") != std::string::npos);
+  CHECK(words.find("options_write") != std::string::npos);
+  const auto failed = run_program("/usr/bin/env", {path, "FAKE_RESULT=1", companion, "flash", "--swd"});
+  CHECK(failed.exit_code == 1);
+  CHECK(says(failed, "Is the probe connected"));
+}
