@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -120,11 +121,15 @@ std::optional<std::string> run(device::Device& device, recording::Recorder& reco
   };
   auto next_shown = std::chrono::steady_clock::now();
   int silent_reads = 0;
+  std::optional<protocol::PoseReport> before;
   while (!scope.is_done() && !interrupt.was_asked_to_end() && recorder.status().running) {
     const auto now = std::chrono::steady_clock::now();
     device.keep_alive();
     const auto pose = device.read_pose(read_timeout);
     silent_reads = pose ? 0 : silent_reads + 1;
+    if (pose)
+      for (const auto& event : device::events_between(std::exchange(before, pose), *pose, std::nullopt))
+        recorder.note(event);
     if (force && pose && !protocol::force_is_on(pose->state) && !force_went_off)
       force_went_off = why_force_went_off(*pose);
     if (silent_reads * read_timeout > silence_limit) throw device::Error(device_is_silent);

@@ -23,7 +23,10 @@ ordered_json to_json(const Recording& recording) {
   for (const auto known : about.simulated)
     simulated.push_back({{"name", info(known).name}, {"unit", info(known).unit}});
   for (const auto& mark : recording.marks)
-    marks.push_back({{"time_s", recording.elapsed_s_at(mark.period)}, {"text", mark.text}});
+    marks.push_back({{"time_s", recording.elapsed_s_at(mark.period)},
+                     {"text", mark.text},
+                     {"kind", name_of(mark.kind)},
+                     {"clock_utc", mark.clock_utc}});
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
     parameters[std::string(protocol::known_parameters()[i].name)] = about.parameters.values[i];
   return {{"created_utc", about.created_utc},
@@ -61,20 +64,30 @@ void print(const Recording& recording) {
   print_names("signals", about.signals);
   if (!about.simulated.empty()) print_names("simulated", about.simulated);
   for (const auto& mark : recording.marks)
-    fmt::print("mark at {:9.3f} s   {}\n", recording.elapsed_s_at(mark.period), mark.text);
+    fmt::print("{:<10}{:9.3f} s   {}\n", name_of(mark.kind), recording.elapsed_s_at(mark.period), mark.text);
   const auto defaults = protocol::default_parameters();
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
     if (about.parameters.values[i] != defaults.values[i])
       fmt::print("not the default     {} = {}\n", protocol::known_parameters()[i].name, about.parameters.values[i]);
 }
 
-int describe(const DeviceOptions& options, const std::string& file) {
-  const auto recording = recording::read(file);
+Recording read(const std::string& file) {
+  auto recording = recording::read(file);
   for (const auto& remark : recording.remarks) fmt::print(stderr, "inkwell: {}\n", remark);
+  return recording;
+}
+
+int describe(const DeviceOptions& options, const std::string& file) {
+  const auto recording = read(file);
   if (options.json)
     fmt::print("{}\n", to_json(recording).dump(2));
   else
     print(recording);
+  return 0;
+}
+
+int print_log(const std::string& file) {
+  fmt::print("{}", recording::log_text(read(file)));
   return 0;
 }
 
@@ -84,15 +97,20 @@ void add_replay_command(const Place& place) {
   struct ReplayOptions {
     std::string file;
     bool information = false;
+    bool log = false;
   };
   auto* command = place.program.add_subcommand(
       "replay", "Open the window on a recording; or, with --info or --json, say what it holds");
   const auto replay_options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", replay_options->file, "Written by `inkwell record` or `inkwell experiment`")->required();
   command->add_flag("--info", replay_options->information, "Only say what it holds");
-  add_examples(*command, "inkwell replay push.h5\ninkwell replay push.h5 --info");
+  command->add_flag("--log", replay_options->log,
+                    "Only print its marks and what happened to the device: clock, time, kind, text");
+  add_examples(*command,
+               "inkwell replay push.h5\ninkwell replay push.h5 --info\ninkwell replay push.h5 --log > push.txt");
   command->callback([place, replay_options] {
     place.action = [place, replay_options] {
+      if (replay_options->log) return print_log(replay_options->file);
       return place.device.json || replay_options->information ? describe(place.device, replay_options->file)
                                                               : place.open_window(replay_options->file);
     };

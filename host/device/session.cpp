@@ -70,6 +70,14 @@ std::optional<std::string> Session::refusal() const {
   return implementation_->newest_refusal;
 }
 
+std::vector<Event> Session::take_events() {
+  const std::lock_guard lock(implementation_->mutex);
+  const EventLog log = std::exchange(implementation_->events, {});
+  std::vector<Event> events;
+  for (std::uint64_t number = log.begin(); number < log.end(); ++number) events.push_back(log[number]);
+  return events;
+}
+
 void Session::select_signals(std::vector<protocol::Signal> signals) {
   const std::lock_guard lock(implementation_->mutex);
   implementation_->signals = std::move(signals);

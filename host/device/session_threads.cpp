@@ -3,6 +3,8 @@
 #include <chrono>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "thread_precedence.hpp"
 
 namespace inkwell::device {
@@ -77,6 +79,10 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
   scope_denied = false;
   parameter_set = held;
   ++revision;
+  events.add(event_now(EventKind::connection,
+                       fmt::format("Connected to {}{}, firmware {}.", state.is_simulation ? "the simulation " : "",
+                                   information.serial_number, information.firmware_version),
+                       std::nullopt));
   requests.select = !signals.empty();
   // A command for the device that went away must not reach the one that came; parameter changes may.
   requests.commands.clear();
@@ -92,6 +98,7 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
   auto window_start = Clock::now(), last_pose = window_start;
   std::uint64_t poses_in_window = 0;
   std::uint32_t newest_periods = 0;
+  std::optional<protocol::PoseReport> before;
   while (!stopping) {
     if (const auto pose = served->read_pose(1ms)) {
       last_pose = Clock::now();
@@ -99,6 +106,7 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
       take_pose(*pose, sequence);
       follow_fault(*served, *pose, refreshed_at_periods ? std::optional(newest_periods) : std::nullopt);
       newest_periods = pose->time_periods;
+      note_events(std::exchange(before, pose), *pose);
       if (!refreshed_at_periods) refreshed_at_periods = newest_periods;
     }
     if (lost) throw Disconnected("The device was unplugged. Connect it again.");
@@ -110,6 +118,7 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
       state.pose_rate_Hz =
           static_cast<double>(poses_in_window) / std::chrono::duration<double>(now - window_start).count();
       state.scope_frames_malformed = served->malformed_scope_frames();
+      note_losses(newest_periods);
       if (now - last_pose > silence_limit) state.message = "The device is connected but silent: it is paused or stuck.";
       window_start = now;
       poses_in_window = 0;
@@ -132,6 +141,22 @@ void Session::Implementation::take_pose(const protocol::PoseReport& pose, std::o
   ++state.poses_received;
   if (sequence) state.poses_lost += pose.sequence - *sequence - 1;
   sequence = pose.sequence;
+}
+
+void Session::Implementation::note_events(const std::optional<protocol::PoseReport>& before,
+                                          const protocol::PoseReport& pose) {
+  const std::lock_guard lock(mutex);
+  events.add(events_between(before, pose, state.fault ? std::optional(state.fault->at_periods) : std::nullopt));
+}
+
+void Session::Implementation::note_losses(std::uint32_t at_periods) {
+  const auto note = [&](const char* what, std::uint64_t now, std::uint64_t& told) {
+    if (now > told)
+      events.add(event_now(EventKind::loss, fmt::format("{} {} were lost.", now - told, what), at_periods));
+    told = now;
+  };
+  note("poses", state.poses_lost, told_poses_lost);
+  note("samples", state.scope_samples_lost, told_samples_lost);
 }
 
 void Session::Implementation::follow_fault(Device& from, const protocol::PoseReport& pose,
@@ -224,6 +249,7 @@ void Session::Implementation::carry_out(Device& by, StoreTask task) {
   state.store_problem = problem;
   state.is_storing = requests.store.has_value();  // asked for meanwhile
   if (parameter_set == held) return;
+  if (parameter_set) events.add(events_of_change(*parameter_set, held, std::nullopt));
   parameter_set = held;
   ++revision;
 }
@@ -244,6 +270,8 @@ void Session::Implementation::refresh_parameters(Device& from) {
   const auto held = from.parameters();
   const std::lock_guard lock(mutex);
   if (parameter_set == held) return;
+  if (parameter_set && newest)
+    events.add(events_of_change(*parameter_set, held, newest->time_periods, ", by another program"));
   parameter_set = held;
   ++revision;
 }
@@ -273,6 +301,7 @@ void Session::Implementation::set_connection(Connection connection, const std::s
 
 void Session::Implementation::forget_device() {
   const std::lock_guard lock(mutex);
+  if (device) events.add(event_now(EventKind::connection, "The device went away.", std::nullopt));
   device.reset();
   state.information.reset();
   state.store.reset();

@@ -37,6 +37,9 @@ struct Session::Implementation {
   std::shared_ptr<Device> connect(const Endpoint& endpoint);
   void serve(const std::shared_ptr<Device>& served);
   void take_pose(const protocol::PoseReport& pose, std::optional<std::uint32_t>& sequence);
+  void note_events(const std::optional<protocol::PoseReport>& before, const protocol::PoseReport& pose);
+  /// Together for as long as a rate is counted, so that a bad cable does not fill the log. Call with the lock held.
+  void note_losses(std::uint32_t at_periods);
   /// `before_periods`: of the pose before this one, if there was one.
   void follow_fault(Device& from, const protocol::PoseReport& pose, std::optional<std::uint32_t> before_periods);
   /// The black box knows the very period, unless it still keeps an older fault.
@@ -60,7 +63,9 @@ struct Session::Implementation {
     const auto held = with.parameters();
     const std::lock_guard lock(mutex);
     newest_refusal = refused;
+    if (refused) events.add(event_now(EventKind::parameter, *refused, std::nullopt));
     if (applied_at_periods) state.applied_at_periods = applied_at_periods;
+    if (parameter_set) events.add(events_of_change(*parameter_set, held, applied_at_periods));
     parameter_set = held;
     ++revision;
   }
@@ -93,6 +98,8 @@ struct Session::Implementation {
   std::optional<Reconnection> newest_reconnection;
   std::uint64_t reconnections = 0;
   std::optional<std::string> newest_refusal;
+  EventLog events;
+  std::uint64_t told_poses_lost = 0, told_samples_lost = 0;
   Requests requests;
   std::vector<protocol::Signal> signals;
   bool scope_denied = false;  ///< another program has it

@@ -93,9 +93,17 @@ class CsvReader {
     else if (key.starts_with("parameter "))
       parameter(key.substr(10), value);
   }
-  void mark(std::string_view period, std::string_view text) {
-    if (const auto known = whole_number<std::uint32_t>(period))
-      recording_.marks.push_back({*known, std::string(text)});
+  /// `about`: "PERIOD" or "PERIOD KIND CLOCK".
+  void mark(std::string_view about, std::string_view text) {
+    const auto next = [&about] {
+      const auto word = about.substr(0, about.find(' '));
+      about.remove_prefix(std::min(about.size(), word.size() + 1));
+      return word;
+    };
+    const auto period = whole_number<std::uint32_t>(next());
+    const auto kind = device::find_event_kind(next()).value_or(device::EventKind::mark);
+    if (period)
+      recording_.marks.push_back({*period, std::string(text), kind, std::string(next())});
     else
       recording_.remarks.push_back(fmt::format("The mark \"{}\" of {} has no period; it was left out.", text, name_));
   }

@@ -1,5 +1,6 @@
 // CSV recordings: lines "# key = value" about the recording, a line of column names, a line for each sample. A line
-// "# simulated NAME = what it is" marks a column that no device filled, but a simulation.
+// "# simulated NAME = what it is" marks a column that no device filled, but a simulation. A line "# mark PERIOD KIND
+// CLOCK = what happened" stands among the samples, near those of its period.
 #include "formats.hpp"
 
 #include <cerrno>
@@ -40,7 +41,11 @@ class CsvWriter final : public Writer {
     std::string one_line = mark.text;
     for (char& c : one_line)
       if (c == '\n' || c == '\r') c = ' ';
-    fmt::format_to(std::back_inserter(text_), "# mark {} = {}\n", mark.period, one_line);
+    const auto out = std::back_inserter(text_);
+    if (mark.clock_utc.empty())
+      fmt::format_to(out, "# mark {} = {}\n", mark.period, one_line);
+    else
+      fmt::format_to(out, "# mark {} {} {} = {}\n", mark.period, name_of(mark.kind), mark.clock_utc, one_line);
   }
   void flush() override {
     write_text();

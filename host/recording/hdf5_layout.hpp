@@ -10,7 +10,10 @@
 //   /simulated/NAME      float32[N], attributes unit and help: what a simulation knew beside the signals, if it did
 //   /marks/period        uint32[M]
 //   /marks/text          text[M] of fixed length, the bytes of UTF-8
-//                        (called UTF-8 in files of earlier versions)
+//                        (called UTF-8, and shorter, in files of earlier versions)
+//   /marks/kind          text[M]: mark of the user, connection, force, fault, parameter, loss
+//   /marks/clock_utc     text[M]: of the computer, ISO 8601 with milliseconds
+//                        (these two are not in files of earlier versions)
 //   /samples             uint64, how many samples are whole on the disk; a column may be longer after a crash
 //   /complete            int32, 1 once the end was written
 #pragma once
@@ -19,6 +22,8 @@
 
 namespace inkwell::recording {
 
-inline constexpr std::size_t mark_text_bytes = 120;
+inline constexpr std::size_t mark_text_bytes = 240;
+inline constexpr std::size_t mark_kind_bytes = 16;
+inline constexpr std::size_t mark_clock_bytes = 24;
 
 }  // namespace inkwell::recording

@@ -91,16 +91,31 @@ class Hdf5Reader {
     const std::size_t count = std::min(length("/marks/period"), length("/marks/text"));
     if (count == 0) return;
     std::vector<std::uint32_t> periods(count);
-    std::vector<char> texts(count * mark_text_bytes);
     read_values("/marks/period", H5T_NATIVE_UINT32, count, periods.data());
-    const Handle text_type(H5Dget_type(open("/marks/text").id()), H5Tclose);
-    if (H5Tget_class(text_type.id()) != H5T_STRING || H5Tget_size(text_type.id()) != mark_text_bytes)
-      fail("is damaged: /marks/text is no text");
-    read_values("/marks/text", text_type.id(), count, texts.data());
+    const auto texts = read_texts("/marks/text", count);
+    // A file of an earlier version has neither.
+    const bool has_kinds = H5Lexists(file_.id(), "/marks/kind", H5P_DEFAULT) > 0;
+    const auto kinds = has_kinds ? read_texts("/marks/kind", count) : std::vector<std::string>(count);
+    const auto clocks = has_kinds ? read_texts("/marks/clock_utc", count) : std::vector<std::string>(count);
+    for (std::size_t i = 0; i < count; ++i)
+      recording_.marks.push_back(
+          {periods[i], texts[i], device::find_event_kind(kinds[i]).value_or(device::EventKind::mark), clocks[i]});
+  }
+  std::vector<std::string> read_texts(const std::string& path, std::size_t count) {
+    constexpr std::size_t bytes_maximum = 4096;
+    const Handle type(H5Dget_type(open(path).id()), H5Tclose);
+    const std::size_t bytes = H5Tget_size(type.id());
+    if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0 || bytes > bytes_maximum ||
+        length(path) < count)
+      fail(fmt::format("is damaged: {} is no text for each mark", path));
+    std::vector<char> places(count * bytes);
+    read_values(path, type.id(), count, places.data());
+    std::vector<std::string> texts;
     for (std::size_t i = 0; i < count; ++i) {
-      const std::string_view text(texts.data() + i * mark_text_bytes, mark_text_bytes);
-      recording_.marks.push_back({periods[i], std::string(text.substr(0, text.find('\0')))});
+      const std::string_view text(places.data() + i * bytes, bytes);
+      texts.emplace_back(text.substr(0, text.find('\0')));
     }
+    return texts;
   }
   std::vector<std::string> names(const char* group_name) {
     const Handle group(H5Gopen2(file_.id(), group_name, H5P_DEFAULT), H5Gclose);

@@ -2,8 +2,8 @@
 // that the file can be read at any moment, also after this process was killed.
 #include "formats.hpp"
 
-#include <algorithm>
-#include <array>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -49,10 +49,10 @@ class Hdf5Writer final : public Writer {
   }
   void mark(const Mark& mark) override {
     const QuietHdf5 quiet;
-    std::array<char, mark_text_bytes> text{};
-    std::copy_n(mark.text.begin(), std::min(mark.text.size(), mark_text_bytes), text.begin());
     extend(mark_period_, mark_count_, 1, H5T_NATIVE_UINT32, &mark.period);
-    extend(mark_text_, mark_count_, 1, byte_text_type(mark_text_bytes).id(), text.data());
+    write_mark_text(mark_text_, mark.text, mark_text_bytes);
+    write_mark_text(mark_kind_, name_of(mark.kind), mark_kind_bytes);
+    write_mark_text(mark_clock_, mark.clock_utc, mark_clock_bytes);
     ++mark_count_;
   }
   void flush() override {
@@ -134,6 +134,8 @@ class Hdf5Writer final : public Writer {
     const Handle marks = group(file.id(), "marks");
     growing(marks.id(), "period", H5T_STD_U32LE, chunk_marks);
     growing(marks.id(), "text", byte_text_type(mark_text_bytes).id(), chunk_marks);
+    growing(marks.id(), "kind", byte_text_type(mark_kind_bytes).id(), chunk_marks);
+    growing(marks.id(), "clock_utc", byte_text_type(mark_clock_bytes).id(), chunk_marks);
     const std::int32_t no = 0;
     scalar(file.id(), "complete", H5T_NATIVE_INT32, &no);
     const hsize_t none = 0;
@@ -161,6 +163,8 @@ class Hdf5Writer final : public Writer {
       columns_.push_back(open(fmt::format("/simulated/{}", protocol::info(quantity).name)));
     mark_period_ = open("/marks/period");
     mark_text_ = open("/marks/text");
+    mark_kind_ = open("/marks/kind");
+    mark_clock_ = open("/marks/clock_utc");
     complete_ = open("/complete");
     samples_ = open("/samples");
   }
@@ -178,6 +182,12 @@ class Hdf5Writer final : public Writer {
     periods_.clear();
     times_s_.clear();
   }
+  /// Cut to its place in the file.
+  void write_mark_text(const Handle& column, std::string_view text, std::size_t bytes) {
+    std::string place(text.substr(0, bytes));
+    place.resize(bytes);
+    extend(column, mark_count_, 1, byte_text_type(bytes).id(), place.data());
+  }
   void extend(const Handle& dataset, hsize_t at, hsize_t count, hid_t type, const void* values) {
     const hsize_t size = at + count;
     if (H5Dset_extent(dataset.id(), &size) < 0) fail();
@@ -188,7 +198,8 @@ class Hdf5Writer final : public Writer {
   }
   void close() {
     columns_.clear();
-    for (Handle* handle : {&period_, &time_, &mark_period_, &mark_text_, &complete_, &samples_, &file_})
+    for (Handle* handle :
+         {&period_, &time_, &mark_period_, &mark_text_, &mark_kind_, &mark_clock_, &complete_, &samples_, &file_})
       *handle = Handle();
   }
   [[noreturn]] void fail() const {
@@ -203,7 +214,7 @@ class Hdf5Writer final : public Writer {
 
   std::string name_;
   std::size_t width_;  ///< how many signals there are
-  Handle file_, period_, time_, mark_period_, mark_text_, complete_, samples_;
+  Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, complete_, samples_;
   std::vector<Handle> columns_;         ///< of the signals, then of the simulated quantities
   std::vector<std::uint32_t> periods_;  ///< of samples that are not in the file yet, and the columns beside them
   std::vector<double> times_s_;

@@ -95,7 +95,7 @@ struct Recorder::Implementation {
   RecorderStatus status{.running = true};
   std::optional<std::uint32_t> first_period;
   std::uint32_t newest_period = 0;
-  std::vector<std::string> early_marks;  ///< set before the first sample came
+  std::vector<Mark> early_marks;  ///< set before the first sample came, which gets them
 
   std::thread thread;  // last, so that it finds everything made
 };
@@ -129,17 +129,24 @@ void Recorder::push(const device::ScopeSamples& samples) {
   self.queued_bytes += size_of(samples);
   self.queue.emplace_back(samples);
   if (is_first)
-    for (auto& text : self.early_marks) self.queue.emplace_back(Mark{samples.first_period, std::move(text)});
+    for (Mark& mark : self.early_marks) {
+      mark.period = samples.first_period;
+      self.queue.emplace_back(std::move(mark));
+    }
   self.wake.notify_one();
 }
 
-void Recorder::mark(const std::string& text) {
+void Recorder::mark(const std::string& text) { note(device::event_now(device::EventKind::mark, text, std::nullopt)); }
+
+void Recorder::note(const device::Event& event) {
   auto& self = *implementation_;
   const std::lock_guard lock(self.mutex);
   if (!self.status.running || self.stopping) return;
   ++self.status.marks;
-  if (!self.first_period) return self.early_marks.push_back(text);
-  self.queue.emplace_back(Mark{self.newest_period, text});
+  Mark mark{event.at_periods.value_or(self.newest_period), event.text, event.kind, event.clock_utc};
+  if (!self.first_period) return self.early_marks.push_back(std::move(mark));
+  if (static_cast<std::int32_t>(mark.period - *self.first_period) < 0) mark.period = *self.first_period;
+  self.queue.emplace_back(std::move(mark));
   self.wake.notify_one();
 }
 

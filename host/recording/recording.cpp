@@ -122,8 +122,21 @@ Recording read_either(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::string log_text(const Recording& recording) {
+  std::string text;
+  for (const Mark& mark : recording.marks)
+    text += device::log_line(
+        mark.clock_utc, recording.periods.empty() ? std::nullopt : std::optional(recording.elapsed_s_at(mark.period)),
+        mark.kind, mark.text);
+  return text;
+}
+
 Recording read(const std::filesystem::path& file) {
   Recording recording = read_either(file);
+  // What a device did is told a moment after what the user notes.
+  if (!recording.periods.empty())
+    std::ranges::stable_sort(recording.marks, {},
+                             [&](const Mark& mark) { return recording.elapsed_s_at(mark.period); });
   recording.name = file.stem().string();
   return recording;
 }

@@ -26,7 +26,9 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
                .control_port = options.virtual_board_control_port,
                .simulated_arm = options.simulated_arm,
                .replay = [this](const std::filesystem::path& recording) { replay_bar_.open(recording); },
-               .starts_with_replay = !options.recording.empty()}) {
+               .starts_with_replay = !options.recording.empty(),
+               .replayed = [this] { return replay_bar_.recording(); },
+               .seek = [this](double position_s) { replay_bar_.seek(position_s); }}) {
   if (options.virtual_board_control_port != 0) hand_.emplace(options.virtual_board_control_port);
   use_theme(settings.theme);
   if (!options.recording.empty()) replay_bar_.open(options.recording);

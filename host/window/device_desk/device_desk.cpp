@@ -57,6 +57,7 @@ void DeviceDesk::open_session() {
 
 const DeviceView& DeviceDesk::refresh() {
   view_.reconnection = session_->reconnection();  // first: what is read after it is at least as new
+  events_.add(session_->take_events());
   view_.status = session_->status();
   view_.pose = view_.connected() ? session_->newest_pose() : std::nullopt;
   view_.refusal = session_->refusal();
@@ -75,6 +76,9 @@ const DeviceView& DeviceDesk::refresh() {
 
 void DeviceDesk::follow_choice() {
   wanted_ = *std::exchange(choice_, std::nullopt);
+  events_.add(session_->take_events());
+  if (view_.connected())
+    events_.add(device::event_now(device::EventKind::connection, "The device was left for another one.", std::nullopt));
   session_.reset();  // the old one lets go of the device before the new one asks for it
   view_ = DeviceView{};
   {

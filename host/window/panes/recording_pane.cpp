@@ -1,5 +1,6 @@
 // The pane that records: what, where to, start, stop and marks, with progress, size, free space and errors; and that
 // opens a recording to be replayed.
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -14,7 +15,6 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include <device/parameter_file.hpp>
 #include <frame/file_chooser.hpp>
 #include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
@@ -38,17 +38,6 @@ void number(const char* name, const std::string& value, Colour colour, const Sty
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(left + 0.45f * width);
   right_text(colour, value, 0.55f * width);
-}
-
-/// "wall_stiffness_N_per_m = 600", for each parameter that differs.
-std::vector<std::string> describe_changes(const protocol::ParameterSet& before, const protocol::ParameterSet& now) {
-  std::vector<std::string> changes;
-  for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i) {
-    if (before.values[i] == now.values[i]) continue;
-    const auto parameter = static_cast<protocol::Parameter>(i);
-    changes.push_back(fmt::format("{} = {}", info(parameter).name, device::format_value(parameter, now.values[i])));
-  }
-  return changes;
 }
 
 /// How long a recording can go on until its disk is full, in words; empty while that cannot be told.
@@ -84,7 +73,7 @@ class RecordingPane final : public Pane {
       : desk_(around.desk), replay_(around.replay), starts_with_replay_(around.starts_with_replay) {}
 
   std::string_view title() const override { return "Recording"; }
-  /// Ends the recording when the device goes away, and marks each change of a parameter in it.
+  /// Ends the recording when the device goes away, and notes in it what happens to the device.
   void follow(const PaneNews& news) override;
   void draw(const PaneFrame& frame) override;
   /// What the scope shows goes on being streamed, and is recorded with the rest.
@@ -101,7 +90,6 @@ class RecordingPane final : public Pane {
   void stop();
   void follow_recording(const std::vector<device::ScopeSamples>& samples);
   void follow_replay_wish();
-  void mark_changes(const protocol::ParameterSet& now);
   void draw_choice(const PaneFrame& frame);
   void draw_progress(const Style& style);
   void draw_numbers(const Style& style, const RecorderStatus& status);
@@ -118,7 +106,7 @@ class RecordingPane final : public Pane {
   std::string mark_text_;
   std::unique_ptr<recording::Recorder> recorder_;  ///< while it records
   std::vector<protocol::Signal> signals_;          ///< that are recorded
-  protocol::ParameterSet parameters_{};            ///< as they were when last looked at
+  std::uint64_t next_event_ = 0;                   ///< of the desk's log, the first that the recording lacks
   std::string written_file_;                       ///< the recording that runs, or ran last
   std::optional<RecorderStatus> last_status_;
   std::string start_error_;
@@ -152,7 +140,7 @@ void RecordingPane::start(const std::vector<protocol::Signal>& scope_signals) {
     const auto about =
         recording::describe(*view.status.information, *view.parameters, signals_, "", view.status.is_simulation);
     recorder_ = std::make_unique<recording::Recorder>(written_file_, about);
-    parameters_ = *view.parameters;
+    next_event_ = desk_.events().end();
   } catch (const device::Error& error) {
     start_error_ = error.what();
   }
@@ -165,11 +153,6 @@ void RecordingPane::stop() {
   file_.clear();
 }
 
-void RecordingPane::mark_changes(const protocol::ParameterSet& now) {
-  for (const auto& change : describe_changes(parameters_, now)) recorder_->mark(change);
-  parameters_ = now;
-}
-
 void RecordingPane::follow(const PaneNews& news) {
   if (recorder_) follow_recording(news.samples);
   follow_replay_wish();
@@ -178,7 +161,9 @@ void RecordingPane::follow(const PaneNews& news) {
 void RecordingPane::follow_recording(const std::vector<device::ScopeSamples>& samples) {
   const DeviceView& view = desk_.view();
   for (const auto& each : samples) recorder_->push(each);
-  if (view.parameters && *view.parameters != parameters_) mark_changes(*view.parameters);
+  const device::EventLog& events = desk_.events();
+  for (next_event_ = std::max(next_event_, events.begin()); next_event_ < events.end(); ++next_event_)
+    recorder_->note(events[next_event_]);
   const bool went_away = !view.connected();
   if (!went_away && recorder_->status().running) return;
   stop();
@@ -270,7 +255,9 @@ void RecordingPane::draw_progress(const Style& style) {
     recorder_->mark(mark_text_.empty() ? fmt::format("mark {}", recorder_->status().marks + 1) : mark_text_);
     mark_text_.clear();
   }
-  help_on_hover("Mark", "Notes this moment in the recording. Changes of parameters are noted by themselves.", style);
+  help_on_hover("Mark",
+                "Notes this moment in the recording. Changes of parameters, force and faults are noted by themselves.",
+                style);
 }
 
 void RecordingPane::draw_numbers(const Style& style, const RecorderStatus& status) {

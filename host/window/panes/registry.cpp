@@ -5,7 +5,8 @@
   PANE(tuning_pane)         \
   PANE(guides_pane)         \
   PANE(recording_pane)      \
-  PANE(faults_pane)
+  PANE(faults_pane)         \
+  PANE(log_pane)
 
 namespace inkwell::window {
 

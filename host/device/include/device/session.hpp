@@ -11,6 +11,8 @@
 #include <vector>
 
 #include <device/board_store.hpp>
+#include <device/device.hpp>
+#include <device/event.hpp>
 
 namespace inkwell::device {
 
@@ -80,6 +82,9 @@ class Session {
   std::optional<Reconnection> reconnection() const;
   /// The refusal of the newest transaction, if it was refused; empty once another was accepted.
   std::optional<std::string> refusal() const;
+
+  /// What has happened since the last call; of very much the newest.
+  std::vector<Event> take_events();
 
   /// Asks for these signals at every control period, from now on and after each reconnection.
   void select_signals(std::vector<protocol::Signal> signals);

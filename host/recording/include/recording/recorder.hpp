@@ -34,6 +34,8 @@ class Recorder {
   void push(const device::ScopeSamples& samples);
   /// Marks the newest sample; before there is one, the first.
   void mark(const std::string& text);
+  /// Notes what happened to the device, at its own control period; like a mark of the user if it has none.
+  void note(const device::Event& event);
   RecorderStatus status() const;
   /// Writes what is left, closes the file, and tells how it went.
   RecorderStatus stop();

@@ -8,15 +8,19 @@
 #include <string_view>
 #include <vector>
 
+#include <device/event.hpp>
 #include <device/scope_decoder.hpp>
 #include <recording/information.hpp>
 #include <recording/quantity.hpp>
 
 namespace inkwell::recording {
 
+/// What the user noted, or what happened to the device.
 struct Mark {
-  std::uint32_t period;  ///< control period at which it was set
+  std::uint32_t period;  ///< control period at which it was set, or it happened
   std::string text;
+  device::EventKind kind = device::EventKind::mark;
+  std::string clock_utc = {};  ///< as device::clock_utc_now() writes it; empty if it is not known
 };
 
 struct Recording {
@@ -26,8 +30,8 @@ struct Recording {
   std::vector<std::uint32_t> periods;       ///< control period of each sample
   std::vector<std::vector<float>> columns;  ///< one for each of information.signals, as long as `periods`
   std::vector<std::vector<float>> simulated_columns;  ///< one for each of information.simulated, as long, too
-  std::vector<Mark> marks;
-  std::vector<std::string> remarks;  ///< sentences about what this version did not understand
+  std::vector<Mark> marks;                            ///< as read back, in the order of their periods
+  std::vector<std::string> remarks;                   ///< sentences about what this version did not understand
 
   static Recording without_samples(Information information);
 
@@ -60,6 +64,9 @@ struct Recording {
   /// Forgets the samples before `begin` and from `end` on.
   void keep(std::size_t begin, std::size_t end);
 };
+
+/// One line for each mark: clock, time since the first sample, kind, text.
+std::string log_text(const Recording& recording);
 
 /// Reads an HDF5 or CSV recording, told apart by their content. A file whose end is missing is read as far as
 /// it goes. Throws device::Error with a sentence if it is missing, damaged or no recording.

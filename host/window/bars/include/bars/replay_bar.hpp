@@ -19,6 +19,11 @@ class ReplayBar {
   /// Opens a recording and plays it. Throws device::Error with a sentence if it cannot be read.
   void open(const std::filesystem::path& file);
   bool is_open() const { return replay_.has_value(); }
+  /// Null if none is open.
+  const recording::Recording* recording() const { return replay_ ? &replay_->recording() : nullptr; }
+  void seek(double position_s) {
+    if (replay_) replay_->seek(position_s);
+  }
   bool is_playing() const { return replay_ && replay_->is_playing(); }
 
   /// Once a frame: gives the scope the samples that came by.

@@ -52,6 +52,8 @@ class DeviceDesk {
 
   /// Signals to be streamed, and where the samples go; kept for the next device too.
   void select_signals(std::vector<protocol::Signal> signals);
+  /// What has happened to the devices since the window was opened.
+  const device::EventLog& events() const { return events_; }
   /// Frames that came since the last call.
   std::vector<device::ScopeSamples> take_scope();
 
@@ -63,6 +65,7 @@ class DeviceDesk {
   std::string wanted_;
   std::optional<std::string> choice_;
   DeviceView view_;
+  device::EventLog events_;
   std::vector<protocol::Signal> signals_;
 
   std::mutex mutex_;  // of what follows

@@ -15,6 +15,7 @@
 #include <device_desk/parameter_editor.hpp>
 #include <frame/style.hpp>
 #include <panes/pane_stream.hpp>
+#include <recording/recording.hpp>
 
 namespace inkwell::window {
 
@@ -32,6 +33,10 @@ struct PaneSurroundings {
   /// Replays a recording in place of the device; throws device::Error with a sentence if it cannot be read.
   std::function<void(const std::filesystem::path&)> replay;
   bool starts_with_replay = false;
+  /// The recording that is replayed; null if none is.
+  std::function<const recording::Recording*()> replayed;
+  /// Goes to a time of it since its first sample.
+  std::function<void(double)> seek;
 };
 
 /// What has come since the last frame.

@@ -1,0 +1,175 @@
+// The pane with what has happened to the device since the window was opened, or in the recording that is replayed: the
+// newest on top, with the clock and the board's time.
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <frame/file_chooser.hpp>
+#include <frame/inspection.hpp>
+#include <frame/widgets.hpp>
+#include <panes/pane.hpp>
+#include <protocol/reports.hpp>
+#include <recording/write_text.hpp>
+
+namespace inkwell::window {
+namespace {
+
+using device::EventKind;
+
+constexpr std::array<const char*, device::event_kind_count + 1> shown_kinds{
+    "Everything", "Marks", "Connections", "Force on and off", "Faults", "Parameters", "Losses"};
+
+/// One row, from the log of the desk or from a recording.
+struct LogRow {
+  EventKind kind;
+  const std::string& text;
+  const std::string& clock_utc;
+  std::optional<double> board_s;  ///< none: the device was not there
+};
+
+/// "22:15:34.123" of "2026-11-23T22:15:34.123Z"; empty for what does not look like it.
+std::string_view time_of_day(std::string_view clock_utc) {
+  constexpr std::size_t date_length = 11, time_length = 12;
+  return clock_utc.size() < date_length + time_length ? std::string_view{} : clock_utc.substr(date_length, time_length);
+}
+
+class LogPane final : public Pane {
+ public:
+  explicit LogPane(const PaneSurroundings& around)
+      : desk_(around.desk), replayed_(around.replayed), seek_(around.seek) {}
+
+  std::string_view title() const override { return "Log"; }
+  void draw(const PaneFrame& frame) override;
+
+ private:
+  bool is_shown(EventKind kind) const { return shown_ == 0 || static_cast<int>(kind) + 1 == shown_; }
+  void draw_head(const Style& style);
+  void draw_rows(const Style& style);
+  void draw_row(const LogRow& row, const Style& style);
+  void draw_saving(const Style& style);
+  std::string as_text() const;
+
+  DeviceDesk& desk_;
+  std::function<const recording::Recording*()> replayed_;
+  std::function<void(double)> seek_;
+  int shown_ = 0;  ///< of shown_kinds
+  FileChooser chooser_;
+  std::string saved_;    ///< a sentence
+  std::string problem_;  ///< likewise
+};
+
+Colour colour_of(EventKind kind, const Palette& palette) {
+  switch (kind) {
+    case EventKind::fault: return palette.danger_text;
+    case EventKind::loss: return palette.caution;
+    case EventKind::force: return palette.good;
+    default: return palette.text_quiet;
+  }
+}
+
+void LogPane::draw(const PaneFrame& frame) {
+  const Style& style = frame.style;
+  draw_head(style);
+  const float buttons = ImGui::GetFrameHeightWithSpacing() + style.points(4);
+  if (ImGui::BeginChild("rows", {0, -buttons})) draw_rows(style);
+  ImGui::EndChild();
+  draw_saving(style);
+}
+
+void LogPane::draw_head(const Style& style) {
+  text(style.fonts.strong, style.palette->text, replayed_() ? "What happened in the recording" : "What happened");
+  ImGui::SetNextItemWidth(-1);
+  ImGui::Combo("##kinds", &shown_, shown_kinds.data(), static_cast<int>(shown_kinds.size()));
+  note_item("kinds");
+}
+
+void LogPane::draw_rows(const Style& style) {
+  bool is_empty = true;
+  const auto draw = [&](const LogRow& row) {
+    if (!is_shown(row.kind)) return;
+    is_empty = false;
+    draw_row(row, style);
+  };
+  if (const recording::Recording* recording = replayed_()) {
+    for (const recording::Mark& mark : recording->marks)  // in the order of time, as it is played
+      draw({mark.kind, mark.text, mark.clock_utc, recording->elapsed_s_at(mark.period)});
+  } else {
+    const device::EventLog& events = desk_.events();
+    for (std::uint64_t number = events.end(); number > events.begin(); --number) {
+      const device::Event& event = events[number - 1];
+      draw({event.kind, event.text, event.clock_utc,
+            event.at_periods ? std::optional(static_cast<double>(*event.at_periods) / protocol::servo_rate_Hz)
+                             : std::nullopt});
+    }
+  }
+  if (is_empty)
+    wrapped_text(style.palette->text_quiet,
+                 "Nothing yet. Faults, losses, changes of parameters, connections and the force going on and off are "
+                 "noted here, and in a recording that runs.");
+}
+
+void LogPane::draw_row(const LogRow& row, const Style& style) {
+  const Palette& palette = *style.palette;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  ImGui::BeginGroup();
+  ImGui::PushFont(style.fonts.caption);
+  text(colour_of(row.kind, palette), name_of(row.kind));
+  ImGui::SameLine(style.points(82));
+  text(palette.text_quiet, time_of_day(row.clock_utc));
+  if (row.board_s) {
+    ImGui::SameLine(0, 0);
+    ImGui::SetCursorPosX(style.points(170));
+    right_text(palette.text_quiet, fmt::format("{:.5f} s", *row.board_s), width - style.points(170));
+  }
+  ImGui::PopFont();
+  wrapped_text(palette.text, row.text);
+  ImGui::EndGroup();
+  const ImVec2 end{corner.x + width, ImGui::GetItemRectMax().y};
+  ImGui::Dummy({0, style.points(1)});
+  if (!replayed_() || !row.board_s || !ImGui::IsWindowHovered() || !ImGui::IsMouseHoveringRect(corner, end)) return;
+  ImGui::GetWindowDrawList()->AddRectFilled(corner, end, packed(palette.accent.with_alpha(30)), style.points(4));
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) seek_(*row.board_s);
+}
+
+std::string LogPane::as_text() const {
+  if (const recording::Recording* recording = replayed_()) return recording::log_text(*recording);
+  std::string text;
+  const device::EventLog& events = desk_.events();
+  for (std::uint64_t number = events.begin(); number < events.end(); ++number) text += device::line_of(events[number]);
+  return text;
+}
+
+void LogPane::draw_saving(const Style& style) {
+  if (button("Save as text", {-1, 0})) {
+    saved_.clear();
+    problem_.clear();
+    chooser_.ask({.title = "Save the log",
+                  .help = "One line for each event: clock in UTC, time of the board, kind, text.",
+                  .button = "Save",
+                  .endings = {".txt"},
+                  .is_new_file = true,
+                  .suggestion = "inkwell-log.txt"});
+  }
+  help_on_hover("Save as text", saved_.empty() ? "The clock is in UTC, the other time is the board's." : saved_, style);
+  const auto chosen = chooser_.draw(style);
+  if (chosen) try {
+      recording::write_text(*chosen, as_text());
+      saved_ = fmt::format("{} is written.", chosen->filename().string());
+    } catch (const device::Error& error) {
+      problem_ = error.what();
+    }
+  if (!problem_.empty()) wrapped_text(style.palette->danger_text, problem_);
+}
+
+}  // namespace
+
+std::unique_ptr<Pane> log_pane(const PaneSurroundings& around) { return std::make_unique<LogPane>(around); }
+
+}  // namespace inkwell::window
