@@ -1,4 +1,4 @@
-#include "window_layout.hpp"
+#include <window/window_layout.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,14 @@ namespace {
 constexpr float splitter_points = 5.0f;
 constexpr float scene_minimum_points = 240.0f;
 constexpr float column_part_maximum = 0.5f;  // of the window's width
+
+/// Of the room under the bars, in screen coordinates. Scene and scope share it in proportion, as long as each can be
+/// used.
+float scope_height_of(float room, const WindowSettings& settings, float scale) {
+  const float minimum = WindowSettings::scope_height_minimum * scale;
+  return std::floor(
+      std::clamp(settings.scope_part * room, minimum, std::max(minimum, room - scene_minimum_points * scale)));
+}
 
 }  // namespace
 
@@ -24,9 +32,7 @@ WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSett
   const float column_width = std::min(std::max(settings.column_width, WindowSettings::column_width_minimum) * scale,
                                       column_part_maximum * window.x);
   const float left_width = std::floor(window.x - column_width - gap);
-  const float scope_room = room - scene_minimum_points * scale;
-  const float scope_height =
-      std::max(WindowSettings::scope_height_minimum * scale, std::min(settings.scope_height * scale, scope_room));
+  const float scope_height = scope_height_of(room, settings, scale);
   const float scene_end = std::floor(window.y - (settings.scope_is_shown ? scope_height + gap : 0.0f));
 
   WindowLayout layout{};
@@ -38,7 +44,7 @@ WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSett
   layout.scope = {{0, scene_end + gap}, {left_width, window.y - scene_end - gap}};
   layout.column_splitter = {{left_width, top}, {gap, room}};
   layout.column = {{left_width + gap, top}, {window.x - left_width - gap, room}};
-  layout.scope_room = scope_room;
+  layout.room = room;
   return layout;
 }
 
@@ -49,9 +55,10 @@ void drag_column_splitter(float dragged_points, ImVec2 window, float scale, Wind
 }
 
 void drag_scope_splitter(float dragged_points, const WindowLayout& layout, float scale, WindowSettings& settings) {
-  constexpr float minimum = WindowSettings::scope_height_minimum;
-  settings.scope_height =
-      std::clamp(settings.scope_height - dragged_points, minimum, std::max(minimum, layout.scope_room / scale));
+  // From what is shown, so that a part that has no room does not have to be dragged back first.
+  const float shown = scope_height_of(layout.room, settings, scale);
+  settings.scope_part = std::clamp((shown - dragged_points * scale) / layout.room, WindowSettings::scope_part_minimum,
+                                   WindowSettings::scope_part_maximum);
 }
 
 }  // namespace inkwell::window

@@ -42,18 +42,46 @@ void read_number(toml::node_view<const toml::node> node, Number minimum, Number 
 
 toml::table to_toml(const ScopePlot& plot) {
   toml::array signals;
-  for (protocol::Signal signal : plot.signals) signals.push_back(protocol::info(signal).name);
+  for (const ScopeSignal& signal : plot.signals) signals.push_back(signal.name());
   return toml::table{
       {"kind", name_of(plot.kind, plot_kind_names)}, {"title", plot.title}, {"signals", std::move(signals)}};
 }
 
-std::optional<ScopePlot> plot_from(const toml::table& table) {
+toml::array to_toml(const std::vector<Formula>& formulas) {
+  toml::array array;
+  for (const Formula& formula : formulas)
+    array.push_back(toml::table{{"name", formula.name},
+                                {"formula", formula.text},
+                                {"unit", formula.unit},
+                                {"low_pass_Hz", formula.low_pass_Hz}});
+  return array;
+}
+
+/// Those that can be drawn.
+std::vector<Formula> formulas_from(const toml::array* array) {
+  std::vector<Formula> formulas;
+  if (array == nullptr) return formulas;
+  for (const auto& each : *array) {
+    const toml::table* table = each.as_table();
+    if (table == nullptr) continue;
+    Formula formula{.name = (*table)["name"].value_or(std::string{}),
+                    .text = (*table)["formula"].value_or(std::string{}),
+                    .unit = (*table)["unit"].value_or(std::string{})};
+    read_number((*table)["low_pass_Hz"], 0.0, Formula::low_pass_maximum_Hz, formula.low_pass_Hz);
+    const bool is_new = std::ranges::find(formulas, formula.name, &Formula::name) == formulas.end();
+    if (is_new && refusal_of(formula).empty()) formulas.push_back(std::move(formula));
+  }
+  return formulas;
+}
+
+std::optional<ScopePlot> plot_from(const toml::table& table, const std::vector<Formula>& formulas) {
   ScopePlot plot;
   read_name(toml::node_view<const toml::node>(table["kind"]), plot_kind_names, plot.kind);
   plot.title = table["title"].value_or(std::string{});
   if (const toml::array* signals = table["signals"].as_array())
     for (const auto& each : *signals)
-      if (const auto signal = protocol::find_signal(each.value_or(std::string_view{}))) plot.signals.push_back(*signal);
+      if (const auto signal = find_scope_signal(each.value_or(std::string_view{}), formulas))
+        plot.signals.push_back(*signal);
   if (plot.signals.empty()) return std::nullopt;
   return plot;
 }
@@ -65,12 +93,12 @@ toml::array to_toml(const std::vector<ScopePlot>& plots) {
 }
 
 std::optional<ScopeLayout> layout_from(const toml::table& table) {
-  ScopeLayout layout{table["name"].value_or(std::string{}), 2, {}};
+  ScopeLayout layout{table["name"].value_or(std::string{}), 2, {}, formulas_from(table["formulas"].as_array())};
   read_number(table["columns"], 1, 4, layout.columns);
   if (const toml::array* plots = table["plots"].as_array())
     for (const auto& each : *plots)
       if (const toml::table* plot_table = each.as_table())
-        if (auto plot = plot_from(*plot_table)) layout.plots.push_back(std::move(*plot));
+        if (auto plot = plot_from(*plot_table, layout.formulas)) layout.plots.push_back(std::move(*plot));
   if (layout.plots.empty()) return std::nullopt;
   return layout;
 }
@@ -109,17 +137,20 @@ std::string write_settings(const WindowSettings& settings, const std::filesystem
 std::string format_settings(const WindowSettings& settings) {
   toml::array own_layouts;
   for (const ScopeLayout& layout : settings.scope.own_layouts.all())
-    own_layouts.push_back(
-        toml::table{{"name", layout.name}, {"columns", layout.columns}, {"plots", to_toml(layout.plots)}});
+    own_layouts.push_back(toml::table{{"name", layout.name},
+                                      {"columns", layout.columns},
+                                      {"plots", to_toml(layout.plots)},
+                                      {"formulas", to_toml(layout.formulas)}});
   const toml::table file{{"window", toml::table{{"theme", name_of(settings.theme, theme_names)},
                                                 {"tuning_width", settings.column_width},
-                                                {"scope_height", settings.scope_height},
+                                                {"scope_part", settings.scope_part},
                                                 {"scope_is_shown", settings.scope_is_shown},
                                                 {"parameters_file", settings.parameters_file.string()}}},
                          {"scope", toml::table{{"name", settings.scope.layout.name},
                                                {"columns", settings.scope.layout.columns},
                                                {"span_s", settings.scope.span_s},
                                                {"plots", to_toml(settings.scope.layout.plots)},
+                                               {"formulas", to_toml(settings.scope.layout.formulas)},
                                                {"layouts", std::move(own_layouts)}}},
                          {"trigger", toml::table{{"mode", name_of(settings.scope.trigger.mode, trigger_mode_names)},
                                                  {"signal", protocol::info(settings.scope.trigger.signal).name},
@@ -143,7 +174,8 @@ WindowSettings parse_settings(const std::string& text) {
   const auto window = root["window"];
   read_name(window["theme"], theme_names, settings.theme);
   read_number(window["tuning_width"], WindowSettings::column_width_minimum, points_maximum, settings.column_width);
-  read_number(window["scope_height"], WindowSettings::scope_height_minimum, points_maximum, settings.scope_height);
+  read_number(window["scope_part"], WindowSettings::scope_part_minimum, WindowSettings::scope_part_maximum,
+              settings.scope_part);
   settings.scope_is_shown = window["scope_is_shown"].value_or(settings.scope_is_shown);
   settings.parameters_file = window["parameters_file"].value_or(std::string{});
 

@@ -118,11 +118,12 @@ void StatusBar::draw_device(ImVec2 corner, const Style& style, DeviceDesk& desk)
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddCircleFilled({corner.x + style.points(14), corner.y + 0.5f * area.y}, style.points(4.5f),
                        packed(connection_colour(connection, palette)));
-  const float left = corner.x + style.points(29);
+  const float left = corner.x + style.points(29), room = corner.x + area.x - left;
   list.AddText(style.fonts.strong, style.fonts.strong->FontSize, {left, corner.y + style.points(2)},
-               packed(palette.text), connection_title(view.status));
+               packed(palette.text), fitted(connection_title(view.status), room, style.fonts.strong).c_str());
   list.AddText(style.fonts.caption, style.fonts.caption->FontSize, {left, corner.y + style.points(20)},
-               packed(palette.text_quiet), serial.empty() ? "choose a device" : serial.c_str());
+               packed(palette.text_quiet),
+               fitted(serial.empty() ? "choose a device" : serial, room, style.fonts.caption).c_str());
   draw_device_list(style, desk);
 }
 

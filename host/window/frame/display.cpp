@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <GLFW/glfw3.h>
@@ -12,6 +13,23 @@ namespace inkwell::window {
 
 namespace {
 
+/// Of the main display: 2 for one of 192 dots per inch.
+float monitor_scale() {
+  float x = 1.0f;
+  float y = 1.0f;
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) glfwGetMonitorContentScale(monitor, &x, &y);
+  return std::clamp(std::max(x, y), 1.0f, 4.0f);
+}
+
+/// What the desktop leaves of the main display; none if it does not tell.
+std::optional<ScreenSize> monitor_room() {
+  int x = 0, y = 0;
+  ScreenSize room{0, 0};
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor())
+    glfwGetMonitorWorkarea(monitor, &x, &y, &room.width, &room.height);
+  return room.width > 0 && room.height > 0 ? std::optional(room) : std::nullopt;
+}
+
 std::string last_glfw_error() {
   const char* description = nullptr;
   glfwGetError(&description);
@@ -20,7 +38,7 @@ std::string last_glfw_error() {
 
 }  // namespace
 
-Display::Display(int width, int height, const std::string& title) {
+Display::Display(ScreenSize points, float scale, const std::string& title) {
   if (glfwInit() != GLFW_TRUE)
     throw DisplayError("No display could be opened (" + last_glfw_error() +
                        "). Run it in a graphical session, or use the commands that need none: inkwell --help.");
@@ -34,6 +52,8 @@ Display::Display(int width, int height, const std::string& title) {
   // By which a desktop finds the name and the icon (packaging/inkwell.desktop).
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "inkwell");
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "inkwell");
+  scale_ = scale > 0.0f ? scale : monitor_scale();
+  const auto [width, height] = window_size(points, scale_, monitor_room());
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = last_glfw_error();
@@ -42,7 +62,8 @@ Display::Display(int width, int height, const std::string& title) {
                        "). Install a driver for the graphics card, or Mesa's software OpenGL (libgl1-mesa-dri) and "
                        "set LIBGL_ALWAYS_SOFTWARE=1.");
   }
-  glfwSetWindowSizeLimits(window_, 960, 600, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  const auto least = window_size(smallest_window_points, scale_, monitor_room());
+  glfwSetWindowSizeLimits(window_, least.width, least.height, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
@@ -71,13 +92,6 @@ Display::Display(int width, int height, const std::string& title) {
 Display::~Display() {
   glfwDestroyWindow(window_);
   glfwTerminate();
-}
-
-float Display::content_scale() const {
-  float x = 1.0f;
-  float y = 1.0f;
-  glfwGetWindowContentScale(window_, &x, &y);
-  return std::clamp(std::max(x, y), 1.0f, 4.0f);
 }
 
 double Display::refresh_rate_Hz() const {

@@ -4,6 +4,7 @@
 
 #include <imgui_internal.h>
 
+#include <frame/ellipsis.hpp>
 #include <frame/inspection.hpp>
 
 namespace inkwell::window {
@@ -31,6 +32,15 @@ void right_text(Colour colour, std::string_view content, float width) {
   const float taken = ImGui::CalcTextSize(content.data(), content.data() + content.size()).x;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, width - taken));
   text(colour, content);
+}
+
+std::string fitted(std::string_view content, float width, ImFont* font) {
+  if (font == nullptr) font = ImGui::GetFont();
+  const auto width_of = [font](std::string_view part) {
+    constexpr float without_end = 1e4f;
+    return font->CalcTextSizeA(font->FontSize, without_end, 0, part.data(), part.data() + part.size()).x;
+  };
+  return with_ellipsis(content, width, width_of);
 }
 
 float warning_sign(ImVec2 corner, Colour colour, const Style& style) {

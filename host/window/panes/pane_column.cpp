@@ -51,7 +51,8 @@ void draw_running(const std::string& running, ImVec2 corner, ImVec2 end, bool is
 }
 
 bool draw_tab(const Pane& pane, bool is_shown, float width, const Style& style) {
-  const std::string label = fmt::format("{}##tab", pane.title());
+  const float room = width - style.points(8);
+  const std::string label = fmt::format("{}##tab", fitted(pane.title(), room));
   const std::string running = pane.running();
   if (running.empty()) return toggle_button(label.c_str(), is_shown, style, {width, 0});
   const Palette& palette = *style.palette;

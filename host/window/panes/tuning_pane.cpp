@@ -30,6 +30,7 @@ namespace {
 
 constexpr float unit_points = 46.0f;
 constexpr float reset_points = 20.0f;
+constexpr float rows_indent_points = 20.0f;  // as far as a title behind its arrow
 
 std::array<const char*, 2> choice_names(Parameter parameter) {
   if (parameter == Parameter::transmission) return {"serial", "parallelogram"};
@@ -267,9 +268,7 @@ void TuningPane::draw_row(Parameter parameter, const PaneFrame& frame) {
     not_stored_mark(mark, style);
   else if (changed)
     ImGui::GetWindowDrawList()->AddCircleFilled(mark, style.points(2.6f), packed(palette.accent));
-  ImGui::PushClipRect(corner, {corner.x + label_width - style.points(4), corner.y + ImGui::GetFrameHeight()}, true);
-  text(changed ? palette.text : palette.text_quiet, label);
-  ImGui::PopClipRect();
+  text(changed ? palette.text : palette.text_quiet, fitted(label, label_width - style.points(4)));
   help_on_hover(label, help_of(info), style);
 
   ImGui::SameLine();
@@ -308,9 +307,12 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
       ++changed;
   ImGui::Dummy({0, style.points(1)});
   ImGui::PushFont(style.fonts.strong);
+  // A title begins left of its rows, as close to its arrow as can be.
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(2), style.points(5)});
   const bool open = ImGui::CollapsingHeader((title + "###" + std::string(group)).c_str(),
                                             often_used ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   note_item(group);
+  ImGui::PopStyleVar();
   ImGui::PopFont();
   if (changed > 0) {
     ImGui::PushFont(style.fonts.caption);
@@ -320,13 +322,13 @@ void TuningPane::draw_group(std::string_view group, const PaneFrame& frame) {
     ImGui::PopFont();
   }
   if (!open) return;
-  ImGui::Indent(style.points(12));
+  ImGui::Indent(style.points(rows_indent_points));
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(3)});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(4)});
   for (std::size_t i = 0; i < protocol::known_parameters().size(); ++i)
     if (protocol::known_parameters()[i].group == group) draw_row(static_cast<Parameter>(i), frame);
   ImGui::PopStyleVar(2);
-  ImGui::Unindent(style.points(12));
+  ImGui::Unindent(style.points(rows_indent_points));
 }
 
 void TuningPane::ask_for_file(FileTask task) {

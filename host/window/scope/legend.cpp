@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <frame/widgets.hpp>
+
 namespace inkwell::window {
 
 namespace {
@@ -14,11 +16,11 @@ float width_of(const std::string& label, const Style& style) {
 }
 
 // "force_N" -> "force": the unit stands beside the plot's title if all its signals have the same.
-std::string short_name(const protocol::SignalInfo& info, bool unit_is_told) {
-  std::string ending = fmt::format("_{}", info.unit);
+std::string short_name(const ScopeSignal& signal, bool unit_is_told) {
+  std::string ending = fmt::format("_{}", signal.unit());
   std::ranges::replace(ending, '/', '_');
-  std::string name{info.name};
-  if (unit_is_told && !info.unit.empty() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+  std::string name{signal.name()};
+  if (unit_is_told && !signal.unit().empty() && name.ends_with(ending)) name.resize(name.size() - ending.size());
   return name;
 }
 
@@ -30,11 +32,13 @@ class LegendLabels {
  public:
   LegendLabels(const ScopePlot& plot, const ScopeFrame& frame, float room, bool unit_is_told)
       : plot_(plot), frame_(frame), room_(room) {
-    for (const protocol::Signal signal : plot.signals)
-      names_.push_back(short_name(protocol::info(signal), unit_is_told));
+    for (const ScopeSignal& signal : plot.signals) names_.push_back(short_name(signal, unit_is_told));
     // Where the plot is narrow its title tells the rest.
-    if (!fits(names_) && names_.size() > 1)
+    if (unit_is_told && !fits(names_) && names_.size() > 1)
       for (std::string& name : names_) name = last_word(name);
+    if (fits(names_)) return;
+    const float each = room_ / static_cast<float>(names_.size()) - frame.style.points(24);
+    for (std::string& name : names_) name = fitted(name, each, frame.style.fonts.caption);
   }
 
   /// With cursors, as much of their values as there is room for: both and the difference, that alone, or nothing.
@@ -75,14 +79,19 @@ class LegendLabels {
 std::string formatted(double value) { return std::isnan(value) ? "—" : fmt::format("{:.4g}", value); }
 
 std::string common_unit(const ScopePlot& plot) {
-  std::string_view unit = protocol::info(plot.signals.front()).unit;
-  for (protocol::Signal signal : plot.signals)
-    if (protocol::info(signal).unit != unit) return "";
+  const std::string_view unit = plot.signals.front().unit();
+  for (const ScopeSignal& signal : plot.signals)
+    if (signal.unit() != unit) return "";
   return std::string(unit);
 }
 
 Colour line_colour(const Style& style, std::size_t index) {
   return style.palette->lines[index % style.palette->lines.size()];
+}
+
+Colour laid_over_colour(const Style& style, std::size_t index) {
+  constexpr std::uint8_t paler = 120;
+  return line_colour(style, index).with_alpha(paler);
 }
 
 void draw_legend(const ScopePlot& plot, ImVec2 place, float width, const ScopeFrame& frame) {

@@ -18,6 +18,8 @@ std::string formatted(double value);
 std::string common_unit(const ScopePlot& plot);
 
 Colour line_colour(const Style& style, std::size_t index);
+/// Of the same signal in a recording that is laid over.
+Colour laid_over_colour(const Style& style, std::size_t index);
 
 /// The line above a plot: its unit at the left, its signals at the right of `width`, as much of them as there is room
 /// for.

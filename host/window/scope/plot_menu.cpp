@@ -2,36 +2,50 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
+#include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 #include <protocol/signals.hpp>
+
+#include "signal_list.hpp"
 
 namespace inkwell::window {
 
 namespace {
 
-void choose_signals(ScopePlot& plot, const Style& style) {
-  for (const protocol::SignalInfo& info : protocol::known_signals()) {
-    const auto signal = static_cast<protocol::Signal>(info.id);
-    const auto found = std::ranges::find(plot.signals, signal);
-    bool on = found != plot.signals.end();
-    const bool is_last = on && plot.signals.size() == 1;
-    ImGui::BeginDisabled(is_last);
-    if (ImGui::Checkbox(info.name.data(), &on)) {
-      if (on) {
-        plot.signals.push_back(signal);
-      } else {
-        plot.signals.erase(found);
-      }
+void choose_signal(ScopePlot& plot, const ScopeSignal& signal, const Style& style) {
+  const auto found = std::ranges::find(plot.signals, signal);
+  bool on = found != plot.signals.end();
+  const bool is_last = on && plot.signals.size() == 1;
+  ImGui::BeginDisabled(is_last);
+  if (ImGui::Checkbox(std::string(signal.name()).c_str(), &on)) {
+    if (on) {
+      plot.signals.push_back(signal);
+    } else {
+      plot.signals.erase(found);
     }
-    ImGui::EndDisabled();
-    help_on_hover(info.name, info.help, style);
   }
+  note_item(signal.name());
+  ImGui::EndDisabled();
+  help_on_hover(signal.name(), signal.help(), style);
+}
+
+void choose_signals(ScopePlot& plot, std::span<const Formula> formulas, const std::string& search, const Style& style) {
+  const std::vector<SignalGroup> groups = signal_groups(search);
+  for (const SignalGroup& group : groups) {
+    text(style.fonts.strong, style.palette->text, group.title);
+    for (const protocol::Signal signal : group.signals) choose_signal(plot, signal, style);
+  }
+  if (!formulas.empty()) text(style.fonts.strong, style.palette->text, "By formula");
+  for (const Formula& formula : formulas) choose_signal(plot, ScopeSignal(formula), style);
+  if (groups.empty()) wrapped_text(style.palette->text_quiet, nothing_found);
 }
 
 }  // namespace
 
-bool draw_plot_menu(ScopePlot& plot, bool may_be_removed, const Style& style) {
+bool draw_plot_menu(ScopePlot& plot, std::span<const Formula> formulas, bool may_be_removed, const Style& style) {
+  static std::string search;
   static constexpr auto kinds = std::to_array<const char*>({"against time", "spectrum", "against each other"});
   static_assert(kinds.size() == plot_kind_count);
   ImGui::SetNextWindowSizeConstraints({style.points(250), 0}, {style.points(330), style.points(420)});
@@ -42,7 +56,9 @@ bool draw_plot_menu(ScopePlot& plot, bool may_be_removed, const Style& style) {
     plot.kind = static_cast<PlotKind>(kind);
   const bool is_to_be_removed = may_be_removed && ImGui::Selectable("Remove this plot");
   ImGui::Separator();
-  choose_signals(plot, style);
+  if (ImGui::IsWindowAppearing()) search.clear();
+  draw_search(search, style);
+  choose_signals(plot, formulas, search, style);
   ImGui::EndPopup();
   return is_to_be_removed;
 }

@@ -1,12 +1,15 @@
-// The menu of a plot, which opens from its title.
+// The menu that opens at a plot's title: what kind of plot it is, and what it shows.
 #pragma once
+
+#include <span>
+#include <string>
 
 #include <frame/style.hpp>
 #include <scope/scope_layout.hpp>
 
 namespace inkwell::window {
 
-/// Draws the popup "plot menu" while it is open: the plot's kind and signals. True if the plot is to be removed.
-bool draw_plot_menu(ScopePlot& plot, bool may_be_removed, const Style& style);
+/// Draws the menu while it is open. True if the plot is to be removed.
+bool draw_plot_menu(ScopePlot& plot, std::span<const Formula> formulas, bool may_be_removed, const Style& style);
 
 }  // namespace inkwell::window

@@ -14,7 +14,9 @@ namespace inkwell::window {
 std::span<const ScopeLayout> built_in_layouts() {
   using enum protocol::Signal;
   using enum PlotKind;
-  static const std::array<ScopeLayout, 4> layouts{{
+  static const Formula penetration{
+      .name = "penetration_m", .text = "sqrt(penetration_x_m^2 + penetration_y_m^2 + penetration_z_m^2)", .unit = "m"};
+  static const std::array<ScopeLayout, 5> layouts{{
       {"contact", 2, {{time, "Position", {position_x_m, position_y_m, position_z_m}}, {time, "Force", {force_N}}}},
       {"paper",
        2,
@@ -22,6 +24,12 @@ std::span<const ScopeLayout> built_in_layouts() {
         {time, "Figure 12: force", {force_N}},
         {time, "Figure 13: torques", {torque_1_Nm, torque_2_Nm, torque_3_Nm}},
         {time, "Figure 14: duty", {duty_1, duty_2, duty_3}}}},
+      {"wall",
+       3,
+       {{xy, "Force against penetration", {ScopeSignal(penetration), force_N}},
+        {time, "Penetration", {ScopeSignal(penetration)}},
+        {time, "Force", {force_N}}},
+       {penetration}},
       {"currents",
        2,
        {{time, "Motor 1", {current_reference_1_A, current_1_A}},
@@ -109,12 +117,59 @@ const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own) {
   return found == nullptr ? built_in_layouts().front() : *found;
 }
 
+std::optional<ScopeSignal> find_scope_signal(std::string_view name, std::span<const Formula> formulas) {
+  if (const auto signal = protocol::find_signal(name)) return *signal;
+  const auto found = std::ranges::find(formulas, name, &Formula::name);
+  return found == formulas.end() ? std::nullopt : std::optional(ScopeSignal(*found));
+}
+
+void put_formula(ScopeLayout& layout, const Formula& formula, std::string_view before) {
+  const auto found = std::ranges::find(layout.formulas, before, &Formula::name);
+  if (found == layout.formulas.end()) {
+    layout.formulas.push_back(formula);
+    return;
+  }
+  const ScopeSignal old(*found);
+  *found = formula;
+  for (ScopePlot& plot : layout.plots) std::ranges::replace(plot.signals, old, ScopeSignal(formula));
+}
+
+void remove_formula(ScopeLayout& layout, std::string_view name) {
+  const auto found = std::ranges::find(layout.formulas, name, &Formula::name);
+  if (found == layout.formulas.end()) return;
+  const ScopeSignal gone(*found);
+  layout.formulas.erase(found);
+  for (ScopePlot& plot : layout.plots) std::erase(plot.signals, gone);
+  std::erase_if(layout.plots, [](const ScopePlot& plot) { return plot.signals.empty(); });
+  if (layout.plots.empty()) layout.plots.push_back({PlotKind::time, "Force", {protocol::Signal::force_N}});
+}
+
+std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout) {
+  std::vector<ScopeSignal> shown;
+  for (const ScopePlot& plot : layout.plots)
+    for (const ScopeSignal& signal : plot.signals)
+      if (signal.formula() != nullptr && std::ranges::find(shown, signal) == shown.end()) shown.push_back(signal);
+  return shown;
+}
+
+std::string hint_for(const ScopePlot& plot, const SignalHistory& history) {
+  if (plot.kind == PlotKind::xy && plot.signals.size() < 2)
+    return "Drag a second signal in here from Signals, or click the title: it is drawn against the first.";
+  if (history.end() == history.begin()) return "Nothing has come yet: connect a device, or replay a recording.";
+  for (const ScopeSignal& signal : plot.signals)
+    if (history.find(signal) == nullptr)
+      return fmt::format("{} is not among the signals that come. Choose another one by the title, or record it.",
+                         signal.name());
+  return {};
+}
+
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout) {
   std::vector<protocol::Signal> signals;
   for (const ScopePlot& plot : layout.plots)
-    for (protocol::Signal signal : plot.signals)
-      if (signals.size() < protocol::scope_signals_maximum && std::ranges::find(signals, signal) == signals.end())
-        signals.push_back(signal);
+    for (const ScopeSignal& shown : plot.signals)
+      for (const protocol::Signal signal : shown.inputs())
+        if (signals.size() < protocol::scope_signals_maximum && std::ranges::find(signals, signal) == signals.end())
+          signals.push_back(signal);
   return signals;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 #include <protocol/reports.hpp>
 
@@ -11,6 +12,7 @@
 #include "legend.hpp"
 #include "plot_menu.hpp"
 #include "plot_view.hpp"
+#include "signal_list.hpp"
 #include "toolbar.hpp"
 
 namespace inkwell::window {
@@ -22,6 +24,8 @@ constexpr float y_axis_points = 52.0f;
 constexpr float x_axis_points = 21.0f;
 constexpr float plot_minimum_width_points = 230.0f;
 constexpr float plot_minimum_height_points = 92.0f;
+constexpr float legend_points = 150.0f;  // beside a title that is long
+constexpr float title_part_maximum = 0.5f;
 
 }  // namespace
 
@@ -29,7 +33,8 @@ ScopePane::ScopePane(const ScopeSettings& settings)
     : timeline_(settings.span_s, settings.trigger),
       layout_(settings.layout),
       layout_menu_(std::make_unique<LayoutMenu>(settings.own_layouts)),
-      cursors_(std::make_unique<Cursors>()) {}
+      cursors_(std::make_unique<Cursors>()),
+      signal_list_(std::make_unique<SignalList>()) {}
 
 ScopePane::~ScopePane() = default;
 
@@ -51,7 +56,9 @@ void ScopePane::draw(ImVec2 place, ImVec2 size, const Style& style) {
   begin_pane("scope", place, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   draw_controls(style);
+  signal_list_->draw(layout_, style);
   follow_layout();
+  timeline_.derive(shown_formulas(layout_));
   ScopeFrame frame{style, timeline_, timeline_.stretch(), *cursors_, with_statistics_, judged_end_, has_motion_};
   draw_plots(frame);
   judged_end_ = timeline_.history().end();
@@ -61,7 +68,7 @@ void ScopePane::draw(ImVec2 place, ImVec2 size, const Style& style) {
 void ScopePane::draw_controls(const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(8), style.points(3)});
   layout_menu_->draw(layout_, style);
-  draw_toolbar(timeline_, *cursors_, with_statistics_, style);
+  draw_toolbar(timeline_, *cursors_, with_statistics_, *signal_list_, style);
   ImGui::PopStyleVar();
 }
 
@@ -107,13 +114,14 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFra
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(6), style.points(2)});
   ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->pane));
   ImGui::PushFont(style.fonts.strong);
-  if (button((plot.title.empty() ? "Plot" : plot.title).c_str())) ImGui::OpenPopup("plot menu");
+  const float title_room = std::max(title_part_maximum * size.x, size.x - style.points(legend_points));
+  if (button(fitted(plot.title.empty() ? "Plot" : plot.title, title_room).c_str())) ImGui::OpenPopup("plot menu");
   ImGui::PopFont();
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
   const float title_width = ImGui::GetItemRectSize().x;
   help_on_hover("", "Click to choose what this plot shows.", style);
-  const bool is_to_be_removed = draw_plot_menu(plot, layout_.plots.size() > 1, style);
+  const bool is_to_be_removed = draw_plot_menu(plot, layout_.formulas, layout_.plots.size() > 1, style);
   draw_legend(view.plot(), {place.x + title_width, place.y + style.points(4)}, size.x - title_width - style.points(6),
               frame);
 
@@ -125,10 +133,35 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFra
   if (area.width() > style.points(40) && area.height() > style.points(24)) {
     ImGui::SetCursorScreenPos(area.minimum);
     ImGui::InvisibleButton("plot", {area.width(), area.height()});
+    take_dropped_signal(plot);
     view.draw(area, frame);
+    draw_hint(view.plot(), area, style);
   }
   ImGui::PopID();
   return is_to_be_removed;
+}
+
+void ScopePane::take_dropped_signal(ScopePlot& plot) {
+  const auto dropped = dropped_signal();
+  if (!dropped) return;
+  const auto signal = find_scope_signal(*dropped, layout_.formulas);
+  if (signal && std::ranges::find(plot.signals, *signal) == plot.signals.end()) plot.signals.push_back(*signal);
+}
+
+void ScopePane::draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const {
+  const std::string hint = hint_for(plot, timeline_.history());
+  if (hint.empty()) return;
+  ImFont* font = style.fonts.caption;
+  const float room = std::min(area.width() - style.points(16), style.points(300));
+  const ImVec2 taken = font->CalcTextSizeA(font->FontSize, 1e4f, room, hint.c_str());
+  const ImVec2 corner{0.5f * (area.minimum.x + area.maximum.x - taken.x),
+                      0.5f * (area.minimum.y + area.maximum.y - taken.y)};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float margin = style.points(5);
+  list.AddRectFilled({corner.x - margin, corner.y - margin}, {corner.x + taken.x + margin, corner.y + taken.y + margin},
+                     packed(style.palette->pane), style.points(4));
+  list.AddText(font, font->FontSize, corner, packed(style.palette->text_quiet), hint.c_str(), nullptr, room);
+  note_text(hint);
 }
 
 }  // namespace inkwell::window

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace inkwell::window {
 
@@ -20,8 +21,8 @@ Extremes merge(Extremes a, Extremes b) { return {smaller(a.minimum, b.minimum), 
 
 }  // namespace
 
-SignalSeries::SignalSeries(std::size_t capacity)
-    : capacity_(capacity), samples_(std::make_unique_for_overwrite<float[]>(capacity)) {
+SignalSeries::SignalSeries(std::size_t capacity, std::uint64_t first)
+    : capacity_(capacity), first_(first), end_(first), samples_(std::make_unique_for_overwrite<float[]>(capacity)) {
   for (std::size_t blocks = capacity / branching; blocks >= branching; blocks /= branching)
     levels_.push_back({std::make_unique_for_overwrite<Extremes[]>(blocks), blocks - 1});
 }
@@ -35,6 +36,7 @@ void SignalSeries::append(float value) {
     const std::uint64_t first = completed - branching;
     Extremes sum{nothing, nothing};
     for (std::uint64_t i = first; i < completed; ++i) {
+      if ((i + 1) << (bits_per_level * static_cast<int>(k)) <= first_) continue;  // before all that was appended
       if (k == 0) {
         const float sample = (*this)[i];
         sum = merge(sum, {sample, sample});
@@ -76,29 +78,93 @@ Extremes SignalSeries::extremes(std::uint64_t first, std::uint64_t last) const {
   return result;
 }
 
-void SignalHistory::clear() {
-  signals_.clear();
+void SignalLane::begin_anew(std::vector<protocol::Signal> signals, std::uint64_t first) {
+  signals_ = std::move(signals);
   series_.clear();
+  for (std::size_t i = 0; i < signals_.size(); ++i) series_.emplace_back(capacity_, first);
+  derived_.clear();
+  derive(std::exchange(formulas_, {}));
 }
 
-void SignalHistory::append(const device::ScopeSamples& samples) {
-  if (samples.count == 0) return;
-  if (samples.signals != signals_ || samples.lost_before > capacity_) {
-    clear();
-    signals_ = samples.signals;
-    for (std::size_t i = 0; i < signals_.size(); ++i) series_.emplace_back(capacity_);
-  } else {
-    for (std::uint64_t i = 0; i < samples.lost_before; ++i)
-      for (auto& series : series_) series.append(nothing);
+void SignalLane::derive(const std::vector<ScopeSignal>& formulas) {
+  if (formulas == formulas_) return;
+  formulas_ = formulas;
+  std::erase_if(derived_,
+                [&](const Derived& each) { return std::ranges::find(formulas, each.signal) == formulas.end(); });
+  for (const ScopeSignal& formula : formulas) {
+    if (find(formula) != nullptr) continue;
+    auto derived = derived_of(formula);
+    if (!derived) continue;
+    advance(*derived, end());
+    derived_.push_back(std::move(*derived));
   }
-  const std::size_t width = signals_.size();
-  for (std::size_t j = 0; j < width; ++j)
-    for (std::size_t i = 0; i < samples.count; ++i) series_[j].append(samples.values[i * width + j]);
 }
 
-const SignalSeries* SignalHistory::find(protocol::Signal signal) const {
-  const auto found = std::ranges::find(signals_, signal);
+std::optional<SignalLane::Derived> SignalLane::derived_of(const ScopeSignal& formula) const {
+  Derived derived{formula, FormulaValues(*formula.formula()), {}, SignalSeries(capacity_, begin())};
+  for (const protocol::Signal input : derived.values.inputs()) {
+    const auto found = std::ranges::find(signals_, input);
+    if (found == signals_.end()) return std::nullopt;
+    derived.inputs.push_back(static_cast<std::size_t>(found - signals_.begin()));
+  }
+  return derived;
+}
+
+void SignalLane::advance(Derived& derived, std::uint64_t until) {
+  inputs_.resize(derived.inputs.size());
+  for (std::uint64_t at = derived.series.end(); at < until; ++at) {
+    for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i] = series_[derived.inputs[i]][at];
+    derived.series.append(derived.values.next(inputs_));
+  }
+}
+
+void SignalLane::append(std::span<const float> values) {
+  const std::size_t width = signals_.size();
+  if (width == 0) return;
+  const std::size_t count = values.size() / width;
+  for (std::size_t j = 0; j < width; ++j)
+    for (std::size_t i = 0; i < count; ++i) series_[j].append(values[i * width + j]);
+  for (Derived& each : derived_) advance(each, end());
+}
+
+void SignalLane::append_lost(std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i)
+    for (auto& series : series_) series.append(nothing);
+  for (Derived& each : derived_) advance(each, end());
+}
+
+const SignalSeries* SignalLane::find(const ScopeSignal& signal) const {
+  if (signal.formula() != nullptr) {
+    const auto found = std::ranges::find(derived_, signal, &Derived::signal);
+    return found == derived_.end() ? nullptr : &found->series;
+  }
+  const auto found = std::ranges::find(signals_, signal.of_device());
   return found == signals_.end() ? nullptr : &series_[static_cast<std::size_t>(found - signals_.begin())];
+}
+
+void SignalHistory::clear() {
+  shown_.begin_anew({}, 0);
+  over_.begin_anew({}, 0);
+}
+
+void SignalHistory::derive(const std::vector<ScopeSignal>& formulas) {
+  shown_.derive(formulas);
+  over_.derive(formulas);
+}
+
+void SignalHistory::append(const device::ScopeSamples& samples, const device::ScopeSamples* over) {
+  if (samples.count == 0) return;
+  if (samples.signals != shown_.signals() || samples.lost_before > capacity_) {
+    shown_.begin_anew(samples.signals, 0);
+    over_.begin_anew({}, 0);
+  } else {
+    shown_.append_lost(samples.lost_before);
+    over_.append_lost(samples.lost_before);
+  }
+  const std::vector<protocol::Signal> over_signals = over == nullptr ? std::vector<protocol::Signal>{} : over->signals;
+  if (over_signals != over_.signals()) over_.begin_anew(over_signals, shown_.end());
+  shown_.append({samples.values.data(), samples.count * samples.signals.size()});
+  if (over != nullptr) over_.append(over->values);
 }
 
 std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns) {

@@ -14,7 +14,7 @@ namespace inkwell::window {
 
 namespace {
 
-constexpr double rate_Hz = protocol::servo_rate_Hz;
+constexpr double sampled_at_Hz = protocol::servo_rate_Hz;
 constexpr double decades_of_amplitude = 4.0;
 constexpr double lowest_decade_of_frequency = 1.0;
 
@@ -27,7 +27,7 @@ class SpectrumView final : public PlotView {
   void draw(PlotArea area, ScopeFrame& frame) override {
     compute(frame);
     const double top_dB = decibels(largest_amplitude());
-    area.x = {lowest_decade_of_frequency, std::log10(0.5 * rate_Hz)};
+    area.x = {lowest_decade_of_frequency, std::log10(0.5 * sampled_at_Hz)};
     area.y = y_.update(top_dB - 20.0 * decades_of_amplitude, top_dB, ImGui::GetTime());
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_axes(list, area, frame.style, "Hz", "dB " + common_unit(plot_), true);
@@ -41,7 +41,7 @@ class SpectrumView final : public PlotView {
     if (now_s - computed_at_s_ <= computed_every_s || frame.stretch.last <= 0.0) return;
     computed_at_s_ = now_s;
     spectra_.clear();
-    for (protocol::Signal signal : plot_.signals) {
+    for (const ScopeSignal& signal : plot_.signals) {
       const SignalSeries* series = frame.timeline.history().find(signal);
       spectra_.push_back(
           series == nullptr ? Spectrum{} : spectrum(*series, frame.stretch.first_index(), frame.stretch.last_index()));

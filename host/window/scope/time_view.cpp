@@ -39,7 +39,11 @@ class TimeView final : public PlotView {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_axes(list, area, frame.style, "s", "");
     draw_trigger_level(list, area, frame);
-    for (std::size_t i = 0; i < plot_.signals.size(); ++i)
+    const std::vector<std::size_t> order = drawing_order(plot_.signals);
+    for (const std::size_t i : order)
+      if (const SignalSeries* series = frame.timeline.history().find_over(plot_.signals[i]))
+        draw_signal(list, area, *series, first, last, laid_over_colour(frame.style, i), frame.style);
+    for (const std::size_t i : order)
       if (const SignalSeries* series = frame.timeline.history().find(plot_.signals[i]))
         draw_signal(list, area, *series, first, last, line_colour(frame.style, i), frame.style);
     take_mouse(area, frame);
@@ -50,12 +54,14 @@ class TimeView final : public PlotView {
  private:
   Extremes extremes(const ScopeFrame& frame) const {
     Extremes all{std::nanf(""), std::nanf("")};
-    for (protocol::Signal signal : plot_.signals) {
-      const SignalSeries* series = frame.timeline.history().find(signal);
-      if (series == nullptr || frame.stretch.last <= 0.0) continue;
-      const Extremes each = series->extremes(frame.stretch.first_index(), frame.stretch.last_index());
-      all = {std::fmin(all.minimum, each.minimum), std::fmax(all.maximum, each.maximum)};
-    }
+    if (frame.stretch.last <= 0.0) return all;
+    const SignalHistory& history = frame.timeline.history();
+    for (const ScopeSignal& signal : plot_.signals)
+      for (const SignalSeries* series : {history.find(signal), history.find_over(signal)}) {
+        if (series == nullptr) continue;
+        const Extremes each = series->extremes(frame.stretch.first_index(), frame.stretch.last_index());
+        all = {std::fmin(all.minimum, each.minimum), std::fmax(all.maximum, each.maximum)};
+      }
     return all;
   }
 
@@ -63,7 +69,7 @@ class TimeView final : public PlotView {
     const std::uint64_t end = frame.judged_end;
     if (frame.timeline.is_paused() || end == 0) return;
     const auto remembered = static_cast<std::uint64_t>(std::max(frame.timeline.span_s(), range_remembered_s) * rate_Hz);
-    for (protocol::Signal signal : plot_.signals) {
+    for (const ScopeSignal& signal : plot_.signals) {
       const SignalSeries* series = frame.timeline.history().find(signal);
       if (series == nullptr) continue;
       const Extremes before = series->extremes(end - std::min(end, remembered), end);
@@ -74,7 +80,8 @@ class TimeView final : public PlotView {
 
   void draw_trigger_level(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame) const {
     const TriggerSettings& trigger = frame.timeline.trigger();
-    if (!frame.timeline.is_triggered() || std::ranges::find(plot_.signals, trigger.signal) == plot_.signals.end())
+    if (!frame.timeline.is_triggered() ||
+        std::ranges::find(plot_.signals, ScopeSignal(trigger.signal)) == plot_.signals.end())
       return;
     const float y = area.to_y(static_cast<double>(trigger.level));
     if (y <= area.minimum.y || y >= area.maximum.y) return;
@@ -98,7 +105,7 @@ class TimeView final : public PlotView {
     if (const double now_s = ImGui::GetTime(); now_s - computed_at_s_ > computed_every_s) {
       computed_at_s_ = now_s;
       statistics_.clear();
-      for (protocol::Signal signal : plot_.signals)
+      for (const ScopeSignal& signal : plot_.signals)
         if (const SignalSeries* series = frame.timeline.history().find(signal);
             series != nullptr && frame.stretch.last > 0.0)
           statistics_.push_back(statistics(*series, frame.stretch.first_index(), frame.stretch.last_index()));

@@ -15,8 +15,8 @@ constexpr double parts_of_span = 2048.0;  // the right end moves by whole ones
 
 }  // namespace
 
-void Timeline::receive(const device::ScopeSamples& samples) {
-  if (!paused_) history_.append(samples);
+void Timeline::receive(const device::ScopeSamples& samples, const device::ScopeSamples* over) {
+  if (!paused_) history_.append(samples, over);
 }
 
 void Timeline::start_anew() {

@@ -17,12 +17,13 @@ std::string span_label(double span_s) {
   return span_s < 1.0 ? fmt::format("{:.3g} ms", 1000.0 * span_s) : fmt::format("{:.3g} s", span_s);
 }
 
-void choose_signal(const char* label, protocol::Signal& signal, float width) {
+void choose_trigger_signal(const char* label, protocol::Signal& signal, float width, const Style& style) {
   ImGui::SetNextItemWidth(width);
   if (!ImGui::BeginCombo(label, protocol::info(signal).name.data(), ImGuiComboFlags_HeightLarge)) return;
-  for (const protocol::SignalInfo& info : protocol::known_signals()) {
-    const auto offered = static_cast<protocol::Signal>(info.id);
-    if (ImGui::Selectable(info.name.data(), offered == signal)) signal = offered;
+  for (const SignalGroup& group : signal_groups({})) {
+    text(ImGui::GetFont(), style.palette->text_quiet, group.title);
+    for (const protocol::Signal offered : group.signals)
+      if (ImGui::Selectable(protocol::info(offered).name.data(), offered == signal)) signal = offered;
   }
   ImGui::EndCombo();
 }
@@ -50,7 +51,7 @@ TriggerMode choose_mode(TriggerMode chosen, const Style& style) {
 
 void choose_event(TriggerSettings& trigger, const Style& style) {
   same_line_if_room(style.points(150));
-  choose_signal("##signal", trigger.signal, style.points(150));
+  choose_trigger_signal("##signal", trigger.signal, style.points(150), style);
   same_line_if_room(style.points(62));
   const bool rising = trigger.edge == TriggerEdge::rising;
   if (button(rising ? "rising" : "falling", {style.points(62), 0}))
@@ -79,7 +80,8 @@ void draw_trigger(Timeline& timeline, const Style& style) {
 
 }  // namespace
 
-void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, const Style& style) {
+void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, SignalList& signals,
+                  const Style& style) {
   const bool paused = timeline.is_paused();
   same_line_if_room(style.points(58));
   if (toggle_button(paused ? "Run" : "Pause", paused, style, {style.points(58), 0})) timeline.pause(!paused);
@@ -89,6 +91,9 @@ void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, c
   if (toggle_button("Cursors", cursors.are_shown(), style, {style.points(66), 0})) cursors.toggle();
   same_line_if_room(style.points(72));
   if (toggle_button("Statistics", with_statistics, style, {style.points(72), 0})) with_statistics = !with_statistics;
+  same_line_if_room(style.points(66));
+  if (toggle_button("Signals", signals.is_shown(), style, {style.points(66), 0})) signals.toggle();
+  help_on_hover("Signals", "The list of all signals, to be dragged into plots, and formulas of them.", style);
   draw_trigger(timeline, style);
   if (!cursors.are_shown()) return;
   const std::string distance = cursors.distance(timeline.span_s());

@@ -5,10 +5,11 @@
 #include <scope/timeline.hpp>
 
 #include "cursors.hpp"
+#include "signal_list.hpp"
 
 namespace inkwell::window {
 
 /// Continues the row of what was drawn last.
-void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, const Style& style);
+void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, SignalList& signals, const Style& style);
 
 }  // namespace inkwell::window

@@ -20,35 +20,49 @@ class XyView final : public PlotView {
 
   void draw(PlotArea area, ScopeFrame& frame) override {
     const SignalHistory& history = frame.timeline.history();
-    const SignalSeries* x_series = history.find(plot_.signals.front());
     const std::uint64_t first = std::max(frame.stretch.first_index(), history.begin());
     const std::uint64_t last = std::min(frame.stretch.last_index(), history.end());
     find_ranges(area, history, first, last);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_axes(list, area, frame.style, unit_of(0), plot_.signals.size() > 1 ? unit_of(1) : "");
-    if (x_series == nullptr || first >= last) return;
-    const std::uint64_t stride = std::max<std::uint64_t>(1, (last - first) / points_maximum);
-    for (std::size_t i = 1; i < plot_.signals.size(); ++i) {
-      const SignalSeries* series = history.find(plot_.signals[i]);
-      if (series == nullptr) continue;
-      std::vector<std::pair<double, double>> points;
-      for (std::uint64_t at = first; at < last; at += stride) points.emplace_back((*x_series)[at], (*series)[at]);
-      draw_points(list, area, points, line_colour(frame.style, i), frame.style);
-    }
+    for (const bool over : {true, false}) draw_lane(list, area, frame, over, first, last);
   }
 
  private:
-  std::string unit_of(std::size_t index) const { return std::string(protocol::info(plot_.signals[index]).unit); }
+  /// What is laid over is drawn below, and paler.
+  void draw_lane(ImDrawList& list, const PlotArea& area, const ScopeFrame& frame, bool over, std::uint64_t first,
+                 std::uint64_t last) const {
+    const SignalHistory& history = frame.timeline.history();
+    const SignalSeries* x_series = series_of(history, 0, over);
+    if (x_series == nullptr || first >= last) return;
+    const std::uint64_t stride = std::max<std::uint64_t>(1, (last - first) / points_maximum);
+    for (std::size_t i = 1; i < plot_.signals.size(); ++i) {
+      const SignalSeries* series = series_of(history, i, over);
+      if (series == nullptr) continue;
+      std::vector<std::pair<double, double>> points;
+      for (std::uint64_t at = first; at < last; at += stride) points.emplace_back((*x_series)[at], (*series)[at]);
+      draw_points(list, area, points, over ? laid_over_colour(frame.style, i) : line_colour(frame.style, i),
+                  frame.style);
+    }
+  }
+
+  std::string unit_of(std::size_t index) const { return std::string(plot_.signals[index].unit()); }
+
+  const SignalSeries* series_of(const SignalHistory& history, std::size_t index, bool over) const {
+    return over ? history.find_over(plot_.signals[index]) : history.find(plot_.signals[index]);
+  }
 
   void find_ranges(PlotArea& area, const SignalHistory& history, std::uint64_t first, std::uint64_t last) {
     Extremes x{std::nanf(""), std::nanf("")};
     Extremes y = x;
     for (std::size_t i = 0; i < plot_.signals.size(); ++i) {
-      const SignalSeries* series = history.find(plot_.signals[i]);
-      if (series == nullptr) continue;
-      const Extremes each = series->extremes(first, last);
       Extremes& all = i == 0 ? x : y;
-      all = {std::fmin(all.minimum, each.minimum), std::fmax(all.maximum, each.maximum)};
+      for (const bool over : {false, true}) {
+        const SignalSeries* series = series_of(history, i, over);
+        if (series == nullptr) continue;
+        const Extremes each = series->extremes(first, last);
+        all = {std::fmin(all.minimum, each.minimum), std::fmax(all.maximum, each.maximum)};
+      }
     }
     const double now_s = ImGui::GetTime();
     area.x = x_.update(static_cast<double>(x.minimum), static_cast<double>(x.maximum), now_s);

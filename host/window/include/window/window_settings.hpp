@@ -12,10 +12,12 @@ namespace inkwell::window {
 struct WindowSettings {
   static constexpr float column_width_minimum = 300.0f;
   static constexpr float scope_height_minimum = 150.0f;
+  static constexpr float scope_part_minimum = 0.1f;
+  static constexpr float scope_part_maximum = 0.9f;
 
   Theme theme = Theme::dark;
   float column_width = 330.0f;  ///< of the panes at the right; in points, before scaling
-  float scope_height = 270.0f;
+  float scope_part = 0.42f;     ///< of the height that scene and scope share
   bool scope_is_shown = true;
   ScopeSettings scope;
   std::filesystem::path parameters_file;  ///< the one loaded or saved last

@@ -9,6 +9,8 @@
 
 #include <imgui.h>
 
+#include <frame/window_size.hpp>
+
 struct GLFWwindow;
 
 namespace inkwell::window {
@@ -22,13 +24,14 @@ class DisplayError : public std::runtime_error {
 class Display {
  public:
   /// Throws DisplayError if there is no display or no OpenGL 3.3.
-  Display(int width, int height, const std::string& title);
+  /// A `scale` of 0 is that of the main display: pixels for one point, 1 for 96 dots per inch.
+  Display(ScreenSize points, float scale, const std::string& title);
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
   GLFWwindow* handle() const { return window_; }
-  float content_scale() const;  ///< pixels of text for one point, 1 on an ordinary display
+  float scale() const { return scale_; }  ///< pixels for one point
   double refresh_rate_Hz() const;
   bool draws_in_software() const;  ///< OpenGL has no graphics card
   ImVec2 corner() const;           ///< top left of what is drawn, on the screen
@@ -58,6 +61,7 @@ class Display {
 
  private:
   GLFWwindow* window_ = nullptr;
+  float scale_ = 1.0f;
   std::function<void(int, bool)> on_key_;
   bool had_input_ = true;
   bool lost_picture_ = true;

@@ -1,6 +1,7 @@
 // The few widgets that ImGui lacks, and those of ImGui's that an inspection knows by name.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include <frame/style.hpp>
@@ -13,6 +14,9 @@ void text(ImFont* font, Colour colour, std::string_view content);
 void wrapped_text(Colour colour, std::string_view content);
 /// Text whose right end is at the cursor's x plus `width`.
 void right_text(Colour colour, std::string_view content, float width);
+
+/// The text, with an ellipsis where it does not fit; the current font unless one is given.
+std::string fitted(std::string_view content, float width, ImFont* font = nullptr);
 
 /// A triangle with an exclamation mark, for what must not be told by colour alone. Returns the width it takes.
 float warning_sign(ImVec2 corner, Colour colour, const Style& style);

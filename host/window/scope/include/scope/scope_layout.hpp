@@ -3,12 +3,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <protocol/signals.hpp>
+#include <scope/scope_signal.hpp>
+#include <scope/signal_history.hpp>
 
 namespace inkwell::window {
 
@@ -22,7 +25,7 @@ inline constexpr std::size_t plot_kind_count = static_cast<std::size_t>(PlotKind
 struct ScopePlot {
   PlotKind kind = PlotKind::time;
   std::string title;
-  std::vector<protocol::Signal> signals;
+  std::vector<ScopeSignal> signals;
   bool operator==(const ScopePlot&) const = default;
 };
 
@@ -30,10 +33,11 @@ struct ScopeLayout {
   std::string name;
   int columns = 2;
   std::vector<ScopePlot> plots;
+  std::vector<Formula> formulas = {};  ///< that plots may show, whether one does or not
   bool operator==(const ScopeLayout&) const = default;
 };
 
-/// "contact", "paper" (figures 11 to 14), "currents", "interrupt".
+/// "contact", "paper" (figures 11 to 14), "wall" (force against penetration), "currents", "interrupt".
 std::span<const ScopeLayout> built_in_layouts();
 /// The built-in layout of that name, the first one if there is none.
 const ScopeLayout& built_in_layout(std::string_view name);
@@ -66,6 +70,18 @@ const ScopeLayout* find_layout(std::string_view name, const OwnLayouts& own);
 std::string layout_names(const OwnLayouts& own);
 /// The layout of that name, one's own or built in; the first of the built-in ones if there is none.
 const ScopeLayout& layout_named(std::string_view name, const OwnLayouts& own);
+
+/// The signal of that name: the device's, or what one of the formulas gives.
+std::optional<ScopeSignal> find_scope_signal(std::string_view name, std::span<const Formula> formulas);
+/// Takes the place of the layout's formula of the name `before`, in its plots as well; joins them if there is none.
+void put_formula(ScopeLayout& layout, const Formula& formula, std::string_view before);
+/// Takes it out of the plots, too; a plot that has nothing left goes.
+void remove_formula(ScopeLayout& layout, std::string_view name);
+/// The formulas that the plots show, each once.
+std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout);
+
+/// What to do so that the plot shows something; empty if it does.
+std::string hint_for(const ScopePlot& plot, const SignalHistory& history);
 
 /// Every signal of the layout once, at most as many as the scope can stream; those beyond are left out.
 std::vector<protocol::Signal> signals_of(const ScopeLayout& layout);

@@ -13,7 +13,9 @@ namespace inkwell::window {
 
 class Cursors;
 class LayoutMenu;
+class SignalList;
 class PlotView;
+struct PlotArea;
 struct ScopeFrame;
 
 class ScopePane {
@@ -23,7 +25,10 @@ class ScopePane {
 
   void draw(ImVec2 place, ImVec2 size, const Style& style);
   /// Samples from the device; while paused they are let go, so that what is looked at stays.
-  void receive(const device::ScopeSamples& samples) { timeline_.receive(samples); }
+  /// `over`: of the same periods, of a recording that is laid over; null if none is.
+  void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr) {
+    timeline_.receive(samples, over);
+  }
   /// Forgets what was received: what comes next does not continue it.
   void start_anew() { timeline_.start_anew(); }
   double span_s() const { return timeline_.span_s(); }
@@ -40,6 +45,9 @@ class ScopePane {
   void follow_layout();
   void draw_controls(const Style& style);
   void draw_plots(ScopeFrame& frame);
+  /// A signal that is dragged onto the plot joins it.
+  void take_dropped_signal(ScopePlot& plot);
+  void draw_hint(const ScopePlot& plot, const PlotArea& area, const Style& style) const;
   /// True if the plot is to be removed.
   bool draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFrame& frame);
 
@@ -48,6 +56,7 @@ class ScopePane {
   std::vector<std::unique_ptr<PlotView>> views_;  ///< of the layout's plots, in their order
   std::unique_ptr<LayoutMenu> layout_menu_;
   std::unique_ptr<Cursors> cursors_;
+  std::unique_ptr<SignalList> signal_list_;
   bool with_statistics_ = false;
   bool has_motion_ = false;
   std::uint64_t judged_end_ = 0;  ///< end of the history in the frame before

@@ -24,7 +24,10 @@ class Timeline {
   Timeline(double span_s, const TriggerSettings& trigger) : trigger_settings_(trigger), span_s_(span_s) {}
 
   /// Samples from the device; while paused they are let go, so that what is looked at stays.
-  void receive(const device::ScopeSamples& samples);
+  /// `over`: of the same periods, of a recording that is laid over; null if none is.
+  void receive(const device::ScopeSamples& samples, const device::ScopeSamples* over = nullptr);
+  /// Formulas whose values are to be there beside what is received.
+  void derive(const std::vector<ScopeSignal>& formulas) { history_.derive(formulas); }
   /// Forgets what was received: what comes next does not continue it.
   void start_anew();
   const SignalHistory& history() const { return history_; }

@@ -17,7 +17,7 @@ struct WindowLayout {
   Rectangle status, banner, scene, replay, scope, column;
   Rectangle column_splitter;  ///< left of the column
   Rectangle scope_splitter;   ///< above the scope
-  float scope_room;           ///< how high the scope may be
+  float room;                 ///< height that scene and scope share
 
   ImVec2 middle_of_scene() const;
 };
