@@ -1,8 +1,9 @@
 // The commands of the `inkwell` program. Each adds itself to the program's options and, if it was chosen, runs.
 #pragma once
 
-#include <filesystem>
 #include <functional>
+
+#include <window/window_options.hpp>
 
 #include "connection.hpp"
 
@@ -11,7 +12,7 @@ namespace inkwell::command_line {
 /// What is to be done once the options are read; returns the exit code.
 using Action = std::function<int()>;
 /// Opens the window, on a recording unless its name is empty; returns the exit code.
-using OpenWindow = std::function<int(const std::filesystem::path& recording)>;
+using OpenWindow = std::function<int(const window::ReplayRequest& replay)>;
 
 /// Where a command adds itself, and what it may use when it runs.
 struct Place {

@@ -11,6 +11,7 @@
 #include <recording/signals.hpp>
 
 #include "help.hpp"
+#include "read_recording.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -21,6 +22,8 @@ struct PlotOptions {
   std::string place;
   std::optional<double> from_s, to_s;
   bool as_in_paper = false;
+  std::string over;
+  std::string align;
 };
 
 void tell(const DeviceOptions& options, const std::vector<std::string>& pictures) {
@@ -40,6 +43,9 @@ std::string draw(const recording::Recording& recording, const PlotOptions& optio
   if (!options.place.empty() && std::filesystem::path(options.place).extension() != ".png")
     throw UsageError(fmt::format("{} does not end in .png, and a figure is a PNG.", options.place));
   recording::FigureOptions figure{.quantities = {}, .from_s = options.from_s.value_or(0), .to_s = options.to_s};
+  std::optional<recording::Overlay> over;
+  if (!options.over.empty()) over.emplace(read_recording(options.over), recording, options.align);
+  if (over) figure.over = &*over;
   try {
     if (!options.signals.empty()) figure.quantities = recording::parse_quantities(options.signals);
   } catch (const device::Error& error) {
@@ -52,8 +58,7 @@ std::string draw(const recording::Recording& recording, const PlotOptions& optio
 }
 
 int plot(const DeviceOptions& device_options, const PlotOptions& options) {
-  const auto recording = recording::read(options.file);
-  for (const auto& remark : recording.remarks) fmt::print(stderr, "inkwell: {}\n", remark);
+  const auto recording = read_recording(options.file);
   if (options.as_in_paper)
     tell(device_options, draw_as_in_paper(recording, options));
   else
@@ -72,10 +77,18 @@ void add_plot_command(const Place& place) {
                       ->add_option("--signals", plot_options->signals,
                                    "Names with commas between them, also of what a simulation knew; all unless given")
                       ->type_name("NAMES");
+  auto* paper =
+      command->add_flag("--paper", plot_options->as_in_paper,
+                        "A push into a wall as figures 11 to 14 of Eriksson and Wikander; not with --signals");
+  paper->excludes(signals);
+  auto* over = command->add_option("--over", plot_options->over, "Another recording, laid over with broken lines")
+                   ->type_name("FILE")
+                   ->excludes(paper);
   command
-      ->add_flag("--paper", plot_options->as_in_paper,
-                 "A push into a wall as figures 11 to 14 of Eriksson and Wikander; not with --signals")
-      ->excludes(signals);
+      ->add_option("--align", plot_options->align,
+                   "Text of a mark that both hold, at which they are aligned; their begins unless given")
+      ->type_name("MARK")
+      ->needs(over);
   command->add_option("--from", plot_options->from_s, "Start, since the first sample")
       ->type_name("SECONDS")
       ->check(zero_or_more());
@@ -87,6 +100,7 @@ void add_plot_command(const Place& place) {
   add_examples(*command,
                "inkwell plot push.h5 --signals force_N,position_z_m --from 1 --to 2.5 --out push.png\n"
                "inkwell plot results/recording.csv --signals current_1_A,true_current_1_A\n"
+               "inkwell plot soft.h5 --over stiff.h5 --align touch --signals force_N\n"
                "inkwell plot results/recording.csv --paper --out figures");
   command->callback([place, plot_options] {
     place.action = [&options = place.device, plot_options] { return plot(options, *plot_options); };

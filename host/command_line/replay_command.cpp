@@ -8,6 +8,7 @@
 #include <recording/recording.hpp>
 
 #include "help.hpp"
+#include "read_recording.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -71,14 +72,8 @@ void print(const Recording& recording) {
       fmt::print("not the default     {} = {}\n", protocol::known_parameters()[i].name, about.parameters.values[i]);
 }
 
-Recording read(const std::string& file) {
-  auto recording = recording::read(file);
-  for (const auto& remark : recording.remarks) fmt::print(stderr, "inkwell: {}\n", remark);
-  return recording;
-}
-
 int describe(const DeviceOptions& options, const std::string& file) {
-  const auto recording = read(file);
+  const auto recording = read_recording(file);
   if (options.json)
     fmt::print("{}\n", to_json(recording).dump(2));
   else
@@ -87,7 +82,7 @@ int describe(const DeviceOptions& options, const std::string& file) {
 }
 
 int print_log(const std::string& file) {
-  fmt::print("{}", recording::log_text(read(file)));
+  fmt::print("{}", recording::log_text(read_recording(file)));
   return 0;
 }
 
@@ -96,6 +91,8 @@ int print_log(const std::string& file) {
 void add_replay_command(const Place& place) {
   struct ReplayOptions {
     std::string file;
+    std::string over;
+    std::string align;
     bool information = false;
     bool log = false;
   };
@@ -103,16 +100,23 @@ void add_replay_command(const Place& place) {
       "replay", "Open the window on a recording; or, with --info or --json, say what it holds");
   const auto replay_options = std::make_shared<ReplayOptions>();
   command->add_option("FILE", replay_options->file, "Written by `inkwell record` or `inkwell experiment`")->required();
+  command->add_option("OVER", replay_options->over, "Another recording, laid over the first in the scope");
+  command
+      ->add_option("--align", replay_options->align,
+                   "Text of a mark that both hold, at which they are aligned; their begins unless given")
+      ->type_name("MARK");
   command->add_flag("--info", replay_options->information, "Only say what it holds");
   command->add_flag("--log", replay_options->log,
                     "Only print its marks and what happened to the device: clock, time, kind, text");
   add_examples(*command,
-               "inkwell replay push.h5\ninkwell replay push.h5 --info\ninkwell replay push.h5 --log > push.txt");
+               "inkwell replay push.h5\ninkwell replay soft.h5 stiff.h5 --align touch\n"
+               "inkwell replay push.h5 --info\ninkwell replay push.h5 --log > push.txt");
   command->callback([place, replay_options] {
     place.action = [place, replay_options] {
       if (replay_options->log) return print_log(replay_options->file);
-      return place.device.json || replay_options->information ? describe(place.device, replay_options->file)
-                                                              : place.open_window(replay_options->file);
+      return place.device.json || replay_options->information
+                 ? describe(place.device, replay_options->file)
+                 : place.open_window({replay_options->file, replay_options->over, replay_options->align});
     };
   });
 }

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include <frame/window_size.hpp>
 #include <window/window.hpp>
 
 #include "help.hpp"
@@ -12,25 +13,31 @@ namespace {
 int open_window(const DeviceOptions& options, window::WindowOptions window_options, std::uint16_t control_port,
                 const std::string& theme) {
   std::unique_ptr<device::VirtualBoard> board;
-  if (options.is_virtual) {
-    // The mouse is the hand, so board time must be the user's time.
-    board = std::make_unique<device::VirtualBoard>(
-        options.virtual_board(device::SimulationMode::fast, BoardPace::real_time));
-    control_port = board->control_port();
-    if (window_options.parameters_file.empty()) window_options.parameters_file = options.arm;
-    window_options.simulated_arm = protocol::default_parameters();
-    if (!options.arm.empty())
-      for (const auto& [parameter, value] : device::arm_parameters(options.arm))
-        (*window_options.simulated_arm)[parameter] = value;
-  }
   if (!theme.empty()) window_options.theme = theme == "light" ? window::Theme::light : window::Theme::dark;
   window_options.serial_number = options.serial_number;
   window_options.virtual_board_control_port = control_port;
-  window_options.list_devices = [&options, virtual_board = board.get()] {
-    if (virtual_board == nullptr) return device::find_arms(options.address());
-    const auto endpoint = virtual_board->find();
-    return endpoint ? std::vector{*endpoint} : std::vector<device::Endpoint>{};
+  window_options.list_devices = [&options] { return device::find_arms(options.address()); };
+  const auto start_virtual_board = [&options, &board](window::WindowOptions& of_window) {
+    // The mouse is the hand, so board time must be the user's time.
+    board = std::make_unique<device::VirtualBoard>(
+        options.virtual_board(device::SimulationMode::fast, BoardPace::real_time));
+    of_window.serial_number.clear();
+    of_window.virtual_board_control_port = board->control_port();
+    if (of_window.parameters_file.empty()) of_window.parameters_file = options.arm;
+    of_window.simulated_arm = protocol::default_parameters();
+    if (!options.arm.empty())
+      for (const auto& [parameter, value] : device::arm_parameters(options.arm))
+        (*of_window.simulated_arm)[parameter] = value;
+    of_window.list_devices = [virtual_board = board.get()] {
+      const auto endpoint = virtual_board->find();
+      return endpoint ? std::vector{*endpoint} : std::vector<device::Endpoint>{};
+    };
+    of_window.start_virtual_board = nullptr;
   };
+  if (options.is_virtual)
+    start_virtual_board(window_options);
+  else
+    window_options.start_virtual_board = start_virtual_board;
   return window::run_window(window_options);
 }
 
@@ -53,18 +60,20 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
       ->type_name("NAME")
       ->group(group);
   program.add_option("--theme", settings->theme, "Colours")->check(CLI::IsMember({"dark", "light"}))->group(group);
-  program.add_option("--scale", window.scale, "Size of fonts and spacing, 0.5 to 4; the display's own unless given")
+  program
+      .add_option("--scale", window.scale,
+                  "Size of fonts, spacing and the window, 0.5 to 4; the display's own unless given")
       ->type_name("FACTOR")
       ->check(CLI::Range(0.5, 4.0))
       ->group(group);
-  program.add_option("--width", window.width, "Width of the window")
-      ->type_name("PIXELS")
-      ->check(CLI::Range(320, 16384))
+  program.add_option("--width", window.width, "Width of the window: pixels, or on a fine display several for each")
+      ->type_name("POINTS")
+      ->check(CLI::Range(window::smallest_window_points.width, 16384))
       ->capture_default_str()
       ->group(group);
-  program.add_option("--height", window.height, "Height of the window")
-      ->type_name("PIXELS")
-      ->check(CLI::Range(240, 16384))
+  program.add_option("--height", window.height, "Height of the window, likewise")
+      ->type_name("POINTS")
+      ->check(CLI::Range(window::smallest_window_points.height, 16384))
       ->capture_default_str()
       ->group(group);
   program.add_option("--screenshot", window.screenshot, "Write a picture of the window to this PNG file and close")
@@ -88,8 +97,8 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
                   "Control port of the virtual board at --usbip, for the mouse and for faults")
       ->type_name("PORT")
       ->group(group);
-  const OpenWindow open = [&options, settings](const std::filesystem::path& recording) {
-    settings->window.recording = recording;
+  const OpenWindow open = [&options, settings](const window::ReplayRequest& replay) {
+    settings->window.replay = replay;
     settings->window.persist_settings = !settings->forget;
     return open_window(options, settings->window, settings->control_port, settings->theme);
   };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <fmt/format.h>
@@ -59,6 +60,38 @@ bool has_point_each(const Recording& recording, Range shown) {
   return recording.information.step_periods > 1 && shown.end - shown.begin <= points_maximum;
 }
 
+std::string name_over(Quantity quantity) { return fmt::format("{}_over", name_of(quantity)); }
+
+/// Those that the recording which is laid over holds, too.
+std::vector<Quantity> held_by(const Overlay* over, const std::vector<Quantity>& quantities) {
+  std::vector<Quantity> held;
+  if (over == nullptr) return held;
+  const auto recorded = over->recording().quantities();
+  std::ranges::copy_if(quantities, std::back_inserter(held), [&](Quantity each) {
+    return std::find(recorded.begin(), recorded.end(), each) != recorded.end();
+  });
+  return held;
+}
+
+/// Behind the bands that the data have, those of the recording that is laid over, of the same stretches of time.
+void add_over(FigureData& data, const Overlay& over, const std::vector<Quantity>& quantities) {
+  if (data.rows.empty()) return;
+  const Recording& recording = over.recording();
+  const auto held = held_by(&over, quantities);
+  for (const auto quantity : held) data.names.push_back(name_over(quantity));
+  const double step_s =
+      data.rows.size() < 2 ? 1.0 / protocol::servo_rate_Hz : data.rows[1].time_s - data.rows[0].time_s;
+  for (auto& row : data.rows) {
+    const double start_s = row.time_s - 0.5 * step_s - over.begins_s();
+    const std::size_t begin = recording.sample_at(start_s), end = recording.sample_at(start_s + step_s);
+    for (const auto quantity : held) {
+      const auto& column = recording.column(quantity);
+      row.bands.push_back(band_of(start_s + step_s <= 0 ? 0 : end - begin,
+                                  [&](std::size_t i) { return static_cast<double>(column[begin + i]); }));
+    }
+  }
+}
+
 FigureData data_of(const Recording& recording, const std::vector<Quantity>& quantities, Range shown, double from_s,
                    double to_s) {
   FigureData data;
@@ -101,9 +134,12 @@ std::string minute_of(const std::string& utc) {
   return utc.substr(0, date_length) + " " + utc.substr(date_length + 1, minute_length - date_length - 1) + " UTC";
 }
 
-std::string subtitle(const Recording& recording) {
+std::string subtitle(const Recording& recording, const Overlay* over) {
   const auto& about = recording.information;
   std::vector<std::string> parts;
+  if (over != nullptr)
+    parts.push_back(fmt::format("broken lines: {}{}, which begins at {:.3f} s", over->recording().name,
+                                over->recording().information.simulation ? " (simulation)" : "", over->begins_s()));
   if (!about.arm.empty()) parts.push_back(about.arm);
   parts.push_back(fmt::format("walls of {} N/m, {} Ns/m", about.parameters[Parameter::wall_stiffness_N_per_m],
                               about.parameters[Parameter::wall_damping_Ns_per_m]));
@@ -155,7 +191,9 @@ double right_edge(const std::vector<FigurePane>& panes) {
 std::string tics_of(const FigurePane& pane, const FigureData& data) {
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   for (std::size_t i = 0; i < data.names.size(); ++i) {
-    const auto is_drawn = [&](Quantity quantity) { return name_of(quantity) == data.names[i]; };
+    const auto is_drawn = [&](Quantity quantity) {
+      return name_of(quantity) == data.names[i] || name_over(quantity) == data.names[i];
+    };
     if (std::none_of(pane.quantities.begin(), pane.quantities.end(), is_drawn)) continue;
     for (const auto& row : data.rows) {
       smallest = std::fmin(smallest, row.bands[i].minimum);
@@ -171,8 +209,8 @@ std::string tics_of(const FigurePane& pane, const FigureData& data) {
   return fmt::format("set ytics {:g}\n", step);
 }
 
-std::string script(const Recording& recording, const std::vector<FigurePane>& panes, const FigureData& data,
-                   double from_s, double to_s) {
+std::string script(const Recording& recording, const Overlay* over, const std::vector<FigurePane>& panes,
+                   const FigureData& data, double from_s, double to_s) {
   const auto count = static_cast<int>(panes.size());
   const int height = titles_pixels + count * pane_pixels + (count - 1) * pane_gap_pixels + time_axis_pixels;
   std::string text = figure_head("data.csv", width_pixels, height);
@@ -181,8 +219,8 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
       "set xrange [{1:.6f}:{2:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
       "set key at screen {3:.4f}, graph 1 left top font 'Inter,16' spacing 1.1\n",
       right_edge(panes), from_s, to_s, right_edge(panes) + 0.015);
-  text += figure_titles(recording.name + (recording.information.simulation ? " (simulation)" : ""), subtitle(recording),
-                        height);
+  text += figure_titles(recording.name + (recording.information.simulation ? " (simulation)" : ""),
+                        subtitle(recording, over), height);
   text += marks(recording, from_s, to_s, true);
   text += "set format x ''\nunset xlabel\n";
   int top = height - titles_pixels;
@@ -206,6 +244,12 @@ std::string script(const Recording& recording, const std::vector<FigurePane>& pa
       const std::string colour = colours[j % colours.size()];
       const std::string name(name_of(pane.quantities[j]));
       curves.push_back({name, j < colours.size() ? colour : colour + " dashtype 2", name});
+    }
+    // Above the others, so that noise does not hide them.
+    for (const auto quantity : held_by(over, pane.quantities)) {
+      const auto j = static_cast<std::size_t>(std::find(pane.quantities.begin(), pane.quantities.end(), quantity) -
+                                              pane.quantities.begin());
+      curves.push_back({name_over(quantity), fmt::format("{} dashtype 3", colours[j % colours.size()]), ""});
     }
     text += plot_command(curves);
   }
@@ -258,9 +302,11 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
                                     options.from_s, options.to_s.value_or(end_s), end_s));
 
   const WorkDirectory work;
-  const FigureData data = data_of(recording, quantities, shown, from_s, to_s);
+  FigureData data = data_of(recording, quantities, shown, from_s, to_s);
+  if (options.over != nullptr) add_over(data, *options.over, quantities);
   data.write(work.path() / "data.csv");
-  write_text(work.path() / "figure.gnuplot", script(recording, figure_panes(quantities), data, from_s, to_s));
+  write_text(work.path() / "figure.gnuplot",
+             script(recording, options.over, figure_panes(quantities), data, from_s, to_s));
   run_gnuplot(work.path() / "figure.gnuplot");
   // Beside it first, so that a full disk does not cost an older picture.
   std::filesystem::path unfinished = picture;

@@ -6,12 +6,15 @@
 
 #include <fmt/format.h>
 
+#include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 
 namespace inkwell::window {
 namespace {
 
 constexpr std::array<double, 7> speeds{0.01, 0.05, 0.2, 0.5, 1.0, 2.0, 4.0};
+
+constexpr float name_points = 150.0f;
 
 std::string speed_label(double speed) { return fmt::format("{:g} x", speed); }
 
@@ -20,8 +23,22 @@ std::string speed_label(double speed) { return fmt::format("{:g} x", speed); }
 void ReplayBar::open(const std::filesystem::path& file) {
   replay_.emplace(recording::read(file));
   replay_->play();
+  over_.reset();
+  problem_.clear();
   editor_ = {};
   editor_.device_holds(replay_->recording().information.parameters);
+}
+
+void ReplayBar::lay_over(const std::filesystem::path& file, const std::string& mark) {
+  over_.emplace(recording::read(file), replay_->recording(), mark);
+  aligned_at_ = mark;
+  replay_->seek(replay_->position_s());  // so that the scope is filled with both
+}
+
+void ReplayBar::align_at(const std::string& mark) {
+  over_.emplace(recording::Recording(over_->recording()), replay_->recording(), mark);
+  aligned_at_ = mark;
+  replay_->seek(replay_->position_s());
 }
 
 void ReplayBar::follow(double now_s, ScopePane& scope) {
@@ -32,7 +49,14 @@ void ReplayBar::follow(double now_s, ScopePane& scope) {
   editor_.forget_unconfirmed(now_s);
   const auto passed = replay_->advance(passed_s, scope.span_s());
   if (passed.starts_anew) scope.start_anew();
-  for (const auto& block : passed.blocks) scope.receive(block);
+  for (const auto& block : passed.blocks) {
+    if (over_) {
+      const device::ScopeSamples beside = over_->beside(block);
+      scope.receive(block, &beside);
+    } else {
+      scope.receive(block);
+    }
+  }
 }
 
 void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& scope) {
@@ -40,6 +64,8 @@ void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& s
   begin_pane("replay", place, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   draw_controls(style);
+  ImGui::SameLine(0, style.points(14));
+  draw_over(style);
   ImGui::SameLine(0, style.points(14));
 
   const float close_width = style.points(64), time_width = style.points(126), gap = style.points(12);
@@ -56,6 +82,7 @@ void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& s
   end_pane();
   if (!is_to_be_closed) return;
   replay_.reset();
+  over_.reset();
   scope.start_anew();
 }
 
@@ -81,9 +108,52 @@ void ReplayBar::draw_controls(const Style& style) {
   std::string name = recording.name;
   if (recording.information.simulation) name += " (simulation)";
   if (!recording.complete) name += ", end missing";
-  text(style.fonts.strong, style.palette->text, name);
+  text(style.fonts.strong, style.palette->text, fitted(name, style.points(name_points)));
   if (!recording.remarks.empty())
     help_on_hover("Not understood", fmt::format("{}", fmt::join(recording.remarks, "\n")), style);
+}
+
+/// The recording that is laid over: which, where it is aligned, and how it gets there and goes.
+void ReplayBar::draw_over(const Style& style) {
+  if (!over_) {
+    if (button("Lay over", {style.points(74), 0}))
+      chooser_.ask({.title = "Lay another recording over this one",
+                    .help = "Its signals are drawn paler in the same plots.",
+                    .button = "Lay over",
+                    .endings = {".h5", ".csv"},
+                    .suggestion = std::filesystem::current_path()});
+    help_on_hover("Lay over", problem_.empty() ? "A second recording, paler, in the same plots." : problem_, style);
+    if (!problem_.empty()) {
+      ImGui::SameLine();
+      const ImVec2 corner = ImGui::GetCursorScreenPos();
+      ImGui::Dummy({warning_sign(corner, style.palette->caution, style), 0});
+    }
+  } else {
+    ImGui::SetNextItemWidth(style.points(150));
+    const std::string shown = fitted(over_->recording().name, style.points(112));
+    if (ImGui::BeginCombo("##over", shown.c_str())) {
+      text(style.palette->text_quiet, "aligned at");
+      if (ImGui::Selectable("the begin", aligned_at_.empty())) align_at({});
+      for (const std::string& mark : recording::common_marks(replay_->recording(), over_->recording()))
+        if (ImGui::Selectable(mark.c_str(), aligned_at_ == mark)) align_at(mark);
+      ImGui::Separator();
+      const bool goes = ImGui::Selectable("Take it away");
+      ImGui::EndCombo();
+      if (goes) {
+        over_.reset();
+        replay_->seek(replay_->position_s());
+        return;
+      }
+    }
+    note_item("over");
+    help_on_hover("Laid over, paler", over_->recording().name, style);
+  }
+  if (const auto chosen = chooser_.draw(style)) try {
+      problem_.clear();
+      lay_over(*chosen, {});
+    } catch (const device::Error& error) {
+      problem_ = error.what();
+    }
 }
 
 /// The whole recording as a line with its marks; a click or drag goes there.

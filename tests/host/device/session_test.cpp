@@ -94,6 +94,40 @@ TEST_CASE("a fault is told with the control period that noticed it, as far as th
   CHECK(told_at({}, Fault::none, false, 980) == 1000);
 }
 
+TEST_CASE("a session notes what happens to its device, and a change at the period at which it was applied") {
+  FakeUsbipServer server;
+  std::vector<device::Event> events;
+  const auto told = [&](std::string_view part) {
+    return std::ranges::find_if(events, [&](const auto& event) { return event.text.find(part) != std::string::npos; });
+  };
+  {
+    device::Session session([&] { return std::optional(server.endpoint()); });
+    const auto becomes_told = [&](std::string_view part) {
+      return eventually([&] {
+        std::ranges::move(session.take_events(), std::back_inserter(events));
+        return told(part) != events.end();
+      });
+    };
+    CHECK(becomes_told("Connected to 0123456789ABCDEF01234567"));
+    session.set_parameters({{Parameter::wall_stiffness_N_per_m, 600.0f}});
+    CHECK(becomes_told("wall_stiffness_N_per_m = 600.0, was 800.0"));
+    CHECK(told("wall_stiffness")->at_periods == session.status().applied_at_periods);
+    CHECK(told("wall_stiffness")->at_periods);
+    auto pose = pose_at(500);
+    pose.state = protocol::State::active;
+    server.send(1, bytes_of(pose));
+    CHECK(becomes_told("The force is on."));
+    CHECK(told("The force is on.")->at_periods == 500);
+    server.judge = [](const protocol::ParametersReport&) { return protocol::Refusal::out_of_range; };
+    session.set_parameters({{Parameter::wall_stiffness_N_per_m, 700.0f}});
+    CHECK(eventually([&] { return session.refusal().has_value(); }));
+    CHECK(becomes_told(*session.refusal()));
+    server.hang_up();
+    CHECK(becomes_told("The device went away."));
+  }
+  CHECK(std::ranges::count_if(events, [](const auto& event) { return event.text == "The force is on."; }) == 1);
+}
+
 TEST_CASE("changes asked for in a burst go out together, the last value of each parameter") {
   FakeUsbipServer server;
   std::atomic<int> entries = 0;

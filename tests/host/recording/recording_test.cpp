@@ -224,6 +224,36 @@ TEST_CASE("samples that were lost show as a gap and are counted") {
   CHECK(read(directory / "a.h5").lost() == 20);
 }
 
+TEST_CASE("what happens to the device stands at its own control period, with kind and clock, in the order of time") {
+  const TemporaryDirectory directory;
+  for (const char* name : {"a.h5", "a.csv"}) {
+    CAPTURE(name);
+    Recorder recorder(directory / name, about());
+    recorder.note({device::EventKind::connection, "before the first sample", "2026-11-23T22:15:30.000Z", 40});
+    recorder.push(samples(1000, 500));
+    recorder.mark("of the user, at the newest sample");
+    recorder.note(
+        {device::EventKind::parameter, "wall_stiffness_N_per_m = 600.0, was 800.0", "2026-11-23T22:15:34.123Z", 1234});
+    recorder.note({device::EventKind::fault, "of an earlier time", "2026-11-23T22:15:35.000Z", 900});
+    CHECK(recorder.stop().marks == 4);
+    const auto marks = read(directory / name).marks;
+    REQUIRE(marks.size() == 4);
+    CHECK(marks[0].period == 1000);
+    CHECK(marks[0].kind == device::EventKind::connection);
+    CHECK(marks[1].period == 1000);
+    CHECK(marks[1].kind == device::EventKind::fault);
+    CHECK(marks[2].period == 1234);
+    CHECK(marks[2].kind == device::EventKind::parameter);
+    CHECK(marks[2].clock_utc == "2026-11-23T22:15:34.123Z");
+    CHECK(marks[2].text == "wall_stiffness_N_per_m = 600.0, was 800.0");
+    CHECK(marks[3].period == 1499);
+    CHECK(marks[3].kind == device::EventKind::mark);
+    const auto log = log_text(read(directory / name));
+    CHECK(log.find("2026-11-23T22:15:34.123Z       0.01170 s  parameter   wall_stiffness") != std::string::npos);
+    CHECK(std::ranges::count(log, '\n') == 4);
+  }
+}
+
 TEST_CASE("a board that was restarted ends the recording") {
   const TemporaryDirectory directory;
   Recorder recorder(directory / "a.h5", about());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <recording/overlay.hpp>
 #include <recording/recording.hpp>
 
 namespace inkwell::recording {
@@ -14,6 +15,7 @@ struct FigureOptions {
   std::vector<Quantity> quantities;  ///< empty: all that were recorded
   double from_s = 0;                 ///< since the first sample
   std::optional<double> to_s;        ///< without it, the last sample
+  const Overlay* over = nullptr;     ///< drawn with broken lines, as far as it holds the quantities; null: none
 };
 
 /// Quantities of one unit, in the order in which they are drawn.

@@ -4,9 +4,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include <device_desk/parameter_editor.hpp>
+#include <frame/file_chooser.hpp>
 #include <frame/style.hpp>
+#include <recording/overlay.hpp>
 #include <recording/replay.hpp>
 #include <scope/scope_pane.hpp>
 
@@ -18,6 +21,8 @@ class ReplayBar {
  public:
   /// Opens a recording and plays it. Throws device::Error with a sentence if it cannot be read.
   void open(const std::filesystem::path& file);
+  /// Lays another recording over it in the scope, aligned at a mark or, without one, at their begins. Throws likewise.
+  void lay_over(const std::filesystem::path& file, const std::string& mark);
   bool is_open() const { return replay_.has_value(); }
   /// Null if none is open.
   const recording::Recording* recording() const { return replay_ ? &replay_->recording() : nullptr; }
@@ -38,9 +43,15 @@ class ReplayBar {
 
  private:
   void draw_controls(const Style& style);
+  void draw_over(const Style& style);
+  void align_at(const std::string& mark);
   void draw_track(ImVec2 corner, ImVec2 size, const Style& style);
 
   std::optional<recording::Replay> replay_;
+  std::optional<recording::Overlay> over_;
+  std::string aligned_at_;  ///< text of a mark; empty: their begins
+  FileChooser chooser_;
+  std::string problem_;  ///< of the recording that was to be laid over
   ParameterEditor editor_;
   std::optional<double> followed_until_s_;
 };

@@ -1,0 +1,78 @@
+// Two recordings on one time: by their begins, by a mark, with gaps.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include <recording/overlay.hpp>
+
+#include <failure.hpp>
+
+using namespace inkwell;
+using namespace inkwell::recording;
+using inkwell::tests::message_of;
+using protocol::Signal;
+
+namespace {
+
+/// One signal, whose value is how many periods have passed since the first sample.
+Recording ramp(const std::string& name, std::uint32_t first_period, std::size_t count) {
+  Recording recording = Recording::without_samples({.signals = {Signal::force_N}});
+  recording.name = name;
+  for (std::size_t i = 0; i < count; ++i) {
+    recording.periods.push_back(first_period + static_cast<std::uint32_t>(i));
+    recording.columns[0].push_back(static_cast<float>(i));
+  }
+  return recording;
+}
+
+}  // namespace
+
+TEST_CASE("a recording is laid over another one from its begin on") {
+  const auto base = ramp("base", 1000, 100);
+  const Overlay overlay(ramp("over", 777'000, 50), base);
+  CHECK(overlay.begins_s() == 0.0);
+  const auto values = overlay.beside(base.samples(0, 100)).values;
+  REQUIRE(values.size() == 100);
+  CHECK(values[0] == 0.0f);
+  CHECK(values[49] == 49.0f);
+  CHECK(std::isnan(values[50]));
+  CHECK(overlay.beside(base.samples(20, 30)).values.front() == 20.0f);
+}
+
+TEST_CASE("a mark that both hold aligns them") {
+  auto base = ramp("base", 1000, 100);
+  auto over = ramp("over", 5000, 100);
+  base.marks = {{1030, "touch"}, {1050, "only here"}};
+  over.marks = {{5010, "touch"}, {5020, "touch"}, {5030, "only there"}};
+  CHECK(common_marks(base, over) == std::vector<std::string>{"touch"});
+  const Overlay overlay(over, base, "touch");
+  CHECK(overlay.begins_s() == doctest::Approx(20.0 / protocol::servo_rate_Hz));
+  const auto values = overlay.beside(base.samples(0, 100)).values;
+  CHECK(std::isnan(values[19]));
+  CHECK(values[20] == 0.0f);
+  CHECK(values[30] == 10.0f);
+  const auto message = message_of<device::Error>([&] { Overlay(over, base, "only here"); });
+  CHECK(message.find("over has no mark `only here`") != std::string::npos);
+  CHECK(message.find("`only there`") != std::string::npos);
+  // The other way round it begins before.
+  CHECK(Overlay(base, over, "touch").beside(over.samples(0, 1)).values[0] == 20.0f);
+}
+
+TEST_CASE("a gap stays a gap, and what is far apart holds until the next sample") {
+  const auto base = ramp("base", 0, 100);
+  auto gap = ramp("gap", 0, 10);
+  gap.periods.back() = 20;
+  const auto with_gap = Overlay(gap, base).beside(base.samples(0, 30)).values;
+  CHECK(with_gap[8] == 8.0f);
+  CHECK(std::isnan(with_gap[9]));
+  CHECK(std::isnan(with_gap[19]));
+  CHECK(with_gap[20] == 9.0f);
+  auto sparse = ramp("sparse", 0, 5);
+  sparse.information.step_periods = 4;
+  for (std::size_t i = 0; i < 5; ++i) sparse.periods[i] = static_cast<std::uint32_t>(4 * i);
+  const auto held = Overlay(sparse, base).beside(base.samples(0, 30)).values;
+  CHECK(held[7] == 1.0f);
+  CHECK(held[19] == 4.0f);
+  CHECK(std::isnan(held[20]));
+  CHECK_THROWS_AS(Overlay(Recording{}, base), device::Error);
+}
