@@ -14,8 +14,10 @@
 
 namespace inkwell::window {
 
-Companion::Companion(const WindowOptions& options, const WindowSettings& settings, float scale)
+Companion::Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem)
     : flat_colours_(options.flat_colours),
+      may_start_virtual_board_(options.start_virtual_board != nullptr),
+      problem_(std::move(problem)),
       settings_(settings),
       style_{&palette(settings.theme), load_fonts(scale), scale},
       desk_(options.list_devices, options.serial_number),
@@ -26,12 +28,13 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
                .control_port = options.virtual_board_control_port,
                .simulated_arm = options.simulated_arm,
                .replay = [this](const std::filesystem::path& recording) { replay_bar_.open(recording); },
-               .starts_with_replay = !options.recording.empty(),
+               .starts_with_replay = !options.replay.recording.empty(),
                .replayed = [this] { return replay_bar_.recording(); },
                .seek = [this](double position_s) { replay_bar_.seek(position_s); }}) {
   if (options.virtual_board_control_port != 0) hand_.emplace(options.virtual_board_control_port);
   use_theme(settings.theme);
-  if (!options.recording.empty()) replay_bar_.open(options.recording);
+  if (!options.replay.recording.empty()) replay_bar_.open(options.replay.recording);
+  if (!options.replay.over.empty()) replay_bar_.lay_over(options.replay.over, options.replay.align);
 }
 
 WindowSettings Companion::settings() const {
@@ -160,7 +163,8 @@ bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
   if (replays) {
     replay_bar_.draw(layout.replay.place, layout.replay.size, style_, scope_pane_);
   } else if (!desk_.view().connected()) {
-    draw_connection_card(layout.middle_of_scene(), style_, desk_.view());
+    wants_virtual_board_ =
+        draw_connection_card(layout.middle_of_scene(), style_, desk_.view(), {may_start_virtual_board_, problem_});
   } else if (returned_.is_shown()) {
     draw_returned_values(layout, now_s);
   }

@@ -17,22 +17,24 @@
 #include <scene/mouse_hand.hpp>
 #include <scene/scene_pane.hpp>
 #include <scope/scope_pane.hpp>
+#include <window/window_layout.hpp>
 #include <window/window_options.hpp>
 #include <window/window_settings.hpp>
-
-#include "window_layout.hpp"
 
 namespace inkwell::window {
 
 class Companion final : public FrameContent {
  public:
-  Companion(const WindowOptions& options, const WindowSettings& settings, float scale);
+  /// `problem`: why no virtual board could be started when it was asked for; empty if none was.
+  Companion(const WindowOptions& options, const WindowSettings& settings, float scale, std::string problem);
 
   /// Escape, F12 and the space bar stop at once; the space bar not while a text is typed.
   void key(int key, bool down) override;
   bool asks_for_frame() const override;
   void lay_out(ImVec2 size, double now_s) override;
   bool is_moving() const override { return is_moving_; }
+  /// The user asks for a virtual board, with which the window begins anew.
+  bool is_over() const override { return wants_virtual_board_; }
   std::uint64_t picture_digest() const override;
   Colour ground() const override { return style_.palette->pane; }
   void paint(const Canvas& canvas) override;
@@ -64,6 +66,9 @@ class Companion final : public FrameContent {
   const ParameterEditor& shown_parameters() const { return replay_bar_.is_open() ? replay_bar_.editor() : editor_; }
 
   bool flat_colours_;
+  bool may_start_virtual_board_;
+  bool wants_virtual_board_ = false;
+  std::string problem_;
   WindowSettings settings_;
   Style style_;
   DeviceDesk desk_;

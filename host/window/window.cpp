@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
+#include <string>
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -37,20 +38,34 @@ void keep(const WindowSettings& settings) {
   if (const std::string problem = write_settings(settings, file); !problem.empty()) fmt::print(stderr, "{}\n", problem);
 }
 
-void run(const WindowOptions& options) {
-  const WindowSettings settings = settings_at_start(options);
+/// A sentence about why there is none; empty if there is.
+std::string start_virtual_board(WindowOptions& options) {
+  try {
+    options.start_virtual_board(options);
+    return {};
+  } catch (const device::Error& error) {
+    return error.what();
+  }
+}
+
+void run(WindowOptions options) {
+  WindowSettings settings = settings_at_start(options);
   end_loop_at_signals();
-  Display display(options.width, options.height, "Inkwell");
-  ImGuiFrames imgui(display.handle());
-  const float scale = options.scale > 0.0f ? options.scale : display.content_scale();
-  Companion companion(options, settings, scale);
-  FrameLoop(display, imgui, companion,
-            {.screenshot = options.screenshot,
-             .after_seconds = options.after_seconds,
-             .inspect = options.inspect,
-             .frames_report = options.frames_report})
-      .run();
-  if (options.persist_settings) keep(companion.settings());
+  Display display({options.width, options.height}, options.scale, "Inkwell");
+  for (std::string problem;;) {
+    ImGuiFrames imgui(display.handle());
+    Companion companion(options, settings, display.scale(), problem);
+    FrameLoop(display, imgui, companion,
+              {.screenshot = options.screenshot,
+               .after_seconds = options.after_seconds,
+               .inspect = options.inspect,
+               .frames_report = options.frames_report})
+        .run();
+    settings = companion.settings();
+    if (!companion.is_over()) break;
+    problem = start_virtual_board(options);
+  }
+  if (options.persist_settings) keep(settings);
 }
 
 /// Each frame takes some megabytes and gives them back. Returned to the system every time, they would cost a page

@@ -23,7 +23,7 @@ Colour connection_colour(Connection connection, const Palette& palette) {
   return connection == Connection::searching ? palette.text_quiet : palette.caution;
 }
 
-void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view) {
+bool draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view, const VirtualBoardOffer& offer) {
   const Palette& palette = *style.palette;
   ImGui::SetNextWindowPos(centre, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({style.points(420), 0});
@@ -35,8 +35,17 @@ void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& v
   text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
   const std::string& message = view.status.message.empty() ? view.list_error : view.status.message;
   wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
+  bool asks = false;
+  if (offer.is_made) {
+    ImGui::Dummy({0, style.points(4)});
+    asks = coloured_button("Start a virtual arm", palette.accent, palette.pane, {-1, style.points(32)});
+    wrapped_text(offer.problem.empty() ? palette.text_quiet : palette.danger_text,
+                 offer.problem.empty() ? "The same firmware on a simulated board, arm and hand: the mouse is the hand."
+                                       : offer.problem);
+  }
   ImGui::End();
   ImGui::PopStyleVar(2);
+  return asks;
 }
 
 }  // namespace inkwell::window

@@ -35,6 +35,8 @@ constexpr Row rows[] = {
     {"Window", ""},
     {"F1, ?", "This page"},
     {"F2, F3, ...", "Show the pane under the first tab, the second, ..."},
+    {"Ctrl+Tab", "Give the keyboard to the next part of the window"},
+    {"Arrows, Enter", "Go from one thing to the next in it, and press it"},
 };
 
 constexpr const char* title = "Keys and mouse";

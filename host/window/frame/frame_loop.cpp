@@ -51,7 +51,7 @@ void FrameLoop::run() {
     if (!is_to_be_drawn(frame)) continue;
     draw(frame);
     show(frame);
-    if (frame.is_last) break;
+    if (frame.is_last || content_.is_over()) break;
   }
   if (!options_.frames_report) return;
   fmt::print("{}", frames_report_.text());

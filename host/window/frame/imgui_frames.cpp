@@ -26,8 +26,11 @@ void follow_keyboard_layout(ImGuiIO& io) {
 ImGuiFrames::ImGuiFrames(GLFWwindow* window) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // the layout is ours, and so is the file of settings
+  ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   ImGui_ImplGlfw_InitForOpenGL(window, true);
   ImGui_ImplOpenGL3_Init("#version 330 core");
+  // The space bar stops the arm; what has the keyboard is pressed by Enter instead.
+  ImGui::GetIO().KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER;
 }
 
 ImGuiFrames::~ImGuiFrames() {

@@ -36,6 +36,8 @@ Colour outcome_colour(Phase phase, const Palette& palette) {
   }
 }
 
+constexpr float under_curves_points = 54.0f;  // the curves' names
+
 class GuidesPane final : public Pane {
  public:
   explicit GuidesPane(const PaneSurroundings& around)
@@ -61,6 +63,8 @@ class GuidesPane final : public Pane {
   void draw_checks(const Style& style);
   void draw_result(const Style& style);
   void draw_what_lasts(const Style& style) const;
+  /// A line for each, the reasons under the mouse.
+  void draw_proposals(const Style& style);
   void draw_curves(const Style& style);
   void draw_buttons(const Style& style);
   guides::SessionPort port();
@@ -221,19 +225,38 @@ void GuidesPane::draw_result(const Style& style) {
   wrapped_text(outcome_colour(guide_->phase(), palette),
                applied ? "Finished, and the device holds the proposals." : guide_->outcome());
   if (applied) draw_what_lasts(style);
+  if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
+  // What is to be decided first, then the picture of it; how it was found comes last.
+  if (guide_->phase() == Phase::finished && !guide_->findings().proposals.empty()) draw_proposals(style);
   draw_curves(style);
   ImGui::Dummy({0, style.points(4)});
   for (const auto& sentence : guide_->findings().sentences) wrapped_text(palette.text, sentence);
-  if (guide_->phase() != Phase::finished || guide_->findings().proposals.empty()) return;
-  ImGui::Dummy({0, style.points(4)});
-  text(style.fonts.strong, palette.text, applied ? "Applied" : "Proposed");
+}
+
+void GuidesPane::draw_proposals(const Style& style) {
+  const Palette& palette = *style.palette;
+  const float width = ImGui::GetContentRegionAvail().x, left = ImGui::GetCursorPosX();
+  const auto columns = [&](Colour colour, const std::string& name, const std::string& proposed,
+                           const std::string& held) {
+    text(palette.text_quiet, fitted(name, 0.5f * width));
+    ImGui::SameLine(0, 0);
+    ImGui::SetCursorPosX(left + 0.5f * width);
+    right_text(colour, proposed, 0.25f * width);
+    ImGui::SameLine(0, 0);
+    ImGui::SetCursorPosX(left + 0.75f * width);
+    right_text(palette.text_quiet, held, 0.24f * width);
+  };
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{style.points(4), style.points(2)});
+  columns(palette.text, "", guide_->applied() == guides::Applied::yes ? "Applied" : "Proposed", "instead of");
   for (const auto& proposal : guide_->findings().proposals) {
-    text(palette.text, info(proposal.parameter).name);
-    wrapped_text(palette.text_quiet,
-                 fmt::format("{} instead of {}, {}", device::format_value(proposal.parameter, proposal.proposed),
-                             device::format_value(proposal.parameter, proposal.held), proposal.reason));
+    ImGui::BeginGroup();
+    columns(palette.text, label_of(info(proposal.parameter)),
+            device::format_value(proposal.parameter, proposal.proposed),
+            device::format_value(proposal.parameter, proposal.held));
+    ImGui::EndGroup();
+    help_on_hover(info(proposal.parameter).name, proposal.reason, style);
   }
-  if (!guide_->refusal().empty()) wrapped_text(palette.danger_text, guide_->refusal());
+  ImGui::PopStyleVar();
 }
 
 /// Of what was applied.
@@ -262,7 +285,9 @@ void GuidesPane::draw_curves(const Style& style) {
   ImGui::Dummy({0, style.points(6)});
   text(style.fonts.strong, palette.text, "Step response");
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x, height = style.points(170);
+  const float width = ImGui::GetContentRegionAvail().x,
+              height = std::clamp(ImGui::GetContentRegionAvail().y - style.points(under_curves_points),
+                                  style.points(90), style.points(260));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const PlotArea area{{corner.x + style.points(38), corner.y},
                       {corner.x + width - style.points(4), corner.y + height - style.points(20)},

@@ -1,6 +1,8 @@
 // How the window says whether it is connected.
 #pragma once
 
+#include <string>
+
 #include <device_desk/device_desk.hpp>
 #include <frame/style.hpp>
 
@@ -9,7 +11,13 @@ namespace inkwell::window {
 const char* connection_title(const device::SessionStatus& status);
 Colour connection_colour(device::Connection connection, const Palette& palette);
 
-/// A card in the middle of the scene that says why no device is connected and what to do.
-void draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view);
+/// A virtual board in place of the device that is not there.
+struct VirtualBoardOffer {
+  bool is_made;
+  const std::string& problem;  ///< why it could not be started the last time; empty: nothing is known
+};
+/// A card in the middle of the scene that says why no device is connected and what to do. True if the user asks for a
+/// virtual board.
+bool draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view, const VirtualBoardOffer& offer);
 
 }  // namespace inkwell::window

@@ -40,6 +40,8 @@ class FrameContent {
   virtual void lay_out(ImVec2 size, double now_s) = 0;
   /// Something in the frame that was laid out changes by itself, so that it has to be drawn at the full rate.
   virtual bool is_moving() const = 0;
+  /// It has ended by itself, and the loop ends with it.
+  virtual bool is_over() const { return false; }
   /// Of all that lies under the panes, as it was laid out: the same for the same picture.
   virtual std::uint64_t picture_digest() const = 0;
 
@@ -70,7 +72,8 @@ class FrameLoop {
  public:
   FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content, FrameLoopOptions options);
 
-  /// Returns once the window is closed, a signal came or the screenshot is taken. Throws DisplayError.
+  /// Returns once the window is closed, its content is over, a signal came or the screenshot is taken. Throws
+  /// DisplayError.
   void run();
 
  private:
