@@ -39,8 +39,8 @@ class BackgroundWatch {
   protocol::Watches found_of_bridges();
 
   MemoryCheck memory_check_;
-  control::SupplyRipple supply_ripple_{.bearable_counts =
-                                           static_cast<std::int32_t>(protocol::supply_ripple_V / board::supply_step_V)};
+  control::SupplyRipple supply_ripple_{
+      .bearable_counts = static_cast<std::int32_t>(protocol::supply_ripple_V / board::facts.supply_step_V())};
   control::AnalogSupply analog_supply_;
   std::array<control::EncoderWire, 3> encoder_wires_{};
   control::BridgeWire bridge_wire_;

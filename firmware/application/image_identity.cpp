@@ -7,7 +7,7 @@
 namespace inkwell::application {
 
 static_assert(sizeof(VectorTable) == protocol::image_identity_offset);
-static_assert(board::name.size() <= protocol::ImageIdentity::board_name_maximum);
+static_assert(board::facts.name.size() <= protocol::ImageIdentity::board_name_maximum);
 
 /// Of whole words, as all of the image is.
 struct alignas(4) PlacedIdentity {
@@ -15,6 +15,6 @@ struct alignas(4) PlacedIdentity {
 };
 
 [[gnu::section(".image_identity"), gnu::used]] constinit const PlacedIdentity placed_identity{
-    protocol::image_identity(board::name, INKWELL_VERSION_NUMBERS)};
+    protocol::image_identity(board::facts.name, INKWELL_VERSION_NUMBERS)};
 
 }  // namespace inkwell::application

@@ -1,4 +1,4 @@
-// Where things lie; see the board's linker script (boards/omni_driver/board.ld), which defines the symbols.
+// Where things lie; see the linker script (boards/facts/stm32f405.ld), which defines the symbols.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,8 @@ extern BlackBoxMemory black_box_memory;
 
 /// The loops overshoot by a twentieth at most (the current loop's tests), and the amplifiers' offsets come on top.
 constexpr bool can_be_supervised(protocol::Parameter current_limit) {
-  return info(current_limit).maximum * 1.05f + control::CurrentOffsets::plausible_A < board::current_measurable_A;
+  return info(current_limit).maximum * 1.05f + control::CurrentOffsets::plausible_A <
+         board::facts.current_measurable_A();
 }
 static_assert(can_be_supervised(protocol::Parameter::current_limit_1_A) &&
                   can_be_supervised(protocol::Parameter::current_limit_2_A) &&
@@ -21,7 +22,7 @@ static_assert(can_be_supervised(protocol::Parameter::current_limit_1_A) &&
               "a current at its limit would be taken for one that cannot be measured");
 static_assert(board::current_ripple_A(arm_defaults::motor::inductance_H) <= board::current_ripple_maximum_A,
               "the arm's motors need more inductance, or the board a faster PWM");
-static_assert(board::bridge_dead_time_part * board::supply_maximum_V < 0.5f * control::MotorWatch::bearable_V,
+static_assert(board::facts.bridge_dead_time_part() * board::supply_maximum_V < 0.5f * control::MotorWatch::bearable_V,
               "the bridges' dead time takes so much voltage that the motors' watch would not trust a sound motor");
 static_assert(info(protocol::Parameter::voltage_limit_V).maximum == board::supply_maximum_V,
               "the largest voltage that may be asked for is the highest that the board's supply may have");
@@ -31,8 +32,8 @@ INKWELL_CORE_COUPLED Part<drivers::Bridges> bridges;
 INKWELL_CORE_COUPLED Part<drivers::Encoders> encoders;
 INKWELL_CORE_COUPLED Part<drivers::Switches> switches;
 INKWELL_CORE_COUPLED control::Controller controller{{board::supply_minimum_V, board::supply_maximum_V,
-                                                     board::duty_limit, board::current_measurable_A,
-                                                     board::bridge_dead_time_part}};
+                                                     board::duty_limit, board::facts.current_measurable_A(),
+                                                     board::facts.bridge_dead_time_part()}};
 INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames, black_box_memory};
 
 // In main memory: one is written by the DMA controller, the others are large.

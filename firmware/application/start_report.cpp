@@ -2,12 +2,20 @@
 
 #include <drivers/clocks.hpp>
 
+#include <array>
 #include <string_view>
 
 #include "parts.hpp"
 
 namespace inkwell::application {
+
 namespace {
+
+constexpr auto board_name() {
+  std::array<char, board::facts.name.size() + 1> text{};
+  board::facts.name.copy(text.data(), text.size());
+  return text;
+}
 
 struct CrashWord {
   std::string_view label;
@@ -22,9 +30,17 @@ constexpr CrashWord crash_words[] = {
 
 }  // namespace
 
+/// The virtual board finds it in the ELF and wires itself by it.
+extern "C" {
+extern const std::array<char, board::facts.name.size() + 1> inkwell_board_name;
+const std::array<char, board::facts.name.size() + 1> inkwell_board_name = board_name();
+}
+
 void report_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash) {
   console.start(board::apb1_Hz);
-  console.write("inkwell " INKWELL_VERSION ", reset cause ");
+  console.write("inkwell " INKWELL_VERSION " for ");
+  console.write({inkwell_board_name.data(), inkwell_board_name.size() - 1});
+  console.write(", reset cause ");
   console.write_hexadecimal(cause.flags >> 24);
   if (crash) {
     for (const auto& [label, word] : crash_words) {

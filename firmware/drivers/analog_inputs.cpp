@@ -47,19 +47,30 @@ constexpr float switch_ohm = 6000.0f, sampling_F = 4e-12f;
 constexpr bool is_settled(const Sampling& sampling, float filter_F) {
   return filter_F > 2.0f * board::adc_counts * sampling_F && sampling.time_s() > 10.0f * switch_ohm * sampling_F;
 }
-static_assert(is_settled(wiper_sampling, board::gimbal_filter_F) && is_settled(supply_sampling, board::supply_filter_F),
+static_assert(is_settled(wiper_sampling, board::facts.gimbal_filter_F) &&
+                  is_settled(supply_sampling, board::facts.supply_filter_F),
               "a channel would show in the next one's reading");
 
-/// Place of a channel's sampling time in SMPR2 (channels 0 to 9) or SMPR1 (10 to 18).
-constexpr std::uint32_t sampling(std::uint32_t channel, const Sampling& sampling) {
-  return sampling.code << channel % 10 * 3;
-}
+/// In the order of their conversions. The supply comes last: what it leaves in the sampling capacitor is near the
+/// middle of the range, as a current is.
+struct SlowChannel {
+  std::uint32_t channel;
+  Sampling sampling;
+};
+constexpr SlowChannel slow_sequence[slow_channels] = {{board::facts.gimbal[0].channel, wiper_sampling},
+                                                      {board::facts.gimbal[1].channel, wiper_sampling},
+                                                      {board::facts.gimbal[2].channel, wiper_sampling},
+                                                      {reference_channel, reference_sampling},
+                                                      {board::facts.supply.channel, supply_sampling}};
 
-constexpr bool in_first_register(const board::AnalogInput& input) { return input.channel >= 10; }
-static_assert(in_first_register(board::motor_current[0]) && in_first_register(board::motor_current[1]) &&
-              in_first_register(board::motor_current[2]) && in_first_register(board::gimbal[0]) &&
-              in_first_register(board::gimbal[1]) && in_first_register(board::gimbal[2]) &&
-              !in_first_register(board::supply));
+/// The sampling times of the channels from `first` on, ten of which have a place in SMPR2 (0 to 9), the others in
+/// SMPR1.
+constexpr std::uint32_t sampling_from(std::uint32_t first) {
+  std::uint32_t bits = 0;
+  for (const auto& [channel, sampling] : slow_sequence)
+    if (channel / 10 * 10 == first) bits |= sampling.code << channel % 10 * 3;
+  return bits;
+}
 
 /// ADC_CR2 of ADC1 from arm() on; SWSTART starts the slow conversions.
 constexpr std::uint32_t adc1_armed = ADC1::CR2::ADON(1).bits | ADC1::CR2::DMA(1).bits | ADC1::CR2::DDS(1).bits |
@@ -75,19 +86,17 @@ template <class Converter>
 float take_current_A() {
   const auto counts = static_cast<std::int32_t>(Converter::JDR1::JDATA::read());
   Converter::SR::write(~(Converter::SR::JEOC::mask | Converter::SR::JSTRT::mask));
-  return static_cast<float>(counts) * board::current_step_A - board::current_range_A;
+  constexpr float step_A = board::facts.current_step_A(), range_A = board::facts.current_range_A();
+  return static_cast<float>(counts) * step_A - range_A;
 }
 
 void set_up_slow_sequence() {
-  ADC1::SMPR1::write(
-      sampling(board::gimbal[0].channel, wiper_sampling) | sampling(board::gimbal[1].channel, wiper_sampling) |
-      sampling(board::gimbal[2].channel, wiper_sampling) | sampling(reference_channel, reference_sampling));
-  ADC1::SMPR2::write(sampling(board::supply.channel, supply_sampling));
+  ADC1::SMPR1::write(sampling_from(10));
+  ADC1::SMPR2::write(sampling_from(0));
   ADC1::SQR1::write(ADC1::SQR1::L(slow_channels - 1));
-  // The supply comes last: what it leaves in the sampling capacitor is near the middle of the range, as a current is.
-  ADC1::SQR3::write(ADC1::SQR3::SQ1(board::gimbal[0].channel), ADC1::SQR3::SQ2(board::gimbal[1].channel),
-                    ADC1::SQR3::SQ3(board::gimbal[2].channel), ADC1::SQR3::SQ4(reference_channel),
-                    ADC1::SQR3::SQ5(board::supply.channel));
+  ADC1::SQR3::write(ADC1::SQR3::SQ1(slow_sequence[0].channel), ADC1::SQR3::SQ2(slow_sequence[1].channel),
+                    ADC1::SQR3::SQ3(slow_sequence[2].channel), ADC1::SQR3::SQ4(slow_sequence[3].channel),
+                    ADC1::SQR3::SQ5(slow_sequence[4].channel));
   ADC1::CR1::write(ADC1::CR1::SCAN(1), ADC1::CR1::JEOCIE(1));
 }
 
@@ -122,21 +131,21 @@ void AnalogInputs::start_clocks() {
 }
 
 void AnalogInputs::start() {
-  connect_analog<AnalogInputs, board::motor_current[0]>();
-  connect_analog<AnalogInputs, board::motor_current[1]>();
-  connect_analog<AnalogInputs, board::motor_current[2]>();
-  connect_analog<AnalogInputs, board::gimbal[0]>();
-  connect_analog<AnalogInputs, board::gimbal[1]>();
-  connect_analog<AnalogInputs, board::gimbal[2]>();
-  connect_analog<AnalogInputs, board::supply>();
+  connect_analog<AnalogInputs, board::facts.motor_current[0]>();
+  connect_analog<AnalogInputs, board::facts.motor_current[1]>();
+  connect_analog<AnalogInputs, board::facts.motor_current[2]>();
+  connect_analog<AnalogInputs, board::facts.gimbal[0]>();
+  connect_analog<AnalogInputs, board::facts.gimbal[1]>();
+  connect_analog<AnalogInputs, board::facts.gimbal[2]>();
+  connect_analog<AnalogInputs, board::facts.supply>();
 
   static_assert(board::adc_divider == 2 || board::adc_divider == 4 || board::adc_divider == 6 ||
                 board::adc_divider == 8);
   // The reference takes 10 us to start, and has them before arm() (data sheet, "Embedded internal reference voltage").
   ADC_COMMON::CCR::write(ADC_COMMON::CCR::ADCPRE(board::adc_divider / 2 - 1), ADC_COMMON::CCR::TSVREFE(1));
-  set_up_injected<ADC1>(board::motor_current[0]);
-  set_up_injected<ADC2>(board::motor_current[1]);
-  set_up_injected<ADC3>(board::motor_current[2]);
+  set_up_injected<ADC1>(board::facts.motor_current[0]);
+  set_up_injected<ADC2>(board::facts.motor_current[1]);
+  set_up_injected<ADC3>(board::facts.motor_current[2]);
   set_up_slow_sequence();
 }
 
@@ -188,7 +197,10 @@ INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::gimbal_ratio() const {
           static_cast<float>(slow_[2]) * per_count};
 }
 
-INKWELL_INTERRUPT float AnalogInputs::supply_V() const { return static_cast<float>(slow_[4]) * board::supply_step_V; }
+INKWELL_INTERRUPT float AnalogInputs::supply_V() const {
+  constexpr float step_V = board::facts.supply_step_V();
+  return static_cast<float>(slow_[4]) * step_V;
+}
 
 static_assert(board::adc_reference_V == 3.3f, "the reference's calibration is for 3.3 V");
 std::uint16_t AnalogInputs::calibrated_reference_counts() { return registers::SIGNATURE::VREFIN_CAL::read(); }

@@ -15,7 +15,7 @@ namespace {
 
 using TIM1 = RegistersOf<Bridges, registers::TIM1>;
 using TIM8 = RegistersOf<Bridges, registers::TIM8>;
-using Enable = DigitalOutput<Bridges, board::bridge_enable>;
+using Enable = DigitalOutput<Bridges, board::facts.bridge_enable>;
 
 /// Master mode of TIM1: what its trigger output shows (RM0090, TIMx_CR2, MMS).
 constexpr std::uint32_t trigger_on_enable = 0b001;
@@ -42,7 +42,7 @@ void set_up() {
 /// The bridge is a template argument, so that no table of channels is read.
 template <std::size_t bridge>
 void write_legs(const LegCompares& legs) {
-  constexpr unsigned place = board::bridges[bridge].channel - 1u;
+  constexpr unsigned place = board::facts.bridges[bridge].channel - 1u;
   TIM1::CCR::write(place, legs.leg_a);
   TIM8::CCR::write(place, legs.leg_b);
 }
@@ -57,7 +57,7 @@ bool any_is_high() {
 
 /// Starts both counters together: TIM8 waits for the trigger output of TIM1, which is its internal trigger 0
 /// (RM0090, "TIMx internal trigger connection"). It comes some two cycles late, 12 ns, by which the legs of a
-/// bridge stay apart; the bridge's own dead time is 17 times that.
+/// bridge stay apart; the bridges' own dead times are several times that.
 void start_together() {
   constexpr std::uint32_t start_on_trigger = 0b110, internal_trigger_0 = 0b000;
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_enable));
@@ -76,15 +76,15 @@ constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 void connect_pins() {
   // At 60 kHz nothing asks for fast edges, and slow ones disturb the shunt amplifiers less. The pull-downs hold the
   // legs low if the timer should ever let go of them.
-  connect<Bridges, board::bridges[0].leg_a>(Pull::down, Speed::medium);
-  connect<Bridges, board::bridges[1].leg_a>(Pull::down, Speed::medium);
-  connect<Bridges, board::bridges[2].leg_a>(Pull::down, Speed::medium);
-  connect<Bridges, board::bridges[0].leg_b>(Pull::down, Speed::medium);
-  connect<Bridges, board::bridges[1].leg_b>(Pull::down, Speed::medium);
-  connect<Bridges, board::bridges[2].leg_b>(Pull::down, Speed::medium);
+  connect<Bridges, board::facts.bridges[0].leg_a>(Pull::down, Speed::medium);
+  connect<Bridges, board::facts.bridges[1].leg_a>(Pull::down, Speed::medium);
+  connect<Bridges, board::facts.bridges[2].leg_a>(Pull::down, Speed::medium);
+  connect<Bridges, board::facts.bridges[0].leg_b>(Pull::down, Speed::medium);
+  connect<Bridges, board::facts.bridges[1].leg_b>(Pull::down, Speed::medium);
+  connect<Bridges, board::facts.bridges[2].leg_b>(Pull::down, Speed::medium);
   // Open drain: the board has the strong pull-up, this one only keeps a bench without bridges from floating.
-  connect<Bridges, board::bridge_fault_tim1>(Pull::up, Speed::low);
-  connect<Bridges, board::bridge_fault_tim8>(Pull::up, Speed::low);
+  connect<Bridges, board::facts.bridge_fault_tim1>(Pull::up, Speed::low);
+  connect<Bridges, board::facts.bridge_fault_tim8>(Pull::up, Speed::low);
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ void Bridges::start() {
   Enable::start();
   start_clocks_of<Bridges, registers::TIM1, registers::TIM8>();
   // A debugger that halts the processor stops the timers: a halt must not leave the last duty on the motors for good.
-  // That the outputs go idle as well is to be seen on the bench (boards/omni_driver/README.md, "First power-up").
+  // That the outputs go idle as well is to be seen on the bench (the board's README.md, "First power-up").
   using Freeze = registers::DBG::DBGMCU_APB2_FZ;
   Freeze::modify(Freeze::DBG_TIM1_STOP(1), Freeze::DBG_TIM8_STOP(1));
 
@@ -140,24 +140,24 @@ INKWELL_INTERRUPT void Bridges::disable() {
 }
 
 INKWELL_INTERRUPT bool Bridges::fault() const {
-  const bool low_now = !DigitalInput<Bridges, board::bridge_fault_tim1.pin>::is_high();
+  const bool low_now = !DigitalInput<Bridges, board::facts.bridge_fault_tim1.pin>::is_high();
   return low_now || (enabled_ && (TIM1::SR::BIF::is_set() || TIM8::SR::BIF::is_set()));
 }
 
 bool Bridges::fault_wire_of_tim1_floats() const {
   const InterruptsHeld held;
-  return follows_pulls<Bridges, board::bridge_fault_tim1.pin>(fault_pull_cycles);
+  return follows_pulls<Bridges, board::facts.bridge_fault_tim1.pin>(fault_pull_cycles);
 }
 
 bool Bridges::fault_wire_of_tim8_floats() const {
   const InterruptsHeld held;
-  return follows_pulls<Bridges, board::bridge_fault_tim8.pin>(fault_pull_cycles);
+  return follows_pulls<Bridges, board::facts.bridge_fault_tim8.pin>(fault_pull_cycles);
 }
 
-bool Bridges::enable_is_high() const { return DigitalInput<Bridges, board::bridge_enable>::is_high(); }
+bool Bridges::enable_is_high() const { return DigitalInput<Bridges, board::facts.bridge_enable>::is_high(); }
 
 bool Bridges::a_leg_is_high() const {
-  using board::bridges;
+  constexpr auto& bridges = board::facts.bridges;
   return any_is_high<bridges[0].leg_a.pin, bridges[1].leg_a.pin, bridges[2].leg_a.pin>() ||
          any_is_high<bridges[0].leg_b.pin, bridges[1].leg_b.pin, bridges[2].leg_b.pin>();
 }

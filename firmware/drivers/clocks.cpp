@@ -50,7 +50,7 @@ bool start_clocks() {
   RCC::CR::modify(RCC::CR::HSEON(1));
   if (!wait_for(start_cycles, [] { return RCC::CR::HSERDY::is_set(); })) return false;
 
-  RCC::PLLCFGR::modify(RCC::PLLCFGR::PLLM(board::pll_m), RCC::PLLCFGR::PLLN(board::pll_n),
+  RCC::PLLCFGR::modify(RCC::PLLCFGR::PLLM(board::facts.pll_m()), RCC::PLLCFGR::PLLN(board::pll_n),
                        RCC::PLLCFGR::PLLP(board::pll_p / 2 - 1), RCC::PLLCFGR::PLLQ(board::pll_q),
                        RCC::PLLCFGR::PLLSRC(1));
   RCC::CR::modify(RCC::CR::PLLON(1));

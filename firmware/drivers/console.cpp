@@ -23,7 +23,7 @@ void write_character(char character) {
 
 void Console::start(std::uint32_t bus_Hz) {
   start_clocks_of<Console, registers::USART2>();
-  connect<Console, board::console_transmit>(Pull::up, Speed::low);
+  connect<Console, board::facts.console_transmit>(Pull::up, Speed::low);
   USART2::BRR::write((bus_Hz + baud_Hz / 2) / baud_Hz);
   USART2::CR1::write(USART2::CR1::UE(1), USART2::CR1::TE(1));
 }

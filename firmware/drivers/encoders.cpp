@@ -12,7 +12,8 @@ using TIM3 = RegistersOf<Encoders, registers::TIM3>;
 using TIM4 = RegistersOf<Encoders, registers::TIM4>;
 using TIM5 = RegistersOf<Encoders, registers::TIM5>;
 
-static_assert(board::encoders[0].timer == 5 && board::encoders[1].timer == 3 && board::encoders[2].timer == 4);
+static_assert(board::facts.encoders[0].timer == 5 && board::facts.encoders[1].timer == 3 &&
+              board::facts.encoders[2].timer == 4);
 
 template <class Timer>
 void set_up() {
@@ -39,25 +40,25 @@ constexpr std::uint32_t pull_cycles = board::processor_Hz / 100'000;
 
 bool Encoders::wire_a_floats(std::size_t encoder) const {
   switch (encoder) {
-    case 0: return follows_pulls<Encoders, board::encoders[0].a.pin>(pull_cycles);
-    case 1: return follows_pulls<Encoders, board::encoders[1].a.pin>(pull_cycles);
-    default: return follows_pulls<Encoders, board::encoders[2].a.pin>(pull_cycles);
+    case 0: return follows_pulls<Encoders, board::facts.encoders[0].a.pin>(pull_cycles);
+    case 1: return follows_pulls<Encoders, board::facts.encoders[1].a.pin>(pull_cycles);
+    default: return follows_pulls<Encoders, board::facts.encoders[2].a.pin>(pull_cycles);
   }
 }
 
 bool Encoders::wire_b_floats(std::size_t encoder) const {
   switch (encoder) {
-    case 0: return follows_pulls<Encoders, board::encoders[0].b.pin>(pull_cycles);
-    case 1: return follows_pulls<Encoders, board::encoders[1].b.pin>(pull_cycles);
-    default: return follows_pulls<Encoders, board::encoders[2].b.pin>(pull_cycles);
+    case 0: return follows_pulls<Encoders, board::facts.encoders[0].b.pin>(pull_cycles);
+    case 1: return follows_pulls<Encoders, board::facts.encoders[1].b.pin>(pull_cycles);
+    default: return follows_pulls<Encoders, board::facts.encoders[2].b.pin>(pull_cycles);
   }
 }
 
 void Encoders::start() {
   start_clocks_of<Encoders, registers::TIM3, registers::TIM4, registers::TIM5>();
-  connect_encoder<board::encoders[0]>();
-  connect_encoder<board::encoders[1]>();
-  connect_encoder<board::encoders[2]>();
+  connect_encoder<board::facts.encoders[0]>();
+  connect_encoder<board::facts.encoders[1]>();
+  connect_encoder<board::facts.encoders[2]>();
   set_up<TIM5>();
   set_up<TIM3>();
   set_up<TIM4>();

@@ -3,8 +3,8 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <board/board.hpp>
 #include <chip/exception_numbers.hpp>
+#include <known/boards.hpp>
 
 namespace inkwell::campaign {
 namespace {
@@ -45,7 +45,7 @@ std::vector<std::string> places(InjectedFault fault) {
       if (fault == InjectedFault::wire_spikes) {
         places.assign(std::begin(wires_with_spikes), std::end(wires_with_spikes));
       } else {
-        for (const auto& use : board::pin_uses)
+        for (const auto& use : board::default_board.pin_uses())
           if (is_tried(use.name)) places.emplace_back(use.name);
       }
       break;

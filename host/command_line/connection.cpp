@@ -1,12 +1,18 @@
 #include "connection.hpp"
 
 #include <arms/description.hpp>
+#include <known/boards.hpp>
 
 namespace inkwell::command_line {
 
 void DeviceOptions::add_to(CLI::App& app) {
   auto* is_virtual_flag = app.add_flag("--virtual", is_virtual, "Start a virtual board (a simulation) and use its arm");
   const char* group = "Virtual board (with --virtual)";
+  app.add_option("--board", board,
+                 "Driver board that it is, and whose firmware it runs: " + inkwell::board::names_of_boards())
+      ->type_name("NAME")
+      ->needs(is_virtual_flag)
+      ->group(group);
   app.add_option("--elf", elf, "Firmware that it runs; the one that belongs to this program unless given")
       ->type_name("FILE")
       ->needs(is_virtual_flag)
@@ -29,28 +35,31 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->needs(is_virtual_flag)
       ->group(group);
   app.add_flag("--real-time", real_time, "Pace it to the clock on the wall")->needs(is_virtual_flag)->group(group);
-  app.add_option("--usbip", usbip, "HOST:PORT of a USB/IP server, such as a running virtual board; not with --virtual")
-      ->type_name("ADDRESS")
-      ->excludes(is_virtual_flag);
-  app.add_option("--serial", serial_number, "Use the arm with this serial number; not with --virtual")
+  auto* server = app.add_option("--usbip", usbip,
+                                "HOST:PORT of a USB/IP server, such as a running virtual board; not with --virtual")
+                     ->type_name("ADDRESS")
+                     ->excludes(is_virtual_flag);
+  app.add_option("--serial", serial_number, "Use the arm on USB with this serial number; not with --virtual or --usbip")
       ->type_name("NUMBER")
-      ->excludes(is_virtual_flag);
+      ->excludes(is_virtual_flag)
+      ->excludes(server);
   app.add_flag("--json", json, "Write JSON for programs instead of text for people");
 }
 
 device::VirtualBoardOptions DeviceOptions::virtual_board(device::SimulationMode default_mode, BoardPace pace) const {
-  device::VirtualBoardOptions board;
-  board.elf = elf;
-  board.arm = arm;
-  board.flash = flash;
-  board.mode = mode.empty()      ? default_mode
-               : mode == "exact" ? device::SimulationMode::exact
-                                 : device::SimulationMode::fast;
-  board.seed = seed;
-  board.real_time = real_time || pace == BoardPace::real_time;
-  board.paused = pace == BoardPace::as_asked;
-  board.strict = is_strict;
-  return board;
+  device::VirtualBoardOptions wanted;
+  wanted.elf = elf;
+  wanted.board = board;
+  wanted.arm = arm;
+  wanted.flash = flash;
+  wanted.mode = mode.empty()      ? default_mode
+                : mode == "exact" ? device::SimulationMode::exact
+                                  : device::SimulationMode::fast;
+  wanted.seed = seed;
+  wanted.real_time = real_time || pace == BoardPace::real_time;
+  wanted.paused = pace == BoardPace::as_asked;
+  wanted.strict = is_strict;
+  return wanted;
 }
 
 device::Address DeviceOptions::address() const {

@@ -30,6 +30,7 @@ enum class BoardPace : std::uint8_t {
 
 struct DeviceOptions {
   bool is_virtual = false;
+  std::string board;  ///< empty: the one that the ELF is for
   std::filesystem::path elf;
   std::filesystem::path arm;
   std::filesystem::path flash;

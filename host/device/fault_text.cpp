@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <board/board.hpp>
+#include <board/facts.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::device {

@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 
 #include <installation/places.hpp>
+#include <known/boards.hpp>
 
 namespace inkwell::device {
 namespace {
@@ -63,6 +64,7 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
                                      options.pricing == CyclePricing::conservative ? "conservative" : "likely",
                                      "--seed",
                                      std::to_string(options.seed)};
+  if (!options.board.empty()) arguments.insert(arguments.end(), {"--board", options.board});
   if (!options.arm.empty()) arguments.insert(arguments.end(), {"--arm", options.arm.string()});
   if (!options.flash.empty()) arguments.insert(arguments.end(), {"--flash", options.flash.string()});
   if (options.host_clock_ppm != 0.0)
@@ -74,6 +76,14 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   if (options.strict) arguments.push_back("--strict");
   if (!options.profile.empty()) arguments.insert(arguments.end(), {"--profile", options.profile.string()});
   return arguments;
+}
+
+std::filesystem::path firmware_for(const std::string& name) {
+  if (name.empty()) return installation::firmware();
+  const board::Facts* const facts = board::find_board(name);
+  if (facts == nullptr)
+    throw Error(fmt::format("There is no board called {}. Known are {}.", name, board::names_of_boards()));
+  return installation::firmware(board::image_name(*facts));
 }
 
 }  // namespace
@@ -159,7 +169,7 @@ struct VirtualBoard::Implementation {
 
 VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_(std::make_unique<Implementation>()) {
   const auto program = options.program.empty() ? installation::virtual_board() : options.program;
-  const auto elf = options.elf.empty() ? installation::firmware() : options.elf;
+  const auto elf = options.elf.empty() ? firmware_for(options.board) : options.elf;
   if (access(program.c_str(), X_OK) != 0)
     throw Error(fmt::format("The program {} is missing. Build it with tools/build, or install Inkwell again.",
                             program.string()));

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <board/board.hpp>
+#include <board/facts.hpp>
 
 #include "joint_motion.hpp"
 

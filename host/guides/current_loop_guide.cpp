@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <board/board.hpp>
 #include <device/parameter_file.hpp>
 #include <guides/motor_identification.hpp>
 #include <guides/pulse_recorder.hpp>
+#include <known/boards.hpp>
 #include <recording/current_step.hpp>
 
 #include "joint_motion.hpp"
@@ -39,7 +39,9 @@ double to_four_digits(double value) {
 }
 
 /// Without the shunt, which is the board's and not the motor's.
-double motor_ohm(const MotorCircuit& circuit) { return circuit.resistance_ohm - static_cast<double>(board::shunt_ohm); }
+double motor_ohm(const MotorCircuit& circuit) {
+  return circuit.resistance_ohm - static_cast<double>(board::default_board.shunt_ohm);
+}
 
 /// What the steps of this guide tell one another.
 struct Tuning {

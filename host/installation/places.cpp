@@ -33,7 +33,7 @@ std::filesystem::path prefix() {
 }
 
 std::filesystem::path virtual_board() { return prefix() / INKWELL_PROGRAMS_PLACE / "virtual-board"; }
-std::filesystem::path firmware() { return prefix() / INKWELL_FIRMWARE_PLACE / "inkwell.elf"; }
+std::filesystem::path firmware(const std::string& image) { return prefix() / INKWELL_FIRMWARE_PLACE / image; }
 std::filesystem::path default_arm() { return prefix() / INKWELL_ARMS_PLACE / "omni.toml"; }
 std::filesystem::path dropins() { return prefix() / INKWELL_DROPINS_PLACE; }
 

@@ -5,9 +5,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include <board/board.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "interrupt_stages.hpp"
 

@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include <board/board.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
+#include <omni_driver/facts.hpp>
 #include <stepped_board.hpp>
 
 namespace inkwell::bench {

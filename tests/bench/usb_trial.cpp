@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "boards/virtual/usb/firmware_on_bus.hpp"
 #include "boards/virtual/usb/force_timing.hpp"

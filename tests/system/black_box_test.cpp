@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include <board/board.hpp>
 #include <crash/crash_text.hpp>
 #include <device/error.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "firmware_image.hpp"
 #include "hazards.hpp"

@@ -11,8 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <board/board.hpp>
 #include <failure.hpp>
+#include <omni_driver/facts.hpp>
 
 #include <stepped_board.hpp>
 
@@ -184,7 +184,7 @@ TEST_CASE("a wiper shows neither in its neighbour's reading nor in the supply's"
     CHECK(std::abs(one_way[i] - one_way_rad[i]) < two_counts_rad);
     CHECK(std::abs(other_way[i] - other_way_rad[i]) < two_counts_rad);
   }
-  CHECK(std::abs(one_way[3] - other_way[3]) < 2 * static_cast<double>(board::supply_step_V));
+  CHECK(std::abs(one_way[3] - other_way[3]) < 2 * static_cast<double>(board::omni_driver.supply_step_V()));
 }
 
 TEST_CASE("a host that does not read the scope loses the oldest samples, counted, and nothing else") {

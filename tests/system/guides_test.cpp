@@ -13,9 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include <arms/description.hpp>
-#include <board/board.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "program.hpp"
 

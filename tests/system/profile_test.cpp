@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "program.hpp"
 

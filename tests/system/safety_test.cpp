@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "firmware_image.hpp"
 #include "hazards.hpp"

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "board_rig.hpp"
 

@@ -13,9 +13,6 @@ set(INKWELL_ARMS_PLACE ${CMAKE_INSTALL_DATADIR}/inkwell/arms)
 set(INKWELL_FIRMWARE_PLACE lib/inkwell/firmware)
 set(INKWELL_DROPINS_PLACE lib/inkwell/dropins)
 
-# The firmware comes from the board's build beside this one.
-set(INKWELL_IMAGES ${PROJECT_BINARY_DIR}/../board/inkwell.elf ${PROJECT_BINARY_DIR}/../board/inkwell.bin)
-
 # The build's folder has links in the same places, so that programs of a build find its parts as installed ones do. What
 # a link leads to may be built later.
 function(inkwell_link_places)

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <debugger/symbols.hpp>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -36,29 +37,62 @@ std::string demangled(const std::string& name) {
   return status == 0 ? text.get() : name;
 }
 
-}  // namespace
+/// An ELF file as far as its symbols need it. One that is damaged, or none at all, has none.
+class SymbolTable {
+ public:
+  explicit SymbolTable(const std::filesystem::path& elf) {
+    std::ifstream stream(elf, std::ios::binary);
+    file_.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    header_ = record_at<Elf32_Ehdr>(file_, 0);
+  }
 
-Symbols::Symbols(const std::filesystem::path& elf) {
-  std::ifstream stream(elf, std::ios::binary);
-  const std::vector<char> file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  const auto header = record_at<Elf32_Ehdr>(file, 0);
-  if (!header) return;
-  const auto section = [&](std::size_t number) {
-    return record_at<Elf32_Shdr>(file, std::size_t{header->e_shoff} + number * sizeof(Elf32_Shdr));
-  };
-  for (unsigned i = 0; i < header->e_shnum; ++i) {
-    const auto table = section(i);
-    if (!table || table->sh_type != SHT_SYMTAB) continue;
-    const auto names = section(table->sh_link);
-    if (!names) continue;
-    for (std::size_t at = 0; at + sizeof(Elf32_Sym) <= table->sh_size; at += sizeof(Elf32_Sym)) {
-      const auto symbol = record_at<Elf32_Sym>(file, table->sh_offset + at);
-      if (!symbol) break;
-      if (ELF32_ST_TYPE(symbol->st_info) == STT_FUNC && symbol->st_shndx != SHN_UNDEF)
-        functions_.push_back(
-            {symbol->st_value & ~1u, symbol->st_size, text_at(file, std::size_t{names->sh_offset} + symbol->st_name)});
+  /// Calls `see(symbol, name)` for all that are defined.
+  void for_each(const std::function<void(const Elf32_Sym&, const std::string&)>& see) const {
+    for (unsigned i = 0; header_ && i < header_->e_shnum; ++i) {
+      const auto table = section(i);
+      if (!table || table->sh_type != SHT_SYMTAB) continue;
+      const auto names = section(table->sh_link);
+      if (!names) continue;
+      for (std::size_t at = 0; at + sizeof(Elf32_Sym) <= table->sh_size; at += sizeof(Elf32_Sym)) {
+        const auto symbol = record_at<Elf32_Sym>(file_, table->sh_offset + at);
+        if (!symbol) break;
+        if (symbol->st_shndx != SHN_UNDEF)
+          see(*symbol, text_at(file_, std::size_t{names->sh_offset} + symbol->st_name));
+      }
     }
   }
+
+  /// What the file has for a symbol, up to the first zero.
+  std::string text(const Elf32_Sym& symbol) const {
+    const auto place = section(symbol.st_shndx);
+    if (!place || place->sh_type != SHT_PROGBITS || symbol.st_value < place->sh_addr) return {};
+    return text_at(file_, std::size_t{place->sh_offset} + (symbol.st_value - place->sh_addr));
+  }
+
+ private:
+  std::optional<Elf32_Shdr> section(std::size_t number) const {
+    return record_at<Elf32_Shdr>(file_, std::size_t{header_->e_shoff} + number * sizeof(Elf32_Shdr));
+  }
+
+  std::vector<char> file_;
+  std::optional<Elf32_Ehdr> header_;
+};
+
+}  // namespace
+
+std::string text_in_elf(const std::filesystem::path& elf, std::string_view name) {
+  const SymbolTable table(elf);
+  std::string text;
+  table.for_each([&](const Elf32_Sym& symbol, const std::string& of_symbol) {
+    if (of_symbol == name) text = table.text(symbol);
+  });
+  return text;
+}
+
+Symbols::Symbols(const std::filesystem::path& elf) {
+  SymbolTable(elf).for_each([this](const Elf32_Sym& symbol, const std::string& name) {
+    if (ELF32_ST_TYPE(symbol.st_info) == STT_FUNC) functions_.push_back({symbol.st_value & ~1u, symbol.st_size, name});
+  });
   std::stable_sort(functions_.begin(), functions_.end(),
                    [](const Function& a, const Function& b) { return a.address < b.address; });
 }

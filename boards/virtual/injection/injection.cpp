@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <board/board.hpp>
 #include <chip/chip.hpp>
 
 namespace inkwell::virtual_board {
@@ -32,10 +31,10 @@ unsigned whole_number(const std::string& text, unsigned minimum, unsigned maximu
   return value;
 }
 
-PinName wire(const std::string& text) {
-  for (const board::PinUse& use : board::pin_uses) {
+PinName wire(const std::string& text, const board::Facts& board) {
+  for (const board::PinUse& use : board.pin_uses()) {
     if (use.name != text) continue;
-    if (board::is_usb_data(use.pin))
+    if (board.is_usb_data(use.pin))
       throw InvalidInjection(fmt::format("the wire {} is not modelled by itself; usb_cut takes the cable out", text));
     return {use.pin.port, use.pin.number};
   }
@@ -48,8 +47,8 @@ PinName wire(const std::string& text) {
 bool is_digit_or_point(char c) { return c == '.' || (c >= '0' && c <= '9'); }
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-std::string name_of(PinName wire) {
-  for (const board::PinUse& use : board::pin_uses)
+std::string name_of(PinName wire, const board::Facts& board) {
+  for (const board::PinUse& use : board.pin_uses())
     if (use.pin.port == wire.port && use.pin.number == wire.pin) return std::string(use.name);
   return wire.text();
 }
@@ -73,7 +72,7 @@ unsigned one_of(std::span<const std::string_view> names, const std::string& text
   return static_cast<unsigned>(found - names.begin());
 }
 
-void check_target(Injection& injection, const std::string& of) {
+void check_target(Injection& injection, const std::string& of, const board::Facts& board) {
   const auto& info = protocol::info(injection.fault);
   if (of.empty() && info.place != InjectionPlace::none && info.place != InjectionPlace::address)
     throw InvalidInjection(fmt::format("{} must say what it is put into, {}", info.name, wanted_place(info.place)));
@@ -94,16 +93,16 @@ void check_target(Injection& injection, const std::string& of) {
       return;
     }
     case InjectionPlace::wire:
-      injection.wires[0] = wire(of);
-      injection.of = name_of(injection.wires[0]);
+      injection.wires[0] = wire(of, board);
+      injection.of = name_of(injection.wires[0], board);
       return;
     case InjectionPlace::wires: {
       const auto plus = of.find('+');
       if (plus == std::string::npos)
         throw InvalidInjection(fmt::format("{} must name two wires, such as PA0+PA1", info.name));
-      injection.wires = {wire(of.substr(0, plus)), wire(of.substr(plus + 1))};
+      injection.wires = {wire(of.substr(0, plus), board), wire(of.substr(plus + 1), board)};
       if (injection.wires[0] == injection.wires[1]) throw InvalidInjection("a wire always touches itself; name two");
-      injection.of = name_of(injection.wires[0]) + "+" + name_of(injection.wires[1]);
+      injection.of = name_of(injection.wires[0], board) + "+" + name_of(injection.wires[1], board);
       return;
     }
     case InjectionPlace::address:
@@ -120,7 +119,7 @@ void check_time(double time_s, std::string_view what) {
 
 }  // namespace
 
-Injection checked(const protocol::InjectionRequest& request) {
+Injection checked(const protocol::InjectionRequest& request, const board::Facts& board) {
   const auto fault = protocol::find_injection(request.fault);
   if (!fault) {
     std::vector<std::string_view> names;
@@ -130,7 +129,7 @@ Injection checked(const protocol::InjectionRequest& request) {
   }
   const auto& info = protocol::info(*fault);
   Injection injection{.fault = *fault};
-  check_target(injection, request.of);
+  check_target(injection, request.of, board);
   injection.amount = request.amount.value_or(info.otherwise);
   if (request.amount && !info.has_amount())
     throw InvalidInjection(fmt::format("{} has no amount; leave {} out", info.name, *request.amount));
@@ -144,7 +143,7 @@ Injection checked(const protocol::InjectionRequest& request) {
   return injection;
 }
 
-Injection parse_injection(std::string_view text) {
+Injection parse_injection(std::string_view text, const board::Facts& board) {
   protocol::InjectionRequest parts;
   std::string_view rest = text;
   // From behind, because the names of two wires have a plus between them as well.
@@ -164,10 +163,10 @@ Injection parse_injection(std::string_view text) {
   const auto colon = rest.find(':');
   parts.fault = std::string(rest.substr(0, colon));
   if (colon != std::string_view::npos) parts.of = std::string(rest.substr(colon + 1));
-  return checked(parts);
+  return checked(parts, board);
 }
 
-std::vector<Injection> parse_injections(std::string_view script) {
+std::vector<Injection> parse_injections(std::string_view script, const board::Facts& board) {
   std::vector<Injection> injections;
   for (unsigned line_number = 1; !script.empty(); ++line_number) {
     const auto end = std::min(script.find('\n'), script.size());
@@ -177,7 +176,7 @@ std::vector<Injection> parse_injections(std::string_view script) {
     while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
     if (line.empty()) continue;
     try {
-      injections.push_back(parse_injection(line));
+      injections.push_back(parse_injection(line, board));
     } catch (const InvalidInjection& error) {
       throw InvalidInjection(fmt::format("line {}: {}", line_number, error.what()));
     }

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <board/board.hpp>
 #include <chip/memory_map.hpp>
 
 namespace inkwell::virtual_board {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include <board/board.hpp>
-
 namespace inkwell::virtual_board {
 namespace {
 
@@ -18,15 +16,14 @@ Vector3 inkwell_joints_rad(const arms::Description& arm) {
   return {joints_rad[0], joints_rad[1], joints_rad[2]};
 }
 
-constexpr double shunt_ohm = static_cast<double>(board::shunt_ohm);
-
-MotorConstants with_shunt(const arms::Description& arm, unsigned motor) {
-  return {static_cast<double>(arm.parameters[of_axis(Parameter::motor_resistance_1_ohm, motor)]) + shunt_ohm,
+MotorConstants with_shunt(const arms::Description& arm, const board::Facts& board, unsigned motor) {
+  return {static_cast<double>(arm.parameters[of_axis(Parameter::motor_resistance_1_ohm, motor)] + board.shunt_ohm),
           arm.motor.inductance_H};
 }
 
-MotorDrive motor_drive(const arms::Description& arm, unsigned motor, const Imperfections& imperfections) {
-  return {with_shunt(arm, motor), imperfections, static_cast<double>(board::bridge_dead_time_s)};
+MotorDrive motor_drive(const arms::Description& arm, const board::Facts& board, unsigned motor,
+                       const Imperfections& imperfections) {
+  return {with_shunt(arm, board, motor), imperfections, static_cast<double>(board.bridge_dead_time_s)};
 }
 
 double sound_torque_per_A(const arms::Description& arm, unsigned motor) {
@@ -53,8 +50,10 @@ std::array<double, 3> gimbal_terms(const arms::Description& arm, unsigned axis) 
 
 constexpr double reference_V = static_cast<double>(board::adc_reference_V);
 
-constexpr double supply_divider = static_cast<double>(board::supply_divider);
-constexpr double supply_divider_ohm = static_cast<double>(board::supply_upper_ohm) / supply_divider;
+/// Of the supply's divider, as the pin sees it.
+double divider_ohm(const board::Facts& board) {
+  return static_cast<double>(board.supply_upper_ohm / board.supply_divider());
+}
 
 PinLevel level_of(bool high) { return high ? PinLevel::high : PinLevel::low; }
 /// A bare contact to ground; the chip's own pull-up makes the high level.
@@ -64,42 +63,45 @@ PinLevel fault_wire(bool fault) { return fault ? PinLevel::low : PinLevel::high;
 
 }  // namespace
 
-Plant::Plant(const arms::Description& arm, const PlantOptions& options)
-    : imperfections_(options.imperfections),
-      motors_{motor_drive(arm, 0, imperfections_), motor_drive(arm, 1, imperfections_),
-              motor_drive(arm, 2, imperfections_)},
+Plant::Plant(const arms::Description& arm, const board::Facts& board, const PlantOptions& options)
+    : board_(board),
+      imperfections_(options.imperfections),
+      motors_{motor_drive(arm, board, 0, imperfections_), motor_drive(arm, board, 1, imperfections_),
+              motor_drive(arm, board, 2, imperfections_)},
       supply_(imperfections_, static_cast<double>(board::supply_nominal_V)),
-      supply_divided_V_(supply_.bus_V() / supply_divider),
+      supply_divided_V_(supply_.bus_V() / static_cast<double>(board.supply_divider())),
       analog_supply_V_(reference_V),
-      windings_{with_shunt(arm, 0), with_shunt(arm, 1), with_shunt(arm, 2)},
+      windings_{with_shunt(arm, board, 0), with_shunt(arm, board, 1), with_shunt(arm, board, 2)},
       torque_per_A_{sound_torque_per_A(arm, 0), sound_torque_per_A(arm, 1), sound_torque_per_A(arm, 2)},
       arm_(arm, inkwell_joints_rad(arm)),
       probe_m_(arm_.dynamics().position_m(arm_.joints_rad())),
       inkwell_(probe_m_, true),
       encoders_{encoder(arm, 0, options.seed), encoder(arm, 1, options.seed), encoder(arm, 2, options.seed)},
       gimbal_terms_{gimbal_terms(arm, 0), gimbal_terms(arm, 1), gimbal_terms(arm, 2)},
+      divider_follows_(
+          1.0 - std::exp(-seconds(step_ticks) / (divider_ohm(board) * static_cast<double>(board.supply_filter_F)))),
       random_(options.seed) {
   for (auto& legs : leg_pins_) legs.fill(PinLevel::floating);
   const auto wire = [&](board::Pin pin, Role role, unsigned motor) {
     wires_[wire_index(pin.port, pin.number)] = {role, static_cast<std::uint8_t>(motor)};
   };
   for (unsigned i = 0; i < 3; ++i) {
-    wire(board::bridges[i].leg_a.pin, Role::leg_a, i);
-    wire(board::bridges[i].leg_b.pin, Role::leg_b, i);
+    wire(board_.bridges[i].leg_a.pin, Role::leg_a, i);
+    wire(board_.bridges[i].leg_b.pin, Role::leg_b, i);
     motors_[i].set_bus_V(supply_.bus_V());
     // The wipers start in the middle of their tracks.
     const auto& [square, slope, offset] = gimbal_terms_[i];
     gimbal_rad_[i] = 0.25 * square + 0.5 * slope + offset;
   }
-  wire(board::bridge_enable, Role::enable, 0);
+  wire(board_.bridge_enable, Role::enable, 0);
 }
 
 void Plant::connect(InputPins& pins) {
   pins_ = &pins;
   for (unsigned i = 0; i < 3; ++i) {
     encoder_levels_[i] = QuadratureEncoder::levels(encoders_[i].shown());
-    pins.drive(board::encoders[i].a.pin.port, board::encoders[i].a.pin.number, level_of(encoder_levels_[i].a));
-    pins.drive(board::encoders[i].b.pin.port, board::encoders[i].b.pin.number, level_of(encoder_levels_[i].b));
+    pins.drive(board_.encoders[i].a.pin.port, board_.encoders[i].a.pin.number, level_of(encoder_levels_[i].a));
+    pins.drive(board_.encoders[i].b.pin.port, board_.encoders[i].b.pin.number, level_of(encoder_levels_[i].b));
   }
   inputs_stale_ = true;
   shown_.fill(PinLevel::floating);  // as the chip sees a pin that nothing drives
@@ -161,9 +163,9 @@ void Plant::update_legs(unsigned motor, Ticks now) {
 }
 
 double Plant::shunt_V(unsigned motor) {
-  constexpr double lower_V = static_cast<double>(board::shunt_amplifier_headroom_V);
+  const double lower_V = static_cast<double>(board_.shunt_amplifier_headroom_V);
   const double upper_V = std::max(lower_V, analog_supply_V_ - lower_V);
-  constexpr double V_per_A = static_cast<double>(board::shunt_ohm * board::shunt_amplifier_gain);
+  const double V_per_A = static_cast<double>(board_.shunt_V_per_A());
   const ShuntFault& fault = shunt_faults_[motor];
   const double volts =
       0.5 * analog_supply_V_ + imperfections_.amplifier_offset_V[motor] +
@@ -182,14 +184,14 @@ double Plant::analog_V(char port, unsigned pin, Ticks now) {
   const board::Pin wanted{port, static_cast<std::uint8_t>(pin)};
   run_until(now);
   for (unsigned i = 0; i < 3; ++i) {
-    if (board::motor_current[i].pin == wanted) {
+    if (board_.motor_current[i].pin == wanted) {
       motors_[i].advance(now);
       return shunt_V(i);
     }
-    if (board::gimbal[i].pin == wanted)
+    if (board_.gimbal[i].pin == wanted)
       return std::clamp(gimbal_V(i) + noise(imperfections_.wiper_noise_V), 0.0, analog_supply_V_);
   }
-  if (board::supply.pin == wanted)
+  if (board_.supply.pin == wanted)
     return std::clamp(supply_divided_V_ + noise(imperfections_.supply_reading_noise_V), 0.0, analog_supply_V_);
   return 0.0;  // nothing is wired there; the board's ground plane is near
 }
@@ -197,12 +199,12 @@ double Plant::analog_V(char port, unsigned pin, Ticks now) {
 AnalogSource Plant::analog_source(char port, unsigned pin) const {
   const board::Pin wanted{port, static_cast<std::uint8_t>(pin)};
   for (unsigned i = 0; i < 3; ++i) {
-    if (board::motor_current[i].pin == wanted) return {board::current_filter_ohm, board::current_filter_F};
+    if (board_.motor_current[i].pin == wanted) return {board_.current_filter_ohm, board_.current_filter_F};
     // A wiper in the middle has the most behind it.
-    if (board::gimbal[i].pin == wanted) return {board::gimbal_track_ohm / 4, board::gimbal_filter_F};
+    if (board_.gimbal[i].pin == wanted) return {board_.gimbal_track_ohm / 4, board_.gimbal_filter_F};
   }
-  if (board::supply.pin != wanted) return {};
-  return {supply_divider_ohm, board::supply_filter_F};
+  if (board_.supply.pin != wanted) return {};
+  return {divider_ohm(board_), board_.supply_filter_F};
 }
 
 double Plant::gimbal_V(unsigned axis) {
@@ -252,9 +254,8 @@ void Plant::step() {
   inkwell_.advance(duration_s, probe_m_);
   if (carrier_.holds()) finish_docking();
   supply_.advance(duration_s, supply_charge_As);
-  static const double divider_follows =
-      1.0 - std::exp(-duration_s / (supply_divider_ohm * static_cast<double>(board::supply_filter_F)));
-  supply_divided_V_ += (supply_.bus_V() / supply_divider - supply_divided_V_) * divider_follows;
+  supply_divided_V_ +=
+      (supply_.bus_V() / static_cast<double>(board_.supply_divider()) - supply_divided_V_) * divider_follows_;
   for (unsigned i = 0; i < 3; ++i) {
     motors_[i].set_back_emf_V(torque_per_A(i) * arm_.joint_speeds_rad_s()[i]);
     motors_[i].set_bus_V(supply_.bus_V());
@@ -282,7 +283,7 @@ void Plant::show_inputs() {
   const Ticks from = shown_at_, to = next_step_ - step_ticks;
   shown_at_ = to;
   for (unsigned i = 0; i < 3; ++i) {
-    const auto& wiring = board::encoders[i];
+    const auto& wiring = board_.encoders[i];
     encoders_[i].follow(arm_.joints_rad()[i], [&](QuadratureEncoder::Levels levels, double share) {
       const Ticks when = from + static_cast<Ticks>(share * static_cast<double>(to - from));
       // Neighbouring counts differ in one pin, so each edge is one call.
@@ -292,14 +293,14 @@ void Plant::show_inputs() {
     });
   }
   const bool inkwell_closed = inkwell_.switch_closed(probe_m_);
-  show(board::button_1.port, board::button_1.number, contact(buttons_[0]), shown_[0]);
-  show(board::button_2.port, board::button_2.number, contact(buttons_[1]), shown_[1]);
-  show(board::inkwell_switch.port, board::inkwell_switch.number, contact(inkwell_closed), shown_[2]);
-  show(board::bridge_fault_tim1.pin.port, board::bridge_fault_tim1.pin.number, fault_wire(bridge_fault_ || tripped_),
+  show(board_.button_1.port, board_.button_1.number, contact(buttons_[0]), shown_[0]);
+  show(board_.button_2.port, board_.button_2.number, contact(buttons_[1]), shown_[1]);
+  show(board_.inkwell_switch.port, board_.inkwell_switch.number, contact(inkwell_closed), shown_[2]);
+  show(board_.bridge_fault_tim1.pin.port, board_.bridge_fault_tim1.pin.number, fault_wire(bridge_fault_ || tripped_),
        shown_[3]);
-  show(board::bridge_fault_tim8.pin.port, board::bridge_fault_tim8.pin.number, fault_wire(bridge_fault_ || tripped_),
+  show(board_.bridge_fault_tim8.pin.port, board_.bridge_fault_tim8.pin.number, fault_wire(bridge_fault_ || tripped_),
        shown_[4]);
-  show(board::usb_supply.port, board::usb_supply.number, level_of(usb_supply_), shown_[5]);
+  show(board_.usb_supply.port, board_.usb_supply.number, level_of(usb_supply_), shown_[5]);
 }
 
 // ---- what a person does ----------------------------------------------------------------------------------
@@ -325,6 +326,7 @@ void Plant::set_shunt_fault(unsigned motor, const ShuntFault& fault) {
 
 void Plant::set_motor_fault(unsigned motor, const MotorFault& fault) {
   motor_faults_[motor] = fault;
+  const double shunt_ohm = static_cast<double>(board_.shunt_ohm);
   std::optional<MotorConstants> left;
   if (!fault.open)
     left = MotorConstants{(windings_[motor].resistance_ohm - shunt_ohm) * fault.resistance_factor() + shunt_ohm,

@@ -36,10 +36,11 @@ std::array<std::uint32_t, 3> unique_id_of(std::uint64_t seed) {
 
 Board::Board(const Options& options, std::function<void()> on_usb_request, std::function<bool()> is_ending)
     : elf_(options.elf),
-      plant_(arms::read(options.arm), {.seed = options.seed}),
+      facts_(*options.board),
+      plant_(arms::read(options.arm), facts_, {.seed = options.seed}),
       chip_(wires_, {.mode = options.mode,
                      .pricing = options.pricing,
-                     .crystal_Hz = options.crystal_Hz,
+                     .crystal_Hz = options.crystal_Hz.value_or(facts_.crystal_Hz),
                      .crystal_ppm = options.crystal_ppm,
                      .low_speed_internal_Hz = options.low_speed_internal_Hz,
                      .brown_out_level = options.brown_out_level,

@@ -36,6 +36,7 @@ class Board {
   void reset();
 
   Chip& chip() { return chip_; }
+  const board::Facts& facts() const { return facts_; }
   Plant& plant() { return plant_; }
   Injector& injector() { return *injector_; }
   VirtualUsb& usb() { return *usb_; }
@@ -61,6 +62,7 @@ class Board {
 
   const std::filesystem::path elf_;
   Symbols symbols_;
+  const board::Facts& facts_;
   Plant plant_;
   Wires wires_{plant_};
   Chip chip_;

@@ -69,7 +69,7 @@ json still_to_come(Board& board) {
 json inject(const json& request, Simulation& simulation) {
   Board& board = simulation.board();
   try {
-    const Injection injection = checked(injection_request(request));
+    const Injection injection = checked(injection_request(request), board.facts());
     if (injection.fault == protocol::InjectedFault::program_astray && board.locked_up())
       throw Refused("the processor is locked up; reset it first");
     const unsigned number = board.injector().add(injection);
@@ -91,7 +91,7 @@ json heal(const json& request, Simulation& simulation) {
     const protocol::InjectionRequest wanted = injection_request(request);
     const auto fault = protocol::find_injection(wanted.fault);
     // Any place will do, if none is named.
-    const std::string of = fault && wanted.of.empty() ? wanted.of : checked(wanted).of;
+    const std::string of = fault && wanted.of.empty() ? wanted.of : checked(wanted, simulation.board().facts()).of;
     const unsigned healed = injector.heal(fault.value(), of);
     if (healed == 0) throw Refused(fmt::format("{} {} is not put in; status lists what is", wanted.fault, of));
     return {{"healed", healed}};

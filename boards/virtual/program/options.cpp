@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <debugger/symbols.hpp>
 #include <installation/places.hpp>
 
 #include "commands.hpp"
@@ -19,7 +20,7 @@ namespace {
 struct Given {
   Options options;
   std::uint16_t gdb_port = 0;
-  std::string mode = "fast", pricing = "likely", flash_times = "typical";
+  std::string board, mode = "fast", pricing = "likely", flash_times = "typical";
   double seconds = 0.0;
   std::vector<std::string> uarts, pins, injections;
   std::string profile, injection_script;
@@ -36,6 +37,11 @@ constexpr const char* description =
 
 void add_files_and_ports(CLI::App& app, Given& given) {
   app.add_option("--elf", given.options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
+  app.add_option("--board", given.board,
+                 "the board around the chip: " + board::names_of_boards() +
+                     ". Unless given, the one that the ELF is for; firmware\nof others: " +
+                     std::string(board::default_board.name))
+      ->type_name("NAME");
   app.add_option("--arm", given.options.arm, "arm description; the Omni unless given")->type_name("FILE");
   app.add_option("--flash", given.options.flash,
                  "the chip's flash is kept in this file from run to run, which is made if it is not there; --elf "
@@ -67,10 +73,10 @@ void add_chip(CLI::App& app, Given& given) {
       ->check(CLI::IsMember({"likely", "conservative"}).description(""))
       ->type_name("likely|conservative")
       ->capture_default_str();
-  app.add_option("--crystal", given.options.crystal_Hz, "frequency of the crystal at the pins OSC, 4 to 26 MHz")
+  app.add_option("--crystal", given.options.crystal_Hz,
+                 "frequency of the crystal at the pins OSC, 4 to 26 MHz; the board's unless given")
       ->check(CLI::Range(4'000'000, 26'000'000).description(""))
-      ->type_name("HZ")
-      ->capture_default_str();
+      ->type_name("HZ");
   app.add_option(
          "--crystal-ppm", given.options.crystal_ppm,
          "it swings faster than that by so many parts in a million; negative: slower. USB bears 2500 (USB 2.0,\n"
@@ -183,6 +189,19 @@ std::string footer() {
          explain_commands();
 }
 
+/// The board that was asked for, else the one that the ELF is for. False after a sentence on stderr if there is none
+/// such.
+bool take_board(Given& given) {
+  const std::string name = given.board.empty() ? text_in_elf(given.options.elf, "inkwell_board_name") : given.board;
+  if (name.empty()) return true;
+  given.options.board = board::find_board(name);
+  if (given.options.board != nullptr) return true;
+  std::cerr << "virtual-board: "
+            << (given.board.empty() ? given.options.elf.string() + " is for the board " : "--board: ") << name
+            << ", which is not known here; known are " << board::names_of_boards() << ".\n";
+  return false;
+}
+
 /// Makes the options of what was written. False after a sentence on stderr if something of it can not be.
 bool take_over(Given& given) {
   if (*given.gdb_option || *given.profile_option) {
@@ -192,6 +211,7 @@ bool take_over(Given& given) {
     }
     given.mode = "exact";
   }
+  if (!take_board(given)) return false;
   if (*given.gdb_option) given.options.gdb_port = given.gdb_port;
   if (*given.profile_option) given.options.profile = given.profile;
   try {
@@ -207,7 +227,8 @@ bool take_over(Given& given) {
     return false;
   }
   try {
-    for (const std::string& text : given.injections) given.options.injections.push_back(parse_injection(text));
+    for (const std::string& text : given.injections)
+      given.options.injections.push_back(parse_injection(text, *given.options.board));
   } catch (const InvalidInjection& error) {
     std::cerr << "virtual-board: --inject: " << error.what() << "\n";
     return false;
@@ -215,7 +236,8 @@ bool take_over(Given& given) {
   try {
     std::ifstream script(given.injection_script);
     const std::string text{std::istreambuf_iterator<char>(script), {}};
-    for (Injection& injection : parse_injections(text)) given.options.injections.push_back(std::move(injection));
+    for (Injection& injection : parse_injections(text, *given.options.board))
+      given.options.injections.push_back(std::move(injection));
   } catch (const InvalidInjection& error) {
     std::cerr << "virtual-board: --inject-from " << given.injection_script << ", " << error.what() << "\n";
     return false;

@@ -9,6 +9,7 @@
 #include <chip/chip.hpp>
 #include <debugger/waveform.hpp>
 #include <injection/injection.hpp>
+#include <known/boards.hpp>
 
 #include "uart_links.hpp"
 
@@ -16,6 +17,7 @@ namespace inkwell::virtual_board {
 
 struct Options {
   std::filesystem::path elf;
+  const board::Facts* board = &board::default_board;
   std::filesystem::path arm;
   std::filesystem::path flash;   ///< empty: the flash is forgotten at the end
   std::uint16_t usbip_port = 0;  ///< 0 is any free port
@@ -26,8 +28,8 @@ struct Options {
   std::vector<PinName> waveform_pins;  ///< empty: all
   Mode mode = Mode::fast;
   Pricing pricing = Pricing::likely;
-  std::uint32_t crystal_Hz = 8'000'000;
-  std::int32_t crystal_ppm = 0;  ///< the crystal swings faster than its name by so many parts in a million
+  std::optional<std::uint32_t> crystal_Hz;  ///< none: the board's
+  std::int32_t crystal_ppm = 0;             ///< the crystal swings faster than its name by so many parts in a million
   std::uint32_t low_speed_internal_Hz = 32'000;
   bool from_boot_loader = false;
   bool boot_loader = false;      ///< BOOT0 is held while the power comes on

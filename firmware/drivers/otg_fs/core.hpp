@@ -14,7 +14,7 @@ namespace inkwell::drivers {
 using Core = RegistersOf<OtgFs, registers::OTG_FS_GLOBAL>;
 using Device = RegistersOf<OtgFs, registers::OTG_FS_DEVICE>;
 using Power = RegistersOf<OtgFs, registers::OTG_FS_PWRCLK>;
-using UsbSupply = DigitalInput<OtgFs, board::usb_supply>;
+using UsbSupply = DigitalInput<OtgFs, board::facts.usb_supply>;
 
 /// The core answers within a packet's time of 50 us or never.
 inline constexpr std::uint32_t core_answer_cycles = board::processor_Hz / 1'000'000 * 60;

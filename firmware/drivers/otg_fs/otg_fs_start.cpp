@@ -32,8 +32,8 @@ bool reset_core() {
 }  // namespace
 
 bool OtgFs::start() {
-  connect<OtgFs, board::usb_minus>(Pull::none, Speed::high);
-  connect<OtgFs, board::usb_plus>(Pull::none, Speed::high);
+  connect<OtgFs, board::facts.usb_minus>(Pull::none, Speed::high);
+  connect<OtgFs, board::facts.usb_plus>(Pull::none, Speed::high);
   UsbSupply::start(Pull::none);
   start_clocks_of<OtgFs, registers::OTG_FS_GLOBAL, registers::TIM2>();
   frame_clock_.start();

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <board/board.hpp>
+#include <known/boards.hpp>
 
 namespace inkwell::window {
 
@@ -83,9 +83,10 @@ bool is_found(const protocol::InjectionInfo& row, std::string_view search) {
 }
 
 std::vector<std::string_view> wires() {
+  // They have the same names on every board.
   std::vector<std::string_view> names;
-  for (const board::PinUse& use : board::pin_uses)
-    if (!board::is_usb_data(use.pin)) names.push_back(use.name);
+  for (const board::PinUse& use : board::default_board.pin_uses())
+    if (!board::default_board.is_usb_data(use.pin)) names.push_back(use.name);
   return names;
 }
 

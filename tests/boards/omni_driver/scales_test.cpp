@@ -1,6 +1,6 @@
 // The board's scales in numbers of their own. Firmware and simulation are both made from the board's facts, so a wrong
 // fact would not show between them: these numbers come from the parts and wires that README.md names.
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include <numbers>
 
@@ -13,7 +13,7 @@ using namespace inkwell;
 using doctest::Approx;
 
 TEST_CASE("clocks: 8 MHz crystal, 168 MHz processor, 48 MHz USB") {
-  CHECK(board::crystal_Hz == 8'000'000);
+  CHECK(board::omni_driver.crystal_Hz == 8'000'000);
   CHECK(board::processor_Hz == 168'000'000);
   CHECK(board::usb_Hz == 48'000'000);
   CHECK(board::timer_apb2_Hz == 168'000'000);
@@ -28,19 +28,19 @@ TEST_CASE("PWM: 60 kHz centre-aligned in 1400 steps, three periods to a control 
   CHECK(board::pwm_repetition == 5);
   CHECK(board::servo_cycles == 8400);
   CHECK(board::duty_limit == 0.92f);
-  CHECK(board::bridge_dead_time_s == 0.2e-6f);
+  CHECK(board::omni_driver.bridge_dead_time_s == 0.2e-6f);
   CHECK(board::current_ripple_A(0.238e-3f) == Approx(0.157563));
 }
 
 TEST_CASE("motor current: 20 mohm and a gain of 20 are 0.4 V/A around 1.65 V, 496.5 counts an ampere") {
-  CHECK(1.0 / board::current_step_A == Approx(496.485));
+  CHECK(1.0 / board::omni_driver.current_step_A() == Approx(496.485));
   CHECK(board::shunt_amplifier_offset_V == Approx(1.65));
-  CHECK(board::current_range_A == Approx(4.125));
-  CHECK(board::shunt_ohm == 0.02f);
+  CHECK(board::omni_driver.current_range_A() == Approx(4.125));
+  CHECK(board::omni_driver.shunt_ohm == 0.02f);
 }
 
 TEST_CASE("supply: 100 k over 10 k, 18 V are 2031 counts; 12 V to 24 V are allowed") {
-  CHECK(18.0 / board::supply_step_V == Approx(2031.07));
+  CHECK(18.0 / board::omni_driver.supply_step_V() == Approx(2031.07));
   CHECK(board::supply_minimum_V == 12.0f);
   CHECK(board::supply_nominal_V == 18.0f);
   CHECK(board::supply_maximum_V == 24.0f);
@@ -48,15 +48,17 @@ TEST_CASE("supply: 100 k over 10 k, 18 V are 2031 counts; 12 V to 24 V are allow
 
 TEST_CASE("what stands at the pins for one ampere, for the supply and for a potentiometer") {
   test::DrivenPlant driven(test::omni());
-  CHECK(driven.read_V(board::supply) == Approx(18.0 / 11.0).epsilon(0.01));
-  for (const auto& wiper : board::gimbal) CHECK(driven.read_V(wiper) == Approx(1.65).epsilon(0.01));  // in the middle
+  CHECK(driven.read_V(board::omni_driver.supply) == Approx(18.0 / 11.0).epsilon(0.01));
+  for (const auto& wiper : board::omni_driver.gimbal)
+    CHECK(driven.read_V(wiper) == Approx(1.65).epsilon(0.01));  // in the middle
   driven.enable(true);
   driven.run(0.003, {0.2, -0.2, 0.0});
   const auto truth = driven.plant.truth(driven.now);
   REQUIRE(truth.current_A[0] > 0.8);
   REQUIRE(truth.current_A[1] < -0.8);
   for (const int motor : {0, 1})
-    CHECK(driven.read_V(board::motor_current[motor]) == Approx(1.65 + 0.4 * truth.current_A[motor]).epsilon(0.02));
+    CHECK(driven.read_V(board::omni_driver.motor_current[motor]) ==
+          Approx(1.65 + 0.4 * truth.current_A[motor]).epsilon(0.02));
 }
 
 TEST_CASE("encoder: 360 lines are 1440 counts in a turn of the motor, 13.3 turns in a turn of the waist") {

@@ -8,7 +8,7 @@ import unittest
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[3]
 PLACEMENT = REPOSITORY / "firmware/placement/include"
-LINKER_SCRIPT = REPOSITORY / "boards/omni_driver/board.ld"
+LINKER_SCRIPT = REPOSITORY / "boards/facts/stm32f405.ld"
 CORE = ["-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard"]
 
 # The least that the tools take for a firmware. `work` stands for what is under test.

@@ -1,8 +1,8 @@
 // What several tests of the controller need: a clock, samples, and a controller brought into a state.
 #pragma once
 
-#include <board/board.hpp>
 #include <control/controller.hpp>
+#include <omni_driver/facts.hpp>
 
 namespace inkwell::tests {
 
@@ -15,8 +15,8 @@ struct FakeClock {
 inline constexpr control::BoardLimits board_limits{.supply_minimum_V = board::supply_minimum_V,
                                                    .supply_maximum_V = board::supply_maximum_V,
                                                    .duty_limit = board::duty_limit,
-                                                   .current_measurable_A = board::current_measurable_A,
-                                                   .dead_time_part = board::bridge_dead_time_part};
+                                                   .current_measurable_A = board::omni_driver.current_measurable_A(),
+                                                   .dead_time_part = board::omni_driver.bridge_dead_time_part()};
 
 inline control::Samples samples_at_rest() {
   return {.encoder_counts = {},

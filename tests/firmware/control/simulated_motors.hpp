@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include <board/board.hpp>
 #include <control/vector.hpp>
+#include <omni_driver/facts.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::tests {
@@ -13,7 +13,7 @@ namespace inkwell::tests {
 struct SimulatedMotor {
   float resistance_ohm = 2.27f;  ///< that of the Omni's motors, with shunt and switches
   float inductance_H = 0.238e-3f;
-  float dead_V = board::bridge_dead_time_part * board::supply_nominal_V;
+  float dead_V = board::omni_driver.bridge_dead_time_part() * board::supply_nominal_V;
   float back_emf_V = 0.0f;
   float back_emf_V_per_s = 0.0f;
   float sensor_gain = 1.0f;

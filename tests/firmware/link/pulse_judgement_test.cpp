@@ -31,7 +31,7 @@ struct Bench {
       for (std::size_t i = 0; i < 3; ++i) counts[i] = static_cast<std::int32_t>(period * counts_per_period[i]);
       told_V = pulses.step(simulated.step(told_V), counts,
                            {settings.motor_model.resistance_ohm, settings.motors.current_limit_A, supply_V,
-                            board::bridge_dead_time_part});
+                            board::omni_driver.bridge_dead_time_part()});
     }
     return link::judge(pulses.round(), settings);
   }
@@ -77,7 +77,7 @@ TEST_CASE("a motor passes from 10 % less resistance to 39 % more, at any sound s
         bench.supply_V = supply_V;
         for (auto& motor : bench.simulated.motors) {
           motor.resistance_ohm = 2.18f * part + 0.08f;
-          motor.dead_V = board::bridge_dead_time_part * supply_V;
+          motor.dead_V = board::omni_driver.bridge_dead_time_part() * supply_V;
           motor.sensor_gain = gain;
         }
         CAPTURE(part);

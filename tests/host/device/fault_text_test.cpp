@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include <board/board.hpp>
 #include <device/fault_text.hpp>
+#include <omni_driver/facts.hpp>
 
 using namespace inkwell;
 using protocol::Fault;

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include <board/board.hpp>
 #include <guides/guide.hpp>
+#include <omni_driver/facts.hpp>
 
 namespace inkwell::tests {
 

@@ -79,7 +79,7 @@ TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one t
   CHECK(arm.parameters() == protocol::default_parameters());
   REQUIRE(guide.findings().proposals.size() == 3);
   CHECK(guide.findings().proposals[2].parameter == Parameter::motor_resistance_2_ohm);
-  CHECK(guide.findings().proposals[2].proposed == doctest::Approx(3.0 - board::shunt_ohm).epsilon(0.01));
+  CHECK(guide.findings().proposals[2].proposed == doctest::Approx(3.0 - board::omni_driver.shunt_ohm).epsilon(0.01));
   CHECK(guide.findings().proposals[0].proposed == doctest::Approx(0.4e-3 * 2 * 3.14159265 * 600).epsilon(0.02));
   CHECK(guide.findings().curves.size() == 2);
 

@@ -24,13 +24,13 @@ class AnalogInputs {
                                      peripheral<registers::ADC_COMMON>(),
                                      stream<registers::DMA2, 0>(),
                                      interrupt(Interrupt::analog_converters),
-                                     pin(board::motor_current[0]),
-                                     pin(board::motor_current[1]),
-                                     pin(board::motor_current[2]),
-                                     pin(board::gimbal[0]),
-                                     pin(board::gimbal[1]),
-                                     pin(board::gimbal[2]),
-                                     pin(board::supply)};
+                                     pin(board::facts.motor_current[0]),
+                                     pin(board::facts.motor_current[1]),
+                                     pin(board::facts.motor_current[2]),
+                                     pin(board::facts.gimbal[0]),
+                                     pin(board::facts.gimbal[1]),
+                                     pin(board::facts.gimbal[2]),
+                                     pin(board::facts.supply)};
 
   /// Before TIM1 runs: the converters miss a trigger that comes before their clocks.
   void start_clocks();

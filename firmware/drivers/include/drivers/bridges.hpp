@@ -22,10 +22,10 @@ namespace inkwell::drivers {
 class Bridges {
  public:
   static constexpr std::array claims{
-      peripheral<registers::TIM1>(), peripheral<registers::TIM8>(), pin(board::bridge_enable),
-      pin(board::bridges[0].leg_a),  pin(board::bridges[1].leg_a),  pin(board::bridges[2].leg_a),
-      pin(board::bridges[0].leg_b),  pin(board::bridges[1].leg_b),  pin(board::bridges[2].leg_b),
-      pin(board::bridge_fault_tim1), pin(board::bridge_fault_tim8)};
+      peripheral<registers::TIM1>(),       peripheral<registers::TIM8>(),      pin(board::facts.bridge_enable),
+      pin(board::facts.bridges[0].leg_a),  pin(board::facts.bridges[1].leg_a), pin(board::facts.bridges[2].leg_a),
+      pin(board::facts.bridges[0].leg_b),  pin(board::facts.bridges[1].leg_b), pin(board::facts.bridges[2].leg_b),
+      pin(board::facts.bridge_fault_tim1), pin(board::facts.bridge_fault_tim8)};
 
   /// Sets up both timers and lets them run with all outputs off. Their update triggers the ADCs from now on.
   void start();

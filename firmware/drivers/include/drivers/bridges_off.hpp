@@ -20,8 +20,9 @@ struct Store {
   std::uint32_t value;
 };
 
-static_assert(board::bridge_enable.port == 'B');
-inline constexpr Store bridge_enable_low{registers::GPIOB::BSRR::address, 1u << (board::bridge_enable.number + 16)};
+static_assert(board::facts.bridge_enable.port == 'B');
+inline constexpr Store bridge_enable_low{registers::GPIOB::BSRR::address,
+                                         1u << (board::facts.bridge_enable.number + 16)};
 inline constexpr Store legs_a_off{LegsA::BDTR::address, outputs_off};
 inline constexpr Store legs_b_off{LegsB::BDTR::address, outputs_off};
 

@@ -2,7 +2,7 @@
 //
 //   class Encoders {
 //    public:
-//     static constexpr std::array claims{peripheral<registers::TIM3>(), pin(board::encoders[1].a), ...};
+//     static constexpr std::array claims{peripheral<registers::TIM3>(), pin(board::facts.encoders[1].a), ...};
 //
 // A driver has a peripheral's registers, starts its clock, sets a pin up and enables an interrupt only if it claims
 // them, and the application's PartsList does not compile with two drivers that claim the same.

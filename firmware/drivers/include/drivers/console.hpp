@@ -12,7 +12,7 @@ namespace inkwell::drivers {
 /// Waits for each character to leave, about 0.1 ms: for start-up only.
 class Console {
  public:
-  static constexpr std::array claims{peripheral<registers::USART2>(), pin(board::console_transmit)};
+  static constexpr std::array claims{peripheral<registers::USART2>(), pin(board::facts.console_transmit)};
 
   /// Also again, when the clock of its bus has changed.
   void start(std::uint32_t bus_Hz);

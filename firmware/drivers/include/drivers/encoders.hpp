@@ -13,9 +13,9 @@ namespace inkwell::drivers {
 class Encoders {
  public:
   static constexpr std::array claims{
-      peripheral<registers::TIM5>(), pin(board::encoders[0].a), pin(board::encoders[0].b),
-      peripheral<registers::TIM3>(), pin(board::encoders[1].a), pin(board::encoders[1].b),
-      peripheral<registers::TIM4>(), pin(board::encoders[2].a), pin(board::encoders[2].b)};
+      peripheral<registers::TIM5>(), pin(board::facts.encoders[0].a), pin(board::facts.encoders[0].b),
+      peripheral<registers::TIM3>(), pin(board::facts.encoders[1].a), pin(board::facts.encoders[1].b),
+      peripheral<registers::TIM4>(), pin(board::facts.encoders[2].a), pin(board::facts.encoders[2].b)};
 
   /// Counts every edge of both channels, four a line, from 0.
   void start();

@@ -15,10 +15,13 @@ enum class LedPattern : std::uint8_t {
 
 class StatusLed {
  public:
-  static constexpr std::array claims{pin(board::status_led)};
+  static constexpr std::array claims{pin(board::facts.status_led)};
 
-  void start() { Output::start(); }
-  void set(bool on) { Output::set(on); }
+  void start() {
+    Output::start();
+    set(false);
+  }
+  void set(bool on) { Output::set(on != board::facts.status_led_shines_when_low); }
 
   /// Call it often; `time_periods` is in control periods.
   void show(LedPattern pattern, std::uint32_t time_periods) {
@@ -26,7 +29,7 @@ class StatusLed {
   }
 
  private:
-  using Output = DigitalOutput<StatusLed, board::status_led>;
+  using Output = DigitalOutput<StatusLed, board::facts.status_led>;
 
   static constexpr std::uint32_t period(LedPattern pattern) {
     return pattern == LedPattern::fast_blink ? board::servo_rate_Hz / 5 : board::servo_rate_Hz;

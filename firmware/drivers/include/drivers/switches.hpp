@@ -14,20 +14,22 @@ struct SwitchContacts {
 
 class Switches {
  public:
-  static constexpr std::array claims{pin(board::button_1), pin(board::button_2), pin(board::inkwell_switch)};
+  static constexpr std::array claims{pin(board::facts.button_1), pin(board::facts.button_2),
+                                     pin(board::facts.inkwell_switch)};
 
   void start() {
-    DigitalInput<Switches, board::button_1>::start(Pull::up);
-    DigitalInput<Switches, board::button_2>::start(Pull::up);
-    DigitalInput<Switches, board::inkwell_switch>::start(Pull::up);
+    DigitalInput<Switches, board::facts.button_1>::start(Pull::up);
+    DigitalInput<Switches, board::facts.button_2>::start(Pull::up);
+    DigitalInput<Switches, board::facts.inkwell_switch>::start(Pull::up);
   }
 
   /// All at one instant, in one access to their port.
   SwitchContacts read() const {
-    static_assert(board::button_1.port == board::button_2.port && board::button_1.port == board::inkwell_switch.port);
-    const std::uint32_t port = DigitalInput<Switches, board::button_1>::read_port();
+    static_assert(board::facts.button_1.port == board::facts.button_2.port &&
+                  board::facts.button_1.port == board::facts.inkwell_switch.port);
+    const std::uint32_t port = DigitalInput<Switches, board::facts.button_1>::read_port();
     const auto closed = [port](board::Pin pin) { return (port >> pin.number & 1u) == 0; };
-    return {closed(board::button_1), closed(board::button_2), closed(board::inkwell_switch)};
+    return {closed(board::facts.button_1), closed(board::facts.button_2), closed(board::facts.inkwell_switch)};
   }
 };
 

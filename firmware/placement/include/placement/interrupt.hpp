@@ -2,7 +2,7 @@
 #pragma once
 
 /// Before the definition of a function that an interrupt calls: puts it into the image's section .interrupt_text
-/// (boards/omni_driver/board.ld), which start-up copies to RAM. tools/check_image.py refuses an image in which an
+/// (boards/facts/stm32f405.ld), which start-up copies to RAM. tools/check_image.py refuses an image in which an
 /// interrupt leaves that section, or in which a function lies there that no interrupt calls. firmware/control lies
 /// there as a whole and needs no marks. On a PC the mark means nothing.
 #if defined(__arm__)

@@ -25,7 +25,8 @@ enum class CyclePricing : std::uint8_t {
 
 struct VirtualBoardOptions {
   std::filesystem::path program;  ///< empty: that of this installation or build
-  std::filesystem::path elf;      ///< empty: the one that is flashed, likewise
+  std::filesystem::path elf;      ///< empty: the one that is flashed on `board`, likewise
+  std::string board;              ///< empty: the one that the ELF is for
   std::filesystem::path arm;      ///< empty: the Omni
   std::filesystem::path flash;    ///< file of its flash, made if it is missing; empty: it forgets all at its end
   std::filesystem::path profile;  ///< file for the longest interrupt, written at the board's end; empty: none

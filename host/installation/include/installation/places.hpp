@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace inkwell::installation {
 
@@ -13,8 +14,9 @@ std::filesystem::path prefix();
 
 /// Below the prefix; whether they are there is for the caller to see.
 std::filesystem::path virtual_board();  ///< the program
-std::filesystem::path firmware();       ///< the ELF of the image that is flashed
-std::filesystem::path default_arm();    ///< the description of the Omni
-std::filesystem::path dropins();        ///< the folder of the libraries under the names of others
+/// The ELF of an image that is flashed; board::image_name() has those of other boards than the default.
+std::filesystem::path firmware(const std::string& image = "inkwell.elf");
+std::filesystem::path default_arm();  ///< the description of the Omni
+std::filesystem::path dropins();      ///< the folder of the libraries under the names of others
 
 }  // namespace inkwell::installation

@@ -1,4 +1,5 @@
 #include <injection/injection.hpp>
+#include <omni_driver/facts.hpp>
 
 #include <string>
 
@@ -9,9 +10,11 @@ using inkwell::protocol::InjectedFault;
 
 namespace {
 
+namespace board = inkwell::board;
+
 std::string refusal_of(const std::string& text) {
   try {
-    parse_injection(text);
+    parse_injection(text, board::omni_driver);
   } catch (const InvalidInjection& error) {
     return error.what();
   }
@@ -29,7 +32,7 @@ bool refuses(const std::string& text, const std::string& because) {
 }  // namespace
 
 TEST_CASE("a fault is written with its place, amount, time and duration") {
-  const auto lost = parse_injection("encoder_lost_counts:2=0.05@1.5+0.2");
+  const auto lost = parse_injection("encoder_lost_counts:2=0.05@1.5+0.2", board::omni_driver);
   CHECK(lost.fault == InjectedFault::encoder_lost_counts);
   CHECK(lost.number == 1);
   CHECK(lost.of == "2");
@@ -37,28 +40,28 @@ TEST_CASE("a fault is written with its place, amount, time and duration") {
   CHECK(lost.after_s == 1.5);
   CHECK(lost.for_s == 0.2);
 
-  const auto stuck = parse_injection("encoder_stuck:3");
+  const auto stuck = parse_injection("encoder_stuck:3", board::omni_driver);
   CHECK(stuck.number == 2);
   CHECK(stuck.after_s == 0.0);
   CHECK_FALSE(stuck.for_s);
-  CHECK(parse_injection("supply_sag").amount == 10.0);
-  CHECK(parse_injection("supply_sag+0.5").for_s == 0.5);
-  CHECK(parse_injection("adc_stopped:2").number == 2);
-  CHECK(parse_injection("exception_late:34=8400").number == 34);
+  CHECK(parse_injection("supply_sag", board::omni_driver).amount == 10.0);
+  CHECK(parse_injection("supply_sag+0.5", board::omni_driver).for_s == 0.5);
+  CHECK(parse_injection("adc_stopped:2", board::omni_driver).number == 2);
+  CHECK(parse_injection("exception_late:34=8400", board::omni_driver).number == 34);
 
-  const auto leg = parse_injection("leg_slow:3B=0.000002");
+  const auto leg = parse_injection("leg_slow:3B=0.000002", board::omni_driver);
   CHECK(leg.number == 2);
   CHECK(leg.leg == 1);
-  CHECK(parse_injection("leg_high:1A").leg == 0);
-  CHECK(parse_injection("leg_high:2B").number == 1);
+  CHECK(parse_injection("leg_high:1A", board::omni_driver).leg == 0);
+  CHECK(parse_injection("leg_high:2B", board::omni_driver).number == 1);
 }
 
 TEST_CASE("a wire goes by its pin or by what it is used for, which is how it is told") {
-  CHECK(parse_injection("wire_open:PB4").of == "encoders[1].a");
-  CHECK(parse_injection("wire_open:PB4").wires[0] == PinName{'B', 4});
-  CHECK(parse_injection("wire_low:bridge_enable").wires[0] == PinName{'B', 1});
-  CHECK(parse_injection("wire_low:PD2").of == "PD2");
-  const auto shorted = parse_injection("wires_shorted:PA0+encoders[0].b@0.5+1");
+  CHECK(parse_injection("wire_open:PB4", board::omni_driver).of == "encoders[1].a");
+  CHECK(parse_injection("wire_open:PB4", board::omni_driver).wires[0] == PinName{'B', 4});
+  CHECK(parse_injection("wire_low:bridge_enable", board::omni_driver).wires[0] == PinName{'B', 1});
+  CHECK(parse_injection("wire_low:PD2", board::omni_driver).of == "PD2");
+  const auto shorted = parse_injection("wires_shorted:PA0+encoders[0].b@0.5+1", board::omni_driver);
   CHECK(shorted.of == "encoders[0].a+encoders[0].b");
   CHECK(shorted.wires[1] == PinName{'A', 1});
   CHECK(shorted.after_s == 0.5);
@@ -66,10 +69,10 @@ TEST_CASE("a wire goes by its pin or by what it is used for, which is how it is 
 }
 
 TEST_CASE("memory goes by its address, or by the seed") {
-  CHECK(parse_injection("ram_bit:0x20000100=3").address == 0x2000'0100u);
-  CHECK(parse_injection("ram_bit:536871168").address == 0x2000'0100u);
-  CHECK_FALSE(parse_injection("flash_bit").address);
-  CHECK(parse_injection("flash_bit").amount == -1.0);
+  CHECK(parse_injection("ram_bit:0x20000100=3", board::omni_driver).address == 0x2000'0100u);
+  CHECK(parse_injection("ram_bit:536871168", board::omni_driver).address == 0x2000'0100u);
+  CHECK_FALSE(parse_injection("flash_bit", board::omni_driver).address);
+  CHECK(parse_injection("flash_bit", board::omni_driver).amount == -1.0);
 }
 
 TEST_CASE("what is no fault is refused with a sentence that says what would be one") {
@@ -102,12 +105,13 @@ TEST_CASE("what is no fault is refused with a sentence that says what would be o
 }
 
 TEST_CASE("a script has one fault a line, and the line that is wrong is named") {
-  const auto faults = parse_injections("# a bad day\nsupply_sag=9@1+0.1  # weak\n\n  motor_open:2@2\r\n");
+  const auto faults =
+      parse_injections("# a bad day\nsupply_sag=9@1+0.1  # weak\n\n  motor_open:2@2\r\n", board::omni_driver);
   REQUIRE(faults.size() == 2);
   CHECK(faults[0].fault == InjectedFault::supply_sag);
   CHECK(faults[1].fault == InjectedFault::motor_open);
-  CHECK(parse_injections("").empty());
-  CHECK_THROWS_WITH_AS(parse_injections("motor_open:1\n\nmotor_open:7\n"),
+  CHECK(parse_injections("", board::omni_driver).empty());
+  CHECK_THROWS_WITH_AS(parse_injections("motor_open:1\n\nmotor_open:7\n", board::omni_driver),
                        "line 3: \"7\" is no motor; there are 1, 2, 3", InvalidInjection);
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "../plant/arms.hpp"
 
@@ -20,7 +20,7 @@ namespace {
 /// A chip with a servo's load, soldered to the driver board; nothing enables the bridges.
 struct Rig {
   explicit Rig(const std::string& firmware = "servo")
-      : plant(test::omni()),
+      : plant(test::omni(), board::omni_driver),
         chip(wires, {.brown_out_level = 3, .log = [](const std::string&) {}}),
         injector({chip, plant, wires, 50, [this](bool in) { plugged = in; }, [this](bool asks) { host_asks = asks; }},
                  seed) {
@@ -40,7 +40,7 @@ struct Rig {
     }
     if (injector.next() <= chip.now()) injector.carry_out();
   }
-  void inject(const std::string& text) { injector.add(parse_injection(text)); }
+  void inject(const std::string& text) { injector.add(parse_injection(text, board::omni_driver)); }
   std::uint64_t instructions_in(double time_s) {
     const auto before = chip.counters().instructions;
     run(time_s);
@@ -95,9 +95,9 @@ TEST_CASE("every fault of the table goes in, is told with its place, and is no l
 
 TEST_CASE("each fault has a number of its own, from when it is asked for until it is healed") {
   Rig rig;
-  const unsigned now = rig.injector.add(parse_injection("encoder_slip:2"));
-  const unsigned again = rig.injector.add(parse_injection("encoder_slip:2"));
-  const unsigned later = rig.injector.add(parse_injection("motor_open:1@0.001"));
+  const unsigned now = rig.injector.add(parse_injection("encoder_slip:2", board::omni_driver));
+  const unsigned again = rig.injector.add(parse_injection("encoder_slip:2", board::omni_driver));
+  const unsigned later = rig.injector.add(parse_injection("motor_open:1@0.001", board::omni_driver));
   CHECK(again == now + 1);
   CHECK(later == again + 1);
   REQUIRE(rig.injector.planned().size() == 1);
@@ -146,7 +146,7 @@ TEST_CASE("faults of one kind at one place follow each other, at other places th
 
 TEST_CASE("wires") {
   Rig rig;
-  const board::Pin fault_wire = board::bridge_fault_tim1.pin;
+  const board::Pin fault_wire = board::omni_driver.bridge_fault_tim1.pin;
   REQUIRE(rig.level(fault_wire) == PinLevel::high);
   rig.inject("wire_low:bridge_fault_tim1");
   CHECK(rig.level(fault_wire) == PinLevel::low);
@@ -156,7 +156,7 @@ TEST_CASE("wires") {
   rig.inject("bridge_fault");
   rig.run(0.0002);
   CHECK(rig.level(fault_wire) == PinLevel::high);  // as it was when it froze
-  CHECK(rig.level(board::bridge_fault_tim8.pin) == PinLevel::low);
+  CHECK(rig.level(board::omni_driver.bridge_fault_tim8.pin) == PinLevel::low);
   rig.inject("wire_high:PB12");
   CHECK(rig.level(fault_wire) == PinLevel::high);
   rig.inject("wire_frozen:PB12");
@@ -188,22 +188,22 @@ TEST_CASE("spikes come as often as they were told to, and no more once they are 
 
 TEST_CASE("encoders, shunts and motors by their numbers") {
   Rig rig;
-  const double zero_V = rig.read_V(board::motor_current[1]);
+  const double zero_V = rig.read_V(board::omni_driver.motor_current[1]);
   rig.inject("shunt_offset:2=1");
-  CHECK(rig.read_V(board::motor_current[1]) - zero_V == doctest::Approx(0.4).epsilon(0.02));
+  CHECK(rig.read_V(board::omni_driver.motor_current[1]) - zero_V == doctest::Approx(0.4).epsilon(0.02));
   rig.inject("shunt_high:2");
-  CHECK(rig.read_V(board::motor_current[1]) == doctest::Approx(3.1));
+  CHECK(rig.read_V(board::omni_driver.motor_current[1]) == doctest::Approx(3.1));
   rig.inject("shunt_low:2");
-  CHECK(rig.read_V(board::motor_current[1]) == doctest::Approx(0.2));
+  CHECK(rig.read_V(board::omni_driver.motor_current[1]) == doctest::Approx(0.2));
   rig.injector.heal(InjectedFault::shunt_low, "2");
   rig.inject("shunt_gain:2=3");
   CHECK(rig.plant.shunt_fault(1).gain == 3.0);
   CHECK(rig.plant.shunt_fault(1).offset_A == 1.0);
   CHECK(rig.plant.shunt_fault(1).output == ShuntFault::Output::follows);
   rig.inject("shunt_frozen:2");
-  CHECK(rig.read_V(board::motor_current[1]) == rig.read_V(board::motor_current[1]));
+  CHECK(rig.read_V(board::omni_driver.motor_current[1]) == rig.read_V(board::omni_driver.motor_current[1]));
   rig.injector.heal_all();
-  CHECK(rig.read_V(board::motor_current[1]) == doctest::Approx(zero_V).epsilon(0.005));
+  CHECK(rig.read_V(board::omni_driver.motor_current[1]) == doctest::Approx(zero_V).epsilon(0.005));
 
   rig.inject("motor_open:1");
   rig.inject("motor_shorted:2=0.25");
@@ -240,7 +240,7 @@ TEST_CASE("encoders, shunts and motors by their numbers") {
 TEST_CASE("legs of bridges by motor and terminal") {
   Rig rig("converters");  // which leaves the bridges alone
   const auto enable = [&](bool on) {
-    rig.wires.output_changed(board::bridge_enable.port, board::bridge_enable.number,
+    rig.wires.output_changed(board::omni_driver.bridge_enable.port, board::omni_driver.bridge_enable.number,
                              on ? PinLevel::high : PinLevel::low, rig.chip.now());
   };
   const auto trips = [&](const std::string& fault) {
@@ -253,7 +253,7 @@ TEST_CASE("legs of bridges by motor and terminal") {
     return tripped;
   };
   CHECK(trips("leg_high:2B"));
-  const auto& leg_a = board::bridges[0].leg_a.pin;
+  const auto& leg_a = board::omni_driver.bridges[0].leg_a.pin;
   rig.wires.output_changed(leg_a.port, leg_a.number, PinLevel::high, rig.chip.now());
   CHECK(trips("leg_low:1A"));
   CHECK_FALSE(trips("leg_high:1A"));
@@ -266,7 +266,7 @@ TEST_CASE("legs of bridges by motor and terminal") {
     if (!fault.empty()) rig.inject(fault);
     enable(true);
     rig.run(0.0001);
-    const auto& leg = board::bridges[2].leg_a.pin;
+    const auto& leg = board::omni_driver.bridges[2].leg_a.pin;
     rig.wires.output_changed(leg.port, leg.number, PinLevel::high, rig.chip.now());
     rig.run(0.00005);
     const double current_A = rig.plant.truth(rig.chip.now()).current_A[2];
@@ -318,7 +318,7 @@ TEST_CASE("supplies") {
   rig.run(0.3);
   CHECK(swing_V() < 0.1);
 
-  const auto wiper_V = [&] { return rig.read_V(board::gimbal[0]); };
+  const auto wiper_V = [&] { return rig.read_V(board::omni_driver.gimbal[0]); };
   for (const char* fault : {"analog_sag=3", "logic_sag=3"}) {
     rig.inject(fault);
     CHECK(wiper_V() == doctest::Approx(1.5).epsilon(0.01));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <arms/description.hpp>
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 #include <plant/imperfections.hpp>
 
 namespace inkwell::test {
@@ -37,7 +37,7 @@ inline double winding_ohm(const arms::Description& arm) {
 
 /// All that a motor's current flows through: winding, shunt and the switches of both legs.
 inline double circuit_ohm(const arms::Description& arm) {
-  return winding_ohm(arm) + static_cast<double>(board::shunt_ohm) +
+  return winding_ohm(arm) + static_cast<double>(board::omni_driver.shunt_ohm) +
          2.0 * virtual_board::Imperfections{}.leg_resistance_ohm;
 }
 

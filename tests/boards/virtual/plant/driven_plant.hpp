@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 #include <plant/plant.hpp>
 
 #include "arms.hpp"
@@ -21,11 +21,12 @@ inline constexpr Ticks pwm_period = ticks_per_s / board::pwm_Hz;
 /// Levels of the chip's inputs, with a quadrature decoder as the timers have one.
 class DecodedInputs final : public InputPins {
  public:
+  explicit DecodedInputs(const board::Facts& board) : facts(board) {}
   void drive(char port, unsigned pin, PinLevel level, Ticks since) override {
     ++calls;
     levels[{port, pin}] = level;
     for (unsigned i = 0; i < 3; ++i) {
-      const auto& w = board::encoders[i];
+      const auto& w = facts.encoders[i];
       const bool a = at(w.a.pin) == PinLevel::high, b = at(w.b.pin) == PinLevel::high;
       const int phase = a ? (b ? 2 : 1) : (b ? 3 : 0);
       const int moved = (phase - phases[i]) & 3;
@@ -44,6 +45,7 @@ class DecodedInputs final : public InputPins {
     const auto found = levels.find({pin.port, pin.number});
     return found == levels.end() ? PinLevel::floating : found->second;
   }
+  const board::Facts& facts;
   std::map<std::pair<char, unsigned>, PinLevel> levels;
   std::array<int, 3> phases{};
   std::array<std::int64_t, 3> counts{};
@@ -54,17 +56,19 @@ class DecodedInputs final : public InputPins {
 
 /// A plant with the edges that timers would give it: centre-aligned, unipolar, as the board's facts say.
 struct DrivenPlant {
-  explicit DrivenPlant(const arms::Description& arm, const PlantOptions& options = {}) : plant(arm, options) {
+  explicit DrivenPlant(const arms::Description& arm, const PlantOptions& options = {},
+                       const board::Facts& board = board::omni_driver)
+      : facts(board), inputs(board), plant(arm, board, options) {
     plant.connect(inputs);
     counts_at_start = inputs.counts;
   }
 
   void enable(bool on) {
-    plant.output_changed(board::bridge_enable.port, board::bridge_enable.number, on ? PinLevel::high : PinLevel::low,
+    plant.output_changed(facts.bridge_enable.port, facts.bridge_enable.number, on ? PinLevel::high : PinLevel::low,
                          now);
   }
   void legs(PinLevel level) {
-    for (const auto& bridge : board::bridges)
+    for (const auto& bridge : facts.bridges)
       for (const auto& leg : {bridge.leg_a, bridge.leg_b})
         plant.output_changed(leg.pin.port, leg.pin.number, level, now);
   }
@@ -84,7 +88,7 @@ struct DrivenPlant {
       for (unsigned leg = 0; leg < 2; ++leg) {
         const double high = (1.0 + (leg == 0 ? duty[i] : -duty[i])) / 2.0;
         const auto half_low = static_cast<Ticks>((1.0 - high) / 2.0 * static_cast<double>(pwm_period));
-        const board::Pin pin = leg == 0 ? board::bridges[i].leg_a.pin : board::bridges[i].leg_b.pin;
+        const board::Pin pin = leg == 0 ? facts.bridges[i].leg_a.pin : facts.bridges[i].leg_b.pin;
         edges[i * 4 + leg * 2] = {half_low, pin, PinLevel::high};
         edges[i * 4 + leg * 2 + 1] = {pwm_period - half_low, pin, PinLevel::low};
       }
@@ -94,17 +98,18 @@ struct DrivenPlant {
       for (const Edge& edge : edges) plant.output_changed(edge.pin.port, edge.pin.number, edge.level, now + edge.at);
       now += pwm_period;
       if (period % board::pwm_periods_per_servo_period == 2) {
-        for (const auto& input : board::motor_current) plant.analog_V(input.pin.port, input.pin.number, now);
+        for (const auto& input : facts.motor_current) plant.analog_V(input.pin.port, input.pin.number, now);
         plant.advance(now);
       }
     }
   }
   double read_V(const board::AnalogInput& input) { return plant.analog_V(input.pin.port, input.pin.number, now); }
   double measured_A(unsigned motor) {
-    return (read_V(board::motor_current[motor]) - static_cast<double>(board::shunt_amplifier_offset_V)) /
-           static_cast<double>(board::shunt_ohm * board::shunt_amplifier_gain);
+    return (read_V(facts.motor_current[motor]) - static_cast<double>(board::shunt_amplifier_offset_V)) /
+           static_cast<double>(facts.shunt_V_per_A());
   }
 
+  const board::Facts& facts;
   DecodedInputs inputs;
   Plant plant;
   std::array<std::int64_t, 3> counts_at_start{};

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include <doctest/doctest.h>
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "driven_plant.hpp"
 

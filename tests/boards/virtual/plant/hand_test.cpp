@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <doctest/doctest.h>
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "driven_plant.hpp"
 
@@ -32,7 +32,7 @@ TEST_CASE("the hand takes the stylus out, moves it with minimum jerk, holds it s
     Truth t = driven.plant.truth(driven.now);
     CHECK((t.position_m - goal).norm() < 0.002);
     CHECK_FALSE(t.docked);
-    CHECK(driven.inputs.at(board::inkwell_switch) == PinLevel::floating);
+    CHECK(driven.inputs.at(board::omni_driver.inkwell_switch) == PinLevel::floating);
     // A steady hand: the arm rests, and so do the encoders.
     driven.idle(0.5);
     const auto counts = driven.inputs.counts;

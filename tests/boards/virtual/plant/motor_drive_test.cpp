@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 #include <arm/defaults.hpp>
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 namespace {
 
@@ -149,12 +149,13 @@ TEST_CASE("a floating bridge kills the current through its diodes and leaves it 
 }
 
 TEST_CASE("the dead time costs a voltage against the current's direction") {
-  auto motor = drive(static_cast<double>(board::bridge_dead_time_s));
+  auto motor = drive(static_cast<double>(board::omni_driver.bridge_dead_time_s));
   Ticks now = 0;
   const auto ripple = switch_bridge(motor, 0.3, 2000, now);
   // Leg A loses the dead time at its rising edge, leg B gains it at its falling one: each dead time the
   // diode's drop comes on top.
-  const double lost_V = 2.0 * static_cast<double>(board::bridge_dead_time_s) * board::pwm_Hz * (bus_V + 2.0 * 0.8);
+  const double lost_V =
+      2.0 * static_cast<double>(board::omni_driver.bridge_dead_time_s) * board::pwm_Hz * (bus_V + 2.0 * 0.8);
   CHECK(lost_V > 0.4);
   CHECK(ripple.mean_A == doctest::Approx((0.3 * bus_V - lost_V) / resistance_ohm).epsilon(0.005));
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <doctest/doctest.h>
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "driven_plant.hpp"
 
@@ -98,9 +98,9 @@ TEST_CASE("a shunt amplifier with an offset, another gain, at a rail or frozen")
   driven.plant.set_shunt_fault(0, {.gain = 0.25});
   CHECK(mean_measured_A(driven, 0) == doctest::Approx(0.25 * before_A).epsilon(0.03));
   driven.plant.set_shunt_fault(0, {.output = ShuntFault::Output::upper_rail});
-  CHECK(driven.read_V(board::motor_current[0]) == doctest::Approx(3.1));
+  CHECK(driven.read_V(board::omni_driver.motor_current[0]) == doctest::Approx(3.1));
   driven.plant.set_shunt_fault(0, {.output = ShuntFault::Output::lower_rail});
-  CHECK(driven.read_V(board::motor_current[0]) == doctest::Approx(0.2));
+  CHECK(driven.read_V(board::omni_driver.motor_current[0]) == doctest::Approx(0.2));
   driven.plant.set_shunt_fault(0, {});
   driven.plant.set_shunt_fault(0, {.output = ShuntFault::Output::frozen});
   const double frozen_A = driven.measured_A(0);
@@ -133,8 +133,8 @@ TEST_CASE("shorted turns and heat change current and torque as copper and magnet
     driven.plant.set_motor_fault(2, fault);
     driven.enable(true);
     // All of the supply in one direction and next to no time to move: the current is that of the resistance.
-    driven.plant.output_changed(board::bridges[2].leg_a.pin.port, board::bridges[2].leg_a.pin.number, PinLevel::high,
-                                0);
+    driven.plant.output_changed(board::omni_driver.bridges[2].leg_a.pin.port,
+                                board::omni_driver.bridges[2].leg_a.pin.number, PinLevel::high, 0);
     driven.idle(0.0012);
     return driven.plant.truth(driven.now);
   };
@@ -160,16 +160,16 @@ TEST_CASE("a leg whose upper switch has fused drives the motor until its bridge 
   driven.run(0.0003, {-0.3, 0.0, 0.0});  // the lower switch is asked for at once
   Truth t = driven.plant.truth(driven.now);
   CHECK(t.bridge_fault);
-  CHECK(driven.inputs.at(board::bridge_fault_tim1.pin) == PinLevel::low);
+  CHECK(driven.inputs.at(board::omni_driver.bridge_fault_tim1.pin) == PinLevel::low);
   driven.idle(0.001);
   CHECK(current_A(driven, 0) == 0.0);
 
   driven.enable(false);
   driven.idle(0.0001);
-  CHECK(driven.inputs.at(board::bridge_fault_tim1.pin) == PinLevel::high);
+  CHECK(driven.inputs.at(board::omni_driver.bridge_fault_tim1.pin) == PinLevel::high);
   driven.enable(true);  // the inputs rest low: through both switches of the leg
   driven.idle(0.0001);
-  CHECK(driven.inputs.at(board::bridge_fault_tim1.pin) == PinLevel::low);
+  CHECK(driven.inputs.at(board::omni_driver.bridge_fault_tim1.pin) == PinLevel::low);
 
   driven.plant.set_leg_fault(0, 0, LegFault::none);
   driven.enable(false);

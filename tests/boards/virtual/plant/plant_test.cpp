@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <doctest/doctest.h>
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "driven_plant.hpp"
 
@@ -22,11 +22,11 @@ TEST_CASE("the arm starts docked, at rest and with its switch closed") {
     const Truth t = driven.plant.truth(driven.now);
     CHECK(t.docked);
     CHECK(t.inkwell_switch);
-    CHECK(driven.inputs.at(board::inkwell_switch) == PinLevel::low);
+    CHECK(driven.inputs.at(board::omni_driver.inkwell_switch) == PinLevel::low);
     CHECK((t.position_m - driven.plant.inkwell().position_m()).norm() < 30e-6);
     CHECK(t.velocity_m_s.norm() < 1e-9);
     CHECK(t.supply_V == doctest::Approx(board::supply_nominal_V).epsilon(0.01));
-    CHECK(driven.inputs.at(board::bridge_fault_tim1.pin) == PinLevel::high);
+    CHECK(driven.inputs.at(board::omni_driver.bridge_fault_tim1.pin) == PinLevel::high);
   }
 }
 
@@ -120,8 +120,9 @@ TEST_CASE("the amplifier clips at its rails") {
   driven.enable(true);
   driven.run(0.003, {0.95, -0.95, 0.0});
   CHECK(driven.plant.truth(driven.now).current_A[0] > 5.0);
-  CHECK(driven.read_V(board::motor_current[0]) == doctest::Approx(3.1));  // 0.2 V below the amplifier's supply
-  CHECK(driven.read_V(board::motor_current[1]) == doctest::Approx(0.2));
+  CHECK(driven.read_V(board::omni_driver.motor_current[0]) ==
+        doctest::Approx(3.1));  // 0.2 V below the amplifier's supply
+  CHECK(driven.read_V(board::omni_driver.motor_current[1]) == doctest::Approx(0.2));
 }
 
 TEST_CASE("the enable pin and the bridges' fault take the current away at once, floating pins brake") {
@@ -143,8 +144,8 @@ TEST_CASE("the enable pin and the bridges' fault take the current away at once, 
     } else {
       CHECK(t.current_A.norm() == 0.0);
     }
-    CHECK((driven.inputs.at(board::bridge_fault_tim1.pin) == PinLevel::low) == (how == 2));
-    CHECK((driven.inputs.at(board::bridge_fault_tim8.pin) == PinLevel::low) == (how == 2));
+    CHECK((driven.inputs.at(board::omni_driver.bridge_fault_tim1.pin) == PinLevel::low) == (how == 2));
+    CHECK((driven.inputs.at(board::omni_driver.bridge_fault_tim8.pin) == PinLevel::low) == (how == 2));
     if (how == 2) {
       driven.plant.set_bridge_fault(false);
       driven.run(0.001, {0.3, 0.3, -0.3});
@@ -168,7 +169,7 @@ TEST_CASE("the supply sags under load, rises while the arm is braked, and is mea
   driven.run(0.01, {0.9, 0.0, 0.0});
   const Truth loaded = driven.plant.truth(driven.now);
   CHECK(loaded.supply_V < 17.5);
-  CHECK(std::abs(driven.read_V(board::supply) * 11.0 - loaded.supply_V) < 0.05);
+  CHECK(std::abs(driven.read_V(board::omni_driver.supply) * 11.0 - loaded.supply_V) < 0.05);
 
   driven.plant.place({-0.9, 0.8, 0.4}, {30.0, 0.0, 0.0});  // back-EMF 9.3 V against half the supply
   double highest_V = 0.0;
@@ -192,7 +193,7 @@ TEST_CASE("the supply's reading follows through its divider's 0.9 ms") {
   const double bus_V = driven.plant.truth(driven.now).supply_V;
   CHECK(bus_V == doctest::Approx(24.0).epsilon(0.005));
   // A rise by exp(-t / 0.33 ms), seen by a filter of 0.909 ms.
-  CHECK(driven.read_V(board::supply) * 11.0 == doctest::Approx(24.0 - 6.0 * 0.10).epsilon(0.004));
+  CHECK(driven.read_V(board::omni_driver.supply) * 11.0 == doctest::Approx(24.0 - 6.0 * 0.10).epsilon(0.004));
 }
 
 TEST_CASE("a supply that hunts swings the bus to both sides, a hundred times a second, and comes to rest again") {
@@ -220,13 +221,14 @@ TEST_CASE("amplifiers and potentiometers go with VDDA, the supply's divider does
   DrivenPlant driven(test::omni());
   driven.idle(0.001);
   driven.plant.set_analog_supply_V(3.0);
-  for (const auto& current : board::motor_current) CHECK(driven.read_V(current) == doctest::Approx(1.5).epsilon(0.005));
-  for (const auto& wiper : board::gimbal) CHECK(driven.read_V(wiper) == doctest::Approx(1.5).epsilon(0.01));
-  CHECK(driven.read_V(board::supply) == doctest::Approx(18.0 / 11.0).epsilon(0.01));
+  for (const auto& current : board::omni_driver.motor_current)
+    CHECK(driven.read_V(current) == doctest::Approx(1.5).epsilon(0.005));
+  for (const auto& wiper : board::omni_driver.gimbal) CHECK(driven.read_V(wiper) == doctest::Approx(1.5).epsilon(0.01));
+  CHECK(driven.read_V(board::omni_driver.supply) == doctest::Approx(18.0 / 11.0).epsilon(0.01));
   driven.plant.set_shunt_fault(0, {.output = ShuntFault::Output::upper_rail});
-  CHECK(driven.read_V(board::motor_current[0]) == doctest::Approx(2.8));
+  CHECK(driven.read_V(board::omni_driver.motor_current[0]) == doctest::Approx(2.8));
   driven.plant.set_analog_supply_V(0.0);
-  for (const auto& wiper : board::gimbal) CHECK(driven.read_V(wiper) == 0.0);
+  for (const auto& wiper : board::omni_driver.gimbal) CHECK(driven.read_V(wiper) == 0.0);
 }
 
 TEST_CASE("potentiometers invert the gimbal's characteristic, with wiper noise") {
@@ -239,7 +241,7 @@ TEST_CASE("potentiometers invert the gimbal's characteristic, with wiper noise")
   for (unsigned i = 0; i < 3; ++i) {
     double ratio = 0.0, lowest = 1.0, highest = 0.0;
     for (int n = 0; n < 400; ++n) {
-      const double read = driven.read_V(board::gimbal[i]) / 3.3;
+      const double read = driven.read_V(board::omni_driver.gimbal[i]) / 3.3;
       ratio += read / 400.0;
       lowest = std::min(lowest, read);
       highest = std::max(highest, read);
@@ -255,15 +257,15 @@ TEST_CASE("potentiometers invert the gimbal's characteristic, with wiper noise")
 
 TEST_CASE("switches close to ground") {
   DrivenPlant driven(test::omni());
-  CHECK(driven.inputs.at(board::button_1) == PinLevel::floating);
+  CHECK(driven.inputs.at(board::omni_driver.button_1) == PinLevel::floating);
   driven.plant.press_buttons(true, false);
   driven.idle(0.0001);
-  CHECK(driven.inputs.at(board::button_1) == PinLevel::low);
-  CHECK(driven.inputs.at(board::button_2) == PinLevel::floating);
+  CHECK(driven.inputs.at(board::omni_driver.button_1) == PinLevel::low);
+  CHECK(driven.inputs.at(board::omni_driver.button_2) == PinLevel::floating);
   driven.plant.press_buttons(false, true);
   driven.idle(0.0001);
-  CHECK(driven.inputs.at(board::button_1) == PinLevel::floating);
-  CHECK(driven.inputs.at(board::button_2) == PinLevel::low);
+  CHECK(driven.inputs.at(board::omni_driver.button_1) == PinLevel::floating);
+  CHECK(driven.inputs.at(board::omni_driver.button_2) == PinLevel::low);
 }
 
 TEST_CASE("the same seed gives the same run, another seed other noise") {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <set>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "firmware_on_bus.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 /// The angles of joint 1 that poses show while spikes of this length follow each other on a wire of its encoder.
 std::set<float> angles_under_spikes(board::Pin wire, double spike_s, double period_s) {
   FirmwareOnBus bus(flashed_image());
-  for (const auto& input : {board::encoders[0].a.pin, board::encoders[0].b.pin})
+  for (const auto& input : {board::omni_driver.encoders[0].a.pin, board::omni_driver.encoders[0].b.pin})
     bus.chip.input_pins().drive(input.port, input.number, virtual_board::PinLevel::low);
   bus.connect();
   bus.run_for(0.01);
@@ -36,7 +36,7 @@ std::set<float> angles_under_spikes(board::Pin wire, double spike_s, double peri
 
 // The spikes' periods share no factor with the control period, so that they meet it at every phase.
 TEST_CASE("spikes of 100 ns on an encoder's wire leave the pose alone, longer ones move it by a count") {
-  for (const board::Pin wire : {board::encoders[0].a.pin, board::encoders[0].b.pin}) {
+  for (const board::Pin wire : {board::omni_driver.encoders[0].a.pin, board::omni_driver.encoders[0].b.pin}) {
     CAPTURE(wire.number);
     CHECK(angles_under_spikes(wire, 100e-9, 207e-9).size() == 1);
     CHECK(angles_under_spikes(wire, 330e-9, 700e-9).size() == 1);

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 #include <protocol/scope.hpp>
 
 namespace inkwell::virtual_usb_test {
@@ -45,7 +45,8 @@ FirmwareOnBus::FirmwareOnBus(const std::filesystem::path& image, double host_clo
 
 void FirmwareOnBus::plug(bool in) {
   port.plug(in);
-  chip.input_pins().drive(board::usb_supply.port, board::usb_supply.number, in ? PinLevel::high : PinLevel::low);
+  chip.input_pins().drive(board::omni_driver.usb_supply.port, board::omni_driver.usb_supply.number,
+                          in ? PinLevel::high : PinLevel::low);
 }
 
 void FirmwareOnBus::connect() {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 #include <protocol/self_test.hpp>
 
 #include "firmware_on_bus.hpp"
@@ -108,11 +108,12 @@ TEST_CASE("a crystal that does not start: light and console tell, no device, no 
   PinLevel before = PinLevel::floating;
   for (int i = 0; i < 200; ++i) {
     bus.run_for(0.005);
-    const PinLevel now = bus.chip.pin_output(board::status_led.port, board::status_led.number);
+    const PinLevel now = bus.chip.pin_output(board::omni_driver.status_led.port, board::omni_driver.status_led.number);
     changes += now != before ? 1 : 0;
     before = now;
-    CHECK(bus.chip.pin_output(board::bridge_enable.port, board::bridge_enable.number) != PinLevel::high);
-    for (const auto& bridge : board::bridges)
+    CHECK(bus.chip.pin_output(board::omni_driver.bridge_enable.port, board::omni_driver.bridge_enable.number) !=
+          PinLevel::high);
+    for (const auto& bridge : board::omni_driver.bridges)
       for (const auto& leg : {bridge.leg_a.pin, bridge.leg_b.pin})
         CHECK(bus.chip.pin_output(leg.port, leg.number) == PinLevel::floating);
   }

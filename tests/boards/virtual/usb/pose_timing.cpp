@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "firmware_on_bus.hpp"
 
@@ -63,7 +63,8 @@ struct Measurement {
     bus.chip.connections().scheduler.at(bus.chip.now() + pause, [this] {
       if (!edge_at) {
         is_high = !is_high;
-        bus.chip.input_pins().drive(board::encoders[0].a.pin.port, board::encoders[0].a.pin.number,
+        bus.chip.input_pins().drive(board::omni_driver.encoders[0].a.pin.port,
+                                    board::omni_driver.encoders[0].a.pin.number,
                                     is_high ? PinLevel::high : PinLevel::low);
         edge_at = bus.chip.now();
       }
@@ -87,8 +88,10 @@ PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_p
                          std::uint8_t scope_signals) {
   FirmwareOnBus bus(image, host_clock_ppm);
   Measurement measurement(bus);
-  bus.chip.input_pins().drive(board::encoders[0].a.pin.port, board::encoders[0].a.pin.number, PinLevel::low);
-  bus.chip.input_pins().drive(board::encoders[0].b.pin.port, board::encoders[0].b.pin.number, PinLevel::low);
+  bus.chip.input_pins().drive(board::omni_driver.encoders[0].a.pin.port, board::omni_driver.encoders[0].a.pin.number,
+                              PinLevel::low);
+  bus.chip.input_pins().drive(board::omni_driver.encoders[0].b.pin.port, board::omni_driver.encoders[0].b.pin.number,
+                              PinLevel::low);
   bus.connect();
   bus.cable.on_start_of_frame = [&](std::uint16_t) { measurement.start_of_frame(); };
   bus.cable.on_in = [&](unsigned endpoint, const InReply& reply, std::span<const std::byte> data) {

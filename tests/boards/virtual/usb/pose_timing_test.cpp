@@ -4,7 +4,7 @@
 #include <cstring>
 #include <optional>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "firmware_on_bus.hpp"
 #include "pose_timing.hpp"

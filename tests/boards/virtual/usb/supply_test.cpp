@@ -1,7 +1,7 @@
 // The flashed firmware while the supply of the chip fades: with the brown-out level of the board's page, and as new.
 #include <doctest/doctest.h>
 
-#include <board/board.hpp>
+#include <omni_driver/facts.hpp>
 
 #include "firmware_on_bus.hpp"
 
@@ -32,7 +32,7 @@ TEST_CASE("brown-out level 3 holds the chip in reset before the flash is misread
   bus.run_for(0.1);
   CHECK(bus.chip.counters().instructions == instructions);
   CHECK(bus.core.attachment() == 0);
-  CHECK(level(bus, board::bridge_enable) == PinLevel::floating);
+  CHECK(level(bus, board::omni_driver.bridge_enable) == PinLevel::floating);
   bus.chip.set_supply_V(2.85);  // above where it fell, below where it rises
   bus.run_for(0.1);
   CHECK(bus.chip.counters().instructions == instructions);

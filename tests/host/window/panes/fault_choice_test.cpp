@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <board/board.hpp>
 #include <failure.hpp>
+#include <omni_driver/facts.hpp>
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -60,7 +60,7 @@ TEST_CASE("every part has a title") {
 
 TEST_CASE("the wires are those of the board's facts, without the cable's") {
   const auto names = wires();
-  CHECK(names.size() == std::size(board::pin_uses) - 2);
+  CHECK(names.size() == std::size(board::omni_driver.pin_uses()) - 2);
   CHECK(std::ranges::count(names, "encoders[1].a") == 1);
   CHECK(std::ranges::count(names, "usb_plus") == 0);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace inkwell::virtual_board {
@@ -24,5 +25,8 @@ class Symbols {
   };
   std::vector<Function> functions_;  ///< by address
 };
+
+/// The text, ended by a zero, that an ELF file has under this name; empty if it has none.
+std::string text_in_elf(const std::filesystem::path& elf, std::string_view name);
 
 }  // namespace inkwell::virtual_board

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include <board/facts.hpp>
 #include <chip/pin_name.hpp>
 #include <protocol/injection_request.hpp>
 
@@ -33,12 +34,12 @@ struct Injection {
   std::optional<double> for_s;  ///< then it is healed
 };
 
-/// Both throw InvalidInjection.
-Injection checked(const protocol::InjectionRequest& request);
+/// For a board, whose wires it may name. All throw InvalidInjection.
+Injection checked(const protocol::InjectionRequest& request, const board::Facts& board);
 /// NAME[:OF][=AMOUNT][@AFTER][+FOR], such as encoder_lost_counts:2=0.05@1.5+0.2; times in seconds.
-Injection parse_injection(std::string_view text);
+Injection parse_injection(std::string_view text, const board::Facts& board);
 /// One a line; what follows a # is a comment. Names the line that is wrong.
-std::vector<Injection> parse_injections(std::string_view script);
+std::vector<Injection> parse_injections(std::string_view script, const board::Facts& board);
 
 /// The table for --help, a line each.
 std::string explain_injections();

@@ -1,5 +1,5 @@
 // What keeps a real driver board from being ideal. Typical data-sheet values; the board's nominal facts are
-// in board/board.hpp and the arm's in its description.
+// in its facts and the arm's in its description.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Everything around the chip: bridges and motors, sensors, the arm, the inkwell and the user's hand, wired as
-// board/board.hpp says.
+// Everything around the chip: bridges and motors, sensors, the arm, the inkwell and the user's hand, wired as a
+// board's facts say.
 //
 // Currents are exact between the edges of the bridges; the arm, the supply and the back-EMF take fixed steps
 // of 16.7 us (a third of a control period) with the mean of the true currents. Pins of the chip move only
@@ -11,6 +11,7 @@
 #include <optional>
 #include <random>
 
+#include <board/facts.hpp>
 #include <chip/interfaces.hpp>
 #include <plant/arm_motion.hpp>
 #include <plant/hand.hpp>
@@ -35,7 +36,8 @@ class Plant final : public Circuit {
  public:
   static constexpr Ticks step_ticks = ticks_per_s / 60'000;
 
-  explicit Plant(const arms::Description& arm, const PlantOptions& options = {});
+  /// The facts must outlive it.
+  Plant(const arms::Description& arm, const board::Facts& board, const PlantOptions& options = {});
 
   /// Solders the chip in: from here on the plant drives its inputs, with their present levels to begin with.
   void connect(InputPins& pins);
@@ -112,6 +114,8 @@ class Plant final : public Circuit {
 
   std::array<Wire, 16 * 9> wires_{};  ///< ports A to I
 
+  const board::Facts& board_;
+
   // Electrical
   Imperfections imperfections_;
   std::array<MotorDrive, 3> motors_;
@@ -152,6 +156,7 @@ class Plant final : public Circuit {
   std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope, offset of each
   Vector3 gimbal_rad_;
 
+  double divider_follows_;  ///< how much of its way the divided supply goes in a step
   Ticks now_ = 0;
   Ticks next_step_ = step_ticks;
   std::mt19937_64 random_;

@@ -29,9 +29,9 @@ class OtgFs final : public usb::Port {
                                      peripheral<registers::OTG_FS_PWRCLK>(),
                                      peripheral<registers::OTG_FS_FIFO>(),
                                      peripheral<registers::TIM2>(),
-                                     pin(board::usb_minus),
-                                     pin(board::usb_plus),
-                                     pin(board::usb_supply)};
+                                     pin(board::facts.usb_minus),
+                                     pin(board::facts.usb_plus),
+                                     pin(board::facts.usb_supply)};
 
   /// Sets pins, clock and core up; next_event() connects the pull-up of D+ while the cable brings VBUS. Takes 26 ms.
   /// The 48 MHz clock runs already (clocks.hpp). False if the core does not answer.

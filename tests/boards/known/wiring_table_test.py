@@ -1,6 +1,6 @@
 """The wiring table that a builder follows agrees with the facts that the firmware is made from.
 
-usage: wiring_table_test.py BOARD_FACTS, the program that prints the facts
+usage: wiring_table_test.py BOARD_FACTS BOARD, the program that prints the facts and the board's name
 """
 
 import pathlib
@@ -9,8 +9,7 @@ import subprocess
 import sys
 import unittest
 
-HERE = pathlib.Path(__file__).resolve().parent
-README = HERE.parents[2] / HERE.relative_to(HERE.parents[1]) / "README.md"
+BOARDS = pathlib.Path(__file__).resolve().parents[3] / "boards"
 
 # STM32F405 data sheet, "STM32F40xxx pin definitions", LQFP64.
 LQFP64 = {
@@ -20,22 +19,35 @@ LQFP64 = {
     **{f"PC{n}": place for n, place in enumerate((8, 9, 10, 11, 24, 25, 37, 38, 39, 40, 51, 52, 53, 2, 3, 4))},
 }
 
+# STM32World/hardware, mcustm32f405, connectors J2 and J3: the pins two by two, as they stand there.
+HEADERS = {
+    "J2": "- - - - PC1 PC0 PC3 PC2 PA1 PA0 PA3 PA2 PA5 PA4 PA7 PA6 PC5 PC4 PB1 PB0 - PB2 PB11 PB10 PB13 PB12 PB15 PB14 PC7 "
+          "PC6 PC9 PC8",
+    "J3": "- - - - - - - - PA9 PA8 PA11 PA10 PA13 PA12 PA15 PA14 - - PC11 PC10 - PC12 PB3 PD2 PB5 PB4 PB7 PB6 PB9 PB8 - - "
+          "PC13 PC14 PC15",
+}
+MODULE = {pin: f"{header}.{place}" for header, pins in HEADERS.items() for place, pin in enumerate(pins.split(), 1)}
+
+# What a table says of where a pin is.
+PLACES = {"omni_driver": LQFP64, "bench_modules": MODULE}
+
+
 class WiringTable(unittest.TestCase):
     def setUp(self):
-        lines = subprocess.run([board_facts], check=True, capture_output=True, text=True).stdout.splitlines()
+        lines = subprocess.run([board_facts, board], check=True, capture_output=True, text=True).stdout.splitlines()
         self.facts = {name: (pin, function, channel) for name, pin, function, channel in map(str.split, lines)}
-        rows = re.findall(r"^\| [^|]+ \| `([^`]+)` \| (P[A-Z]\d+) \| (\d+) \| ([^|]+) \| ([^|]+) \|", README.read_text(),
+        rows = re.findall(r"^\| [^|]+ \| `([^`]+)` \| (P[A-Z]\d+) \| ([\w.]+) \| ([^|]+) \| ([^|]+) \|", (BOARDS / board / "README.md").read_text(),
                           re.MULTILINE)
-        self.rows = {name: (pin, function.strip(), int(place), peripheral.strip())
+        self.rows = {name: (pin, function.strip(), place, peripheral.strip())
                      for name, pin, place, peripheral, function in rows}
 
     def test_pins_and_functions_agree(self):
         facts = {name: (pin, function) for name, (pin, function, _) in self.facts.items()}
         self.assertEqual({name: row[:2] for name, row in self.rows.items()}, facts)
 
-    def test_places_of_the_package_are_right(self):
+    def test_places_of_the_pins_are_right(self):
         for name, (pin, _, place, _) in self.rows.items():
-            self.assertEqual(place, LQFP64[pin], name)
+            self.assertEqual(place, str(PLACES[board][pin]), name)
 
     def test_timers_and_channels_agree(self):
         channels = {name: channel for name, (_, _, channel) in self.facts.items() if channel != "-"}
@@ -44,5 +56,6 @@ class WiringTable(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    board = sys.argv.pop()
     board_facts = sys.argv.pop()
     unittest.main()
