@@ -11,6 +11,7 @@ KINDS = {
         r"lib/inkwell/dropins/libHD\.so", r"lib/inkwell/dropins/libHD\.so\.3\.0", r"lib/inkwell/dropins/libHD\.so\.3\.4",
         r"lib/inkwell/dropins/libhdPhantom\.so",
         r"lib/inkwell/firmware/inkwell\.elf", r"lib/inkwell/firmware/inkwell\.bin",
+        r"lib/inkwell/firmware/inkwell-bench_modules\.elf", r"lib/inkwell/firmware/inkwell-bench_modules\.bin",
         r"lib/udev/rules\.d/60-inkwell\.rules",
         r"share/applications/inkwell\.desktop", r"share/icons/hicolor/scalable/apps/inkwell\.svg",
         r"share/bash-completion/completions/inkwell", r"share/bash-completion/completions/virtual-board",

@@ -1,0 +1,118 @@
+// Every board runs the same firmware, made of its own facts: it starts, tests itself, finds its place, and its current
+// loop and its walls are right. What needs no second board stands in the other files here.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include <known/boards.hpp>
+#include <protocol/self_test.hpp>
+#include <stepped_board.hpp>
+
+#include "board_rig.hpp"
+#include "program.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+using protocol::State;
+
+std::string text_of(board::Pin pin) { return std::string(1, 'P') + pin.port + std::to_string(pin.number); }
+
+void check_self_test(BoardRig& rig) {
+  const auto report = rig.device->read_self_test();
+  for (std::size_t i = 0; i < protocol::self_test_item_count; ++i) {
+    INFO("item ", std::string(protocol::self_test_item_table[i].name), ", figure ", report.entries[i].figure);
+    CHECK(info(report.entries[i].result).name == info(protocol::SelfTestResult::passed).name);
+  }
+}
+
+/// What the firmware reads of the motors' currents is what flows.
+void check_currents(BoardRig& rig) {
+  constexpr std::array currents{protocol::Signal::current_1_A, protocol::Signal::current_2_A,
+                                protocol::Signal::current_3_A};
+  rig.make_active();
+  rig.device->select_signals(currents);
+  rig.take_to({0.0, 0.0, -0.047});  // pressed into the wall below
+  device::ScopeSamples newest;
+  while (auto samples = rig.device->read_scope(std::chrono::milliseconds(0))) newest = std::move(*samples);
+  REQUIRE(newest.count > 0);
+  const auto truth = rig.control.truth();
+  double largest_A = 0.0;
+  for (std::size_t motor = 0; motor < currents.size(); ++motor) {
+    const double true_A = truth.at("true_current_" + std::to_string(motor + 1) + "_A").get<double>();
+    const double read_A = newest.values[newest.values.size() - currents.size() + motor];
+    CHECK(read_A == doctest::Approx(true_A).epsilon(0.05).scale(0.5));
+    largest_A = std::max(largest_A, std::abs(read_A));
+  }
+  CHECK(largest_A > 0.2);
+}
+
+}  // namespace
+
+TEST_CASE("every board starts, passes its self-test, finds its place, and reads and shows what it is wired to") {
+  for (const board::Facts* board : board::known_boards) {
+    CAPTURE(board->name);
+    auto options = stepped_board(device::SimulationMode::fast, device::CyclePricing::likely);
+    options.board = board->name;
+    BoardRig rig(options);
+    rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+    CHECK(rig.pose().supply_dV == doctest::Approx(180).epsilon(0.02));
+    check_self_test(rig);
+    CHECK(rig.control.pin(text_of(board->status_led)).level == (board->status_led_shines_when_low ? "low" : "high"));
+    for (const bool first : {true, false}) {
+      rig.control.buttons(first, !first);
+      rig.run(0.05);
+      constexpr unsigned inkwell = 4;
+      CHECK(rig.pose().switches == (inkwell | (first ? 1u : 2u)));
+    }
+    check_currents(rig);
+  }
+}
+
+TEST_CASE("the firmware of one board, flashed on another, shows no device and drives no motor") {
+  auto options = stepped_board(device::SimulationMode::fast, device::CyclePricing::likely);
+  options.elf = build_directory() + "/../board/" + board::image_name(board::bench_modules);
+  options.board = board::omni_driver.name;
+  device::VirtualBoard board(options);
+  auto control = board.control();
+  control.run(1.0);
+  CHECK_FALSE(board.find());
+  CHECK(largest_current_A(control) == 0.0);
+}
+
+TEST_CASE("a board that nobody knows is refused with those that are known") {
+  const auto run = run_program("inkwell", {"info", "--virtual", "--board", "feather"});
+  CHECK(run.exit_code == 1);
+  CHECK(run.err == "inkwell: There is no board called feather. Known are bench_modules, omni_driver.\n");
+  const auto board =
+      run_program("virtual-board", {"--elf", build_directory() + "/../board/inkwell.elf", "--board", "feather"});
+  CHECK(board.exit_code == 2);
+  CHECK(board.err.find("feather, which is not known here; known are bench_modules, omni_driver.") != std::string::npos);
+}
+
+TEST_CASE("the wall of the paper is as stiff, and the current loop as quick, on every other board") {
+  for (const board::Facts* board : board::known_boards) {
+    if (board == &board::default_board) continue;  // experiment_test.cpp
+    const std::string name(board->name);
+    CAPTURE(name);
+    const TemporaryDirectory directory;
+    const auto result = run_program(
+        "inkwell", {"experiment", "wall", "--virtual", "--mode", "fast", "--board", name, "--out", directory.path()});
+    INFO("output: ", result.out, result.err);
+    REQUIRE(result.exit_code == 0);
+    const auto summary = nlohmann::json::parse(std::ifstream(directory.file("summary.json")));
+    CHECK(summary.at("force_maximum_N") > 1.0);
+    CHECK(summary.at("force_law").at("samples_outside_1_percent_and_5_mN") == 0);
+    for (const auto& motor : summary.at("current_step").at("motors")) {
+      CHECK(motor.at("rise_time_s") < 300e-6);
+      CHECK(motor.at("overshoot") < 0.1);
+      CHECK(std::abs(motor.at("steady_error_A").get<double>()) < 0.01);
+    }
+  }
+}
+
+}  // namespace inkwell::tests
