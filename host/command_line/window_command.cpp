@@ -3,6 +3,7 @@
 #include <memory>
 
 #include <frame/window_size.hpp>
+#include <installation/places.hpp>
 #include <window/window.hpp>
 
 #include "help.hpp"
@@ -15,6 +16,8 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
   std::unique_ptr<device::VirtualBoard> board;
   if (!theme.empty()) window_options.theme = theme == "light" ? window::Theme::light : window::Theme::dark;
   window_options.serial_number = options.serial_number;
+  window_options.firmware = installation::firmware();
+  window_options.board = options.address();
   window_options.virtual_board_control_port = control_port;
   window_options.list_devices = [&options] { return device::find_arms(options.address()); };
   const auto start_virtual_board = [&options, &board](window::WindowOptions& of_window) {
@@ -23,6 +26,7 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
         options.virtual_board(device::SimulationMode::fast, BoardPace::real_time));
     of_window.serial_number.clear();
     of_window.virtual_board_control_port = board->control_port();
+    of_window.board = device::parse_server(std::to_string(board->usbip_port()));
     if (of_window.parameters_file.empty()) of_window.parameters_file = options.arm;
     of_window.simulated_arm = protocol::default_parameters();
     if (!options.arm.empty())

@@ -21,6 +21,7 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       settings_(settings),
       style_{&palette(settings.theme), load_fonts(scale), scale},
       desk_(options.list_devices, options.serial_number),
+      updater_(options.firmware, options.board),
       scope_pane_(settings.scope),
       column_({.desk = desk_,
                .parameters_file = settings_.parameters_file,
@@ -90,7 +91,7 @@ void Companion::lay_out(ImVec2 size, double now_s) {
   take_keyboard_shortcuts(now_s);
   pose_ = replay_bar_.is_open() ? replay_bar_.pose() : desk_.view().pose;
 
-  const std::optional<Banner> banner = banner_of(desk_.view(), replay_bar_.is_open());
+  const std::optional<Banner> banner = banner_of(desk_.view(), replay_bar_.is_open(), updater_.sight());
   const WindowLayout layout =
       layout_of(size,
                 {.status_height = status_bar_.height(size.x, style_),
@@ -140,7 +141,9 @@ StatusBarOutcome Companion::draw_bars(const WindowLayout& layout, const std::opt
   StatusBarOutcome outcome =
       status_bar_.draw(layout.status.place, layout.status.size, style_, desk_,
                        {.scope_is_shown = settings_.scope_is_shown, .is_replay = replay_bar_.is_open()});
-  if (banner) outcome.clear_fault = draw_banner(layout.banner.place, layout.banner.size, style_, *banner);
+  if (!banner || !draw_banner(layout.banner.place, layout.banner.size, style_, *banner)) return outcome;
+  outcome.clear_fault = banner->is_fault;
+  if (!banner->is_fault) update_firmware();
   return outcome;
 }
 
@@ -162,11 +165,9 @@ bool Companion::draw_scene(const WindowLayout& layout, double now_s) {
                         !returned_.waits_for_user()});
   if (replays) {
     replay_bar_.draw(layout.replay.place, layout.replay.size, style_, scope_pane_);
-  } else if (!desk_.view().connected()) {
-    wants_virtual_board_ =
-        draw_connection_card(layout.middle_of_scene(), style_, desk_.view(), {may_start_virtual_board_, problem_});
-  } else if (returned_.is_shown()) {
-    draw_returned_values(layout, now_s);
+  } else {
+    draw_card(layout);
+    if (!has_card() && returned_.is_shown()) draw_returned_values(layout, now_s);
   }
   return asks_for_force;
 }
@@ -176,6 +177,28 @@ void Companion::draw_returned_values(const WindowLayout& layout, double now_s) {
                                                protocol::force_is_on(desk_.view().state()));
   if (choice == ReturnChoice::send) editor_.apply("values of before", returned_.changes_back(), now_s);
   if (choice == ReturnChoice::keep) returned_.dismiss();
+}
+
+bool Companion::has_card() const {
+  const DeviceView& view = desk_.view();
+  return !view.connected() || has_firmware_card(updater_.sight(), view);
+}
+
+void Companion::draw_card(const WindowLayout& layout) {
+  const DeviceView& view = desk_.view();
+  const auto firmware = updater_.sight();
+  updater_.look_for_boot_loader(!view.connected());
+  if (!has_card()) return;
+  const auto outcome =
+      draw_connection_card(layout.middle_of_scene(), style_, view, firmware, {may_start_virtual_board_, problem_});
+  wants_virtual_board_ = outcome.starts_virtual_board;
+  if (outcome.firmware.dismiss) updater_.dismiss();
+  if (outcome.firmware.update) update_firmware();
+}
+
+void Companion::update_firmware() {
+  column_.cancel();
+  updater_.begin(desk_.wanted_serial_number());
 }
 
 void Companion::draw_column(const WindowLayout& layout, ImVec2 window, double now_s) {
@@ -198,7 +221,8 @@ void Companion::draw_scope(const WindowLayout& layout) {
 
 void Companion::judge_motion() {
   const bool scene_moves = looks_different(drawn_pose_, pose_);
-  is_moving_ = scene_moves || column_.is_moving() || replay_bar_.is_playing() ||
+  const bool is_updating = updater_.sight().phase == FirmwareUpdater::Phase::runs;
+  is_moving_ = scene_moves || is_updating || column_.is_moving() || replay_bar_.is_playing() ||
                (settings_.scope_is_shown && scope_pane_.take_motion());
   if (scene_moves) drawn_pose_ = pose_;
 }

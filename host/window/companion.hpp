@@ -5,6 +5,7 @@
 #include <string>
 
 #include <bars/banner.hpp>
+#include <bars/firmware_updater.hpp>
 #include <bars/key_help.hpp>
 #include <bars/replay_bar.hpp>
 #include <bars/status_bar.hpp>
@@ -57,6 +58,10 @@ class Companion final : public FrameContent {
   void draw_scope(const WindowLayout& layout);
   void judge_motion();
 
+  /// In the middle of the scene: no device, or an update.
+  bool has_card() const;
+  void draw_card(const WindowLayout& layout);
+  void update_firmware();
   void carry_out(const StatusBarOutcome& outcome);
   void use_theme(Theme theme);
   void stop();
@@ -78,6 +83,7 @@ class Companion final : public FrameContent {
   StatusBar status_bar_;
   ReplayBar replay_bar_;
   KeyHelp key_help_;
+  FirmwareUpdater updater_;
   ScenePane scene_pane_;
   ScopePane scope_pane_;
   PaneColumn column_;

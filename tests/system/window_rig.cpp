@@ -15,8 +15,9 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-device::VirtualBoardOptions board_options() {
+device::VirtualBoardOptions board_options(const std::filesystem::path& elf = {}) {
   device::VirtualBoardOptions options;
+  options.elf = elf;
   options.mode = device::SimulationMode::fast;
   options.real_time = true;  // the mouse is the hand, so board time must be the user's time
   return options;
@@ -52,10 +53,20 @@ bool Sight::says(const std::string& part) const {
 
 // The display says its number in a line of its own, once it is ready; what it says of numbers taken is no error. Its
 // keys do not repeat (-r): between press and release a busy computer may take longer than a finger.
+constexpr char display_command[] = "exec Xvfb -r -displayfd 1 -screen 0 1280x800x24 -nolisten tcp 2>/dev/null";
+
+WindowRig::WindowRig(OtherImage, const std::string& image)
+    : board(board_options(build_directory() + "/../board/" + image)),
+      control(board.control()),
+      display_({"sh", "-c", display_command}),
+      display_name_("DISPLAY=:" + display_.read_line()),
+      window_(window_words(board, directory_.file("parameters.toml"), {}, true),
+              {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {}
+
 WindowRig::WindowRig(const std::vector<std::string>& options, bool tells_control_port)
     : board(board_options()),
       control(board.control()),
-      display_({"sh", "-c", "exec Xvfb -r -displayfd 1 -screen 0 1280x800x24 -nolisten tcp 2>/dev/null"}),
+      display_({"sh", "-c", display_command}),
       display_name_("DISPLAY=:" + display_.read_line()),
       window_(window_words(board, directory_.file("parameters.toml"), options, tells_control_port),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {

@@ -54,6 +54,9 @@ class WindowRig {
   /// Without the control port the window knows no more of the virtual board than of a real one.
   explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true);
 
+  /// The same on a board with another image, build/board/`image`; waits for nothing.
+  static WindowRig with_image(const std::string& image) { return WindowRig(OtherImage(), image); }
+
   /// A frame that began after all events so far.
   Sight look();
   /// Looks until the condition is met; throws after a time that no healthy run takes.
@@ -95,6 +98,11 @@ class WindowRig {
   device::ControlClient control;
 
  private:
+  struct OtherImage {
+    explicit OtherImage() = default;
+  };
+  WindowRig(OtherImage, const std::string& image);
+
   nlohmann::json ask(const std::string& question);
   void play(const std::vector<std::string>& events);
   void turn_wheel(Point over, int steps, const char* button);

@@ -16,15 +16,27 @@ constexpr float banner_margin_points = 12.0f;
 constexpr float button_points = 118.0f;
 
 float banner_text_width(float width, const Style& style, const Banner& banner) {
-  return width - style.points(44 + (banner.is_fault ? button_points + 2 * banner_margin_points : banner_margin_points));
+  return width -
+         style.points(44 + (!banner.button.empty() ? button_points + 2 * banner_margin_points : banner_margin_points));
+}
+
+/// Both can talk to each other; an update may wait.
+std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpdater::Sight& firmware) {
+  const std::string& version = view.status.information->firmware_version;
+  if (firmware.phase != FirmwareUpdater::Phase::idle || firmware.version.empty() || firmware.version == version ||
+      protocol::force_is_on(view.state()))
+    return std::nullopt;
+  return Banner{fmt::format("The board has firmware {}, this companion brings {}.", version, firmware.version),
+                "Both speak the same protocol, so the board may stay as it is. Stored parameters stay in either case.",
+                false, "Update"};
 }
 
 }  // namespace
 
-std::optional<Banner> banner_of(const DeviceView& view, bool is_replay) {
+std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware) {
   if (view.pose && view.pose->state == State::fault) {
     const auto [cause, remedy] = device::fault_text(view.pose->fault);
-    return Banner{cause, remedy, true};
+    return Banner{cause, remedy, true, "Clear fault"};
   }
   if (!view.connected() || !view.status.information) return std::nullopt;
   if (is_replay && protocol::force_is_on(view.state()))
@@ -33,7 +45,7 @@ std::optional<Banner> banner_of(const DeviceView& view, bool is_replay) {
         "Something else has switched it on, such as a program. STOP switches it off; close the replay to see the arm.",
         false};
   const MotorHeatView heat = motor_heat_view(view.status.information->report);
-  if (heat.level == HeatLevel::cool) return std::nullopt;
+  if (heat.level == HeatLevel::cool) return firmware_banner(view, firmware);
   return Banner{fmt::format("Motor {} is {}: {:.0f} %.", heat.motor, heat.level == HeatLevel::hot ? "hot" : "warm",
                             100.0f * heat.hottest),
                 heat_advice(heat), false};
@@ -65,9 +77,9 @@ bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& ba
   ImGui::PopTextWrapPos();
   ImGui::EndGroup();
   bool pressed = false;
-  if (banner.is_fault) {
+  if (!banner.button.empty()) {
     ImGui::SetCursorPos({size.x - style.points(button_points + banner_margin_points), style.points(14)});
-    pressed = coloured_button("Clear fault", palette.danger, palette.on_danger,
+    pressed = coloured_button(banner.button.c_str(), colour, banner.is_fault ? palette.on_danger : palette.on_caution,
                               {style.points(button_points), style.points(34)});
   }
   end_pane();

@@ -23,8 +23,24 @@ Colour connection_colour(Connection connection, const Palette& palette) {
   return connection == Connection::searching ? palette.text_quiet : palette.caution;
 }
 
-bool draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view, const VirtualBoardOffer& offer) {
+namespace {
+
+bool draw_virtual_board_offer(const Style& style, const VirtualBoardOffer& offer) {
   const Palette& palette = *style.palette;
+  ImGui::Dummy({0, style.points(4)});
+  const bool asks = coloured_button("Start a virtual arm", palette.accent, palette.pane, {-1, style.points(32)});
+  wrapped_text(offer.problem.empty() ? palette.text_quiet : palette.danger_text,
+               offer.problem.empty() ? "The same firmware on a simulated board, arm and hand: the mouse is the hand."
+                                     : offer.problem);
+  return asks;
+}
+
+}  // namespace
+
+ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view,
+                                           const FirmwareUpdater::Sight& firmware, const VirtualBoardOffer& offer) {
+  const Palette& palette = *style.palette;
+  ConnectionCardOutcome outcome;
   ImGui::SetNextWindowPos(centre, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({style.points(420), 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, style.points(8));
@@ -32,20 +48,19 @@ bool draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& v
   ImGui::Begin("connection", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing);
-  text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
-  const std::string& message = view.status.message.empty() ? view.list_error : view.status.message;
-  wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
-  bool asks = false;
-  if (offer.is_made) {
-    ImGui::Dummy({0, style.points(4)});
-    asks = coloured_button("Start a virtual arm", palette.accent, palette.pane, {-1, style.points(32)});
-    wrapped_text(offer.problem.empty() ? palette.text_quiet : palette.danger_text,
-                 offer.problem.empty() ? "The same firmware on a simulated board, arm and hand: the mouse is the hand."
-                                       : offer.problem);
+  if (has_firmware_card(firmware, view)) {
+    outcome.firmware = draw_firmware_part(style, firmware);
+  } else {
+    text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
+    const std::string& message = view.status.message.empty() ? view.list_error : view.status.message;
+    wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
+    if (view.status.connection == Connection::incompatible)
+      outcome.firmware.update = draw_firmware_offer(style, firmware);
+    if (offer.is_made) outcome.starts_virtual_board = draw_virtual_board_offer(style, offer);
   }
   ImGui::End();
   ImGui::PopStyleVar(2);
-  return asks;
+  return outcome;
 }
 
 }  // namespace inkwell::window

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <device/transport.hpp>
+#include <device/address.hpp>
 #include <frame/palette.hpp>
 #include <protocol/parameters.hpp>
 
@@ -39,6 +39,11 @@ struct WindowOptions {
   /// The arm that this virtual board simulates, for the simulated hand of the guides; without it, the arm that the
   /// device's parameters describe.
   std::optional<protocol::ParameterSet> simulated_arm;
+
+  /// The image that boards with another firmware are offered, and the board that it would be written to: with an empty
+  /// serial number the one that is chosen. Empty: nothing is offered.
+  std::filesystem::path firmware;
+  device::Address board;
 
   int width = 1280;  ///< in points: pixels, or several of them on a fine display
   int height = 800;

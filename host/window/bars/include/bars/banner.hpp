@@ -4,21 +4,23 @@
 #include <optional>
 #include <string>
 
+#include <bars/firmware_updater.hpp>
 #include <device_desk/device_desk.hpp>
 #include <frame/style.hpp>
 
 namespace inkwell::window {
 
 /// What has to be said over the whole width: a fault with its cause and remedy, an arm with force that is out of sight
-/// behind a replay, or a motor that is hot.
+/// behind a replay, a motor that is hot, or another firmware than this companion's.
 struct Banner {
   std::string what;
   std::string remedy;
   bool is_fault;
+  std::string button{};  ///< what can be done about it; empty: nothing here
 };
-std::optional<Banner> banner_of(const DeviceView& view, bool is_replay);
+std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware);
 float banner_height(float width, const Style& style, const Banner& banner);
-/// True when "Clear fault" was pressed.
+/// True when its button was pressed.
 bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner);
 
 }  // namespace inkwell::window

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <bars/firmware_card.hpp>
 #include <device_desk/device_desk.hpp>
 #include <frame/style.hpp>
 
@@ -16,8 +17,12 @@ struct VirtualBoardOffer {
   bool is_made;
   const std::string& problem;  ///< why it could not be started the last time; empty: nothing is known
 };
-/// A card in the middle of the scene that says why no device is connected and what to do. True if the user asks for a
-/// virtual board.
-bool draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view, const VirtualBoardOffer& offer);
+struct ConnectionCardOutcome {
+  FirmwareCardOutcome firmware;
+  bool starts_virtual_board = false;
+};
+/// A card in the middle of the scene that says why no device is connected and what to do, or how an update goes.
+ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view,
+                                           const FirmwareUpdater::Sight& firmware, const VirtualBoardOffer& offer);
 
 }  // namespace inkwell::window

@@ -1,0 +1,77 @@
+#include <bars/firmware_card.hpp>
+
+#include <fmt/format.h>
+
+#include <frame/widgets.hpp>
+
+namespace inkwell::window {
+namespace {
+
+using Phase = FirmwareUpdater::Phase;
+
+void draw_progress(const Style& style, const FirmwareUpdater::Sight& sight) {
+  const Palette& palette = *style.palette;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, height = style.points(8), round = style.points(4);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(corner, {corner.x + width, corner.y + height}, packed(palette.raised), round);
+  list.AddRectFilled(corner, {corner.x + width * static_cast<float>(sight.done), corner.y + height},
+                     packed(palette.accent), round);
+  ImGui::Dummy({width, height + style.points(4)});
+  text(palette.text_quiet, sight.message);
+  wrapped_text(palette.text, "Leave its cable and its power as they are.");
+}
+
+bool update_button(const char* label, const Style& style) {
+  ImGui::Dummy({0, style.points(4)});
+  return coloured_button(label, style.palette->accent, style.palette->pane, {style.points(240), style.points(34)});
+}
+
+}  // namespace
+
+bool has_firmware_card(const FirmwareUpdater::Sight& sight, const DeviceView& view) {
+  return sight.phase != Phase::idle || (!view.connected() && sight.sees_boot_loader);
+}
+
+FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater::Sight& sight) {
+  const Palette& palette = *style.palette;
+  FirmwareCardOutcome outcome;
+  switch (sight.phase) {
+    case Phase::runs:
+      text(style.fonts.strong, palette.text, "Updating the firmware");
+      draw_progress(style, sight);
+      break;
+    case Phase::failed:
+      text(style.fonts.strong, palette.caution, "The update did not succeed");
+      wrapped_text(palette.text_quiet, sight.message);
+      outcome.update = update_button("Try again", style);
+      ImGui::SameLine();
+      outcome.dismiss = quiet_button("Leave it", style);
+      break;
+    case Phase::done:
+      text(style.fonts.strong, palette.good, "The firmware is written");
+      wrapped_text(palette.text_quiet, sight.message);
+      outcome.dismiss = update_button("Go on", style);
+      break;
+    case Phase::idle:
+      text(style.fonts.strong, palette.caution, "A board waits for its firmware");
+      wrapped_text(
+          palette.text_quiet,
+          sight.brings.empty()
+              ? "It is in the boot loader of its chip, and this companion has no firmware to write: it was not "
+                "built or installed. `tools/build board` makes it."
+              : "It is in the boot loader of its chip, and no firmware runs. This companion brings " + sight.brings +
+                    ".");
+      if (!sight.brings.empty()) outcome.update = update_button("Write its firmware", style);
+  }
+  return outcome;
+}
+
+bool draw_firmware_offer(const Style& style, const FirmwareUpdater::Sight& sight) {
+  if (sight.brings.empty()) return false;
+  wrapped_text(style.palette->text_quiet,
+               fmt::format("This companion brings {}. Stored parameters stay.", sight.brings));
+  return update_button("Update the board", style);
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,58 @@
+// Writes this companion's firmware into a board while the window goes on.
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <device/address.hpp>
+
+namespace inkwell::window {
+
+class FirmwareUpdater {
+ public:
+  enum class Phase : std::uint8_t { idle, runs, failed, done };
+  /// One frame's view of it.
+  struct Sight {
+    Phase phase = Phase::idle;
+    std::string message{};  ///< the step, why it failed, or what the board has now
+    double done = 0;        ///< from 0 to 1
+    bool sees_boot_loader = false;
+    std::string brings{};   ///< what the image is, such as "firmware 0.1.0 for omni_driver"; empty: there is none
+    std::string version{};  ///< of the image; empty: there is none
+  };
+
+  /// `image` is read anew for each update. The board is that at `address`.
+  FirmwareUpdater(std::filesystem::path image, device::Address address);
+  /// Waits for an update that runs: half a firmware would be left.
+  ~FirmwareUpdater() = default;
+
+  /// Once a frame: a boot loader is looked for while no device is connected.
+  void look_for_boot_loader(bool looks);
+  /// Begins, unless one runs. `serial_number` may be empty: the only board.
+  void begin(const std::string& serial_number);
+  /// The message was read.
+  void dismiss();
+  Sight sight() const;
+
+ private:
+  void work(const std::stop_token& stop);
+  void update(const std::string& serial_number);
+  void look();
+  void set(Phase phase, const std::string& message, double done);
+
+  const std::filesystem::path image_;
+  const device::Address address_;
+  mutable std::mutex mutex_;  // of what follows
+  std::condition_variable_any changed_;
+  Sight sight_;
+  bool looks_ = false;
+  std::optional<std::string> begun_;  ///< for the board with this number
+
+  std::jthread worker_;
+};
+
+}  // namespace inkwell::window
