@@ -8,18 +8,18 @@ using namespace inkwell::tests;
 
 TEST_CASE("a board that speaks another version of the protocol is updated from the window") {
   WindowRig window = WindowRig::with_image("next-protocol.elf");
-  auto sight =
-      window.look_until("the firmware is offered", [](const Sight& now) { return now.can_click("Update the board"); });
+  auto sight = window.look_until("the firmware is offered",
+                                 [](const Sight& now) { return now.can_click("connection/Update the board"); });
   CHECK(sight.says("Another protocol version"));
   CHECK(sight.says("for omni_driver"));
   CHECK(sight.says("Stored parameters stay"));
-  window.click("Update the board");
+  window.click("connection/Update the board");
   sight = window.look_until("it is under way", [](const Sight& now) { return now.says("erasing"); });
   CHECK(sight.says("Updating the firmware"));
   CHECK(sight.says("Leave its cable and its power"));
-  CHECK_FALSE(sight.has("Update the board"));
+  CHECK_FALSE(sight.has("connection/Update the board"));
   window.look_until("it is done", [](const Sight& now) { return now.says("The firmware is written"); });
-  window.click("Go on");
+  window.click("connection/Go on");
   sight = window.look_until("the board is back",
                             [](const Sight& now) { return now.connected() && now.state() == "ready"; });
   CHECK_FALSE(sight.says("The firmware is written"));
