@@ -51,12 +51,13 @@ bool Processor::refuses(std::uint32_t address, unsigned bytes, Access access, Ro
 int Processor::rights_in_page(std::uint32_t page, std::uint32_t bytes, Role role) {
   const auto& protection = machine_.memory_protection;
   if (protection.is_on(role.above_faults) && protection.divides(page, bytes)) return -1;
-  if (flash_is_busy_ && is_in_flash(page)) return -1;
   // The engine asks about the alignment of an access only where it has to ask about each.
   const bool is_memory = machine_.memory.at(page, 1) != nullptr;
   if (is_memory && is_device(page, role)) return -1;
   int rights = 0;
-  if (!refusal_of(page, Access::load, role)) rights |= may_read;
+  // While the flash is busy each first read of a page is asked about, and then waits until it is not.
+  const bool waits = flash_is_busy_ && is_in_flash(page);
+  if (!waits && !refusal_of(page, Access::load, role)) rights |= may_read;
   if (!refusal_of(page, Access::store, role)) rights |= may_write;
   if (!refusal_of(page, Access::fetch, role)) rights |= may_execute;
   return rights;

@@ -200,7 +200,7 @@ void FlashController::erase() {
   const auto erase_range = [&](std::uint32_t base, std::uint32_t bytes, Ticks typical) {
     begin(typical, true, base, bytes);
     std::memset(machine_.memory.flash() + base, 0xFF, bytes);
-    machine_.processor->forget_code(flash_base + base, bytes);
+    machine_.processor->forget_code_later(flash_base + base, bytes);
   };
   if (flash_map.cr.mer.in(control_)) return erase_range(0, flash_bytes, mass_ms[parallelism] * millisecond);
   const unsigned number = flash_map.cr.snb.of(control_);

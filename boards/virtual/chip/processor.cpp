@@ -150,6 +150,7 @@ Masks Processor::masks() const {
 Outcome Processor::run(std::uint64_t cycles) {
   stop_cycle_ = cycles_ + cycles;
   if (guard_bytes_ != 0) guard_float_instructions();
+  for (const auto& [address, bytes] : std::exchange(to_forget_, {})) forget_code(address, bytes);
   take_new_rights();
   stopped_ = false;
   stopped_before_.reset();

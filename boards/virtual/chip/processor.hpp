@@ -94,6 +94,9 @@ class Processor final : public ClockUser, private EngineCalls {
   }
   /// After instructions in memory changed.
   void forget_code(std::uint32_t address, std::uint32_t bytes);
+  /// The same from inside of a slice, in which the engine would fetch from there, and be refused by the memory
+  /// protection unit: before the next slice.
+  void forget_code_later(std::uint32_t address, std::uint32_t bytes) { to_forget_.push_back({address, bytes}); }
 
   std::uint64_t cycles() const { return cycles_; }
   std::uint64_t instructions() const { return instructions_; }
@@ -297,6 +300,10 @@ class Processor final : public ClockUser, private EngineCalls {
     unsigned size;
   };
   std::vector<FlashStore> flash_stores_;
+  struct CodeRange {
+    std::uint32_t address, bytes;
+  };
+  std::vector<CodeRange> to_forget_;
   std::set<std::uint32_t> divides_asked_about_;
   std::vector<std::uint32_t> new_divides_;
   bool float_unit_on_ = false, core_coupled_on_ = true, rights_changed_ = false;
