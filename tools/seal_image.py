@@ -3,8 +3,9 @@
 
     tools/seal_image.py build/board/inkwell.elf
 
-The checksum is the CRC-32 that the STM32F405 counts (RM0090, chapter CRC), of all words from the begin of the flash up
-to the section .image_check. There must be no gap between the sections, because each programmer fills it in its own way.
+The checksum is the CRC-32 that the STM32F405 counts (RM0090, chapter CRC), of all words of the image up to the section
+.image_check. One gap is left between the sections, that of the parameter store, which is no part of the image; there must
+be no other, because each programmer fills it in its own way.
 """
 
 import argparse
@@ -44,12 +45,21 @@ def objcopy(*arguments: str) -> None:
 
 
 def flash_of(elf: str, folder: Path) -> bytes:
-    objcopy("-O", "binary", elf, str(folder / "image.bin"))
-    image = (folder / "image.bin").read_bytes()
+    """The image without the store: the sections in the order of where they lie in the flash."""
     headers = subprocess.run(["arm-none-eabi-objdump", "-h", elf], check=True, capture_output=True, text=True).stdout
-    rows = re.findall(r"^ *\d+ \S+ +([0-9a-f]{8}) .*\n +CONTENTS, ALLOC, LOAD", headers, re.MULTILINE)
-    if sum(int(size, 16) for size in rows) != len(image):
+    rows = re.findall(r"^ *\d+ (\S+) +([0-9a-f]{8}) +[0-9a-f]{8} +([0-9a-f]{8}) .*\n +CONTENTS, ALLOC, LOAD", headers,
+                      re.MULTILINE)
+    sections = sorted((int(address, 16), int(size, 16), name) for name, size, address in rows if int(size, 16) > 0)
+    gaps = [(first[0] + first[1], second[0]) for first, second in zip(sections, sections[1:])
+            if first[0] + first[1] != second[0]]
+    symbols = subprocess.run(["arm-none-eabi-nm", elf], check=True, capture_output=True, text=True).stdout
+    places = {name: int(value, 16) for value, name in re.findall(r"^([0-9a-f]+) \w (\w+)$", symbols, re.MULTILINE)}
+    if gaps != [(places["copied_end"], places["code_begin"])]:
         raise ValueError("there is a gap between two sections in the flash; align them in the linker script")
+    image = b""
+    for _, _, name in sections:
+        objcopy("-O", "binary", "--only-section", name, elf, str(folder / "section.bin"))
+        image += (folder / "section.bin").read_bytes()
     return image
 
 
@@ -63,7 +73,7 @@ def main() -> int:
             image = flash_of(elf, Path(folder))
             word.write_bytes(checksum(image[:-4]).to_bytes(4, "little"))
             objcopy("--update-section", f".image_check={word}", elf)
-        except (OSError, ValueError, subprocess.CalledProcessError) as error:
+        except (OSError, ValueError, KeyError, subprocess.CalledProcessError) as error:
             print(f"cannot seal {elf}: {error}", file=sys.stderr)
             return 1
     return 0

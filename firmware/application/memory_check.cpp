@@ -35,7 +35,7 @@ bool MemoryCheck::start() {
   checksum.start();
   begin_round();
   do static_cast<void>(step());
-  while (sound_ && !(part_ == 0 && next_ == flash_begin));
+  while (sound_ && !(part_ == 0 && next_ == copied_begin));
   return sound_;
 }
 
@@ -52,15 +52,16 @@ bool MemoryCheck::step() {
 
 void MemoryCheck::begin_round() {
   part_ = 0;
-  next_ = flash_begin;
+  next_ = copied_begin;
   checksum.begin();
 }
 
 void MemoryCheck::check_flash() {
-  const std::uint32_t* const end = next_ + std::min(words_per_step, image_check - next_);
+  const bool is_copied = next_ < copied_end;
+  const std::uint32_t* const end = next_ + std::min(words_per_step, (is_copied ? copied_end : image_check) - next_);
   // With a pointer of its own: where the member counts, GCC 12 writes the last word twice.
   for (const std::uint32_t* word = next_; word != end; ++word) checksum.add(*word);
-  next_ = end;
+  next_ = is_copied && end == copied_end ? code_begin : end;  // the parameter store lies between them
   if (next_ != image_check) return;
   sound_ = checksum.value() == *image_check;
   next_ = copies()[0].begin;

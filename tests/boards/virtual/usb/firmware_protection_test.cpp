@@ -19,7 +19,8 @@ constexpr std::uint16_t load_by_r0 = 0x6800, store_by_r0 = 0x6000;  // ldr r0, [
 
 /// Where half a word of the flash is this instruction, whatever it was meant to be.
 std::uint32_t place_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
-  for (std::uint32_t address = virtual_board::flash_base; address < virtual_board::flash_base + 0x10000; address += 2)
+  constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000;  // boards/omni_driver/board.ld
+  for (std::uint32_t address = code; address < code + 0x1'0000; address += 2)
     if ((bus.chip.memory_word(address & ~3u) >> 8 * (address & 2) & 0xFFFF) == instruction) return address;
   return 0;
 }
@@ -94,7 +95,7 @@ TEST_CASE("what only an error does with the memory is a fault, and the board say
   const Error errors[] = {
       {"a null pointer is read", load, 0, no_data | valid_address},
       {"a null pointer is written", store, 8, no_data | valid_address},
-      {"the flash is written", store, 0x0800'8000, no_data | valid_address},
+      {"the flash is written", store, 0x0801'8000, no_data | valid_address},
       {"behind the flash", load, 0x0810'0000, no_data | valid_address},
       {"the code of interrupts is written", store, 0x2001'C100, no_data | valid_address},
       {"its last word", store, 0x2001'FFFC, no_data | valid_address},
