@@ -110,7 +110,7 @@ def main() -> int:
     room = image.symbols["stack_top"] - image.symbols["stack_bottom"]
     print(f"  bound with {len(image.interrupts) + 1} exception frames of {EXCEPTION_FRAME_BYTES}: {bound} of {room}")
     if bound > room:
-        problems.append(f"the stack needs {bound} bytes, but the board's linker script (board.ld) gives {room}")
+        problems.append(f"the stack needs {bound} bytes, but the linker script (boards/facts/stm32f405.ld) gives {room}")
     for problem in problems:
         print(f"ERROR: {problem}", file=sys.stderr)
     return 1 if problems else 0

@@ -36,7 +36,9 @@ void check_currents(BoardRig& rig) {
                                 protocol::Signal::current_3_A};
   rig.make_active();
   rig.device->select_signals(currents);
-  rig.take_to({0.0, 0.0, -0.047});  // pressed into the wall below
+  rig.take_to(free_point_m);
+  rig.set({{protocol::Parameter::box_minimum_z_m, static_cast<float>(free_point_m[2]) + 0.002f}});
+  rig.run(0.3);  // in a wall of two millimetres
   device::ScopeSamples newest;
   while (auto samples = rig.device->read_scope(std::chrono::milliseconds(0))) newest = std::move(*samples);
   REQUIRE(newest.count > 0);
