@@ -15,9 +15,9 @@ Error damaged() {
 }
 
 /// Takes a report apart from its begin on.
-class Reader {
+class RowReader {
  public:
-  explicit Reader(std::span<const std::byte> left) : left_(left) {}
+  explicit RowReader(std::span<const std::byte> left) : left_(left) {}
 
   float number() {
     float value = 0;
@@ -76,7 +76,7 @@ ForceLaw parse_force_law(std::span<const std::byte> report) {
       head.signal_count > protocol::force_law_signals_maximum)
     throw damaged();
   const auto bytes = std::make_shared<const std::vector<std::byte>>(report.begin(), report.begin() + head.size);
-  Reader reader{std::span(*bytes).subspan(sizeof head)};
+  RowReader reader{std::span(*bytes).subspan(sizeof head)};
   ForceLaw law{.report = bytes, .name = reader.text(), .help = reader.text(), .parameters = {}, .signals = {}};
   for (std::size_t i = 0; i < head.parameter_count; ++i) {
     protocol::ParameterInfo row{};
