@@ -41,12 +41,12 @@ std::optional<protocol::CommandReport> decode_command(std::span<const std::byte>
     case Command::disable_force:
     case Command::clear_fault:
     case Command::stop:
-    case Command::self_test: return command;
+    case Command::self_test:
+    case Command::store_parameters:
+    case Command::factory_reset: return command;
     case Command::select_signals: return sound(command.selection) ? std::optional(command) : std::nullopt;
     case Command::test_current:
     case Command::test_voltage: return sound(command.test) ? std::optional(command) : std::nullopt;
-    case Command::store_parameters:
-    case Command::factory_reset: break;  // this firmware has no store yet
   }
   return std::nullopt;
 }

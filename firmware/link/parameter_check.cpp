@@ -106,12 +106,13 @@ ParameterCheck check_whole(const ParameterSet& set, const Given& given) {
   return {Refusal::accepted, 0, 0.0f, set};
 }
 
-ParameterCheck restore_defaults(const ParameterSet& current, bool force_is_on) {
+/// To the defaults, or to what is stored.
+ParameterCheck restore(const ParameterSet& wanted, const ParameterSet& current, bool force_is_on) {
   if (force_is_on)
     for (std::size_t i = 0; i < parameter_count; ++i)
-      if (table_limits[i].needs_force_off && table_defaults.values[i] != current.values[i])
-        return refuse(Refusal::force_is_on, id_of(i), table_defaults.values[i]);
-  return {Refusal::accepted, 0, 0.0f, image_defaults()};
+      if (table_limits[i].needs_force_off && wanted.values[i] != current.values[i])
+        return refuse(Refusal::force_is_on, id_of(i), wanted.values[i]);
+  return {Refusal::accepted, 0, 0.0f, wanted};
 }
 
 protocol::ParameterEntry entry_at(std::span<const std::byte> report, std::size_t i) {
@@ -126,6 +127,8 @@ std::size_t image_parameter_count() { return parameter_count + control::installe
 
 std::uint16_t image_parameter_id(std::size_t index) { return id_of(index); }
 
+std::optional<std::size_t> image_parameter_index(std::uint16_t id) { return find(id); }
+
 ParameterSet image_defaults() {
   ParameterSet set = table_defaults;
   for (std::size_t i = parameter_count; i < image_parameter_count(); ++i)
@@ -133,7 +136,29 @@ ParameterSet image_defaults() {
   return set;
 }
 
-ParameterCheck check_transaction(std::span<const std::byte> report, const ParameterSet& current, bool force_is_on) {
+void StoredSet::put(std::size_t index, float value) {
+  if (check_value(index, value, value, false) == Refusal::accepted)
+    set_.values[index] = value;
+  else
+    ++refused_;
+}
+
+void StoredSet::make_consistent() {
+  const ParameterSet defaults = image_defaults();
+  const auto give_up = [&](Parameter parameter) {
+    if (set_[parameter] == defaults[parameter]) return;
+    set_[parameter] = defaults[parameter];
+    ++refused_;
+  };
+  while (const Bounds* pair = find_contradiction(set_)) {
+    give_up(pair->lower);
+    give_up(pair->upper);
+    if (pair->hold_sphere) give_up(Parameter::sphere_radius_m);
+  }
+}
+
+ParameterCheck check_transaction(std::span<const std::byte> report, const ParameterSet& current, bool force_is_on,
+                                 const ParameterSet* stored) {
   constexpr std::size_t header_size = protocol::parameters_report_size(0);
   if (report.size() < header_size || report.size() > sizeof(protocol::ParametersReport))
     return refuse(Refusal::wrong_length);
@@ -154,7 +179,11 @@ ParameterCheck check_transaction(std::span<const std::byte> report, const Parame
     return refuse(Refusal::wrong_length);
 
   if (header.operation == protocol::ParameterOperation::restore_defaults)
-    return header.count == 0 ? restore_defaults(current, force_is_on) : refuse(Refusal::wrong_length);
+    return header.count == 0 ? restore(image_defaults(), current, force_is_on) : refuse(Refusal::wrong_length);
+  if (header.operation == protocol::ParameterOperation::restore_stored) {
+    if (header.count != 0) return refuse(Refusal::wrong_length);
+    return stored != nullptr ? restore(*stored, current, force_is_on) : refuse(Refusal::nothing_stored);
+  }
   if (header.operation != protocol::ParameterOperation::set) return refuse(Refusal::unknown_operation);
 
   ParameterSet set = current;

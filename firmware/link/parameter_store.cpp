@@ -29,35 +29,54 @@ bool ParameterStore::settings_are_intact() const {
   return settings_.is_offered() || sum_of(settings_.used()) == settings_sum_;
 }
 
-protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on) {
+void ParameterStore::offer(control::Settings& place, const protocol::ParameterSet& set) {
+  values_ = set;
+  place = control::prepare(values_);
+  settings_sum_ = sum_of(place);
+  settings_.offer();
+}
+
+void ParameterStore::start_with(const protocol::ParameterSet& set) {
+  offer(*settings_.next(), set);
+  settings_.take();
+}
+
+bool ParameterStore::restore_defaults() {
+  control::Settings* next = settings_.next();
+  if (next != nullptr) offer(*next, image_defaults());
+  return next != nullptr;
+}
+
+protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on,
+                                         const protocol::ParameterSet* stored) {
   ++transactions_;
   ParameterCheck check;
   control::Settings* next = settings_.next();
   if (next == nullptr)
     check.refusal = protocol::Refusal::busy;
   else
-    check = check_transaction(report, values_, force_is_on);
+    check = check_transaction(report, values_, force_is_on, stored);
 
   refusal_ = check.refusal;
   refused_id_ = check.parameter_id;
   refused_value_ = check.value;
-  if (refusal_ == protocol::Refusal::accepted) {
-    values_ = check.set;
-    *next = control::prepare(values_);
-    settings_sum_ = sum_of(*next);
-    settings_.offer();
-  }
+  if (refusal_ == protocol::Refusal::accepted) offer(*next, check.set);
   return refusal_;
 }
 
-std::size_t ParameterStore::read(protocol::ParametersReport& report) const {
-  report.report_id = protocol::ReportId::parameters;
-  report.operation = protocol::ParameterOperation::set;
+std::size_t read_set(const protocol::ParameterSet& set, protocol::ReportId id, protocol::ParameterOperation operation,
+                     protocol::ParametersReport& report) {
+  report.report_id = id;
+  report.operation = operation;
   report.version = protocol::protocol_version;
   report.count = static_cast<std::uint16_t>(image_parameter_count());
   report.reserved = 0;
-  for (std::size_t i = 0; i < report.count; ++i) report.entries[i] = {image_parameter_id(i), 0, values_.values[i]};
+  for (std::size_t i = 0; i < report.count; ++i) report.entries[i] = {image_parameter_id(i), 0, set.values[i]};
   return protocol::parameters_report_size(report.count);
+}
+
+std::size_t ParameterStore::read(protocol::ParametersReport& report) const {
+  return read_set(values_, protocol::ReportId::parameters, protocol::ParameterOperation::set, report);
 }
 
 protocol::TransactionReport ParameterStore::result() const {

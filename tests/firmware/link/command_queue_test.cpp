@@ -48,7 +48,7 @@ TEST_CASE("a command of another length, report, version or kind is ignored") {
   bad = good;
   bad.report_id = protocol::ReportId::pose;
   CHECK_FALSE(sound(bad));
-  for (int command = static_cast<int>(Command::self_test) + 1; command < 256; ++command)
+  for (int command = static_cast<int>(Command::factory_reset) + 1; command < 256; ++command)
     CHECK_FALSE(sound(make(static_cast<Command>(command))));
 }
 

@@ -145,8 +145,13 @@ TEST_CASE("each refusal tells its reason and leaves everything as it was") {
   }
   SUBCASE("unknown operation") {
     Transaction transaction{good};
-    transaction.report().operation = static_cast<protocol::ParameterOperation>(2);
+    transaction.report().operation = static_cast<protocol::ParameterOperation>(3);
     check_refused(store, transaction.bytes(), Refusal::unknown_operation);
+  }
+  SUBCASE("what is stored, where nothing is") {
+    Transaction transaction{};
+    transaction.report().operation = protocol::ParameterOperation::restore_stored;
+    check_refused(store, transaction.bytes(), Refusal::nothing_stored);
   }
   SUBCASE("unknown parameter") {
     for (const std::uint16_t id : {0, 99, 106, 609, 0xFFFF})

@@ -15,7 +15,7 @@
 //   link.samples.next().summary = {...}; link.samples.record(); link.poses.note_load(cycles)
 //   link.status.record(controller.state(), motor_heat, cycles, late_force_reports, overrun)
 //
-// About 10 KB, most of it the last samples: it lives in the core-coupled memory. The scope's frames and the rows of the
+// About 13 KB, most of it the last samples: it lives in the core-coupled memory. The scope's frames and the rows of the
 // black box are the main loop's and lie elsewhere.
 #pragma once
 
@@ -31,6 +31,7 @@
 #include <link/self_test.hpp>
 #include <link/servo_status.hpp>
 #include <link/shared.hpp>
+#include <link/stored_parameters.hpp>
 
 namespace inkwell::link {
 
@@ -41,6 +42,7 @@ struct Link {
       : poses(samples, cycles_per_period), scope(samples, frames), black_box(samples, memory), self_test(samples) {}
 
   ParameterStore parameters;
+  StoredParameters stored;
   CommandQueue commands;
   ProgramRequests program;
   SampleRing samples;

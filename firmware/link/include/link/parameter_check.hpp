@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <protocol/reports.hpp>
@@ -13,7 +14,25 @@ namespace inkwell::link {
 std::size_t image_parameter_count();
 /// On the wire, of one of them.
 std::uint16_t image_parameter_id(std::size_t index);
+/// Of the one with this id on the wire.
+std::optional<std::size_t> image_parameter_index(std::uint16_t id);
 protocol::ParameterSet image_defaults();
+
+/// Values that were stored, perhaps by another firmware: each that this one refuses takes its default instead.
+class StoredSet {
+ public:
+  StoredSet() : set_(image_defaults()) {}
+  void put(std::size_t index, float value);
+  /// After all have been put: of a pair of bounds that contradict each other both take their default.
+  void make_consistent();
+  /// How many took their default.
+  std::uint16_t refused() const { return refused_; }
+  const protocol::ParameterSet& set() const { return set_; }
+
+ private:
+  protocol::ParameterSet set_;
+  std::uint16_t refused_ = 0;
+};
 
 /// What became of a transaction: `set` is valid if `refusal` is accepted.
 struct ParameterCheck {
@@ -27,8 +46,8 @@ struct ParameterCheck {
 ///
 /// `report` starts at the report id. It holds exactly the entries that it counts, or is padded to the
 /// whole ParametersReport, as Windows does with feature reports. While the force is on, a transaction
-/// that changes a parameter of the group "arm" is refused.
+/// that changes a parameter of the group "arm" is refused. `stored` is what restore_stored gives; null is nothing.
 ParameterCheck check_transaction(std::span<const std::byte> report, const protocol::ParameterSet& current,
-                                 bool force_is_on);
+                                 bool force_is_on, const protocol::ParameterSet* stored = nullptr);
 
 }  // namespace inkwell::link

@@ -13,17 +13,29 @@
 
 namespace inkwell::link {
 
+/// The ParametersReport that tells this set; returns the bytes of it that are used.
+std::size_t read_set(const protocol::ParameterSet& set, protocol::ReportId id, protocol::ParameterOperation operation,
+                     protocol::ParametersReport& report);
+
 /// Holds the parameters, and hands the settings prepared from them over to the interrupt.
 class ParameterStore {
  public:
   /// Starts with the defaults of the table and of the force law.
   ParameterStore();
 
+  /// Before the control interrupt runs: with these instead, which are sound.
+  void start_with(const protocol::ParameterSet& set);
+
   // ---- main loop ----
 
   /// Checks a ParametersReport and, if it is sound, offers its settings to the interrupt. A refused one
-  /// changes nothing but result(). `busy` while the transaction before has not been taken yet.
-  protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on);
+  /// changes nothing but result(). `busy` while the transaction before has not been taken yet. `stored` is what
+  /// restore_stored gives; null is nothing.
+  protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on,
+                           const protocol::ParameterSet* stored = nullptr);
+
+  /// Without a transaction, while the force is off. False while the one before has not been taken yet.
+  [[nodiscard]] bool restore_defaults();
 
   /// Every parameter of the table and of the force law, in this order; returns the bytes of the report that are used.
   std::size_t read(protocol::ParametersReport& report) const;
@@ -47,6 +59,8 @@ class ParameterStore {
   const control::Settings& settings() const { return settings_.used(); }
 
  private:
+  void offer(control::Settings& place, const protocol::ParameterSet& set);
+
   protocol::ParameterSet values_;
   Handover<control::Settings> settings_;
   std::uint32_t settings_sum_;  ///< of the newest

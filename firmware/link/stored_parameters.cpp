@@ -1,0 +1,200 @@
+#include <link/stored_parameters.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include <control/installed_force_law.hpp>
+#include <link/parameter_check.hpp>
+
+namespace inkwell::link {
+
+using protocol::ParameterSet;
+using protocol::StoreContents;
+using protocol::StoreResult;
+
+namespace {
+
+/// The law's name stands behind the head of its report.
+std::uint32_t own_force_law_hash() {
+  const auto* name =
+      reinterpret_cast<const char*>(control::installed_force_law.report) + sizeof(protocol::ForceLawReport);
+  return protocol::force_law_name_hash(name);
+}
+
+bool differ(float one, float other) { return std::bit_cast<std::uint32_t>(one) != std::bit_cast<std::uint32_t>(other); }
+
+bool are_equal(const ParameterSet& one, const ParameterSet& other) {
+  for (std::size_t i = 0; i < image_parameter_count(); ++i)
+    if (differ(one.values[i], other.values[i])) return false;
+  return true;
+}
+
+bool belongs_to_a_law(std::uint32_t id) { return id >= protocol::force_law_first_id; }
+
+/// An entry of another law's is none of this image's, whatever its id.
+bool is_known(std::uint32_t id, bool same_law) {
+  return id <= 0xFFFF && (same_law || !belongs_to_a_law(id)) &&
+         image_parameter_index(static_cast<std::uint16_t>(id)).has_value();
+}
+
+}  // namespace
+
+StoredParameters::StoredParameters() : set_(image_defaults()) {}
+
+void StoredParameters::start(FlashMemory& memory, std::array<std::uint8_t, 3> version, ParameterStore& parameters) {
+  for (std::size_t i = 0; i < version.size(); ++i) firmware_version_ |= std::uint32_t{version[i]} << 8 * i;
+  log_.start(memory);
+  has_flash_ = true;
+  load(parameters);
+}
+
+void StoredParameters::load(ParameterStore& parameters) {
+  const auto& record = log_.newest();
+  if (!record) return;
+  const RecordHead& head = record->head;
+  for (std::size_t i = 0; i < 4; ++i)
+    at_start_.firmware_version[i] = static_cast<std::uint8_t>(head.firmware_version >> 8 * i);
+  at_start_.parameter_table_hash = head.parameter_table_hash;
+  at_start_.force_law_hash = head.force_law_hash;
+  at_start_.schema = head.schema;
+  const auto kind = static_cast<RecordKind>(head.kind);
+  contents_ = head.schema != protocol::store_schema ? StoreContents::other_schema
+              : kind == RecordKind::factory_reset   ? StoreContents::factory_reset
+              : kind == RecordKind::parameters      ? StoreContents::parameters
+                                                    : StoreContents::other_schema;
+  at_start_.contents_at_start = contents_;
+  if (!has_parameters()) return;
+
+  const bool same_law = head.force_law_hash == own_force_law_hash();
+  at_start_.entries = static_cast<std::uint16_t>(record->payload.size() / 2);
+  StoredSet stored;
+  for (std::size_t i = 0; i < at_start_.entries; ++i) {
+    const std::uint32_t id = record->payload[2 * i];
+    if (is_known(id, same_law)) {
+      stored.put(*image_parameter_index(static_cast<std::uint16_t>(id)),
+                 std::bit_cast<float>(record->payload[2 * i + 1]));
+      continue;
+    }
+    if (at_start_.unknown < protocol::store_unknown_ids_maximum)
+      at_start_.unknown_ids[at_start_.unknown] = static_cast<std::uint16_t>(std::min<std::uint32_t>(id, 0xFFFF));
+    ++at_start_.unknown;
+  }
+  stored.make_consistent();
+  at_start_.out_of_range = stored.refused();
+  set_ = stored.set();
+  is_as_written_here_ = stored.refused() == 0 && same_law &&
+                        head.parameter_table_hash == protocol::parameter_table_hash &&
+                        head.firmware_version == firmware_version_;
+  parameters.start_with(set_);
+}
+
+void StoredParameters::ask(protocol::Command command, bool may) {
+  ++commands_;
+  if (!may) {
+    result_ = StoreResult::force_is_on;
+    return;
+  }
+  wanted_ = command == protocol::Command::store_parameters ? Wanted::store : Wanted::factory_reset;
+  result_ = StoreResult::under_way;
+}
+
+void StoredParameters::follow(ParameterStore& parameters, bool force_is_on, std::uint32_t periods) {
+  if (!is_busy() || force_is_on || periods - last_step_periods_ < periods_between_words) return;
+  last_step_periods_ = periods;
+  if (is_writing_)
+    write();
+  else if (is_resetting_)
+    is_resetting_ = !parameters.restore_defaults();
+  else
+    begin(parameters.values());
+  if (!is_busy() && result_ == StoreResult::under_way) result_ = result_of_reset_;
+}
+
+void StoredParameters::begin(const ParameterSet& held) {
+  const Wanted wanted = std::exchange(wanted_, Wanted::nothing);
+  result_of_reset_ = StoreResult::done;
+  result_ = StoreResult::under_way;
+  if (wanted == Wanted::store) {
+    if (has_parameters() && is_as_written_here_ && are_equal(held, set_)) return;
+    writing_ = held;
+    return begin_record(RecordKind::parameters, put_entries(held));
+  }
+  if (contents_ == StoreContents::nothing || contents_ == StoreContents::factory_reset) {
+    result_of_reset_ = StoreResult::nothing_stored;
+    is_resetting_ = true;
+    return;
+  }
+  begin_record(RecordKind::factory_reset, 0);
+}
+
+void StoredParameters::begin_record(RecordKind kind, std::size_t entries) {
+  kind_ = kind;
+  is_writing_ = has_flash_ && log_.begin(head(kind), std::span(payload_).first(2 * entries));
+  if (!is_writing_) result_ = StoreResult::no_room;
+}
+
+RecordHead StoredParameters::head(RecordKind kind) const {
+  return {.schema = protocol::store_schema,
+          .kind = static_cast<std::uint16_t>(kind),
+          .firmware_version = firmware_version_,
+          .parameter_table_hash = protocol::parameter_table_hash,
+          .force_law_hash = own_force_law_hash()};
+}
+
+/// Those of this image, then what it does not know of the newest record. What belongs to another force law is left out,
+/// because this one's parameters have the same ids.
+std::size_t StoredParameters::put_entries(const ParameterSet& held) {
+  std::size_t count = 0;
+  const auto put = [&](std::uint32_t id, std::uint32_t value) {
+    payload_[2 * count] = id;
+    payload_[2 * count + 1] = value;
+    ++count;
+  };
+  for (std::size_t i = 0; i < image_parameter_count(); ++i)
+    put(image_parameter_id(i), std::bit_cast<std::uint32_t>(held.values[i]));
+  if (!has_parameters()) return count;
+  const auto& old = log_.newest()->payload;
+  for (std::size_t i = 0; i + 1 < old.size() && count < entries_maximum; i += 2)
+    if (!belongs_to_a_law(old[i]) && !is_known(old[i], true)) put(old[i], old[i + 1]);
+  return count;
+}
+
+void StoredParameters::write() {
+  const FlashLog::Progress progress = log_.step();
+  if (progress == FlashLog::Progress::under_way) return;
+  is_writing_ = false;
+  if (progress == FlashLog::Progress::failed) {
+    result_ = StoreResult::flash_failed;
+    return;
+  }
+  is_as_written_here_ = true;
+  if (kind_ == RecordKind::parameters) {
+    contents_ = StoreContents::parameters;
+    set_ = writing_;
+    return;
+  }
+  contents_ = StoreContents::factory_reset;
+  set_ = image_defaults();
+  is_resetting_ = true;
+}
+
+protocol::StoreReport StoredParameters::report(const ParameterSet& held) const {
+  protocol::StoreReport report = at_start_;
+  report.report_id = protocol::ReportId::store;
+  report.result = result_;
+  report.contents = contents_;
+  for (std::size_t i = 0; i < image_parameter_count(); ++i)
+    report.differing = static_cast<std::uint16_t>(report.differing + differ(held.values[i], set_.values[i]));
+  report.stores_left = static_cast<std::uint16_t>(log_.room(2 * (image_parameter_count() + at_start_.unknown)));
+  report.commands = commands_;
+  report.records_written = log_.records_written();
+  for (std::size_t i = 0; i < protocol::store_sectors; ++i) report.sector_erases[i] = log_.erases()[i];
+  return report;
+}
+
+std::size_t StoredParameters::read(protocol::ParametersReport& report) const {
+  return read_set(set_, protocol::ReportId::stored, protocol::ParameterOperation::restore_stored, report);
+}
+
+}  // namespace inkwell::link
