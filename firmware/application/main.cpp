@@ -12,6 +12,7 @@
 #include "background_watch.hpp"
 #include "crash.hpp"
 #include "main_loop.hpp"
+#include "parameter_memory.hpp"
 #include "parts.hpp"
 #include "ram_test.hpp"
 #include "start_report.hpp"
@@ -64,6 +65,11 @@ int main() {
   drivers::start_logic_supply_watch();
   if (reset_cause.power_on()) host_link.self_test.note(protocol::SelfTestItem::ram, ram_keeps_pattern());
 
+  // Before anything uses a parameter, and before anything would be held up by an erase: the watchdog does not run yet,
+  // nor do bridges, interrupts and USB.
+  ParameterMemory parameter_memory;
+  host_link.stored.start(parameter_memory, {INKWELL_VERSION_NUMBERS}, host_link.parameters);
+
   // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
   analog_inputs.start_clocks();
   bridges.start();
@@ -91,7 +97,9 @@ int main() {
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
     usb_device.poll();
-    if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update)
+    host_link.stored.follow(host_link.parameters, protocol::force_is_on(host_link.status.state()), periods);
+    if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update &&
+        !host_link.stored.is_busy())
       drivers::start_boot_loader();
     host_link.scope.pack();
     host_link.black_box.follow();

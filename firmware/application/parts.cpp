@@ -46,6 +46,7 @@ Part<drivers::Console> console;
 Part<drivers::IndependentWatchdog> watchdog;
 Part<drivers::Checksum> checksum;
 Part<drivers::OtgFs> usb_port;
+Part<drivers::ParameterFlash> parameter_flash;
 
 link::Shared<std::uint32_t> completed_periods{0};
 

@@ -14,6 +14,7 @@
 #include <drivers/encoders.hpp>
 #include <drivers/independent_watchdog.hpp>
 #include <drivers/otg_fs.hpp>
+#include <drivers/parameter_flash.hpp>
 #include <drivers/status_led.hpp>
 #include <drivers/switches.hpp>
 #include <link/link.hpp>
@@ -23,7 +24,7 @@ namespace inkwell::application {
 /// Every driver; it does not compile if two of them claim the same (drivers/claims.hpp).
 using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::AnalogInputs, drivers::Switches,
                                  drivers::StatusLed, drivers::Console, drivers::IndependentWatchdog, drivers::Checksum,
-                                 drivers::OtgFs>;
+                                 drivers::OtgFs, drivers::ParameterFlash>;
 
 /// A driver of the list.
 template <class Driver>
@@ -42,6 +43,7 @@ extern Part<drivers::Console> console;
 extern Part<drivers::IndependentWatchdog> watchdog;
 extern Part<drivers::Checksum> checksum;
 extern Part<drivers::OtgFs> usb_port;
+extern Part<drivers::ParameterFlash> parameter_flash;
 
 extern link::Link host_link;
 

@@ -98,6 +98,11 @@ Answer Device::get_report(const SetupPacket& setup) {
     case report_value(feature_report, ReportId::force_law):
       return Answer::send(std::span(control::installed_force_law.report, control::installed_force_law.report_size));
     case report_value(feature_report, ReportId::self_test): return send(link_.self_test.report());
+    case report_value(feature_report, ReportId::store): return send(link_.stored.report(link_.parameters.values()));
+    case report_value(feature_report, ReportId::stored): {
+      auto* report = new (buffer.data()) protocol::ParametersReport;
+      return Answer::send(buffer.first(link_.stored.read(*report)));
+    }
     case report_value(feature_report, ReportId::black_box): return send(link_.black_box.report());
     case report_value(feature_report, ReportId::black_box_rows): return send(link_.black_box.rows());
     default: return Answer::stall();
@@ -124,13 +129,20 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
   if (setup.value == report_value(feature_report, ReportId::shapes)) return link_.program.accept_shapes(data);
   if (setup.value == report_value(feature_report, ReportId::black_box_rows)) return link_.black_box.select_rows(data);
   // What is wrong with a transaction is told by the TransactionReport, not by a stall.
-  link_.parameters.accept(data, force_is_on());
+  link_.parameters.accept(data, force_is_on(), link_.stored.has_parameters() ? &link_.stored.next_start() : nullptr);
   return true;
 }
 
 bool Device::force_is_on() const {
   // In this order: were the state read first, the interrupt could take the command in between.
   return link_.commands.waiting(protocol::Command::enable_force) || protocol::force_is_on(link_.status.state());
+}
+
+bool Device::may_store() const {
+  using protocol::Command;
+  for (const Command before : {Command::enable_force, Command::self_test, Command::test_current, Command::test_voltage})
+    if (link_.commands.waiting(before)) return false;
+  return protocol::may_store(link_.status.state());
 }
 
 // DFU 1.1, section 5.1 and appendix A.2: idle, then detaching as soon as the status stage is over. Not while the hand

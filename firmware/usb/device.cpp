@@ -223,6 +223,9 @@ bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
   if (!link_.commands.has_room()) return false;
   // Selected before the command is queued, so that its acknowledgement never comes too early.
   if (command->command == protocol::Command::select_signals) link_.scope.select(command->selection, command->token);
+  // Likewise, so that who has the acknowledgement finds the command counted.
+  if (command->command == protocol::Command::store_parameters || command->command == protocol::Command::factory_reset)
+    link_.stored.ask(command->command, may_store());
   return link_.commands.push(*command);
 }
 

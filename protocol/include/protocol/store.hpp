@@ -125,7 +125,7 @@ struct StoreReport {
   std::uint16_t schema;                        ///< of what this start found; 0 for nothing
   std::uint16_t entries;                       ///< parameters in what this start found
   std::uint16_t out_of_range;  ///< of them those that took their default, because this firmware refuses their value
-  std::uint16_t unknown;       ///< of them those that this firmware does not know; it keeps them
+  std::uint16_t unknown;       ///< of them those that this firmware does not know; kept but for another force law's
   std::uint16_t unknown_ids[store_unknown_ids_maximum];  ///< the first of them, else 0
 };
 

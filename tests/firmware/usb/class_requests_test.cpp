@@ -312,6 +312,25 @@ TEST_CASE("HID: the report of the self-test, with what start-up has found") {
   CHECK(protocol::takes_force(report));
 }
 
+TEST_CASE("HID: a command to the store is counted, and refused while a force may come") {
+  DeviceBench bench;
+  bench.configure();
+  const auto report = [&] { return bench.get_feature<protocol::StoreReport>(protocol::ReportId::store); };
+  CHECK(report().result == protocol::StoreResult::none);
+  const auto send = [&](protocol::Command what) { CHECK(bench.set_report(2, command(what, 1)) == done_result); };
+  bench.run(1, protocol::State::active);
+  send(protocol::Command::store_parameters);
+  CHECK(report().result == protocol::StoreResult::force_is_on);
+  bench.run(1, protocol::State::ready);
+  send(protocol::Command::enable_force);  // waits before the other
+  send(protocol::Command::store_parameters);
+  CHECK(report().result == protocol::StoreResult::force_is_on);
+  bench.run(5, protocol::State::ready);
+  send(protocol::Command::store_parameters);
+  CHECK(report().result == protocol::StoreResult::under_way);
+  CHECK(report().commands == 3);
+}
+
 TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, and nothing happens") {
   DeviceBench bench;
   bench.configure();
@@ -346,7 +365,8 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
     for (unsigned id = 0; id < 256; ++id) {
       const unsigned value = type << 8 | id;
       if (value == 0x0101 || value == 0x0310 || value == 0x0311 || value == 0x0312 || value == 0x0313 ||
-          value == 0x0315 || value == 0x0316 || value == 0x0317 || value == 0x0318)
+          value == 0x0315 || value == 0x0316 || value == 0x0317 || value == 0x0318 || value == 0x0319 ||
+          value == 0x031A)
         continue;
       CHECK(bench.get_report(static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(id), 64) == stall_result);
     }

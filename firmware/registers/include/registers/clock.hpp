@@ -81,6 +81,7 @@ struct FlashInterface {
     using PRFTEN = Field<ACR, 8, 1>;
     using ICEN = Field<ACR, 9, 1>;
     using DCEN = Field<ACR, 10, 1>;
+    using DCRST = Field<ACR, 12, 1>;
   };
 };
 

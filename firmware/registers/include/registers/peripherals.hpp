@@ -6,6 +6,7 @@
 #include <registers/checksum.hpp>
 #include <registers/clock.hpp>
 #include <registers/direct_memory_access.hpp>
+#include <registers/flash_programming.hpp>
 #include <registers/general_purpose_io.hpp>
 #include <registers/otg_fs.hpp>
 #include <registers/processor.hpp>
@@ -14,24 +15,25 @@
 #include <registers/watchdog.hpp>
 
 /// X(name, map, base). Each of these is one driver's own: its registers are drivers::RegistersOf, for who claims it.
-#define INKWELL_CLAIMABLE_PERIPHERALS(X)           \
-  X(TIM2, CaptureTimer, 0x40000000)                \
-  X(TIM3, EncoderTimer, 0x40000400)                \
-  X(TIM4, EncoderTimer, 0x40000800)                \
-  X(TIM5, EncoderTimer, 0x40000C00)                \
-  X(IWDG, IndependentWatchdog, 0x40003000)         \
-  X(USART2, SerialPort, 0x40004400)                \
-  X(TIM1, AdvancedTimer, 0x40010000)               \
-  X(TIM8, AdvancedTimer, 0x40010400)               \
-  X(ADC1, AnalogConverter, 0x40012000)             \
-  X(ADC2, AnalogConverter, 0x40012100)             \
-  X(ADC3, AnalogConverter, 0x40012200)             \
-  X(ADC_COMMON, AnalogConverterCommon, 0x40012300) \
-  X(CRC, ChecksumUnit, 0x40023000)                 \
-  X(DMA2, DirectMemoryAccess, 0x40026400)          \
-  X(OTG_FS_GLOBAL, UsbGlobal, 0x50000000)          \
-  X(OTG_FS_DEVICE, UsbDevice, 0x50000800)          \
-  X(OTG_FS_PWRCLK, UsbPower, 0x50000E00)           \
+#define INKWELL_CLAIMABLE_PERIPHERALS(X)             \
+  X(TIM2, CaptureTimer, 0x40000000)                  \
+  X(TIM3, EncoderTimer, 0x40000400)                  \
+  X(TIM4, EncoderTimer, 0x40000800)                  \
+  X(TIM5, EncoderTimer, 0x40000C00)                  \
+  X(IWDG, IndependentWatchdog, 0x40003000)           \
+  X(USART2, SerialPort, 0x40004400)                  \
+  X(TIM1, AdvancedTimer, 0x40010000)                 \
+  X(TIM8, AdvancedTimer, 0x40010400)                 \
+  X(ADC1, AnalogConverter, 0x40012000)               \
+  X(ADC2, AnalogConverter, 0x40012100)               \
+  X(ADC3, AnalogConverter, 0x40012200)               \
+  X(ADC_COMMON, AnalogConverterCommon, 0x40012300)   \
+  X(CRC, ChecksumUnit, 0x40023000)                   \
+  X(FLASH_PROGRAMMING, FlashProgramming, 0x40023C00) \
+  X(DMA2, DirectMemoryAccess, 0x40026400)            \
+  X(OTG_FS_GLOBAL, UsbGlobal, 0x50000000)            \
+  X(OTG_FS_DEVICE, UsbDevice, 0x50000800)            \
+  X(OTG_FS_PWRCLK, UsbPower, 0x50000E00)             \
   X(OTG_FS_FIFO, UsbFifo, 0x50001000)
 
 /// X(name, map, base). These are everyone's: `registers::RCC::CR::read()`. Of a port the pins are claimed.

@@ -61,6 +61,8 @@ class Device final : private ControlRequests {
   Answer vendor_request(const SetupPacket& setup);
 
   bool force_is_on() const;
+  /// Likewise: there is no force, and no command waits that could bring one.
+  bool may_store() const;
   void handle(const Event& event);
   void bus_reset();
   void host_gone();

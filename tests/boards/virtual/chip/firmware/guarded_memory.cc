@@ -50,7 +50,7 @@ void note(void (*probe)(std::uint32_t), std::uint32_t address) {
   note(load_word, 0);
   note(store_word, 8);
   note(run_at, 0);
-  note(store_word, 0x0800'8000);
+  note(store_word, 0x0801'8000);
   note(load_word, 0x0810'0000);
   note(store_word, code_in_sram);
   note(store_word, 0x2001'FFFC);
