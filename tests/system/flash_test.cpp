@@ -29,6 +29,7 @@ std::string image(const std::string& name) { return build_directory() + "/../boa
 /// A virtual board that runs on by itself.
 class FreeBoard {
  public:
+  /// `more`: options beside the image, or instead of it if they name one or a flash.
   explicit FreeBoard(const std::vector<std::string>& more = {}) : program_(words(more)) {
     const std::string ready = program_.read_line();
     const auto at = ready.find("usbip=") + 6;
@@ -44,6 +45,11 @@ class FreeBoard {
       std::this_thread::sleep_for(20ms);
     }
   }
+  /// The power goes; what the flash holds then is in its file.
+  void switch_off() {
+    kill(program_.process(), SIGTERM);
+    program_.wait();
+  }
   ProgramResult flash(std::vector<std::string> words) const {
     words.insert(words.begin(), {"flash", "--usbip", port});
     return run_program("inkwell", words);
@@ -53,7 +59,8 @@ class FreeBoard {
 
  private:
   static std::vector<std::string> words(const std::vector<std::string>& more) {
-    std::vector<std::string> words{build_directory() + "/virtual-board", "--elf", image("inkwell.elf")};
+    std::vector<std::string> words{build_directory() + "/virtual-board"};
+    if (more.empty() || more[0] != "--flash") words.insert(words.end(), {"--elf", image("inkwell.elf")});
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
@@ -163,6 +170,35 @@ TEST_CASE("a flashing that was cut off is repaired by the same command") {
   INFO(result.err);
   CHECK(result.exit_code == 0);
   CHECK(says(result, "The board held nothing that says what it is"));  // its begin went first
+  CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
+}
+
+TEST_CASE("a board whose power went in the middle does nothing until BOOT0 is held, and is repaired then") {
+  const TemporaryDirectory directory;
+  const auto flash_file = directory.file("board.flash");
+  REQUIRE(run_program("inkwell", {"flash", "--virtual", flash_file}).exit_code == 0);
+  {
+    FreeBoard board({"--flash", flash_file});
+    board.wait_until(&FreeBoard::runs);
+    RunningProgram flash({"sh", "-c", "exec " + build_directory() + "/inkwell flash --usbip " + board.port + " 2>&1"});
+    while (flash.read_line().find("reading back") == std::string::npos) {
+    }
+    kill(flash.process(), SIGKILL);
+    flash.wait();
+    board.switch_off();
+  }
+  {
+    FreeBoard board({"--flash", flash_file});
+    std::this_thread::sleep_for(500ms);
+    CHECK_FALSE(board.runs());
+    CHECK_FALSE(board.is_in_boot_loader());
+    board.switch_off();
+  }
+  FreeBoard board({"--flash", flash_file, "--boot0"});
+  board.wait_until(&FreeBoard::is_in_boot_loader);
+  const auto result = board.flash({});
+  INFO(result.err);
+  CHECK(result.exit_code == 0);
   CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
 }
 

@@ -52,9 +52,11 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
                      .on_instruction = observer(options)}) {
   if (options.strict) chip_.on_violation = [this](const Violation&) { chip_.request_stop(); };
   if (!options.flash.empty()) flash_file_.emplace(options.flash, chip_.flash());
-  chip_.load_elf(elf_);
+  if (!elf_.empty()) {
+    chip_.load_elf(elf_);
+    symbols_ = Symbols(elf_);
+  }
   if (flash_file_) flash_file_->save(chip_.flash());
-  symbols_ = Symbols(elf_);
   try {
     usb_.emplace(chip_.connections(), options.usbip_port, options.host_clock_ppm, std::move(on_usb_request),
                  std::move(is_ending));

@@ -10,6 +10,7 @@
 
 #include <debugger/symbols.hpp>
 #include <installation/places.hpp>
+#include <protocol/image_identity.hpp>
 
 #include "commands.hpp"
 
@@ -36,7 +37,9 @@ constexpr const char* description =
     "Its log goes to stderr.";
 
 void add_files_and_ports(CLI::App& app, Given& given) {
-  app.add_option("--elf", given.options.elf, "firmware to run, as it would be flashed")->required()->type_name("FILE");
+  app.add_option("--elf", given.options.elf,
+                 "firmware to run, as it would be flashed; may be left out with --flash, to run what is in that file")
+      ->type_name("FILE");
   app.add_option("--board", given.board,
                  "the board around the chip: " + board::names_of_boards() +
                      ". Unless given, the one that the ELF is for; firmware\nof others: " +
@@ -191,14 +194,28 @@ std::string footer() {
 
 /// The board that was asked for, else the one that the ELF is for. False after a sentence on stderr if there is none
 /// such.
+/// Empty: the file holds no firmware of ours.
+std::string board_in_flash(const std::filesystem::path& file) {
+  std::ifstream flash(file, std::ios::binary);
+  protocol::ImageIdentity identity{};
+  flash.seekg(protocol::image_identity_offset);
+  flash.read(reinterpret_cast<char*>(&identity), sizeof identity);
+  return flash && identity.is_there() ? std::string(identity.board_name()) : std::string();
+}
+
 bool take_board(Given& given) {
-  const std::string name = given.board.empty() ? text_in_elf(given.options.elf, "inkwell_board_name") : given.board;
+  const bool runs_flash = given.options.elf.empty();
+  const std::string name = !given.board.empty() ? given.board
+                           : runs_flash         ? board_in_flash(given.options.flash)
+                                                : text_in_elf(given.options.elf, "inkwell_board_name");
   if (name.empty()) return true;
   given.options.board = board::find_board(name);
   if (given.options.board != nullptr) return true;
   std::cerr << "virtual-board: "
-            << (given.board.empty() ? given.options.elf.string() + " is for the board " : "--board: ") << name
-            << ", which is not known here; known are " << board::names_of_boards() << ".\n";
+            << (given.board.empty()
+                    ? (runs_flash ? given.options.flash : given.options.elf).string() + " is for the board "
+                    : "--board: ")
+            << name << ", which is not known here; known are " << board::names_of_boards() << ".\n";
   return false;
 }
 
@@ -210,6 +227,11 @@ bool take_over(Given& given) {
       return false;
     }
     given.mode = "exact";
+  }
+  if (given.options.elf.empty() && given.options.flash.empty()) {
+    std::cerr << "virtual-board: there is nothing to run. Give a firmware with --elf, or a flash that holds one with "
+                 "--flash.\n";
+    return false;
   }
   if (!take_board(given)) return false;
   if (*given.gdb_option) given.options.gdb_port = given.gdb_port;
