@@ -135,7 +135,7 @@ class ImageChecks(unittest.TestCase):
     def test_an_image_that_is_too_large_is_found(self):
         with self.assertRaises(subprocess.CalledProcessError) as refused:
             self.check("[[gnu::used]] extern const char text[70000] = {1};\nvoid work() {}")
-        self.assertIn(b"the image takes more than 64 KiB", refused.exception.stderr)
+        self.assertIn(b"the code takes more than 48 KiB", refused.exception.stderr)
 
     def test_a_deep_stack_is_found(self):
         _, stack_bound = self.check("void work() { volatile char room[9000]; room[0] = 1; }")
