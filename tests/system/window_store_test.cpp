@@ -103,6 +103,25 @@ TEST_CASE("a factory reset asks first, then forgets what is stored and gives the
   CHECK(rig.close_and_read_parameters() == protocol::default_parameters());
 }
 
+TEST_CASE("a question about a device that goes away goes with it") {
+  WindowRig rig;
+  make_stiff(rig);
+  store(rig);
+  rig.click("tuning/Soft");
+  const auto go_away_and_come = [&](const std::string& button, const std::string& question) {
+    rig.click(button);
+    rig.look_until("it asks", [&](const Sight& now) { return now.has(question + "/Cancel"); });
+    rig.control.usb(false);
+    rig.look_until("it does not ask any more", [&](const Sight& now) { return !now.has(question + "/Cancel"); });
+    rig.control.usb(true);
+    rig.look_until("the window is connected again", [](const Sight& now) { return now.state() == "ready"; });
+  };
+  go_away_and_come("tuning/Factory reset", "factory reset");
+  go_away_and_come("tuning/Restore", "restore stored values");
+  rig.click("tuning/Viscous");  // which a question that is still there would keep from the mouse
+  rig.look_until("it is chosen", [](const Sight& now) { return now.applied_at_periods() != 0; });
+}
+
 TEST_CASE("after a loss of power the window lists what is not as before, and sends it only when asked") {
   WindowRig rig;
   make_stiff(rig);

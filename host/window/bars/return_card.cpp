@@ -25,7 +25,7 @@ void draw_row(const ReturnedValues::Row& row, float width, const Style& style) {
   const Palette& palette = *style.palette;
   const protocol::ParameterInfo& info = protocol::info(row.parameter);
   const std::string values =
-      fmt::format("{}, was {}{}{}", row.now, row.before, info.unit.empty() ? "" : " ", info.unit);
+      fmt::format("{:.6g}, was {:.6g}{}{}", row.now, row.before, info.unit.empty() ? "" : " ", info.unit);
   text(palette.text_quiet, full_label_of(info));
   help_on_hover(info.name, info.help, style);
   ImGui::SameLine();

@@ -35,24 +35,32 @@ std::string list_of(const std::vector<Parameter>& waiting, const DeviceView& vie
 
 enum class Answer : std::uint8_t { none, yes, no };
 
-/// While it is open. `agree`: the button's words.
-Answer draw_question(const char* name, const std::string& title, const std::string& explanation, const char* agree,
-                     bool is_grave, const Style& style) {
+struct Question {
+  const char* name;
+  std::string title;
+  std::string explanation;
+  const char* agree;  ///< the button's words
+  bool is_grave;
+};
+
+/// While it is open, which it is no longer than there is a device to ask about.
+Answer draw_question(const Question& question, bool has_device, const Style& style) {
   const Palette& palette = *style.palette;
   ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({style.points(440), 0});
-  if (!ImGui::BeginPopupModal(name, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove))
+  if (!ImGui::BeginPopupModal(question.name, nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove))
     return Answer::none;
-  text(style.fonts.strong, palette.text, title);
-  wrapped_text(palette.text_quiet, explanation);
+  text(style.fonts.strong, palette.text, question.title);
+  wrapped_text(palette.text_quiet, question.explanation);
   ImGui::Dummy({0, style.points(4)});
   auto answer = Answer::none;
-  if (coloured_button(agree, is_grave ? palette.danger : palette.accent, is_grave ? palette.on_danger : palette.pane,
-                      {style.points(180), 0}))
+  if (coloured_button(question.agree, question.is_grave ? palette.danger : palette.accent,
+                      question.is_grave ? palette.on_danger : palette.pane, {style.points(180), 0}))
     answer = Answer::yes;
   ImGui::SameLine();
   if (button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
     answer = Answer::no;
+  if (!has_device) answer = Answer::no;
   if (answer != Answer::none) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   return answer;
@@ -143,38 +151,38 @@ void StoreBar::draw_buttons(const std::vector<Parameter>& waiting, const Style& 
                 style);
 }
 
-void StoreBar::draw_restore_question(const std::vector<Parameter>& waiting, ParameterEditor& editor, const Style& style,
-                                     double now_s) {
+void StoreBar::draw_restore_question(const std::vector<Parameter>& waiting, bool has_device, ParameterEditor& editor,
+                                     const Style& style, double now_s) {
   const DeviceView& view = desk_.view();
-  const auto answer = draw_question(
-      restore_question, "Give the stored values back?",
-      waiting.empty() ? std::string("The board holds them already.") : list_of(waiting, view), "Restore", false, style);
-  if (answer != Answer::yes) return;
+  const Question question{restore_question, "Give the stored values back?",
+                          waiting.empty() ? "The board holds them already." : list_of(waiting, view), "Restore", false};
+  if (draw_question(question, has_device, style) != Answer::yes) return;
   std::vector<device::ParameterChange> changes;
   for (const Parameter parameter : waiting)
     changes.emplace_back(parameter, view.status.store->at_next_start[parameter]);
   editor.apply("stored values", changes, now_s);
 }
 
-void StoreBar::draw_reset_question(const Style& style) {
-  const auto answer = draw_question(
-      reset_question, "Forget everything that is stored?",
-      "Every parameter gets its default, and the calibration of this arm is lost. Cancel and press Save to keep the "
-      "values in a file first.",
-      "Forget and reset", true, style);
-  if (answer == Answer::yes) desk_.session().factory_reset();
+void StoreBar::draw_reset_question(bool has_device, const Style& style) {
+  const Question question{reset_question, "Forget everything that is stored?",
+                          "Every parameter gets its default, and the calibration of this arm is lost. Cancel and press "
+                          "Save to keep the values in a file first.",
+                          "Forget and reset", true};
+  if (draw_question(question, has_device, style) == Answer::yes) desk_.session().factory_reset();
 }
 
 void StoreBar::draw(ParameterEditor& editor, const Style& style, double now_s) {
   const DeviceView& view = desk_.view();
-  if (!view.parameters || !view.status.store) return;
+  const bool has_device = view.parameters && view.status.store;
   const std::vector<Parameter> waiting = not_stored(view);
-  ImGui::Dummy({0, style.points(1)});
-  ImGui::Separator();
-  draw_title(waiting, style);
-  draw_buttons(waiting, style);
-  draw_restore_question(waiting, editor, style, now_s);
-  draw_reset_question(style);
+  if (has_device) {
+    ImGui::Dummy({0, style.points(1)});
+    ImGui::Separator();
+    draw_title(waiting, style);
+    draw_buttons(waiting, style);
+  }
+  draw_restore_question(waiting, has_device, editor, style, now_s);
+  draw_reset_question(has_device, style);
 }
 
 }  // namespace inkwell::window

@@ -29,9 +29,9 @@ class StoreBar {
   std::string caption() const;
   void draw_title(const std::vector<protocol::Parameter>& waiting, const Style& style) const;
   void draw_buttons(const std::vector<protocol::Parameter>& waiting, const Style& style);
-  void draw_restore_question(const std::vector<protocol::Parameter>& waiting, ParameterEditor& editor,
+  void draw_restore_question(const std::vector<protocol::Parameter>& waiting, bool has_device, ParameterEditor& editor,
                              const Style& style, double now_s);
-  void draw_reset_question(const Style& style);
+  void draw_reset_question(bool has_device, const Style& style);
 
   DeviceDesk& desk_;
 };

@@ -74,8 +74,11 @@ TEST_CASE("what the board refuses to store is told with its meaning and remedy")
 TEST_CASE("an older command's result is not taken for this one's") {
   FakeUsbipServer server;
   const auto arm = device::Device::open(server.endpoint());
-  server.judge_store = [](Command) { return StoreResult::force_is_on; };
-  CHECK_THROWS_AS(store_parameters(*arm), device::NotStored);
+  SUBCASE("done") { store_parameters(*arm); }
+  SUBCASE("refused") {
+    server.judge_store = [](Command) { return StoreResult::force_is_on; };
+    CHECK_THROWS_AS(store_parameters(*arm), device::NotStored);
+  }
   server.holds_outputs = true;  // it comes later
   server.ignores_store = true;
   std::atomic<int> asked = 0;
