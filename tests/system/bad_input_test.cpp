@@ -165,6 +165,22 @@ TEST_CASE("the companion refuses what it does not know") {
   }
 }
 
+TEST_CASE("a window smaller than its parts need, and two recordings that have no such mark, are refused") {
+  check_refused(run_program("inkwell", {"--virtual", "--width", "400"}), {"--width", "900"});
+  check_refused(run_program("inkwell", {"--virtual", "--height", "300"}), {"--height", "560"});
+  const TemporaryDirectory directory;
+  const auto file = directory.file("push.h5");
+  REQUIRE(run_program("inkwell", {"--virtual", "record", file, "--seconds", "0.1"}).exit_code == 0);
+  check_refused(run_program("inkwell", {"plot", file, "--over", file, "--align", "touch"}),
+                {"push has no mark `touch`"});
+  check_refused(run_program("inkwell", {"plot", file, "--over", directory.file("none.h5")}), {"none.h5"});
+  const auto picture = directory.file("both.png");
+  CHECK(
+      run_program("inkwell", {"plot", file, "--over", file, "--signals", "current_1_A", "--out", picture}).exit_code ==
+      0);
+  CHECK(std::filesystem::file_size(picture) > 10'000);
+}
+
 TEST_CASE("saving parameters with --json says what was written") {
   const TemporaryDirectory directory;
   const auto file = directory.file("parameters.toml");

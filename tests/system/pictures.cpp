@@ -66,6 +66,33 @@ TEST_CASE("pictures: a program for an Omni drives" * doctest::skip()) {
   program.write_line("");
 }
 
+TEST_CASE("pictures: small and large windows, and 192 dots per inch" * doctest::skip()) {
+  struct Size {
+    const char *width, *height, *scale;
+  };
+  for (const Size size : {Size{"900", "560", "1"},
+                          {"1920", "1080", "1"},
+                          {"2560", "1440", "1"},
+                          {"3840", "2160", "1"},
+                          {"1280", "800", "2"}})
+    for (const std::string theme : {"dark", "light"}) {
+      WindowRig rig(
+          {"--layout", "wall", "--theme", theme, "--width", size.width, "--height", size.height, "--scale", size.scale},
+          true, "3840x2160");
+      rig.click("tuning/Soft");
+      rig.click("scope/Signals");
+      rig.switch_force_on();
+      rig.control.hand({.holds = true, .target_m = {0.0, 0.0, -0.03}, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
+      rig.control.dock(false);
+      rig.control.hand_path({{0.3, {0.05, 0.0, -0.03}}, {0.9, {0.09, 0.01, -0.03}}, {1.5, {0.07, 0.0, -0.03}}});
+      rig.control.run(1.6);
+      rig.control.resume();
+      rig.click("tabs/Log");
+      rig.picture(
+          picture_file(std::string("size ") + size.width + "x" + size.height + " scale " + size.scale + " " + theme));
+    }
+}
+
 TEST_CASE("pictures: the sliders of every group of parameters" * doctest::skip()) {
   WindowRig rig;
   constexpr int rows_that_fit = 18, wheel_steps_over_all = 12;

@@ -38,6 +38,12 @@ std::vector<std::string> window_words(const device::VirtualBoard& board, const s
   return words;
 }
 
+// The display says its number in a line of its own, once it is ready; what it says of numbers taken is no error. Its
+// keys do not repeat (-r): between press and release a busy computer may take longer than a finger.
+std::vector<std::string> display_command(const std::string& screen) {
+  return {"sh", "-c", "exec Xvfb -r -displayfd 1 -screen 0 " + screen + "x24 -nolisten tcp 2>/dev/null"};
+}
+
 }  // namespace
 
 Item Sight::item(const std::string& name) const {
@@ -51,22 +57,18 @@ bool Sight::says(const std::string& part) const {
                              [&](const json& text) { return text.get<std::string>().find(part) != std::string::npos; });
 }
 
-// The display says its number in a line of its own, once it is ready; what it says of numbers taken is no error. Its
-// keys do not repeat (-r): between press and release a busy computer may take longer than a finger.
-constexpr char display_command[] = "exec Xvfb -r -displayfd 1 -screen 0 1280x800x24 -nolisten tcp 2>/dev/null";
-
 WindowRig::WindowRig(OtherImage, const std::string& image)
     : board(board_options(build_directory() + "/../board/" + image)),
       control(board.control()),
-      display_({"sh", "-c", display_command}),
+      display_(display_command(usual_screen)),
       display_name_("DISPLAY=:" + display_.read_line()),
       window_(window_words(board, directory_.file("parameters.toml"), {}, true),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {}
 
-WindowRig::WindowRig(const std::vector<std::string>& options, bool tells_control_port)
+WindowRig::WindowRig(const std::vector<std::string>& options, bool tells_control_port, const std::string& screen)
     : board(board_options()),
       control(board.control()),
-      display_({"sh", "-c", display_command}),
+      display_(display_command(screen)),
       display_name_("DISPLAY=:" + display_.read_line()),
       window_(window_words(board, directory_.file("parameters.toml"), options, tells_control_port),
               {display_name_, "LIBGL_ALWAYS_SOFTWARE=1"}) {

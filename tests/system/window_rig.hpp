@@ -49,10 +49,14 @@ struct Sight {
 
 class WindowRig {
  public:
+  static constexpr const char* usual_screen = "1280x800";
+
   /// Starts everything and waits until the window is connected and its device knows where it is. `options`:
   /// of the window; with flat colours a picture's pixels have exactly the colours of palette.hpp.
-  /// Without the control port the window knows no more of the virtual board than of a real one.
-  explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true);
+  /// `screen`: of the display, in pixels. Without the control port the window knows no more of the virtual board than
+  /// of a real one.
+  explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true,
+                     const std::string& screen = usual_screen);
 
   /// The same on a board with another image, build/board/`image`; waits for nothing.
   static WindowRig with_image(const std::string& image) { return WindowRig(OtherImage(), image); }

@@ -133,7 +133,6 @@ std::string unit_told_by(std::string_view text) {
 }
 
 std::string refusal_of(const Formula& formula) {
-  if (std::string reason = refusal_of_name(formula.name); !reason.empty()) return reason;
   if (formula.text.find_first_not_of(' ') == std::string::npos)
     return "Type a formula, such as force_x_N - program_force_x_N.";
   if (formula.text.size() > text_maximum) return fmt::format("A formula has {} characters at most.", text_maximum);
@@ -156,6 +155,7 @@ std::string refusal_of(const Formula& formula) {
   } catch (const mu::Parser::exception_type& error) {
     return in_words(error);
   }
+  if (std::string reason = refusal_of_name(formula.name); !reason.empty()) return reason;
   if (formula.unit.empty())
     return "State the unit: it does not follow from this formula. 1 stands for a number without a unit.";
   return {};
