@@ -75,8 +75,8 @@ class Claims(unittest.TestCase):
                              ("peripheral<registers::TIM3>()", "Encoders"),
                              ("peripheral<registers::ADC2>()", "AnalogInputs"),
                              ("peripheral<registers::USART2>()", "Console"),
-                             ("pin(board::bridge_enable)", "Bridges"),
-                             ("pin(board::gimbal[1])", "AnalogInputs"),
+                             ("pin(board::facts.bridge_enable)", "Bridges"),
+                             ("pin(board::facts.gimbal[1])", "AnalogInputs"),
                              ("pin(board::Pin{'C', 10})", "StatusLed"),
                              ("stream<registers::DMA2, 0>()", "AnalogInputs"),
                              ("interrupt(Interrupt::analog_converters)", "AnalogInputs")):
@@ -90,10 +90,10 @@ class Claims(unittest.TestCase):
                       "start_clocks_of<Newcomer, registers::TIM3>();",
                       "start_clock_of_stream<Newcomer, registers::DMA2, 1>();",
                       "InterruptLine<Newcomer, Interrupt::analog_converters>::enable();",
-                      "connect<Newcomer, board::usb_plus>(Pull::none, Speed::low);",
-                      "connect_analog<Newcomer, board::supply>();",
-                      "DigitalInput<Newcomer, board::button_1>::start(Pull::up);",
-                      "DigitalOutput<Newcomer, board::status_led>::start();"):
+                      "connect<Newcomer, board::facts.usb_plus>(Pull::none, Speed::low);",
+                      "connect_analog<Newcomer, board::facts.supply>();",
+                      "DigitalInput<Newcomer, board::facts.button_1>::start(Pull::up);",
+                      "DigitalOutput<Newcomer, board::facts.status_led>::start();"):
             with self.subTest(start):
                 self.assert_refused(self.compile(FREE_PIN, start), UNCLAIMED)
 

@@ -19,7 +19,7 @@ constexpr std::uint16_t load_by_r0 = 0x6800, store_by_r0 = 0x6000;  // ldr r0, [
 
 /// Where half a word of the flash is this instruction, whatever it was meant to be.
 std::uint32_t place_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
-  constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000;  // boards/omni_driver/board.ld
+  constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000;  // boards/facts/stm32f405.ld
   for (std::uint32_t address = code; address < code + 0x1'0000; address += 2)
     if ((bus.chip.memory_word(address & ~3u) >> 8 * (address & 2) & 0xFFFF) == instruction) return address;
   return 0;
