@@ -200,7 +200,8 @@ class Chip {
   void watch_exceptions(std::function<void(unsigned exception, Ticks when)> changed);
   /// Called when the firmware breaks a rule, once for each place.
   std::function<void(const Violation& violation)> on_violation;
-  /// Called some thousand times a second, and after each order, while the boot loader in the chip runs: what it does next.
+  /// Called some thousand times a second, and after each order, while the boot loader in the chip runs: what it does
+  /// next.
   std::function<LoaderOrder()> on_boot_loader;
   /// Called after each reset that the firmware or a watchdog causes (and those by reset()).
   std::function<void(ResetCause cause)> on_reset;

@@ -1,5 +1,5 @@
-// The board's USB connector: the OTG_FS core and the boot loader, a host controller at the other end of the cable, and the
-// USB/IP server that lets programs of this computer use the device.
+// The board's USB connector: the OTG_FS core and the boot loader, a host controller at the other end of the cable, and
+// the USB/IP server that lets programs of this computer use the device.
 #pragma once
 
 #include <cstdint>
