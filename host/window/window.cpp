@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include <frame/display.hpp>
 #include <frame/frame_loop.hpp>
 #include <frame/imgui_frames.hpp>
+#include <frame/inspection.hpp>
 #include <window/window_settings.hpp>
 
 #include "companion.hpp"
@@ -52,13 +54,15 @@ void run(WindowOptions options) {
   WindowSettings settings = settings_at_start(options);
   end_loop_at_signals();
   Display display({options.width, options.height}, options.scale, "Inkwell");
+  std::optional<Inspection> inspection;  // outlives the loops, so that no question is lost between them
+  if (options.inspect) inspection.emplace(&Display::wake);
   for (std::string problem;;) {
     ImGuiFrames imgui(display.handle());
     Companion companion(options, settings, display.scale(), problem);
     FrameLoop(display, imgui, companion,
               {.screenshot = options.screenshot,
                .after_seconds = options.after_seconds,
-               .inspect = options.inspect,
+               .inspection = inspection ? &*inspection : nullptr,
                .frames_report = options.frames_report})
         .run();
     settings = companion.settings();

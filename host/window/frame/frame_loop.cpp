@@ -32,11 +32,11 @@ FrameLoop::FrameLoop(Display& display, ImGuiFrames& imgui, FrameContent& content
       imgui_(imgui),
       content_(content),
       options_(std::move(options)),
+      inspection_(options_.inspection),
       pacer_(faster_than_display * display.refresh_rate_Hz(), !display.draws_in_software()),
       frames_report_(1.0 / display.refresh_rate_Hz()),
       started_s_(glfwGetTime()),
       shown_s_(started_s_) {
-  if (options_.inspect) inspection_.emplace(&Display::wake);
   display_.on_key([this](int key, bool down) {
     if (down) imgui_.note_key_down(key);
     content_.key(key, down);

@@ -60,7 +60,7 @@ class FrameContent {
 struct FrameLoopOptions {
   std::filesystem::path screenshot;  ///< with it: write the framebuffer to this PNG and end
   double after_seconds = 3.0;        ///< when the screenshot is taken, from the start on
-  bool inspect = false;              ///< answer questions on standard input
+  Inspection* inspection = nullptr;  ///< answers questions about the frames; null: nobody asks
   bool frames_report = false;        ///< print the measured frames per second at the end
 };
 
@@ -105,7 +105,7 @@ class FrameLoop {
   ImGuiFrames& imgui_;
   FrameContent& content_;
   FrameLoopOptions options_;
-  std::optional<Inspection> inspection_;
+  Inspection* inspection_;
   FramePacer pacer_;
   FrameRhythm rhythm_;
   FramesReport frames_report_;
