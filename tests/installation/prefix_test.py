@@ -82,7 +82,7 @@ class Files(unittest.TestCase):
                        f"COMP_CWORD={len(words) - 1}; _inkwell; printf '%s\\n' \"${{COMPREPLY[@]}}\"").split()
 
         self.assertEqual(["parameters"], completed("inkwell", "par"))
-        self.assertEqual(["set", "save"], completed("inkwell", "--virtual", "parameters", "s"))
+        self.assertEqual(["set", "save", "store", "stored"], completed("inkwell", "--virtual", "parameters", "s"))
         self.assertEqual(["wall_stiffness_N_per_m="], completed("inkwell", "parameters", "set", "wall_stiff"))
         self.assertEqual(["exact", "fast"], completed("inkwell", "info", "--mode", ""))
         self.assertEqual(["--seconds", "--seed", "--serial", "--signals"], sorted(completed("inkwell", "record", "--se")
