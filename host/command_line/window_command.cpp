@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include <frame/window_size.hpp>
 #include <installation/places.hpp>
 #include <window/window.hpp>
 

@@ -63,7 +63,7 @@ TEST_CASE("a fault is chosen in the table, put in, told with what the board noti
 
 TEST_CASE("without a control port there is nothing to put faults into, and the pane says why") {
   WindowRig rig({"--flat-colours"}, false);
-  rig.press_key("F6");  // no tab
+  rig.press_key("F7");  // no tab
   CHECK(rig.look().has("tuning/wall_stiffness_N_per_m"));
   rig.press_key("F5");
   look_for(rig, "does not know the control port");

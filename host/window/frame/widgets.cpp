@@ -56,6 +56,11 @@ float warning_sign(ImVec2 corner, Colour colour, const Style& style) {
   return size + style.points(4);
 }
 
+void keep_vertical_arrows() {
+  if (ImGui::IsItemActive())
+    ImGui::GetCurrentContext()->ActiveIdUsingNavDirMask |= (1u << ImGuiDir_Up) | (1u << ImGuiDir_Down);
+}
+
 bool is_dialog_open() { return ImGui::GetTopMostPopupModal() != nullptr; }
 
 void same_line_if_room(float width) {

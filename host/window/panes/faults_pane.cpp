@@ -251,6 +251,7 @@ void FaultsPane::draw_search(const Style& style) {
                                &search_, ImGuiInputTextFlags_EnterReturnsTrue);
   note_item("search");
   help_on_hover("Search", "In names, places and help. Up and Down choose, Enter goes to the fault's fields.", style);
+  keep_vertical_arrows();
   if (ImGui::IsItemActive()) {
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_DownArrow))) choose_neighbour(1);
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_UpArrow))) choose_neighbour(-1);

@@ -10,6 +10,7 @@
 
 #include <device/address.hpp>
 #include <frame/palette.hpp>
+#include <frame/window_size.hpp>
 #include <protocol/parameters.hpp>
 
 namespace inkwell::window {

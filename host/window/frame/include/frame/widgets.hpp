@@ -21,6 +21,9 @@ std::string fitted(std::string_view content, float width, ImFont* font = nullptr
 /// A triangle with an exclamation mark, for what must not be told by colour alone. Returns the width it takes.
 float warning_sign(ImVec2 corner, Colour colour, const Style& style);
 
+/// While the last item has the keyboard, the arrows up and down are its own and do not go to the next item.
+void keep_vertical_arrows();
+
 /// True while a dialog darkens the rest of the window.
 bool is_dialog_open();
 
