@@ -82,6 +82,8 @@ LoaderOrder BootLoader::next_order(DebugPort& memory) {
     dfu_.start();
     begin_reset();
   }
+  // The host is to have the whole of the answer by which the loader says that it leaves.
+  if (is_answering_ && dfu_.is_about_to_leave()) return {};
   const LoaderOrder order = dfu_.next_order(memory);
   if (dfu_.has_left()) stop();
   return order;
@@ -93,6 +95,7 @@ void BootLoader::begin_reset() {
   next_address_.reset();
   configuration_ = alternate_ = 0;
   to_send_.reset();
+  is_answering_ = false;
 }
 
 bool BootLoader::is_addressed(unsigned address, unsigned endpoint) const {
@@ -109,6 +112,7 @@ Handshake BootLoader::setup(unsigned address, unsigned endpoint, std::span<const
   sent_ = on_wire_ = 0;
   data1_ = true;
   is_refused_ = is_taken_ = false;
+  is_answering_ = (request_.type & 0x80) != 0;
   return Handshake::ack;
 }
 
@@ -118,7 +122,10 @@ bool BootLoader::has_to_wait() const { return (request_.type & 0x60) != 0 && dfu
 Handshake BootLoader::out(unsigned address, unsigned endpoint, bool data1, std::span<const std::byte> data) {
   if (!is_addressed(address, endpoint)) return Handshake::nothing;
   if (is_refused_) return Handshake::stall;
-  if ((request_.type & 0x80) != 0) return Handshake::ack;  // the status of a request for data
+  if ((request_.type & 0x80) != 0) {  // the status of a request for data
+    is_answering_ = false;
+    return Handshake::ack;
+  }
   if (has_to_wait()) return Handshake::nak;
   if (data1 != data1_) return Handshake::ack;  // a repetition
   data1_ = !data1_;

@@ -35,6 +35,8 @@ class BootLoaderDfu {
   LoaderOrder next_order(DebugPort& memory);
   /// It can not answer now: an order is being carried out.
   bool is_busy() const { return asked_.has_value() || is_working_; }
+  /// The next order starts the program.
+  bool is_about_to_leave() const { return asked_ && asked_->kind == Operation::Kind::leave; }
   /// A request without data, or whose data came. False: a stall.
   bool take(const SetupPacket& request, std::span<const std::byte> data);
   /// A request for data. Nothing: a stall. It is busy first if it must look something up: ask again then.
@@ -131,6 +133,7 @@ class BootLoader final : public BusDevice {
   std::size_t sent_ = 0, on_wire_ = 0;
   bool data1_ = false;
   bool is_refused_ = false, is_taken_ = false;
+  bool is_answering_ = false;  ///< a request for data, whose status has not come yet
 };
 
 }  // namespace inkwell::virtual_board
