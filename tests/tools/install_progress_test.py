@@ -1,4 +1,4 @@
-"""tools/install says how far apt is, and ends with apt's own words when it fails."""
+"""tools/install says how far apt is, mends what dpkg left half done, and says what failed."""
 
 import os
 import pathlib
@@ -9,23 +9,44 @@ import unittest
 
 SOURCE = pathlib.Path(sys.argv.pop(1))
 
-FAKE_APT = """#!/bin/sh
-[ "$1" = update ] && exit 0
+# Each package that dpkg knows is a file of the folder "packages", with its status in it.
+FAKE_PROGRAMS = {
+    "apt-get": """
+case "$*" in
+  update) exit 0 ;;
+  *--fix-broken*) {fix}; exit ;;
+esac
 echo 'Reading package lists...'
 echo 'dlstatus:1:42.0:Retrieving file 1 of 2'
 echo 'pmstatus:libnowhere:85.7:Unpacking libnowhere'
-{end}
-"""
+{install}
+""",
+    "dpkg": """
+{configure}
+""",
+    "dpkg-query": """
+cd packages
+if [ $# -eq 3 ]; then cat "$3"; else for each in *; do echo "$(cat "$each") $each"; done; fi
+""",
+    "sudo": 'exec "$@"',
+}
+
+UNPACKED = "echo unpacked >packages/libnowhere; echo 'E: Errors were encountered' >&2; exit 100"
 
 
 class Install(unittest.TestCase):
-    def run_install(self, end):
+    def run_install(self, install, configure="exit 1", fix="exit 100"):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
-            for name, text in (("apt-get", FAKE_APT.format(end=end)), ("sudo", '#!/bin/sh\nexec "$@"\n')):
-                (folder / name).write_text(text)
+            for name, text in FAKE_PROGRAMS.items():
+                for part, value in (("install", install), ("configure", configure), ("fix", fix)):
+                    text = text.replace("{" + part + "}", value)
+                (folder / name).write_text(f"#!/bin/sh\ncd {folder}\n{text}\n")
                 (folder / name).chmod(0o755)
-            (folder / "list.txt").write_text("# what for\nlibnowhere-at-all\n")
+            (folder / "packages").mkdir()
+            (folder / "packages" / "libelse").write_text("installed")
+            (folder / "packages" / "libgone").write_text("config-files")
+            (folder / "list.txt").write_text("# what for\nlibelse\nlibnowhere\n")
             return subprocess.run(
                 [SOURCE / "tools/install", folder / "list.txt"],
                 env=os.environ | {"PATH": f"{folder}:{os.environ['PATH']}"},
@@ -45,7 +66,37 @@ class Install(unittest.TestCase):
         done = self.run_install("echo 'E: no such package' >&2; exit 100")
         self.assertEqual(done.returncode, 1)
         self.assertIn("E: no such package", done.stderr)
-        self.assertIn("could not be installed", done.stderr)
+        self.assertIn("Reading package lists", done.stderr)
+        self.assertNotIn("status:", done.stderr)
+        self.assertIn("could not be installed: libnowhere", done.stderr)
+        self.assertIn("network", done.stderr)
+
+    def test_what_dpkg_left_is_configured_once_more(self):
+        for mended in ({"configure": "echo installed >packages/libnowhere"}, {"fix": "echo installed >packages/libnowhere"}):
+            done = self.run_install(UNPACKED, **mended)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("once more", done.stdout)
+
+    def test_what_was_not_reached_before_is_installed_then(self):
+        first = "if [ -e packages/libfirst ]; then echo installed >packages/libnowhere; exit 0; fi"
+        done = self.run_install(
+            f"{first}; echo half-configured >packages/libfirst; exit 100", fix="echo installed >packages/libfirst"
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_what_cannot_be_configured_is_named_without_blaming_the_network(self):
+        done = self.run_install(UNPACKED)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("could not be configured: libnowhere\n", done.stderr)
+        self.assertNotIn("libgone", done.stderr)
+        self.assertNotIn("network", done.stderr)
+        self.assertIn("--fix-broken", done.stderr)
+
+    def test_another_installation_is_waited_for(self):
+        done = self.run_install("echo 'E: Could not get lock /var/lib/dpkg/lock-frontend.' >&2; exit 100")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("Another program", done.stderr)
+        self.assertNotIn("network", done.stderr)
 
 
 if __name__ == "__main__":
