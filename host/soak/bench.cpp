@@ -38,7 +38,7 @@ Bench::Bench(unsigned number, const Choices& choices_, const device::VirtualBoar
   sitting.number = number;
   board.watch_poses([this](const auto& pose) { oracle.see(pose); });
   connect();
-  defaults = accepted = board.device().parameters();
+  defaults = accepted = stored = board.device().parameters();
   arm_ = control::prepare(defaults).arm;
   oracle.limit_force(static_cast<double>(defaults[Parameter::force_limit_N]));
 }
@@ -96,7 +96,7 @@ void Bench::look_closely() {
     broken_rules += violation.at("count").get<unsigned long>();
     rule = fmt::format("{} {}", violation.value("sentence", ""), violation.value("code", ""));
   }
-  if (oracle.see_counts(status.value("resets", 0u), broken_rules, rule)) forget_parameters();
+  if (oracle.see_counts(status.value("resets", 0u), broken_rules, rule)) hold(stored);
   if (is_sound() && status.contains("locked_up")) fail(Complaint::no_answer, "the processor is locked up");
 }
 
@@ -187,8 +187,8 @@ void Bench::check_parameters() {
            fmt::format("{} is {}, but {} was accepted last", rows[i].name, held.values[i], accepted.values[i]));
 }
 
-void Bench::forget_parameters() {
-  accepted = defaults;
+void Bench::hold(const protocol::ParameterSet& set) {
+  accepted = set;
   oracle.limit_force(static_cast<double>(accepted[Parameter::force_limit_N]));
 }
 

@@ -60,8 +60,8 @@ class Bench {
   void try_illegal();
   void restore_defaults();
   void check_parameters();
-  /// What the board holds after it started anew.
-  void forget_parameters();
+  /// What the board holds now, as after it started anew.
+  void hold(const protocol::ParameterSet& set);
 
   [[noreturn]] void fail(Complaint complaint, const std::string& text);
 
@@ -71,6 +71,7 @@ class Bench {
   Sitting sitting;
   const Choices choices;
   protocol::ParameterSet defaults{}, accepted{};
+  protocol::ParameterSet stored{};  ///< what a start gives
   /// The cable is out, or the program is killed.
   bool device_may_go = false;
   bool is_sound() const { return disturbance_ == Disturbance::none; }
@@ -90,7 +91,7 @@ class Bench {
 /// Lets the phase of this kind happen; what was done, in words.
 std::string play(Bench& bench, Kind kind);
 
-// In uses.cpp, storms.cpp and adversities.cpp:
+// In uses.cpp, storms.cpp, stores.cpp and adversities.cpp:
 std::string use_docking(Bench& bench);
 std::string use_free_space(Bench& bench, double time_s);
 std::string use_walls(Bench& bench, double time_s);
@@ -100,6 +101,7 @@ std::string use_scope(Bench& bench, double time_s);
 std::string use_recording(Bench& bench, double time_s);
 std::string live_storm(Bench& bench, double time_s);
 std::string wide_storm(Bench& bench, double time_s);
+std::string store_parameters(Bench& bench);
 std::string pull_cable(Bench& bench);
 std::string be_silent(Bench& bench);
 std::string kill_program(Bench& bench);

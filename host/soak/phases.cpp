@@ -14,6 +14,7 @@ std::string play(Bench& bench, Kind kind) {
     case Kind::recording: return use_recording(bench, time_s);
     case Kind::live_storm: return live_storm(bench, time_s);
     case Kind::wide_storm: return wide_storm(bench, time_s);
+    case Kind::store: return store_parameters(bench);
     case Kind::cable: return pull_cable(bench);
     case Kind::silence: return be_silent(bench);
     case Kind::killed: return kill_program(bench);

@@ -45,6 +45,12 @@ constexpr auto between = std::to_array<Between>({
     {Parameter::voltage_limit_V, 4.0f, 24.0f},
     {Parameter::speed_limit_m_per_s, 2.0f, 10.0f},
     {Parameter::host_timeout_s, 0.05f, 2.0f},
+    // Less current than a wall asks for, or less time, heats a winding beyond the fault before it is held back.
+    {Parameter::continuous_current_1_A, 0.5f, 3.0f},
+    {Parameter::continuous_current_2_A, 0.5f, 3.0f},
+    {Parameter::continuous_current_3_A, 0.5f, 3.0f},
+    {Parameter::winding_time_constant_s, 4.0f, 1000.0f},
+    {Parameter::housing_time_constant_s, 4.0f, 2000.0f},
 });
 
 float random_value(Random& random, Parameter parameter, Reach reach) {

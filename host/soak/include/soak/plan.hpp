@@ -30,6 +30,7 @@ namespace inkwell::soak {
   X(live_storm, 2, 0, "Parameters change under the hand, legal ones and illegal ones.")                                \
   X(wide_storm, 1, protocol::watch(protocol::Fault::encoder_implausible),                                              \
     "Any legal values of all parameters, and illegal ones, with the force off; stops and scales of the joints among them.") \
+  X(store, 1, 0, "Parameters are stored, restored and forgotten; the board starts anew with them, and while it stores.") \
   X(cable, 1, protocol::watch(protocol::Fault::host_silent), "The cable is pulled and put back.")                      \
   X(silence, 1, protocol::watch(protocol::Fault::host_silent), "The host is silent, shorter and longer than it may.")  \
   X(killed, 1, protocol::watch(protocol::Fault::host_silent), "The program is killed while the force is on.")          \
