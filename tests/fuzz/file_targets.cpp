@@ -5,12 +5,16 @@
 
 #include <campaign/result.hpp>
 #include <device/error.hpp>
+#include <firmware_update/boot_loader.hpp>
+#include <firmware_update/image.hpp>
 #include <recording/black_box.hpp>
 #include <recording/recording.hpp>
 #include <recording/signals.hpp>
+#include <scope/formula.hpp>
 #include <temporary_directory.hpp>
 #include <window/window_settings.hpp>
 
+#include "../host/firmware_update/made_elf.hpp"
 #include "target.hpp"
 
 namespace inkwell::fuzz {
@@ -73,6 +77,53 @@ const Registered window_settings{
     "window_settings",
     [](Input input) { window::parse_settings(window::format_settings(window::parse_settings(text_of(input)))); },
     [] { return std::vector<Bytes>{bytes_of(window::format_settings({}))}; }};
+
+/// An ELF that a user names, and whatever it says of itself.
+const Registered firmware_image{"firmware_image",
+                                [](Input input) {
+                                  refuse_or_take<firmware_update::NoImage>([&] {
+                                    const auto image = firmware_update::read_image(input, "any.elf");
+                                    if (image.segments.empty()) throw std::logic_error("an image without bytes");
+                                    for (std::size_t i = 1; i < image.segments.size(); ++i)
+                                      if (image.segments[i].address < image.segments[i - 1].end())
+                                        throw std::logic_error("segments overlap");
+                                    if (image.identity) firmware_update::describe(*image.identity);
+                                    firmware_update::objections(image, image.identity);
+                                  });
+                                },
+                                [] {
+                                  protocol::ImageIdentity identity{};
+                                  return std::vector<Bytes>{tests::made_elf(tests::made_segments(identity))};
+                                }};
+
+/// What a boot loader calls its memory.
+const Registered memory_layout{"memory_layout",
+                               [](Input input) {
+                                 const auto sectors = firmware_update::parse_memory_layout(text_of(input));
+                                 for (std::size_t i = 1; i < sectors.size(); ++i)
+                                   if (sectors[i].address - sectors[i - 1].address != sectors[i - 1].bytes)
+                                     throw std::logic_error("a sector does not follow the one before it");
+                               },
+                               [] {
+                                 return std::vector<Bytes>{
+                                     bytes_of("@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg"),
+                                     bytes_of("@Option Bytes  /0x1FFFC000/01*016 e")};
+                               }};
+
+/// A formula that a user types; what is not refused can be computed.
+const Registered typed_formula{"formula",
+                               [](Input input) {
+                                 window::Formula formula{.name = "typed", .text = text_of(input), .unit = "1"};
+                                 if (!window::refusal_of(formula).empty()) return;
+                                 window::FormulaValues values(formula);
+                                 const std::vector<float> row(values.inputs().size(), 0.5f);
+                                 for (int i = 0; i < 3; ++i) values.next(row);
+                                 window::unit_told_by(formula.text);
+                               },
+                               [] {
+                                 return std::vector<Bytes>{bytes_of("force_x_N - program_force_x_N"),
+                                                           bytes_of("sqrt(force_x_N^2 + 1.5e-3 * abs(force_y_N))")};
+                               }};
 
 }  // namespace
 }  // namespace inkwell::fuzz
