@@ -74,7 +74,7 @@ bool is_reference(const ScopeSignal& signal) { return signal.name().find("_refer
 std::vector<std::size_t> drawing_order(const std::vector<ScopeSignal>& signals) {
   std::vector<std::size_t> order(signals.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_partition(order, [&](std::size_t i) { return !is_reference(signals[i]); });
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return !is_reference(signals[i]); });
   return order;
 }
 
