@@ -1,6 +1,7 @@
 // The two sectors of a flash whose power stays on.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -12,9 +13,9 @@ namespace inkwell::test {
 
 class PlainFlash final : public link::FlashMemory {
  public:
-  static constexpr std::size_t sector_words = 0x4000 / 4;
+  static constexpr std::size_t words_of_chip = 0x4000 / 4;  ///< in a sector
 
-  PlainFlash() {
+  explicit PlainFlash(std::size_t sector_words = words_of_chip) {
     for (auto& sector : sectors) sector.assign(sector_words, 0xFFFF'FFFF);
   }
   std::span<const std::uint32_t> sector(std::size_t number) const override { return sectors[number]; }
@@ -24,7 +25,7 @@ class PlainFlash final : public link::FlashMemory {
     place &= value;
     return place == value && !is_worn;
   }
-  void erase(std::size_t sector) override { sectors.at(sector).assign(sector_words, 0xFFFF'FFFF); }
+  void erase(std::size_t sector) override { std::ranges::fill(sectors.at(sector), 0xFFFF'FFFF); }
 
   std::array<std::vector<std::uint32_t>, protocol::store_sectors> sectors;
   unsigned words_programmed = 0;
