@@ -363,7 +363,7 @@ protocol::SelfTestReport Device::self_test() {
   const std::uint32_t begun_before = report.tests_begun;
   send(Command::self_test);
   if (!wait_while([&] { return report.tests_begun == begun_before; }))
-    throw Error(
+    throw NotTested(
         "The board does not test itself now. Switch the force off; if a fault is shown, see to that first: `inkwell "
         "fault` tells.");
   if (!wait_while(it_runs))

@@ -6,6 +6,7 @@
 #include <inkwell/inkwell.h>
 #include <protocol/faults.hpp>
 #include <protocol/reports.hpp>
+#include <protocol/self_test.hpp>
 #include <protocol/store.hpp>
 
 namespace inkwell {
@@ -76,6 +77,12 @@ static_assert(std::ranges::equal(stored, protocol::store_contents_table, [](cons
   return &row - protocol::store_contents_table.data() == c.value && is_capital_of(c.name, "STORED_", row.name);
 }));
 static_assert(std::size(inkwell_store{}.sector_erases) == protocol::store_sectors);
+
+constexpr Code tests[] = {CODE(TEST_NOT_DONE), CODE(TEST_PASSED),  CODE(TEST_FAILED),
+                          CODE(TEST_MOVED),    CODE(TEST_NO_PART), CODE(TEST_BROKEN_OFF)};
+static_assert(std::ranges::equal(tests, protocol::self_test_result_table, [](const Code& c, const auto& row) {
+  return &row - protocol::self_test_result_table.data() == c.value && is_capital_of(c.name, "TEST_", row.name);
+}));
 
 static_assert(INKWELL_MOTOR_HEAT_HOLDS_BACK == protocol::motor_heat_holds_back_from);
 static_assert(INKWELL_BESIDE_WALLS == static_cast<int>(protocol::ForceMode::beside_walls));

@@ -37,6 +37,8 @@ inkwell_result result_of_exception() noexcept {
     return fail(INKWELL_REFUSED, error.what());
   } catch (const device::NotStored& error) {
     return fail(INKWELL_REFUSED, error.what());
+  } catch (const device::NotTested& error) {
+    return fail(INKWELL_REFUSED, error.what());
   } catch (const device::NoPermission& error) {
     return fail(INKWELL_NO_PERMISSION, error.what());
   } catch (const device::Incompatible& error) {

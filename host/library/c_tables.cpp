@@ -118,6 +118,39 @@ inkwell_result inkwell_get_store(inkwell_arm* arm, inkwell_store* store) {
   });
 }
 
+// ---- the board's self-test ---------------------------------------------------------------------------------
+
+namespace {
+
+void tell_test(inkwell_arm* arm, bool is_new, inkwell_test_item* items, size_t capacity, size_t* count) {
+  required(count, "The count");
+  if (capacity > 0) required(items, "The place for the items");
+  device::Device& board = arm_of(arm).device();
+  const protocol::SelfTestReport report = is_new ? board.self_test() : board.read_self_test();
+  *count = protocol::self_test_item_count;
+  for (std::size_t i = 0; i < std::min(capacity, protocol::self_test_item_count); ++i) {
+    const auto& row = protocol::self_test_item_table[i];
+    const auto& entry = report.entries[i];
+    items[i] = {row.name.data(),
+                row.meaning.data(),
+                row.remedy.data(),
+                row.unit.data(),
+                static_cast<double>(entry.figure),
+                static_cast<inkwell_test>(entry.result),
+                row.takes_force ? 1 : 0};
+  }
+}
+
+}  // namespace
+
+inkwell_result inkwell_self_test(inkwell_arm* arm, inkwell_test_item* items, size_t capacity, size_t* count) {
+  return guarded([&] { tell_test(arm, true, items, capacity, count); });
+}
+
+inkwell_result inkwell_get_self_test(inkwell_arm* arm, inkwell_test_item* items, size_t capacity, size_t* count) {
+  return guarded([&] { tell_test(arm, false, items, capacity, count); });
+}
+
 // ---- scope and recording -----------------------------------------------------------------------------------
 
 size_t inkwell_signal_count(void) { return protocol::known_signals().size(); }

@@ -214,6 +214,32 @@ Answers store_state(const Arguments& arguments) {
   return {told};
 }
 
+Answers self_test(const Arguments& arguments) {
+  inkwell_arm* const arm = find(arguments)->second;
+  std::size_t count = 0;
+  require(inkwell_get_self_test(arm, nullptr, 0, &count));
+  std::vector<inkwell_test_item> items(count);
+  const bool only_last = mxGetScalar(arguments.at(1)) != 0;
+  require((only_last ? inkwell_get_self_test : inkwell_self_test)(arm, items.data(), items.size(), &count));
+  static const char* const results[] = {"not done", "passed", "failed", "moved", "no part", "broken off"};
+  const char* names[] = {"name", "result", "figure", "unit", "takes_force", "meaning", "remedy"};
+  mxArray* table =
+      mxCreateStructMatrix(static_cast<mwSize>(items.size()), 1, static_cast<int>(std::size(names)), names);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const inkwell_test_item& item = items[i];
+    const bool is_known = item.result >= 0 && static_cast<std::size_t>(item.result) < std::size(results);
+    mxArray* values[] = {mxCreateString(item.name),
+                         mxCreateString(is_known ? results[item.result] : "unknown"),
+                         mxCreateDoubleScalar(item.figure),
+                         mxCreateString(item.unit),
+                         mxCreateLogicalScalar(item.takes_force != 0),
+                         mxCreateString(item.meaning),
+                         mxCreateString(item.remedy)};
+    for (std::size_t j = 0; j < std::size(names); ++j) mxSetField(table, static_cast<mwIndex>(i), names[j], values[j]);
+  }
+  return {table};
+}
+
 Answers parameters(const Arguments&) {
   const char* names[] = {"name", "unit", "help", "minimum", "maximum", "default_value"};
   mxArray* table = mxCreateStructMatrix(static_cast<mwSize>(inkwell_parameter_count()), 1,
@@ -289,6 +315,7 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"store", store},
     {"restore", restore},
     {"factory_reset", factory_reset},
+    {"self_test", self_test},
     {"store_state", store_state},
     {"select", select},
     {"parameters", parameters},

@@ -243,6 +243,22 @@ inkwell_store Arm::store() {
   return store;
 }
 
+// ---- the board's self-test ---------------------------------------------------------------------------------
+
+std::vector<inkwell_test_item> Arm::self_test() { return test_items(inkwell_self_test); }
+
+std::vector<inkwell_test_item> Arm::last_self_test() { return test_items(inkwell_get_self_test); }
+
+std::vector<inkwell_test_item> Arm::test_items(decltype(&inkwell_self_test) test) {
+  const Use arm(*this);
+  std::vector<inkwell_test_item> items;
+  std::size_t count = 0;
+  call([&] { return inkwell_get_self_test(arm, nullptr, 0, &count); });
+  items.resize(count);
+  call([&] { return test(arm, items.data(), items.size(), &count); });
+  return items;
+}
+
 // ---- the hand of a virtual board ---------------------------------------------------------------------------
 
 void Arm::move_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m) {

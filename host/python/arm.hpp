@@ -50,6 +50,8 @@ class Arm {
   void restore_parameters();
   void factory_reset();
   inkwell_store store();
+  std::vector<inkwell_test_item> self_test();
+  std::vector<inkwell_test_item> last_self_test();
 
   void move_virtual_hand(const std::array<double, 3>& target_m, double stiffness_N_per_m);
   void release_virtual_hand();
@@ -64,6 +66,8 @@ class Arm {
   std::pair<std::uint64_t, std::uint64_t> stop_recording();
 
  private:
+  std::vector<inkwell_test_item> test_items(decltype(&inkwell_self_test) test);
+
   /// While one lives, the arm stays open.
   class Use {
    public:

@@ -205,6 +205,27 @@ void define_store(py::module_& module) {
           "in the board's life, of each of its two sectors");
 }
 
+void define_self_test(py::module_& module) {
+  py::enum_<inkwell_test>(module, "Test", "What an item of the board's self-test came to.")
+      .value("NOT_DONE", INKWELL_TEST_NOT_DONE, "it has not been looked at, or could not be while something else fails")
+      .value("PASSED", INKWELL_TEST_PASSED)
+      .value("FAILED", INKWELL_TEST_FAILED)
+      .value("MOVED", INKWELL_TEST_MOVED, "not done: the arm moved too fast")
+      .value("NO_PART", INKWELL_TEST_NO_PART, "not done: a motor with a current limit of 0 takes no part")
+      .value("BROKEN_OFF", INKWELL_TEST_BROKEN_OFF, "not done: no supply, or another fault came before it was over");
+  py::class_<inkwell_test_item>(module, "TestItem", "An item of the board's self-test.")
+      .def_readonly("name", &inkwell_test_item::name)
+      .def_readonly("result", &inkwell_test_item::result)
+      .def_readonly("figure", &inkwell_test_item::figure, "0 if the item has none, or was not looked at")
+      .def_readonly("unit", &inkwell_test_item::unit, "of the figure; empty if the item has none")
+      .def_property_readonly("takes_force", [](const inkwell_test_item& item) { return item.takes_force != 0; })
+      .def_readonly("meaning", &inkwell_test_item::meaning, "what it means if it passes")
+      .def_readonly("remedy", &inkwell_test_item::remedy, "if it fails")
+      .def("__repr__", [](const inkwell_test_item& item) {
+        return std::string("<TestItem ") + item.name + ": " + py::str(py::cast(item.result)).cast<std::string>() + ">";
+      });
+}
+
 void define_arm(py::module_& module) {
   py::class_<Arm>(module, "Arm")
       .def(py::init<const std::string&>())
@@ -230,6 +251,8 @@ void define_arm(py::module_& module) {
       .def("restore_parameters", &Arm::restore_parameters)
       .def("factory_reset", &Arm::factory_reset)
       .def("store", &Arm::store)
+      .def("self_test", &Arm::self_test)
+      .def("last_self_test", &Arm::last_self_test)
       .def("move_virtual_hand", &Arm::move_virtual_hand)
       .def("release_virtual_hand", &Arm::release_virtual_hand)
       .def("press_virtual_buttons", &Arm::press_virtual_buttons)
@@ -246,6 +269,7 @@ PYBIND11_MODULE(_native, module) {
   module.doc() = "libinkwell for the package's Python files.";
   inkwell::python::define_structs(module);
   inkwell::python::define_store(module);
+  inkwell::python::define_self_test(module);
   inkwell::python::define_arm(module);
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <inkwell/inkwell.h>
+#include <protocol/self_test.hpp>
 #include <temporary_directory.hpp>
 
 #include "virtual_arm.hpp"
@@ -114,6 +115,46 @@ TEST_CASE("parameters are stored, restored and forgotten, but not while the forc
   CHECK(inkwell_store_parameters(arm) == INKWELL_REFUSED);
   CHECK(says("Switch the force off"));
   CHECK(inkwell_factory_reset(arm) == INKWELL_REFUSED);
+}
+
+TEST_CASE("the board tests itself: items with figures, kept until the next test, refused while the force is on") {
+  VirtualArm virtual_arm;
+  inkwell_arm* arm = virtual_arm.arm;
+  std::size_t count = 0;
+  REQUIRE(inkwell_get_self_test(arm, nullptr, 0, &count) == INKWELL_OK);
+  CHECK(count == inkwell::protocol::self_test_item_count);
+  std::vector<inkwell_test_item> items(count + 1);
+  items[count].name = "untouched";
+  REQUIRE(inkwell_self_test(arm, items.data(), items.size(), &count) == INKWELL_OK);
+  CHECK(count == inkwell::protocol::self_test_item_count);
+  CHECK(items[count].name == std::string("untouched"));
+  double resistance_ohm = 0;
+  REQUIRE(inkwell_get_parameter(arm, "motor_resistance_2_ohm", &resistance_ohm) == INKWELL_OK);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& item = items[i];
+    CAPTURE(item.name);
+    CHECK(item.result == INKWELL_TEST_PASSED);
+    CHECK(std::string(item.meaning).size() > 10);
+    CHECK(std::string(item.remedy).size() > 10);
+    if (item.name == std::string("motor_2")) {
+      CHECK(item.unit == std::string("ohm"));
+      CHECK(item.figure == doctest::Approx(resistance_ohm).epsilon(0.2));
+      CHECK(item.takes_force == 1);
+    }
+    if (item.name == std::string("bridge_2")) CHECK(item.takes_force == 0);
+  }
+  std::vector<inkwell_test_item> few(2);
+  few[1].name = "untouched";
+  REQUIRE(inkwell_get_self_test(arm, few.data(), 1, &count) == INKWELL_OK);
+  CHECK(few[0].name == std::string("flash"));
+  CHECK(few[1].name == std::string("untouched"));
+  CHECK(inkwell_self_test(arm, nullptr, 3, &count) == INKWELL_BAD_ARGUMENT);
+  CHECK(inkwell_self_test(arm, few.data(), 1, nullptr) == INKWELL_BAD_ARGUMENT);
+
+  virtual_arm.make_active();
+  CHECK(inkwell_self_test(arm, items.data(), items.size(), &count) == INKWELL_REFUSED);
+  CHECK(says("Switch the force off"));
+  CHECK(inkwell_get_self_test(arm, items.data(), items.size(), &count) == INKWELL_OK);
 }
 
 TEST_CASE("forward kinematics: the pose's own position, and a Jacobian that agrees with it") {

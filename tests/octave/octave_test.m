@@ -54,6 +54,14 @@ assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 800);
 assert(inkwell_store(arm, 'state').contents, 'factory reset');
 refused(@() inkwell_store(arm, 'nonsense'), 'no such action');
 
+% The board's self-test.
+items = inkwell_self_test(arm);
+assert(all(strcmp({items.result}, 'passed') | strcmp({items.result}, 'not done')));
+motor = items(strcmp({items.name}, 'motor_1'));
+assert(strcmp(motor.unit, 'ohm') && motor.figure > 1 && motor.takes_force);
+assert(isequal(inkwell_self_test(arm, 'last'), items));
+refused(@() inkwell_self_test(arm, 'nonsense'), 'no such self-test');
+
 % The scope as a matrix.
 assert(any(strcmp(inkwell_signals(), 'supply_V')));
 [samples, time_s, lost] = inkwell_capture(arm, {'position_z_m', 'supply_V'}, 0.1);

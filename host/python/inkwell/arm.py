@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native, errors
-from ._native import ForceMode, Information, Pose
+from ._native import ForceMode, Information, Pose, TestItem
 from .parameters import Parameters
 from .scope import Samples
 from .shapes import Plane, Sphere
@@ -122,6 +122,12 @@ class Arm:
     def information(self) -> Information:
         """What the arm says of itself and has counted; asks it."""
         return self._native.information()
+
+    def self_test(self, only_last: bool = False) -> list[TestItem]:
+        """Has the board test its motors, bridges, sensors and wires, by small pulses; each item's result, figure and
+        remedy. With `only_last` what the newest test has found, without a new one. Raises Refused while the force is on
+        or a fault is shown."""
+        return self._native.last_self_test() if only_last else self._native.self_test()
 
     # ---- pose ------------------------------------------------------------------------------------------------
 

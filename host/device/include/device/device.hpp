@@ -43,6 +43,12 @@ class Refused : public Error {
   protocol::TransactionReport report;
 };
 
+/// The board does not test itself now. `what()` says why.
+class NotTested : public Error {
+ public:
+  using Error::Error;
+};
+
 using ParameterChange = std::pair<protocol::Parameter, float>;
 
 /// May be used by several threads, but poses are read by one of them and the scope by one.
@@ -95,8 +101,8 @@ class Device {
 
   /// The newest result of each item of the board's self-test.
   protocol::SelfTestReport read_self_test();
-  /// Lets the board test itself, which takes a twentieth of a second, and returns what it found. Throws Error if the
-  /// board does not: the force is on, or a fault is shown.
+  /// Lets the board test itself, which takes a twentieth of a second, and returns what it found. Throws NotTested if
+  /// the board does not: the force is on, or a fault is shown.
   protocol::SelfTestReport self_test();
 
   /// Waits for the next scope frame; none on time-out.

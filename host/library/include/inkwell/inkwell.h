@@ -320,14 +320,46 @@ typedef enum inkwell_stored INKWELL_AS_INT {
 /* The state of the board's store. */
 typedef struct inkwell_store {
   inkwell_stored contents;
-  uint32_t not_stored;  /* parameters that would be lost with the power */
-  uint32_t stores_left; /* before the board's next start, which makes room */
+  uint32_t not_stored;       /* parameters that would be lost with the power */
+  uint32_t stores_left;      /* before the board's next start, which makes room */
   uint32_t records_written;  /* in the board's life */
   uint32_t sector_erases[2]; /* likewise, of each of its two sectors */
 } inkwell_store;
 
 /* Asks the device. */
 INKWELL_API inkwell_result inkwell_get_store(inkwell_arm* arm, inkwell_store* store);
+
+/* ---- the board's self-test ------------------------------------------------------------------------------------- */
+
+/* What an item of the self-test came to. */
+typedef enum inkwell_test INKWELL_AS_INT {
+  INKWELL_TEST_NOT_DONE = 0, /* it has not been looked at, or could not be while something else fails */
+  INKWELL_TEST_PASSED = 1,
+  INKWELL_TEST_FAILED = 2,
+  INKWELL_TEST_MOVED = 3,     /* not done: the arm moved too fast */
+  INKWELL_TEST_NO_PART = 4,   /* not done: a motor with a current limit of 0 takes no part */
+  INKWELL_TEST_BROKEN_OFF = 5 /* not done: no supply, or another fault came before it was over */
+} inkwell_test;
+
+/* An item of the self-test. Texts last until the process ends. */
+typedef struct inkwell_test_item {
+  const char* name;
+  const char* meaning; /* what it means if it passes */
+  const char* remedy;  /* if it fails */
+  const char* unit;    /* of the figure; empty if the item has none */
+  double figure;       /* 0 if the item has none, or was not looked at */
+  inkwell_test result;
+  int takes_force; /* a failure takes the force away, until a test passes */
+} inkwell_test_item;
+
+/* Has the board test itself, which takes a twentieth of a second; the motors get small pulses. `count` is how many
+ * items there are, of which the first `capacity` are written. INKWELL_REFUSED while the force is on or another fault is
+ * shown. A failed item is no error: its result says so. */
+INKWELL_API inkwell_result inkwell_self_test(inkwell_arm* arm, inkwell_test_item* items, size_t capacity,
+                                             size_t* count);
+/* What the newest test has found, that of the board's start included, without a new one. */
+INKWELL_API inkwell_result inkwell_get_self_test(inkwell_arm* arm, inkwell_test_item* items, size_t capacity,
+                                                 size_t* count);
 
 /* ---- the hand of a virtual board ------------------------------------------------------------------------------ */
 

@@ -7,6 +7,7 @@
 //   });
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <exception>
@@ -121,6 +122,15 @@ class Arm {
     double value = 0;
     require(inkwell_get_stored_parameter(get(), name.c_str(), &value));
     return value;
+  }
+  /// A new self-test's items, or with `only_last` those of the newest.
+  std::vector<inkwell_test_item> self_test(bool only_last = false) {
+    const auto test = only_last ? inkwell_get_self_test : inkwell_self_test;
+    std::vector<inkwell_test_item> items(64);
+    std::size_t count = 0;
+    require(test(get(), items.data(), items.size(), &count));
+    items.resize(std::min(count, items.size()));
+    return items;
   }
   inkwell_store store() const {
     inkwell_store store;
