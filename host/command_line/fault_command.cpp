@@ -89,7 +89,14 @@ void print(const BlackBoxReport& box, const Image& image) {
   print_crash(box, image);
 }
 
-void tell_fault(const DeviceOptions& options, const PoseReport& pose, const BlackBoxReport& box, const Image& image) {
+/// With the items of a self-test that failed.
+std::string line_of(Fault fault, device::Device& device) {
+  return fault == Fault::self_test_failed ? device::fault_line(fault, device.read_self_test())
+                                          : device::fault_line(fault);
+}
+
+void tell_fault(const DeviceOptions& options, device::Device& device, const PoseReport& pose, const BlackBoxReport& box,
+                const Image& image) {
   const bool is_fault = pose.state == State::fault;
   if (options.json) {
     fmt::print("{}\n", ordered_json{{"state", info(pose.state).name},
@@ -99,7 +106,7 @@ void tell_fault(const DeviceOptions& options, const PoseReport& pose, const Blac
     return;
   }
   if (is_fault)
-    fmt::print("{}\n", device::fault_line(pose.fault));
+    fmt::print("{}\n", line_of(pose.fault, device));
   else
     fmt::print("No fault. The device is {}: {}\n", info(pose.state).name, info(pose.state).meaning);
   print(box, image);
@@ -109,7 +116,7 @@ int show_fault(const DeviceOptions& device_options, const FaultOptions& options)
   const auto connection = connect(device_options);
   const auto pose = next_pose(*connection.device);
   const auto box = connection.device->black_box();
-  tell_fault(device_options, pose, box, image_of(box, options));
+  tell_fault(device_options, *connection.device, pose, box, image_of(box, options));
   return 0;
 }
 
@@ -167,8 +174,8 @@ int clear_fault(const DeviceOptions& options) {
   const std::uint32_t begin_periods = pose.time_periods;
   while (was_fault && pose.time_periods - begin_periods < patience_periods) pose = next_pose(device);
   if (pose.state == State::fault)
-    throw device::Error(fmt::format("The fault is there again. {}", device::fault_line(pose.fault)));
-  tell_fault(options, pose, device.black_box(), std::nullopt);
+    throw device::Error(fmt::format("The fault is there again. {}", line_of(pose.fault, device)));
+  tell_fault(options, device, pose, device.black_box(), std::nullopt);
   return 0;
 }
 

@@ -1,8 +1,12 @@
 #include <device/fault_text.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <board/facts.hpp>
 #include <protocol/reports.hpp>
@@ -32,9 +36,34 @@ FaultText fault_text(protocol::Fault fault) {
   return {with_figures(row.cause), with_figures(row.remedy)};
 }
 
-std::string fault_line(protocol::Fault fault) {
-  const auto [cause, remedy] = fault_text(fault);
-  return fmt::format("{}: {} {}", protocol::info(fault).name, cause, remedy);
+FaultText fault_text(protocol::Fault fault, const protocol::SelfTestReport& test) {
+  FaultText text = fault_text(fault);
+  std::vector<std::string_view> items, remedies;
+  for (std::size_t i = 0; i < protocol::self_test_item_count; ++i) {
+    const auto& item = protocol::self_test_item_table[i];
+    if (!item.takes_force || test.entries[i].result != protocol::SelfTestResult::failed) continue;
+    items.push_back(item.name);
+    if (std::ranges::find(remedies, item.remedy) == remedies.end()) remedies.push_back(item.remedy);
+  }
+  if (fault != protocol::Fault::self_test_failed || items.empty()) return text;
+  text.cause =
+      fmt::format("The self-test has found something without which there is no force: {}.", fmt::join(items, ", "));
+  text.remedy = fmt::format("{} Then clear the fault, which tests again.", fmt::join(remedies, " "));
+  return text;
+}
+
+namespace {
+
+std::string line_of(protocol::Fault fault, const FaultText& text) {
+  return fmt::format("{}: {} {}", protocol::info(fault).name, text.cause, text.remedy);
+}
+
+}  // namespace
+
+std::string fault_line(protocol::Fault fault) { return line_of(fault, fault_text(fault)); }
+
+std::string fault_line(protocol::Fault fault, const protocol::SelfTestReport& test) {
+  return line_of(fault, fault_text(fault, test));
 }
 
 }  // namespace inkwell::device

@@ -159,9 +159,22 @@ void Session::Implementation::note_losses(std::uint32_t at_periods) {
   note("samples", state.scope_samples_lost, told_samples_lost);
 }
 
+namespace {
+
+std::optional<protocol::SelfTestReport> self_test_of(Device& device) {
+  try {
+    return device.read_self_test();
+  } catch (const Stalled&) {  // then the fault's own words have to do
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
 void Session::Implementation::follow_fault(Device& from, const protocol::PoseReport& pose,
                                            std::optional<std::uint32_t> before_periods) {
   std::optional<NoticedFault> known;
+  std::optional<protocol::SelfTestReport> test;
   {
     const std::lock_guard lock(mutex);
     known = state.fault;
@@ -169,6 +182,7 @@ void Session::Implementation::follow_fault(Device& from, const protocol::PoseRep
   if (pose.state == protocol::State::fault) {
     if (known && known->fault == pose.fault) return;
     known = {pose.fault, noticed_at_periods(from, pose, before_periods)};
+    if (pose.fault == protocol::Fault::self_test_failed) test = self_test_of(from);
   } else if (!known) {
     return;
   } else {
@@ -176,6 +190,7 @@ void Session::Implementation::follow_fault(Device& from, const protocol::PoseRep
   }
   const std::lock_guard lock(mutex);
   state.fault = known;
+  state.self_test = test;
 }
 
 std::uint32_t Session::Implementation::noticed_at_periods(Device& by, const protocol::PoseReport& pose,

@@ -310,6 +310,10 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   const auto json = nlohmann::json::parse(run({"--last", "--json"}).out);
   CHECK(json.at("well") == false);
   CHECK(json.at("items").at(17).at("item") == "motor_2");
+  const auto fault = run_program("inkwell", {"fault", "--usbip", port});
+  INFO(fault.out, fault.err);
+  CHECK(fault.out.find("without which there is no force: motor_2. Too much: check the motor's wires") !=
+        std::string::npos);
   CHECK(json.at("items").at(17).at("result") == "failed");
   CHECK(json.at("items").at(16).at("figure").get<double>() == doctest::Approx(2.3).epsilon(0.1));
   CHECK(json.at("items").at(5).at("figure").is_null());

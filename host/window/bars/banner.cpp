@@ -35,7 +35,9 @@ std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpda
 
 std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const FirmwareUpdater::Sight& firmware) {
   if (view.pose && view.pose->state == State::fault) {
-    const auto [cause, remedy] = device::fault_text(view.pose->fault);
+    const auto& test = view.status.self_test;
+    const auto [cause, remedy] =
+        test ? device::fault_text(view.pose->fault, *test) : device::fault_text(view.pose->fault);
     return Banner{cause, remedy, true, "Clear fault"};
   }
   if (!view.connected() || !view.status.information) return std::nullopt;

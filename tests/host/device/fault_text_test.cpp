@@ -35,3 +35,22 @@ TEST_CASE("the faults of the motors and of old samples name the figures that the
   CHECK(device::fault_text(Fault::motor_hot).cause.find("is 25 % hotter than it bears") != std::string::npos);
   CHECK(device::fault_text(Fault::motor_hot).remedy.find("cool below 85 %;") != std::string::npos);
 }
+
+TEST_CASE("a self-test that failed names its items and their remedies, each once") {
+  using protocol::SelfTestItem;
+  using protocol::SelfTestResult;
+  protocol::SelfTestReport test{};
+  const auto set = [&](SelfTestItem item, SelfTestResult result) {
+    test.entries[static_cast<std::size_t>(item)].result = result;
+  };
+  CHECK(device::fault_text(Fault::self_test_failed, test).cause == device::fault_text(Fault::self_test_failed).cause);
+  set(SelfTestItem::motor_1, SelfTestResult::failed);
+  set(SelfTestItem::motor_3, SelfTestResult::failed);
+  set(SelfTestItem::encoder_2_a, SelfTestResult::moved);
+  set(SelfTestItem::gimbal_1, SelfTestResult::failed);  // which takes no force
+  const auto text = device::fault_text(Fault::self_test_failed, test);
+  CHECK(text.cause == "The self-test has found something without which there is no force: motor_1, motor_3.");
+  CHECK(text.remedy == std::string(info(SelfTestItem::motor_1).remedy) + " Then clear the fault, which tests again.");
+  CHECK(device::fault_line(Fault::self_test_failed, test) == "self_test_failed: " + text.cause + " " + text.remedy);
+  CHECK(device::fault_text(Fault::over_speed, test).cause == device::fault_text(Fault::over_speed).cause);
+}

@@ -33,9 +33,10 @@ struct SessionStatus {
   bool is_simulation = false;              ///< connected to a virtual board
   /// The control period at which the newest transaction of this session took effect; none before the first.
   std::optional<std::uint32_t> applied_at_periods;
-  std::optional<NoticedFault> fault;  ///< none: the device is in no fault
-  std::optional<BoardStore> store;    ///< as of the newest second, or of the newest request to change it
-  bool is_storing = false;            ///< a request to store or to forget is on its way
+  std::optional<NoticedFault> fault;                  ///< none: the device is in no fault
+  std::optional<protocol::SelfTestReport> self_test;  ///< that led to the fault self_test_failed
+  std::optional<BoardStore> store;  ///< as of the newest second, or of the newest request to change it
+  bool is_storing = false;          ///< a request to store or to forget is on its way
   /// Why the newest request to store or to forget came to nothing; none once another was made.
   std::optional<std::string> store_problem;
   double pose_rate_Hz = 0;
