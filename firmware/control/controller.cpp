@@ -251,8 +251,10 @@ void Controller::drive_pulses(const Settings& settings) {
                                          .current_limit_A = settings.motors.current_limit_A,
                                          .supply_V = supply_.supply_V,
                                          .dead_time_part = board_.dead_time_part});
-  for (std::size_t i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < 3; ++i) {
     drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
+    over_current_A_[i] = SelfTestPulses::bearable_A;  // at least, whatever its own limit is: follow_over_current()
+  }
   drive_.enabled = true;
 }
 

@@ -226,6 +226,26 @@ TEST_CASE("motors that are 100 K hotter pass, and so do supplies of 13 V and 23 
   }
 }
 
+TEST_CASE("stored current limits of nearly nothing keep no sound board from passing as it starts, at rest or moving") {
+  BoardRig rig;
+  rig.take_to({0.02, 0.02, -0.02});
+  rig.set({{protocol::Parameter::current_limit_1_A, 0.01f},
+           {protocol::Parameter::current_limit_2_A, 0.155f},
+           {protocol::Parameter::current_limit_3_A, 0.05f}});
+  rig.command(protocol::Command::store_parameters);
+  rig.run(0.3);
+  for (int i = 0; i < 12; ++i) {
+    CAPTURE(i);
+    const double side_m = i % 2 == 0 ? 0.05 : -0.05;
+    rig.control.hand_path({{0.0, {-side_m, 0.0, -0.03}}, {0.3 + 0.02 * i, {side_m, side_m, -0.02}}});
+    rig.run(0.2);
+    const auto report = report_after_reset(rig);
+    CHECK(fmt::format("{}", fmt::join(failed(report), " ")).empty());
+    CHECK(rig.pose().fault == Fault::none);
+    CHECK(rig.device->parameters()[protocol::Parameter::current_limit_1_A] == 0.01f);
+  }
+}
+
 TEST_CASE("a motor with half its turns is told also while all are hot") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });

@@ -341,6 +341,22 @@ TEST_CASE("a current limit that is lowered gives the current time to follow, and
   CHECK(controller.fault() == Fault::over_current);
 }
 
+TEST_CASE("while the self-test's pulses run their current is borne by any motor, a larger one is not") {
+  Settings settings = settings_near_wall();
+  settings.limits.over_current_A[1] = 0.5f;
+  for (const float current_A : {1.0f, 1.1f}) {
+    CAPTURE(current_A);
+    Controller controller = tests::ready_controller(settings);
+    Samples samples = tests::samples_at_rest();
+    tests::run(controller, samples, settings, 300);
+    controller.start_pulses();
+    tests::run(controller, samples, settings, 2);
+    samples.current_A[1] = current_A;
+    tests::run(controller, samples, settings, 2);
+    CHECK(controller.fault() == (current_A < control::SelfTestPulses::bearable_A ? Fault::none : Fault::over_current));
+  }
+}
+
 TEST_CASE("every signal of the table is written, stage times of this period and of the one before") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::ready_controller(settings);

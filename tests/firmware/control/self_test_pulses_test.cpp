@@ -1,6 +1,7 @@
 // The pulses of the self-test: their shape, their size, and that they end.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -47,6 +48,16 @@ TEST_CASE("each motor by itself gets low, high, and the same the other way round
     for (std::size_t i = 0; i < 3; ++i)
       CHECK(told[period][i] == doctest::Approx(i == motor ? wanted_V : 0.0f).epsilon(1e-5));
   }
+}
+
+TEST_CASE("a motor with a current limit of nearly nothing gets pulses that tell its resistance all the same") {
+  constexpr Triple little_for_2_A{2.5f, 0.01f, 2.5f};
+  SelfTestPulses pulses;
+  float largest_V = 0.0f;
+  for (const Triple& told : told_V(pulses, {resistance_ohm, little_for_2_A, 20.0f, dead_V / 20.0f}))
+    largest_V = std::max(largest_V, told[1]);
+  CHECK(largest_V == doctest::Approx(0.3f * resistance_ohm[1] + dead_V));
+  CHECK(pulses.round().motors[1].takes_part);
 }
 
 TEST_CASE("a motor whose current limit is zero gets no pulse and takes no part") {

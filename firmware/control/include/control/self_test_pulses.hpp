@@ -52,6 +52,11 @@ class SelfTestPulses {
   /// Current at the high level, as far as the motor's resistance explains it: 1.4 N at the hand for a millisecond. The
   /// low level has so large a part of it.
   static constexpr float high_A = 0.7f, low_part = 0.4f;
+  /// A motor with a lower current limit gets pulses of this current all the same: less tells no resistance, and every
+  /// motor bears it for a millisecond.
+  static constexpr float high_minimum_A = 0.3f;
+  /// What a motor's back EMF and the other motors' pulses add to it does not count as over-current.
+  static constexpr float bearable_A = 1.5f * high_A;
   /// For windings with more resistance than that takes.
   static constexpr float ohmic_maximum_V = 7.5f;
 
