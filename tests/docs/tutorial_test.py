@@ -35,7 +35,7 @@ class Tutorial(unittest.TestCase):
             with self.subTest(typed=line):
                 told = help_of(program, commands) + help_of(program, [])
                 for option in (word for word in words if word.startswith("--")):
-                    self.assertIn(option, told)
+                    self.assertRegex(told, rf"(?<![\w-]){option}(?![\w-])")
 
 
 if __name__ == "__main__":
