@@ -25,7 +25,7 @@ using protocol::StoreResult;
 using test::PlainFlash;
 
 constexpr std::array<std::uint8_t, 3> this_version{1, 2, 3};
-constexpr Parameter force_limit = Parameter::force_limit_N, stiffness = Parameter::link_2_m;
+constexpr Parameter force_limit = Parameter::force_limit_N, link_length = Parameter::link_2_m;
 
 std::uint16_t id_of(Parameter parameter) { return protocol::info(parameter).id; }
 float default_of(Parameter parameter) { return link::image_defaults()[parameter]; }
@@ -73,6 +73,12 @@ void store_in(PlainFlash& flash, Parameter parameter, float value) {
 
 using Entries = std::vector<std::pair<std::uint32_t, float>>;
 
+FlashLog log_of(PlainFlash& flash) {
+  FlashLog log;
+  log.start(flash);
+  return log;
+}
+
 /// A record by any firmware.
 void write(PlainFlash& flash, RecordHead head, const Entries& entries) {
   std::vector<std::uint32_t> payload;
@@ -80,8 +86,7 @@ void write(PlainFlash& flash, RecordHead head, const Entries& entries) {
     payload.push_back(id);
     payload.push_back(std::bit_cast<std::uint32_t>(value));
   }
-  FlashLog log;
-  log.start(flash);
+  FlashLog log = log_of(flash);
   REQUIRE(log.begin(head, payload));
   while (log.step() == FlashLog::Progress::under_way) {
   }
@@ -91,15 +96,7 @@ void write(PlainFlash& flash, RecordHead head, const Entries& entries) {
 RecordHead own_head() {
   PlainFlash flash;
   store_in(flash, force_limit, 1.0f);
-  FlashLog log;
-  log.start(flash);
-  return log.newest()->head;
-}
-
-FlashLog log_of(PlainFlash& flash) {
-  FlashLog log;
-  log.start(flash);
-  return log;
+  return log_of(flash).newest()->head;
 }
 
 Entries entries_of(PlainFlash& flash) {
@@ -262,7 +259,7 @@ TEST_CASE("stored parameters: a factory reset forgets them, at once and for the 
   PlainFlash flash;
   store_in(flash, force_limit, 1.25f);
   Board board(flash);
-  board.set(stiffness, 0.15f);
+  board.set(link_length, 0.15f);
   CHECK(board.forget() == StoreResult::done);
   CHECK(board.parameters.values() == link::image_defaults());
   CHECK(board.stored.next_start() == link::image_defaults());
@@ -367,12 +364,12 @@ TEST_CASE(
   PlainFlash flash;
   write(flash, own_head(),
         {{id_of(force_limit), 1e9f},
-         {id_of(stiffness), 0.15f},
+         {id_of(link_length), 0.15f},
          {id_of(Parameter::box_minimum_x_m), 0.05f},
          {id_of(Parameter::box_maximum_x_m), 0.05f}});
   Board board(flash);
   CHECK(board.held(force_limit) == default_of(force_limit));
-  CHECK(board.held(stiffness) == 0.15f);
+  CHECK(board.held(link_length) == 0.15f);
   CHECK(board.held(Parameter::box_minimum_x_m) == default_of(Parameter::box_minimum_x_m));
   CHECK(board.held(Parameter::box_maximum_x_m) == default_of(Parameter::box_maximum_x_m));
   CHECK(board.report().out_of_range == 3);
