@@ -53,6 +53,12 @@ int run(int argument_count, char** arguments) {
 
   try {
     program.parse(argument_count, arguments);
+    // Behind "--" there are words only, and no command: the window would open in its place.
+    if (program.get_subcommands().empty() && !program.remaining().empty())
+      throw UsageError(
+          "\"--\" stands in front of the command. Leave it out; of `inkwell run` it may stand behind the command.");
+  } catch (const UsageError& error) {
+    return complain(error, wrong_usage);
   } catch (const CLI::RequiredError& error) {
     return complain(UsageError(missing_command(program).value_or(error.what())), wrong_usage);
   } catch (const CLI::ParseError& error) {

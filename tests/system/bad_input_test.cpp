@@ -128,6 +128,10 @@ TEST_CASE("an arm description that is wrong is refused with the line to mend") {
 }
 
 TEST_CASE("the companion refuses what it does not know") {
+  SUBCASE("a command behind two dashes") {
+    check_refused(run_program("inkwell", {"--", "run", "./program"}), {"--", "Leave it out"});
+    check_refused(run_program("inkwell", {"--virtual", "--", "info"}), {"--", "Leave it out"});
+  }
   SUBCASE("parameter") {
     check_refused(run_program("inkwell", {"--virtual", "parameters", "set", "wall_stifness_N_per_m=500"}),
                   {"wall_stifness_N_per_m", "wall_stiffness_N_per_m"});
