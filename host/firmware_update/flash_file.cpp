@@ -13,20 +13,24 @@ namespace {
 
 /// Of the STM32F405 with 1 MiB, as its boot loader says.
 constexpr char layout[] = "@Internal Flash  /0x08000000/04*016Kg,01*064Kg,07*128Kg";
-constexpr std::size_t file_bytes = 1024 * 1024;
 
 std::vector<std::byte> read_flash(const std::filesystem::path& file) {
   std::error_code code;
-  if (!std::filesystem::exists(file, code)) return std::vector(file_bytes, std::byte{0xFF});
-  if (!std::filesystem::is_regular_file(file, code) || std::filesystem::file_size(file, code) != file_bytes)
-    throw device::Error(fmt::format(
-        "{} is no flash of a virtual board, which has {} bytes. Give the file of virtual-board --flash, or one "
-        "that is not there yet.",
-        file.string(), file_bytes));
-  std::ifstream stream(file, std::ios::binary);
-  std::vector<char> content{std::istreambuf_iterator<char>(stream), {}};
-  if (content.size() != file_bytes) throw device::Error(fmt::format("{} cannot be read.", file.string()));
+  if (!std::filesystem::exists(file, code)) return std::vector(protocol::flash_bytes, std::byte{0xFF});
+  // A folder has no bytes to read, and a device perhaps no end of them.
+  std::vector<char> content;
+  if (std::filesystem::is_regular_file(file, code)) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw device::Error(fmt::format("{} cannot be read. Is it yours?", file.string()));
+    if (std::filesystem::file_size(file, code) == protocol::flash_bytes)
+      content.assign(std::istreambuf_iterator<char>(stream), {});
+  }
   const auto bytes = std::as_bytes(std::span(content));
+  if (!protocol::may_be_flash(bytes))
+    throw device::Error(fmt::format(
+        "{} is no flash of a virtual board: that is {} bytes and begins with a firmware's vectors, or erased. It stays "
+        "as it is. Give the file of virtual-board --flash, or one that is not there yet.",
+        file.string(), protocol::flash_bytes));
   return {bytes.begin(), bytes.end()};
 }
 

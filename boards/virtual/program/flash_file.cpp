@@ -10,25 +10,11 @@
 #include <fmt/format.h>
 
 #include <chip/memory_map.hpp>
+#include <protocol/image_identity.hpp>
 
 namespace inkwell::virtual_board {
-namespace {
 
-std::uint32_t word_at(const std::vector<char>& content, std::size_t offset) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, content.data() + offset, sizeof word);
-  return word;
-}
-
-/// Erased where it begins, or with a firmware's first instruction there.
-bool begins_as_a_flash(const std::vector<char>& content) {
-  constexpr std::uint32_t erased = 0xFFFF'FFFF;
-  const std::uint32_t stack = word_at(content, 0), first = word_at(content, 4);
-  return (stack == erased && first == erased) || ((first & 1) != 0 && first - flash_base < flash_bytes);
-}
-
-}  // namespace
-
+static_assert(flash_bytes == protocol::flash_bytes && flash_base == protocol::image_begin);
 FlashFile::FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash) : path_(std::move(path)) {
   std::error_code ignored;
   if (!std::filesystem::exists(path_, ignored)) {
@@ -36,11 +22,13 @@ FlashFile::FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash) 
     return;
   }
   std::ifstream stream(path_, std::ios::binary);
-  const std::vector<char> content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream.is_open() || std::filesystem::is_directory(path_, ignored))
+  if (!stream.is_open() || !std::filesystem::is_regular_file(path_, ignored))
     throw std::runtime_error(fmt::format(
         "--flash: {} cannot be read. Give a file of your own, or one that is not there yet.", path_.string()));
-  if (content.size() != flash.size() || !begins_as_a_flash(content))
+  std::vector<char> content;
+  if (std::filesystem::file_size(path_, ignored) == flash.size())
+    content.assign(std::istreambuf_iterator<char>(stream), {});
+  if (!protocol::may_be_flash(std::as_bytes(std::span(content))))
     throw std::runtime_error(fmt::format(
         "--flash: {} is no flash of an STM32F405: that is {} bytes and begins with a firmware's vectors, or erased. "
         "It stays as it is; give another file, or one that is not there yet.",

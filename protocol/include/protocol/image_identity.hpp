@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
@@ -13,6 +15,22 @@ namespace inkwell::protocol {
 
 /// Behind the vector table (RM0090, "Vector table for STM32F405xx", on its boundary of 512 bytes).
 inline constexpr std::uint32_t image_begin = 0x0800'0000, image_identity_offset = 512;
+
+/// Of the STM32F405 that both boards have.
+inline constexpr std::size_t flash_bytes = 1024 * 1024;
+
+/// Whether bytes may be all of such a chip's flash: they are as many, and where the first instruction's address stands
+/// (RM0090, "Boot configuration") there is one in the flash, or nothing is written.
+inline bool may_be_flash(std::span<const std::byte> content) {
+  if (content.size() != flash_bytes) return false;
+  constexpr std::uint32_t erased = 0xFFFF'FFFF;
+  std::uint32_t vectors[2];
+  std::memcpy(vectors, content.data(), sizeof vectors);
+  const auto [stack, first_instruction] = vectors;
+  const bool is_thumb = (first_instruction & 1) != 0;
+  return (stack == erased && first_instruction == erased) ||
+         (is_thumb && first_instruction - image_begin < flash_bytes);
+}
 
 struct ImageIdentity {
   static constexpr char right_mark[8] = {'I', 'n', 'k', 'w', 'e', 'l', 'l', '\n'};

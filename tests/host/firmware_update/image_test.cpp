@@ -177,4 +177,34 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
       contains(message_of<device::Error>([&] { write_flash_file(file, image, true); }), "no flash of a virtual board"));
   CHECK(content() == "a text");
   CHECK_THROWS_AS(write_flash_file("/nowhere/board.flash", image, true), device::Error);
+  CHECK(contains(message_of<device::Error>([&] { write_flash_file(directory.file(""), image, true); }),
+                 "no flash of a virtual board"));
+
+  // As large as a flash, but somebody's pictures.
+  const std::string pictures(protocol::flash_bytes, 'P');
+  std::ofstream(file, std::ios::binary) << pictures;
+  CHECK(
+      contains(message_of<device::Error>([&] { write_flash_file(file, image, true); }), "no flash of a virtual board"));
+  CHECK(content() == pictures);
+}
+
+TEST_CASE("what may be a chip's flash begins with vectors into it, or erased") {
+  std::vector<std::byte> flash(protocol::flash_bytes, std::byte{0xFF});
+  const auto with_vectors = [&](std::uint32_t stack, std::uint32_t first_instruction) {
+    std::memcpy(flash.data(), &stack, sizeof stack);
+    std::memcpy(flash.data() + sizeof stack, &first_instruction, sizeof first_instruction);
+    return protocol::may_be_flash(flash);
+  };
+  CHECK(with_vectors(0xFFFF'FFFF, 0xFFFF'FFFF));
+  CHECK(with_vectors(0x2000'0000, 0x0800'0201));
+  CHECK(with_vectors(0x2000'0000, 0x080F'FFFF));
+  CHECK_FALSE(with_vectors(0x2000'0000, 0xFFFF'FFFF));
+  CHECK_FALSE(with_vectors(0xFFFF'FFFF, 0x0000'0201));
+  CHECK_FALSE(with_vectors(0x2000'0000, 0x0800'0200));  // no Thumb code
+  CHECK_FALSE(with_vectors(0x2000'0000, 0x0810'0001));
+  CHECK_FALSE(with_vectors(0x2000'0000, 0x07FF'FFFF));
+  CHECK(with_vectors(0x2000'0000, 0x0800'0201));
+  flash.pop_back();
+  CHECK_FALSE(protocol::may_be_flash(flash));
+  CHECK_FALSE(protocol::may_be_flash({}));
 }

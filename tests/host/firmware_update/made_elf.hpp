@@ -40,6 +40,8 @@ inline std::vector<firmware_update::Segment> made_segments(const protocol::Image
   std::vector<firmware_update::Segment> segments{
       {protocol::image_begin, std::vector<std::byte>(firmware_update::identity_end + 2)},  // whole words
       {protocol::image_begin + 0x1'0000, std::vector<std::byte>(4000)}};
+  constexpr std::uint32_t vectors[] = {0x2001'0000, protocol::image_begin + 0x1'0001};
+  std::memcpy(segments[0].bytes.data(), vectors, sizeof vectors);
   std::memcpy(segments[0].bytes.data() + protocol::image_identity_offset, &identity, sizeof identity);
   for (std::size_t i = 0; i < segments[1].bytes.size(); ++i) segments[1].bytes[i] = std::byte(i * 11);
   firmware_update::WordChecksum checksum;
