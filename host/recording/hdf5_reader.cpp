@@ -14,8 +14,8 @@ namespace {
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(const std::filesystem::path& file) : name_(file.string()) {
-    // A file that its writer did not close says so until someone clears the mark; readers of the
-    // single-writer mode may open it all the same.
+    // A file of an earlier version that its writer did not close says so until someone clears the mark; readers of
+    // HDF5's single-writer mode may open it all the same.
     file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file_) file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), H5Fclose);
     if (!file_) fail("is damaged: HDF5 cannot open it");
@@ -36,9 +36,16 @@ class Hdf5Reader {
       auto& column = place.emplace_back(whole);
       read_values(path, H5T_NATIVE_FLOAT, whole, column.data());
     }
-    read_marks();
     std::int32_t complete = 0;
     read_scalar("/complete", H5T_NATIVE_INT32, &complete);
+    try {
+      read_marks();
+    } catch (const device::Error&) {
+      if (complete == 1) throw;
+      recording_.marks.clear();
+      recording_.remarks.push_back(
+          fmt::format("The marks of {} are left out: its program ended while it wrote one.", name_));
+    }
     recording_.complete = complete == 1 && whole == samples;
     return std::move(recording_);
   }

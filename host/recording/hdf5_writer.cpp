@@ -1,10 +1,17 @@
-// HDF5 recordings. They are written in HDF5's single-writer-multiple-reader mode, which orders its writes so
-// that the file can be read at any moment, also after this process was killed.
+// HDF5 recordings that every program can open after this process was killed. For that the file is in the format of
+// HDF5 1.8 at the latest, which has no mark "open for writing" that somebody would have to take away; what tells where
+// the samples are reaches the disk in flush() only, behind the samples, and when there is room for all of it; and what
+// was written stays in its place, since a compressed chunk is written once, when it is full. What is left is the moment
+// in which HDF5 splits a full node of a column's 64 chunks: a few writes in 13 s at 20 kHz.
 #include "formats.hpp"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -14,7 +21,8 @@
 namespace inkwell::recording {
 namespace {
 
-constexpr hsize_t chunk_samples = 4096;
+constexpr hsize_t chunk_periods = 4096;      ///< 0.2 s, which a crash costs at most, with recorder.cpp's flush_interval
+constexpr hsize_t chunk_samples_least = 16;  ///< a chunk has some tens of bytes about itself
 constexpr hsize_t chunk_marks = 16;
 constexpr unsigned compression_level = 2;  // of 9; low, since the writer keeps up with 20 kHz
 
@@ -23,14 +31,15 @@ class Hdf5Writer final : public Writer {
   Hdf5Writer(const std::filesystem::path& file, const Information& information)
       : name_(file.string()),
         width_(information.signals.size()),
+        chunk_samples_(std::max(chunk_samples_least, chunk_periods / std::max(1u, information.step_periods))),
         values_(information.signals.size() + information.simulated.size()) {
     const QuietHdf5 quiet;
     lay_out(information);
     open_for_writing(information);
   }
   ~Hdf5Writer() override {
-    // Closing writes what is left, which fails again on a full disk: nothing more can be done about it here.
     const QuietHdf5 quiet;
+    if (file_) let_go();
     close();
   }
 
@@ -45,7 +54,7 @@ class Hdf5Writer final : public Writer {
         values_[width_ + j].push_back(simulated[i * simulated_width + j]);
     }
     // A scope frame has some tens of samples, and HDF5 takes as long for them as for thousands.
-    if (periods_.size() >= chunk_samples) write_samples();
+    if (periods_.size() >= chunk_samples_) write_samples(periods_.size() / chunk_samples_ * chunk_samples_);
   }
   void mark(const Mark& mark) override {
     const QuietHdf5 quiet;
@@ -57,7 +66,7 @@ class Hdf5Writer final : public Writer {
   }
   void flush() override {
     const QuietHdf5 quiet;
-    write_samples();
+    find_room();
     if (H5Fflush(file_.id(), H5F_SCOPE_GLOBAL) < 0) fail();
     // Only now are the samples known to be on the disk: a column may have grown without its values.
     if (H5Dwrite(samples_.id(), H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &size_) < 0) fail();
@@ -65,6 +74,7 @@ class Hdf5Writer final : public Writer {
   }
   void finish() override {
     const QuietHdf5 quiet;
+    write_samples(periods_.size());
     flush();
     const std::int32_t yes = 1;
     if (H5Dwrite(complete_.id(), H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, &yes) < 0) fail();
@@ -75,7 +85,17 @@ class Hdf5Writer final : public Writer {
  private:
   static Handle access() {
     Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    H5Pset_libver_bounds(list.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+    H5Pset_libver_bounds(list.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
+    // The library's cache of what lies where would write parts of it when it likes; for some megabytes it need not.
+    H5AC_cache_config_t cache{};
+    cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+    H5Pget_mdc_config(list.id(), &cache);
+    cache.evictions_enabled = false;
+    cache.incr_mode = H5C_incr__off;
+    cache.flash_incr_mode = H5C_flash_incr__off;
+    cache.decr_mode = H5C_decr__off;
+    H5Pset_mdc_config(list.id(), &cache);
+    H5Pset_cache(list.id(), 0, 0, 0, 0);  // chunks are written whole, so that none has to wait for its rest
     return list;
   }
   Handle group(hid_t file, const char* name) {
@@ -83,13 +103,16 @@ class Hdf5Writer final : public Writer {
     if (!made) fail();
     return made;
   }
-  Handle growing(hid_t place, const std::string& name, hid_t type, hsize_t chunk) {
+  enum class Packing { none, compressed };
+  Handle growing(hid_t place, const std::string& name, hid_t type, hsize_t chunk, Packing packing) {
     const hsize_t none = 0, unlimited = H5S_UNLIMITED;
     const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
     const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_chunk(properties.id(), 1, &chunk);
-    H5Pset_shuffle(properties.id());  // bytes of the same weight together, which then resemble each other
-    H5Pset_deflate(properties.id(), compression_level);
+    if (packing == Packing::compressed) {
+      H5Pset_shuffle(properties.id());  // bytes of the same weight together, which then resemble each other
+      H5Pset_deflate(properties.id(), compression_level);
+    }
     Handle made(H5Dcreate2(place, name.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), H5Dclose);
     if (!made) fail();
     return made;
@@ -101,7 +124,7 @@ class Hdf5Writer final : public Writer {
     return made;
   }
 
-  /// In single-writer mode nothing can be created any more, so everything is laid out first.
+  /// Closed once, so that from the first sample on there is a whole file.
   void lay_out(const Information& about) {
     const Handle file(H5Fcreate(name_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access().id()), H5Fclose);
     if (!file) fail();
@@ -125,17 +148,19 @@ class Hdf5Writer final : public Writer {
       write_attribute(value.id(), "unit", std::string(row.unit));
       write_attribute(value.id(), "help", std::string(row.help));
     }
-    growing(file.id(), "period", H5T_STD_U32LE, chunk_samples);
-    write_attribute(growing(file.id(), "time_s", H5T_IEEE_F64LE, chunk_samples).id(), "unit", std::string("s"));
+    growing(file.id(), "period", H5T_STD_U32LE, chunk_samples_, Packing::compressed);
+    write_attribute(growing(file.id(), "time_s", H5T_IEEE_F64LE, chunk_samples_, Packing::compressed).id(), "unit",
+                    std::string("s"));
     const Handle signals = group(file.id(), "signals");
     for (const auto signal : about.signals) lay_out_column(signals, protocol::info(signal));
     const Handle simulated = group(file.id(), "simulated");
     for (const auto quantity : about.simulated) lay_out_column(simulated, protocol::info(quantity));
     const Handle marks = group(file.id(), "marks");
-    growing(marks.id(), "period", H5T_STD_U32LE, chunk_marks);
-    growing(marks.id(), "text", byte_text_type(mark_text_bytes).id(), chunk_marks);
-    growing(marks.id(), "kind", byte_text_type(mark_kind_bytes).id(), chunk_marks);
-    growing(marks.id(), "clock_utc", byte_text_type(mark_clock_bytes).id(), chunk_marks);
+    // Each mark is written when it comes, into a chunk that has to keep its size.
+    growing(marks.id(), "period", H5T_STD_U32LE, chunk_marks, Packing::none);
+    growing(marks.id(), "text", byte_text_type(mark_text_bytes).id(), chunk_marks, Packing::none);
+    growing(marks.id(), "kind", byte_text_type(mark_kind_bytes).id(), chunk_marks, Packing::none);
+    growing(marks.id(), "clock_utc", byte_text_type(mark_clock_bytes).id(), chunk_marks, Packing::none);
     const std::int32_t no = 0;
     scalar(file.id(), "complete", H5T_NATIVE_INT32, &no);
     const hsize_t none = 0;
@@ -143,12 +168,13 @@ class Hdf5Writer final : public Writer {
   }
   template <class Row>
   void lay_out_column(const Handle& place, const Row& row) {
-    const Handle column = growing(place.id(), std::string(row.name), H5T_IEEE_F32LE, chunk_samples);
+    const Handle column =
+        growing(place.id(), std::string(row.name), H5T_IEEE_F32LE, chunk_samples_, Packing::compressed);
     write_attribute(column.id(), "unit", std::string(row.unit));
     write_attribute(column.id(), "help", std::string(row.help));
   }
   void open_for_writing(const Information& about) {
-    file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access().id()), H5Fclose);
+    file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access().id()), H5Fclose);
     if (!file_) fail();
     const auto open = [&](const std::string& path) {
       Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
@@ -168,19 +194,33 @@ class Hdf5Writer final : public Writer {
     complete_ = open("/complete");
     samples_ = open("/samples");
   }
-  void write_samples() {
+  void write_samples(std::size_t count) {
     const QuietHdf5 quiet;
-    const hsize_t count = periods_.size();
     if (count == 0) return;
-    extend(period_, size_, count, H5T_NATIVE_UINT32, periods_.data());
-    extend(time_, size_, count, H5T_NATIVE_DOUBLE, times_s_.data());
-    for (std::size_t j = 0; j < values_.size(); ++j) {
-      extend(columns_[j], size_, count, H5T_NATIVE_FLOAT, values_[j].data());
-      values_[j].clear();
-    }
+    const auto put = [&](const Handle& column, hid_t type, auto& waiting) {
+      extend(column, size_, count, type, waiting.data());
+      waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(count));
+    };
+    put(period_, H5T_NATIVE_UINT32, periods_);
+    put(time_, H5T_NATIVE_DOUBLE, times_s_);
+    for (std::size_t j = 0; j < values_.size(); ++j) put(columns_[j], H5T_NATIVE_FLOAT, values_[j]);
     size_ += count;
-    periods_.clear();
-    times_s_.clear();
+  }
+  int descriptor() const {
+    void* handle = nullptr;
+    return H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &handle) < 0 ? -1 : *static_cast<int*>(handle);
+  }
+  /// For all that a flush writes: one that fails in the middle would leave a file that nobody can open.
+  void find_room() {
+    haddr_t end = 0;
+    if (H5Fget_eoa(file_.id(), &end) < 0 || ::posix_fallocate(descriptor(), 0, static_cast<off_t>(end)) != 0) fail();
+  }
+  /// Closing writes what the last flush() has not, which may not find room: it goes nowhere.
+  void let_go() {
+    const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+    if (nowhere < 0) return;
+    ::dup2(nowhere, descriptor());
+    ::close(nowhere);
   }
   /// Cut to its place in the file.
   void write_mark_text(const Handle& column, std::string_view text, std::size_t bytes) {
@@ -214,6 +254,7 @@ class Hdf5Writer final : public Writer {
 
   std::string name_;
   std::size_t width_;  ///< how many signals there are
+  hsize_t chunk_samples_;
   Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, complete_, samples_;
   std::vector<Handle> columns_;         ///< of the signals, then of the simulated quantities
   std::vector<std::uint32_t> periods_;  ///< of samples that are not in the file yet, and the columns beside them
