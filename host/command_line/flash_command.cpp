@@ -22,6 +22,7 @@ using nlohmann::ordered_json;
 
 struct FlashOptions {
   std::filesystem::path image;
+  firmware_update::ImageFor image_for = firmware_update::always_the_given;
   bool by_usb = false, by_probe = false, says_yes = false;
   std::filesystem::path flash_file;
   std::string interface = "stlink";
@@ -46,6 +47,7 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
   try {
     result = firmware_update::update(options.address(), image,
                                      {.says_yes = given.says_yes,
+                                      .image_for = given.image_for,
                                       .on_progress = [&](std::string_view step, double done) { progress(step, done); },
                                       .is_cancelled = [&] { return interrupt.was_asked_to_end(); }});
   } catch (...) {
@@ -53,7 +55,7 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
     throw;
   }
   if (options.json) {
-    auto json = to_json(image, result.before);
+    auto json = to_json(result.written, result.before);
     json["brown_out_level_set"] = result.has_set_brown_out;
     json["serial_number"] = result.serial_number;
     json["firmware_version"] = result.firmware_version;
@@ -75,12 +77,14 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
 }
 
 int flash_file(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
-  const auto before = firmware_update::write_flash_file(given.flash_file, image, given.says_yes);
+  const auto [before, written] =
+      firmware_update::write_flash_file(given.flash_file, image, given.says_yes, given.image_for);
   if (options.json)
-    fmt::print("{}\n", to_json(image, before).dump(2));
+    fmt::print("{}\n", to_json(written, before).dump(2));
   else
     fmt::print("{} holds {} now. Before: {}.\n", given.flash_file.string(),
-               image.identity ? firmware_update::describe(*image.identity) : image.file.string(), before_text(before));
+               written.identity ? firmware_update::describe(*written.identity) : written.file.string(),
+               before_text(before));
   return 0;
 }
 
@@ -98,7 +102,10 @@ int flash(const DeviceOptions& options, FlashOptions given) {
     throw UsageError(
         "--virtual in front of `flash` would start a board that ends with this command. Write `inkwell flash --virtual "
         "FILE` for the flash file of a virtual board, or --usbip HOST:PORT for one that runs.");
-  if (given.image.empty()) given.image = installation::firmware();
+  if (given.image.empty()) {
+    given.image = installation::firmware();
+    given.image_for = firmware_update::own_image_for;
+  }
   const NewImage image = firmware_update::read_image(given.image);
   try {
     return write(options, given, image);
@@ -117,7 +124,8 @@ void add_flash_command(const Place& place) {
       "because its button BOOT0 was held while its power came on, is found there. Stored parameters stay. If it is\n"
       "stopped in the middle, the same command again goes on.");
   const auto given = std::make_shared<FlashOptions>();
-  command->add_option("IMAGE", given->image, "ELF of a firmware; the one that belongs to this program unless given");
+  command->add_option("IMAGE", given->image,
+                      "ELF of a firmware; unless given, the one beside this program for the board that is there");
   auto* by_usb = command->add_flag("--dfu", given->by_usb, "Over USB, which is the choice without any");
   auto* by_probe =
       command->add_flag("--swd", given->by_probe, "By a debug probe at the board's SWD connector, with openocd");

@@ -186,9 +186,10 @@ void add_reference_command(const Place& place) {
   command->callback([place] {
     place.action = [] {
       fmt::print(
-          "# Protocol, version {}\n\nUSB {:04x}:{:04x}. Made by `inkwell reference` from the tables that firmware "
+          "# Protocol, version {}\n\nUSB {:04x}:{:04x}{}. Made by `inkwell reference` from the tables that firmware "
           "and companion share.\n\n",
-          protocol::protocol_version, protocol::usb::vendor_id, protocol::usb::product_id);
+          protocol::protocol_version, protocol::usb::vendor_id, protocol::usb::product_id,
+          protocol::usb::is_test_identity ? ", a test number that other devices may have too" : "");
       print_reports();
       print_wire();
       print_supervision();

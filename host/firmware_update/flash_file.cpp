@@ -50,10 +50,11 @@ void replace(const std::filesystem::path& file, std::span<const std::byte> conte
 
 }  // namespace
 
-std::optional<protocol::ImageIdentity> write_flash_file(const std::filesystem::path& file, const Image& image,
-                                                        bool says_yes) {
+FlashFileWritten write_flash_file(const std::filesystem::path& file, const Image& given, bool says_yes,
+                                  const ImageFor& image_for) {
   auto flash = read_flash(file);
   const auto before = identity_in(flash);
+  Image image = (before ? image_for(*before) : std::nullopt).value_or(given);
   insist(image, before, says_yes);
   const auto offset = [](std::uint32_t address) {
     return static_cast<std::ptrdiff_t>(address - protocol::image_begin);
@@ -63,7 +64,7 @@ std::optional<protocol::ImageIdentity> write_flash_file(const std::filesystem::p
   for (const Segment& segment : image.segments)
     std::ranges::copy(segment.bytes, flash.begin() + offset(segment.address));
   replace(file, flash);
-  return before;
+  return {before, std::move(image)};
 }
 
 }  // namespace inkwell::firmware_update

@@ -8,12 +8,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <installation/places.hpp>
+#include <known/boards.hpp>
+
 #include "elf.hpp"
 
 namespace inkwell::firmware_update {
 namespace {
 
-constexpr std::uint32_t flash_begin = protocol::image_begin, flash_bytes = 1024 * 1024;
+constexpr std::uint32_t flash_begin = protocol::image_begin, flash_bytes = protocol::flash_bytes;
 constexpr std::uint32_t polynomial = 0x04C1'1DB7;
 constexpr std::size_t file_maximum = 64u << 20;  // with all its debug information it has a fiftieth of that
 
@@ -90,6 +93,12 @@ Image read_image(const std::filesystem::path& elf) {
   const std::vector<char> content{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.good() && !stream.eof()) throw NoImage(fmt::format("{} cannot be read.", elf.string()));
   return read_image(std::as_bytes(std::span(content)), elf);
+}
+
+std::optional<Image> own_image_for(const protocol::ImageIdentity& there) {
+  const board::Facts* board = board::find_board(there.board_name());
+  if (!board) return {};
+  return read_image(installation::firmware(board::image_name(*board)));
 }
 
 std::string describe(const protocol::ImageIdentity& identity) {

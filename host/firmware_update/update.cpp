@@ -222,9 +222,13 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
   loader.start();
   written.before = identity_in(loader.read(protocol::image_begin, identity_end));
   try {
-    insist(image, written.before, options.says_yes);
-  } catch (const Objected&) {
-    loader.leave();  // to what it says it is
+    if (written.before)
+      written.image = options.image_for(*written.before).value_or(image);
+    else
+      written.image = image;
+    insist(written.image, written.before, options.says_yes);
+  } catch (const device::Error&) {
+    if (written.before) loader.leave();  // to what it says it is
     throw;
   }
   if (options.is_cancelled()) {
@@ -234,7 +238,7 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
   const auto options_before = loader.read_options();
   const auto options_wanted = with_brown_out_level_3(options_before);
   try {
-    Writing writing(loader, image, options);
+    Writing writing(loader, written.image, options);
     writing.erase();
     writing.write_and_verify();
   } catch (const device::Error& error) {
@@ -256,8 +260,9 @@ UpdateResult update(const Address& address, const Image& image, const UpdateOpti
   {
     const auto channel = device::open_boot_loader(found.loader);
     BootLoader loader(*channel);
-    const Written written = write_image(loader, image, options);
+    Written written = write_image(loader, image, options);
     result.before = written.before;
+    result.written = std::move(written.image);
     result.has_set_brown_out = written.has_set_brown_out;
   }
   options.on_progress("waiting for the board to come back", 0.99);

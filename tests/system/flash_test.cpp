@@ -60,7 +60,8 @@ class FreeBoard {
  private:
   static std::vector<std::string> words(const std::vector<std::string>& more) {
     std::vector<std::string> words{build_directory() + "/virtual-board"};
-    if (more.empty() || more[0] != "--flash") words.insert(words.end(), {"--elf", image("inkwell.elf")});
+    if (more.empty() || (more[0] != "--flash" && more[0] != "--elf"))
+      words.insert(words.end(), {"--elf", image("inkwell.elf")});
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
@@ -102,6 +103,18 @@ TEST_CASE("a new version goes into a board that runs, and the old one again") {
   CHECK(says(result, "The board held firmware"));
   CHECK(says(result, "protocol " + std::to_string(protocol::protocol_version + 1)));
   CHECK_FALSE(says(result, "brown-out level was another"));  // it has been set, and outlives the firmware
+  CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
+}
+
+TEST_CASE("without a name the image is the one for the board that is there") {
+  const FreeBoard board({"--elf", image("inkwell-bench_modules.elf")});
+  board.wait_until(&FreeBoard::runs);
+  const auto result = board.flash({"--json"});
+  INFO(result.err);
+  REQUIRE(result.exit_code == 0);
+  const auto json = nlohmann::json::parse(result.out);
+  CHECK(says(result, "inkwell-bench_modules.elf"));
+  CHECK(json.at("written").get<std::string>().find("for bench_modules") != std::string::npos);
   CHECK(run_program("inkwell", {"info", "--usbip", board.port}).exit_code == 0);
 }
 

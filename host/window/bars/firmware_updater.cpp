@@ -91,7 +91,8 @@ void FirmwareUpdater::update(const std::string& serial_number) {
     if (address.kind == device::Address::Kind::usb) address.serial_number = serial_number;
     const auto result = firmware_update::update(
         address, firmware_update::read_image(image_),
-        {.on_progress = [this](std::string_view step, double done) { set(Phase::runs, std::string(step), done); }});
+        {.image_for = firmware_update::own_image_for,
+         .on_progress = [this](std::string_view step, double done) { set(Phase::runs, std::string(step), done); }});
     if (result.firmware_version.empty())
       set(Phase::failed,
           "The firmware was written and read back, but the board does not show itself. Switch its power off and on.",

@@ -146,7 +146,7 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   const tests::TemporaryDirectory directory;
   const std::filesystem::path file = directory.file("board.flash");
   const auto image = image_of(made_segments(identity_of("omni_driver")));
-  CHECK_FALSE(write_flash_file(file, image, false).has_value());
+  CHECK_FALSE(write_flash_file(file, image, false).before.has_value());
   REQUIRE(std::filesystem::file_size(file) == 1024 * 1024);
   const auto content = [&] {
     std::ifstream stream(file, std::ios::binary);
@@ -160,7 +160,7 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   flash[parameters] = 'p';
   flash[unused] = 'u';
   std::ofstream(file, std::ios::binary) << flash;
-  const auto before = write_flash_file(file, image, false);
+  const auto before = write_flash_file(file, image, false).before;
   REQUIRE(before.has_value());
   CHECK(before->board_name() == "omni_driver");
   CHECK(content()[parameters] == 'p');
@@ -170,6 +170,11 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   CHECK_THROWS_AS(write_flash_file(file, other, false), Objected);
   CHECK(board_in(content()) == "omni_driver");
   CHECK_NOTHROW(write_flash_file(file, other, true));
+  CHECK(board_in(content()) == "other_board");
+  write_flash_file(file, image, false, [&](const auto& there) {
+    CHECK(there.board_name() == "other_board");
+    return other;
+  });
   CHECK(board_in(content()) == "other_board");
 
   std::ofstream(file, std::ios::binary) << "a text";

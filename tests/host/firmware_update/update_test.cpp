@@ -132,6 +132,27 @@ TEST_CASE("vectors go first and come last, and the brown-out level is set once a
   CHECK(fake.did.back() == "options");  // with which the chip resets itself
 }
 
+TEST_CASE("what the board holds may choose the image") {
+  FakeLoader fake;
+  BootLoader loader(fake);
+  const auto other = read_image(made_elf(made_segments(protocol::image_identity("other", 1, 2, 3))), "other.elf");
+  write_image(loader, other, {});
+  SUBCASE("another than the given one") {
+    const auto written = write_image(loader, good_image(), {.image_for = [&](const auto& there) {
+                                       return there.board_name() == "other" ? std::optional(other) : std::nullopt;
+                                     }});
+    CHECK(written.image.identity->board_name() == "other");
+    return;
+  }
+  SUBCASE("which is missing, so that the board goes back to its firmware") {
+    fake.did.clear();
+    CHECK_THROWS_AS(write_image(loader, good_image(),
+                                {.image_for = [](const auto&) -> std::optional<Image> { throw NoImage("missing"); }}),
+                    NoImage);
+    CHECK(fake.did == std::vector<std::string>{"leave"});
+  }
+}
+
 TEST_CASE("what differs when it is read back keeps the vectors away") {
   FakeLoader fake;
   BootLoader loader(fake);

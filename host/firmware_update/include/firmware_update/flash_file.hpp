@@ -8,8 +8,12 @@
 namespace inkwell::firmware_update {
 
 /// Writes the image as a programmer does: its own sectors are erased, the others stay. A file that is not there becomes
-/// a new chip's flash. Returns what the file held before. Throws Objected, or device::Error with the file as it was.
-std::optional<protocol::ImageIdentity> write_flash_file(const std::filesystem::path& file, const Image& image,
-                                                        bool says_yes);
+/// a new chip's flash. Throws Objected, or device::Error with the file as it was.
+struct FlashFileWritten {
+  std::optional<protocol::ImageIdentity> before;  ///< none: the file held no image that says what it is
+  Image image;
+};
+FlashFileWritten write_flash_file(const std::filesystem::path& file, const Image& image, bool says_yes,
+                                  const ImageFor& image_for = always_the_given);
 
 }  // namespace inkwell::firmware_update

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,6 +47,14 @@ struct Image {
 Image read_image(const std::filesystem::path& elf);
 /// The same of a file's content; `name` is for sentences.
 Image read_image(std::span<const std::byte> elf, const std::filesystem::path& name);
+
+/// The firmware beside this program for the board that holds `there`, or nothing if that is no board known here.
+/// Throws NoImage if it is missing.
+std::optional<Image> own_image_for(const protocol::ImageIdentity& there);
+
+/// In the place of an image that nobody has named: what the board gets by what it holds, or nothing.
+using ImageFor = std::function<std::optional<Image>(const protocol::ImageIdentity& there)>;
+inline std::optional<Image> always_the_given(const protocol::ImageIdentity&) { return {}; }
 
 /// The identity in the first bytes of a flash, if one is there.
 std::optional<protocol::ImageIdentity> identity_in(std::span<const std::byte> begin_of_flash);

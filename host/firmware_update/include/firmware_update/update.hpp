@@ -28,6 +28,7 @@ class Interrupted : public device::Error {
 
 struct UpdateOptions {
   bool says_yes = false;  ///< objections do not count
+  ImageFor image_for = always_the_given;
   /// Called with each step, and how much of all is done, from 0 to 1.
   std::function<void(std::string_view step, double done)> on_progress = [](std::string_view, double) {};
   /// Asked between two blocks.
@@ -36,6 +37,7 @@ struct UpdateOptions {
 
 struct UpdateResult {
   std::optional<protocol::ImageIdentity> before;  ///< none: the board held no image that says what it is
+  Image written;
   bool has_set_brown_out = false;
   std::string serial_number;  ///< of the arm that came back; empty if none did in time
   std::string firmware_version;
@@ -49,6 +51,7 @@ UpdateResult update(const device::Address& address, const Image& image, const Up
 /// The same for a board that is in its boot loader already, up to its start.
 struct Written {
   std::optional<protocol::ImageIdentity> before;
+  Image image;
   bool has_set_brown_out = false;
 };
 Written write_image(BootLoader& loader, const Image& image, const UpdateOptions& options);
