@@ -28,7 +28,7 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(5, over_current, "A motor current exceeded {over_current_percent} % of its limit, or what its sensor can measure.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
   X(6, over_speed, "The probe moved faster than speed_limit_m_per_s.", "Hold the stylus, lower wall_stiffness_N_per_m if it was thrown out of a wall, then clear the fault.") \
   X(7, encoder_implausible, "A joint angle lies far beyond its stop, so encoder counts were lost or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \
-  X(8, host_silent, "The host was silent for longer than host_timeout_s while the force was on.", "Reconnect the companion and switch the force on again.") \
+  X(8, host_silent, "The host was silent for longer than host_timeout_s while the force was on.", "Reconnect the companion, clear the fault, then switch the force on again.") \
   X(9, servo_overrun, "The control interrupt did not finish within its period.", "Report this with the firmware version: it is a defect of the firmware. Then clear the fault.") \
   X(10, watchdog, "The board was restarted by its watchdog.", "Report this with the firmware version, then clear the fault.")    \
   X(11, processor_fault, "The processor met a fault; it switched the bridges off and restarted.", "Report this with the firmware version, then clear the fault.") \
