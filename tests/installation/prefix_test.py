@@ -54,7 +54,7 @@ class Files(unittest.TestCase):
         [file] = PREFIX.glob("lib/udev/rules.d/*.rules")
         self.assertLess(int(file.name.split("-")[0]), 73)
         rules = [line for line in file.read_text().splitlines() if line and not line.startswith("#")]
-        identity = re.match(r"USB ([0-9a-f]{4}):([0-9a-f]{4})\.", run(PROGRAM, "reference").splitlines()[2])
+        identity = re.match(r"USB ([0-9a-f]{4}):([0-9a-f]{4})[., ]", run(PROGRAM, "reference").splitlines()[2])
         self.assertEqual(f'SUBSYSTEM=="usb|hidraw", SUBSYSTEMS=="usb", ATTRS{{idVendor}}=="{identity[1]}", '
                          f'ATTRS{{idProduct}}=="{identity[2]}", TAG+="uaccess"', rules[0])
         self.assertTrue(all(rule.endswith('TAG+="uaccess"') for rule in rules))
