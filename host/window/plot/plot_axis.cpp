@@ -1,6 +1,7 @@
 #include <plot/plot_axis.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -35,13 +36,18 @@ std::vector<double> ticks(const AxisRange& range, int wanted) {
   return result;
 }
 
-AxisRange enclosing_range(double minimum, double maximum) {
-  if (std::isnan(minimum) || std::isnan(maximum)) return {-1.0, 1.0};
+double extent_around_zero(std::string_view unit) {
+  static constexpr std::array<std::pair<std::string_view, double>, 7> extents{
+      {{"m", 0.02}, {"rad", 0.2}, {"m/s", 0.2}, {"rad/s", 2.0}, {"N", 2.0}, {"Nm", 0.1}, {"A", 0.2}}};
+  const auto found = std::ranges::find(extents, unit, &std::pair<std::string_view, double>::first);
+  return found == extents.end() ? 2.0 : found->second;
+}
+
+AxisRange enclosing_range(double minimum, double maximum, double around_zero) {
+  if (std::isnan(minimum) || std::isnan(maximum)) return {-0.5 * around_zero, 0.5 * around_zero};
   const double middle = 0.5 * (minimum + maximum);
-  // A constant gets room of its own: a fifth of it, or one unit for a plain zero.
-  const double least = minimum < maximum ? std::max(1e-4 * std::abs(middle), 1e-9)
-                       : middle == 0.0   ? 1.0
-                                         : 0.2 * std::abs(middle);
+  if (minimum == maximum && middle == 0.0) return {-0.5 * around_zero, 0.5 * around_zero};
+  const double least = minimum < maximum ? std::max(1e-4 * std::abs(middle), 1e-9) : 0.2 * std::abs(middle);
   const double extent = std::max(maximum - minimum, least);
   const double step = tick_step(extent, 10);
   const double room = 0.06 * extent;
@@ -58,7 +64,7 @@ std::string tick_label(double value, double step) {
 }
 
 AxisRange SteadyRange::update(double minimum, double maximum, double now_s) {
-  const AxisRange wanted = enclosing_range(minimum, maximum);
+  const AxisRange wanted = enclosing_range(minimum, maximum, around_zero_);
   const bool fits = range_.extent() > 0.0 && wanted.minimum >= range_.minimum && wanted.maximum <= range_.maximum;
   const bool is_much_smaller = wanted.extent() < 0.8 * range_.extent();
   const bool was_guess = std::exchange(is_guess_, !(minimum < maximum));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,13 +17,20 @@ float width_of(const std::string& label, const Style& style) {
   return style.fonts.caption->CalcTextSizeA(style.fonts.caption->FontSize, 1e4f, 0, label.c_str()).x;
 }
 
-// "force_N" -> "force": the unit stands beside the plot's title if all its signals have the same.
-std::string short_name(const ScopeSignal& signal, bool unit_is_told) {
-  std::string ending = fmt::format("_{}", signal.unit());
-  std::ranges::replace(ending, '/', '_');
-  std::string name{signal.name()};
-  if (unit_is_told && !signal.unit().empty() && name.ends_with(ending)) name.resize(name.size() - ending.size());
-  return name;
+constexpr float beside_label_points = 24.0f;  // the stroke of the signal's colour, and what lies between two of them
+
+// The first signal against which others are drawn is told at the x axis.
+std::size_t first_on_y_axis(const ScopePlot& plot) {
+  return plot.kind == PlotKind::xy && plot.signals.size() > 1 ? 1 : 0;
+}
+
+// The unit stands beside the plot's title if all its signals have the same.
+std::vector<std::string> names_on_y_axis(const ScopePlot& plot) {
+  const bool unit_is_told = !common_unit(plot).empty();
+  std::vector<std::string> names;
+  for (std::size_t i = first_on_y_axis(plot); i < plot.signals.size(); ++i)
+    names.push_back(unit_is_told ? short_name(plot.signals[i]) : std::string(plot.signals[i].name()));
+  return names;
 }
 
 // "penetration_x" -> "x"
@@ -30,14 +39,13 @@ std::string last_word(const std::string& name) { return name.substr(name.rfind('
 /// The labels of one legend, made to fit.
 class LegendLabels {
  public:
-  LegendLabels(const ScopePlot& plot, const ScopeFrame& frame, float room, bool unit_is_told)
-      : plot_(plot), frame_(frame), room_(room) {
-    for (const ScopeSignal& signal : plot.signals) names_.push_back(short_name(signal, unit_is_told));
+  LegendLabels(const ScopePlot& plot, const ScopeFrame& frame, float room)
+      : plot_(plot), frame_(frame), room_(room), names_(names_on_y_axis(plot)) {
     // Where the plot is narrow its title tells the rest.
-    if (unit_is_told && !fits(names_) && names_.size() > 1)
+    if (!common_unit(plot).empty() && !fits(names_) && names_.size() > 1)
       for (std::string& name : names_) name = last_word(name);
     if (fits(names_)) return;
-    const float each = room_ / static_cast<float>(names_.size()) - frame.style.points(24);
+    const float each = room_ / static_cast<float>(names_.size()) - frame.style.points(beside_label_points);
     for (std::string& name : names_) name = fitted(name, each, frame.style.fonts.caption);
   }
 
@@ -55,7 +63,8 @@ class LegendLabels {
  private:
   bool fits(const std::vector<std::string>& labels) const {
     float wanted = 0.0f;
-    for (const std::string& label : labels) wanted += width_of(label, frame_.style) + frame_.style.points(24);
+    for (const std::string& label : labels)
+      wanted += width_of(label, frame_.style) + frame_.style.points(beside_label_points);
     return wanted <= room_;
   }
 
@@ -78,11 +87,26 @@ class LegendLabels {
 
 std::string formatted(double value) { return std::isnan(value) ? "—" : fmt::format("{:.4g}", value); }
 
+std::string short_name(const ScopeSignal& signal) {
+  std::string ending = fmt::format("_{}", signal.unit());
+  std::ranges::replace(ending, '/', '_');
+  std::string name{signal.name()};
+  if (!signal.unit().empty() && name.ends_with(ending)) name.resize(name.size() - ending.size());
+  return name;
+}
+
 std::string common_unit(const ScopePlot& plot) {
-  const std::string_view unit = plot.signals.front().unit();
-  for (const ScopeSignal& signal : plot.signals)
-    if (signal.unit() != unit) return "";
-  return std::string(unit);
+  const auto signals = std::span(plot.signals).subspan(first_on_y_axis(plot));
+  const std::string_view unit = signals.front().unit();
+  const bool is_common = std::ranges::all_of(signals, [&](const ScopeSignal& each) { return each.unit() == unit; });
+  return is_common ? std::string(unit) : "";
+}
+
+float legend_width(const ScopePlot& plot, const Style& style) {
+  float width = width_of(common_unit(plot), style) + style.points(8);
+  for (const std::string& name : names_on_y_axis(plot))
+    width += width_of(name, style) + style.points(beside_label_points);
+  return width;
 }
 
 Colour line_colour(const Style& style, std::size_t index) {
@@ -102,17 +126,17 @@ void draw_legend(const ScopePlot& plot, ImVec2 place, float width, const ScopeFr
   const std::string unit = common_unit(plot);
   list.AddText(font, font->FontSize, {place.x + style.points(2), place.y}, quiet, unit.c_str());
   const float room = width - width_of(unit, style) - style.points(8);
-  const std::vector<std::string> labels = LegendLabels(plot, frame, room, !unit.empty()).labels();
+  const std::vector<std::string> labels = LegendLabels(plot, frame, room).labels();
 
   const float middle = place.y + 0.5f * font->FontSize + style.points(1);
   float right = place.x + width;
   for (std::size_t i = labels.size(); i-- > 0;) {
     right -= width_of(labels[i], style);
-    if (right < place.x + style.points(24)) break;
+    if (right < place.x + style.points(beside_label_points)) break;
     list.AddText(font, font->FontSize, {right, place.y}, quiet, labels[i].c_str());
     right -= style.points(14);
     list.AddRectFilled({right, middle - style.points(1.5f)}, {right + style.points(9), middle + style.points(1.5f)},
-                       packed(line_colour(style, i)), style.points(1.5f));
+                       packed(line_colour(style, first_on_y_axis(plot) + i)), style.points(1.5f));
     right -= style.points(10);
   }
 }

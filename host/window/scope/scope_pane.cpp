@@ -24,8 +24,8 @@ constexpr float y_axis_points = 52.0f;
 constexpr float x_axis_points = 21.0f;
 constexpr float plot_minimum_width_points = 230.0f;
 constexpr float plot_minimum_height_points = 92.0f;
-constexpr float legend_points = 150.0f;  // beside a title that is long
 constexpr float title_part_maximum = 0.5f;
+constexpr float beside_title_points = 24.0f;
 
 }  // namespace
 
@@ -81,7 +81,7 @@ void ScopePane::follow_layout() {
 }
 
 void ScopePane::draw_plots(ScopeFrame& frame) {
-  // Where there is too little room for all of them, they keep a size that can be read, and the pane scrolls.
+  // Where there is too little room for all rows, as many as can be read fill it, and the pane scrolls.
   ImGui::BeginChild("plots", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse);
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
@@ -93,8 +93,10 @@ void ScopePane::draw_plots(ScopeFrame& frame) {
   const float width = (room.x - gap.x * static_cast<float>(columns - 1)) / static_cast<float>(columns);
   float numbers = 0.0f;
   for (const auto& view : views_) numbers = std::max(numbers, view->numbers_height(frame));
-  const float height = std::max((room.y - gap.y * static_cast<float>(rows - 1)) / static_cast<float>(rows),
-                                std::min(room.y, frame.style.points(plot_minimum_height_points) + numbers));
+  const float height_minimum = frame.style.points(plot_minimum_height_points) + numbers;
+  const int rows_fitting = static_cast<int>((room.y + gap.y) / (height_minimum + gap.y));
+  const auto rows_in_sight = static_cast<float>(std::clamp(rows_fitting, 1, rows));
+  const float height = (room.y - gap.y * (rows_in_sight - 1.0f)) / rows_in_sight;
   std::optional<int> removed;
   for (int i = 0; i < count; ++i) {
     const ImVec2 corner{place.x + static_cast<float>(i % columns) * (width + gap.x),
@@ -114,7 +116,8 @@ bool ScopePane::draw_plot(std::size_t index, ImVec2 place, ImVec2 size, ScopeFra
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2{style.points(6), style.points(2)});
   ImGui::PushStyleColor(ImGuiCol_Button, packed(style.palette->pane));
   ImGui::PushFont(style.fonts.strong);
-  const float title_room = std::max(title_part_maximum * size.x, size.x - style.points(legend_points));
+  const float title_room = std::max(title_part_maximum * size.x,
+                                    size.x - legend_width(view.plot(), style) - style.points(beside_title_points));
   if (button(fitted(plot.title.empty() ? "Plot" : plot.title, title_room).c_str())) ImGui::OpenPopup("plot menu");
   ImGui::PopFont();
   ImGui::PopStyleColor();

@@ -23,7 +23,7 @@ constexpr float statistics_line_points = 15.0f;
 
 class TimeView final : public PlotView {
  public:
-  using PlotView::PlotView;
+  explicit TimeView(const ScopePlot& plot) : PlotView(plot), y_(extent_around_zero(common_unit(plot))) {}
 
   float numbers_height(const ScopeFrame& frame) const override {
     if (!frame.with_statistics) return 0.0f;

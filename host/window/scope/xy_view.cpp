@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <frame/widgets.hpp>
+
 #include "legend.hpp"
 #include "plot_view.hpp"
 
@@ -16,7 +18,10 @@ constexpr std::uint64_t points_maximum = 4000;
 
 class XyView final : public PlotView {
  public:
-  using PlotView::PlotView;
+  explicit XyView(const ScopePlot& plot)
+      : PlotView(plot),
+        x_(extent_around_zero(plot.signals.front().unit())),
+        y_(extent_around_zero(common_unit(plot))) {}
 
   void draw(PlotArea area, ScopeFrame& frame) override {
     const SignalHistory& history = frame.timeline.history();
@@ -24,7 +29,8 @@ class XyView final : public PlotView {
     const std::uint64_t last = std::min(frame.stretch.last_index(), history.end());
     find_ranges(area, history, first, last);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    draw_axes(list, area, frame.style, unit_of(0), plot_.signals.size() > 1 ? unit_of(1) : "");
+    draw_axes(list, area, frame.style, std::string(plot_.signals.front().unit()), "");
+    draw_name_of_x(list, area, frame.style);
     for (const bool over : {true, false}) draw_lane(list, area, frame, over, first, last);
   }
 
@@ -46,7 +52,15 @@ class XyView final : public PlotView {
     }
   }
 
-  std::string unit_of(std::size_t index) const { return std::string(plot_.signals[index].unit()); }
+  /// Above the end of its axis.
+  void draw_name_of_x(ImDrawList& list, const PlotArea& area, const Style& style) const {
+    ImFont* font = style.fonts.caption;
+    const std::string name = fitted(short_name(plot_.signals.front()), area.width() - style.points(8), font);
+    const ImVec2 taken = font->CalcTextSizeA(font->FontSize, 1e4f, 0, name.c_str());
+    list.AddText(font, font->FontSize,
+                 {area.maximum.x - taken.x - style.points(4), area.maximum.y - taken.y - style.points(2)},
+                 packed(style.palette->text_quiet), name.c_str());
+  }
 
   const SignalSeries* series_of(const SignalHistory& history, std::size_t index, bool over) const {
     return over ? history.find_over(plot_.signals[index]) : history.find(plot_.signals[index]);

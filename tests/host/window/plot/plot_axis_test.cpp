@@ -27,8 +27,17 @@ TEST_CASE("a range holds its data, also if they are constant or missing") {
     CHECK(range.extent() > 0.0);
     CHECK(range.extent() < 2.0 * std::max(high - low, 0.2 * std::abs(low)));
   }
-  CHECK(enclosing_range(0.0, 0.0).extent() >= 1.0);
-  CHECK(enclosing_range(std::nan(""), std::nan("")).extent() > 0.0);
+}
+
+TEST_CASE("around a plain zero an axis shows what is usual of the unit") {
+  for (const double none : {0.0, std::nan("")}) {
+    const AxisRange range = enclosing_range(none, none, extent_around_zero("m"));
+    CHECK(range.minimum == doctest::Approx(-0.01));
+    CHECK(range.maximum == doctest::Approx(0.01));
+  }
+  CHECK(extent_around_zero("N") == 2.0);
+  CHECK(extent_around_zero("furlong") == 2.0);
+  CHECK(SteadyRange(0.1).update(0.0, 0.0, 0.0).extent() == doctest::Approx(0.1));
 }
 
 TEST_CASE("an axis grows at once and shrinks only after a while") {

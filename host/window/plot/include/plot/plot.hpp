@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <frame/style.hpp>
+#include <plot/line_pieces.hpp>
 #include <plot/line_thinning.hpp>
 #include <plot/plot_axis.hpp>
 
@@ -40,7 +41,8 @@ class Polyline {
   void add(float x, float y) { line_.add({x, y}); }
   void finish() {
     const std::vector<ImVec2> points = line_.take();
-    if (points.size() > 1) list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour_, 0, thickness_);
+    for (const auto piece : pieces_between_turns(std::span<const ImVec2>(points)))
+      list_.AddPolyline(piece.data(), static_cast<int>(piece.size()), colour_, 0, thickness_);
   }
 
  private:
