@@ -52,8 +52,9 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
   // By which a desktop finds the name and the icon (packaging/inkwell.desktop).
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "inkwell");
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "inkwell");
-  scale_ = scale > 0.0f ? scale : monitor_scale();
-  const auto [width, height] = window_size(points, scale_, monitor_room());
+  const auto room = monitor_room();
+  scale_ = fitting_scale(scale > 0.0f ? scale : monitor_scale(), room);
+  const auto [width, height] = window_size(points, scale_, room);
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = last_glfw_error();
@@ -62,7 +63,7 @@ Display::Display(ScreenSize points, float scale, const std::string& title) {
                        "). Install a driver for the graphics card, or Mesa's software OpenGL (libgl1-mesa-dri) and "
                        "set LIBGL_ALWAYS_SOFTWARE=1.");
   }
-  const auto least = window_size(smallest_window_points, scale_, monitor_room());
+  const auto least = window_size(smallest_window_points, scale_, room);
   glfwSetWindowSizeLimits(window_, least.width, least.height, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);

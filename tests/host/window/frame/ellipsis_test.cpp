@@ -32,3 +32,11 @@ TEST_CASE("a window is as many points big as it was asked for, but no bigger tha
   CHECK(window_size({1280, 800}, 2.0f, ScreenSize{1920, 1080}) == ScreenSize{1920, 1080});
   CHECK(window_size({1280, 800}, 1.5f, std::nullopt) == ScreenSize{1920, 1200});
 }
+
+TEST_CASE("text gives way where a display has no room for the smallest window, but not below what can be read") {
+  CHECK(fitting_scale(2.0f, ScreenSize{1920, 1200}) == 2.0f);
+  CHECK(fitting_scale(2.0f, ScreenSize{1350, 840}) == doctest::Approx(1.5f));
+  CHECK(fitting_scale(2.0f, ScreenSize{1800, 560}) == 1.0f);
+  CHECK(fitting_scale(1.5f, ScreenSize{640, 480}) == 1.0f);
+  CHECK(fitting_scale(2.0f, std::nullopt) == 2.0f);
+}
