@@ -94,12 +94,15 @@ std::string StoreBar::caption() const {
   const DeviceView& view = desk_.view();
   const device::SessionStatus& status = view.status;
   if (status.store_problem) return *status.store_problem;
-  if (not_stored(view).empty())
+  const std::size_t waiting = not_stored(view).size();
+  if (waiting == 0)
     return status.store->report.contents == protocol::StoreContents::parameters ? "They outlive the board's power."
                                                                                 : "Nothing is stored on the board.";
-  if (protocol::force_is_on(view.state())) return "They can be stored once the force is off.";
+  if (protocol::force_is_on(view.state()))
+    return fmt::format("{} can be stored once the force is off.", waiting == 1 ? "It" : "They");
   const std::string waits = why_storing_waits(view);
-  return waits.empty() ? "They last until the board loses its power." : waits;
+  if (!waits.empty()) return waits;
+  return fmt::format("{} until the board loses its power.", waiting == 1 ? "It lasts" : "They last");
 }
 
 float StoreBar::height(float width, const Style& style) const {
