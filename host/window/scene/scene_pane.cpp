@@ -18,6 +18,9 @@ constexpr float radians_per_pixel = 0.008f;
 constexpr float depth_per_wheel_step_m = 0.004f;
 constexpr float probe_grab_points = 22.0f;
 constexpr float wall_grab_points = 9.0f;
+constexpr std::string_view about_the_proxy =
+    "Where the walls would have the sphere: the place in the box that is nearest to it. The force grows with the "
+    "distance from the sphere to its proxy, by the wall's stiffness.";
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 constexpr std::array<Colour, 3> axis_colours{scene_colours::axis_x, scene_colours::axis_y, scene_colours::axis_z};
 
@@ -166,6 +169,23 @@ void ScenePane::note_handles() const {
                on_screen(wall_handle(2 * wall.axis + (wall.upper ? 1 : 0))));
 }
 
+// Under the ball that stands for it; what it is, is told to a mouse that asks.
+void ScenePane::draw_proxy_label(ImDrawList& list, const Style& style) const {
+  const glm::vec2 proxy = to_glm(on_screen(scene_.proxy_m));
+  const float radius =
+      scene_.sphere_radius_m / camera_.metres_per_pixel(workspace_to_view(scene_.frame) * scene_.proxy_m, size_.y);
+  constexpr std::string_view name = "proxy";
+  const ImVec2 taken = ImGui::CalcTextSize(name.data());
+  const ImVec2 corner{proxy.x - 0.5f * taken.x, proxy.y + radius + style.points(7)};
+  const ImVec2 end{corner.x + taken.x, corner.y + taken.y};
+  plate(list, style, corner, style.palette->text_quiet, std::string(name));
+  note_place(name, corner, end);
+  const float around = style.points(6);
+  if (drag_ == Drag::none &&
+      ImGui::IsMouseHoveringRect({corner.x - around, corner.y - around}, {end.x + around, end.y + around}, false))
+    help_on_hover("Proxy", about_the_proxy, style);
+}
+
 void ScenePane::draw_labels(const ScenePaneInput& input) const {
   const Style& style = input.style;
   const Palette& palette = *style.palette;
@@ -194,9 +214,14 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
   const float force_N = glm::length(scene_.force_N);
   if (force_N > 0.02f) {
     const ImVec2 tip = on_screen(force_arrow_tip_m(scene_));
-    plate(list, style, {tip.x + style.points(10), tip.y - style.points(8)}, palette.text,
-          fmt::format("{:.2f} N", force_N));
+    const std::string label = fmt::format("{:.2f} N", force_N);
+    // On the side away from the arrow's shaft.
+    const bool to_the_left = tip.x < on_screen(scene_.probe_m).x;
+    const float left =
+        to_the_left ? tip.x - ImGui::CalcTextSize(label.c_str()).x - style.points(10) : tip.x + style.points(10);
+    plate(list, style, {left, tip.y - style.points(8)}, palette.text, label);
   }
+  if (scene_.in_contact) draw_proxy_label(list, style);
   if (hand_view_) {
     const float pull_N =
         static_cast<float>(hand_stiffness_N_per_m) * glm::length(hand_view_->target_m - scene_.probe_m);

@@ -52,6 +52,7 @@ class ScenePane {
   glm::vec3 wall_handle(int wall) const;
 
   void note_handles() const;
+  void draw_proxy_label(ImDrawList& list, const Style& style) const;
   void draw_labels(const ScenePaneInput& input) const;
   void draw_axes(ImDrawList& list, const Style& style) const;
   void draw_tools(const ScenePaneInput& input);
