@@ -92,10 +92,12 @@ void Companion::lay_out(ImVec2 size, double now_s) {
   pose_ = replay_bar_.is_open() ? replay_bar_.pose() : desk_.view().pose;
 
   const std::optional<Banner> banner = banner_of(desk_.view(), replay_bar_.is_open(), updater_.sight());
+  const float height_of_banner = banner ? banner_height(size.x, style_, *banner) : 0.0f;
   const WindowLayout layout =
       layout_of(size,
                 {.status_height = status_bar_.height(size.x, style_),
-                 .banner_height = banner ? banner_height(size.x, style_, *banner) : 0.0f,
+                 .banner_height = height_of_banner,
+                 .banner_room = banner_room(height_of_banner),
                  .replay_height = replay_bar_.is_open() ? style_.points(replay_bar_points) : 0.0f},
                 settings_, style_.scale);
   StatusBarOutcome outcome = draw_bars(layout, banner);
@@ -135,6 +137,11 @@ void Companion::follow_parameters(const DeviceView& view, double now_s) {
   seen_refusal_ = refusal;
   editor_.forget_unconfirmed(now_s);
   returned_.follow(view, now_s);
+}
+
+float Companion::banner_room(float banner_height) {
+  if (!ImGui::IsAnyMouseDown()) banner_room_ = banner_height;
+  return banner_room_;
 }
 
 StatusBarOutcome Companion::draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner) {

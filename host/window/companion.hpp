@@ -50,6 +50,8 @@ class Companion final : public FrameContent {
   void follow_parameters(const DeviceView& view, double now_s);
   void take_keyboard_shortcuts(double now_s);
 
+  /// The room that the layout leaves a banner: what somebody holds with the mouse stays where it is.
+  float banner_room(float banner_height);
   StatusBarOutcome draw_bars(const WindowLayout& layout, const std::optional<Banner>& banner);
   /// True if the user asks there for the force.
   bool draw_scene(const WindowLayout& layout, double now_s);
@@ -90,6 +92,7 @@ class Companion final : public FrameContent {
 
   std::uint64_t seen_revision_ = 0;
   std::string seen_refusal_;
+  float banner_room_ = 0.0f;                        ///< in the frame before
   Rectangle scene_;                                 ///< where it was laid out last
   std::optional<protocol::PoseReport> arrived_;     ///< the device's newest when the frame began
   std::optional<protocol::PoseReport> pose_;        ///< that the frame shows: the device's, or the recording's

@@ -27,7 +27,7 @@ ImVec2 WindowLayout::middle_of_scene() const {
 
 WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSettings& settings, float scale) {
   const float gap = splitter_points * scale;
-  const float top = needs.status_height + needs.banner_height;
+  const float top = needs.status_height + needs.banner_room;
   const float room = window.y - top;
   const float column_width = std::min(std::max(settings.column_width, WindowSettings::column_width_minimum) * scale,
                                       column_part_maximum * window.x);

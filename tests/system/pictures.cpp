@@ -38,6 +38,19 @@ void push_into_two_walls(WindowRig& rig) {
   }
 }
 
+/// Gently, so that the force law's line shows; the hand stays there.
+void press_against_the_right_wall(WindowRig& rig) {
+  const auto start_m = rig.true_probe_m();
+  rig.control.hand({.holds = true, .target_m = start_m, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
+  rig.control.dock(false);
+  rig.control.hand_path({{0.0, start_m},
+                         {1.0, {0.0, 0.0, -0.03}},
+                         {1.6, {0.05, 0.0, -0.03}},
+                         {2.4, {0.066, 0.005, -0.03}},
+                         {3.0, {0.062, 0.0, -0.03}}});
+  rig.control.run(3.2);
+}
+
 }  // namespace
 
 TEST_CASE("pictures: the whole window, dark and light" * doctest::skip()) {
@@ -82,10 +95,7 @@ TEST_CASE("pictures: small and large windows, and 192 dots per inch" * doctest::
       rig.click("tuning/Soft");
       rig.click("scope/Signals");
       rig.switch_force_on();
-      rig.control.hand({.holds = true, .target_m = {0.0, 0.0, -0.03}, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
-      rig.control.dock(false);
-      rig.control.hand_path({{0.3, {0.05, 0.0, -0.03}}, {0.9, {0.09, 0.01, -0.03}}, {1.5, {0.07, 0.0, -0.03}}});
-      rig.control.run(1.6);
+      press_against_the_right_wall(rig);
       rig.control.resume();
       rig.click("tabs/Log");
       rig.picture(

@@ -241,3 +241,35 @@ TEST_CASE("a recording is seen from every pane, and is replayed only when the fo
   rig.click("status/STOP");
   rig.look_until("the force is off", force_is_off);
 }
+
+TEST_CASE("a banner that comes while the mouse drags moves nothing before the mouse lets go") {
+  WindowRig rig;
+  const auto view = rig.look().item("scene/view");
+  rig.drag(view.at(0.85, 0.3), view.at(0.8, 0.4));
+  rig.control.supply(6.0);
+  const auto in_fault =
+      rig.look_until("the fault is told", [](const Sight& now) { return now.has("banner/Clear fault"); });
+  CHECK(in_fault.item("scene/view").y == view.y);
+  CHECK(in_fault.item("scene/view").height == view.height);
+  CHECK(in_fault.item("banner/Clear fault").y > view.y);
+  rig.release_mouse();
+  rig.look_until("there is room for it", [&](const Sight& now) { return now.item("scene/view").y > view.y + 20; });
+}
+
+TEST_CASE("what the proxy is, is told where it is drawn") {
+  WindowRig rig;
+  const auto sight = rig.look();
+  const auto right = sight.item("scene/box_maximum_x_m").centre(), sphere = sight.item("scene/sphere").centre();
+  CHECK_FALSE(sight.has("scene/proxy"));
+  rig.drag(sphere, {right.x + 40, sphere.y - 40}, 16);
+  rig.look_until("the sphere is in the wall", [](const Sight& now) { return now.has("scene/proxy"); });
+  rig.release_mouse();
+  rig.control.run(0.3);
+  rig.control.resume();
+  rig.drag(rig.look().item("scene/sphere").centre(), {right.x + 40, sphere.y - 40}, 8);
+  rig.control.run(0.3);
+  rig.control.pause();
+  rig.release_mouse();
+  rig.move_to(rig.look().item("scene/proxy").centre());
+  rig.look_until("it is told", [](const Sight& now) { return now.says("Where the walls would have the sphere"); });
+}

@@ -64,7 +64,7 @@ float banner_height(float width, const Style& style, const Banner& banner) {
 bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner) {
   const Palette& palette = *style.palette;
   const Colour colour = banner.is_fault ? palette.danger : palette.caution;
-  begin_pane("banner", place, size);
+  begin_top_pane("banner", place, size, ImGuiWindowFlags_NoFocusOnAppearing);  // may lie over the scene
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
   list.AddRectFilled(place, {place.x + size.x, place.y + size.y}, packed(palette.raised));

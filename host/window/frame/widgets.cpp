@@ -110,11 +110,15 @@ bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size) 
 }
 
 bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags) {
+  return begin_top_pane(name, place, size, ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
+}
+
+bool begin_top_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags) {
   ImGui::SetNextWindowPos(place);
   ImGui::SetNextWindowSize(size);
   return ImGui::Begin(name, nullptr,
                       ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoBackground | flags);
+                          ImGuiWindowFlags_NoBackground | flags);
 }
 
 void end_pane() { ImGui::End(); }

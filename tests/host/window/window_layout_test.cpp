@@ -28,7 +28,8 @@ TEST_CASE("no part of the window overlaps another one or leaves the window") {
           const ImVec2 window{scale * points.x, scale * points.y};
           WindowSettings settings;
           settings.scope_part = part;
-          const auto layout = layout_of(window, {100 * scale, banner * scale, 46 * scale}, settings, scale);
+          const auto layout =
+              layout_of(window, {100 * scale, banner * scale, banner * scale, 46 * scale}, settings, scale);
           const std::array parts{layout.status, layout.banner, layout.scene,
                                  layout.replay, layout.scope,  layout.column};
           for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -41,10 +42,21 @@ TEST_CASE("no part of the window overlaps another one or leaves the window") {
         }
 }
 
+TEST_CASE("a banner for which there is no room yet lies over the scene, which stays where it is") {
+  const WindowSettings settings;
+  const auto before = layout_of({1280, 800}, {46, 0, 0, 0}, settings, 1.0f);
+  const auto with_banner = layout_of({1280, 800}, {46, 60, 0, 0}, settings, 1.0f);
+  CHECK(with_banner.scene.place.y == before.scene.place.y);
+  CHECK(with_banner.scene.size.y == before.scene.size.y);
+  CHECK(with_banner.banner.place.y == 46);
+  CHECK(with_banner.banner.size.y == 60);
+  CHECK(layout_of({1280, 800}, {46, 0, 60, 0}, settings, 1.0f).scene.place.y == before.scene.place.y + 60);
+}
+
 TEST_CASE("a higher window gives scene and scope more in proportion") {
   const WindowSettings settings;
   const auto scope_part = [&](float height) {
-    const auto layout = layout_of({1280, height}, {46, 0, 0}, settings, 1.0f);
+    const auto layout = layout_of({1280, height}, {46, 0, 0, 0}, settings, 1.0f);
     return layout.scope.size.y / (height - 46);
   };
   CHECK(scope_part(800) == doctest::Approx(settings.scope_part).epsilon(0.02));
@@ -56,7 +68,7 @@ TEST_CASE("a drag moves the splitter under the mouse, from what is shown") {
   WindowSettings settings;
   settings.scope_part = 0.9f;  // more than there is room for
   const ImVec2 window{1280, 800};
-  const LayoutNeeds needs{46, 0, 0};
+  const LayoutNeeds needs{46, 0, 0, 0};
   const auto before = layout_of(window, needs, settings, 1.0f);
   drag_scope_splitter(20, before, 1.0f, settings);
   const auto after = layout_of(window, needs, settings, 1.0f);

@@ -26,6 +26,7 @@ struct WindowLayout {
 struct LayoutNeeds {
   float status_height;
   float banner_height;
+  float banner_room;  ///< what lies below it begins so far under the status bar; else the banner lies over it
   float replay_height;
 };
 

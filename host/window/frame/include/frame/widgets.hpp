@@ -45,6 +45,8 @@ bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size =
 /// A window that fills a rectangle and can be neither moved nor closed. It has no ground of its own: the frame is
 /// cleared to the panes' colour, which is cheaper than painting every pixel.
 bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
+/// The same, in front of those.
+bool begin_top_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
 void end_pane();
 
 /// A handle between two panes; returns by how many points it was dragged, to the right or down.
