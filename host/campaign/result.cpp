@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -28,11 +30,27 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, erro
                                    restarts, locked_up, force_limit_N, peak_force_N, energy_J, travel_m, recovery,
                                    position_error_m)
 
+namespace {
+
+/// The library turns any number into an unsigned one, which is undefined for one that does not fit.
+void require_counts(const nlohmann::json& result) {
+  for (const char* name : {"number", "phase", "restarts"}) {
+    const auto& value = result.at(name);
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<unsigned>::max())
+      throw device::Error(fmt::format("This is no result of a case: {} is {}, which is no count. Run the case again.",
+                                      name, value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
+  }
+}
+
+}  // namespace
+
 std::string text_of(const Result& result) { return nlohmann::json(result).dump(2) + "\n"; }
 
 Result parse_result(const std::string& text) {
   try {
-    return nlohmann::json::parse(text).get<Result>();
+    const auto result = nlohmann::json::parse(text);
+    require_counts(result);
+    return result.get<Result>();
   } catch (const nlohmann::json::exception& error) {
     throw device::Error(fmt::format("This is no result of a case: {}. Run the case again.", error.what()));
   }

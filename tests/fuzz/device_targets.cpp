@@ -57,15 +57,22 @@ const Registered usb_descriptors{
       return std::vector<Bytes>{bench.get_descriptor(0x0200, 512).data, bench.get_descriptor(0x0302, 255).data};
     }};
 
-const Registered force_law{
-    "force_law",
-    [](Input input) { refuse_or_take<device::Error>([&] { device::join_tables(device::parse_force_law(input)); }); },
-    [] {
-      test::DeviceBench bench;
-      bench.configure();
-      const auto id = static_cast<std::uint8_t>(protocol::ReportId::force_law);
-      return std::vector<Bytes>{bench.get_report(3, id, sizeof(protocol::ForceLawReport)).data};
-    }};
+const Registered force_law{"force_law",
+                           [](Input input) {
+                             // A law that was joined is kept for good, so only the first ones are.
+                             static std::size_t joined = 0;
+                             constexpr std::size_t joined_maximum = 100'000;
+                             refuse_or_take<device::Error>([&] {
+                               const device::ForceLaw law = device::parse_force_law(input);
+                               if (joined++ < joined_maximum) device::join_tables(law);
+                             });
+                           },
+                           [] {
+                             test::DeviceBench bench;
+                             bench.configure();
+                             const auto id = static_cast<std::uint8_t>(protocol::ReportId::force_law);
+                             return std::vector<Bytes>{bench.get_report(3, id, sizeof(protocol::ForceLawReport)).data};
+                           }};
 
 constexpr std::uint8_t token = 7;
 using protocol::Signal;

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -91,6 +92,22 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
                        device::Error);
   CHECK_THROWS_AS(load_all(directory / "nowhere"), device::Error);
   CHECK_THROWS_AS(save(result, directory / "nowhere"), device::Error);
+}
+
+TEST_CASE("a result whose counts are no counts is refused with their name") {
+  const std::string text = text_of({.number = 7, .phase = 2, .restarts = 1});
+  CHECK(parse_result(text).number == 7);
+  for (const auto& [sound, damaged] : {std::pair{"\"number\": 7", "\"number\": 5e29"},
+                                       {"\"number\": 7", "\"number\": 4294967296"},
+                                       {"\"phase\": 2", "\"phase\": -2"},
+                                       {"\"restarts\": 1", "\"restarts\": 1.5"},
+                                       {"\"restarts\": 1", "\"restarts\": \"\\u00ff\""}}) {
+    CAPTURE(damaged);
+    const std::string name = std::string(sound).substr(1, std::string(sound).find('"', 1) - 1);
+    std::string wrong = text;
+    wrong.replace(wrong.find(sound), std::string(sound).size(), damaged);
+    CHECK_THROWS_WITH_AS(parse_result(wrong), doctest::Contains((name + " is ").c_str()), device::Error);
+  }
 }
 
 TEST_CASE("of three instants the worst is told") {
