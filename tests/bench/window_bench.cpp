@@ -45,10 +45,12 @@ void push_for(device::ControlClient& control, double time_s) {
   control.hand_path(path);
 }
 
-void measure(const std::string& layout) {
-  tests::WindowRig rig({"--layout", layout, "--frames-report"});
+void measure(const std::string& layout, const std::string& width, const std::string& height) {
+  const std::string size = width + "x" + height;
+  tests::WindowRig rig({"--layout", layout, "--width", width, "--height", height, "--frames-report"}, true, size);
   std::this_thread::sleep_for(2s);
-  std::printf("layout %s\n  at rest: %.0f %% of a core\n", layout.c_str(), 100 * share_of_a_core(rig.window_process()));
+  std::printf("layout %s at %s\n  at rest: %.0f %% of a core\n", layout.c_str(), size.c_str(),
+              100 * share_of_a_core(rig.window_process()));
   rig.switch_force_on();
   push_for(rig.control, 1.5 * std::chrono::duration<double>(measured_for).count());
   const double moving = share_of_a_core(rig.window_process());
@@ -60,7 +62,8 @@ void measure(const std::string& layout) {
 
 int main() {
   std::printf(
-      "Window on software OpenGL at 1280x800, 10 s at rest and 10 s moving, beside the virtual board "
+      "Window on software OpenGL, 10 s at rest and 10 s moving, beside the virtual board "
       "(simulation, real time):\n");
-  for (const char* layout : {"contact", "paper"}) measure(layout);
+  for (const char* layout : {"contact", "paper"}) measure(layout, "1280", "800");
+  measure("overview", "1920", "1080");  // eight plots
 }

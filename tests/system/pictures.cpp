@@ -46,9 +46,9 @@ void press_against_the_right_wall(WindowRig& rig) {
   rig.control.hand_path({{0.0, start_m},
                          {1.0, {0.0, 0.0, -0.03}},
                          {1.6, {0.05, 0.0, -0.03}},
-                         {2.4, {0.066, 0.005, -0.03}},
-                         {3.0, {0.062, 0.0, -0.03}}});
-  rig.control.run(3.2);
+                         {2.6, {0.088, 0.005, -0.03}},
+                         {3.2, {0.080, 0.0, -0.03}}});
+  rig.control.run(3.4);
 }
 
 }  // namespace

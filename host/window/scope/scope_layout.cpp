@@ -16,7 +16,7 @@ std::span<const ScopeLayout> built_in_layouts() {
   using enum PlotKind;
   static const Formula penetration{
       .name = "penetration_m", .text = "sqrt(penetration_x_m^2 + penetration_y_m^2 + penetration_z_m^2)", .unit = "m"};
-  static const std::array<ScopeLayout, 5> layouts{{
+  static const std::array<ScopeLayout, 6> layouts{{
       {"contact", 2, {{time, "Position", {position_x_m, position_y_m, position_z_m}}, {time, "Force", {force_N}}}},
       {"paper",
        2,
@@ -36,6 +36,16 @@ std::span<const ScopeLayout> built_in_layouts() {
         {time, "Motor 2", {current_reference_2_A, current_2_A}},
         {time, "Motor 3", {current_reference_3_A, current_3_A}},
         {spectrum, "Spectrum of the currents", {current_1_A, current_2_A, current_3_A}}}},
+      {"overview",
+       4,
+       {{time, "Position", {position_x_m, position_y_m, position_z_m}},
+        {time, "Velocity", {velocity_x_m_s, velocity_y_m_s, velocity_z_m_s}},
+        {time, "Penetration", {penetration_x_m, penetration_y_m, penetration_z_m}},
+        {time, "Force", {force_N}},
+        {time, "Torques", {torque_1_Nm, torque_2_Nm, torque_3_Nm}},
+        {time, "Currents", {current_1_A, current_2_A, current_3_A}},
+        {time, "Duty", {duty_1, duty_2, duty_3}},
+        {time, "Control interrupt", {servo_cycles}}}},
       {"interrupt",
        2,
        {{time, "Control interrupt", {servo_cycles}},

@@ -37,7 +37,8 @@ struct ScopeLayout {
   bool operator==(const ScopeLayout&) const = default;
 };
 
-/// "contact", "paper" (figures 11 to 14), "wall" (force against penetration), "currents", "interrupt".
+/// "contact", "paper" (figures 11 to 14), "wall" (force against penetration), "currents", "overview"
+/// (eight plots), "interrupt".
 std::span<const ScopeLayout> built_in_layouts();
 /// The built-in layout of that name, the first one if there is none.
 const ScopeLayout& built_in_layout(std::string_view name);
