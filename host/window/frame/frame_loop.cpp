@@ -120,8 +120,10 @@ void FrameLoop::draw(const Frame& frame) {
 }
 
 void FrameLoop::show(const Frame& frame) {
-  if (options_.frames_report) glFinish();  // so that the time is that of drawing, not that of asking for it
+  // So that the time is that of drawing, not that of asking for it.
+  if (options_.frames_report || !frame.is_lively) glFinish();
   const double drawn_s = glfwGetTime();
+  if (!frame.is_lively) rhythm_.took(drawn_s - frame.now_s);
   display_.show();
   on_screen_ = frame.look;
   // At rest there are few frames on purpose.

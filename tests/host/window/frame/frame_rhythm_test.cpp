@@ -8,8 +8,9 @@ using namespace inkwell::window;
 namespace {
 
 /// Frames drawn in ten seconds of a loop that looks 60 times a second and always sees the same.
-int frames_drawn(const FrameEvidence& evidence) {
+int frames_drawn(const FrameEvidence& evidence, double drawing_s = 0.0) {
   FrameRhythm rhythm;
+  rhythm.took(drawing_s);
   int drawn = 0;
   for (int i = 0; i < 600; ++i) {
     const double now_s = i / 60.0;
@@ -38,4 +39,14 @@ TEST_CASE("input wakes the window at once, and it stays awake for a moment") {
   CHECK(rhythm.is_due(false, 10.02));
   CHECK(rhythm.is_lively(10.01 + 0.9 * FrameRhythm::lively_for_s));
   CHECK_FALSE(rhythm.is_lively(10.01 + 1.1 * FrameRhythm::lively_for_s));
+}
+
+TEST_CASE("at rest, drawing takes no more than its share of the time, and motion is drawn all the same") {
+  CHECK(frames_drawn({.differs = true}, 0.005) >= 50);
+  const double drawing_s = 0.025;
+  const int drawn = frames_drawn({.differs = true}, drawing_s);
+  CHECK(drawn * drawing_s <= 1.1 * FrameRhythm::resting_share * 10.0);
+  CHECK(drawn >= 25);
+  CHECK(frames_drawn({.differs = true}, 1.0) >= 19);
+  CHECK(frames_drawn({.moves = true}, drawing_s) == 600);
 }
