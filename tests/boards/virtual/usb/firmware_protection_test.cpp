@@ -99,6 +99,7 @@ TEST_CASE("what only an error does with the memory is a fault, and the board say
       {"behind the flash", load, 0x0810'0000, no_data | valid_address},
       {"the code of interrupts is written", store, 0x2001'C100, no_data | valid_address},
       {"its last word", store, 0x2001'FFFC, no_data | valid_address},
+      {"the tables of interrupts are written", store, 0x1000'F800, no_data | valid_address},
       {"a bit's alias", store, 0x2200'0004, no_data | valid_address},
       {"data are run", 0x2000'0100, 0, no_instruction},
       {"null is run", 0x0000'0000, 0, no_instruction},
