@@ -24,9 +24,11 @@ INKWELL_INTERRUPT control::Samples read_samples() {
   const auto timer_counts = encoders.read();
   for (std::size_t i = 0; i < timer_counts.size(); ++i)
     encoder_counts[i] = control::unwrap(encoder_counts[i], timer_counts[i]);
+  const drivers::AnalogInputs::Currents currents = analog_inputs.take_currents();
   const control::Samples samples{.encoder_counts = encoder_counts,
-                                 .current_A = analog_inputs.take_currents_A(),
+                                 .current_A = currents.current_A,
                                  .gimbal_ratio = analog_inputs.gimbal_ratio(),
+                                 .currents_measured = currents.are_new,
                                  .supply_V = analog_inputs.supply_V(),
                                  .switches = switch_bits(switches.read()),
                                  .bridge_fault = bridges.fault(),

@@ -268,7 +268,8 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   const protocol::Watches found =
       asked_.found | watch(Fault::not_finite, !is_finite(sum_of_all)) |
       watch(Fault::current_sensor, offsets_.measured() && !offsets_.plausible) |
-      watch(Fault::samples_stale, samples.slow_age_periods > SupplyFilter::stale_periods) |
+      watch(Fault::samples_stale,
+            !samples.currents_measured || samples.slow_age_periods > SupplyFilter::stale_periods) |
       watch(Fault::supply_low, supply_.supply_V < board_.supply_minimum_V) |
       watch(Fault::supply_high, supply_.supply_V > board_.supply_maximum_V) |
       watch(Fault::bridge_fault, samples.bridge_fault) |

@@ -83,7 +83,8 @@ void set_up_injected(const board::AnalogInput& input) {
 }
 
 template <class Converter>
-float take_current_A() {
+float take_current_A(bool& is_new) {
+  is_new &= Converter::SR::JEOC::is_set();
   const auto counts = static_cast<std::int32_t>(Converter::JDR1::JDATA::read());
   Converter::SR::write(~(Converter::SR::JEOC::mask | Converter::SR::JSTRT::mask));
   constexpr float step_A = board::facts.current_step_A(), range_A = board::facts.current_range_A();
@@ -157,8 +158,12 @@ void AnalogInputs::arm() {
   InterruptLine<AnalogInputs, Interrupt::analog_converters>::enable();
 }
 
-INKWELL_INTERRUPT std::array<float, 3> AnalogInputs::take_currents_A() {
-  return {take_current_A<ADC1>(), take_current_A<ADC2>(), take_current_A<ADC3>()};
+// ADC1 interrupts when all three are over, since they began together: only one that does not work is missed.
+INKWELL_INTERRUPT AnalogInputs::Currents AnalogInputs::take_currents() {
+  bool are_new = true;
+  const std::array current_A{take_current_A<ADC1>(are_new), take_current_A<ADC2>(are_new),
+                             take_current_A<ADC3>(are_new)};
+  return {current_A, are_new};
 }
 
 INKWELL_INTERRUPT void AnalogInputs::start_slow_conversions() {

@@ -157,8 +157,7 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::exception_lost:
       return "The force does not need it; a host that it keeps from being heard is missed later than a case lasts.";
     case InjectedFault::exception_late: return "Late by less than what the firmware watches for.";
-    case InjectedFault::adc_stopped:
-      return "Its current reads on as it stood; voltage, reading and speed fit within what a hot motor may differ by.";
+    case InjectedFault::adc_stopped: return "None is known: each conversion of a current has to be a new one.";
     case InjectedFault::dma_stopped: return "None is known: the age of supply and gimbal is watched.";
     case InjectedFault::ram_bit:
       return "Of the RAM only the interrupts' code and tables and the settings are checked; the byte was not used, or "

@@ -33,7 +33,7 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(10, watchdog, "The board was restarted by its watchdog.", "Report this with the firmware version, then clear the fault.")    \
   X(11, processor_fault, "The processor met a fault; it switched the bridges off and restarted.", "Report this with the firmware version, then clear the fault.") \
   X(12, not_finite, "A value in the control path was not a finite number.", "Check the parameters of the arm, load the defaults, then clear the fault.") \
-  X(13, samples_stale, "Supply and gimbal were not measured for {samples_stale_ms} ms.", "If it comes back after the fault is cleared, reset the board and report this with the firmware version.") \
+  X(13, samples_stale, "A motor's current was not measured in a control period, or supply and gimbal for {samples_stale_ms} ms.", "If it comes back after the fault is cleared, reset the board and report this with the firmware version.") \
   X(14, crystal_failed, "The board's crystal stopped, or swung late; the motors were off until the board had started anew.", "Check the crystal, its two capacitors and their joints, then clear the fault. If it comes back, replace the crystal.") \
   X(15, force_law, "The force law of this image gave a force that is no finite number.", "Look in the force law for a division by zero, the root of a negative number or a state that grows without end, or put its parameters back to their defaults. Then clear the fault.") \
   X(16, motor_hot, "A motor is {motor_heat_beyond_percent} % hotter than it bears, although its current is held back.", "Let it cool below {motor_heat_holds_back_percent} %; while it does, check its wiring and its current sensor, or what tested it. Then clear the fault.") \

@@ -22,6 +22,7 @@ inline control::Samples samples_at_rest() {
   return {.encoder_counts = {},
           .current_A = {},
           .gimbal_ratio = {0.5f, 0.5f, 0.5f},
+          .currents_measured = true,
           .supply_V = board::supply_nominal_V,
           .switches = 0,
           .bridge_fault = false,

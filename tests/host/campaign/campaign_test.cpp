@@ -233,6 +233,6 @@ TEST_CASE("each fault that passes unnoticed with the force on has a reason on th
     CHECK(reason.ends_with("."));
     CHECK(reason.find("motors are off") == std::string::npos);  // not with the force on
   }
-  CHECK(text.find("`adc_stopped:3` | rest | Its current reads on as it stood") != std::string::npos);
+  CHECK(text.find("`shunt_frozen:2` | rest | Voltage, reading and speed fit") != std::string::npos);
   CHECK(text.find("`program_astray` | rest | The code that it came to returned") != std::string::npos);
 }

@@ -31,7 +31,8 @@ TEST_CASE("the faults of ripple and of the reference name what is borne") {
 
 TEST_CASE("the faults of the motors and of old samples name the figures that the firmware goes by") {
   CHECK(device::fault_text(Fault::over_current).cause.find("exceeded 150 % of its limit") != std::string::npos);
-  CHECK(device::fault_text(Fault::samples_stale).cause == "Supply and gimbal were not measured for 1 ms.");
+  CHECK(device::fault_text(Fault::samples_stale).cause ==
+        "A motor's current was not measured in a control period, or supply and gimbal for 1 ms.");
   CHECK(device::fault_text(Fault::motor_hot).cause.find("is 25 % hotter than it bears") != std::string::npos);
   CHECK(device::fault_text(Fault::motor_hot).remedy.find("cool below 85 %;") != std::string::npos);
 }

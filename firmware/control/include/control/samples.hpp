@@ -13,6 +13,7 @@ struct Samples {
   std::array<std::int32_t, 3> encoder_counts;  ///< since power-up, wraps of the timers undone
   Triple current_A;                ///< positive from leg A to leg B; the amplifiers' offsets are still inside
   Triple gimbal_ratio;             ///< voltage of each potentiometer as a part of its supply, 0..1
+  bool currents_measured;          ///< all three of them, since the period before
   float supply_V;                  ///< of the bridges
   std::uint8_t switches;           ///< bits of protocol::Switch, 1 is closed, not debounced
   bool bridge_fault;               ///< a bridge pulls the fault line

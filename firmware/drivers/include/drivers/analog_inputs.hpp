@@ -42,9 +42,12 @@ class AnalogInputs {
   /// accurate by then and hear the same one first.
   void arm();
 
-  /// Currents at the last update, from leg A to leg B of each bridge, offsets of the amplifiers included.
-  /// Acknowledges the interrupt.
-  std::array<float, 3> take_currents_A();
+  struct Currents {
+    std::array<float, 3> current_A;  ///< from leg A to leg B of each bridge, offsets of the amplifiers included
+    bool are_new;                    ///< each converter has measured since they were last taken
+  };
+  /// At the last update. Acknowledges the interrupt.
+  Currents take_currents();
 
   /// Starts the conversion of gimbal, supply and reference, which takes 36 us; call it once in a control period. If
   /// conversions stop coming, it sets converter and stream up again.

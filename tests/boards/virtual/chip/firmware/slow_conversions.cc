@@ -14,7 +14,7 @@ Bridges bridges;
 
 void period() {
   bridges.begin_period();
-  static_cast<void>(analog_inputs.take_currents_A());
+  static_cast<void>(analog_inputs.take_currents());
   const std::uint32_t age = analog_inputs.slow_age_periods();
   if (age > results[2]) results[2] = age;
   results[3] = age;
