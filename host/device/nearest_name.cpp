@@ -1,31 +1,41 @@
 #include <device/nearest_name.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace inkwell::device {
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+// Of the table of Levenshtein's algorithm only the cells whose places differ by no more than `most`: all others are
+// beyond it, and once a row is, so is the rest.
+std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most) {
+  const std::size_t beyond = most + 1;
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return beyond;
+  std::vector<std::size_t> row(b.size() + 1, beyond);
+  for (std::size_t j = 0; j <= std::min(b.size(), most); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] != b[j - 1]);
+    const std::size_t first = i > most ? i - most : 1, last = std::min(b.size(), i + most);
+    std::size_t diagonal = std::exchange(row[first - 1], first == 1 ? std::min(i, beyond) : beyond);
+    std::size_t least = row[first - 1];
+    for (std::size_t j = first; j <= last; ++j) {
+      const std::size_t exchanged = diagonal + (a[i - 1] != b[j - 1]);
       diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+      row[j] = std::min(std::min(row[j], row[j - 1]) + 1, exchanged);
+      least = std::min(least, row[j]);
     }
+    if (least >= beyond) return beyond;
   }
-  return row.back();
+  return std::min(row.back(), beyond);
 }
 
 bool is_near(std::string_view name, std::string_view typed) {
   constexpr std::size_t telling = 3;  // a letter or two are in many names
   if (typed.size() < telling) return false;
-  return name.find(typed) != std::string_view::npos || edit_distance(typed, name) <= typed.size() / 3 ||
-         edit_distance(typed, name.substr(0, typed.size())) <= typed.size() / 4;
+  const auto is_within = [&](std::string_view other, std::size_t edits) {
+    return edit_distance(typed, other, edits) <= edits;
+  };
+  return name.find(typed) != std::string_view::npos || is_within(name, typed.size() / 3) ||
+         is_within(name.substr(0, typed.size()), typed.size() / 4);
 }
 
 }  // namespace inkwell::device

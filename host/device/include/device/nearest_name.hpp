@@ -1,6 +1,7 @@
 // Finds what was probably meant by a name that is misspelt.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -16,8 +17,9 @@ class UnknownName : public Error {
   using Error::Error;
 };
 
-/// Levenshtein's distance: how many characters must be inserted, removed or exchanged.
-std::size_t edit_distance(std::string_view a, std::string_view b);
+/// Levenshtein's distance: how many characters must be inserted, removed or exchanged. More than `most` are told as one
+/// more than that.
+std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most);
 
 /// Whether `name` was probably meant by the typed text: it has the text in it, or takes few edits, be it as a whole or
 /// as far as the text goes.
@@ -32,7 +34,7 @@ std::string suggestion(const Table& table, std::string_view typed) {
   for (const auto& row : table) {
     const std::string_view& name = row.name;
     if (!is_near(name, typed)) continue;
-    const std::pair distance(name.find(typed) == std::string_view::npos, edit_distance(typed, name));
+    const std::pair distance(name.find(typed) == std::string_view::npos, edit_distance(typed, name, std::max(typed.size(), name.size())));
     if (nearest != nullptr && shortest <= distance) continue;
     nearest = &name;
     shortest = distance;
