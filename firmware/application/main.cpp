@@ -16,6 +16,7 @@
 #include "parts.hpp"
 #include "ram_test.hpp"
 #include "start_report.hpp"
+#include "watchdog_trial.hpp"
 
 namespace inkwell::application {
 namespace {
@@ -54,11 +55,12 @@ protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::opti
 int main() {
   using namespace inkwell;
   using namespace inkwell::application;
-  const auto reset_cause = drivers::take_reset_cause();
+  drivers::CycleCounter::start();
+  const WatchdogTrial watchdog_trial = try_watchdog(drivers::take_reset_cause());
+  const drivers::ResetCause reset_cause = watchdog_trial.cause;
   const auto crash = crash_record.take();
 
   drivers::start_pins();
-  drivers::CycleCounter::start();
   status_led.start();
   const bool started_late = !start_clocks();
   report_start(reset_cause, crash);
@@ -92,7 +94,8 @@ int main() {
                                .reset_cause = reset_cause.flags >> 24};
   usb::Device usb_device{usb_port, host_link, identity};
   if (!usb_port.start()) give_up();
-  host_link.self_test.note(protocol::SelfTestItem::watchdog, watchdog.start());
+  host_link.self_test.note(protocol::SelfTestItem::watchdog, watchdog.start() && watchdog_trial.is_passed,
+                           watchdog_trial.bitten_after_ms);
 
   for (;;) {
     const std::uint32_t periods = completed_periods.load();

@@ -151,7 +151,7 @@ TEST_CASE("firmware that hung leaves the rows before, and its black box says tha
   press_into_wall(rig);
   rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
   rig.control.run(0.04);
-  CHECK(rig.control.status().all.at("watchdog_resets") == 1);
+  CHECK(watchdog_bites(rig.control) == 1);
   reconnect(rig);
   rig.run(0.3);
   const auto box = rig.device->black_box();

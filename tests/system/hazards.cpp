@@ -60,6 +60,12 @@ void check_tells(const std::string& text, protocol::Fault fault) {
   CHECK(text.find(device::fault_line(fault)) != std::string::npos);
 }
 
-int restarts(device::ControlClient& control) { return control.status().all.at("resets").get<int>(); }
+namespace {
+constexpr int of_trial = 1;
+}
+int restarts(device::ControlClient& control) { return control.status().all.at("resets").get<int>() - of_trial; }
+int watchdog_bites(device::ControlClient& control) {
+  return control.status().all.at("watchdog_resets").get<int>() - of_trial;
+}
 
 }  // namespace inkwell::tests

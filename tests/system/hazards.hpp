@@ -22,7 +22,9 @@ bool bridges_enabled(device::ControlClient& control);
 /// The sphere pressed into a wall by the hand: all three bridges switch, and at least one motor has current.
 void press_into_wall(BoardRig& rig);
 
+/// Since the board has come to life, for which its watchdog bites once (firmware/application/watchdog_trial.hpp).
 int restarts(device::ControlClient& control);
+int watchdog_bites(device::ControlClient& control);
 
 /// What `inkwell info` tells a user about the device of this rig.
 std::string told_by_info(BoardRig& rig);

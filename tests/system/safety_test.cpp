@@ -146,7 +146,7 @@ TEST_CASE("a processor fault with the bridges on switches them off first, and is
   CHECK_FALSE(any_leg_high_within(rig.control, 0.02));
   CHECK(largest_current_A(rig.control) < 0.02);
   CHECK(restarts(rig.control) == 1);
-  CHECK(rig.control.status().all.at("watchdog_resets") == 0);
+  CHECK(watchdog_bites(rig.control) == 0);
 
   reconnect(rig);
   rig.run(0.3);
@@ -160,7 +160,7 @@ TEST_CASE("firmware that hangs with the bridges on is restarted by its watchdog,
   press_into_wall(rig);
   rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
   rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
-  CHECK(rig.control.status().all.at("watchdog_resets") == 1);
+  CHECK(watchdog_bites(rig.control) == 1);
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK_FALSE(any_leg_high_within(rig.control, 0.02));
   CHECK(largest_current_A(rig.control) < 0.02);

@@ -60,8 +60,14 @@ void Chip::reset(ResetCause cause) {
 }
 
 Stop Chip::run_until(Ticks when) { return parts_->execution.run_until(when); }
-void Chip::start_by_boot_loader() { jump(loader_go); }
-void Chip::start_boot_loader() { jump(loader_entry); }
+void Chip::start_by_boot_loader() {
+  jump(loader_go);
+  parts_->machine.exti->show_boot_loader_chosen();
+}
+void Chip::start_boot_loader() {
+  jump(loader_entry);
+  parts_->machine.exti->show_boot_loader_chosen();
+}
 void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
 void Chip::stall(Ticks duration) { parts_->execution.stall(duration); }
 void Chip::halt(Ticks duration) {

@@ -53,6 +53,8 @@ class Exti final : public RegisterBlock {
   /// A line that comes from inside of the chip, 16 to 22.
   void internal_line(unsigned line, bool high);
   Peripheral& syscfg() { return syscfg_; }
+  /// What the boot pins have chosen, since the last reset (RM0090, SYSCFG_MEMRMP).
+  void show_boot_loader_chosen() { syscfg_.show_boot_loader_chosen(); }
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override;
@@ -65,6 +67,10 @@ class Exti final : public RegisterBlock {
    public:
     explicit Syscfg(Exti& exti) : exti_(exti) {}
     void reset() override { words_ = {}; }
+    void show_boot_loader_chosen() {
+      constexpr std::uint32_t system_memory = 0b01;
+      words_[syscfg_registers.memrmp / 4] = syscfg_registers.memrmp.mem_mode.with(system_memory);
+    }
     unsigned port_of(unsigned pin) const {
       constexpr unsigned first_word = syscfg_registers.exticr1 / 4;
       return syscfg_registers.exticr1.exti.of(words_[first_word + pin / 4], pin % 4);

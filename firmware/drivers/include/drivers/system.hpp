@@ -23,6 +23,16 @@ inline ResetCause take_reset_cause() {
   return cause;
 }
 
+/// Whether the boot pins led into the chip's boot loader, and that started the firmware (RM0090, SYSCFG_MEMRMP: after a
+/// reset it tells the pins' choice).
+inline bool started_by_boot_loader() {
+  registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(1));
+  static_cast<void>(registers::RCC::APB2ENR::read());  // erratum "Delay after an RCC peripheral clock enabling"
+  const bool is_so = registers::SYSCFG::MEMRMP::MEM_MODE::read() != 0;
+  registers::RCC::APB2ENR::modify(registers::RCC::APB2ENR::SYSCFGEN(0));
+  return is_so;
+}
+
 [[noreturn]] inline void reset_chip() {
   constexpr std::uint32_t key = 0x05FA;
   asm volatile("dsb" ::: "memory");

@@ -1,4 +1,5 @@
-// Reset and clock control, supply of the core, flash interface (RM0090, chapters RCC, PWR, Embedded flash).
+// Reset and clock control, supply of the core, boot mode, flash interface (RM0090, chapters RCC, PWR, SYSCFG, Embedded
+// flash).
 #pragma once
 
 #include <registers/register.hpp>
@@ -54,6 +55,7 @@ struct ResetAndClockControl {
     using ADC1EN = Field<APB2ENR, 8, 1>;
     using ADC2EN = Field<APB2ENR, 9, 1>;
     using ADC3EN = Field<APB2ENR, 10, 1>;
+    using SYSCFGEN = Field<APB2ENR, 14, 1>;
   };
   struct CSR : Register<base + 0x74> {
     using RMVF = Field<CSR, 24, 1>;
@@ -71,6 +73,13 @@ struct PowerControl {
   };
   struct CSR : Register<base + 0x04> {
     using PVDO = Field<CSR, 2, 1>;
+  };
+};
+
+template <std::uint32_t base>
+struct SystemConfiguration {
+  struct MEMRMP : Register<base + 0x00> {
+    using MEM_MODE = Field<MEMRMP, 0, 2>;
   };
 };
 

@@ -40,6 +40,7 @@
 #define INKWELL_SHARED_PERIPHERALS(X)                    \
   X(SIGNATURE, DeviceSignature, 0x1FFF7A10)              \
   X(PWR, PowerControl, 0x40007000)                       \
+  X(SYSCFG, SystemConfiguration, 0x40013800)             \
   X(GPIOA, GeneralPurposeIo, 0x40020000)                 \
   X(GPIOB, GeneralPurposeIo, 0x40020400)                 \
   X(GPIOC, GeneralPurposeIo, 0x40020800)                 \

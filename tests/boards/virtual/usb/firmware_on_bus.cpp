@@ -70,7 +70,7 @@ FirmwareOnBus::Answer FirmwareOnBus::control(std::uint8_t type, std::uint8_t req
                low(index),      high(index),        low(length), high(length)};
   const std::uint32_t wanted = urb.sequence;
   port.submit(std::move(urb));
-  for (int i = 0; i < 1000 && !answers_.contains(wanted); ++i) run_for(0.001);
+  for (int i = 0; i < 2000 && !answers_.contains(wanted); ++i) run_for(0.001);
   const auto found = answers_.extract(wanted);
   if (found.empty()) throw std::runtime_error("a control transfer does not end");
   return found.mapped();

@@ -17,11 +17,28 @@ namespace {
 using virtual_board::ChipOptions;
 using virtual_board::PinLevel;
 using virtual_board::ResetCause;
+using virtual_board::ticks;
 
 struct OtherBoard {
   explicit OtherBoard(const ChipOptions& options) : bus(flashed_image(), 0.0, options) {}
   std::uint32_t watchdog_resets() const {
     return bus.chip.counters().resets[static_cast<std::size_t>(ResetCause::independent_watchdog)];
+  }
+  protocol::SelfTestEntry watchdog_entry() {
+    const auto answer = bus.control(0xA1, 1, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::self_test), 0,
+                                    sizeof(protocol::SelfTestReport));
+    protocol::SelfTestReport report;
+    REQUIRE(answer.data.size() == sizeof report);
+    std::memcpy(&report, answer.data.data(), sizeof report);
+    return report.entries[static_cast<std::size_t>(protocol::SelfTestItem::watchdog)];
+  }
+  protocol::Fault fault() {
+    protocol::PoseReport pose{};
+    bus.on_pose = [&](const protocol::PoseReport& newest) { pose = newest; };
+    bus.keep_asking_for_poses();
+    bus.run_for(0.01);
+    bus.on_pose = nullptr;
+    return pose.fault;
   }
   FirmwareOnBus bus;
 };
@@ -66,7 +83,7 @@ TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fast
     FirmwareOnBus& bus = other.bus;
     bus.connect();
     bus.run_for(0.3);
-    REQUIRE(other.watchdog_resets() == 0);
+    bus.chip.clear_counters();  // it has bitten once for its trial
     constexpr unsigned control_interrupt = virtual_board::exception_of(virtual_board::converters_position);
     bus.chip.lose_exception(control_interrupt, true);
     bus.run_for(sort.not_before_s);
@@ -76,19 +93,62 @@ TEST_CASE("the watchdog leaves a live firmware alone on the slowest and the fast
   }
 }
 
-TEST_CASE("the self-test tells whether the watchdog's oscillator runs") {
+TEST_CASE("when the power comes the watchdog is left to bite, and the self-test tells whether it did so in time") {
   using protocol::SelfTestResult;
-  for (const auto& [oscillator_Hz, result] :
-       {std::pair{17'000u, SelfTestResult::passed}, {500u, SelfTestResult::failed}}) {
-    OtherBoard other({.low_speed_internal_Hz = oscillator_Hz});
+  struct Sort {
+    std::uint32_t low_speed_internal_Hz;
+    SelfTestResult result;
+    double bitten_after_ms;
+  };
+  for (const Sort& sort : {Sort{32'000, SelfTestResult::passed, 20.0}, Sort{17'000, SelfTestResult::passed, 37.6},
+                           Sort{47'000, SelfTestResult::passed, 13.6}, Sort{14'000, SelfTestResult::failed, 45.7},
+                           Sort{56'000, SelfTestResult::failed, 11.4}, Sort{500, SelfTestResult::failed, 0.0}}) {
+    CAPTURE(sort.low_speed_internal_Hz);
+    OtherBoard other({.low_speed_internal_Hz = sort.low_speed_internal_Hz});
     other.bus.connect();
-    const auto answer = other.bus.control(0xA1, 1, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::self_test),
-                                          0, sizeof(protocol::SelfTestReport));
-    protocol::SelfTestReport report;
-    REQUIRE(answer.data.size() == sizeof report);
-    std::memcpy(&report, answer.data.data(), sizeof report);
-    CHECK(report.entries[static_cast<std::size_t>(protocol::SelfTestItem::watchdog)].result == result);
+    CHECK(other.watchdog_resets() == (sort.bitten_after_ms > 0.0 ? 1 : 0));
+    CHECK(other.watchdog_entry().result == sort.result);
+    CHECK(other.watchdog_entry().figure == doctest::Approx(sort.bitten_after_ms).epsilon(0.01));
+    CHECK(other.fault() != protocol::Fault::watchdog);
   }
+}
+
+TEST_CASE("what the trial of the watchdog showed is told after other resets too, without another trial") {
+  OtherBoard other({});
+  other.bus.connect();
+  const float bitten_after_ms = other.watchdog_entry().figure;
+  other.bus.chip.reset(ResetCause::pin);
+  other.bus.run_for(0.05);  // the port sees that the device was gone
+  other.bus.connect();
+  CHECK(other.watchdog_resets() == 1);
+  CHECK(other.watchdog_entry().result == protocol::SelfTestResult::passed);
+  CHECK(other.watchdog_entry().figure == bitten_after_ms);
+}
+
+TEST_CASE("a trial of the watchdog that another reset cuts short finds nothing, and hides no later bite") {
+  OtherBoard other({});
+  FirmwareOnBus& bus = other.bus;
+  bus.run_for(0.01);
+  bus.chip.reset(ResetCause::pin);
+  bus.connect();
+  CHECK(other.watchdog_resets() == 0);
+  CHECK(other.watchdog_entry().result == protocol::SelfTestResult::passed);
+  CHECK(other.watchdog_entry().figure == 0.0f);
+  bus.chip.stall(ticks(0.03));
+  bus.run_for(0.03);
+  CHECK(other.watchdog_resets() == 1);
+  bus.connect();
+  CHECK(other.fault() == protocol::Fault::watchdog);
+}
+
+TEST_CASE("firmware that the boot pins lead through the boot loader tries no bite, which would lead back there") {
+  OtherBoard other({});
+  other.bus.chip.reset(ResetCause::power_on);
+  other.bus.chip.start_by_boot_loader();
+  other.bus.connect();
+  CHECK(other.watchdog_resets() == 0);
+  CHECK(other.watchdog_entry().result == protocol::SelfTestResult::passed);
+  CHECK(other.watchdog_entry().figure == 0.0f);
 }
 
 TEST_CASE("a crystal that does not start: light and console tell, no device, no bridge; late is a fault that tells") {

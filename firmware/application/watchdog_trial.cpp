@@ -1,0 +1,62 @@
+#include "watchdog_trial.hpp"
+
+#include <drivers/clocks.hpp>
+#include <drivers/cycle_counter.hpp>
+#include <drivers/kept_over_reset.hpp>
+
+#include "parts.hpp"
+
+namespace inkwell::application {
+namespace {
+
+enum class Outcome : std::uint32_t { open, bitten, none };
+
+struct Course {
+  std::uint32_t reset_flags;  ///< of the power-up that it followed
+  Outcome outcome;
+};
+
+[[gnu::section(".noinit")]] drivers::KeptOverReset<Course> kept_course;
+/// Without food. A word of its own, because the bite comes between any two instructions.
+[[gnu::section(".noinit")]] volatile std::uint32_t waited_us;
+
+/// 20 ms by its oscillator, which has 17 to 47 kHz, and some of its cycles; the internal oscillator by which it is
+/// measured is off by 4 % at most (data sheet).
+constexpr std::uint32_t earliest_us = 13'000, latest_us = 40'000, patience_us = 100'000;
+
+/// Returns only if it does not bite.
+void wait_for_bite() {
+  constexpr std::uint32_t cycles_per_us = drivers::internal_oscillator_Hz / 1'000'000;
+  static_cast<void>(watchdog.start());  // main() starts it again, and tells whether it took its time
+  const std::uint32_t from_cycles = drivers::CycleCounter::now();
+  while (waited_us < patience_us) waited_us = (drivers::CycleCounter::now() - from_cycles) / cycles_per_us;
+}
+
+}  // namespace
+
+WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
+  // With BOOT0 held high the bite would lead back into the boot loader that has just let the firmware start.
+  if (cause.power_on() && !drivers::started_by_boot_loader()) {
+    waited_us = 0;
+    kept_course.leave({cause.flags, Outcome::open});
+    wait_for_bite();
+    kept_course.leave({cause.flags, Outcome::none});
+  }
+  auto course = kept_course.take();
+  if (!course) return {cause, true, 0.0f};
+  WatchdogTrial trial{cause, course->outcome != Outcome::none, 0.0f};
+  if (course->outcome == Outcome::open && cause.watchdog()) {
+    trial.cause = {course->reset_flags};
+    course->outcome = Outcome::bitten;
+  }
+  // Another reset that came meanwhile leaves it undecided, so nothing is kept: the next bite is none of its own.
+  if (course->outcome == Outcome::open) return trial;
+  if (course->outcome == Outcome::bitten) {
+    trial.is_passed = waited_us > earliest_us && waited_us < latest_us;
+    trial.bitten_after_ms = 1e-3f * static_cast<float>(waited_us);
+  }
+  kept_course.leave(*course);
+  return trial;
+}
+
+}  // namespace inkwell::application
