@@ -90,6 +90,7 @@ int main() {
 
   const usb::Identity identity{.serial_number = drivers::unique_identifier(),
                                .firmware_version = {INKWELL_VERSION_NUMBERS},
+                               .board = board::facts.name,
                                .processor_clock_Hz = board::processor_Hz,
                                .reset_cause = reset_cause.flags >> 24};
   usb::Device usb_device{usb_port, host_link, identity};

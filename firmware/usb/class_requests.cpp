@@ -174,6 +174,7 @@ Answer Device::firmware_update_request(const SetupPacket& setup) {
 protocol::InformationReport Device::information() const {
   protocol::InformationReport report{};
   std::memcpy(report.firmware_version, identity_.firmware_version.data(), identity_.firmware_version.size());
+  identity_.board.copy(report.board, protocol::board_name_maximum);
   report.parameter_table_hash = protocol::parameter_table_hash;
   report.signal_table_hash = protocol::signal_table_hash;
   report.servo_rate_Hz = protocol::servo_rate_Hz;

@@ -7,6 +7,7 @@
 
 #include <device/board_store.hpp>
 #include <device/fault_text.hpp>
+#include <known/boards.hpp>
 #include <protocol/reports.hpp>
 
 #include "help.hpp"
@@ -23,10 +24,16 @@ ordered_json law_signals(const device::ForceLaw& law) {
   return json;
 }
 
+std::string board_text(const std::string& name) {
+  if (name.empty()) return "unknown: the firmware names none";
+  return board::find_board(name) ? name : name + ", which this companion does not know";
+}
+
 ordered_json to_json(const device::Information& information, const protocol::StoreReport& store,
                      const std::optional<protocol::PoseReport>& pose) {
   const auto& report = information.report;
   ordered_json json{{"serial_number", information.serial_number},
+                    {"board", information.board_name},
                     {"firmware_version", information.firmware_version},
                     {"protocol_version", information.protocol_version},
                     {"companion_version", INKWELL_VERSION},
@@ -59,6 +66,7 @@ void print(const device::Information& information, const protocol::StoreReport& 
   const auto& report = information.report;
   const double cycles_per_period = static_cast<double>(report.processor_clock_Hz) / std::max(1u, report.servo_rate_Hz);
   fmt::print("serial number       {}\n", information.serial_number);
+  fmt::print("board               {}\n", board_text(information.board_name));
   fmt::print("firmware            {}, protocol {} (companion {})\n", information.firmware_version,
              information.protocol_version, INKWELL_VERSION);
   if (const auto& law = information.force_law) {

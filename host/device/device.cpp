@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "feature_reports.hpp"
+
 namespace inkwell::device {
 namespace {
 
@@ -27,11 +29,6 @@ std::string refusal_sentence(const protocol::TransactionReport& report) {
   const auto& row = info(*parameter);
   return fmt::format("The device refused {} = {}: {} {} Its range is {} to {}{}{}.", row.name, report.value,
                      refusal.cause, refusal.remedy, row.minimum, row.maximum, row.unit.empty() ? "" : " ", row.unit);
-}
-
-template <class Report>
-std::span<std::byte> writable_bytes(Report& report) {
-  return std::as_writable_bytes(std::span(&report, 1));
 }
 
 }  // namespace
@@ -61,11 +58,7 @@ struct Device::Implementation {
   template <class Report>
   void get(Report& report, const char* what) {
     const std::size_t length = transport->get_feature(writable_bytes(report));
-    if (length < sizeof report)
-      throw Incompatible(
-          fmt::format("The device's {} report has {} bytes instead of {}. Flash the firmware that "
-                      "belongs to this companion.",
-                      what, length, sizeof report));
+    if (length < sizeof report) throw too_short(what, length, sizeof report);
   }
 
   /// From `first_row` on, with the feature_mutex held. Another program may ask for other rows between the two requests.
@@ -170,13 +163,14 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
     throw Incompatible(
         fmt::format("The device speaks version {} of the protocol, this companion version {}. Flash the "
                     "firmware that belongs to this companion, or use the companion of firmware {}.",
-                    information.protocol_version, protocol::protocol_version, information.firmware_version));
+                    information.protocol_version, protocol::protocol_version, information.firmware_version),
+        information.board_name);
   if (report.parameter_table_hash != protocol::parameter_table_hash ||
       report.signal_table_hash != protocol::signal_table_hash)
-    throw Incompatible(
-        fmt::format("Firmware {} has other parameters or signals than this companion, though both speak "
-                    "version {} of the protocol. Build both from the same source and flash again.",
-                    information.firmware_version, protocol::protocol_version));
+    throw Incompatible(fmt::format("Firmware {} has other parameters or signals than this companion, though both speak "
+                                   "version {} of the protocol. Build both from the same source and flash again.",
+                                   information.firmware_version, protocol::protocol_version),
+                       information.board_name);
   auto law = device->implementation_->read_force_law();
   if (!join_tables(law))
     throw Error(
@@ -203,11 +197,11 @@ protocol::FrameReport Device::frame() {
 Information Device::information() {
   const std::lock_guard lock(implementation_->feature_mutex);
   Information information{};
-  information.report.report_id = ReportId::information;
-  implementation_->get(information.report, "information");
+  information.report = read_information(*implementation_->transport);
   const auto& version = information.report.firmware_version;
   information.firmware_version = fmt::format("{}.{}.{}", version[0], version[1], version[2]);
   information.protocol_version = information.report.version;
+  information.board_name = protocol::board_name(information.report.board);
   information.serial_number = implementation_->transport->endpoint().serial_number;
   information.force_law = implementation_->force_law;
   return information;

@@ -51,7 +51,7 @@ void Session::Implementation::report_loop() {
     } catch (const NoPermission& error) {
       set_connection(Connection::no_permission, error.what());
     } catch (const Incompatible& error) {
-      set_connection(Connection::incompatible, error.what());
+      set_connection(Connection::incompatible, error.what(), error.board_name);
     } catch (const Error& error) {
       set_connection(Connection::searching, error.what());
     }
@@ -72,6 +72,7 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
   reconnections += newest_reconnection ? 1 : 0;
   served_serial_number = information.serial_number;
   state.information = information;
+  state.board_name = information.board_name;
   state.store = store;
   state.is_simulation = endpoint.is_virtual;
   state.connection = Connection::connected;
@@ -308,8 +309,10 @@ void Session::Implementation::refresh_store(Device& from) {
   state.store = store;
 }
 
-void Session::Implementation::set_connection(Connection connection, const std::string& message) {
+void Session::Implementation::set_connection(Connection connection, const std::string& message,
+                                             const std::string& board_name) {
   const std::lock_guard lock(mutex);
+  state.board_name = board_name;
   state.connection = connection;
   state.message = message;
 }

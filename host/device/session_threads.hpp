@@ -75,7 +75,7 @@ struct Session::Implementation {
   /// The stored values change with the count of records only.
   void refresh_store(Device& from);
   std::string connected_message() const { return "Connected to " + state.information->serial_number + "."; }
-  void set_connection(Connection connection, const std::string& message);
+  void set_connection(Connection connection, const std::string& message, const std::string& board_name = {});
   void forget_device();
   /// With the mutex held. Without a device it would be carried out on whichever comes.
   void ask(StoreTask task);

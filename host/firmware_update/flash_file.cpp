@@ -54,7 +54,7 @@ FlashFileWritten write_flash_file(const std::filesystem::path& file, const Image
                                   const ImageFor& image_for) {
   auto flash = read_flash(file);
   const auto before = identity_in(flash);
-  Image image = (before ? image_for(*before) : std::nullopt).value_or(given);
+  Image image = (before ? image_for(before->board_name()) : std::nullopt).value_or(given);
   insist(image, before, says_yes);
   const auto offset = [](std::uint32_t address) {
     return static_cast<std::ptrdiff_t>(address - protocol::image_begin);

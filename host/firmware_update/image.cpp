@@ -95,10 +95,10 @@ Image read_image(const std::filesystem::path& elf) {
   return read_image(std::as_bytes(std::span(content)), elf);
 }
 
-std::optional<Image> own_image_for(const protocol::ImageIdentity& there) {
-  const board::Facts* board = board::find_board(there.board_name());
-  if (!board) return {};
-  return read_image(installation::firmware(board::image_name(*board)));
+std::optional<Image> own_image_for(std::string_view board) {
+  const board::Facts* facts = board::find_board(board);
+  if (facts == nullptr) return {};
+  return read_image(installation::firmware(board::image_name(*facts)));
 }
 
 std::string describe(const protocol::ImageIdentity& identity) {

@@ -19,10 +19,14 @@ using device::Endpoint;
 constexpr auto change_patience = 20s;
 constexpr auto look_again = 50ms;
 
-constexpr char how_to_go_on[] =
-    "The board is in its boot loader, without a complete firmware, and its bridges are off. Leave its power on and "
-    "give "
-    "the same command again: it goes on from there. If its power was off, hold BOOT0 while it comes on first.";
+/// `chosen`: the image was, by what the board held, and what it held is gone.
+std::string how_to_go_on(const Image& image, bool is_chosen) {
+  return fmt::format(
+      "The board is in its boot loader, without a complete firmware, and its bridges are off. Leave its power on and "
+      "give the same command again{}: it goes on from there. If its power was off, hold BOOT0 while it comes on first.",
+      is_chosen ? fmt::format(", now with {}, as the board cannot say any more which one it is", image.file.string())
+                : "");
+}
 
 Address without_number(const Address& address) {
   return {.kind = address.kind, .host = address.host, .port = address.port};
@@ -101,12 +105,21 @@ Endpoint detach(const Endpoint& arm, const Address& address) {
       "again: its old firmware is still there.");
 }
 
+/// What its firmware says of the board is enough to refuse an image before the firmware is left. Where it cannot be
+/// asked, its flash is looked at afterwards.
+void insist_for(const Endpoint& arm, const Image& image, const UpdateOptions& options) {
+  const auto board = if_it_answers(
+      [&] { return std::optional(device::Device(device::open_transport(arm)).information().board_name); });
+  if (!board || board->empty()) return;
+  insist(options.image_for(*board).value_or(image), protocol::image_identity(*board, 0, 0, 0), options.says_yes);
+}
+
 /// The boot loader of the board that is meant, and the arms beside it.
 struct Found {
   Endpoint loader;
   std::set<std::string> other_arms;
 };
-Found find_loader(const Address& address, const UpdateOptions& options) {
+Found find_loader(const Address& address, const Image& image, const UpdateOptions& options) {
   const auto arms = arms_at(address);
   const auto loaders = loaders_at(address);
   if (arms.size() + loaders.size() != 1) complain_of_number(arms, loaders);
@@ -117,6 +130,7 @@ Found find_loader(const Address& address, const UpdateOptions& options) {
     return found;
   }
   found.other_arms.erase(arms.front().serial_number);
+  insist_for(arms.front(), image, options);
   options.on_progress("asking the board to leave its firmware", 0);
   found.loader = detach(arms.front(), address);
   return found;
@@ -223,7 +237,7 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
   written.before = identity_in(loader.read(protocol::image_begin, identity_end));
   try {
     if (written.before)
-      written.image = options.image_for(*written.before).value_or(image);
+      written.image = options.image_for(written.before->board_name()).value_or(image);
     else
       written.image = image;
     insist(written.image, written.before, options.says_yes);
@@ -242,7 +256,8 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
     writing.erase();
     writing.write_and_verify();
   } catch (const device::Error& error) {
-    throw Interrupted(fmt::format("{} {}", error.what(), how_to_go_on));
+    throw Interrupted(
+        fmt::format("{} {}", error.what(), how_to_go_on(written.image, written.image.file != image.file)));
   }
   options.on_progress(
       options_wanted ? "setting the brown-out level, and starting the firmware" : "starting the firmware", 0.99);
@@ -256,7 +271,7 @@ UpdateResult update(const Address& address, const Image& image, const UpdateOpti
   // What no board could have is refused before the board leaves its firmware.
   insist(image, {}, options.says_yes);
   UpdateResult result;
-  const Found found = find_loader(address, options);
+  const Found found = find_loader(address, image, options);
   {
     const auto channel = device::open_boot_loader(found.loader);
     BootLoader loader(*channel);

@@ -19,6 +19,7 @@
 namespace inkwell::guides {
 namespace {
 
+using nlohmann::ordered_json;
 using protocol::Command;
 using protocol::Parameter;
 using protocol::ParameterSet;
@@ -38,17 +39,24 @@ double to_four_digits(double value) {
   return step * std::round(value / step);
 }
 
-/// Without the shunt, which is the board's and not the motor's.
-double motor_ohm(const MotorCircuit& circuit) {
-  return circuit.resistance_ohm - static_cast<double>(board::default_board.shunt_ohm);
-}
-
 /// What the steps of this guide tell one another.
 struct Tuning {
   CurrentLoopOptions options;
-  std::vector<MotorCircuit> motors;  ///< in the order of options.motors
+  std::string board_name;
+  const board::Facts* board = nullptr;  ///< none: this companion does not know the one that is connected
+  std::vector<MotorCircuit> motors;     ///< in the order of options.motors
   std::optional<SuggestedGains> gains;
   std::vector<recording::CurrentStep> before, after;
+
+  void name_board(const std::string& name) {
+    board_name = name;
+    board = board::find_board(name);
+  }
+  /// Without the shunt, which is the board's and not the motor's.
+  std::optional<double> motor_ohm(const MotorCircuit& circuit) const {
+    if (board == nullptr) return std::nullopt;
+    return circuit.resistance_ohm - static_cast<double>(board->shunt_ohm);
+  }
 };
 
 double held(const ParameterSet& set, protocol::EachAxis<Parameter> rows, int motor) {
@@ -77,6 +85,7 @@ class IdentifyMotor final : public Step {
 
   void begin(const Observation& now, DevicePort& port) override {
     set_ = *now.parameters;
+    tuning_->name_board(now.information ? now.information->board_name : "");
     start_pulse(first_voltage_V, now, port);
   }
   void receive(const device::ScopeSamples& samples) override {
@@ -143,13 +152,16 @@ class IdentifyMotor final : public Step {
   }
 
   void report(const MotorCircuit& circuit) {
+    const auto motor_ohm = tuning_->motor_ohm(circuit);
+    const std::string resistance =
+        motor_ohm ? fmt::format("{:.3f} ohm ({:.3f} ohm with the shunt)", *motor_ohm, circuit.resistance_ohm)
+                  : fmt::format("{:.3f} ohm with the shunt", circuit.resistance_ohm);
     findings_->sentences.push_back(fmt::format(
-        "Motor {}: R = {:.3f} ohm ({:.3f} ohm with the shunt), L = {:.4f} mH, time constant {:.0f} us, dead "
-        "time takes {:.2f} V, fit within {:.1f} mA.",
-        motor_, motor_ohm(circuit), circuit.resistance_ohm, 1e3 * circuit.inductance_H,
-        1e6 * circuit.inductance_H / circuit.resistance_ohm, circuit.dead_time_voltage_V, 1e3 * circuit.residual_A));
+        "Motor {}: R = {}, L = {:.4f} mH, time constant {:.0f} us, dead time takes {:.2f} V, fit within {:.1f} mA.",
+        motor_, resistance, 1e3 * circuit.inductance_H, 1e6 * circuit.inductance_H / circuit.resistance_ohm,
+        circuit.dead_time_voltage_V, 1e3 * circuit.residual_A));
     findings_->details["motors"].push_back({{"motor", motor_},
-                                            {"resistance_ohm", motor_ohm(circuit)},
+                                            {"resistance_ohm", motor_ohm ? ordered_json(*motor_ohm) : nullptr},
                                             {"circuit_resistance_ohm", circuit.resistance_ohm},
                                             {"inductance_H", circuit.inductance_H},
                                             {"dead_time_voltage_V", circuit.dead_time_voltage_V},
@@ -293,12 +305,14 @@ class TryGains final : public Step {
     const double margin_deg = phase_margin_deg(tuning_->options.bandwidth_Hz, mean.delay_s + period_s / 2);
     for (const auto& [parameter, value] : gains_of(*tuning_->gains)) device::check_value(parameter, value);
     for (std::size_t i = 0; i < tuning_->motors.size(); ++i)
-      device::check_value(resistance_of(i), static_cast<float>(motor_ohm(tuning_->motors[i])));
+      if (const auto motor_ohm = tuning_->motor_ohm(tuning_->motors[i]))
+        device::check_value(resistance_of(i), static_cast<float>(*motor_ohm));
     findings_->sentences.push_back(fmt::format(
         "For {:.0f} Hz: Kp = L w = {:.3f} V/A, Ki = R w = {:.0f} V/(As); the delay leaves {:.0f} degrees of "
         "phase margin.",
         tuning_->options.bandwidth_Hz, tuning_->gains->proportional_V_per_A, tuning_->gains->integral_V_per_As,
         margin_deg));
+    findings_->details["board"] = tuning_->board_name;
     findings_->details["bandwidth_Hz"] = tuning_->options.bandwidth_Hz;
     findings_->details["proportional_gain_V_per_A"] = tuning_->gains->proportional_V_per_A;
     findings_->details["integral_gain_V_per_As"] = tuning_->gains->integral_V_per_As;
@@ -331,9 +345,16 @@ class TryGains final : public Step {
     findings_->propose(old_, Parameter::current_proportional_gain_V_per_A, tuning_->gains->proportional_V_per_A,
                        reason);
     findings_->propose(old_, Parameter::current_integral_gain_V_per_As, tuning_->gains->integral_V_per_As, reason);
+    if (tuning_->board == nullptr)
+      findings_->sentences.push_back(fmt::format(
+          "{}, so the shunts are not known and no resistance is proposed. That of a motor is the measured one without "
+          "its shunt: set motor_resistance_1_ohm and those of the others yourself.",
+          tuning_->board_name.empty() ? std::string("The firmware does not say which board it is for")
+                                      : fmt::format("This companion does not know the board {}, but {}",
+                                                    tuning_->board_name, board::names_of_boards())));
     for (std::size_t i = 0; i < tuning_->motors.size(); ++i)
-      findings_->propose(old_, resistance_of(i), to_four_digits(motor_ohm(tuning_->motors[i])),
-                         "by which the motor is watched");
+      if (const auto motor_ohm = tuning_->motor_ohm(tuning_->motors[i]))
+        findings_->propose(old_, resistance_of(i), to_four_digits(*motor_ohm), "by which the motor is watched");
   }
 
   std::shared_ptr<Tuning> tuning_;

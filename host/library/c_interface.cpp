@@ -94,6 +94,14 @@ inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_information* in
   });
 }
 
+inkwell_result inkwell_get_board_name(inkwell_arm* arm, char name[INKWELL_BOARD_NAME_SIZE]) {
+  return guarded([&] {
+    required(name, "The place for the name");
+    const auto told = arm_of(arm).device().information();
+    name[told.board_name.copy(name, INKWELL_BOARD_NAME_SIZE - 1)] = '\0';
+  });
+}
+
 // ---- pose --------------------------------------------------------------------------------------------------
 
 inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose) {

@@ -106,9 +106,11 @@ Answers close(const Arguments& arguments) {
 
 Answers information(const Arguments& arguments) {
   inkwell_information told;
+  char board[INKWELL_BOARD_NAME_SIZE];
   require(inkwell_get_information(find(arguments)->second, &told));
-  const char* names[] = {"product", "serial_number", "firmware_version", "is_virtual"};
-  mxArray* values[] = {mxCreateString(told.product), mxCreateString(told.serial_number),
+  require(inkwell_get_board_name(find(arguments)->second, board));
+  const char* names[] = {"product", "serial_number", "board", "firmware_version", "is_virtual"};
+  mxArray* values[] = {mxCreateString(told.product), mxCreateString(told.serial_number), mxCreateString(board),
                        mxCreateString(told.firmware_version), mxCreateLogicalScalar(told.is_virtual != 0)};
   mxArray* all = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
   for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(all, 0, names[i], values[i]);

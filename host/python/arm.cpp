@@ -111,6 +111,13 @@ inkwell_information Arm::information() {
   return information;
 }
 
+std::string Arm::board_name() {
+  const Use arm(*this);
+  char name[INKWELL_BOARD_NAME_SIZE];
+  call([&] { return inkwell_get_board_name(arm, name); });
+  return name;
+}
+
 // ---- force -------------------------------------------------------------------------------------------------
 
 void Arm::enable_force(double timeout_s) {

@@ -29,6 +29,7 @@ class Arm {
   Pose pose();
   Pose wait_for_pose(double timeout_s);
   inkwell_information information();
+  std::string board_name();
 
   void enable_force(double timeout_s);
   void disable_force();

@@ -234,6 +234,7 @@ void define_arm(py::module_& module) {
       .def("pose", &Arm::pose)
       .def("wait_for_pose", &Arm::wait_for_pose)
       .def("information", &Arm::information)
+      .def("board_name", &Arm::board_name)
       .def("enable_force", &Arm::enable_force)
       .def("disable_force", &Arm::disable_force)
       .def("stop", &Arm::stop)

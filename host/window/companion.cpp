@@ -193,8 +193,9 @@ bool Companion::has_card() const {
 
 void Companion::draw_card(const WindowLayout& layout) {
   const DeviceView& view = desk_.view();
-  const auto firmware = updater_.sight();
   updater_.look_for_boot_loader(!view.connected());
+  updater_.meet(view.status.board_name);
+  const auto firmware = updater_.sight();
   if (!has_card()) return;
   const auto outcome =
       draw_connection_card(layout.middle_of_scene(), style_, view, firmware, {may_start_virtual_board_, problem_});

@@ -28,6 +28,10 @@ TEST_CASE("an arm tells who it is and where the stylus is") {
   CHECK(std::string(information.product) == "Inkwell haptic arm");
   CHECK(std::string(information.firmware_version) == inkwell_version());
   CHECK(information.servo_rate_Hz == 20'000);
+  char board[INKWELL_BOARD_NAME_SIZE];
+  REQUIRE(inkwell_get_board_name(virtual_arm.arm, board) == INKWELL_OK);
+  CHECK(std::string(board) == "omni_driver");
+  CHECK(inkwell_get_board_name(virtual_arm.arm, nullptr) == INKWELL_BAD_ARGUMENT);
 
   const auto pose = virtual_arm.wait_until([](const auto& now) { return now.state == INKWELL_READY; });
   CHECK(pose.in_inkwell == 1);

@@ -28,6 +28,7 @@ assert(pose.rotation * pose.rotation', eye(3), 1e-5);
 information = inkwell_information(arm);
 assert(information.is_virtual);
 assert(isempty(information.serial_number), false);
+assert(information.board, 'omni_driver');
 
 % Parameters: one, several, all, unknown, out of range.
 assert(inkwell_parameters(arm, 'wall_stiffness_N_per_m'), 800);

@@ -286,10 +286,32 @@ TEST_CASE("what is on the wire lies where it should") {
   CHECK(offsetof(PoseReport, supply_dV) == 63);
   CHECK(offsetof(CommandReport, test) == 4);
   CHECK(offsetof(ParametersReport, entries) == 8);
+  CHECK(offsetof(InformationReport, version) == 2);
+  CHECK(offsetof(InformationReport, firmware_version) == 4);
+  CHECK(offsetof(InformationReport, board) == 8);
+  CHECK(offsetof(InformationReport, parameter_table_hash) == 40);
   CHECK(sizeof(ScopeFrameHeader) == 24);
   CHECK(offsetof(StoreReport, commands) == 8);
   CHECK(offsetof(StoreReport, sector_erases) == 16);
   CHECK(offsetof(StoreReport, unknown_ids) == 44);
+}
+
+TEST_CASE("a board's name has an end and can be printed, or is none") {
+  char field[board_name_maximum + 1]{};
+  CHECK(board_name(field).empty());
+  const auto named = [&](std::string_view name) {
+    std::ranges::fill(field, '\0');
+    name.copy(field, sizeof field);
+    return board_name(field);
+  };
+  constexpr std::string_view longest = "a_board_of_31_letters_1234567890";
+  CHECK(named("omni_driver") == "omni_driver");
+  CHECK(named(longest.substr(0, board_name_maximum)) == longest.substr(0, board_name_maximum));
+  CHECK(named(longest).empty());
+  CHECK(named("omni driver").empty());
+  CHECK(named("omni\x1B[31m").empty());
+  CHECK(named("omni\x7F").empty());
+  CHECK(named("omni\xC4").empty());
 }
 
 TEST_CASE("fourteen floats are the longest selection that goes out in full") {

@@ -95,6 +95,7 @@ class Reading(unittest.TestCase):
         self.assertEqual(information.firmware_version, inkwell.__version__)
         self.assertEqual(information.servo_rate_Hz, 20_000)
         self.assertEqual(information.motor_heat.shape, (3,))
+        self.assertEqual(self.arm.board_name, "omni_driver")
 
     def test_a_pose_has_arrays_that_outlive_it_and_are_not_written(self):
         pose = wait_until(self.arm, lambda pose: pose.state == inkwell.State.READY)

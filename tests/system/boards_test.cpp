@@ -62,6 +62,7 @@ TEST_CASE("every board starts, passes its self-test, finds its place, and reads 
     options.board = board->name;
     BoardRig rig(options);
     rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+    CHECK(rig.device->information().board_name == board->name);
     CHECK(rig.pose().supply_dV == doctest::Approx(180).epsilon(0.02));
     check_self_test(rig);
     CHECK(rig.control.pin(text_of(board->status_led)).level == (board->status_led_shines_when_low ? "low" : "high"));
@@ -73,6 +74,18 @@ TEST_CASE("every board starts, passes its self-test, finds its place, and reads 
     }
     check_currents(rig);
   }
+}
+
+TEST_CASE("a board's name is told with its versions") {
+  const std::vector<std::string> of_bench{"info", "--virtual", "--board", "bench_modules"};
+  const auto text = run_program("inkwell", of_bench);
+  INFO(text.err);
+  CHECK(text.out.find("board               bench_modules\n") != std::string::npos);
+  auto words = of_bench;
+  words.push_back("--json");
+  const auto json = run_program("inkwell", words);
+  REQUIRE(json.exit_code == 0);
+  CHECK(nlohmann::json::parse(json.out).at("board") == "bench_modules");
 }
 
 TEST_CASE("the firmware of one board, flashed on another, shows no device and drives no motor") {

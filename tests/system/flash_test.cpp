@@ -123,12 +123,13 @@ TEST_CASE("an image that does not belong on the board is refused, and the old fi
   const FreeBoard board;
   board.wait_until(&FreeBoard::runs);
   auto identity = protocol::image_identity("omni_driver", 0, 1, 0);
-  SUBCASE("another board's, which only the chip can tell") {
+  SUBCASE("another board's, which the board does not even leave its firmware for") {
     const auto result =
         board.flash({write_elf(directory, made_segments(protocol::image_identity("other_board", 0, 1, 0)))});
     CHECK(result.exit_code == 1);
     CHECK(says(result, "is for the board other_board, and this one is omni_driver"));
     CHECK(says(result, "--yes"));
+    CHECK_FALSE(says(result, "asking the board to leave"));
   }
   SUBCASE("an older protocol") {
     --identity.protocol_version;

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <arms/description.hpp>
+#include <bench_modules/facts.hpp>
 #include <device/device.hpp>
 #include <device/virtual_board.hpp>
 #include <omni_driver/facts.hpp>
@@ -57,6 +58,17 @@ TEST_CASE("current-loop tuning finds the simulated motors within 5 % and its gai
     CHECK(step.at("rise_time_s").get<double>() < 350e-6);
     CHECK(step.at("overshoot").get<double>() < 0.10);
     CHECK(std::abs(step.at("steady_error_A").get<double>()) < 0.01);
+  }
+}
+
+TEST_CASE("on another board the resistances are the motors' as well, without the shunt of that board") {
+  const auto result = guide({"tune", "current-loop", "--board", "bench_modules"});
+  CHECK(result.at("board") == "bench_modules");
+  for (const auto& motor : result.at("motors")) {
+    const double found_ohm = motor.at("resistance_ohm");
+    CHECK(motor.at("circuit_resistance_ohm").get<double>() - found_ohm ==
+          doctest::Approx(board::bench_modules.shunt_ohm).epsilon(1e-6));
+    CHECK(found_ohm == doctest::Approx(simulated_resistance_ohm()).epsilon(0.05));
   }
 }
 

@@ -6,12 +6,15 @@
 using namespace inkwell;
 using namespace inkwell::tests;
 
-TEST_CASE("a board that speaks another version of the protocol is updated from the window") {
-  WindowRig window = WindowRig::with_image("next-protocol.elf");
+TEST_CASE("a board that speaks another version of the protocol is updated from the window, by its own image") {
+  std::string board, image;
+  SUBCASE("the board of the companion's image") { board = "omni_driver", image = "next-protocol.elf"; }
+  SUBCASE("another one") { board = "bench_modules", image = "next-protocol-bench_modules.elf"; }
+  WindowRig window = WindowRig::with_image(image, board);
   auto sight = window.look_until("the firmware is offered",
                                  [](const Sight& now) { return now.can_click("connection/Update the board"); });
   CHECK(sight.says("Another protocol version"));
-  CHECK(sight.says("for omni_driver"));
+  CHECK(sight.says("for " + board));
   CHECK(sight.says("Stored parameters stay"));
   window.click("connection/Update the board");
   sight = window.look_until("it is under way", [](const Sight& now) { return now.says("erasing"); });

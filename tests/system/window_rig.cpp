@@ -15,9 +15,10 @@ namespace {
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-device::VirtualBoardOptions board_options(const std::filesystem::path& elf = {}) {
+device::VirtualBoardOptions board_options(const std::filesystem::path& elf = {}, const std::string& board_name = {}) {
   device::VirtualBoardOptions options;
   options.elf = elf;
+  options.board = board_name;
   options.mode = device::SimulationMode::fast;
   options.real_time = true;  // the mouse is the hand, so board time must be the user's time
   return options;
@@ -57,8 +58,8 @@ bool Sight::says(const std::string& part) const {
                              [&](const json& text) { return text.get<std::string>().find(part) != std::string::npos; });
 }
 
-WindowRig::WindowRig(OtherImage, const std::string& image)
-    : board(board_options(build_directory() + "/../board/" + image)),
+WindowRig::WindowRig(OtherImage, const std::string& image, const std::string& board_name)
+    : board(board_options(build_directory() + "/../board/" + image, board_name)),
       control(board.control()),
       display_(display_command(usual_screen)),
       display_name_("DISPLAY=:" + display_.read_line()),

@@ -58,8 +58,10 @@ class WindowRig {
   explicit WindowRig(const std::vector<std::string>& options = {"--flat-colours"}, bool tells_control_port = true,
                      const std::string& screen = usual_screen);
 
-  /// The same on a board with another image, build/board/`image`; waits for nothing.
-  static WindowRig with_image(const std::string& image) { return WindowRig(OtherImage(), image); }
+  /// The same on a board of this name with another image, build/board/`image`; waits for nothing.
+  static WindowRig with_image(const std::string& image, const std::string& board_name) {
+    return WindowRig(OtherImage(), image, board_name);
+  }
 
   /// A frame that began after all events so far.
   Sight look();
@@ -105,7 +107,7 @@ class WindowRig {
   struct OtherImage {
     explicit OtherImage() = default;
   };
-  WindowRig(OtherImage, const std::string& image);
+  WindowRig(OtherImage, const std::string& image, const std::string& board_name);
 
   nlohmann::json ask(const std::string& question);
   void play(const std::vector<std::string>& events);

@@ -123,6 +123,11 @@ class Arm:
         """What the arm says of itself and has counted; asks it."""
         return self._native.information()
 
+    @property
+    def board_name(self) -> str:
+        """The board that the arm's firmware is for, such as "omni_driver"; empty if it tells none. Asks it."""
+        return self._native.board_name()
+
     def self_test(self, only_last: bool = False) -> list[TestItem]:
         """Has the board test its motors, bridges, sensors and wires, by small pulses; each item's result, figure and
         remedy. With `only_last` what the newest test has found, without a new one. Raises Refused while the force is on

@@ -60,15 +60,21 @@ FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater
           sight.brings.empty()
               ? "It is in the boot loader of its chip, and this companion has no firmware to write: it was not "
                 "built or installed. `tools/build board` makes it."
-              : "It is in the boot loader of its chip, and no firmware runs. This companion brings " + sight.brings +
-                    ".");
+              : fmt::format("It is in the boot loader of its chip, and no firmware runs. This companion brings {}{}.",
+                            sight.brings,
+                            sight.board.empty() ? "; a board that still says which it is gets the one for it" : ""));
       if (!sight.brings.empty()) outcome.update = update_button("Write its firmware", style);
   }
   return outcome;
 }
 
 bool draw_firmware_offer(const Style& style, const FirmwareUpdater::Sight& sight) {
-  if (sight.brings.empty()) return false;
+  if (sight.brings.empty()) {
+    if (!sight.board.empty())
+      wrapped_text(style.palette->text_quiet,
+                   fmt::format("This companion has no firmware for the board {}.", sight.board));
+    return false;
+  }
   wrapped_text(style.palette->text_quiet,
                fmt::format("This companion brings {}. Stored parameters stay.", sight.brings));
   return update_button("Update the board", style);

@@ -12,15 +12,7 @@ namespace inkwell::window {
 
 FirmwareUpdater::FirmwareUpdater(std::filesystem::path image, device::Address address)
     : image_(std::move(image)), address_(std::move(address)) {
-  try {
-    const auto read = firmware_update::read_image(image_);
-    if (read.identity) {
-      const auto& version = read.identity->firmware_version;
-      sight_.brings = firmware_update::describe(*read.identity);
-      sight_.version = fmt::format("{}.{}.{}", version[0], version[1], version[2]);
-    }
-  } catch (const device::Error&) {  // then nothing is offered
-  }
+  read_offer();
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
@@ -28,6 +20,17 @@ void FirmwareUpdater::look_for_boot_loader(bool looks) {
   const std::scoped_lock lock(mutex_);
   if (std::exchange(looks_, looks) != looks) changed_.notify_one();
   if (!looks) sight_.sees_boot_loader = false;
+}
+
+void FirmwareUpdater::meet(const std::string& board_name) {
+  const std::scoped_lock lock(mutex_);
+  if (board_name.empty() || board_name == met_ || sight_.phase == Phase::runs) return;
+  met_ = board_name;
+  is_offer_read_ = false;
+  sight_.board.clear();  // nothing is offered before it is the right one
+  sight_.brings.clear();
+  sight_.version.clear();
+  changed_.notify_one();
 }
 
 void FirmwareUpdater::begin(const std::string& serial_number) {
@@ -54,18 +57,49 @@ void FirmwareUpdater::work(const std::stop_token& stop) {
   using namespace std::chrono_literals;
   while (!stop.stop_requested()) {
     std::optional<std::string> board;
-    bool looks = false;
+    bool looks = false, reads = false;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, stop, 1s, [this] { return begun_.has_value(); });
+      changed_.wait_for(lock, stop, 1s, [this] { return begun_.has_value() || !is_offer_read_; });
       board = std::exchange(begun_, std::nullopt);
       looks = looks_;
+      reads = !is_offer_read_;
     }
+    if (reads) read_offer();
     if (board)
       update(*board);
     else if (looks)
       look();
   }
+}
+
+firmware_update::Image FirmwareUpdater::image_for(const std::string& board_name) const {
+  if (auto own = firmware_update::own_image_for(board_name)) return std::move(*own);
+  if (!board_name.empty())
+    throw firmware_update::NoImage(fmt::format("This companion has no firmware for the board {}.", board_name));
+  return firmware_update::read_image(image_);
+}
+
+void FirmwareUpdater::read_offer() {
+  std::string board;
+  {
+    const std::scoped_lock lock(mutex_);
+    board = met_;
+    is_offer_read_ = true;
+  }
+  Sight offer;
+  try {
+    if (const auto identity = image_.empty() ? std::nullopt : image_for(board).identity) {
+      const auto& version = identity->firmware_version;
+      offer.brings = firmware_update::describe(*identity);
+      offer.version = fmt::format("{}.{}.{}", version[0], version[1], version[2]);
+    }
+  } catch (const device::Error&) {  // then nothing is offered
+  }
+  const std::scoped_lock lock(mutex_);
+  sight_.board = board;
+  sight_.brings = offer.brings;
+  sight_.version = offer.version;
 }
 
 void FirmwareUpdater::look() {
@@ -90,7 +124,7 @@ void FirmwareUpdater::update(const std::string& serial_number) {
     auto address = address_;
     if (address.kind == device::Address::Kind::usb) address.serial_number = serial_number;
     const auto result = firmware_update::update(
-        address, firmware_update::read_image(image_),
+        address, image_for(sight().board),
         {.image_for = firmware_update::own_image_for,
          .on_progress = [this](std::string_view step, double done) { set(Phase::runs, std::string(step), done); }});
     if (result.firmware_version.empty())

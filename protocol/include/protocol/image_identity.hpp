@@ -34,16 +34,15 @@ inline bool may_be_flash(std::span<const std::byte> content) {
 
 struct ImageIdentity {
   static constexpr char right_mark[8] = {'I', 'n', 'k', 'w', 'e', 'l', 'l', '\n'};
-  static constexpr std::size_t board_name_maximum = 31;
 
   char mark[8];
   std::uint16_t protocol_version;
   std::uint8_t firmware_version[3];
   std::uint8_t reserved;
-  char board[board_name_maximum + 1];  ///< the folder in boards/ that it is for, with a zero behind it
+  char board[board_name_maximum + 1];  ///< the board that it is for, zeros behind it
 
-  bool is_there() const { return std::ranges::equal(mark, right_mark) && board[board_name_maximum] == '\0'; }
-  std::string_view board_name() const { return board; }
+  constexpr bool is_there() const { return std::ranges::equal(mark, right_mark) && !board_name().empty(); }
+  constexpr std::string_view board_name() const { return protocol::board_name(board); }
 };
 static_assert(sizeof(ImageIdentity) == 46 && std::is_trivially_copyable_v<ImageIdentity>);
 
@@ -55,7 +54,7 @@ constexpr ImageIdentity image_identity(std::string_view board, std::uint8_t majo
   identity.firmware_version[0] = major;
   identity.firmware_version[1] = minor;
   identity.firmware_version[2] = patch;
-  std::copy_n(board.begin(), std::min(board.size(), ImageIdentity::board_name_maximum), identity.board);
+  std::copy_n(board.begin(), std::min(board.size(), board_name_maximum), identity.board);
   return identity;
 }
 

@@ -14,9 +14,12 @@
 // And, over an interface of its own, ControllerReport: what any program reads that knows joysticks.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <string_view>
 #include <type_traits>
 
 #include <protocol/faults.hpp>
@@ -34,7 +37,7 @@ static_assert(std::endian::native == std::endian::little, "the structures go ove
 #endif
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 11 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
+inline constexpr std::uint16_t protocol_version = 12 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -230,12 +233,28 @@ inline constexpr float motor_heat_holds_back_from = 0.85f;
 /// At this heat, which holding back should not let come, the force goes off.
 inline constexpr float motor_heat_fault = 1.25f;
 
-/// Feature report: who the device is, and what it has counted since it started.
+/// Letters of a board's name, which is that of its folder in boards/.
+inline constexpr std::size_t board_name_maximum = 31;
+
+/// The name in a field of a report or an image; empty if it is no name: without an end, or with what cannot be printed.
+constexpr std::string_view board_name(const char (&field)[board_name_maximum + 1]) {
+  const std::string_view name(field, std::find(field, std::end(field), '\0'));
+  const bool is_sound = name.size() <= board_name_maximum &&
+                        std::ranges::all_of(name, [](char letter) { return letter > ' ' && letter <= '~'; });
+  return is_sound ? name : std::string_view{};
+}
+
+/// The version of the protocol from which on the device names its board.
+inline constexpr std::uint16_t first_version_with_board = 12;
+
+/// Feature report: who the device is, and what it has counted since it started. What stands before the hashes keeps its
+/// place in every later version, so that a companion of another one can still say whom it met.
 struct InformationReport {
   ReportId report_id = ReportId::information;
   std::uint8_t reserved = 0;
   std::uint16_t version = protocol_version;
   std::uint8_t firmware_version[4];    ///< major, minor, patch, 0
+  char board[board_name_maximum + 1];  ///< the board that the firmware is for, zeros behind it
   std::uint32_t parameter_table_hash;  ///< protocol::parameter_table_hash of the firmware
   std::uint32_t signal_table_hash;     ///< protocol::signal_table_hash of the firmware
   std::uint32_t servo_rate_Hz;
@@ -365,7 +384,7 @@ static_assert(sizeof(ControllerReport) == 14);
 static_assert(sizeof(SignalSelection) == 33 && sizeof(TestPulse) == 9);
 static_assert(sizeof(CommandReport) == 37);
 static_assert(sizeof(ForceReport) == 20);
-static_assert(sizeof(InformationReport) == 72);
+static_assert(sizeof(InformationReport) == 104);
 static_assert(sizeof(ParameterEntry) == 8);
 static_assert(sizeof(ParametersReport) == 8 + 8 * parameter_entries_maximum);
 static_assert(sizeof(TransactionReport) == 16);

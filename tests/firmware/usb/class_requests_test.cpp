@@ -127,6 +127,7 @@ TEST_CASE("HID: information tells tables, clocks and counters") {
   CHECK(report.version == protocol::protocol_version);
   CHECK(report.firmware_version[0] == 1);
   CHECK(report.firmware_version[2] == 3);
+  CHECK(protocol::board_name(report.board) == "trial_board");
   CHECK(report.parameter_table_hash == protocol::parameter_table_hash);
   CHECK(report.signal_table_hash == protocol::signal_table_hash);
 

@@ -19,6 +19,7 @@ inline usb::SetupPacket request(std::uint8_t type, std::uint8_t request, std::ui
 inline constexpr usb::Identity identity{{'0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'A', 'B',
                                          'C', 'D', 'E', 'F', '0', '1', '2', '3', '4', '5', '6', '7'},
                                         {1, 2, 3},
+                                        "trial_board",
                                         168'000'000,
                                         0x14};
 

@@ -374,6 +374,50 @@ TEST_CASE("the begin of the newest frame of the bus is told as the device counts
   CHECK(arm->frame().time_cycles == 345);
 }
 
+TEST_CASE("a device names its board, also where it is refused") {
+  FakeUsbipServer server;
+  std::ranges::copy(std::string_view("feather"), server.information.board);
+  const auto board_of_refused = [&] {
+    try {
+      device::Device::open(server.endpoint());
+    } catch (const device::Incompatible& error) {
+      return error.board_name;
+    }
+    return std::string("not refused");
+  };
+  SUBCASE("of this version") {
+    CHECK(device::Device::open(server.endpoint())->information().board_name == "feather");
+    server.information.board[0] = '\n';
+    CHECK(device::Device::open(server.endpoint())->information().board_name.empty());
+  }
+  SUBCASE("of the next version") {
+    ++server.information.version;
+    CHECK(board_of_refused() == "feather");
+    server.spoil[protocol::ReportId::information] = [](Bytes& report) {
+      report.resize(offsetof(protocol::InformationReport, parameter_table_hash) + 4);
+    };
+    CHECK(board_of_refused() == "feather");
+    server.spoil[protocol::ReportId::information] = [](Bytes& report) {
+      report.resize(offsetof(protocol::InformationReport, parameter_table_hash) - 1);
+    };
+    CHECK(board_of_refused().empty());
+  }
+  SUBCASE("of other tables") {
+    server.information.signal_table_hash ^= 1u;
+    CHECK(board_of_refused() == "feather");
+  }
+  SUBCASE("of a version that named none, whose report was shorter") {
+    server.information.version = protocol::first_version_with_board - 1;
+    server.information.firmware_version[1] = 7;
+    server.spoil[protocol::ReportId::information] = [](Bytes& report) { report.resize(72); };
+    CHECK(board_of_refused().empty());
+    const auto told = device::Device(device::open_transport(server.endpoint())).information();
+    CHECK(told.firmware_version == "0.7.0");
+    CHECK(told.protocol_version == 11);
+    CHECK(told.report.servo_rate_Hz == 0);  // what stands there is something else
+  }
+}
+
 TEST_CASE("firmware of another protocol version is refused with the remedy") {
   FakeUsbipServer server;
   SUBCASE("version") {

@@ -115,7 +115,7 @@ TEST_CASE("a feature report that is too short is refused with both lengths") {
   SUBCASE("information") {
     server.spoil[protocol::ReportId::information] = cut;
     message = message_of<device::Incompatible>([&] { device::Device::open(server.endpoint()); });
-    CHECK(contains(message, "information report has 71 bytes instead of 72"));
+    CHECK(contains(message, "information report has 103 bytes instead of 104"));
   }
   SUBCASE("transaction") {
     server.spoil[protocol::ReportId::transaction] = cut;

@@ -139,7 +139,7 @@ TEST_CASE("what the board holds may choose the image") {
   write_image(loader, other, {});
   SUBCASE("another than the given one") {
     const auto written = write_image(loader, good_image(), {.image_for = [&](const auto& there) {
-                                       return there.board_name() == "other" ? std::optional(other) : std::nullopt;
+                                       return there == "other" ? std::optional(other) : std::nullopt;
                                      }});
     CHECK(written.image.identity->board_name() == "other");
     return;
@@ -166,6 +166,22 @@ TEST_CASE("what differs when it is read back keeps the vectors away") {
   fake.did.clear();
   write_image(loader, good_image(), {});
   CHECK(fake.did.back() == "leave");
+}
+
+TEST_CASE("an image that the board chose is named for going on, since the board cannot choose it again") {
+  FakeLoader fake;
+  BootLoader loader(fake);
+  const auto other = read_image(made_elf(made_segments(protocol::image_identity("other", 1, 2, 3))), "other.elf");
+  write_image(loader, other, {});
+  fake.spoilt = protocol::image_begin + 0x1'0000;
+  const auto chosen = message_of<Interrupted>(
+      [&] { write_image(loader, good_image(), {.image_for = [&](auto) { return std::optional(other); }}); });
+  CHECK(contains(chosen, "same command again, now with other.elf"));
+  fake.spoilt.reset();
+  write_image(loader, other, {});
+  fake.spoilt = protocol::image_begin + 0x1'0000;
+  const auto given = message_of<Interrupted>([&] { write_image(loader, other, {}); });
+  CHECK(contains(given, "same command again: it goes on"));
 }
 
 TEST_CASE("a cable that is pulled leaves a board that says how to go on") {

@@ -29,6 +29,7 @@ class FakeArm final : public guides::DevicePort {
     now_.parameters_revision = 1;
     now_.information.emplace();
     now_.information->protocol_version = protocol::protocol_version;
+    now_.information->board_name = board::omni_driver.name;
     protocol::PoseReport pose{};
     pose.state = protocol::State::ready;
     pose.supply_dV = static_cast<std::uint8_t>(10 * supply_V);
@@ -68,6 +69,7 @@ class FakeArm final : public guides::DevicePort {
     now_.pose.reset();
   }
   protocol::PoseReport& pose() { return *now_.pose; }
+  std::string& board_name() { return now_.information->board_name; }
   protocol::ParameterSet& parameters() { return *now_.parameters; }
   const guides::Observation& now() const { return now_; }
   bool current_flows() const { return std::abs(current_A_) > 0.01; }

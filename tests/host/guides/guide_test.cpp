@@ -5,6 +5,7 @@
 
 #include <device/fault_text.hpp>
 #include <guides/guides.hpp>
+#include <known/boards.hpp>
 
 #include "fake_arm.hpp"
 
@@ -89,6 +90,42 @@ TEST_CASE("current-loop tuning identifies, tries, puts back and applies in one t
   REQUIRE(arm.transactions.size() == 3);
   CHECK(arm.transactions.back().size() == 3);
   CHECK(arm.parameters()[Parameter::current_proportional_gain_V_per_A] == guide.findings().proposals[0].proposed);
+}
+
+TEST_CASE("the shunt is that of the board that is there; of an unknown board no resistance is proposed") {
+  FakeArm arm;
+  arm.winding = {3.0, 0.4e-3};
+  std::string sentence;
+  bool is_known = false;
+  SUBCASE("another one that is known") {
+    arm.board_name() = board::bench_modules.name;
+    is_known = true;
+  }
+  SUBCASE("one that is not") {
+    arm.board_name() = "feather";
+    sentence = "This companion does not know the board feather, but bench_modules, omni_driver";
+  }
+  SUBCASE("one that does not say") {
+    arm.board_name() = "";
+    sentence = "The firmware does not say which board it is for";
+  }
+  Guide guide = guides::current_loop_guide.start({.current_loop = one_motor()});
+  arm.run(guide, true);
+  INFO(guide.outcome());
+  REQUIRE(guide.phase() == Phase::finished);
+  const auto& findings = guide.findings();
+  const auto& motor = findings.details["motors"][0];
+  REQUIRE(findings.proposals.size() == (is_known ? 3 : 2));
+  CHECK(findings.proposals[0].parameter == Parameter::current_proportional_gain_V_per_A);
+  if (is_known) {
+    const double without_shunt_ohm =
+        motor["circuit_resistance_ohm"].get<double>() - static_cast<double>(board::bench_modules.shunt_ohm);
+    CHECK(motor["resistance_ohm"].get<double>() == doctest::Approx(without_shunt_ohm).epsilon(1e-6));
+    CHECK(findings.proposals[2].proposed == doctest::Approx(without_shunt_ohm).epsilon(1e-3));
+  } else {
+    CHECK(motor["resistance_ohm"].is_null());
+    CHECK(std::ranges::any_of(findings.sentences, [&](const auto& said) { return said.starts_with(sentence); }));
+  }
 }
 
 TEST_CASE("a refused proposal is told with the device's words") {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include <link/link.hpp>
 #include <protocol/reports.hpp>
@@ -23,6 +24,7 @@ namespace inkwell::usb {
 struct Identity {
   std::array<char, 24> serial_number;            ///< hexadecimal digits of the chip's unique id
   std::array<std::uint8_t, 3> firmware_version;  ///< major, minor, patch
+  std::string_view board;                        ///< that this firmware is for
   std::uint32_t processor_clock_Hz;
   std::uint32_t reset_cause;  ///< RCC_CSR bits 31..24 as found at start-up
 };

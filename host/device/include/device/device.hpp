@@ -26,6 +26,7 @@ struct Information {
   std::string firmware_version;
   std::uint16_t protocol_version;
   std::string serial_number;
+  std::string board_name;  ///< empty: it tells none. The device's word, which need not be a board that is known here
   protocol::InformationReport report;
   std::shared_ptr<const ForceLaw> force_law;  ///< of its image; null only where no device told it
 };
@@ -33,7 +34,9 @@ struct Information {
 /// The device speaks another version of the protocol than this program.
 class Incompatible : public Error {
  public:
-  using Error::Error;
+  explicit Incompatible(const std::string& sentence, std::string board = {})
+      : Error(sentence), board_name(std::move(board)) {}
+  std::string board_name;  ///< empty: it tells none
 };
 
 /// A transaction was refused; the device keeps its old values.
@@ -60,6 +63,7 @@ class Device {
   explicit Device(std::unique_ptr<Transport> transport);
   ~Device();
 
+  /// Of a device of another version only what comes before the tables' hashes; the rest is 0.
   Information information();
   /// When the newest frame of the bus began. Throws Stalled while the bus is silent.
   protocol::FrameReport frame();

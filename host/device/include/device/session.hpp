@@ -30,6 +30,7 @@ struct SessionStatus {
   Connection connection = Connection::searching;
   std::string message;                     ///< a sentence for the user, with the remedy where there is one
   std::optional<Information> information;  ///< read anew every second
+  std::string board_name;                  ///< of the device, though it be incompatible; empty: it tells none
   bool is_simulation = false;              ///< connected to a virtual board
   /// The control period at which the newest transaction of this session took effect; none before the first.
   std::optional<std::uint32_t> applied_at_periods;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <device/error.hpp>
@@ -48,13 +49,13 @@ Image read_image(const std::filesystem::path& elf);
 /// The same of a file's content; `name` is for sentences.
 Image read_image(std::span<const std::byte> elf, const std::filesystem::path& name);
 
-/// The firmware beside this program for the board that holds `there`, or nothing if that is no board known here.
-/// Throws NoImage if it is missing.
-std::optional<Image> own_image_for(const protocol::ImageIdentity& there);
+/// The firmware beside this program for the board of this name, or nothing if none is known here by it. Throws NoImage
+/// if it is missing.
+std::optional<Image> own_image_for(std::string_view board);
 
-/// In the place of an image that nobody has named: what the board gets by what it holds, or nothing.
-using ImageFor = std::function<std::optional<Image>(const protocol::ImageIdentity& there)>;
-inline std::optional<Image> always_the_given(const protocol::ImageIdentity&) { return {}; }
+/// In the place of an image that nobody has named: what the board of this name gets, or nothing.
+using ImageFor = std::function<std::optional<Image>(std::string_view board)>;
+inline std::optional<Image> always_the_given(std::string_view) { return {}; }
 
 /// The identity in the first bytes of a flash, if one is there.
 std::optional<protocol::ImageIdentity> identity_in(std::span<const std::byte> begin_of_flash);

@@ -114,6 +114,13 @@ typedef struct inkwell_information {
 /* Asks the device. */
 INKWELL_API inkwell_result inkwell_get_information(inkwell_arm* arm, inkwell_information* information);
 
+/* Characters of a board's name, with the zero at its end. */
+#define INKWELL_BOARD_NAME_SIZE 32
+
+/* The board that the device's firmware is for, such as "omni_driver"; empty if it tells none. A name that this library
+ * has never heard of is no error. */
+INKWELL_API inkwell_result inkwell_get_board_name(inkwell_arm* arm, char name[INKWELL_BOARD_NAME_SIZE]);
+
 /* ---- pose --------------------------------------------------------------------------------------------------- */
 
 /* What the board is doing. */

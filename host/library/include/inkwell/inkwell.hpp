@@ -81,6 +81,11 @@ class Arm {
     require(inkwell_get_information(get(), &information));
     return information;
   }
+  std::string board_name() const {
+    char name[INKWELL_BOARD_NAME_SIZE];
+    require(inkwell_get_board_name(get(), name));
+    return name;
+  }
 
   void enable_force(double timeout_s = 5.0) { require(inkwell_enable_force(get(), timeout_s)); }
   void disable_force() { require(inkwell_disable_force(get())); }

@@ -10,6 +10,10 @@
 
 #include <device/address.hpp>
 
+namespace inkwell::firmware_update {
+struct Image;
+}
+
 namespace inkwell::window {
 
 class FirmwareUpdater {
@@ -21,17 +25,22 @@ class FirmwareUpdater {
     std::string message{};  ///< the step, why it failed, or what the board has now
     double done = 0;        ///< from 0 to 1
     bool sees_boot_loader = false;
+    std::string board{};    ///< that the image is for; empty: nobody knows yet which one it is
     std::string brings{};   ///< what the image is, such as "firmware 0.1.0 for omni_driver"; empty: there is none
     std::string version{};  ///< of the image; empty: there is none
   };
 
-  /// `image` is read anew for each update. The board is that at `address`.
+  /// `image` is for a board that does not say which it is. It is read anew for each update. The board is that at
+  /// `address`.
   FirmwareUpdater(std::filesystem::path image, device::Address address);
   /// Waits for an update that runs: half a firmware would be left.
   ~FirmwareUpdater() = default;
 
   /// Once a frame: a boot loader is looked for while no device is connected.
   void look_for_boot_loader(bool looks);
+  /// Once a frame: the name of the board that is there. It is remembered for an update that was cut off, after which
+  /// the board cannot tell it any more.
+  void meet(const std::string& board_name);
   /// Begins, unless one runs. `serial_number` may be empty: the only board.
   void begin(const std::string& serial_number);
   /// The message was read.
@@ -42,6 +51,9 @@ class FirmwareUpdater {
   void work(const std::stop_token& stop);
   void update(const std::string& serial_number);
   void look();
+  /// What is brought for the board that was met.
+  void read_offer();
+  firmware_update::Image image_for(const std::string& board_name) const;
   void set(Phase phase, const std::string& message, double done);
 
   const std::filesystem::path image_;
@@ -50,6 +62,8 @@ class FirmwareUpdater {
   std::condition_variable_any changed_;
   Sight sight_;
   bool looks_ = false;
+  std::string met_;
+  bool is_offer_read_ = false;        ///< for the board that was met
   std::optional<std::string> begun_;  ///< for the board with this number
 
   std::jthread worker_;
