@@ -6,6 +6,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <memory>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,14 +17,11 @@ namespace {
 
 class CsvWriter final : public Writer {
  public:
-  CsvWriter(const std::filesystem::path& file, const Information& information)
-      : name_(file.string()), file_(std::fopen(file.c_str(), "wbx")), simulated_(information.simulated.size()) {
+  CsvWriter(const std::filesystem::path& file, const Information& information, std::string name)
+      : name_(std::move(name)), file_(std::fopen(file.c_str(), "wbx")), simulated_(information.simulated.size()) {
     if (!file_) fail();
     write_head(information);
     flush();
-  }
-  ~CsvWriter() override {
-    if (file_) std::fclose(file_);
   }
 
   void append(const device::ScopeSamples& samples, std::span<const float> simulated) override {
@@ -49,12 +49,12 @@ class CsvWriter final : public Writer {
   }
   void flush() override {
     write_text();
-    if (std::fflush(file_) != 0) fail();
+    if (std::fflush(file_.get()) != 0) fail();
   }
   void finish() override {
     fmt::format_to(std::back_inserter(text_), "# complete = 1\n");
     flush();
-    if (std::fclose(std::exchange(file_, nullptr)) != 0) fail();
+    if (std::fclose(file_.release()) != 0) fail();
   }
 
  private:
@@ -81,7 +81,7 @@ class CsvWriter final : public Writer {
     fmt::format_to(out, "\n");
   }
   void write_text() {
-    if (text_.size() != 0 && std::fwrite(text_.data(), 1, text_.size(), file_) != text_.size()) fail();
+    if (text_.size() != 0 && std::fwrite(text_.data(), 1, text_.size(), file_.get()) != text_.size()) fail();
     text_.clear();
   }
   [[noreturn]] void fail() const {
@@ -90,15 +90,19 @@ class CsvWriter final : public Writer {
   }
 
   std::string name_;
-  std::FILE* file_;
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
   std::size_t simulated_;  ///< how many simulated quantities stand behind the signals
   fmt::memory_buffer text_;
 };
 
 }  // namespace
 
-std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information) {
-  return std::make_unique<CsvWriter>(file, information);
+std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information,
+                                   const std::string& name) {
+  return std::make_unique<CsvWriter>(file, information, name);
 }
 
 }  // namespace inkwell::recording

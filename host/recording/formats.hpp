@@ -20,10 +20,13 @@ void take_force_law(Recording& recording, std::string_view digits, std::string_v
 /// Information::step_periods as it stands in a file: 1 for what is none, such as in a file of an earlier version.
 std::uint32_t step_periods_of(double written);
 
-std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information);
+/// `name`: of the file in sentences, which is not always where it is written first.
+std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information,
+                                    const std::string& name);
 Recording read_hdf5(const std::filesystem::path& file);
 
-std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information);
+std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information,
+                                   const std::string& name);
 Recording read_csv(const std::filesystem::path& file);
 
 }  // namespace inkwell::recording

@@ -28,8 +28,9 @@ constexpr unsigned compression_level = 2;  // of 9; low, since the writer keeps 
 
 class Hdf5Writer final : public Writer {
  public:
-  Hdf5Writer(const std::filesystem::path& file, const Information& information)
-      : name_(file.string()),
+  Hdf5Writer(const std::filesystem::path& file, const Information& information, std::string name)
+      : name_(std::move(name)),
+        file_name_(file.string()),
         width_(information.signals.size()),
         chunk_samples_(std::max(chunk_samples_least, chunk_periods / std::max(1u, information.step_periods))),
         values_(information.signals.size() + information.simulated.size()) {
@@ -126,7 +127,7 @@ class Hdf5Writer final : public Writer {
 
   /// Closed once, so that from the first sample on there is a whole file.
   void lay_out(const Information& about) {
-    const Handle file(H5Fcreate(name_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access().id()), H5Fclose);
+    const Handle file(H5Fcreate(file_name_.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access().id()), H5Fclose);
     if (!file) fail();
     write_attribute(file.id(), "format", std::string(format_name));
     write_attribute(file.id(), "format_version", std::int64_t{format_version});
@@ -174,7 +175,7 @@ class Hdf5Writer final : public Writer {
     write_attribute(column.id(), "help", std::string(row.help));
   }
   void open_for_writing(const Information& about) {
-    file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access().id()), H5Fclose);
+    file_ = Handle(H5Fopen(file_name_.c_str(), H5F_ACC_RDWR, access().id()), H5Fclose);
     if (!file_) fail();
     const auto open = [&](const std::string& path) {
       Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
@@ -244,7 +245,7 @@ class Hdf5Writer final : public Writer {
   }
   [[noreturn]] void fail() const {
     std::error_code error;
-    const auto space = std::filesystem::space(std::filesystem::absolute(name_).parent_path(), error);
+    const auto space = std::filesystem::space(std::filesystem::absolute(file_name_).parent_path(), error);
     // What is no disk, such as /proc, has no room at all and is not full.
     const bool full = !error && space.capacity > 0 && space.available < 1'000'000;
     throw device::Error(fmt::format("{} cannot be written: {}.", name_,
@@ -252,7 +253,7 @@ class Hdf5Writer final : public Writer {
                                          : "the system refused it. Check that the folder exists and may be written"));
   }
 
-  std::string name_;
+  std::string name_, file_name_;
   std::size_t width_;  ///< how many signals there are
   hsize_t chunk_samples_;
   Handle file_, period_, time_, mark_period_, mark_text_, mark_kind_, mark_clock_, complete_, samples_;
@@ -266,8 +267,9 @@ class Hdf5Writer final : public Writer {
 
 }  // namespace
 
-std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information) {
-  return std::make_unique<Hdf5Writer>(file, information);
+std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information,
+                                    const std::string& name) {
+  return std::make_unique<Hdf5Writer>(file, information, name);
 }
 
 }  // namespace inkwell::recording

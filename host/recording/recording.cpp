@@ -153,29 +153,54 @@ void check_can_be_created(const std::filesystem::path& file, Existing existing) 
         fmt::format("The folder {} does not exist. Make it, or choose another place.", folder.string()));
 }
 
-std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information) {
-  check_can_be_created(file);
-  return file.extension() == ".csv" ? create_csv(file, information) : create_hdf5(file, information);
+namespace {
+
+/// Of a file that was not there; if it cannot be begun, it is not there afterwards either.
+std::unique_ptr<Writer> create_new(const std::filesystem::path& file, const Information& information,
+                                   const std::string& name) {
+  try {
+    return file.extension() == ".csv" ? create_csv(file, information, name) : create_hdf5(file, information, name);
+  } catch (const device::Error&) {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+    throw;
+  }
 }
 
-void save(const Recording& recording, const std::filesystem::path& file) {
+void write_all(Writer& writer, const Recording& recording) {
   constexpr std::size_t block_samples = 4096;
-  // The ending stays last, because it chooses the format.
-  const auto part = file.parent_path() / fmt::format("{}.part{}", file.stem().string(), file.extension().string());
-  std::error_code error;
-  std::filesystem::remove(part, error);
-  const auto writer = create(part, recording.information);
   std::vector<float> simulated;
   for (std::size_t begin = 0; begin < recording.size();) {
     const std::size_t end = recording.end_of_stretch(begin, std::min(recording.size(), begin + block_samples));
     simulated.clear();
     for (std::size_t i = begin; i < end; ++i)
       for (const auto& column : recording.simulated_columns) simulated.push_back(column[i]);
-    writer->append(recording.samples(begin, end), simulated);
+    writer.append(recording.samples(begin, end), simulated);
     begin = end;
   }
-  for (const auto& mark : recording.marks) writer->mark(mark);
-  writer->finish();
+  for (const auto& mark : recording.marks) writer.mark(mark);
+  writer.finish();
+}
+
+}  // namespace
+
+std::unique_ptr<Writer> create(const std::filesystem::path& file, const Information& information) {
+  check_can_be_created(file);
+  return create_new(file, information, file.string());
+}
+
+void save(const Recording& recording, const std::filesystem::path& file) {
+  check_can_be_created(file, Existing::is_replaced);
+  // The ending stays last, because it chooses the format.
+  const auto part = file.parent_path() / fmt::format("{}.part{}", file.stem().string(), file.extension().string());
+  std::error_code error;
+  std::filesystem::remove(part, error);
+  try {
+    write_all(*create_new(part, recording.information, file.string()), recording);
+  } catch (const device::Error&) {
+    std::filesystem::remove(part, error);
+    throw;
+  }
   std::filesystem::rename(part, file, error);
   if (error)
     throw device::Error(

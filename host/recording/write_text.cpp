@@ -11,7 +11,11 @@ namespace inkwell::recording {
 void write_text(const std::filesystem::path& file, std::string_view text) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.flush()) throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
+  if (stream.flush()) return;
+  stream.close();
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored)) std::filesystem::remove(file, ignored);  // half of it is no use
+  throw device::Error(fmt::format("{} cannot be written. Check the space left.", file.string()));
 }
 
 }  // namespace inkwell::recording

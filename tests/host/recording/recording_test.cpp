@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <thread>
 
 #include <sys/resource.h>
@@ -183,8 +184,11 @@ TEST_CASE("a recording that cannot be saved leaves the one before as it is") {
     setrlimit(RLIMIT_FSIZE, &limit);
     try {
       save(simulated(), directory / "a.csv");
-    } catch (const device::Error&) {
-      _exit(42);
+    } catch (const device::Error& error) {
+      const std::string what = error.what();
+      const bool names_what_was_asked_for =
+          what.starts_with((directory / "a.csv").string()) && what.find(".part") == std::string::npos;
+      _exit(names_what_was_asked_for ? 42 : 43);
     }
     _exit(1);
   }
@@ -192,6 +196,7 @@ TEST_CASE("a recording that cannot be saved leaves the one before as it is") {
   waitpid(child, &result, 0);
   CHECK(WEXITSTATUS(result) == 42);
   CHECK(read(directory / "a.csv").size() == 10);
+  CHECK(std::distance(fs::directory_iterator(directory.path()), fs::directory_iterator()) == 1);  // no half of the new
 }
 
 TEST_CASE("a recording is cut to a part of its samples") {
@@ -366,6 +371,28 @@ TEST_CASE("a full disk ends the recording with a sentence and keeps what was wri
     CHECK(WIFEXITED(result));
     CHECK(WEXITSTATUS(result) == 42);
     check_broke_off(file);
+  }
+}
+
+TEST_CASE("a recording that cannot be begun leaves no file") {
+  const TemporaryDirectory directory;
+  for (const char* name : {"a.h5", "a.csv"}) {
+    CAPTURE(name);
+    const auto file = directory / name;
+    const pid_t child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      std::signal(SIGXFSZ, SIG_IGN);
+      const rlimit limit{1000, 1000};
+      setrlimit(RLIMIT_FSIZE, &limit);
+      const auto what = message_of<device::Error>([&] { Recorder(file, about()); });
+      _exit(what.find("cannot be written") != std::string::npos ? 42 : 1);
+    }
+    int result = 0;
+    waitpid(child, &result, 0);
+    CHECK(WIFEXITED(result));
+    CHECK(WEXITSTATUS(result) == 42);
+    CHECK_FALSE(fs::exists(file));
   }
 }
 
