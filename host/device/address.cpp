@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -10,6 +12,11 @@ namespace {
 
 constexpr std::string_view usbip_scheme = "usbip:", board_scheme = "virtual:", own_board = "virtual",
                            this_computer = "127.0.0.1";
+
+/// A server that answers may be a board that is just starting: its firmware shows itself after a tenth of a second of
+/// board time, which may be slow.
+constexpr auto start_patience = std::chrono::seconds(2);
+constexpr auto look_again = std::chrono::milliseconds(20);
 
 std::string serial_numbers(const std::vector<Endpoint>& endpoints) {
   std::string numbers;
@@ -69,7 +76,12 @@ std::vector<Endpoint> find_arms(const Address& address) {
 }
 
 Endpoint find_arm(const Address& address) {
-  const auto endpoints = find_arms(address);
+  const auto give_up_at = std::chrono::steady_clock::now() + start_patience;
+  auto endpoints = find_arms(address);
+  while (endpoints.empty() && address.kind == Address::Kind::usbip && std::chrono::steady_clock::now() < give_up_at) {
+    std::this_thread::sleep_for(look_again);
+    endpoints = find_arms(address);
+  }
   if (endpoints.empty()) throw NoDevice(nobody(address));
   if (address.kind == Address::Kind::usb && endpoints.size() > 1)
     throw NoDevice(fmt::format("{} arms are plugged in. Choose one by its serial number:{}.", endpoints.size(),

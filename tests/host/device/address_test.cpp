@@ -1,8 +1,10 @@
 // Addresses as people write them, and the arms that they lead to.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <span>
 
 #include <device/address.hpp>
 #include <failure.hpp>
@@ -76,6 +78,19 @@ TEST_CASE("a server's arm is found, and found again by the address of what was f
   CHECK(device::address_of(found) == address);
   server.product_id = 0x0BAD;
   CHECK(contains(refusal(parse_address(address)), "exports no arm"));
+}
+
+TEST_CASE("the arm of a board that is just starting is waited for, since the server answers before it shows itself") {
+  FakeUsbipServer server;
+  int lists = 0;
+  constexpr std::size_t list_of_none = 12;  // header and count
+  server.spoil_reply = [&](Bytes& reply) {
+    if (++lists > 3) return;
+    reply.resize(list_of_none);
+    std::ranges::fill(std::span(reply).last(4), std::byte{0});
+  };
+  CHECK(device::find_arm(parse_address(device::address_of(server.endpoint()))).port == server.port());
+  CHECK(lists == 4);
 }
 
 TEST_CASE("looking for arms leaves no connection open, whether anybody answers or not") {
