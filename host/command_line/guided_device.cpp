@@ -43,8 +43,10 @@ void GuidedDevice::wait_for_device() {
   std::optional<device::ControlClient> control;
   if (board_) control.emplace(board_->control());
   const auto waited_s = [&]() -> double {
-    if (control) return control->status().board_time_s;
-    return std::chrono::duration<double>(Clock::now() - begin).count();
+    if (!control) return std::chrono::duration<double>(Clock::now() - begin).count();
+    const auto status = control->status();
+    status.insist_on_running();
+    return status.board_time_s;
   };
   for (;;) {
     const auto status = session_->status();

@@ -77,8 +77,15 @@ BoardStatus ControlClient::status() {
   status.board_time_s = status.all.value("board_time_s", 0.0);
   status.mode = status.all.value("mode", std::string());
   status.paused = status.all.value("paused", false);
+  status.locked_up = status.all.value("locked_up", std::string());
   status.unmodelled = status.all.value("unmodelled", std::vector<std::string>());
   return status;
+}
+
+void BoardStatus::insist_on_running() const {
+  if (locked_up.empty()) return;
+  throw Error(
+      fmt::format("The firmware does not run on this virtual board. {} Check that it is for this board.", locked_up));
 }
 
 json ControlClient::truth() { return call({{"command", "truth"}}); }

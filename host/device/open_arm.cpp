@@ -16,8 +16,10 @@ constexpr auto look_again = 5ms;
 
 Endpoint wait_for_endpoint(const VirtualBoard& board, ControlClient& control, bool time_stands) {
   for (;;) {
-    const bool is_late = control.status().board_time_s > show_limit_s;
+    const BoardStatus status = control.status();
+    const bool is_late = status.board_time_s > show_limit_s;
     if (const auto endpoint = board.find()) return *endpoint;
+    status.insist_on_running();
     if (is_late) throw Error("The virtual board shows no USB device. Check that its firmware is Inkwell's.");
     if (time_stands)
       control.run(step_s);

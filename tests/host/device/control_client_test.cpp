@@ -36,6 +36,7 @@ TEST_CASE("a board's status is taken from its answer, and what it leaves out is 
   CHECK(status.mode == "exact");
   CHECK(status.paused);
   CHECK(status.unmodelled == std::vector<std::string>{"x"});
+  CHECK_NOTHROW(status.insist_on_running());
   line = R"({"ok": true})";
   CHECK(client.status().board_time_s == 0.0);
 }

@@ -97,6 +97,20 @@ TEST_CASE("a board that shows no arm in two seconds of its time is given up") {
   CHECK(statuses == 4);
 }
 
+TEST_CASE("a board whose processor is locked up, so that no time passes, is given up at once") {
+  FakeUsbipServer usb;
+  usb.product_id = 0x0BAD;
+  FakeControlServer control([&](const json&) {
+    return json{{"ok", true}, {"board_time_s", 0.005}, {"locked_up", "The processor has locked up: so it is."}}.dump() +
+           "\n";
+  });
+  const StandIn board(usb.port(), control.port());
+  const auto open = [&] { device::open_arm(device::parse_address("virtual"), board.options()); };
+  const auto said = message_of<device::Error>(open);
+  CHECK(contains(said, "locked up: so it is."));
+  CHECK(contains(said, "for this board"));
+}
+
 TEST_CASE("an arm description sets the arm's parameters and no others") {
   const auto arm = device::arm_parameters(paper_arm);
   std::size_t expected = 0;

@@ -75,8 +75,12 @@ struct BoardStatus {
   double board_time_s = 0;
   std::string mode;
   bool paused = false;
+  std::string locked_up;                ///< why the processor is, and board time stands still; empty if it is not
   std::vector<std::string> unmodelled;  ///< accesses to registers that the virtual chip does not model
   nlohmann::json all;                   ///< the whole reply
+
+  /// For who waits for the firmware: throws Error with a sentence if it never will do anything.
+  void insist_on_running() const;
 };
 
 /// Rows of the true quantities, one for each control period; values[row * columns.size() + column].
