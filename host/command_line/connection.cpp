@@ -3,6 +3,8 @@
 #include <arms/description.hpp>
 #include <known/boards.hpp>
 
+#include "help.hpp"
+
 namespace inkwell::command_line {
 
 void DeviceOptions::add_to(CLI::App& app) {
@@ -38,9 +40,11 @@ void DeviceOptions::add_to(CLI::App& app) {
   auto* server = app.add_option("--usbip", usbip,
                                 "HOST:PORT of a USB/IP server, such as a running virtual board; not with --virtual")
                      ->type_name("ADDRESS")
+                     ->check(not_empty())
                      ->excludes(is_virtual_flag);
   app.add_option("--serial", serial_number, "Use the arm on USB with this serial number; not with --virtual or --usbip")
       ->type_name("NUMBER")
+      ->check(not_empty())
       ->excludes(is_virtual_flag)
       ->excludes(server);
   app.add_flag("--json", json, "Write JSON for programs instead of text for people");

@@ -137,7 +137,8 @@ void add_flash_command(const Place& place) {
       command
           ->add_option("--virtual", given->flash_file,
                        "Into the file that virtual-board --flash keeps its flash in, while no board runs on it")
-          ->type_name("FILE");
+          ->type_name("FILE")
+          ->check(not_empty());
   by_usb->excludes(by_probe)->excludes(file);
   by_probe->excludes(file);
   command->add_option("--interface", given->interface, "Of --swd: the probe, by the name of openocd's file for it")

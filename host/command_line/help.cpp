@@ -81,6 +81,15 @@ CLI::Validator more_than_zero() {
   return number_that([](float value) { return value > 0; }, "more than 0");
 }
 
+CLI::Validator not_empty() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        return text.empty() ? std::string("An empty text does not do. Leave the option out, or give it its value.")
+                            : std::string();
+      },
+      "");
+}
+
 std::optional<std::string> missing_command(const CLI::App& program) {
   const auto given = program.get_subcommands();
   if (given.empty() || !given.front()->get_subcommands().empty()) return std::nullopt;

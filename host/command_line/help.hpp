@@ -18,6 +18,10 @@ void add_examples(CLI::App& command, const std::string& examples);
 CLI::Validator zero_or_more();
 CLI::Validator more_than_zero();
 
+/// An empty text where a device or a file is named is a variable of a script that was not set: it must not become the
+/// device that is there without the option.
+CLI::Validator not_empty();
+
 /// Says which commands there are, if one was given that needs one of its own and there is none or another word.
 std::optional<std::string> missing_command(const CLI::App& program);
 

@@ -164,6 +164,11 @@ TEST_CASE("the companion refuses what it does not know") {
     check_refused(run_program("inkwell", {"plot", file, "--out", directory.file("push.pdf")}), {"push.pdf", ".png"});
     CHECK_FALSE(std::filesystem::exists(directory.file("push.pdf")));
   }
+  SUBCASE("empty names of devices, which scripts make") {
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"info", "--usbip", ""}, {"info", "--serial", ""}, {"flash", "--virtual", ""}})
+      check_refused(run_program("inkwell", words), {words[1].c_str(), "An empty text"});
+  }
   SUBCASE("ELF") {
     check_refused(run_program("inkwell", {"--virtual", "--elf", "nowhere.elf", "info"}), {"nowhere.elf"});
   }
