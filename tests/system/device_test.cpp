@@ -77,6 +77,38 @@ TEST_CASE("two boards are told apart by their serial numbers, which their seeds 
   CHECK(serial_number_of(0xABCDEF0012345678) == "12345678ABCDEF0039323539");
 }
 
+TEST_CASE("boards that are started by hand have serial numbers of their own, which stay where they can") {
+  const TemporaryDirectory directory;
+  std::string port;
+  const auto number_of = [&](std::vector<std::string> words) {
+    words.insert(words.begin(),
+                 {build_directory() + "/virtual-board", "--elf", build_directory() + "/../board/inkwell.elf"});
+    RunningProgram board(words);
+    const std::string ready = board.read_line();
+    port = ready.substr(ready.find("usbip=") + 6);
+    port.resize(port.find(' '));
+    const auto listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
+    CAPTURE(listed.err);
+    REQUIRE(listed.exit_code == 0);
+    kill(board.process(), SIGTERM);
+    board.wait();
+    return nlohmann::json::parse(listed.out)[0].at("serial_number").get<std::string>();
+  };
+  const auto one = number_of({"--flash", directory.file("one.flash")});
+  CHECK(number_of({"--flash", directory.path() + "/./one.flash"}) == one);
+  CHECK(number_of({"--flash", directory.file("other.flash")}) != one);
+  const auto of_this_run = number_of({});
+  CHECK(number_of({}) != of_this_run);
+  const auto at_port = number_of({"--usbip", port});
+  CHECK(number_of({"--usbip", port}) == at_port);
+  CHECK(number_of({"--seed", "7"}) == "000000070000000039323539");
+  CHECK(number_of({"--seed", "7", "--serial", "2a"}) == "00000000000000000000002A");
+  const auto refused =
+      run_program("virtual-board", {"--elf", build_directory() + "/../board/inkwell.elf", "--serial", "mine"});
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.err.find("24 hexadecimal digits") != std::string::npos);
+}
+
 TEST_CASE("the device holds the table's defaults, takes a transaction whole, and gives the defaults back") {
   BoardRig rig;
   const auto before = rig.device->parameters();

@@ -26,12 +26,6 @@ std::string_view name_of(ResetCause cause) {
   return "an unknown cause";
 }
 
-/// The seed makes a board the individual that it is, so it is what its serial number tells.
-std::array<std::uint32_t, 3> unique_id_of(std::uint64_t seed) {
-  constexpr std::uint32_t lot = 0x3932'3539;
-  return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), lot};
-}
-
 }  // namespace
 
 Board::Board(const Options& options, std::function<void()> on_usb_request, std::function<bool()> is_ending)
@@ -45,7 +39,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
                      .low_speed_internal_Hz = options.low_speed_internal_Hz,
                      .brown_out_level = options.brown_out_level,
                      .slowest_flash = options.slowest_flash,
-                     .unique_id = unique_id_of(options.seed),
+                     .unique_id = options.unique_id,
                      .random_seed = static_cast<std::uint32_t>(options.seed),
                      .log = [](const std::string& line) { log_line(line); },
                      .name_of_code = [this](std::uint32_t address) { return symbols_.name(address); },

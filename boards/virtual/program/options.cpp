@@ -21,11 +21,12 @@ namespace {
 struct Given {
   Options options;
   std::uint16_t gdb_port = 0;
-  std::string board, mode = "fast", pricing = "likely", flash_times = "typical";
+  std::string board, serial_number, mode = "fast", pricing = "likely", flash_times = "typical";
   double seconds = 0.0;
   std::vector<std::string> uarts, pins, injections;
   std::string profile, injection_script;
-  CLI::Option *gdb_option = nullptr, *mode_option = nullptr, *seconds_option = nullptr, *profile_option = nullptr;
+  CLI::Option *gdb_option = nullptr, *seed_option = nullptr, *mode_option = nullptr, *seconds_option = nullptr,
+              *profile_option = nullptr;
 };
 
 constexpr const char* description =
@@ -50,6 +51,10 @@ void add_files_and_ports(CLI::App& app, Given& given) {
                  "the chip's flash is kept in this file from run to run, which is made if it is not there; --elf "
                  "replaces the\nsectors that it needs, and what the firmware has stored elsewhere stays")
       ->type_name("FILE");
+  app.add_option("--serial", given.serial_number,
+                 "serial number, up to 24 hexadecimal digits. Unless given, one that --seed makes; without that one\n"
+                 "for the file of --flash, else for the port of --usbip, else for this run")
+      ->type_name("NUMBER");
   const auto port = CLI::Range(0, 65535).description("");
   app.add_option("--usbip", given.options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")
       ->check(port)
@@ -121,10 +126,10 @@ void add_time_and_seed(CLI::App& app, Given& given) {
       ->type_name("N")
       ->capture_default_str();
   app.add_flag("--real-time", given.options.real_time, "keep board time from running ahead of the clock on the wall");
-  app.add_option("--seed", given.options.seed,
-                 "of all noise and of the serial number; the same seed and commands give the same run")
-      ->type_name("N")
-      ->capture_default_str();
+  given.seed_option =
+      app.add_option("--seed", given.options.seed, "of all noise; the same seed and commands give the same run")
+          ->type_name("N")
+          ->capture_default_str();
   given.seconds_option = app.add_option("--seconds", given.seconds, "end after this much board time")
                              ->check(CLI::PositiveNumber.description(""))
                              ->type_name("T");
@@ -219,6 +224,22 @@ bool take_board(Given& given) {
   return false;
 }
 
+/// False after a sentence on stderr.
+bool take_serial_number(Given& given) {
+  Options& options = given.options;
+  try {
+    options.unique_id = !given.serial_number.empty() ? unique_id_of(given.serial_number)
+                        : *given.seed_option         ? unique_id_of_seed(options.seed)
+                        : !options.flash.empty()     ? unique_id_of_flash(options.flash)
+                        : options.usbip_port != 0    ? unique_id_of_port(options.usbip_port)
+                                                     : unique_id_of_process();
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "virtual-board: --serial: " << error.what() << "\n";
+    return false;
+  }
+  return true;
+}
+
 /// Makes the options of what was written. False after a sentence on stderr if something of it can not be.
 bool take_over(Given& given) {
   if (*given.gdb_option || *given.profile_option) {
@@ -233,7 +254,7 @@ bool take_over(Given& given) {
                  "--flash.\n";
     return false;
   }
-  if (!take_board(given)) return false;
+  if (!take_board(given) || !take_serial_number(given)) return false;
   if (*given.gdb_option) given.options.gdb_port = given.gdb_port;
   if (*given.profile_option) given.options.profile = given.profile;
   try {

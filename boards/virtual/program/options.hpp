@@ -11,6 +11,7 @@
 #include <injection/injection.hpp>
 #include <known/boards.hpp>
 
+#include "serial_number.hpp"
 #include "uart_links.hpp"
 
 namespace inkwell::virtual_board {
@@ -37,7 +38,8 @@ struct Options {
   bool slowest_flash = false;    ///< the longest times to erase and program, not the usual
   double host_clock_ppm = 0.0;   ///< the USB host's clock is faster than board time by so many parts in a million
   bool real_time = false;
-  std::uint64_t seed = 1;         ///< of all noise and of the serial number
+  std::uint64_t seed = 1;         ///< of all noise
+  UniqueId unique_id{};           ///< of the chip, and so its serial number
   std::optional<double> seconds;  ///< of board time, after which the program ends
   std::vector<Injection> injections;
   bool paused = false;
