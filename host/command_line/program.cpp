@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <device/address.hpp>
 
 #include "commands.hpp"
 #include "help.hpp"
@@ -70,6 +71,8 @@ int run(int argument_count, char** arguments) {
     return action();
   } catch (const UsageError& error) {
     return complain(error, wrong_usage);
+  } catch (const device::SeveralArms& error) {
+    return complain(device::NoDevice(fmt::format("{} Name it with --serial NUMBER.", error.what())), failure);
   } catch (const std::exception& error) {
     return complain(error, failure);
   }

@@ -84,8 +84,8 @@ Endpoint find_arm(const Address& address) {
   }
   if (endpoints.empty()) throw NoDevice(nobody(address));
   if (address.kind == Address::Kind::usb && endpoints.size() > 1)
-    throw NoDevice(fmt::format("{} arms are plugged in. Choose one by its serial number:{}.", endpoints.size(),
-                               serial_numbers(endpoints)));
+    throw SeveralArms(fmt::format("{} arms are plugged in. Choose one by its serial number:{}.", endpoints.size(),
+                                  serial_numbers(endpoints)));
   return endpoints.front();
 }
 

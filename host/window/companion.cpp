@@ -200,6 +200,7 @@ void Companion::draw_card(const WindowLayout& layout) {
   const auto outcome =
       draw_connection_card(layout.middle_of_scene(), style_, view, firmware, {may_start_virtual_board_, problem_});
   wants_virtual_board_ = outcome.starts_virtual_board;
+  if (outcome.chosen_serial_number) desk_.choose(*outcome.chosen_serial_number);
   if (outcome.firmware.dismiss) updater_.dismiss();
   if (outcome.firmware.update) update_firmware();
 }

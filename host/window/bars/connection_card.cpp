@@ -35,6 +35,18 @@ bool draw_virtual_board_offer(const Style& style, const VirtualBoardOffer& offer
   return asks;
 }
 
+/// The number of the one that was chosen.
+std::optional<std::string> draw_choice(const Style& style, const DeviceView& view) {
+  std::optional<std::string> chosen;
+  for (const device::Endpoint& endpoint : view.listed) {
+    ImGui::Dummy({0, style.points(2)});
+    if (coloured_button(endpoint.serial_number.c_str(), style.palette->accent, style.palette->pane,
+                        {-1, style.points(32)}))
+      chosen = endpoint.serial_number;
+  }
+  return chosen;
+}
+
 }  // namespace
 
 ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view,
@@ -56,6 +68,7 @@ ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, co
     wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
     if (view.status.connection == Connection::incompatible)
       outcome.firmware.update = draw_firmware_offer(style, firmware);
+    if (view.must_choose) outcome.chosen_serial_number = draw_choice(style, view);
     if (offer.is_made) outcome.starts_virtual_board = draw_virtual_board_offer(style, offer);
   }
   ImGui::End();

@@ -1,8 +1,9 @@
 #include <device_desk/device_desk.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
+
+#include <device_desk/arm_choice.hpp>
 
 namespace inkwell::window {
 
@@ -42,11 +43,15 @@ std::vector<device::Endpoint> DeviceDesk::look() {
 }
 
 void DeviceDesk::open_session() {
-  session_ = std::make_unique<device::Session>([this, wanted = wanted_]() -> std::optional<device::Endpoint> {
+  session_ = std::make_unique<device::Session>([this, choice = ArmChoice(wanted_)]() mutable {
     const std::vector<device::Endpoint> found = look();
-    const auto match = std::ranges::find_if(
-        found, [&wanted](const device::Endpoint& each) { return wanted.empty() || each.serial_number == wanted; });
-    return match == found.end() ? std::nullopt : std::optional(*match);
+    must_choose_ = false;
+    try {
+      return choice.pick(found);
+    } catch (const device::NoDevice&) {
+      must_choose_ = true;
+      throw;
+    }
   });
   session_->on_scope([this](const device::ScopeSamples& samples) {
     const std::scoped_lock lock(mutex_);
@@ -68,6 +73,7 @@ const DeviceView& DeviceDesk::refresh() {
   } else if (!view_.parameters) {
     view_.parameters = session_->parameters();
   }
+  view_.must_choose = !view_.connected() && must_choose_;
   const std::scoped_lock lock(mutex_);
   view_.listed = listed_;
   view_.list_error = list_error_;

@@ -17,10 +17,16 @@ class BadAddress : public Error {
   using Error::Error;
 };
 
-/// No arm is there, or more than one and none was named.
+/// No arm is there that is meant.
 class NoDevice : public Error {
  public:
   using Error::Error;
+};
+
+/// More than one arm is there and none was named. `what()` lists their serial numbers.
+class SeveralArms : public NoDevice {
+ public:
+  using NoDevice::NoDevice;
 };
 
 /// Written as one of
@@ -49,7 +55,8 @@ std::string address_of(const Endpoint& endpoint);
 /// The arms that the address may mean; none for a board that is not started yet. Throws Error if a server does not
 /// answer.
 std::vector<Endpoint> find_arms(const Address& address);
-/// The one that it means. Throws NoDevice.
+/// The one that it means. Waits two seconds for the arm of a server that answers. Throws NoDevice, as SeveralArms if
+/// the address does not say which.
 Endpoint find_arm(const Address& address);
 
 }  // namespace inkwell::device

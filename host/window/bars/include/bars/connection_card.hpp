@@ -1,6 +1,7 @@
 // How the window says whether it is connected.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <bars/firmware_card.hpp>
@@ -20,6 +21,7 @@ struct VirtualBoardOffer {
 struct ConnectionCardOutcome {
   FirmwareCardOutcome firmware;
   bool starts_virtual_board = false;
+  std::optional<std::string> chosen_serial_number{};
 };
 /// A card in the middle of the scene that says why no device is connected and what to do, or how an update goes.
 ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, const DeviceView& view,

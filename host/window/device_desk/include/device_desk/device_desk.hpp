@@ -24,6 +24,7 @@ struct DeviceView {
   std::optional<device::Reconnection> reconnection;  ///< the newest
   std::vector<device::Endpoint> listed;              ///< devices found the last time one looked
   std::string list_error;
+  bool must_choose = false;  ///< none of those listed is taken before the user chooses
 
   bool connected() const { return status.connection == device::Connection::connected; }
   protocol::State state() const { return pose ? pose->state : protocol::State::starting; }
@@ -74,6 +75,7 @@ class DeviceDesk {
   std::vector<device::ScopeSamples> scope_;
 
   std::atomic<bool> looking_ = false;
+  std::atomic<bool> must_choose_ = false;
   std::unique_ptr<device::Session> session_;
   std::jthread looker_;
 };

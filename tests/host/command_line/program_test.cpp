@@ -1,0 +1,62 @@
+// What every command says of the arms that are there.
+#include <doctest/doctest.h>
+
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <command_line/program.hpp>
+#include <failure.hpp>
+#include <host/device/fake_usb.hpp>
+#include <temporary_directory.hpp>
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+namespace {
+
+struct Ended {
+  int exit_code;
+  std::string complaint;
+};
+
+/// In this process, where the USB is not real.
+Ended run_here(std::vector<std::string> words) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("stderr");
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  const int kept = dup(STDERR_FILENO);
+  fflush(stderr);
+  REQUIRE(freopen(file.c_str(), "w", stderr) != nullptr);
+  const int exit_code = command_line::run(static_cast<int>(pointers.size()), pointers.data());
+  fflush(stderr);
+  dup2(kept, STDERR_FILENO);
+  close(kept);
+  std::ifstream said(file);
+  return {exit_code, {std::istreambuf_iterator<char>(said), {}}};
+}
+
+}  // namespace
+
+TEST_CASE("of several arms none is used that was not named, and the sentence says how one is") {
+  FakeUsb usb;
+  usb.add_arm("0011");
+  usb.add_arm("0022");
+  for (const auto& command : std::vector<std::vector<std::string>>{{"info"},
+                                                                   {"force", "on"},
+                                                                   {"parameters", "set", "wall_stiffness_N_per_m=600"},
+                                                                   {"check", "directions", "--yes"},
+                                                                   {"flash"}}) {
+    auto words = command;
+    words.insert(words.begin(), "inkwell");
+    const auto [exit_code, complaint] = run_here(words);
+    CAPTURE(complaint);
+    CHECK(exit_code == 1);
+    CHECK(contains(complaint, " 0011"));
+    CHECK(contains(complaint, " 0022"));
+    CHECK(contains(complaint, "--serial NUMBER"));
+  }
+}

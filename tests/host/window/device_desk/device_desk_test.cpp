@@ -1,0 +1,28 @@
+// Which device the window's desk asks for.
+#include <doctest/doctest.h>
+
+#include <device/address.hpp>
+#include <device_desk/device_desk.hpp>
+#include <failure.hpp>
+#include <host/device/fake_usb.hpp>
+#include <host/device/fake_usbip_server.hpp>
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+TEST_CASE("with several arms the desk asks, and goes to the one that is chosen") {
+  FakeUsb usb;
+  usb.add_arm("A");
+  usb.add_arm("B");
+  window::DeviceDesk desk([] { return device::find_arms({}); }, "");
+  REQUIRE(eventually([&] { return desk.refresh().must_choose && !desk.view().status.message.empty(); }));
+  CHECK(contains(desk.view().status.message, "2 arms are plugged in"));
+  CHECK(desk.view().listed.size() == 2);
+  CHECK_FALSE(desk.view().connected());
+  desk.choose("B");
+  desk.follow_choice();
+  CHECK(desk.wanted_serial_number() == "B");
+  // It answers nothing that an arm would, which is another sentence than a question.
+  REQUIRE(eventually([&] { return !desk.refresh().status.message.empty(); }));
+  CHECK_FALSE(desk.view().must_choose);
+}
