@@ -49,12 +49,14 @@ WindowLayout layout_of(ImVec2 window, const LayoutNeeds& needs, const WindowSett
 }
 
 void drag_column_splitter(float dragged_points, ImVec2 window, float scale, WindowSettings& settings) {
+  if (dragged_points == 0.0f) return;  // a window that is small for a while leaves the column's width as it was
   settings.column_width =
       std::max(WindowSettings::column_width_minimum,
                std::min(settings.column_width - dragged_points, column_part_maximum * window.x / scale));
 }
 
 void drag_scope_splitter(float dragged_points, const WindowLayout& layout, float scale, WindowSettings& settings) {
+  if (dragged_points == 0.0f) return;
   // From what is shown, so that a part that has no room does not have to be dragged back first.
   const float shown = scope_height_of(layout.room, settings, scale);
   settings.scope_part = std::clamp((shown - dragged_points * scale) / layout.room, WindowSettings::scope_part_minimum,

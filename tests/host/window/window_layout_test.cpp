@@ -74,3 +74,14 @@ TEST_CASE("a drag moves the splitter under the mouse, from what is shown") {
   const auto after = layout_of(window, needs, settings, 1.0f);
   CHECK(after.scope.place.y - before.scope.place.y == doctest::Approx(20).epsilon(0.06));
 }
+
+TEST_CASE("a window that is small for a while leaves the parts as they were") {
+  WindowSettings settings;
+  settings.column_width = 500;
+  const WindowSettings before = settings;
+  const auto small = layout_of({900, 560}, {46, 0, 0, 0}, settings, 1.0f);
+  drag_column_splitter(0, {900, 560}, 1.0f, settings);
+  drag_scope_splitter(0, small, 1.0f, settings);
+  CHECK(settings.column_width == before.column_width);
+  CHECK(settings.scope_part == before.scope_part);
+}
