@@ -170,9 +170,15 @@ void SignalHistory::append(const device::ScopeSamples& samples, const device::Sc
 std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns) {
   std::vector<Extremes> result(columns, {nothing, nothing});
   const double width = (last - first) / static_cast<double>(columns);
+  // Wide columns end where blocks do: the samples at their edges would have to be looked at one by one, which takes
+  // most of the time, and nobody sees a sixteenth of a column.
+  const double grain = width < branching * branching ? 1.0 : branching;
+  const auto edge = [&](std::size_t column) {
+    const double at = first + width * static_cast<double>(column);
+    return std::clamp(grain * std::ceil(at / grain), std::ceil(first), std::ceil(last));
+  };
   for (std::size_t i = 0; i < columns; ++i) {
-    const double from = std::ceil(first + width * static_cast<double>(i));
-    const double to = std::ceil(first + width * static_cast<double>(i + 1));
+    const double from = edge(i), to = edge(i + 1);
     if (to <= 0.0) continue;
     result[i] = series.extremes(static_cast<std::uint64_t>(std::max(from, 0.0)), static_cast<std::uint64_t>(to));
   }

@@ -62,6 +62,24 @@ TEST_CASE("one spike among a million samples is seen in its column and nowhere e
   for (std::size_t i = 0; i < columns.size(); ++i) CHECK(columns[i].maximum == (i == spike / 1250 ? 5.0f : 0.0f));
 }
 
+TEST_CASE("every sample is in one column, wherever the stretch begins, and none from beside it") {
+  constexpr std::uint64_t first = 1003, last = 402'011;
+  SignalSeries series(std::size_t{1} << 20);
+  for (std::uint64_t i = 0; i < 500'000; ++i)
+    series.append(i < first || i >= last ? 1e6f : i % 3001 == 0 ? static_cast<float>(i / 3001) : 0.0f);
+  const auto columns = window::decimate(series, first, last, 300);
+  int spikes = 0;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    CHECK(columns[i].maximum < 1e6f);
+    if (columns[i].maximum == 0.0f) continue;
+    ++spikes;
+    const double at = 3001.0 * static_cast<double>(columns[i].maximum);
+    const double width = static_cast<double>(last - first) / static_cast<double>(columns.size());
+    CHECK(std::abs((at - static_cast<double>(first)) / width - static_cast<double>(i) - 0.5) < 0.52);
+  }
+  CHECK(spikes == 133);
+}
+
 TEST_CASE("columns before the first sample and after the last one are empty") {
   SignalSeries series(256);
   for (int i = 0; i < 100; ++i) series.append(1.0f);

@@ -113,7 +113,8 @@ class SignalHistory {
   SignalLane shown_, over_;
 };
 
-/// One pair for each of `columns` equal parts of [first, last), for drawing.
+/// One pair for each of `columns` parts of [first, last), for drawing: of equal width, but for a sixteenth of it. Every
+/// sample is in one of them.
 std::vector<Extremes> decimate(const SignalSeries& series, double first, double last, std::size_t columns);
 
 }  // namespace inkwell::window
