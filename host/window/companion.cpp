@@ -240,15 +240,18 @@ bool Companion::asks_for_frame() const {
   return column_.is_moving() || (!replay_bar_.is_open() && looks_different(drawn_pose_, desk_.newest_pose()));
 }
 
-std::uint64_t Companion::picture_digest() const {
+std::uint64_t Companion::canvas_digest() const {
   PictureDigest digest;
   if (drawn_pose_) digest.add_bytes(&*drawn_pose_, sizeof *drawn_pose_);
   const auto parameters = shown_parameters().shown();
   digest.add_bytes(parameters.values.data(), parameters.values.size() * sizeof parameters.values[0]);
   digest.add(*style_.palette);
-  for (const float each : {scene_.place.x, scene_.place.y, scene_.size.x, scene_.size.y}) digest.add(each);
   scene_pane_.add_to(digest);
   return digest.value();
+}
+
+Box Companion::canvas() const {
+  return {scene_.place.x, scene_.place.y, scene_.place.x + scene_.size.x, scene_.place.y + scene_.size.y};
 }
 
 void Companion::paint(const Canvas& canvas) {

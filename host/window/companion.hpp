@@ -36,7 +36,8 @@ class Companion final : public FrameContent {
   bool is_moving() const override { return is_moving_; }
   /// The user asks for a virtual board, with which the window begins anew.
   bool is_over() const override { return wants_virtual_board_; }
-  std::uint64_t picture_digest() const override;
+  Box canvas() const override;
+  std::uint64_t canvas_digest() const override;
   Colour ground() const override { return style_.palette->pane; }
   void paint(const Canvas& canvas) override;
   nlohmann::json inspect() const override;

@@ -121,6 +121,10 @@ void WindowRig::play(const std::vector<std::string>& events) {
   look();
 }
 
+void WindowRig::resize(int width, int height) {
+  play({"search", "--class", "inkwell", "windowsize", "--sync", "%@", std::to_string(width), std::to_string(height)});
+}
+
 void WindowRig::move_to(Point point) {
   play({"mousemove", std::to_string(std::lround(point.x)), std::to_string(std::lround(point.y))});
 }

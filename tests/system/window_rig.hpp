@@ -70,6 +70,8 @@ class WindowRig {
   Image picture();
   void picture(const std::string& file);
 
+  /// Of the window, in pixels.
+  void resize(int width, int height);
   void move_to(Point point);
   void press_mouse();
   void release_mouse();

@@ -1,5 +1,6 @@
 #include <frame/frame_loop.hpp>
 
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <utility>
@@ -73,8 +74,9 @@ FrameLoop::Frame FrameLoop::next_frame() {
           .is_lively = is_lively,
           .is_asked = is_asked,
           .is_last = !options_.screenshot.empty() && now_s - started_s_ >= options_.after_seconds,
+          .smooth = false,
           .evidence = {.input = display_.take_input()},
-          .look = {}};
+          .picture = {}};
 }
 
 bool FrameLoop::is_due(const Frame& frame) const {
@@ -88,35 +90,67 @@ void FrameLoop::lay_out(Frame& frame) {
   content_.lay_out(imgui_.size(), frame.now_s);
   imgui_.end();
 
-  PictureDigest panes;
-  panes.add(imgui_.data());
-  // At rest there is time for a smooth picture.
   const bool is_photographed = frame.is_last || (inspection_ && inspection_->wants_picture());
-  frame.look = {.picture = content_.picture_digest(),
-                .panes = panes.value(),
-                .smooth = pacer_.keeps_up() || !frame.is_lively || is_photographed};
+  // At rest there is time for a smooth picture.
+  frame.smooth = pacer_.keeps_up() || !frame.is_lively || is_photographed;
+  PictureDigest canvas;
+  canvas.add(content_.canvas_digest());
+  canvas.add(frame.smooth);
+  frame.picture = {.window = {0, 0, imgui_.size().x, imgui_.size().y},
+                   .ground = packed(content_.ground()),
+                   .canvas = content_.canvas(),
+                   .canvas_digest = canvas.value(),
+                   .panes = imgui_.panes()};
 }
 
 bool FrameLoop::is_to_be_drawn(Frame& frame) {
   frame.evidence.moves = content_.is_moving();
-  frame.evidence.differs = frame.look != on_screen_ || display_.take_lost_picture() || frame.is_last || frame.is_asked;
+  frame.evidence.differs =
+      frame.picture != on_screen_ || display_.take_lost_picture() || frame.is_last || frame.is_asked;
   return rhythm_.is_to_be_drawn(frame.evidence, frame.now_s);
 }
 
 void FrameLoop::draw(const Frame& frame) {
+  const std::vector<Box> parts = to_be_drawn(frame);
+  float drawn = 0.0f;
+  for (const Box& part : parts) {
+    draw_part(frame, part);
+    drawn += part.area();
+  }
+  if (display_.draws_in_software()) mark_.put();
+  if (frame.is_last) write_screenshot(options_.screenshot, frame.size.width, frame.size.height);
+  if (!inspection_) return;
+  nlohmann::json known = content_.inspect();
+  known["drawn_part"] = drawn / frame.picture.window.area();
+  if (!inspection_->end_frame(known, frame.size.width, frame.size.height)) display_.close();
+}
+
+std::vector<Box> FrameLoop::to_be_drawn(const Frame& frame) const {
+  if (display_.draws_in_software() && mark_.is_there()) return changes_between(on_screen_, frame.picture);
+  return {frame.picture.window};
+}
+
+void FrameLoop::draw_part(const Frame& frame, const Box& part) {
   const auto [width, height] = frame.size;
+  const Box& canvas = frame.picture.canvas;
+  const float pixels_per_unit = static_cast<float>(width) / imgui_.size().x;
+  const auto pixels = [pixels_per_unit](float units) { return static_cast<int>(std::lround(units * pixels_per_unit)); };
   const ImVec4 ground = vector(content_.ground());
   glClearColor(ground.x, ground.y, ground.z, 1.0f);
-  glDisable(GL_SCISSOR_TEST);  // ImGui's back end leaves it on; a whole buffer is cleared fastest
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-  content_.paint({.pixels_per_unit = static_cast<float>(width) / imgui_.size().x,
-                  .height_pixels = height,
-                  .smooth = frame.look.smooth,
-                  .is_as_before = frame.look.picture == on_screen_.picture});
+  // ImGui's back end leaves it on, and a whole buffer is cleared fastest without.
+  part == frame.picture.window ? glDisable(GL_SCISSOR_TEST) : glEnable(GL_SCISSOR_TEST);
+  glScissor(pixels(part.left), height - pixels(part.bottom), pixels(part.right - part.left),
+            pixels(part.bottom - part.top));
+  const bool is_painted = !common(part, canvas).is_empty();
+  glClear((part == canvas ? 0u : GL_COLOR_BUFFER_BIT) |
+          (is_painted ? GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT : 0u));
+  if (is_painted)
+    content_.paint({.pixels_per_unit = pixels_per_unit,
+                    .height_pixels = height,
+                    .smooth = frame.smooth,
+                    .is_as_before = frame.picture.canvas_digest == on_screen_.canvas_digest});
   glViewport(0, 0, width, height);
-  imgui_.draw();
-  if (frame.is_last) write_screenshot(options_.screenshot, width, height);
-  if (inspection_ && !inspection_->end_frame(content_.inspect(), width, height)) display_.close();
+  imgui_.draw(part);
 }
 
 void FrameLoop::show(const Frame& frame) {
@@ -125,7 +159,7 @@ void FrameLoop::show(const Frame& frame) {
   const double drawn_s = glfwGetTime();
   if (!frame.is_lively) rhythm_.took(drawn_s - frame.now_s);
   display_.show();
-  on_screen_ = frame.look;
+  on_screen_ = frame.picture;
   // At rest there are few frames on purpose.
   if (frame.is_lively) frames_report_.add(frame.now_s - shown_s_, drawn_s - frame.now_s, content_.pose_age_s());
   shown_s_ = frame.now_s;

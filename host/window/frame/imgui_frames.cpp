@@ -1,5 +1,8 @@
 #include <frame/imgui_frames.hpp>
 
+#include <algorithm>
+#include <cstddef>
+#include <span>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -7,6 +10,7 @@
 #include <backends/imgui_impl_opengl3.h>
 
 #include <frame/key_letters.hpp>
+#include <frame/picture_digest.hpp>
 
 namespace inkwell::window {
 
@@ -19,6 +23,27 @@ void follow_keyboard_layout(ImGuiIO& io) {
        {std::pair{'a', ImGuiKey_A}, std::pair{'c', ImGuiKey_C}, std::pair{'v', ImGuiKey_V}, std::pair{'x', ImGuiKey_X},
         std::pair{'y', ImGuiKey_Y}, std::pair{'z', ImGuiKey_Z}})
     io.KeyMap[shortcut] = keys[static_cast<std::size_t>(letter - 'a')];
+}
+
+Box box_of(const ImVec4& rectangle) { return {rectangle.x, rectangle.y, rectangle.z, rectangle.w}; }
+
+DrawnPart part_of(const ImDrawList& list, const ImDrawCmd& command) {
+  if (command.ElemCount == 0) return {};
+  const std::span indices(list.IdxBuffer.Data + command.IdxOffset, command.ElemCount);
+  const auto [first, last] = std::ranges::minmax(indices);
+  const std::span corners(list.VtxBuffer.Data + command.VtxOffset + first, static_cast<std::size_t>(last - first) + 1);
+  PictureDigest digest;
+  digest.add_bytes(corners.data(), corners.size_bytes());
+  // Counted from its first corner: what is drawn before it may have more or fewer of them.
+  std::uint64_t order = 0;
+  for (const ImDrawIdx index : indices) order = order * 0x9E3779B97F4A7C15u + static_cast<std::uint64_t>(index - first);
+  digest.add(order);
+  digest.add_bytes(&command.ClipRect, sizeof command.ClipRect);
+  Box box{corners[0].pos.x, corners[0].pos.y, corners[0].pos.x, corners[0].pos.y};
+  for (const ImDrawVert& corner : corners)
+    box = {std::min(box.left, corner.pos.x), std::min(box.top, corner.pos.y), std::max(box.right, corner.pos.x),
+           std::max(box.bottom, corner.pos.y)};
+  return {common(box, box_of(command.ClipRect)), digest.value()};
 }
 
 }  // namespace
@@ -52,7 +77,39 @@ void ImGuiFrames::begin() {
 
 ImVec2 ImGuiFrames::size() const { return ImGui::GetIO().DisplaySize; }
 void ImGuiFrames::end() { ImGui::Render(); }
-const ImDrawData& ImGuiFrames::data() const { return *ImGui::GetDrawData(); }
-void ImGuiFrames::draw() const { ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData()); }
+
+std::vector<DrawnPane> ImGuiFrames::panes() const {
+  const ImDrawData& data = *ImGui::GetDrawData();
+  std::vector<DrawnPane> panes;
+  for (const ImDrawList* list : std::span(data.CmdLists, static_cast<std::size_t>(data.CmdListsCount))) {
+    DrawnPane& pane = panes.emplace_back(DrawnPane{list, {}});
+    for (const ImDrawCmd& command : list->CmdBuffer) pane.parts.push_back(part_of(*list, command));
+  }
+  return panes;
+}
+
+void ImGuiFrames::draw(const Box& box) const {
+  // The back end draws what lies in a command's rectangle; those that have nothing in the box are not even uploaded.
+  const ImDrawData& data = *ImGui::GetDrawData();
+  std::vector<ImDrawList*> lists;
+  std::vector<ImVec4> rectangles;
+  for (ImDrawList* list : std::span(data.CmdLists, static_cast<std::size_t>(data.CmdListsCount))) {
+    const auto is_in_box = [&box](const ImDrawCmd& each) { return !common(box_of(each.ClipRect), box).is_empty(); };
+    if (std::none_of(list->CmdBuffer.begin(), list->CmdBuffer.end(), is_in_box)) continue;
+    lists.push_back(list);
+    for (ImDrawCmd& command : list->CmdBuffer) {
+      rectangles.push_back(command.ClipRect);
+      const Box part = common(box_of(command.ClipRect), box);
+      command.ClipRect = {part.left, part.top, part.right, part.bottom};
+    }
+  }
+  ImDrawData in_box = data;
+  in_box.CmdLists = lists.data();
+  in_box.CmdListsCount = static_cast<int>(lists.size());
+  ImGui_ImplOpenGL3_RenderDrawData(&in_box);
+  auto before = rectangles.begin();
+  for (ImDrawList* list : lists)
+    for (ImDrawCmd& command : list->CmdBuffer) command.ClipRect = *before++;
+}
 
 }  // namespace inkwell::window

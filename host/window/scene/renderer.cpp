@@ -181,6 +181,7 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
                     const SceneLook& look, const Viewport& viewport) {
   if (viewport.width < 2 || viewport.height < 2) return;
   size_pixels_ = {viewport.width, viewport.height};
+  glDisable(GL_SCISSOR_TEST);
   if (look.smooth) {
     const bool is_fresh = size_target(viewport.width, viewport.height);
     if (look.is_as_before && target_is_drawn_ && !is_fresh) return show_target(viewport);
@@ -191,7 +192,6 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
     target_is_drawn_ = false;
     glViewport(viewport.x, viewport.y, viewport.width, viewport.height);
   }
-  glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -224,7 +224,6 @@ void Renderer::draw(const SceneModel& scene, const std::optional<HandView>& hand
 }
 
 void Renderer::show_target(const Viewport& viewport) const {
-  glDisable(GL_SCISSOR_TEST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, target_);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   glBlitFramebuffer(0, 0, viewport.width, viewport.height, viewport.x, viewport.y, viewport.x + viewport.width,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include <imgui.h>
 #include <nlohmann/json_fwd.hpp>
@@ -15,6 +16,8 @@
 #include <frame/imgui_frames.hpp>
 #include <frame/inspection.hpp>
 #include <frame/palette.hpp>
+#include <frame/picture_changes.hpp>
+#include <frame/picture_mark.hpp>
 
 namespace inkwell::window {
 
@@ -42,12 +45,14 @@ class FrameContent {
   virtual bool is_moving() const = 0;
   /// It has ended by itself, and the loop ends with it.
   virtual bool is_over() const { return false; }
-  /// Of all that lies under the panes, as it was laid out: the same for the same picture.
-  virtual std::uint64_t picture_digest() const = 0;
+  /// Where something is painted under the panes, in screen coordinates.
+  virtual Box canvas() const = 0;
+  /// Of all that is painted there, as it was laid out: the same for the same picture.
+  virtual std::uint64_t canvas_digest() const = 0;
 
   /// The colour of the panes' ground.
   virtual Colour ground() const = 0;
-  /// Paints what lies under the panes into the framebuffer, which has been cleared.
+  /// Paints what lies under the panes into the framebuffer, whose depth and stencil have been cleared there.
   virtual void paint(const Canvas& canvas) = 0;
 
   /// What is known in the frame that was laid out, for an inspection.
@@ -77,21 +82,15 @@ class FrameLoop {
   void run();
 
  private:
-  /// What a frame looks like, without comparing its pixels.
-  struct Look {
-    std::uint64_t picture = 0;
-    std::uint64_t panes = 0;
-    bool smooth = false;
-    bool operator==(const Look&) const = default;
-  };
   struct Frame {
     double now_s;
     Display::Size size;
     bool is_lively;  ///< one of many at the full rate
     bool is_asked;   ///< by an inspection
     bool is_last;
+    bool smooth;
     FrameEvidence evidence;
-    Look look;
+    DrawnPicture picture;
   };
 
   Frame next_frame();
@@ -99,6 +98,8 @@ class FrameLoop {
   void lay_out(Frame& frame);
   bool is_to_be_drawn(Frame& frame);
   void draw(const Frame& frame);
+  std::vector<Box> to_be_drawn(const Frame& frame) const;
+  void draw_part(const Frame& frame, const Box& box);
   void show(const Frame& frame);
 
   Display& display_;
@@ -111,7 +112,8 @@ class FrameLoop {
   FramesReport frames_report_;
   double started_s_;
   double shown_s_;  ///< when the last frame that was shown began
-  Look on_screen_;
+  DrawnPicture on_screen_;
+  PictureMark mark_;  ///< of it
 };
 
 }  // namespace inkwell::window

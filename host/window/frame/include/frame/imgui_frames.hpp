@@ -1,9 +1,12 @@
 // ImGui with its two back ends, for as long as the window is open, and its frames.
 #pragma once
 
+#include <vector>
+
 #include <imgui.h>
 
 #include <frame/key_taps.hpp>
+#include <frame/picture_changes.hpp>
 
 struct GLFWwindow;
 
@@ -22,8 +25,10 @@ class ImGuiFrames {
   void begin();
   ImVec2 size() const;  ///< of the window, in screen coordinates
   void end();
-  const ImDrawData& data() const;  ///< of the frame that has ended
-  void draw() const;               ///< it, into the framebuffer
+  /// What the frame that has ended consists of.
+  std::vector<DrawnPane> panes() const;
+  /// What of it lies in the box, into the framebuffer.
+  void draw(const Box& box) const;
 
  private:
   KeyTaps taps_;

@@ -7,8 +7,6 @@
 #include <string_view>
 #include <type_traits>
 
-#include <imgui.h>
-
 namespace inkwell::window {
 
 class PictureDigest {
@@ -23,17 +21,6 @@ class PictureDigest {
     static_assert(!std::is_pointer_v<Value>, "where something lies says nothing of what it is");
     static_assert(std::has_unique_object_representations_v<Value> || std::is_floating_point_v<Value>);
     add_bytes(&value, sizeof value);
-  }
-  void add(const ImDrawData& data) {
-    for (int i = 0; i < data.CmdListsCount; ++i) {
-      const ImDrawList& list = *data.CmdLists[i];
-      add_bytes(list.VtxBuffer.Data, static_cast<std::size_t>(list.VtxBuffer.size_in_bytes()));
-      add_bytes(list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.size_in_bytes()));
-      for (const ImDrawCmd& command : list.CmdBuffer) {
-        add_bytes(&command.ClipRect, sizeof command.ClipRect);
-        add(command.ElemCount);
-      }
-    }
   }
   std::uint64_t value() const { return value_; }
 

@@ -1,0 +1,68 @@
+// Of the window only what has changed is drawn, and nobody sees that it is drawn in parts.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "window_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+namespace {
+
+double drawn_part(const Sight& sight) { return sight.all.at("drawn_part"); }
+
+/// In it stands how many poses come in a second, which falls while the board stands still.
+bool same_below_the_status_bar(const Image& one, const Image& other) {
+  constexpr std::size_t status_pixels = 54;
+  const auto from = static_cast<std::ptrdiff_t>(3 * status_pixels * one.width);
+  return one.width == other.width && one.height == other.height &&
+         std::equal(one.rgb.begin() + from, one.rgb.end(), other.rgb.begin() + from);
+}
+
+}  // namespace
+
+TEST_CASE("while the sphere moves and the plots scroll, the pane beside them is not drawn anew") {
+  WindowRig rig({"--layout", "overview"});
+  rig.move_to({700, 60});
+  rig.switch_force_on();
+  rig.move_to({700, 60});
+  rig.control.hand({.holds = true, .target_m = {0.0, 0.0, -0.03}, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
+  rig.control.dock(false);
+  std::vector<device::HandWaypoint> path;
+  for (int i = 0; i < 20; ++i) path.push_back({0.5 * i, {i % 2 ? 0.04 : -0.04, 0.0, -0.03}});
+  rig.control.hand_path(path);
+  double least = 1.0, most = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    const double part = drawn_part(rig.look());
+    least = std::min(least, part);
+    most = std::max(most, part);
+  }
+  CHECK(most > 0.2);   // the scene is
+  CHECK(least < 0.8);  // the column of panes is a quarter of the window
+}
+
+TEST_CASE("what was drawn in parts looks as if it were drawn as a whole") {
+  WindowRig rig({"--layout", "contact"});
+  const auto sphere = rig.look().item("scene/sphere").centre();
+  rig.drag(sphere, {sphere.x + 60, sphere.y - 40});
+  rig.release_mouse();
+  rig.click("tabs/Guides");
+  rig.click("tabs/Tuning");
+  rig.click("scope/Pause");
+  rig.click("scope/Signals");
+  rig.look_until("the list is there", [](const Sight& now) { return now.has("scope/search"); });
+  rig.click("scope/Signals");
+  rig.press_key("F1");
+  rig.look_until("the page is there", [](const Sight& now) { return now.has("Keys and mouse/Close"); });
+  rig.click("Keys and mouse/Close");
+  rig.move_to({700, 60});
+  rig.control.run(0.05);  // and stands still
+  const Image in_parts = rig.picture();
+  rig.resize(1200, 700);
+  rig.resize(1280, 800);
+  const Image as_a_whole = rig.picture();
+  CHECK(same_below_the_status_bar(in_parts, as_a_whole));
+}
