@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -39,12 +40,24 @@ std::vector<std::string> draw_as_in_paper(const recording::Recording& recording,
   return experiment::draw_figures(recording, folder, {.wall = {}, .from_s = options.from_s, .to_s = options.to_s});
 }
 
-std::string draw(const recording::Recording& recording, const PlotOptions& options) {
+/// "results/recording"
+std::string name_with_folder(const std::filesystem::path& file) {
+  return (std::filesystem::absolute(file).parent_path().filename() / file.stem()).string();
+}
+
+std::string draw(recording::Recording recording, const PlotOptions& options) {
   if (!options.place.empty() && std::filesystem::path(options.place).extension() != ".png")
     throw UsageError(fmt::format("{} does not end in .png, and a figure is a PNG.", options.place));
   recording::FigureOptions figure{.quantities = {}, .from_s = options.from_s.value_or(0), .to_s = options.to_s};
   std::optional<recording::Overlay> over;
-  if (!options.over.empty()) over.emplace(read_recording(options.over), recording, options.align);
+  if (!options.over.empty()) {
+    auto other = read_recording(options.over);
+    if (other.name == recording.name) {
+      recording.name = name_with_folder(options.file);
+      other.name = name_with_folder(options.over);
+    }
+    over.emplace(std::move(other), recording, options.align);
+  }
   if (over) figure.over = &*over;
   try {
     if (!options.signals.empty()) figure.quantities = recording::parse_quantities(options.signals);
@@ -58,11 +71,11 @@ std::string draw(const recording::Recording& recording, const PlotOptions& optio
 }
 
 int plot(const DeviceOptions& device_options, const PlotOptions& options) {
-  const auto recording = read_recording(options.file);
+  auto recording = read_recording(options.file);
   if (options.as_in_paper)
     tell(device_options, draw_as_in_paper(recording, options));
   else
-    tell(device_options, {draw(recording, options)});
+    tell(device_options, {draw(std::move(recording), options)});
   return 0;
 }
 

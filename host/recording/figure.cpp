@@ -27,6 +27,9 @@ constexpr int names_gap_pixels = 85, names_margin_pixels = 25;        // before 
 constexpr double character_pixels = 11.5, names_parts_maximum = 0.3;  // as wide as names of signals mostly are
 constexpr double tics_maximum = 6;                                    // of the numbers that a pane has room for
 
+constexpr int over_titles_pixels = 30;  // more, for those of what is laid over
+constexpr std::string_view broken = "dashtype (8,5)", separator = "  ·  ";
+
 constexpr std::array colours = {"blue", "vermilion", "green", "purple", "orange", "sky", "ink"};
 
 /// Samples from `begin` up to `end`.
@@ -134,12 +137,13 @@ std::string minute_of(const std::string& utc) {
   return utc.substr(0, date_length) + " " + utc.substr(date_length + 1, minute_length - date_length - 1) + " UTC";
 }
 
-std::string subtitle(const Recording& recording, const Overlay* over) {
+std::string title_of(const Recording& recording) {
+  return recording.name + (recording.information.simulation ? " (simulation)" : "");
+}
+
+std::vector<std::string> facts_of(const Recording& recording) {
   const auto& about = recording.information;
   std::vector<std::string> parts;
-  if (over != nullptr)
-    parts.push_back(fmt::format("broken lines: {}{}, which begins at {:.3f} s", over->recording().name,
-                                over->recording().information.simulation ? " (simulation)" : "", over->begins_s()));
   if (!about.arm.empty()) parts.push_back(about.arm);
   parts.push_back(fmt::format("walls of {} N/m, {} Ns/m", about.parameters[Parameter::wall_stiffness_N_per_m],
                               about.parameters[Parameter::wall_damping_Ns_per_m]));
@@ -147,7 +151,26 @@ std::string subtitle(const Recording& recording, const Overlay* over) {
   parts.push_back(minute_of(about.created_utc));
   if (recording.lost() > 0) parts.push_back(fmt::format("{} samples lost", recording.lost()));
   if (!recording.complete) parts.push_back("cut short");
-  return fmt::format("{}", fmt::join(parts, "  ·  "));
+  return parts;
+}
+
+/// A line of its own below the subtitle: the recording that is laid over, and what differs from the other one.
+std::string over_titles(const Recording& recording, const Overlay& over, int height) {
+  constexpr double over_pixels = 112.0;
+  const auto known = facts_of(recording);
+  std::string text = fmt::format("broken lines: {}, from {:.3f} s on", title_of(over.recording()), over.begins_s());
+  for (const std::string& fact : facts_of(over.recording()))
+    if (std::ranges::find(known, fact) == known.end()) text += fmt::format("{}{}", separator, fact);
+  return fmt::format("set label 4 {} at graph 0, screen {:.4f} left font 'Inter,16' textcolor rgb grey noenhanced\n",
+                     gnuplot_text(text), 1 - over_pixels / height);
+}
+
+/// For the legend: which recording has whole lines, and which broken ones.
+std::string line_kinds(const Recording& recording, const Overlay& over) {
+  return fmt::format(
+      ", \\\n     NaN with lines linewidth 2 linecolor rgb ink title {}, \\\n"
+      "     NaN with lines linewidth 2 linecolor rgb ink {} title {}",
+      gnuplot_text(recording.name), broken, gnuplot_text(over.recording().name));
 }
 
 std::string time_label(const Recording& recording, double shown_s) {
@@ -178,8 +201,8 @@ std::string marks(const Recording& recording, double from_s, double to_s, bool w
 }
 
 /// How far from left to right the panes go: the longest name has room beside them.
-double right_edge(const std::vector<FigurePane>& panes) {
-  std::size_t longest = 0;
+double right_edge(const Recording& recording, const Overlay* over, const std::vector<FigurePane>& panes) {
+  std::size_t longest = over == nullptr ? 0 : std::max(recording.name.size(), over->recording().name.size());
   for (const auto& pane : panes)
     for (const auto quantity : pane.quantities) longest = std::max(longest, name_of(quantity).size());
   const double names_pixels = names_gap_pixels + character_pixels * static_cast<double>(longest) + names_margin_pixels;
@@ -212,18 +235,20 @@ std::string tics_of(const FigurePane& pane, const FigureData& data) {
 std::string script(const Recording& recording, const Overlay* over, const std::vector<FigurePane>& panes,
                    const FigureData& data, double from_s, double to_s) {
   const auto count = static_cast<int>(panes.size());
-  const int height = titles_pixels + count * pane_pixels + (count - 1) * pane_gap_pixels + time_axis_pixels;
+  const int titles = titles_pixels + (over == nullptr ? 0 : over_titles_pixels);
+  const int height = titles + count * pane_pixels + (count - 1) * pane_gap_pixels + time_axis_pixels;
+  const double right = right_edge(recording, over, panes);
   std::string text = figure_head("data.csv", width_pixels, height);
   text += fmt::format(
       "set output 'figure.png'\nset multiplot\nset lmargin at screen 0.115\nset rmargin at screen {0:.4f}\n"
       "set xrange [{1:.6f}:{2:.6f}]\nset xzeroaxis linecolor rgb grey linewidth 1 linetype 1\n"
       "set key at screen {3:.4f}, graph 1 left top font 'Inter,16' spacing 1.1\n",
-      right_edge(panes), from_s, to_s, right_edge(panes) + 0.015);
-  text += figure_titles(recording.name + (recording.information.simulation ? " (simulation)" : ""),
-                        subtitle(recording, over), height);
+      right, from_s, to_s, right + 0.015);
+  text += figure_titles(title_of(recording), fmt::format("{}", fmt::join(facts_of(recording), separator)), height);
+  if (over != nullptr) text += over_titles(recording, *over, height);
   text += marks(recording, from_s, to_s, true);
   text += "set format x ''\nunset xlabel\n";
-  int top = height - titles_pixels;
+  int top = height - titles;
   for (int i = 0; i < count; ++i, top -= pane_pixels + pane_gap_pixels) {
     const auto& pane = panes[static_cast<std::size_t>(i)];
     if (i == 1) {
@@ -249,9 +274,10 @@ std::string script(const Recording& recording, const Overlay* over, const std::v
     for (const auto quantity : held_by(over, pane.quantities)) {
       const auto j = static_cast<std::size_t>(std::find(pane.quantities.begin(), pane.quantities.end(), quantity) -
                                               pane.quantities.begin());
-      curves.push_back({name_over(quantity), fmt::format("{} dashtype 3", colours[j % colours.size()]), ""});
+      curves.push_back({name_over(quantity), fmt::format("{} {}", colours[j % colours.size()], broken), ""});
     }
     text += plot_command(curves);
+    if (i == 0 && over != nullptr) text.insert(text.size() - 1, line_kinds(recording, *over));
   }
   return text + "unset multiplot\n";
 }
