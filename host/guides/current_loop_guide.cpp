@@ -39,6 +39,9 @@ double to_four_digits(double value) {
   return step * std::round(value / step);
 }
 
+/// So that what is nearly nothing is written as 0.0, without a sign.
+double tenths(double value) { return 0.1 * std::round(10.0 * value) + 0.0; }
+
 /// What the steps of this guide tell one another.
 struct Tuning {
   CurrentLoopOptions options;
@@ -339,7 +342,8 @@ class TryGains final : public Step {
           "Motor {}, step of {:.1f} A: 63 % after {:.0f} us (before {:.0f} us), overshoot {:.1f} % (before {:.1f} "
           "%), steady error {:.1f} mA (before {:.1f} mA).",
           tuning_->options.motors[i], after.amplitude_A, 1e6 * after.rise_time_s, 1e6 * before.rise_time_s,
-          1e2 * after.overshoot, 1e2 * before.overshoot, 1e3 * after.steady_error_A, 1e3 * before.steady_error_A));
+          1e2 * after.overshoot, 1e2 * before.overshoot, tenths(1e3 * after.steady_error_A),
+          tenths(1e3 * before.steady_error_A)));
     }
     const std::string reason = fmt::format("for a bandwidth of {:.0f} Hz", tuning_->options.bandwidth_Hz);
     findings_->propose(old_, Parameter::current_proportional_gain_V_per_A, tuning_->gains->proportional_V_per_A,

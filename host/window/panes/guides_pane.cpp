@@ -36,8 +36,6 @@ Colour outcome_colour(Phase phase, const Palette& palette) {
   }
 }
 
-constexpr float under_curves_points = 54.0f;  // the curves' names
-
 class GuidesPane final : public Pane {
  public:
   explicit GuidesPane(const PaneSurroundings& around)
@@ -77,6 +75,7 @@ class GuidesPane final : public Pane {
   ValueFields fields_;
   float bandwidth_Hz_ = static_cast<float>(guides::bandwidth_default_Hz);
   std::optional<guides::Guide> guide_;
+  guides::Applied shown_applied_{};  ///< in the frame before
   std::optional<guides::SimulatedUser> user_;
   std::string user_problem_;
   std::vector<protocol::Signal> signals_;
@@ -128,11 +127,14 @@ void GuidesPane::cancel() {
 void GuidesPane::draw(const PaneFrame& frame) {
   const Style& style = frame.style;
   if (!guide_) {
-    draw_offers(style);
+    if (ImGui::BeginChild("offers")) draw_offers(style);
+    ImGui::EndChild();
   } else {
     text(style.fonts.strong, style.palette->text, guide_->title());
     const float room = ImGui::GetFrameHeightWithSpacing() + style.points(6);
     if (ImGui::BeginChild("guide", {0, -room})) {
+      if (const auto applied = guide_->applied(); std::exchange(shown_applied_, applied) != applied)
+        ImGui::SetScrollY(0.0f);  // what became of it stands on top
       if (guide_->is_over()) {
         draw_result(style);
       } else {
@@ -285,9 +287,10 @@ void GuidesPane::draw_curves(const Style& style) {
   ImGui::Dummy({0, style.points(6)});
   text(style.fonts.strong, palette.text, "Step response");
   const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float row_height = style.fonts.caption->FontSize + ImGui::GetStyle().ItemSpacing.y,
+              names_height = static_cast<float>((curves.size() + 1) / 2) * row_height + style.points(6);
   const float width = ImGui::GetContentRegionAvail().x,
-              height = std::clamp(ImGui::GetContentRegionAvail().y - style.points(under_curves_points),
-                                  style.points(90), style.points(260));
+              height = std::clamp(ImGui::GetContentRegionAvail().y - names_height, style.points(90), style.points(260));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const PlotArea area{{corner.x + style.points(38), corner.y},
                       {corner.x + width - style.points(4), corner.y + height - style.points(20)},
