@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <frame/inspection.hpp>
+#include <frame/picture_changes.hpp>
 #include <frame/widgets.hpp>
 
 #include "renderer.hpp"
@@ -26,12 +27,18 @@ constexpr std::array<Colour, 3> axis_colours{scene_colours::axis_x, scene_colour
 
 glm::vec2 to_glm(ImVec2 vector) { return {vector.x, vector.y}; }
 
-// A label on a quiet plate, so that it can be read over anything.
-void plate(ImDrawList& list, const Style& style, ImVec2 place, Colour colour, const std::string& content) {
+// Around a text.
+Box plate_of(const Style& style, ImVec2 place, const std::string& content) {
   const ImVec2 taken = ImGui::CalcTextSize(content.c_str());
   const float pad = style.points(5);
-  list.AddRectFilled({place.x - pad, place.y - pad * 0.5f}, {place.x + taken.x + pad, place.y + taken.y + pad * 0.5f},
-                     packed(style.palette->pane.with_alpha(205)), style.points(4));
+  return {place.x - pad, place.y - pad * 0.5f, place.x + taken.x + pad, place.y + taken.y + pad * 0.5f};
+}
+
+// A label on a quiet plate, so that it can be read over anything.
+void plate(ImDrawList& list, const Style& style, ImVec2 place, Colour colour, const std::string& content) {
+  const Box box = plate_of(style, place, content);
+  list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, packed(style.palette->pane.with_alpha(205)),
+                     style.points(4));
   list.AddText(place, packed(colour), content.c_str());
 }
 
@@ -212,6 +219,7 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
     list.AddCircle(probe, style.points(15), packed(scene_colours::probe.with_alpha(190)), 0, style.points(1.5f));
   }
   const float force_N = glm::length(scene_.force_N);
+  Box force_plate;
   if (force_N > 0.02f) {
     const ImVec2 tip = on_screen(force_arrow_tip_m(scene_));
     const std::string label = fmt::format("{:.2f} N", force_N);
@@ -219,7 +227,9 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
     const bool to_the_left = tip.x < on_screen(scene_.probe_m).x;
     const float left =
         to_the_left ? tip.x - ImGui::CalcTextSize(label.c_str()).x - style.points(10) : tip.x + style.points(10);
-    plate(list, style, {left, tip.y - style.points(8)}, palette.text, label);
+    const ImVec2 corner{left, tip.y - style.points(8)};
+    plate(list, style, corner, palette.text, label);
+    force_plate = plate_of(style, corner, label);
   }
   if (scene_.in_contact) draw_proxy_label(list, style);
   if (hand_view_) {
@@ -232,7 +242,10 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
       const bool to_the_left = place.x < on_screen(scene_.probe_m).x;
       const float left =
           to_the_left ? place.x - ImGui::CalcTextSize(label.c_str()).x - style.points(16) : place.x + style.points(16);
-      plate(list, style, {left, place.y - style.points(22)}, palette.text_quiet, label);
+      ImVec2 corner{left, place.y - style.points(22)};
+      if (const Box box = plate_of(style, corner, label); !common(box, force_plate).is_empty())
+        corner.y -= box.bottom - force_plate.top + style.points(2);
+      plate(list, style, corner, palette.text_quiet, label);
     }
   }
   float room_x = origin_.x + size_.x - style.points(16);
