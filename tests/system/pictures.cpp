@@ -103,6 +103,28 @@ TEST_CASE("pictures: small and large windows, and 192 dots per inch" * doctest::
     }
 }
 
+TEST_CASE("pictures: a soft wall, what the proxy is, and a fault that was put in" * doctest::skip()) {
+  WindowRig rig({"--layout", "wall"});
+  rig.enter("tuning/wall_stiffness_N_per_m", "250");
+  rig.press_key("Return");
+  push_into_two_walls(rig);
+  rig.picture(picture_file("soft-wall"));
+  rig.release_mouse();
+  rig.click("tabs/Faults");
+  const auto start_m = rig.true_probe_m();
+  rig.control.hand({.holds = true, .target_m = start_m, .stiffness_N_per_m = 600, .damping_Ns_per_m = 6});
+  rig.control.hand_path({{0.0, start_m}, {0.8, {0.0, 0.0, -0.03}}, {1.6, {0.095, 0.0, -0.03}}});
+  rig.control.run(2.0);
+  rig.control.resume();
+  rig.look_until("it presses", [](const Sight& now) { return now.has("scene/proxy"); });
+  rig.move_to(rig.look().item("scene/proxy").centre());
+  rig.picture(picture_file("proxy"));
+  rig.move_to(aside);
+  rig.control.inject({.fault = "shunt_high", .of = "1"});
+  rig.look_until("it is noticed", [](const Sight& now) { return now.state() == "fault" && now.says("Told since: "); });
+  rig.picture(picture_file("injected-fault"));
+}
+
 TEST_CASE("pictures: the sliders of every group of parameters" * doctest::skip()) {
   WindowRig rig;
   constexpr int rows_that_fit = 18, wheel_steps_over_all = 12;
@@ -185,22 +207,28 @@ TEST_CASE("pictures: values that are not stored, the questions, and a reconnecti
     }
 }
 
-TEST_CASE("pictures: a guide with its result" * doctest::skip()) {
-  WindowRig rig({"--layout", "paper"});
-  rig.click("tabs/Guides");
-  rig.move_to(aside);
-  rig.picture(picture_file("guides"));
-  rig.click("guides/Current-loop tuning");
-  rig.look_until("the guide has finished", [&](const Sight& now) {
-    if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
-    return now.has("guides/Apply");
-  });
-  rig.move_to(aside);
-  rig.picture(picture_file("guide"));
-  rig.click("guides/Apply");
-  rig.look_until("it offers to store", [](const Sight& now) { return now.has("guides/Store on the board"); });
-  rig.move_to(aside);
-  rig.picture(picture_file("guide, applied"));
+TEST_CASE("pictures: a guide with its result, in a small window too" * doctest::skip()) {
+  for (const bool is_small : {false, true}) {
+    WindowRig rig({"--layout", "paper", "--width", is_small ? "900" : "1280", "--height", is_small ? "560" : "800"});
+    const auto photograph = [&](const std::string& what) {
+      rig.move_to(is_small ? Point{300, 110} : aside);
+      rig.picture(picture_file(what + (is_small ? ", small" : "")));
+    };
+    rig.click("tabs/Guides");
+    photograph("guides");
+    rig.scroll_down(rig.look().item("guides/Directions").centre(), 20);
+    rig.click("guides/Current-loop tuning");
+    rig.look_until("the guide has finished", [&](const Sight& now) {
+      if (now.can_click("guides/Confirm")) rig.click(now.item("guides/Confirm").centre());
+      return now.has("guides/Apply");
+    });
+    photograph("guide");
+    rig.scroll_down(rig.look().item("guides/Apply").at(0.5, -3), 20);
+    photograph("guide, the rest");
+    rig.click("guides/Apply");
+    rig.look_until("it offers to store", [](const Sight& now) { return now.has("guides/Store on the board"); });
+    photograph("guide, applied");
+  }
 }
 
 TEST_CASE("pictures: faults put into the simulation, dark and light, large and small" * doctest::skip()) {
