@@ -90,6 +90,14 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
   counts[0] = 104;
   for (std::uint32_t i = 0; i < InkwellReference::still_periods + 2; ++i) update_reference(reference, counts, true);
   CHECK(reference.counts[0] == 104);
+
+  // Forgotten while the stylus rests there: it is taken once more after as long.
+  forget(reference);
+  CHECK_FALSE(reference.valid);
+  for (std::uint32_t i = 0; i < InkwellReference::still_periods; ++i)
+    CHECK_FALSE(update_reference(reference, counts, true));
+  CHECK(update_reference(reference, counts, true));
+  CHECK(reference.valid);
 }
 
 }  // namespace

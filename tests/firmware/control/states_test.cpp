@@ -2,6 +2,8 @@
 // motors when it goes.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "arms.hpp"
 #include "simulated_arm.hpp"
 
@@ -121,6 +123,12 @@ TEST_CASE("while the force rises a limit is not told") {
   CHECK(controller.state() == State::ramping);
 }
 
+float speed_m_per_s(const Controller& controller) {
+  const auto signals = controller.signals();
+  return std::hypot(signals[protocol::Signal::velocity_x_m_s], signals[protocol::Signal::velocity_y_m_s],
+                    signals[protocol::Signal::velocity_z_m_s]);
+}
+
 /// Spins the waist until the probe is faster than its limit.
 control::Drive let_loose(Controller& controller, Samples& samples, const Settings& settings) {
   control::Drive drive;
@@ -141,6 +149,22 @@ TEST_CASE("an arm that is let loose is braked from the same period on, until it 
   CHECK(drive.brake);
   CHECK(tests::run(controller, samples, settings, 1).brake);
   CHECK_FALSE(tests::run(controller, samples, settings, 1'000).brake);
+}
+
+TEST_CASE("an arm whose force a user stops is not braked, however fast it is") {
+  const Settings settings = free_space();
+  Samples samples = tests::samples_at_rest();
+  Controller controller = tests::active_controller(settings);
+  for (int i = 0; i < 20; ++i) {
+    samples.encoder_counts[0] += i % 2;  // some 0.3 m/s, below its limit
+    tests::run(controller, samples, settings, 1);
+  }
+  controller.carry_out(tests::command(Command::stop));
+  const control::Drive drive = tests::run(controller, samples, settings, 1);
+  CHECK(controller.state() == State::ready);
+  CHECK(speed_m_per_s(controller) > control::Brake::speed_m_per_s);
+  CHECK_FALSE(drive.enabled);
+  CHECK_FALSE(drive.brake);
 }
 
 TEST_CASE("the brake ends with the fault, and with a bridge that cannot be trusted") {

@@ -43,6 +43,17 @@ TEST_CASE("a test pulse of current: its motor only, its time, its limit, then ze
   CHECK(controller.state() == State::ready);
 }
 
+TEST_CASE("a test pulse of current is the loop's: where the current is there it drives nothing") {
+  const Settings settings = control::prepare(tests::paper_parameters());
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  samples.current_A[1] = 0.2f;
+  controller.carry_out(pulse(Command::test_current, 2, 0.2f, 0.01f));
+  const Drive drive = tests::run(controller, samples, settings, 1);
+  CHECK(drive.enabled);
+  for (const float duty : drive.duty) CHECK(duty == doctest::Approx(0.0));
+}
+
 TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
   const Settings settings = control::prepare(tests::paper_parameters());
   Controller controller = tests::ready_controller(settings);
@@ -51,6 +62,9 @@ TEST_CASE("a test pulse of voltage sets the duty whatever the current does") {
   controller.carry_out(pulse(Command::test_voltage, 3, -0.1f * board::supply_nominal_V, 0.005f));
   Drive drive = tests::run(controller, samples, settings, 100);
   CHECK(drive.duty[2] == doctest::Approx(-0.1f).epsilon(1e-4));
+  CHECK(drive.duty[0] == 0.0f);
+  CHECK(drive.duty[1] == 0.0f);
+  CHECK(controller.signals()[Signal::current_reference_3_A] == 0.0f);
   drive = tests::run(controller, samples, settings, 100);
   CHECK(drive.enabled);
   CHECK(drive.duty[2] == 0.0f);

@@ -149,6 +149,15 @@ TEST_CASE("swapped current wires, and two that touch, are told by the wires' ite
   CHECK(found.wires.figure == doctest::Approx(0.67).epsilon(0.05));
 }
 
+TEST_CASE("of several wires that fail the largest current is told") {
+  Bench swapped;
+  std::swap(swapped.simulated.motors[0].sensor, swapped.simulated.motors[1].sensor);
+  swapped.simulated.motors[1].resistance_ohm *= 1.3f;
+  const auto found = swapped.judgement();
+  CHECK(found.wires.result == SelfTestResult::failed);
+  CHECK(found.wires.figure == doctest::Approx(0.67).epsilon(0.05));
+}
+
 TEST_CASE("with the arm in motion a failure is none yet; the direction does not matter") {
   for (const float counts_per_period : {0.2f, -0.2f}) {
     Bench bench;

@@ -43,10 +43,7 @@ struct SupplyRipple {
 /// One look, at `now_periods` of the control period's count, which may skip some and wraps. True while there were so
 /// many changes within that time.
 inline bool ripples(SupplyRipple& ripple, std::uint16_t supply_counts, std::uint32_t now_periods) {
-  if (ripple.mean_counts < 0) {
-    ripple.mean_counts = supply_counts * SupplyRipple::mean_periods;
-    ripple.looked_at_periods = now_periods;
-  }
+  if (ripple.mean_counts < 0) ripple.mean_counts = supply_counts * SupplyRipple::mean_periods;
   constexpr auto all = static_cast<std::uint32_t>(SupplyRipple::mean_periods);
   const auto passed_periods = static_cast<std::int32_t>(std::min(now_periods - ripple.looked_at_periods, all));
   ripple.looked_at_periods = now_periods;
