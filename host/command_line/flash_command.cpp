@@ -125,11 +125,10 @@ void add_flash_command(const Place& place) {
       "because its button BOOT0 was held while its power came on, is found there. Stored parameters stay. If it is\n"
       "stopped in the middle, the same command again goes on.");
   const auto given = std::make_shared<FlashOptions>();
-  command->add_option(
-      "IMAGE", given->image,
-      "ELF of a firmware; unless given, the one beside this program for the board that is there, which a "
-      "probe cannot ask: --swd takes that for " +
-          std::string(board::default_board.name));
+  command->add_option("IMAGE", given->image,
+                      "ELF of a firmware; unless given, that beside this program for the board that is there.\n"
+                      "A probe cannot ask which: --swd takes that for " +
+                          std::string(board::default_board.name));
   auto* by_usb = command->add_flag("--dfu", given->by_usb, "Over USB, which is the choice without any");
   auto* by_probe =
       command->add_flag("--swd", given->by_probe, "By a debug probe at the board's SWD connector, with openocd");
