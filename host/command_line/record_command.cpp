@@ -172,8 +172,8 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
                                                arm_name(device_options), connection.endpoint.is_virtual);
   std::optional<ForceSwitch> force;
   if (options.force) force.emplace(device);
+  device.select_signals(signals);  // first: a scope that another program has must leave no file
   recording::Recorder recorder(options.file, information);
-  device.select_signals(signals);
   std::string failure;
   std::optional<std::string> force_went_off;
   try {

@@ -2,11 +2,15 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <filesystem>
 #include <optional>
+#include <string>
+#include <thread>
 
 #include <device/driver_claim.hpp>
 
 #include "board_rig.hpp"
+#include "program.hpp"
 
 namespace inkwell::tests {
 namespace {
@@ -80,6 +84,21 @@ TEST_CASE(
   rig.device->select_signals(scope_signals);
   rig.run(0.05);
   CHECK(rig.device->read_scope(0ms).has_value());
+}
+
+TEST_CASE("a recording that may not have the scope leaves no file in the way of the next try") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("push.csv");
+  const device::VirtualBoard board({.mode = device::SimulationMode::fast, .real_time = true});
+  while (!board.find()) std::this_thread::sleep_for(10ms);
+  const auto other = device::Device::open(*board.find());
+  other->select_signals(scope_signals);
+  const auto result =
+      run_program("inkwell", {"record", file, "--seconds", "0.1", "--usbip", std::to_string(board.usbip_port())});
+  INFO(result.out, result.err);
+  CHECK(result.exit_code == 1);
+  CHECK(result.err.find("scope is in use") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(file));
 }
 
 TEST_CASE("two programs that both want to drive: the second is told who the first is") {
