@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -22,6 +23,7 @@
 
 #include <installation/places.hpp>
 #include <known/boards.hpp>
+#include <protocol/image_identity.hpp>
 
 namespace inkwell::device {
 namespace {
@@ -76,6 +78,16 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   if (options.strict) arguments.push_back("--strict");
   if (!options.profile.empty()) arguments.insert(arguments.end(), {"--profile", options.profile.string()});
   return arguments;
+}
+
+/// The board that the firmware in a flash file is for; empty if it holds none for a board that is known.
+std::string board_in(const std::filesystem::path& flash) {
+  std::ifstream file(flash, std::ios::binary);
+  protocol::ImageIdentity identity{};
+  file.seekg(protocol::image_identity_offset);
+  file.read(reinterpret_cast<char*>(&identity), sizeof identity);
+  if (!file || !identity.is_there() || board::find_board(identity.board_name()) == nullptr) return {};
+  return std::string(identity.board_name());
 }
 
 std::filesystem::path firmware_for(const std::string& name) {
@@ -169,7 +181,8 @@ struct VirtualBoard::Implementation {
 
 VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_(std::make_unique<Implementation>()) {
   const auto program = options.program.empty() ? installation::virtual_board() : options.program;
-  const auto elf = options.elf.empty() ? firmware_for(options.board) : options.elf;
+  const auto elf =
+      options.elf.empty() ? firmware_for(options.board.empty() ? board_in(options.flash) : options.board) : options.elf;
   if (access(program.c_str(), X_OK) != 0)
     throw Error(fmt::format("The program {} is missing. Build it with tools/build, or install Inkwell again.",
                             program.string()));

@@ -88,6 +88,22 @@ TEST_CASE("a board's name is told with its versions") {
   CHECK(nlohmann::json::parse(json.out).at("board") == "bench_modules");
 }
 
+TEST_CASE("a flash file that holds a board's firmware gets none of another board") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("board.flash");
+  const auto board_of = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"info", "--virtual", "--flash", file, "--json"});
+    const auto result = run_program("inkwell", words);
+    INFO(result.err);
+    REQUIRE(result.exit_code == 0);
+    return nlohmann::json::parse(result.out).at("board").get<std::string>();
+  };
+  CHECK(board_of({}) == board::default_board.name);  // a new chip
+  CHECK(board_of({"--board", "bench_modules"}) == "bench_modules");
+  CHECK(board_of({}) == "bench_modules");
+  CHECK(board_of({"--board", "omni_driver"}) == "omni_driver");
+}
+
 TEST_CASE("the firmware of one board, flashed on another, shows no device and drives no motor") {
   auto options = stepped_board(device::SimulationMode::fast, device::CyclePricing::likely);
   options.elf = build_directory() + "/../board/" + board::image_name(board::bench_modules);
