@@ -24,6 +24,11 @@ Supervisor in(State state) { return {state, Fault::none}; }
 State next(State state, Events now) { return advance(in(state), {now, 0}).state; }
 Supervisor faulty(Fault fault) { return {State::fault, fault}; }
 
+TEST_CASE("what has no row in the table of what is watched has a place behind it") {
+  CHECK(protocol::place_of(Fault::none) == protocol::watch_table.size());
+  CHECK(protocol::place_of(static_cast<Fault>(protocol::fault_code_end)) == protocol::watch_table.size());
+}
+
 TEST_CASE("the way from power-up to force") {
   CHECK(next(State::starting, events(Event::enable)) == State::starting);
   CHECK(next(State::starting, events(Event::enable, Event::measured)) == State::testing);
