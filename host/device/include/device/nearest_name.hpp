@@ -34,7 +34,8 @@ std::string suggestion(const Table& table, std::string_view typed) {
   for (const auto& row : table) {
     const std::string_view& name = row.name;
     if (!is_near(name, typed)) continue;
-    const std::pair distance(name.find(typed) == std::string_view::npos, edit_distance(typed, name, std::max(typed.size(), name.size())));
+    const std::pair distance(name.find(typed) == std::string_view::npos,
+                             edit_distance(typed, name, std::max(typed.size(), name.size())));
     if (nearest != nullptr && shortest <= distance) continue;
     nearest = &name;
     shortest = distance;

@@ -111,8 +111,8 @@ class FirmwareOnBus final : private virtual_board::RootPort::Client {
   /// Enumerates and configures the device; throws std::runtime_error if it does not come within a second.
   void connect();
   void run_for(double time_s) { chip.run_until(chip.now() + ticks(time_s)); }
-  /// A control transfer; its status, and what came in. Throws std::runtime_error if it does not end within two seconds: the
-  /// flash takes one for a sector.
+  /// A control transfer; its status, and what came in. Throws std::runtime_error if it does not end within two
+  /// seconds: the flash takes one for a sector.
   struct Answer {
     std::int32_t status;
     std::vector<std::byte> data;

@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <protocol/store.hpp>
@@ -25,7 +26,10 @@ constexpr float default_stiffness = 800.0f;
 
 struct StoringBoard {
   explicit StoringBoard(const ChipOptions& options = {}) : bus(flashed_image(), 0.0, options) {
-    bus.chip.on_reset = [this](ResetCause cause) { resets += cause == ResetCause::independent_watchdog; };
+    bus.chip.on_reset = [this](ResetCause cause) {
+      if (cause == ResetCause::power_on) trial_is_due = true;
+      if (cause == ResetCause::independent_watchdog) resets += std::exchange(trial_is_due, false) ? 0 : 1;
+    };
   }
 
   void start() {
@@ -78,7 +82,8 @@ struct StoringBoard {
   }
 
   FirmwareOnBus bus;
-  unsigned resets = 0;  ///< by the watchdog
+  bool trial_is_due = true;  ///< of the watchdog, when the power has come
+  unsigned resets = 0;       ///< by the watchdog at other times
   std::uint8_t token = 0;
 };
 
