@@ -66,6 +66,7 @@ BOTH_MEANINGS = "the SVD has both its meanings, for isochronous endpoints and th
 def known_differences() -> list[Known]:
     return [
         Known("ADC_COMMON", None, None, "C_ADC", "the SVD's name for what the three converters share"),
+        Known("FLASH_PROGRAMMING", None, None, "FLASH", "the part of the flash's registers that a driver owns"),
         Known("SIGNATURE", None, None, None, 'not in the SVD; RM0090, "Unique device ID register": 0x1FFF7A10'),
         Known("CORE_DEBUG", None, None, None, "not in the SVD; ARMv7-M Architecture Reference Manual: DEMCR at 0xE000EDFC"),
         Known("DWT", None, None, None, "not in the SVD; ARMv7-M Architecture Reference Manual: DWT_CTRL at 0xE0001000"),
