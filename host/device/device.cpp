@@ -178,6 +178,10 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
                     "arm or recording, or use a program of its own for each of them.",
                     law.name, joined_force_law()));
   device->implementation_->force_law = std::make_shared<const ForceLaw>(std::move(law));
+  try {
+    device->implementation_->decoder.forget_before(device->frame().time_periods);
+  } catch (const Stalled&) {  // a bus without frames: nobody has read anything since the board started
+  }
   return device;
 }
 

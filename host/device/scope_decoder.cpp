@@ -6,6 +6,9 @@
 namespace inkwell::device {
 namespace {
 
+/// Right across the wrap of the period counter.
+bool is_before(std::uint32_t period, std::uint32_t other) { return period - other > 0x8000'0000u; }
+
 using protocol::SignalWire;
 
 /// Reads values one after another; `ok` turns false instead of reading past the end.
@@ -98,6 +101,7 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> fram
   if (header.magic != protocol::scope_magic) return refuse_all_but_a_rest();
   if (header.length != frame.size()) return refuse();
   if (token_ != header.selection_token) return std::nullopt;
+  if (first_wanted_period_ && is_before(header.first_period, *first_wanted_period_)) return std::nullopt;
   may_begin_with_rest_ = false;
   if (header.signal_count != signals_.size() || header.encoding != encoding_for(selection_) ||
       header.sample_count == 0 || signals_.empty())
@@ -105,7 +109,7 @@ std::optional<ScopeSamples> ScopeDecoder::decode(std::span<const std::byte> fram
 
   // Time does not run backwards: this frame or the one before it lied. Neither can be told apart, so this one is
   // refused and the next is measured against it.
-  const bool runs_backwards = next_period_ && header.first_period - *next_period_ > 0x8000'0000u;
+  const bool runs_backwards = next_period_ && is_before(header.first_period, *next_period_);
   if (runs_backwards) {
     next_period_ = header.first_period + header.sample_count;
     return refuse();

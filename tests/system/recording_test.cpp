@@ -1,12 +1,16 @@
 // Recordings through the command line: from the virtual board to the file, back, and on paper.
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <thread>
 
 #include <nlohmann/json.hpp>
 
+#include <device/virtual_board.hpp>
 #include <recording/recording.hpp>
 #include <recording/signals.hpp>
 
@@ -92,6 +96,27 @@ TEST_CASE("a recording holds every control period, and says where it comes from"
     CHECK(refused.exit_code == 2);
     CHECK(refused.err.find("exists") != std::string::npos);
     CHECK(recording::read(file).size() == 30'000);
+  }
+}
+
+TEST_CASE("a recording on a board that has run on since another one holds nothing of that one") {
+  const TemporaryDirectory directory;
+  device::VirtualBoard board{{.seed = 1}};
+  auto control = board.control();
+  while (!board.find()) control.run(0.1);
+  control.resume();
+  constexpr double recorded_s = 0.3;
+  for (const double pause_s : {0.0, 0.1, 2 * recorded_s}) {
+    CAPTURE(pause_s);
+    std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));  // board time passes at least as fast
+    const std::string file = directory.file(std::to_string(pause_s) + ".h5");
+    const auto run = run_program("inkwell", {"record", file, "--seconds", std::to_string(recorded_s), "--json",
+                                             "--usbip", "127.0.0.1:" + std::to_string(board.usbip_port())});
+    INFO("standard error: ", run.err);
+    REQUIRE(run.exit_code == 0);
+    const auto status = json::parse(run.out);
+    CHECK(status["samples"] == 6'000);
+    CHECK(status["lost"] == 0);
   }
 }
 

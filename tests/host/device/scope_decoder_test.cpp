@@ -69,6 +69,20 @@ device::ScopeDecoder decoder_for(const std::vector<Signal>& signals) {
 
 }  // namespace
 
+TEST_CASE("a frame of an earlier program is none, though its token is the same; the counter may wrap meanwhile") {
+  for (const std::uint32_t begin : {1'000u, 5u}) {
+    CAPTURE(begin);
+    device::ScopeDecoder decoder;
+    decoder.forget_before(begin);
+    decoder.expect(token, few);
+    CHECK_FALSE(decoder.decode(full_frame(0, begin - 40)));
+    const auto samples = decoder.decode(full_frame(1, begin));
+    REQUIRE(samples);
+    CHECK(samples->first_period == begin);
+    CHECK(decoder.malformed_frames() == 0);
+  }
+}
+
 TEST_CASE("a full frame gives every signal in its unit") {
   auto decoder = decoder_for(few);
   const auto samples = decoder.decode(full_frame(0, 1000));

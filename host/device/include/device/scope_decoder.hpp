@@ -27,6 +27,10 @@ class ScopeDecoder {
   /// Tells what the select_signals command with this token asked for. At most scope_signals_maximum signals.
   void expect(std::uint8_t token, std::vector<protocol::Signal> signals);
 
+  /// What was sampled before this control period was for a program that ran earlier, whatever its token: an endpoint may
+  /// hold its last frame for hours.
+  void forget_before(std::uint32_t period) { first_wanted_period_ = period; }
+
   /// The samples of one frame. None if the frame is malformed (counted) or answers another selection than the
   /// newest (a left-over of the one before, or of a program that ran earlier).
   ///
@@ -49,6 +53,7 @@ class ScopeDecoder {
   protocol::SignalSelection selection_{};
   std::optional<std::uint8_t> token_;
   std::optional<std::uint32_t> next_period_;
+  std::optional<std::uint32_t> first_wanted_period_;
   bool may_begin_with_rest_ = false;  ///< of a frame whose begin went to the reader before
   std::uint64_t malformed_frames_ = 0;
 };
