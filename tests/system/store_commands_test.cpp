@@ -173,7 +173,7 @@ TEST_CASE("a virtual board of one command remembers in a file what was stored") 
     const auto held = run({"parameters", "get", proposal.at("parameter")});
     CHECK(std::stod(held.out) == doctest::Approx(proposal.at("proposed").get<double>()));
   }
-  const auto again = run({"tune", "current-loop", "--motor", "2", "--yes", "--apply", "--json"});
+  const auto again = run({"tune", "current-loop", "--motor", "2", "--bandwidth", "600", "--yes", "--apply", "--json"});
   CHECK(nlohmann::json::parse(again.out).at("stored") == false);
   CHECK(again.err.find("`inkwell parameters store` keeps them") != std::string::npos);
 }

@@ -27,8 +27,8 @@ class ScopeDecoder {
   /// Tells what the select_signals command with this token asked for. At most scope_signals_maximum signals.
   void expect(std::uint8_t token, std::vector<protocol::Signal> signals);
 
-  /// What was sampled before this control period was for a program that ran earlier, whatever its token: an endpoint may
-  /// hold its last frame for hours.
+  /// What was sampled before this control period was for a program that ran earlier, whatever its token: an endpoint
+  /// may hold its last frame for hours.
   void forget_before(std::uint32_t period) { first_wanted_period_ = period; }
 
   /// The samples of one frame. None if the frame is malformed (counted) or answers another selection than the
