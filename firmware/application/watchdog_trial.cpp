@@ -29,7 +29,9 @@ void wait_for_bite() {
   constexpr std::uint32_t cycles_per_us = drivers::internal_oscillator_Hz / 1'000'000;
   static_cast<void>(watchdog.start());  // main() starts it again, and tells whether it took its time
   const std::uint32_t from_cycles = drivers::CycleCounter::now();
-  while (waited_us < patience_us) waited_us = (drivers::CycleCounter::now() - from_cycles) / cycles_per_us;
+  std::uint32_t waited_now_us;
+  do waited_us = waited_now_us = (drivers::CycleCounter::now() - from_cycles) / cycles_per_us;
+  while (waited_now_us < patience_us);
 }
 
 }  // namespace
@@ -37,7 +39,6 @@ void wait_for_bite() {
 WatchdogTrial try_watchdog(const drivers::ResetCause& cause) {
   // With BOOT0 held high the bite would lead back into the boot loader that has just let the firmware start.
   if (cause.power_on() && !drivers::started_by_boot_loader()) {
-    waited_us = 0;
     kept_course.leave({cause.flags, Outcome::open});
     wait_for_bite();
     kept_course.leave({cause.flags, Outcome::none});
