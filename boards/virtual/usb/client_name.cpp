@@ -22,7 +22,9 @@ std::string link_of_socket(std::uint16_t port) {
     std::string number, local, ignored, inode;
     words >> number >> local;
     for (int i = 0; i < 7; ++i) words >> ignored;
-    if (words >> inode && local == address.str()) return "socket:[" + inode + "]";
+    const bool is_open =
+        words >> inode && inode != "0";  // a connection of the past that had this port may still stand here
+    if (is_open && local == address.str()) return "socket:[" + inode + "]";
   }
   return {};
 }
