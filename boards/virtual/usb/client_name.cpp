@@ -22,8 +22,8 @@ std::string link_of_socket(std::uint16_t port) {
     std::string number, local, ignored, inode;
     words >> number >> local;
     for (int i = 0; i < 7; ++i) words >> ignored;
-    const bool is_open =
-        words >> inode && inode != "0";  // a connection of the past that had this port may still stand here
+    // A connection of the past that had this port may still stand here, without a socket.
+    const bool is_open = words >> inode && inode != "0";
     if (is_open && local == address.str()) return "socket:[" + inode + "]";
   }
   return {};
