@@ -21,7 +21,7 @@ struct Course {
 [[gnu::section(".noinit")]] volatile std::uint32_t waited_us;
 
 /// 20 ms by its oscillator, which has 17 to 47 kHz, and some of its cycles; the internal oscillator by which it is
-/// measured is off by 4 % at most (data sheet).
+/// measured is off by 4 % at most from -10 to 85 degrees (data sheet).
 constexpr std::uint32_t earliest_us = 13'000, latest_us = 40'000, patience_us = 100'000;
 
 /// Returns only if it does not bite.
