@@ -109,6 +109,15 @@ bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size) 
   return button(label, size);
 }
 
+bool begin_combo(const char* label, std::string_view shown, float width, ImGuiComboFlags flags) {
+  const float arrow = ImGui::GetFrameHeight();
+  ImGui::SetNextItemWidth(width);
+  const float room = width - arrow - 2.0f * ImGui::GetStyle().FramePadding.x;
+  const bool is_open = ImGui::BeginCombo(label, fitted(shown, room).c_str(), flags);
+  if (!is_open) note_item(label);
+  return is_open;
+}
+
 bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags) {
   return begin_top_pane(name, place, size, ImGuiWindowFlags_NoBringToFrontOnFocus | flags);
 }
@@ -126,7 +135,7 @@ void end_pane() { ImGui::End(); }
 float splitter(const char* name, ImVec2 place, ImVec2 size, bool vertical, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2{1, 1});
-  begin_pane(name, place, size);
+  begin_pane(name, place, size, ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::InvisibleButton("handle", size);
   note_item("handle");
   const bool lively = ImGui::IsItemHovered() || ImGui::IsItemActive();

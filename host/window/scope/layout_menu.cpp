@@ -10,14 +10,13 @@ namespace inkwell::window {
 
 void LayoutMenu::draw(ScopeLayout& layout, const Style& style) {
   const bool is_changed = layout != layout_named(layout.name, own_);
-  ImGui::SetNextItemWidth(style.points(128));
-  if (ImGui::BeginCombo("##layout", (layout.name + (is_changed ? ", changed" : "")).c_str(),
-                        ImGuiComboFlags_HeightLargest)) {
+  const std::string shown = layout.name + (is_changed ? ", changed" : "");
+  if (begin_combo("##layout", shown, style.points(128), ImGuiComboFlags_HeightLargest)) {
     draw_choices(layout);
     ImGui::EndCombo();
   }
-  help_on_hover("Layout",
-                "What the plots show. \"paper\" has the paper's figures 11 to 14. Save your own under a name.", style);
+  help_on_hover(shown, "What the plots show. \"paper\" has the paper's figures 11 to 14. Save your own under a name.",
+                style);
   if (task_ != NameTask::none) draw_name(layout, style);
 }
 

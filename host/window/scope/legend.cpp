@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <frame/inspection.hpp>
 #include <frame/widgets.hpp>
 
 namespace inkwell::window {
@@ -36,14 +37,27 @@ std::vector<std::string> names_on_y_axis(const ScopePlot& plot) {
 // "penetration_x" -> "x"
 std::string last_word(const std::string& name) { return name.substr(name.rfind('_') + 1); }
 
+std::vector<std::string> last_words(const ScopePlot& plot) {
+  std::vector<std::string> words;
+  for (const ScopeSignal& signal : std::span(plot.signals).subspan(first_on_y_axis(plot)))
+    words.push_back(last_word(short_name(signal)));
+  return words;
+}
+
+bool are_different(std::vector<std::string> words) {
+  std::ranges::sort(words);
+  return std::ranges::adjacent_find(words) == words.end();
+}
+
 /// The labels of one legend, made to fit.
 class LegendLabels {
  public:
   LegendLabels(const ScopePlot& plot, const ScopeFrame& frame, float room)
       : plot_(plot), frame_(frame), room_(room), names_(names_on_y_axis(plot)) {
+    if (fits(names_)) return;
     // Where the plot is narrow its title tells the rest.
-    if (!common_unit(plot).empty() && !fits(names_) && names_.size() > 1)
-      for (std::string& name : names_) name = last_word(name);
+    if (const std::vector<std::string> words = last_words(plot); words.size() > 1 && are_different(words))
+      names_ = words;
     if (fits(names_)) return;
     const float each = room_ / static_cast<float>(names_.size()) - frame.style.points(beside_label_points);
     for (std::string& name : names_) name = fitted(name, each, frame.style.fonts.caption);
@@ -134,6 +148,7 @@ void draw_legend(const ScopePlot& plot, ImVec2 place, float width, const ScopeFr
     right -= width_of(labels[i], style);
     if (right < place.x + style.points(beside_label_points)) break;
     list.AddText(font, font->FontSize, {right, place.y}, quiet, labels[i].c_str());
+    note_text(labels[i]);
     right -= style.points(14);
     list.AddRectFilled({right, middle - style.points(1.5f)}, {right + style.points(9), middle + style.points(1.5f)},
                        packed(line_colour(style, first_on_y_axis(plot) + i)), style.points(1.5f));

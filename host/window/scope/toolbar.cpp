@@ -18,8 +18,7 @@ std::string span_label(double span_s) {
 }
 
 void choose_trigger_signal(const char* label, protocol::Signal& signal, float width, const Style& style) {
-  ImGui::SetNextItemWidth(width);
-  if (!ImGui::BeginCombo(label, protocol::info(signal).name.data(), ImGuiComboFlags_HeightLarge)) return;
+  if (!begin_combo(label, protocol::info(signal).name, width, ImGuiComboFlags_HeightLarge)) return;
   for (const SignalGroup& group : signal_groups({})) {
     text(ImGui::GetFont(), style.palette->text_quiet, group.title);
     for (const protocol::Signal offered : group.signals)

@@ -42,6 +42,9 @@ bool coloured_button(const char* label, Colour colour, Colour text_colour, ImVec
 /// A button that shows that it is on.
 bool toggle_button(const char* label, bool on, const Style& style, ImVec2 size = {0, 0});
 
+/// ImGui::BeginCombo of this width, whose text ends in an ellipsis where it does not fit.
+bool begin_combo(const char* label, std::string_view shown, float width, ImGuiComboFlags flags = 0);
+
 /// A window that fills a rectangle and can be neither moved nor closed. It has no ground of its own: the frame is
 /// cleared to the panes' colour, which is cheaper than painting every pixel.
 bool begin_pane(const char* name, ImVec2 place, ImVec2 size, ImGuiWindowFlags flags = 0);
