@@ -9,6 +9,7 @@
 
 #include <bars/connection_card.hpp>
 #include <bars/return_card.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/picture_digest.hpp>
 #include <frame/widgets.hpp>
 
@@ -60,7 +61,7 @@ void Companion::key(int key, bool down) {
   if (down && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_F12 || (key == GLFW_KEY_SPACE && !types))) stop();
   if (down && key == GLFW_KEY_F1) key_help_.open();
   if (down && key >= GLFW_KEY_F2 && key < GLFW_KEY_F12 && !is_dialog_open())
-    column_.show(static_cast<std::size_t>(key - GLFW_KEY_F2));
+    keyboard_.go_to(column_.show(static_cast<std::size_t>(key - GLFW_KEY_F2)));
   if (!hand_ || (down && types)) return;
   if (key == GLFW_KEY_1) button_1_ = down;
   if (key == GLFW_KEY_2) button_2_ = down;
@@ -69,6 +70,8 @@ void Companion::key(int key, bool down) {
 
 void Companion::take_keyboard_shortcuts(double now_s) {
   const ImGuiIO& io = ImGui::GetIO();
+  keyboard_.begin_frame();
+  keep_modified_arrows();
   if (io.WantTextInput) return;
   if (io.InputQueueCharacters.contains('?')) key_help_.open();
   if (!io.KeyCtrl) return;
@@ -105,6 +108,8 @@ void Companion::lay_out(ImVec2 size, double now_s) {
   draw_column(layout, size, now_s);
   draw_scope(layout);
   key_help_.draw(style_);
+  move_borders(layout, size);
+  keyboard_.end_frame(style_);
   judge_motion();
   carry_out(outcome);  // what it changes shows in the next frame
   if (auto changes = editor_.take_changes(); !changes.empty()) desk_.session().set_parameters(std::move(changes));
@@ -219,6 +224,14 @@ void Companion::draw_column(const WindowLayout& layout, ImVec2 window, double no
                 .now_s = now_s});
   const auto [place, size] = layout.column_splitter;
   drag_column_splitter(splitter("tuning splitter", place, size, true, style_), window, style_.scale, settings_);
+}
+
+void Companion::move_borders(const WindowLayout& layout, ImVec2 window) {
+  constexpr float step_points = 20.0f;
+  const KeySteps steps = key_steps(ImGuiKeyModFlags_Alt);
+  drag_column_splitter(step_points * static_cast<float>(steps.right), window, style_.scale, settings_);
+  if (settings_.scope_is_shown)
+    drag_scope_splitter(-step_points * static_cast<float>(steps.up), layout, style_.scale, settings_);
 }
 
 void Companion::draw_scope(const WindowLayout& layout) {

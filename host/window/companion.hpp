@@ -13,6 +13,7 @@
 #include <device_desk/parameter_editor.hpp>
 #include <device_desk/returned_values.hpp>
 #include <frame/frame_loop.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/style.hpp>
 #include <panes/pane_column.hpp>
 #include <scene/mouse_hand.hpp>
@@ -50,6 +51,8 @@ class Companion final : public FrameContent {
   void follow_device(double now_s);
   void follow_parameters(const DeviceView& view, double now_s);
   void take_keyboard_shortcuts(double now_s);
+  /// Alt with the arrows: what a mouse does with the lines between the parts.
+  void move_borders(const WindowLayout& layout, ImVec2 window);
 
   /// The room that the layout leaves a banner: what somebody holds with the mouse stays where it is.
   float banner_room(float banner_height);
@@ -86,6 +89,7 @@ class Companion final : public FrameContent {
   StatusBar status_bar_;
   ReplayBar replay_bar_;
   KeyHelp key_help_;
+  KeyboardTour keyboard_;
   FirmwareUpdater updater_;
   ScenePane scene_pane_;
   ScopePane scope_pane_;

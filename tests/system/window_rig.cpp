@@ -53,6 +53,12 @@ Item Sight::item(const std::string& name) const {
   return {place["x"], place["y"], place["width"], place["height"], place["enabled"]};
 }
 
+std::string Sight::with_keyboard() const {
+  for (const auto& [name, item] : all.at("items").items())
+    if (item.at("keyboard")) return name;
+  return {};
+}
+
 bool Sight::says(const std::string& part) const {
   return std::ranges::any_of(all.at("texts"),
                              [&](const json& text) { return text.get<std::string>().find(part) != std::string::npos; });

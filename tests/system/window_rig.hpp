@@ -43,6 +43,8 @@ struct Sight {
   bool can_click(const std::string& name) const { return has(name) && item(name).enabled; }
   /// Whether it has the keyboard, or the mouse holds it.
   bool is_active(const std::string& name) const { return has(name) && all.at("items").at(name).at("active"); }
+  /// The thing that has the keyboard, such as "status/STOP"; empty while the mouse is used, or for one without a name.
+  std::string with_keyboard() const;
   /// Whether a text that contains this stands anywhere in the window.
   bool says(const std::string& part) const;
 };

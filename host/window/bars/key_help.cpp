@@ -1,5 +1,8 @@
 #include <bars/key_help.hpp>
 
+#include <algorithm>
+#include <array>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -14,7 +17,7 @@ struct Row {
   std::string_view what_happens;  ///< empty: what stands before is a heading
 };
 
-constexpr Row rows[] = {
+constexpr auto left_rows = std::to_array<Row>({
     {"Force", ""},
     {"Escape, F12", "Switch the force off, always"},
     {"Space", "The same, except while a text is typed"},
@@ -26,18 +29,61 @@ constexpr Row rows[] = {
     {"Drag the dots beside a number", "Change it; with Shift ten times as fast, with Ctrl a tenth"},
     {"Ctrl+Z", "Take the last change back"},
     {"Ctrl+Y, Ctrl+Shift+Z", "Do it again"},
+    {"Keyboard", ""},
+    {"Ctrl+Tab, Ctrl+Shift+Tab", "The next part of the window, or back"},
+    {"Arrows, Enter", "The next thing in it; press it"},
+    {"F2, F3, ...", "The first pane, the second, ..."},
+    {"Page Up, Page Down", "Scroll"},
+    {"Alt+arrows", "Move the lines between the parts"},
+    {"F1, ?", "This page"},
+});
+
+constexpr auto right_rows = std::to_array<Row>({
     {"Scene", ""},
     {"Drag, right drag, wheel", "Turn, move, zoom"},
+    {"Shift+arrows", "Turn; with Ctrl+Shift move"},
+    {"Shift+Page Up, Page Down", "Zoom"},
     {"Double click", "Show the whole box"},
-    {"Drag a circle of the box", "Move that wall"},
+    {"Drag a circle of the box", "Move that wall; by the keyboard, type its place under Tuning"},
     {"Drag the sphere", "Move the simulated hand; the wheel changes its depth"},
+    {"Ctrl+arrows, Page Up, Page Down", "Move the simulated hand"},
     {"1, 2", "Press the buttons of the simulated stylus"},
-    {"Window", ""},
-    {"F1, ?", "This page"},
-    {"F2, F3, ...", "Show the pane under the first tab, the second, ..."},
-    {"Ctrl+Tab", "Give the keyboard to the next part of the window"},
-    {"Arrows, Enter", "Go from one thing to the next in it, and press it"},
-};
+    {"Plots", ""},
+    {"Drag, wheel, double click", "Move in time, zoom, go on"},
+    {"Shift+arrows", "Move in time, zoom"},
+    {"Drag a cursor, or Ctrl+arrows", "Move the first cursor; with Ctrl+Shift the second"},
+    {"Click a title, or Enter", "Choose what a plot shows"},
+});
+
+constexpr float keys_points = 172.0f;
+constexpr float column_points = 400.0f;
+constexpr float gap_points = 24.0f;
+
+// The cursor is where it begins; where it ends is the end of the group.
+void draw_rows(std::span<const Row> rows, const Style& style) {
+  const Palette& palette = *style.palette;
+  const float left = ImGui::GetCursorPosX();
+  const auto cell = [&](Colour colour, std::string_view content, float from_points, float to_points) {
+    ImGui::SetCursorPosX(left + style.points(from_points));
+    ImGui::PushTextWrapPos(left + style.points(to_points));
+    text(colour, content);
+    ImGui::PopTextWrapPos();
+    return ImGui::GetCursorPosY();
+  };
+  ImGui::BeginGroup();
+  for (const Row& row : rows) {
+    if (row.what_happens.empty()) {
+      ImGui::SetCursorPosY(ImGui::GetCursorPosY() + style.points(4));
+      text(style.fonts.strong, palette.text, row.what_one_does);
+      continue;
+    }
+    const float top = ImGui::GetCursorPosY();
+    const float end = cell(palette.text, row.what_one_does, 0, keys_points - 8);
+    ImGui::SetCursorPosY(top);
+    ImGui::SetCursorPosY(std::max(end, cell(palette.text_quiet, row.what_happens, keys_points, column_points)));
+  }
+  ImGui::EndGroup();
+}
 
 constexpr const char* title = "Keys and mouse";
 
@@ -45,7 +91,9 @@ constexpr const char* title = "Keys and mouse";
 
 void KeyHelp::draw(const Style& style) {
   if (std::exchange(is_to_be_opened_, false) && !is_dialog_open()) ImGui::OpenPopup(title);
-  const ImVec2 middle = ImGui::GetMainViewport()->GetCenter();
+  const ImGuiViewport& viewport = *ImGui::GetMainViewport();
+  const ImVec2 middle = viewport.GetCenter();
+  ImGui::SetNextWindowSizeConstraints({0, 0}, viewport.Size);  // what has no room is scrolled to
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(20), style.points(16)});
   if (ImGui::BeginPopupModal(title, nullptr,
@@ -53,18 +101,13 @@ void KeyHelp::draw(const Style& style) {
                                  ImGuiWindowFlags_NoSavedSettings)) {
     const Palette& palette = *style.palette;
     text(style.fonts.strong, palette.accent, title);
-    for (const Row& row : rows) {
-      if (row.what_happens.empty()) {
-        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + style.points(4));
-        text(style.fonts.strong, palette.text, row.what_one_does);
-        continue;
-      }
-      const float left = ImGui::GetCursorPosX();
-      text(palette.text, row.what_one_does);
-      ImGui::SameLine();
-      ImGui::SetCursorPosX(left + style.points(230));
-      text(palette.text_quiet, row.what_happens);
-    }
+    const float left = ImGui::GetCursorPosX();
+    const float top = ImGui::GetCursorPosY();
+    draw_rows(left_rows, style);
+    const float end = ImGui::GetCursorPosY();
+    ImGui::SetCursorPos({left + style.points(column_points + gap_points), top});
+    draw_rows(right_rows, style);
+    ImGui::SetCursorPos({left, std::max(end, ImGui::GetCursorPosY())});
     ImGui::Dummy({0, style.points(8)});
     if (button("Close", {style.points(110), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
       ImGui::CloseCurrentPopup();

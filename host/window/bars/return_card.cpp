@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <device_desk/parameter_editor.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/widgets.hpp>
 
 namespace inkwell::window {
@@ -36,7 +37,9 @@ void draw_rows(const ReturnedValues& values, float room, const Style& style) {
   const float row_height = ImGui::GetTextLineHeightWithSpacing();
   const float fitting = std::floor(room / row_height - 0.5f) + 0.5f;
   const auto count = static_cast<float>(values.rows().size());
-  if (ImGui::BeginChild("values", {0, std::min(count, std::clamp(fitting, rows_minimum, rows_maximum)) * row_height})) {
+  if (ImGui::BeginChild("values", {0, std::min(count, std::clamp(fitting, rows_minimum, rows_maximum)) * row_height},
+                        false, ImGuiWindowFlags_NavFlattened)) {
+    scroll_by_page_keys();
     const float width = ImGui::GetContentRegionAvail().x;
     for (const auto& row : values.rows()) draw_row(row, width, style);
   }

@@ -74,7 +74,8 @@ void FileChooser::draw_entries(const Style& style) {
   }
   const Palette& palette = *style.palette;
   ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(palette.ground));
-  ImGui::BeginChild("entries", {0, style.points(236)}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+  ImGui::BeginChild("entries", {0, style.points(236)}, false,
+                    ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NavFlattened);
   std::optional<fs::path> wanted;
   const float width = ImGui::GetContentRegionAvail().x;
   const auto column = [&](const std::string& content, float right_points) {

@@ -72,6 +72,8 @@ void ImGuiFrames::begin() {
   taps_.apply(io.KeysDown);
   io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
   io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
+  // ImGui's own way from part to part takes two of them only unless Ctrl stays down, and shows their inner names.
+  io.KeyMap[ImGuiKey_Tab] = io.KeyCtrl ? -1 : GLFW_KEY_TAB;
   ImGui::NewFrame();
 }
 

@@ -35,7 +35,7 @@ std::string_view name_in(std::string_view label) {
   return label.starts_with("##") ? label.substr(2) : label.substr(0, label.find("##"));
 }
 
-void note(std::string_view name, const ImRect& place, bool active) {
+void note(std::string_view name, const ImRect& place, bool active, bool has_keyboard) {
   const ImGuiWindow& pane = *ImGui::GetCurrentWindow()->RootWindow;
   const bool enabled = (GImGui->CurrentItemFlags & ImGuiItemFlags_Disabled) == 0;
   notes->items[fmt::format("{}/{}", pane.Name, name_in(name))] = {{"x", place.Min.x + notes->origin.x},
@@ -43,7 +43,8 @@ void note(std::string_view name, const ImRect& place, bool active) {
                                                                   {"width", place.GetWidth()},
                                                                   {"height", place.GetHeight()},
                                                                   {"enabled", enabled},
-                                                                  {"active", active}};
+                                                                  {"active", active},
+                                                                  {"keyboard", has_keyboard}};
 }
 
 }  // namespace
@@ -52,11 +53,13 @@ void note_item(std::string_view name) {
   if (notes == nullptr) return;
   ImRect seen = GImGui->LastItemData.Rect;
   seen.ClipWith(ImGui::GetCurrentWindow()->ClipRect);
-  if (seen.GetWidth() > 1.0f && seen.GetHeight() > 1.0f) note(name, seen, ImGui::IsItemActive());
+  if (seen.GetWidth() <= 1.0f || seen.GetHeight() <= 1.0f) return;
+  const bool has_keyboard = GImGui->NavId == GImGui->LastItemData.ID && !GImGui->NavDisableHighlight;
+  note(name, seen, ImGui::IsItemActive(), has_keyboard);
 }
 
 void note_place(std::string_view name, ImVec2 minimum, ImVec2 maximum) {
-  if (notes != nullptr) note(name, {minimum, maximum}, false);
+  if (notes != nullptr) note(name, {minimum, maximum}, false, false);
 }
 
 void note_text(std::string_view text) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <frame/inspection.hpp>
@@ -87,7 +88,9 @@ ValueEdit ValueFields::draw(const char* id, const std::string& name, float value
   ValueEdit edit;
   const ImVec2 handle{style.points(handle_points), height};
   ImGui::PushID(id);
+  ImGui::PushItemFlag(ImGuiItemFlags_NoNav | ImGuiItemFlags_NoNavDefaultFocus, true);  // the keyboard types the number
   ImGui::InvisibleButton("handle", handle);
+  ImGui::PopItemFlag();
   ImGui::PopID();
   note_item(name + " handle");
   const bool lively = ImGui::IsItemHovered() || ImGui::IsItemActive();

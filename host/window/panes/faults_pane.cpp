@@ -61,7 +61,10 @@ class FaultsPane final : public Pane {
   }
 
   std::string_view title() const override { return "Faults"; }
-  void take_keyboard() override { search_takes_keyboard_ = true; }
+  bool take_keyboard() override {
+    search_takes_keyboard_ = true;
+    return true;
+  }
   void follow(const PaneNews& news) override;
   void draw(const PaneFrame& frame) override;
   bool is_moving() const override { return board_ && (board_->has_changed() || log_.waits_for_answer()); }
@@ -143,7 +146,7 @@ void FaultsPane::draw(const PaneFrame& frame) {
   is_low_ = ImGui::GetContentRegionAvail().y < style.points(low_points);
   if (is_low_) {
     ImGui::Separator();  // what is scrolled goes under it
-    ImGui::BeginChild("all");
+    ImGui::BeginChild("all", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   }
   draw_log(style);
   draw_search(style);
@@ -167,7 +170,9 @@ void FaultsPane::draw_heading(const Style& style) {
 
 void FaultsPane::draw_log(const Style& style) {
   if (log_.faults().empty()) return;
-  if (!is_low_) ImGui::BeginChild("log", {0, std::min(log_height_, log_part_maximum * ImGui::GetWindowHeight())});
+  if (!is_low_)
+    ImGui::BeginChild("log", {0, std::min(log_height_, log_part_maximum * ImGui::GetWindowHeight())}, false,
+                      ImGuiWindowFlags_NavFlattened);
   for (const LoggedFault& each : log_.faults()) draw_logged(each, style);
   if (!is_low_) {
     log_height_ = ImGui::GetCursorPosY();
@@ -263,7 +268,7 @@ void FaultsPane::draw_search(const Style& style) {
 }
 
 void FaultsPane::draw_table(const Style& style) {
-  if (!is_low_) ImGui::BeginChild("table");
+  if (!is_low_) ImGui::BeginChild("table", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
   const auto all = found();
   if (all.empty()) wrapped_text(style.palette->text_quiet, "No fault of that name, place or help.");
   std::optional<protocol::InjectionPart> part;

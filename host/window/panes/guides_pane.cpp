@@ -13,6 +13,7 @@
 #include <device/parameter_file.hpp>
 #include <device_desk/stored_values.hpp>
 #include <frame/inspection.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/value_field.hpp>
 #include <frame/widgets.hpp>
 #include <guides/guides.hpp>
@@ -127,14 +128,15 @@ void GuidesPane::cancel() {
 void GuidesPane::draw(const PaneFrame& frame) {
   const Style& style = frame.style;
   if (!guide_) {
-    if (ImGui::BeginChild("offers")) draw_offers(style);
+    if (ImGui::BeginChild("offers", {0, 0}, false, ImGuiWindowFlags_NavFlattened)) draw_offers(style);
     ImGui::EndChild();
   } else {
     text(style.fonts.strong, style.palette->text, guide_->title());
     const float room = ImGui::GetFrameHeightWithSpacing() + style.points(6);
-    if (ImGui::BeginChild("guide", {0, -room})) {
+    if (ImGui::BeginChild("guide", {0, -room}, false, ImGuiWindowFlags_NavFlattened)) {
       if (const auto applied = guide_->applied(); std::exchange(shown_applied_, applied) != applied)
         ImGui::SetScrollY(0.0f);  // what became of it stands on top
+      scroll_by_page_keys();
       if (guide_->is_over()) {
         draw_result(style);
       } else {

@@ -12,6 +12,7 @@
 
 #include <frame/file_chooser.hpp>
 #include <frame/inspection.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/widgets.hpp>
 #include <panes/pane.hpp>
 #include <protocol/reports.hpp>
@@ -77,7 +78,10 @@ void LogPane::draw(const PaneFrame& frame) {
   const Style& style = frame.style;
   draw_head(style);
   const float buttons = ImGui::GetFrameHeightWithSpacing() + style.points(4);
-  if (ImGui::BeginChild("rows", {0, -buttons})) draw_rows(style);
+  if (ImGui::BeginChild("rows", {0, -buttons}, false, ImGuiWindowFlags_NavFlattened)) {
+    scroll_by_page_keys();
+    draw_rows(style);
+  }
   ImGui::EndChild();
   draw_saving(style);
 }

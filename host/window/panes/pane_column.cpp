@@ -86,10 +86,10 @@ void PaneColumn::cancel() {
   for (const auto& pane : panes_) pane->cancel();
 }
 
-void PaneColumn::show(std::size_t tab) {
-  if (tab >= panes_.size()) return;
+std::string PaneColumn::show(std::size_t tab) {
+  if (tab >= panes_.size()) return {};
   shown_ = tab;
-  panes_[shown_]->take_keyboard();
+  return panes_[shown_]->take_keyboard() ? std::string() : name_of(*panes_[shown_]);
 }
 
 PaneStream PaneColumn::stream(const std::vector<protocol::Signal>& scope_signals) const {

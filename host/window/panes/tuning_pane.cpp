@@ -359,7 +359,7 @@ void TuningPane::draw(const PaneFrame& frame) {
   draw_messages(frame);
   not_stored_ = frame.is_replay ? std::vector<Parameter>{} : not_stored(desk_.view());
   const float store_height = frame.is_replay ? 0.0f : store_bar_.height(ImGui::GetContentRegionAvail().x, frame.style);
-  if (ImGui::BeginChild("parameters", {0, -store_height})) {
+  if (ImGui::BeginChild("parameters", {0, -store_height}, false, ImGuiWindowFlags_NavFlattened)) {
     std::string_view group;
     for (const protocol::ParameterInfo& info : protocol::known_parameters()) {
       if (info.group == group) continue;

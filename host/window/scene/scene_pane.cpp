@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <frame/inspection.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/picture_changes.hpp>
 #include <frame/widgets.hpp>
 
@@ -129,6 +130,7 @@ void ScenePane::handle_mouse(const ScenePaneInput& input) {
       "scene", {size_.x, size_.y},
       ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
   ImGui::SetItemAllowOverlap();
+  note_item("scene");
   const bool hovered = ImGui::IsItemHovered();
   if (drag_ == Drag::none) {
     const float reach = input.style.points(probe_grab_points);
@@ -136,7 +138,7 @@ void ScenePane::handle_mouse(const ScenePaneInput& input) {
     marked_wall_ = hovered && !over_probe_ && input.editor.known()
                        ? wall_under(mouse, input.style.points(wall_grab_points))
                        : std::nullopt;
-    if (ImGui::IsItemActivated()) start_drag(input, mouse);
+    if (ImGui::IsItemActivated() && !is_pressed_by_keyboard()) start_drag(input, mouse);
   }
   if (drag_ != Drag::none) {
     continue_drag(input, mouse, to_glm(io.MouseDelta));
@@ -147,6 +149,29 @@ void ScenePane::handle_mouse(const ScenePaneInput& input) {
   if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !over_probe_ && !marked_wall_) reset_view();
   if (over_probe_ || marked_wall_ || drag_ == Drag::hand || drag_ == Drag::wall)
     ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+}
+
+void ScenePane::handle_keys(const ScenePaneInput& input) {
+  constexpr float turn_rad = 0.08f, pan_pixels = 24.0f, hand_step_m = 0.002f;
+  const auto number = [](int steps) { return static_cast<float>(steps); };
+  const KeySteps turn = key_steps_in_part(ImGuiKeyModFlags_Shift);
+  if (turn.any()) {
+    camera_.orbit(turn_rad * number(turn.right), turn_rad * number(turn.up));
+    camera_.zoom(number(turn.away));
+  }
+  const KeySteps pan = key_steps_in_part(ImGuiKeyModFlags_Shift | ImGuiKeyModFlags_Ctrl);
+  if (pan.any())
+    camera_.pan({input.style.points(pan_pixels) * number(pan.right), -input.style.points(pan_pixels) * number(pan.up)},
+                size_.y);
+  const KeySteps hand = key_steps_in_part(ImGuiKeyModFlags_Ctrl);
+  if (!hand.any() || input.hand == nullptr || drag_ != Drag::none) return;
+  const glm::vec3 from_m = input.hand->target_m().value_or(scene_.probe_m);
+  const glm::vec3 ahead = camera_.direction();
+  const glm::vec3 right = glm::normalize(glm::cross(ahead, glm::vec3{0.0f, 1.0f, 0.0f}));
+  const glm::vec3 step =
+      number(hand.right) * right + number(hand.up) * glm::cross(right, ahead) + number(hand.away) * ahead;
+  input.hand->pull_to(
+      within_reach(scene_.probe_m, from_m + glm::transpose(workspace_to_view(scene_.frame)) * (hand_step_m * step)));
 }
 
 void ScenePane::draw_axes(ImDrawList& list, const Style& style) const {
@@ -348,6 +373,7 @@ bool ScenePane::draw(ImVec2 place, ImVec2 size, const ScenePaneInput& input) {
   }
   begin_pane("scene", place, size, ImGuiWindowFlags_NoScrollWithMouse);
   handle_mouse(input);
+  handle_keys(input);
   note_handles();
   draw_labels(input);
   draw_tools(input);

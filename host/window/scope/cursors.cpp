@@ -25,6 +25,11 @@ void Cursors::draw(const PlotArea& area, const Style& style) {
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) dragged_ = -1;
 }
 
+void Cursors::step(std::size_t cursor, int steps) {
+  constexpr double step_part = 0.01;
+  parts_[cursor] = std::clamp(parts_[cursor] + step_part * steps, -1.0, 0.0);
+}
+
 std::array<double, 2> Cursors::values(const SignalSeries& series, const Stretch& stretch) const {
   std::array<double, 2> values{};
   for (std::size_t i = 0; i < 2; ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 
 #include <plot/plot.hpp>
@@ -16,6 +17,8 @@ class Cursors {
 
   /// Draws them into a time plot, whose item is the last one of ImGui's, and moves the one that is dragged.
   void draw(const PlotArea& area, const Style& style);
+  /// Moves the first (0) or second (1) by so many hundredths of the span.
+  void step(std::size_t cursor, int steps);
   /// One is being dragged, so that the plot itself is not.
   bool is_dragged() const { return dragged_ >= 0; }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <frame/inspection.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/widgets.hpp>
 #include <protocol/reports.hpp>
 
@@ -55,6 +56,7 @@ void ScopePane::draw(ImVec2 place, ImVec2 size, const Style& style) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{style.points(12), style.points(8)});
   begin_pane("scope", place, size, ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
+  take_keys();
   draw_controls(style);
   signal_list_->draw(layout_, style);
   follow_layout();
@@ -63,6 +65,16 @@ void ScopePane::draw(ImVec2 place, ImVec2 size, const Style& style) {
   draw_plots(frame);
   judged_end_ = timeline_.history().end();
   end_pane();
+}
+
+void ScopePane::take_keys() {
+  constexpr double drag_part = 0.1;  // of the span
+  const KeySteps view = key_steps_in_part(ImGuiKeyModFlags_Shift);
+  if (view.right != 0) timeline_.drag(-drag_part * view.right);
+  if (view.up != 0) timeline_.zoom(view.up, 0.0);
+  if (!cursors_->are_shown()) return;
+  cursors_->step(0, key_steps_in_part(ImGuiKeyModFlags_Ctrl).right);
+  cursors_->step(1, key_steps_in_part(ImGuiKeyModFlags_Ctrl | ImGuiKeyModFlags_Shift).right);
 }
 
 void ScopePane::draw_controls(const Style& style) {
@@ -82,7 +94,7 @@ void ScopePane::follow_layout() {
 
 void ScopePane::draw_plots(ScopeFrame& frame) {
   // Where there is too little room for all rows, as many as can be read fill it, and the pane scrolls.
-  ImGui::BeginChild("plots", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::BeginChild("plots", {0, 0}, false, ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NavFlattened);
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const ImVec2 gap{frame.style.points(12), frame.style.points(6)};

@@ -9,6 +9,7 @@
 
 #include <device/parameter_file.hpp>
 #include <frame/inspection.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/widgets.hpp>
 
 namespace inkwell::window {
@@ -18,21 +19,23 @@ namespace {
 constexpr float list_points = 206.0f;
 constexpr char payload_type[] = "scope signal";
 
-/// A row that can be dragged. True if it is clicked.
-bool draw_row(const ScopeSignal& signal, ScopeLayout& layout, const Style& style) {
+/// A row of this width that can be dragged into a plot.
+void draw_row(const ScopeSignal& signal, ScopeLayout& layout, float width, const Style& style) {
   const std::string name(signal.name());
-  const bool is_clicked = ImGui::Selectable(name.c_str(), false, ImGuiSelectableFlags_AllowDoubleClick);
+  const std::string label = fmt::format("{}##{}", fitted(name, width), name);
+  ImGui::Selectable(label.c_str(), false, ImGuiSelectableFlags_AllowDoubleClick, {width, 0});
+  const bool is_double_clicked = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
   note_item(name);
-  if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
-    layout.plots.push_back({PlotKind::time, name, {signal}});
+  if (is_double_clicked || is_pressed_by_keyboard()) layout.plots.push_back({PlotKind::time, name, {signal}});
   if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceNoHoldToOpenOthers)) {
     ImGui::SetDragDropPayload(payload_type, name.data(), name.size());
     text(style.palette->text, name);
     ImGui::EndDragDropSource();
   }
-  help_on_hover(name, fmt::format("{}\nDrag it into a plot, or double-click for a plot of its own.", signal.help()),
-                style);
-  return is_clicked;
+  help_on_hover(
+      name,
+      fmt::format("{}\nDrag it into a plot, or double-click or press Enter for a plot of its own.", signal.help()),
+      style);
 }
 
 }  // namespace
@@ -56,7 +59,7 @@ std::optional<std::string> dropped_signal() {
 void SignalList::draw(ScopeLayout& layout, const Style& style) {
   if (is_shown_) {
     const float width = std::min(style.points(list_points), 0.4f * ImGui::GetContentRegionAvail().x);
-    if (ImGui::BeginChild("signals", {width, 0})) {
+    if (ImGui::BeginChild("signals", {width, 0}, false, ImGuiWindowFlags_NavFlattened)) {
       draw_search(search_, style);
       ImGui::PushFont(style.fonts.caption);
       draw_signals(layout, style);
@@ -80,7 +83,8 @@ void SignalList::draw_signals(ScopeLayout& layout, const Style& style) {
     ImGui::PopStyleVar();
     if (!is_open) continue;
     ImGui::Indent(style.points(17));
-    for (const protocol::Signal signal : group.signals) draw_row(signal, layout, style);
+    for (const protocol::Signal signal : group.signals)
+      draw_row(signal, layout, ImGui::GetContentRegionAvail().x, style);
     ImGui::Unindent(style.points(17));
   }
   if (groups.empty()) wrapped_text(style.palette->text_quiet, nothing_found);
@@ -90,9 +94,11 @@ void SignalList::draw_formulas(ScopeLayout& layout, const Style& style) {
   ImGui::Dummy({0, style.points(2)});
   std::optional<Formula> clicked;
   for (const Formula& formula : std::vector<Formula>(layout.formulas)) {
-    draw_row(ScopeSignal(formula), layout, style);
+    const float edit_width = style.points(34);
+    draw_row(ScopeSignal(formula), layout,
+             ImGui::GetContentRegionAvail().x - edit_width - ImGui::GetStyle().ItemSpacing.x, style);
     const std::string edit = fmt::format("Edit##{}", formula.name);
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - style.points(34));
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - edit_width);
     if (quiet_button(edit.c_str(), style)) clicked = formula;
   }
   if (button("New formula", {-1, 0})) clicked = Formula{};

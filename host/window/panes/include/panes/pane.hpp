@@ -65,8 +65,8 @@ class Pane {
 
   /// Stands on its tab, and names it for inspections in small letters.
   virtual std::string_view title() const = 0;
-  /// It has come to be shown by a key, and may take the keyboard.
-  virtual void take_keyboard() {}
+  /// It has come to be shown by a key. True if it gives the keyboard to something in it; else its first thing gets it.
+  virtual bool take_keyboard() { return false; }
   /// Once a frame, whether the pane is shown or not.
   virtual void follow(const PaneNews&) {}
   /// Draws what is in it while it is shown; its ImGui window is open.

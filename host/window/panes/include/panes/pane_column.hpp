@@ -15,8 +15,9 @@ class PaneColumn {
   void follow(const PaneNews& news);
   void draw(ImVec2 place, ImVec2 size, PaneFrame frame);
   void cancel();
-  /// Shows the pane under this tab, counted from 0 on; none if there are not so many.
-  void show(std::size_t tab);
+  /// Shows the pane under this tab, counted from 0 on, if there are so many. Returns the part of the window to be given
+  /// the keyboard; empty if the pane has taken it.
+  std::string show(std::size_t tab);
 
   /// Of the first pane that takes it; else the scope's signals and then what the shown pane shows, as far as a
   /// selection has room.

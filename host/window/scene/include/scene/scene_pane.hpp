@@ -45,6 +45,8 @@ class ScenePane {
   enum class Drag : std::uint8_t { none, orbit, pan, hand, wall };
 
   void handle_mouse(const ScenePaneInput& input);
+  /// Shift with the arrows turns, with Ctrl too it moves the picture; Ctrl with the arrows moves the simulated hand.
+  void handle_keys(const ScenePaneInput& input);
   void start_drag(const ScenePaneInput& input, glm::vec2 mouse);
   void continue_drag(const ScenePaneInput& input, glm::vec2 mouse, glm::vec2 moved);
   void end_drag(const ScenePaneInput& input);

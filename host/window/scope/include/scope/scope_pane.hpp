@@ -43,6 +43,8 @@ class ScopePane {
  private:
   /// Plots that stay as they are keep their views, with what these remember.
   void follow_layout();
+  /// Shift with the arrows moves the picture in time and zooms it, Ctrl with them moves the cursors.
+  void take_keys();
   void draw_controls(const Style& style);
   void draw_plots(ScopeFrame& frame);
   /// A signal that is dragged onto the plot joins it.

@@ -1,0 +1,117 @@
+#include <frame/keyboard.hpp>
+
+#include <algorithm>
+#include <vector>
+
+#include <GLFW/glfw3.h>
+#include <imgui_internal.h>
+
+
+namespace inkwell::window {
+
+namespace {
+
+bool can_have_keyboard(const ImGuiWindow& part) {
+  constexpr ImGuiWindowFlags cannot = ImGuiWindowFlags_NoNavFocus | ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_Popup;
+  return part.WasActive && part.RootWindow == &part && (part.Flags & cannot) == 0;
+}
+
+/// In the order in which they were drawn.
+std::vector<ImGuiWindow*> parts() {
+  std::vector<ImGuiWindow*> found;
+  for (ImGuiWindow* each : GImGui->Windows)
+    if (can_have_keyboard(*each)) found.push_back(each);
+  std::ranges::sort(found, {}, &ImGuiWindow::BeginOrderWithinContext);
+  return found;
+}
+
+bool is_menu_open() { return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel); }
+
+void show_keyboard() {
+  ImGuiContext& context = *GImGui;
+  context.NavDisableHighlight = false;
+  context.NavDisableMouseHover = true;
+  context.NavInputSource = ImGuiInputSource_Keyboard;
+}
+
+}  // namespace
+
+void KeyboardTour::give_to(ImGuiWindow& part) {
+  ImGuiWindow* last = part.NavLastChildNavWindow;
+  ImGuiWindow& into = last != nullptr && last->WasActive ? *last : part;
+  ImGui::FocusWindow(&into);
+  if (into.NavLastIds[0] == 0) ImGui::NavInitWindow(&into, false);
+  show_keyboard();
+  has_just_moved_ = true;
+}
+
+void KeyboardTour::begin_frame() {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (is_menu_open()) {
+    wanted_.clear();
+    return;
+  }
+  if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_TAB)) go_on(io.KeyShift);
+  ImGuiWindow* wanted = wanted_.empty() ? nullptr : ImGui::FindWindowByName(wanted_.c_str());
+  if (wanted != nullptr && wanted->WasActive) {
+    wanted_.clear();
+    give_to(*wanted);
+  }
+  if (std::exchange(last_thing_is_gone_, false) && GImGui->NavWindow != nullptr)
+    ImGui::NavInitWindow(GImGui->NavWindow, true);
+}
+
+void KeyboardTour::go_on(bool backwards) {
+  std::vector<ImGuiWindow*> all = parts();
+  if (all.empty()) return;
+  if (backwards) std::ranges::reverse(all);
+  ImGuiWindow* now = GImGui->NavWindow != nullptr ? GImGui->NavWindow->RootWindow : nullptr;
+  const auto place = std::ranges::find(all, now);
+  const bool is_last = place == all.end() || place + 1 == all.end();
+  give_to(is_last ? *all.front() : **(place + 1));
+}
+
+void KeyboardTour::end_frame(const Style& style) {
+  const ImGuiContext& context = *GImGui;
+  last_thing_is_gone_ = std::exchange(has_just_moved_, false) && context.NavId != 0 && !context.NavIdIsAlive;
+  if (context.NavDisableHighlight || context.NavWindow == nullptr || is_menu_open()) return;
+  const ImGuiWindow& part = *context.NavWindow->RootWindow;
+  if (!part.Active || (part.Flags & ImGuiWindowFlags_NoNavFocus) != 0) return;
+  const float inside = style.points(1);
+  ImGui::GetForegroundDrawList()->AddRect({part.Pos.x + inside, part.Pos.y + inside},
+                                          {part.Pos.x + part.Size.x - inside, part.Pos.y + part.Size.y - inside},
+                                          packed(style.palette->accent.with_alpha(150)), 0, 0, style.points(1));
+}
+
+bool is_pressed_by_keyboard() {
+  const ImGuiID item = GImGui->LastItemData.ID;
+  return item != 0 && item == GImGui->NavActivatePressedId;
+}
+
+KeySteps key_steps(ImGuiKeyModFlags modifiers) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.KeyMods != modifiers || io.WantTextInput || is_menu_open()) return {};
+  const auto pressed = [&io](ImGuiKey key) {
+    return ImGui::GetKeyPressedAmount(ImGui::GetKeyIndex(key), io.KeyRepeatDelay, io.KeyRepeatRate);
+  };
+  return {.right = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow),
+          .up = pressed(ImGuiKey_UpArrow) - pressed(ImGuiKey_DownArrow),
+          .away = pressed(ImGuiKey_PageUp) - pressed(ImGuiKey_PageDown)};
+}
+
+KeySteps key_steps_in_part(ImGuiKeyModFlags modifiers) {
+  return ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) ? key_steps(modifiers) : KeySteps{};
+}
+
+void keep_modified_arrows() {
+  const ImGuiContext& context = *GImGui;
+  if (context.IO.KeyMods != ImGuiKeyModFlags_None && context.NavMoveDir != ImGuiDir_None) ImGui::NavMoveRequestCancel();
+}
+
+void scroll_by_page_keys() {
+  constexpr float page = 0.9f;  // so that a line of the last one stays in sight
+  const int pages = key_steps_in_part(ImGuiKeyModFlags_None).away;
+  if (pages != 0) ImGui::SetScrollY(ImGui::GetScrollY() - page * ImGui::GetWindowHeight() * static_cast<float>(pages));
+}
+
+}  // namespace inkwell::window

@@ -1,0 +1,150 @@
+// The window without a mouse: from part to part, from thing to thing, and what the arrows do with a modifier.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <protocol/parameters.hpp>
+
+#include "window_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+
+namespace {
+
+std::string part_of(const std::string& item) { return item.substr(0, item.find('/')); }
+
+/// The parts that have the keyboard one after the other while the key is pressed, until the first has it again.
+std::vector<std::string> tour(WindowRig& rig, const std::string& key) {
+  std::vector<std::string> parts;
+  for (int step = 0; step < 12; ++step) {
+    rig.press_key(key);
+    rig.look();
+    const std::string part = part_of(rig.look().with_keyboard());
+    if (!parts.empty() && part == parts.front()) return parts;
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+void go_to_part(WindowRig& rig, const std::string& part) {
+  for (int step = 0; step < 12 && part_of(rig.look().with_keyboard()) != part; ++step) {
+    rig.press_key("ctrl+Tab");
+    rig.look();
+  }
+  REQUIRE(part_of(rig.look().with_keyboard()) == part);
+}
+
+/// Presses the key until the thing has the keyboard; what had it on the way.
+std::set<std::string> go_to(WindowRig& rig, const std::string& key, const std::string& item, int steps_maximum) {
+  std::set<std::string> on_the_way;
+  for (int step = 0; step < steps_maximum; ++step) {
+    const std::string now = rig.look().with_keyboard();
+    on_the_way.insert(now);
+    if (now == item) return on_the_way;
+    rig.press_key(key);
+    rig.look();
+  }
+  FAIL("The key ", key, " has not come to ", item, " but to ", rig.look().with_keyboard());
+  return on_the_way;
+}
+
+double distance_m(const device::Vector3& a, const device::Vector3& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+}  // namespace
+
+TEST_CASE("Ctrl+Tab gives the keyboard to every part of the window, and back") {
+  WindowRig rig;
+  const std::vector<std::string> onward = tour(rig, "ctrl+Tab");
+  CHECK(std::set(onward.begin(), onward.end()) == std::set<std::string>{"status", "scene", "tabs", "tuning", "scope"});
+  CHECK(onward.size() == 5);
+  std::vector<std::string> back = tour(rig, "ctrl+shift+Tab");
+  CHECK(back.size() == 5);
+  CHECK(back[0] == onward.back());
+}
+
+TEST_CASE("every number of Tuning is reached by the arrow, typed and sent") {
+  WindowRig rig;
+  rig.press_key("F3");
+  rig.look_until("the guides have the keyboard",
+                 [](const Sight& now) { return part_of(now.with_keyboard()) == "guides"; });
+  rig.press_key("F2");
+  rig.look_until("tuning has it", [](const Sight& now) { return part_of(now.with_keyboard()) == "tuning"; });
+  const auto on_the_way = go_to(rig, "Down", "tuning/wall_damping_Ns_per_m", 40);
+  for (const char* passed : {"tuning/box_minimum_x_m", "tuning/box_maximum_z_m", "tuning/wall_stiffness_N_per_m"}) {
+    CAPTURE(passed);
+    CHECK(on_the_way.contains(passed));
+  }
+  const auto before = rig.look().applied_at_periods();
+  rig.press_key("Return");
+  rig.look_until("it is typed in", [](const Sight& now) { return now.is_active("tuning/wall_damping_Ns_per_m"); });
+  rig.type("1.5");
+  rig.press_key("Return");
+  rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
+  rig.look_until("the next is reached", [&rig](const Sight& now) {
+    if (now.with_keyboard() != "tuning/wall_damping_Ns_per_m") return true;
+    rig.press_key("Down");
+    return false;
+  });
+  CHECK(rig.close_and_read_parameters()[protocol::Parameter::wall_damping_Ns_per_m] == doctest::Approx(1.5));
+}
+
+TEST_CASE("a signal gets a plot of its own by Enter") {
+  WindowRig rig({"--layout", "contact"});
+  go_to_part(rig, "scope");
+  go_to(rig, "Right", "scope/Signals", 12);
+  rig.press_key("Return");
+  rig.look_until("the list is there", [](const Sight& now) { return now.has("scope/search"); });
+  go_to(rig, "Left", "scope/layout", 12);
+  go_to(rig, "Down", "scope/Position", 3);
+  go_to(rig, "Left", "scope/search", 3);
+  rig.press_key("Return");
+  rig.type("supply");
+  rig.look_until("it is found", [](const Sight& now) { return now.has("scope/supply_V"); });
+  rig.press_key("Return");
+  go_to(rig, "Down", "scope/supply_V", 12);
+  rig.press_key("Return");
+  rig.click("scope/Signals");  // without the list only the plot's title has that name
+  rig.look_until("the list is gone", [](const Sight& now) { return !now.has("scope/search"); });
+  CHECK(rig.look().has("scope/supply_V"));
+}
+
+TEST_CASE("the arrows turn the scene, move the hand and the lines between the parts") {
+  WindowRig rig;
+  go_to_part(rig, "scene");
+  const auto handle = [&rig] { return rig.look().item("scene/box_maximum_x_m"); };
+  const auto before = handle();
+  rig.press_key("shift+Right");
+  const auto turned = handle();
+  CHECK(std::abs(turned.x - before.x) > 2.0);
+  rig.press_key("shift+Prior");
+  CHECK(std::abs(handle().x - turned.x) > 2.0);
+
+  const device::Vector3 held_m = rig.true_probe_m();
+  for (int step = 0; step < 5; ++step) rig.press_key("ctrl+Right");
+  rig.control.run(0.5);
+  rig.control.resume();
+  CHECK(distance_m(rig.true_probe_m(), held_m) == doctest::Approx(0.01).epsilon(0.3));
+
+  const auto view = rig.look().item("scene/view");
+  rig.press_key("alt+Left");
+  CHECK(rig.look().item("scene/view").width == doctest::Approx(view.width - 20));
+  rig.press_key("alt+Up");
+  CHECK(rig.look().item("scene/view").height == doctest::Approx(view.height - 20));
+}
+
+TEST_CASE("the page of keys is whole in the smallest window") {
+  WindowRig rig;
+  rig.resize(900, 560);
+  rig.press_key("F1");
+  const auto close =
+      rig.look_until("it is there", [](const Sight& now) { return now.can_click("Keys and mouse/Close"); })
+          .item("Keys and mouse/Close");
+  CHECK(close.y + close.height < 550);  // and nothing has to be scrolled to
+  CHECK(rig.look().says("Choose what a plot shows"));
+}
