@@ -53,4 +53,8 @@ INKWELL_COMMANDS(X)
 /// Without a command the window opens. Returns what opens it for a command, with the same options.
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action);
 
+/// Throws UsageError if the command that was chosen opens no window and an option of the window was given: nobody would
+/// look at it, a mistake in it neither.
+void refuse_window_options_in_vain(const CLI::App& program);
+
 }  // namespace inkwell::command_line

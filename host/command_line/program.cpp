@@ -61,6 +61,7 @@ int run(int argument_count, char** arguments) {
     if (program.get_subcommands().empty() && !program.remaining().empty())
       throw UsageError(
           "\"--\" stands in front of the command. Leave it out; of `inkwell run` it may stand behind the command.");
+    refuse_window_options_in_vain(program);
   } catch (const UsageError& error) {
     return complain(error, wrong_usage);
   } catch (const CLI::RequiredError& error) {

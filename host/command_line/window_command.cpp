@@ -1,14 +1,31 @@
 #include "commands.hpp"
 
 #include <memory>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <installation/places.hpp>
+#include <scope/scope_layout.hpp>
 #include <window/window.hpp>
 
 #include "help.hpp"
 
 namespace inkwell::command_line {
 namespace {
+
+/// Begins with "Window": completion does not offer these behind a command.
+constexpr char window_group[] = "Window (without a command, and of replay)";
+constexpr std::string_view command_with_window = "replay";
+
+/// In the form in which help, manual page and completion take choices. Layouts of the user's own may be given too.
+std::string layout_choices() {
+  std::vector<std::string_view> names;
+  for (const window::ScopeLayout& layout : window::built_in_layouts()) names.push_back(layout.name);
+  return fmt::format("{{{}}}", fmt::join(names, ","));
+}
 
 int open_window(const DeviceOptions& options, window::WindowOptions window_options, std::uint16_t control_port,
                 const std::string& theme) {
@@ -55,12 +72,12 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
   };
   const auto settings = std::make_shared<Settings>();
   auto& window = settings->window;
-  const char* group = "Window (without a command)";
+  const char* group = window_group;
   program.add_option("--parameters", window.parameters_file, "Send this TOML file to the device once it is connected")
       ->type_name("FILE")
       ->group(group);
-  program.add_option("--layout", window.layout, "Layout of the scope to begin with, for example paper")
-      ->type_name("NAME")
+  program.add_option("--layout", window.layout, "Layout of the scope to begin with: one of these, or of your own")
+      ->type_name(layout_choices())
       ->group(group);
   program.add_option("--theme", settings->theme, "Colours")->check(CLI::IsMember({"dark", "light"}))->group(group);
   program
@@ -107,6 +124,17 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
   };
   action = [open] { return open({}); };
   return open;
+}
+
+void refuse_window_options_in_vain(const CLI::App& program) {
+  const auto commands = program.get_subcommands();
+  if (commands.empty() || commands.front()->get_name() == command_with_window) return;
+  for (const CLI::Option* option : program.get_options())
+    if (option->get_group() == window_group && option->count() > 0)
+      throw UsageError(
+          fmt::format("{} is an option of the window, and `inkwell {}` opens none. Leave it out; `inkwell` alone and "
+                      "`inkwell {}` take it.",
+                      option->get_name(), commands.front()->get_name(), command_with_window));
 }
 
 }  // namespace inkwell::command_line

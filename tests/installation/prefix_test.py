@@ -85,6 +85,7 @@ class Files(unittest.TestCase):
         self.assertEqual(["set", "save", "store", "stored"], completed("inkwell", "--virtual", "parameters", "s"))
         self.assertEqual(["wall_stiffness_N_per_m="], completed("inkwell", "parameters", "set", "wall_stiff"))
         self.assertEqual(["exact", "fast"], completed("inkwell", "info", "--mode", ""))
+        self.assertEqual(["paper"], completed("inkwell", "--layout", "pa"))
         self.assertEqual(["--seconds", "--seed", "--serial", "--signals"], sorted(completed("inkwell", "record", "--se")
                                                                                 + completed("inkwell", "record", "--si")))
 

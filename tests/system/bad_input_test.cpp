@@ -157,6 +157,16 @@ TEST_CASE("the companion refuses what it does not know") {
   SUBCASE("layout") {
     check_refused(run_program("inkwell", {"--virtual", "--layout", "nonsense"}), {"nonsense", "--layout", "paper"});
   }
+  SUBCASE("options of the window where none opens") {
+    check_refused(run_program("inkwell", {"plot", "push.h5", "--layout", "nonsense"}),
+                  {"--layout", "`inkwell plot` opens none"});
+    check_refused(run_program("inkwell", {"--parameters", "soft.toml", "record", "push.h5"}),
+                  {"--parameters", "`inkwell record` opens none"});
+    // Replaying opens one, so there it is the recording that is missed.
+    const auto replayed = run_program("inkwell", {"replay", "nowhere.h5", "--info", "--layout", "paper"});
+    check_refused(replayed, {"nowhere.h5"});
+    CHECK(replayed.err.find("--layout") == std::string::npos);
+  }
   SUBCASE("kind of picture") {
     const TemporaryDirectory directory;
     const auto file = directory.file("push.csv");
