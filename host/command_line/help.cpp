@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <device/nearest_name.hpp>
 #include <device/parameter_file.hpp>
 
 namespace inkwell::command_line {
@@ -90,17 +92,44 @@ CLI::Validator not_empty() {
       "");
 }
 
-std::optional<std::string> missing_command(const CLI::App& program) {
-  const auto given = program.get_subcommands();
-  if (given.empty() || !given.front()->get_subcommands().empty()) return std::nullopt;
-  std::vector<std::string> names;
-  for (const CLI::App* each : given.front()->get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(each->get_name());
-  if (names.empty()) return std::nullopt;
-  const std::string command = given.front()->get_name();
-  const auto words = program.remaining(true);
-  const std::string unknown = words.empty() ? "" : fmt::format("There is no `{} {}`. ", command, words.front());
-  return fmt::format("{}Say which of these: inkwell {} {}.", unknown, command, fmt::join(names, ", "));
+namespace {
+
+/// A command below a command, or below the program.
+struct Below {
+  std::string_view name;
+};
+
+/// The innermost command that was given, and the program itself if none was.
+struct Innermost {
+  const CLI::App* command;
+  std::string words;  ///< "inkwell parameters"
+};
+
+Innermost innermost(const CLI::App& program) {
+  Innermost found{&program, program.get_name()};
+  for (auto given = program.get_subcommands(); !given.empty(); given = found.command->get_subcommands())
+    found = {given.front(), fmt::format("{} {}", found.words, given.front()->get_name())};
+  return found;
+}
+
+}  // namespace
+
+std::optional<std::string> wrong_command(const CLI::App& program) {
+  const auto [command, words] = innermost(program);
+  std::vector<Below> below;
+  for (const CLI::App* each : command->get_subcommands([](const CLI::App*) { return true; }))
+    below.push_back({each->get_name()});
+  const auto typed = program.remaining(true);
+  const bool is_unknown = !typed.empty() && !typed.front().starts_with('-');
+  const bool is_missing = typed.empty() && command->get_require_subcommand_min() > 0;
+  if (below.empty() || (!is_unknown && !is_missing)) return std::nullopt;
+  const std::string unknown = is_unknown ? fmt::format("There is no `{} {}`.{} ", words, typed.front(),
+                                                       device::suggestion(below, typed.front()))
+                                         : std::string();
+  if (command == &program) return fmt::format("{}`{} --help` lists the commands.", unknown, words);
+  std::vector<std::string_view> names;
+  for (const Below& each : below) names.push_back(each.name);
+  return fmt::format("{}Say which of these: {} {}.", unknown, words, fmt::join(names, ", "));
 }
 
 void add_examples(CLI::App& command, const std::string& examples) {

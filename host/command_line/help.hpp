@@ -22,7 +22,8 @@ CLI::Validator more_than_zero();
 /// device that is there without the option.
 CLI::Validator not_empty();
 
-/// Says which commands there are, if one was given that needs one of its own and there is none or another word.
-std::optional<std::string> missing_command(const CLI::App& program);
+/// Says which commands there are, and which was probably meant, if a word stands where only a command may, or if the
+/// command that was given needs one of its own and has none.
+std::optional<std::string> wrong_command(const CLI::App& program);
 
 }  // namespace inkwell::command_line

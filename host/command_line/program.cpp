@@ -65,7 +65,11 @@ int run(int argument_count, char** arguments) {
   } catch (const UsageError& error) {
     return complain(error, wrong_usage);
   } catch (const CLI::RequiredError& error) {
-    return complain(UsageError(missing_command(program).value_or(error.what())), wrong_usage);
+    return complain(UsageError(wrong_command(program).value_or(error.what())), wrong_usage);
+  } catch (const CLI::ExtrasError& error) {
+    if (const auto sentence = wrong_command(program)) return complain(UsageError(*sentence), wrong_usage);
+    program.exit(error);
+    return wrong_usage;
   } catch (const CLI::ParseError& error) {
     const bool is_help = error.get_exit_code() == 0;
     program.exit(error);

@@ -144,9 +144,20 @@ TEST_CASE("the companion refuses what it does not know") {
     check_refused(run_program("inkwell", {"--virtual", "parameters", "set", "wall_stiffness_N_per_m=stiff"}),
                   {"stiff"});
   }
-  SUBCASE("command") { check_refused(run_program("inkwell", {"dance"}), {"dance"}); }
+  SUBCASE("command") {
+    const auto unlike = run_program("inkwell", {"dance"});
+    check_refused(unlike, {"no `inkwell dance`", "`inkwell --help`"});
+    CHECK(unlike.err.find("Did you mean") == std::string::npos);
+    check_refused(run_program("inkwell", {"--virtual", "paramters"}), {"no `inkwell paramters`", "mean parameters?"});
+    // What is no command where none is expected has no list to be compared with.
+    check_refused(run_program("inkwell", {"plot", "push.h5", "parameters"}), {"parameters"});
+    check_refused(run_program("inkwell", {"--sead", "info"}), {"--sead"});
+  }
   SUBCASE("command of a command") {
-    check_refused(run_program("inkwell", {"experiment", "hall"}), {"no `experiment hall`", "inkwell experiment wall"});
+    check_refused(run_program("inkwell", {"experiment", "hall"}),
+                  {"no `inkwell experiment hall`", "inkwell experiment wall"});
+    check_refused(run_program("inkwell", {"check", "conection"}), {"mean connection?", "inkwell check "});
+    check_refused(run_program("inkwell", {"parameters", "stor"}), {"no `inkwell parameters stor`", "mean store?"});
     check_refused(run_program("inkwell", {"experiment"}), {"inkwell experiment wall"});
   }
   SUBCASE("negative time") {
