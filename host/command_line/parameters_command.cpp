@@ -1,6 +1,8 @@
 #include "commands.hpp"
 
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -133,9 +135,18 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
   return {std::move(loaded), std::move(connection)};
 }
 
-int save(const DeviceOptions& options, const std::string& file) {
+/// What is in the way may be the only copy of a calibration.
+void check_is_free(const std::string& file) {
+  std::error_code code;
+  if (std::filesystem::exists(file, code))
+    throw UsageError(fmt::format("{} exists. Give another name, or --overwrite to replace what it holds.", file));
+}
+
+int save(const DeviceOptions& options, const std::string& file, bool overwrite) {
+  const bool is_standard_output = file == "-";
+  if (!is_standard_output && !overwrite) check_is_free(file);
   const auto connection = connect(options);
-  if (file == "-") {
+  if (is_standard_output) {
     fmt::print("{}", device::format_parameters(connection.device->parameters()));
     return 0;
   }
@@ -212,10 +223,12 @@ void add_parameters_command(const Place& place) {
       })
       ->add_option("FILE", *file, "Written by `inkwell parameters save`")
       ->required();
-  add("save", "Write the device's parameters to a TOML file", "inkwell parameters save soft.toml",
-      [&options, file] { return save(options, *file); })
-      ->add_option("FILE", *file, "It is replaced if it exists; - is standard output")
-      ->required();
+  const auto overwrite = std::make_shared<bool>(false);
+  auto* save_command = add("save", "Write the device's parameters to a TOML file",
+                           "inkwell parameters save soft.toml\ninkwell parameters save soft.toml --overwrite",
+                           [&options, file, overwrite] { return save(options, *file, *overwrite); });
+  save_command->add_option("FILE", *file, "It must not exist yet; - is standard output")->required();
+  save_command->add_flag("--overwrite", *overwrite, "Replace a file of that name");
   add("diff", "Show where a TOML file and the device differ", "inkwell parameters diff soft.toml",
       [&options, file] { return show_differences(options, *file); })
       ->add_option("FILE", *file, "Written by `inkwell parameters save`")

@@ -233,6 +233,18 @@ TEST_CASE("parameters are saved to standard output, and come back from there") {
   CHECK_FALSE(std::filesystem::exists("-"));
 }
 
+TEST_CASE("parameters that were saved are not overwritten unless that is asked for") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("calibration.toml");
+  write_file(file, "a calibration");
+  // Before a device is asked: none is at this port.
+  check_refused(run_program("inkwell", {"--usbip", "1", "parameters", "save", file}),
+                {"calibration.toml exists", "--overwrite"});
+  CHECK(read_file(file) == "a calibration");
+  CHECK(run_program("inkwell", {"--virtual", "parameters", "save", file, "--overwrite"}).exit_code == 0);
+  CHECK(read_file(file).find("[parameters]") != std::string::npos);
+}
+
 // /dev/full refuses every write as a full disk does.
 TEST_CASE("a full disk is told in our words, and nothing half written is left") {
   const TemporaryDirectory directory;
