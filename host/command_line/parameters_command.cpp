@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -94,27 +95,35 @@ int get(const DeviceOptions& options, const std::vector<std::string>& names) {
   return 0;
 }
 
-void report(const DeviceOptions& options, std::size_t count, const protocol::TransactionReport& transaction) {
-  if (options.json)
-    fmt::print("{}\n",
-               ordered_json{{"accepted", count}, {"applied_at_periods", transaction.applied_at_periods}}.dump());
-  else
+void finish(const DeviceOptions& options, device::Device& device, std::size_t count,
+            const protocol::TransactionReport& transaction, bool store) {
+  if (store) store_parameters(device);
+  if (options.json) {
+    ordered_json json{{"accepted", count}, {"applied_at_periods", transaction.applied_at_periods}};
+    if (store) json["stored"] = true;
+    fmt::print("{}\n", json.dump());
+  } else {
     fmt::print("{} parameter{} took effect together.\n", count, count == 1 ? "" : "s");
+    if (store) fmt::print("The parameters are stored on the board and outlive its power.\n");
+  }
+  tell_what_ends(options, store);
 }
 
-int send(const DeviceOptions& options, const device::OpenArm& connection, const std::vector<ParameterChange>& changes) {
-  report(options, changes.size(), connection.device->set_parameters(changes));
+int send(const DeviceOptions& options, const device::OpenArm& connection, const std::vector<ParameterChange>& changes,
+         bool store) {
+  finish(options, *connection.device, changes.size(), connection.device->set_parameters(changes), store);
   return 0;
 }
 
-int set(const DeviceOptions& options, const std::vector<std::string>& assignments) {
+int set(const DeviceOptions& options, const std::vector<std::string>& assignments, bool store) {
   const auto [changes, connection] = read_words(options, assignments, device::parse_change);
-  return send(options, *connection, changes);
+  return send(options, *connection, changes, store);
 }
 
-int restore_defaults(const DeviceOptions& options) {
+int restore_defaults(const DeviceOptions& options, bool store) {
   const auto connection = connect(options);
-  report(options, protocol::known_parameters().size(), connection.device->restore_default_parameters());
+  finish(options, *connection.device, protocol::known_parameters().size(),
+         connection.device->restore_default_parameters(), store);
   return 0;
 }
 
@@ -184,7 +193,8 @@ void add_parameters_command(const Place& place) {
   auto* command = place.program.add_subcommand(
       "parameters",
       "Every parameter with value, default, range and unit; or one of the commands below\n"
-      "Values last until the board loses its power, unless `inkwell parameters store` keeps them.");
+      "Values last until the board loses its power, unless `inkwell parameters store` keeps them, or --store of the\n"
+      "command that changes them.");
   command->require_subcommand(0, 1);
   const DeviceOptions& options = place.device;
   command->callback([place, command] {
@@ -209,18 +219,25 @@ void add_parameters_command(const Place& place) {
       [&options, words] { return get(options, *words); })
       ->add_option("NAME", *words, "Names of parameters")
       ->required();
-  add("set", "Change parameters in one transaction: all of them take effect together, or none",
-      "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3",
-      [&options, words] { return set(options, *words); })
+  const auto store = std::make_shared<bool>(false);
+  const auto add_change = [&](const char* name, const char* help, const char* examples, std::function<int()> run) {
+    auto* subcommand = add(name, help, examples, std::move(run));
+    subcommand->add_flag("--store", *store, "Keep the parameters on the board afterwards, over its power");
+    return subcommand;
+  };
+  add_change("set", "Change parameters in one transaction: all of them take effect together, or none",
+             "inkwell parameters set wall_stiffness_N_per_m=600 wall_damping_Ns_per_m=3\n"
+             "inkwell parameters set wall_stiffness_N_per_m=600 --store",
+             [&options, words, store] { return set(options, *words, *store); })
       ->add_option("NAME=VALUE", *words, "A parameter and its new value, in the unit that its name ends in")
       ->required();
-  add("defaults", "Give every parameter its default", "inkwell parameters defaults",
-      [&options] { return restore_defaults(options); });
-  add("load", "Send the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
-      [&options, file] {
-        const auto [loaded, connection] = load_and_complain(options, *file);
-        return send(options, *connection, loaded.changes);
-      })
+  add_change("defaults", "Give every parameter its default", "inkwell parameters defaults",
+             [&options, store] { return restore_defaults(options, *store); });
+  add_change("load", "Send the parameters of a TOML file in one transaction", "inkwell parameters load soft.toml",
+             [&options, file, store] {
+               const auto [loaded, connection] = load_and_complain(options, *file);
+               return send(options, *connection, loaded.changes, *store);
+             })
       ->add_option("FILE", *file, "Written by `inkwell parameters save`")
       ->required();
   const auto overwrite = std::make_shared<bool>(false);
@@ -233,9 +250,9 @@ void add_parameters_command(const Place& place) {
       [&options, file] { return show_differences(options, *file); })
       ->add_option("FILE", *file, "Written by `inkwell parameters save`")
       ->required();
-  add("arm", "Send the geometry, limits and box of an arm description in one transaction",
-      "inkwell parameters arm boards/arms/paper.toml",
-      [&options, file] { return send(options, connect(options), device::arm_parameters(*file)); })
+  add_change("arm", "Send the geometry, limits and box of an arm description in one transaction",
+             "inkwell parameters arm boards/arms/paper.toml",
+             [&options, file, store] { return send(options, connect(options), device::arm_parameters(*file), *store); })
       ->add_option("FILE", *file, "An arm description such as boards/arms/paper.toml")
       ->required();
   add_store_commands(*command, place);

@@ -107,8 +107,7 @@ void tell(const DeviceOptions& options, device::Device& device, std::string_view
     fmt::print("{}\n", to_json(device.parameters(), read_store(device)).dump(2));
   else
     fmt::print("{}\n", done);
-  if (options.is_virtual && options.flash.empty())
-    fmt::print(stderr, "inkwell: This virtual board ends now, with its flash. With --flash FILE it keeps it.\n");
+  tell_what_ends(options, true);
 }
 
 int store(const DeviceOptions& options) {
@@ -147,6 +146,21 @@ int reset(const DeviceOptions& options, bool is_agreed) {
 }
 
 }  // namespace
+
+void tell_what_ends(const DeviceOptions& options, bool is_stored) {
+  if (!options.is_virtual || (is_stored && !options.flash.empty())) return;
+  if (is_stored)
+    fmt::print(stderr, "inkwell: This virtual board ends now, with its flash. With --flash FILE it keeps it.\n");
+  else if (options.flash.empty())
+    fmt::print(
+        stderr,
+        "inkwell: This virtual board ends now, with these values. With --flash FILE and --store they are kept.\n");
+  else
+    fmt::print(stderr,
+               "inkwell: This virtual board ends now, and {} keeps only what is stored. Add --store to keep these "
+               "values.\n",
+               options.flash.string());
+}
 
 void add_store_commands(CLI::App& parameters, const Place& place) {
   const auto add = [&](const char* name, const char* help, std::function<int()> run) {

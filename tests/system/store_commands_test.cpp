@@ -178,6 +178,32 @@ TEST_CASE("a virtual board of one command remembers in a file what was stored") 
   CHECK(again.err.find("`inkwell parameters store` keeps them") != std::string::npos);
 }
 
+TEST_CASE("values that a virtual board of one command would lose are told of, and kept if they are stored at once") {
+  const TemporaryDirectory directory;
+  const std::string flash = directory.file("flash.bin");
+  const auto run = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "parameters");
+    words.insert(words.end(), {"--virtual", "--flash", flash});
+    return run_program("inkwell", words);
+  };
+  const auto stiffness = [&] { return std::stod(run({"get", "wall_stiffness_N_per_m"}).out); };
+  const auto lost = run({"set", "wall_stiffness_N_per_m=600"});
+  REQUIRE(lost.exit_code == 0);
+  CHECK(lost.err.find("flash.bin keeps only what is stored. Add --store") != std::string::npos);
+  CHECK(stiffness() == default_stiffness);
+
+  const auto kept = run({"set", "wall_stiffness_N_per_m=700", "--store", "--json"});
+  REQUIRE(kept.exit_code == 0);
+  CHECK(kept.err.empty());
+  CHECK(nlohmann::json::parse(kept.out).at("stored") == true);
+  CHECK(stiffness() == 700);
+  REQUIRE(run({"defaults", "--store"}).exit_code == 0);
+  CHECK(stiffness() == default_stiffness);
+
+  const auto without_file = run_program("inkwell", {"parameters", "set", "wall_stiffness_N_per_m=600", "--virtual"});
+  CHECK(without_file.err.find("With --flash FILE and --store") != std::string::npos);
+}
+
 TEST_CASE("a virtual board without a file says that it forgets") {
   const auto stored = run_program("inkwell", {"parameters", "store", "--virtual"});
   CHECK(stored.exit_code == 0);
