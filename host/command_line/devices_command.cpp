@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <device/device.hpp>
+#include <device/transport.hpp>
 
 #include "help.hpp"
 
@@ -21,9 +22,7 @@ std::vector<Endpoint> found(const DeviceOptions& options) {
     throw UsageError("--virtual starts a board for one command, so that none is there to be listed. Leave it out.");
   const device::Address address = options.address();
   if (address.kind != device::Address::Kind::usbip) return device::find_usb_devices();
-  Endpoint endpoint = device::find_arm(address);  // which says its serial number only when it is opened
-  endpoint.serial_number = device::Device::open(endpoint)->information().serial_number;
-  return {endpoint};
+  return {device::find_arm(address)};
 }
 
 std::string place_of(const Endpoint& endpoint) {
@@ -31,14 +30,38 @@ std::string place_of(const Endpoint& endpoint) {
                                               : fmt::format("usbip {}:{}", endpoint.host, endpoint.port);
 }
 
+struct Listed {
+  std::string serial_number, product, place;
+  std::string board;  ///< empty: its firmware names none, or it could not be asked
+};
+
+/// One that cannot be asked is in the list all the same: it is there. Firmware with another version of the protocol
+/// answers this question too.
+Listed ask(const Endpoint& endpoint) {
+  Listed listed{endpoint.serial_number, endpoint.product, place_of(endpoint), {}};
+  try {
+    const auto information = device::Device(device::open_transport(endpoint)).information();
+    listed.serial_number = information.serial_number;  // which a list of USB/IP does not hold
+    listed.board = information.board_name;
+  } catch (const device::Error& error) {
+    fmt::print(stderr, "inkwell: Arm {} does not tell its board. {}\n", endpoint.serial_number, error.what());
+  }
+  return listed;
+}
+
 int list_devices(const DeviceOptions& options) {
   const auto devices = found(options);
   ordered_json json = ordered_json::array();
-  for (const Endpoint& each : devices) {
+  for (const Endpoint& endpoint : devices) {
+    const Listed each = ask(endpoint);
     if (options.json)
-      json.push_back({{"serial_number", each.serial_number}, {"product", each.product}, {"place", place_of(each)}});
+      json.push_back({{"serial_number", each.serial_number},
+                      {"product", each.product},
+                      {"board", each.board},
+                      {"place", each.place}});
     else
-      fmt::print("{:<26} {:<28} {}\n", each.serial_number, each.product, place_of(each));
+      fmt::print("{:<26} {:<28} {:<20} {}\n", each.serial_number, each.product,
+                 each.board.empty() ? "unknown board" : each.board, each.place);
   }
   if (options.json)
     fmt::print("{}\n", json.dump(2));
@@ -50,7 +73,8 @@ int list_devices(const DeviceOptions& options) {
 }  // namespace
 
 void add_devices_command(const Place& place) {
-  auto* command = place.program.add_subcommand("devices", "The arms that are there, by serial number");
+  auto* command =
+      place.program.add_subcommand("devices", "The arms that are there, by serial number, each with its board");
   add_examples(*command, "inkwell devices\ninkwell devices --usbip 127.0.0.1:3240 --json");
   command->callback([place] { place.action = [&options = place.device] { return list_devices(options); }; });
 }

@@ -184,7 +184,10 @@ TEST_CASE("the arms that are there are listed by serial number") {
   const auto json = nlohmann::json::parse(listed.out);
   REQUIRE(json.size() == 1);
   CHECK(json[0].at("serial_number") == device::Device::open(*rig.board.find())->information().serial_number);
-  CHECK(rig.run({"devices"}).out.find(json[0].at("serial_number").get<std::string>()) != std::string::npos);
+  CHECK(json[0].at("board") == "omni_driver");
+  const auto lines = rig.run({"devices"}).out;
+  CHECK(lines.find(" omni_driver ") != std::string::npos);
+  CHECK(lines.find(json[0].at("serial_number").get<std::string>()) != std::string::npos);
   CHECK(run_program("inkwell", {"devices", "--virtual"}).exit_code == 2);
 }
 

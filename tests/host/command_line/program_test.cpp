@@ -41,6 +41,16 @@ Ended run_here(std::vector<std::string> words) {
 
 }  // namespace
 
+TEST_CASE("an arm that does not tell its board does not keep the others from being listed") {
+  FakeUsb usb;
+  usb.add_arm("0011");
+  usb.add_arm("0022");
+  const auto [exit_code, complaint] = run_here({"inkwell", "devices"});
+  CHECK(exit_code == 0);
+  CHECK(contains(complaint, "Arm 0011 does not tell its board"));
+  CHECK(contains(complaint, "Arm 0022 does not tell its board"));
+}
+
 TEST_CASE("of several arms none is used that was not named, and the sentence says how one is") {
   FakeUsb usb;
   usb.add_arm("0011");
