@@ -145,7 +145,7 @@ void add_flash_command(const Place& place) {
       ->capture_default_str()
       ->needs(by_probe);
   command->add_flag("--yes", given->says_yes,
-                    "Write it even if it is for another board, speaks an older protocol, or is damaged");
+                    "Write it even if it is for another board, speaks another protocol, or is damaged");
   add_examples(*command,
                "inkwell flash\ninkwell flash build/board/inkwell.elf\ninkwell flash --swd\n"
                "inkwell flash --swd --interface cmsis-dap\ninkwell flash --virtual board.flash");

@@ -118,7 +118,7 @@ std::vector<std::string> objections(const Image& image, const std::optional<prot
   if (there && there->board_name() != identity.board_name())
     sentences.push_back(fmt::format("{} is for the board {}, and this one is {}: its pins would drive other things.",
                                     name, identity.board_name(), there->board_name()));
-  if (identity.protocol_version < protocol::protocol_version)
+  if (identity.protocol_version != protocol::protocol_version)
     sentences.push_back(
         fmt::format("{} speaks version {} of the protocol, this companion version {}: they could not "
                     "work together.",

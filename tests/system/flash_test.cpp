@@ -82,10 +82,16 @@ std::string write_elf(const TemporaryDirectory& directory, const std::vector<fir
 
 }  // namespace
 
-TEST_CASE("a new version goes into a board that runs, and the old one again") {
+TEST_CASE("a newer protocol goes into a board that runs after a word of yes, and the old one again without") {
   const FreeBoard board({"--elf", image("inkwell.elf"), "--serial", "1"});
   board.wait_until(&FreeBoard::runs);
-  auto result = board.flash({image("next-protocol.elf"), "--json"});
+  auto result = board.flash({image("next-protocol.elf")});
+  CHECK(result.exit_code == 1);
+  CHECK(says(result, "they could not work together"));
+  CHECK(says(result, "--yes"));
+  CHECK_FALSE(says(result, "asking the board to leave"));
+
+  result = board.flash({image("next-protocol.elf"), "--yes", "--json"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   auto json = nlohmann::json::parse(result.out);
