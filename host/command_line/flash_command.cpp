@@ -1,6 +1,9 @@
 #include "commands.hpp"
 
+#include <iterator>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -23,6 +26,7 @@ using nlohmann::ordered_json;
 
 struct FlashOptions {
   std::filesystem::path image;
+  std::string board;
   firmware_update::ImageFor image_for = firmware_update::always_the_given;
   bool by_usb = false, by_probe = false, says_yes = false;
   std::filesystem::path flash_file;
@@ -103,7 +107,15 @@ int flash(const DeviceOptions& options, FlashOptions given) {
     throw UsageError(
         "--virtual in front of `flash` would start a board that ends with this command. Write `inkwell flash --virtual "
         "FILE` for the flash file of a virtual board, or --usbip HOST:PORT for one that runs.");
-  if (given.image.empty()) {
+  if (!given.board.empty()) {
+    given.image = installation::firmware(board::image_name(*board::find_board(given.board)));
+  } else if (given.image.empty()) {
+    // Unasked it would be a guess, and another board's pins drive other things.
+    if (given.by_probe && std::size(board::known_boards) > 1)
+      throw UsageError(fmt::format(
+          "A probe cannot tell which board it hangs at. Name it with --board, which is one of these: {}; or "
+          "name the image.",
+          board::names_of_boards()));
     given.image = installation::firmware();
     given.image_for = firmware_update::own_image_for;
   }
@@ -125,10 +137,15 @@ void add_flash_command(const Place& place) {
       "because its button BOOT0 was held while its power came on, is found there. Stored parameters stay. If it is\n"
       "stopped in the middle, the same command again goes on.");
   const auto given = std::make_shared<FlashOptions>();
-  command->add_option("IMAGE", given->image,
-                      "ELF of a firmware; unless given, that beside this program for the board that is there.\n"
-                      "A probe cannot ask which: --swd takes that for " +
-                          std::string(board::default_board.name));
+  auto* image = command->add_option(
+      "IMAGE", given->image, "ELF of a firmware; unless given, that beside this program for the board that is there");
+  std::vector<std::string> boards;
+  for (const board::Facts* each : board::known_boards) boards.emplace_back(each->name);
+  command
+      ->add_option("--board", given->board,
+                   "The board, for the image beside this program; --swd wants it or IMAGE: no probe can ask")
+      ->check(CLI::IsMember(boards))
+      ->excludes(image);
   auto* by_usb = command->add_flag("--dfu", given->by_usb, "Over USB, which is the choice without any");
   auto* by_probe =
       command->add_flag("--swd", given->by_probe, "By a debug probe at the board's SWD connector, with openocd");
@@ -146,9 +163,10 @@ void add_flash_command(const Place& place) {
       ->needs(by_probe);
   command->add_flag("--yes", given->says_yes,
                     "Write it even if it is for another board, speaks another protocol, or is damaged");
-  add_examples(*command,
-               "inkwell flash\ninkwell flash build/board/inkwell.elf\ninkwell flash --swd\n"
-               "inkwell flash --swd --interface cmsis-dap\ninkwell flash --virtual board.flash");
+  add_examples(
+      *command,
+      "inkwell flash\ninkwell flash build/board/inkwell.elf\ninkwell flash --swd --board omni_driver\n"
+      "inkwell flash --swd --interface cmsis-dap build/board/inkwell.elf\ninkwell flash --virtual board.flash");
   command->callback(
       [place, given] { place.action = [&options = place.device, given] { return flash(options, *given); }; });
 }

@@ -240,8 +240,8 @@ TEST_CASE("without a board, and without openocd, flashing says what to do") {
   CHECK(run_program("inkwell", {"--virtual", "flash"}).exit_code == 2);
   CHECK(run_program("inkwell", {"flash", "--swd", "--dfu"}).exit_code == 2);
   CHECK(run_program("inkwell", {"flash", "--virtual"}).exit_code == 2);
-  const auto no_probe =
-      run_program("/usr/bin/env", {"PATH=/nowhere", build_directory() + "/inkwell", "flash", "--swd"});
+  const auto no_probe = run_program(
+      "/usr/bin/env", {"PATH=/nowhere", build_directory() + "/inkwell", "flash", "--swd", image("inkwell.elf")});
   CHECK(no_probe.exit_code == 1);
   CHECK(says(no_probe, "Install it"));
 }
@@ -262,7 +262,19 @@ TEST_CASE("a probe's openocd is called with the image, and its failure is told")
   CHECK(words.find("interface/jlink.cfg") != std::string::npos);
   CHECK(words.find("inkwell.elf") != std::string::npos);
   CHECK(words.find("options_write") != std::string::npos);
-  const auto failed = run_program("/usr/bin/env", {path, "FAKE_RESULT=1", companion, "flash", "--swd"});
+  const auto failed =
+      run_program("/usr/bin/env", {path, "FAKE_RESULT=1", companion, "flash", "--swd", "--board", "omni_driver"});
   CHECK(failed.exit_code == 1);
   CHECK(says(failed, "Is the probe connected"));
+
+  // Of the board that is named it is the image beside the program; of none, none is guessed and openocd not called.
+  std::filesystem::remove(called);
+  const auto nameless = run_program("/usr/bin/env", {path, companion, "flash", "--swd"});
+  CHECK(nameless.exit_code == 2);
+  CHECK(says(nameless, "--board, which is one of these: bench_modules, omni_driver"));
+  CHECK_FALSE(std::filesystem::exists(called));
+  CHECK(run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--board", "bench_modules"}).exit_code == 0);
+  std::ifstream again(called);
+  const std::string of_named{std::istreambuf_iterator<char>(again), {}};
+  CHECK(of_named.find("inkwell-bench_modules.elf") != std::string::npos);
 }
