@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
@@ -21,6 +22,7 @@
 #include "mark_keys.hpp"
 #include "next_pose.hpp"
 #include "progress_bar.hpp"
+#include "recorded_span.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -46,10 +48,8 @@ struct RecordOptions {
 /// given number of control periods.
 class RecordingThread {
  public:
-  RecordingThread(device::Device& device, recording::Recorder& recorder, double seconds)
-      : device_(device),
-        recorder_(recorder),
-        periods_(static_cast<std::uint32_t>(seconds * protocol::servo_rate_Hz + 0.5)) {
+  RecordingThread(device::Device& device, recording::Recorder& recorder, RecordedSpan& span)
+      : device_(device), recorder_(recorder), span_(span) {
     thread_ = std::thread([this] { read(); });
   }
   ~RecordingThread() {
@@ -59,35 +59,40 @@ class RecordingThread {
   RecordingThread(const RecordingThread&) = delete;
   RecordingThread& operator=(const RecordingThread&) = delete;
 
-  bool is_done() const { return is_done_; }
+  /// Whether all samples have come. Throws device::Error if no more will.
+  bool is_done() const {
+    if (has_failed_) throw device::Error(failure_);
+    return is_done_;
+  }
 
  private:
   void read() {
     try {
-      while (!stopping_ && !is_done_)
-        if (auto samples = device_.read_scope(read_timeout)) take(*samples);
-    } catch (const device::Error&) {
-      // The thread that reads the poses meets the same error and tells it.
+      for (int silent_reads = 0; !stopping_ && !is_done_;) {
+        auto samples = device_.read_scope(read_timeout);
+        silent_reads = samples ? 0 : silent_reads + 1;
+        // Twice what the poses have: a board that is silent altogether is told as one.
+        if (silent_reads * read_timeout > 2 * silence_limit)
+          throw device::Error("The board tells its pose but sends no samples. Start the recording again.");
+        if (samples) take(*samples);
+      }
+    } catch (const device::Error& error) {
+      failure_ = error.what();
+      has_failed_ = true;
     }
   }
   void take(device::ScopeSamples& samples) {
-    if (samples.count == 0) return;
-    if (!first_period_) first_period_ = samples.first_period;
-    if (periods_ > 0) {
-      const std::uint32_t passed = samples.first_period - *first_period_;
-      const std::size_t wanted = passed < periods_ ? periods_ - passed : 0;
-      is_done_ = samples.count >= wanted;
-      if (wanted == 0) return;
-      samples.count = std::min(samples.count, wanted);
-    }
+    span_.cut(samples);
     recorder_.push(samples);
+    is_done_ = span_.is_over();
   }
 
   device::Device& device_;
   recording::Recorder& recorder_;
-  std::uint32_t periods_;  ///< 0: without end
-  std::optional<std::uint32_t> first_period_;
+  RecordedSpan& span_;
   std::atomic<bool> stopping_ = false, is_done_ = false;
+  std::string failure_;  ///< written before has_failed_, and never again
+  std::atomic<bool> has_failed_ = false;
   std::thread thread_;
 };
 
@@ -95,6 +100,12 @@ std::vector<protocol::Signal> chosen_signals(const RecordOptions& options) {
   if (options.all) return recording::signal_path();
   if (options.signals.empty()) return recording::standard_signals();
   return recording::parse_signals(options.signals);
+}
+
+/// 0 is without end, so that a time shorter than a period takes one.
+std::uint64_t periods_of(const RecordOptions& options) {
+  if (options.seconds == 0) return 0;
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(options.seconds * protocol::servo_rate_Hz + 0.5));
 }
 
 std::string progress_text(const RecorderStatus& status) {
@@ -106,12 +117,12 @@ std::string progress_text(const RecorderStatus& status) {
 
 /// Returns why the force went off, if it was to be on and did.
 std::optional<std::string> run(device::Device& device, recording::Recorder& recorder, const RecordOptions& options,
-                               std::optional<ForceSwitch>& force) {
+                               RecordedSpan& span, std::optional<ForceSwitch>& force) {
   const InterruptGuard interrupt;
   std::optional<std::string> force_went_off;
   std::optional<MarkKeys> keys;
   if (options.mark_key) keys.emplace(STDIN_FILENO);
-  RecordingThread scope(device, recorder, options.seconds);
+  RecordingThread scope(device, recorder, span);
   ProgressBar progress;
   const auto show = [&](const RecorderStatus& status) {
     if (options.seconds == 0) return progress(progress_text(status) + ". Ctrl-C ends it.", std::nullopt);
@@ -174,16 +185,22 @@ int record(const DeviceOptions& device_options, const RecordOptions& options) {
   if (options.force) force.emplace(device);
   device.select_signals(signals);  // first: a scope that another program has must leave no file
   recording::Recorder recorder(options.file, information);
+  RecordedSpan span(periods_of(options));
   std::string failure;
   std::optional<std::string> force_went_off;
   try {
-    force_went_off = run(device, recorder, options, force);
+    force_went_off = run(device, recorder, options, span, force);
     device.select_signals({});
   } catch (const device::Error& error) {
     failure = error.what();
   }
   auto status = recorder.stop();
   if (status.error.empty() && !failure.empty()) status.error = failure + " The recording holds everything up to then.";
+  if (const auto missing = span.missing_at_end(status.samples, status.lost); missing > 0 && status.error.empty())
+    status.error = fmt::format(
+        "The last {:.4f} s were lost on the way from the board, or the disk was too slow for them. The recording holds "
+        "everything up to then.",
+        static_cast<double>(missing) / protocol::servo_rate_Hz);
   if (device_options.json)
     fmt::print("{}\n", to_json(options, status, force_went_off).dump());
   else

@@ -3,13 +3,19 @@
 
 #include <unistd.h>
 
+#include <cstring>
 #include <fstream>
+#include <functional>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <command_line/program.hpp>
 #include <failure.hpp>
 #include <host/device/fake_usb.hpp>
+#include <host/device/fake_usbip_server.hpp>
+#include <protocol/reports.hpp>
 #include <temporary_directory.hpp>
 
 using namespace inkwell;
@@ -49,6 +55,57 @@ TEST_CASE("an arm that does not tell its board does not keep the others from bei
   CHECK(exit_code == 0);
   CHECK(contains(complaint, "Arm 0011 does not tell its board"));
   CHECK(contains(complaint, "Arm 0022 does not tell its board"));
+}
+
+TEST_CASE("a recording whose end does not come says so, and is no success") {
+  FakeUsb usb;
+  FakeUsbDevice& arm = usb.add_arm("0011");
+  answer_as_inkwell(arm);
+  protocol::PoseReport pose{};
+  pose.report_id = protocol::ReportId::pose;
+  arm.repeats_reports = true;
+  usb.send_report(arm, bytes_of(pose));
+  const auto selection_token = [&] {
+    for (;;) {
+      const std::lock_guard lock(usb.mutex);
+      for (const Bytes& written : arm.written) {
+        protocol::CommandReport report{};
+        if (written.size() != sizeof report) continue;
+        std::memcpy(&report, written.data(), sizeof report);
+        if (report.report_id == protocol::ReportId::command && report.command == protocol::Command::select_signals)
+          return report.token;
+      }
+    }
+  };
+  std::function<void()> end;
+  std::string said;
+  SUBCASE("its stream breaks off, and the poses go on") {
+    end = [&] { usb.set_bulk_fails(arm, true); };
+    said = "The recording holds everything up to then";
+  }
+  SUBCASE("its stream says nothing, and the poses go on") {
+    end = [] {};
+    said = "tells its pose but sends no samples";
+  }
+  SUBCASE("what comes next lies behind its end") {
+    end = [&] {
+      const auto token = selection_token();
+      usb.send_bulk(arm, scope_frame(token, 1000, 0.5f));
+      usb.send_bulk(arm, scope_frame(token, 1500, 0.5f));
+    };
+    said = "were lost on the way";
+  }
+  std::thread cable([&] {
+    while (usb.endpoints_under_way(arm).empty()) std::this_thread::yield();
+    end();
+  });
+  const TemporaryDirectory directory;
+  const auto [exit_code, complaint] =
+      run_here({"inkwell", "record", directory.file("push.csv"), "--signals", "force_N", "--seconds", "0.01"});
+  cable.join();
+  CAPTURE(complaint);
+  CHECK(exit_code == 1);
+  CHECK(contains(complaint, said));
 }
 
 TEST_CASE("of several arms none is used that was not named, and the sentence says how one is") {

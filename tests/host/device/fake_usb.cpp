@@ -11,6 +11,13 @@
 #include <iterator>
 #include <thread>
 
+#include <control/installed_force_law.hpp>
+#include <protocol/parameters.hpp>
+#include <protocol/reports.hpp>
+#include <protocol/store.hpp>
+
+#include "fake_usbip_server.hpp"
+
 using inkwell::tests::Bytes;
 using inkwell::tests::FakeUsb;
 using inkwell::tests::FakeUsbDevice;
@@ -261,7 +268,7 @@ int hid_read_timeout(hid_device* hid, unsigned char* data, std::size_t length, i
     FakeUsbDevice& device = *hid->device;
     if (!device.reports.empty()) {
       const int given = give(device.reports.front(), data, length);
-      device.reports.pop_front();
+      if (!device.repeats_reports || device.reports.size() > 1) device.reports.pop_front();
       return given;
     }
     if (device.unplugged) return fail(ENODEV);
@@ -347,6 +354,29 @@ void FakeUsb::set_bulk_fails(FakeUsbDevice& device, bool fails) {
 std::size_t FakeUsb::bulk_left(const FakeUsbDevice& device) {
   const std::lock_guard lock(mutex);
   return device.ready.size();
+}
+
+void answer_as_inkwell(FakeUsbDevice& arm) {
+  protocol::InformationReport information{};
+  information.report_id = protocol::ReportId::information;
+  information.version = protocol::protocol_version;
+  information.parameter_table_hash = protocol::parameter_table_hash;
+  information.signal_table_hash = protocol::signal_table_hash;
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::information)] = bytes_of(information);
+  const auto& law = control::installed_force_law;
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::force_law)] =
+      Bytes(law.report, law.report + law.report_size);
+  protocol::ParametersReport parameters{};
+  parameters.report_id = protocol::ReportId::parameters;
+  parameters.version = protocol::protocol_version;
+  parameters.count = protocol::parameter_count;
+  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
+    parameters.entries[i] = {protocol::parameter_table[i].id, 0, protocol::default_parameters().values[i]};
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::parameters)] = bytes_of(parameters);
+  parameters.report_id = protocol::ReportId::stored;
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::stored)] = bytes_of(parameters);
+  const protocol::StoreReport store{};
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::store)] = bytes_of(store);
 }
 
 }  // namespace inkwell::tests

@@ -34,6 +34,7 @@ struct FakeUsbDevice {
   bool unplugged = false;
   std::map<std::uint8_t, Bytes> features{};  ///< reports by their id; others are stalled
   std::deque<Bytes> reports{};               ///< input reports that wait to be read
+  bool repeats_reports = false;              ///< the newest is there to be read again and again
   std::vector<Bytes> written{};              ///< output reports
   std::vector<libusb_transfer*> under_way{};
   std::deque<Bytes> ready{};  ///< what the bulk transfers will bring
@@ -43,6 +44,9 @@ struct FakeUsbDevice {
     return {device::Endpoint::Kind::usb, serial_number, "Inkwell haptic arm", path(), "", 0};
   }
 };
+
+/// What a session asks an arm first.
+void answer_as_inkwell(FakeUsbDevice& arm);
 
 /// The one USB of a test; empty again after it.
 class FakeUsb {

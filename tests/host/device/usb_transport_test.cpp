@@ -8,11 +8,9 @@
 #include <memory>
 #include <optional>
 
-#include <control/installed_force_law.hpp>
 #include <device/device.hpp>
 #include <device/session.hpp>
 #include <failure.hpp>
-#include <protocol/store.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "fake_usb.hpp"
@@ -25,30 +23,6 @@ using namespace std::chrono_literals;
 namespace {
 
 Bytes bulk_number(int number) { return Bytes(100, static_cast<std::byte>(number)); }
-
-/// What a session asks an arm first.
-void answer_as_inkwell(FakeUsbDevice& arm) {
-  protocol::InformationReport information{};
-  information.report_id = protocol::ReportId::information;
-  information.version = protocol::protocol_version;
-  information.parameter_table_hash = protocol::parameter_table_hash;
-  information.signal_table_hash = protocol::signal_table_hash;
-  arm.features[static_cast<std::uint8_t>(protocol::ReportId::information)] = bytes_of(information);
-  const auto& law = control::installed_force_law;
-  arm.features[static_cast<std::uint8_t>(protocol::ReportId::force_law)] =
-      Bytes(law.report, law.report + law.report_size);
-  protocol::ParametersReport parameters{};
-  parameters.report_id = protocol::ReportId::parameters;
-  parameters.version = protocol::protocol_version;
-  parameters.count = protocol::parameter_count;
-  for (std::size_t i = 0; i < protocol::parameter_count; ++i)
-    parameters.entries[i] = {protocol::parameter_table[i].id, 0, protocol::default_parameters().values[i]};
-  arm.features[static_cast<std::uint8_t>(protocol::ReportId::parameters)] = bytes_of(parameters);
-  parameters.report_id = protocol::ReportId::stored;
-  arm.features[static_cast<std::uint8_t>(protocol::ReportId::stored)] = bytes_of(parameters);
-  const protocol::StoreReport store{};
-  arm.features[static_cast<std::uint8_t>(protocol::ReportId::store)] = bytes_of(store);
-}
 
 }  // namespace
 

@@ -1,0 +1,75 @@
+// Which of the samples that come belong to a recording of a given length, and what is missing at its end.
+#include <doctest/doctest.h>
+
+#include <command_line/recorded_span.hpp>
+
+using namespace inkwell;
+using command_line::RecordedSpan;
+
+namespace {
+
+/// How many of the block's samples belong to the recording.
+std::size_t taken(RecordedSpan& span, std::uint32_t first_period, std::size_t count) {
+  device::ScopeSamples samples{};
+  samples.first_period = first_period;
+  samples.count = count;
+  span.cut(samples);
+  return samples.count;
+}
+
+}  // namespace
+
+TEST_CASE("a recording of a given length ends with its last period, also where the board's time wraps around") {
+  for (const std::uint32_t first : {7u, 0xFFFF'FFF0u}) {
+    CAPTURE(first);
+    RecordedSpan span(100);
+    CHECK(taken(span, first, 60) == 60);
+    CHECK_FALSE(span.is_over());
+    CHECK(taken(span, first + 60, 60) == 40);
+    CHECK(span.is_over());
+    CHECK(span.missing_at_end(100, 0) == 0);
+  }
+  RecordedSpan endless(0);
+  CHECK(taken(endless, 7, 1'000'000) == 1'000'000);
+  CHECK_FALSE(endless.is_over());
+  CHECK(endless.missing_at_end(1'000'000, 0) == 0);
+}
+
+TEST_CASE("samples that are lost at the end of a recording are missing, those between others are not") {
+  RecordedSpan span(100);
+  CHECK(taken(span, 7, 50) == 50);
+  CHECK(taken(span, 7 + 60, 20) == 20);
+  CHECK_FALSE(span.is_over());
+  CHECK(span.missing_at_end(70, 10) == 0);  // of one that was ended before, nothing is
+  SUBCASE("the next come from behind the end") {
+    CHECK(taken(span, 7 + 110, 20) == 0);
+    CHECK(span.is_over());
+    CHECK(span.missing_at_end(70, 10) == 20);
+  }
+  SUBCASE("the last come, and the recorder has no room for them") {
+    CHECK(taken(span, 7 + 80, 20) == 20);
+    CHECK(span.is_over());
+    CHECK(span.missing_at_end(70, 10) == 20);
+    CHECK(span.missing_at_end(90, 10) == 0);
+  }
+}
+
+TEST_CASE("a board whose time begins anew ends no recording as if it were complete") {
+  RecordedSpan span(100);
+  CHECK(taken(span, 1000, 50) == 50);
+  CHECK(taken(span, 0, 20) == 20);  // the recorder is to see them
+  CHECK_FALSE(span.is_over());
+}
+
+TEST_CASE("a recording may be longer than the board's time takes to wrap around") {
+  constexpr std::uint64_t periods = 3ull << 32;
+  RecordedSpan span(periods);
+  constexpr std::uint32_t block = 1u << 30;
+  std::uint32_t period = 5;
+  for (int i = 0; i < 11; ++i, period += block) {
+    CHECK(taken(span, period, block) == block);
+    CHECK_FALSE(span.is_over());
+  }
+  CHECK(taken(span, period, block) == block);
+  CHECK(span.is_over());
+}
