@@ -29,7 +29,7 @@ Settings settings_with_law() {
 }
 
 constexpr std::size_t dividend = 0, divisor = 1;
-constexpr std::size_t periods_signal = protocol::signal_count;
+constexpr std::size_t periods_signal = protocol::signal_count, switches_signal = periods_signal + 1;
 
 struct LawRig {
   Settings settings = settings_with_law();
@@ -48,6 +48,7 @@ struct LawRig {
     REQUIRE(protocol::force_is_on(controller.state()));
   }
   float law_periods() const { return controller.signals().values[periods_signal]; }
+  float law_switches() const { return controller.signals().values[switches_signal]; }
   float force_z_N() const { return controller.signals().values[static_cast<std::size_t>(Signal::force_x_N) + 2]; }
 };
 
@@ -78,6 +79,22 @@ TEST_CASE("a law is felt while the force is on, and begins anew each time that i
   rig.enable();
   rig.run(5);
   CHECK(rig.law_periods() == 4.0f);
+}
+
+TEST_CASE("a law is told which switches are closed, debounced") {
+  LawRig rig;
+  rig.run(1);
+  CHECK(rig.law_switches() == 0.0f);
+  for (const auto which : {protocol::Switch::button_1, protocol::Switch::button_2}) {
+    rig.samples.switches = static_cast<std::uint8_t>(which);
+    rig.run(1);
+    CHECK(rig.law_switches() == 0.0f);
+    rig.run(control::SwitchFilter::settle_periods);
+    CHECK(rig.law_switches() == static_cast<float>(which));
+    rig.samples.switches = 0;
+    rig.run(control::SwitchFilter::settle_periods + 1);
+    CHECK(rig.law_switches() == 0.0f);
+  }
 }
 
 TEST_CASE("a law rests while a program's force stands instead of it") {

@@ -1,4 +1,5 @@
-// A law that divides by what the user gives it, to see what becomes of a division by zero.
+// A law that divides by what the user gives it, to see what becomes of a division by zero, and that shows what it is
+// told.
 #pragma once
 
 #include <control/force_law.hpp>
@@ -17,19 +18,21 @@ struct quotient {
   };
 
   struct Signals {
-    float periods;
+    float periods, switches;
   };
   static constexpr ForceSignal<Signals> signal_rows[] = {
       {&Signals::periods, "quotient_periods", "", "Control periods since the state was new."},
+      {&Signals::switches, "quotient_switches", "", "Which switches are closed, one bit each."},
   };
 
   struct State {
     float periods = 0.0f;
   };
 
-  static Vector3 force_N(const Probe&, const Parameters& parameters, State& state, Signals& signals) {
+  static Vector3 force_N(const Probe& probe, const Parameters& parameters, State& state, Signals& signals) {
     signals.periods = state.periods;
     state.periods += 1.0f;
+    signals.switches = static_cast<float>(probe.switches);
     return {0.0f, 0.0f, parameters.dividend_N / parameters.divisor};
   }
 };
