@@ -1,8 +1,12 @@
 // The flashed firmware is led astray, and its protection of the memory stops it.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <chip/debug_port.hpp>
 #include <chip/memory_map.hpp>
@@ -16,12 +20,19 @@ namespace {
 using virtual_board::CoreRegisters;
 
 constexpr std::uint16_t load_by_r0 = 0x6800, store_by_r0 = 0x6000;  // ldr r0, [r0]; str r0, [r0]
+constexpr std::uint32_t if_then_bits = 0x0600'FC00;                 // of xPSR: whether the next instructions are run
+
+// boards/facts/stm32f405.ld
+constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000, interrupt_code = 0x2001'C200;
+
+std::uint16_t half_word(const FirmwareOnBus& bus, std::uint32_t address) {
+  return static_cast<std::uint16_t>(bus.chip.memory_word(address & ~3u) >> 8 * (address & 2));
+}
 
 /// Where half a word of the flash is this instruction, whatever it was meant to be.
 std::uint32_t place_of(const FirmwareOnBus& bus, std::uint16_t instruction) {
-  constexpr std::uint32_t code = virtual_board::flash_base + 0x1'0000;  // boards/facts/stm32f405.ld
   for (std::uint32_t address = code; address < code + 0x1'0000; address += 2)
-    if ((bus.chip.memory_word(address & ~3u) >> 8 * (address & 2) & 0xFFFF) == instruction) return address;
+    if (half_word(bus, address) == instruction) return address;
   return 0;
 }
 
@@ -80,6 +91,56 @@ protocol::CrashFacts crash_at(std::uint32_t program_counter, std::uint32_t r0) {
   return crash;
 }
 
+/// The first address from `begin` on that lies behind such instructions: the last half word before it, and the one
+/// before that.
+std::uint32_t place_behind(const FirmwareOnBus& bus, std::uint32_t begin,
+                           const std::function<bool(std::uint16_t last, std::uint16_t before)>& are_such) {
+  std::uint32_t address = begin + 4;
+  while (!are_such(half_word(bus, address - 2), half_word(bus, address - 4))) {
+    address += 2;
+    REQUIRE(address < begin + 0x1'0000);
+  }
+  return address;
+}
+
+// ARMv7-M, A7.7.18 and A7.7.19
+bool is_first_half_of_bl(std::uint16_t half) { return half >> 11 == 0b11110; }
+bool is_second_half_of_bl(std::uint16_t half) { return (half >> 14 & 3) == 3 && (half >> 12 & 1) == 1; }
+bool is_blx(std::uint16_t half) { return half >> 7 == 0b0100'0111'1 && half % 8 == 0; }
+bool is_bl(std::uint16_t last, std::uint16_t before) {
+  return is_first_half_of_bl(before) && is_second_half_of_bl(last);
+}
+bool is_call(std::uint16_t last, std::uint16_t before) { return is_blx(last) || is_bl(last, before); }
+
+/// A null pointer is read with this link register and these words on the stack, all of it; what was noted of callers.
+protocol::CrashFacts crash_with_stack(std::uint32_t link_register, std::span<const std::uint32_t> words) {
+  FirmwareOnBus bus(flashed_image());
+  bus.run_for(before_self_test_s);
+  run_into_main_loop(bus);
+  CoreRegisters registers = bus.chip.debug_port().core_registers();
+  const std::uint32_t stack_top = bus.chip.memory_word(virtual_board::flash_base);
+  registers.general[0] = 0;
+  registers.general[CoreRegisters::sp] = stack_top - static_cast<std::uint32_t>(words.size_bytes());
+  registers.general[CoreRegisters::lr] = link_register;
+  registers.general[CoreRegisters::pc] = place_of(bus, load_by_r0);
+  constexpr std::uint32_t negative_and_carry = 0xA000'0000, is_thumb = 1u << 24, all_flags = 0xF800'0000;
+  registers.xpsr = (registers.xpsr & ~(if_then_bits | all_flags)) | negative_and_carry;
+  std::vector<std::uint8_t> bytes(words.size_bytes());
+  std::memcpy(bytes.data(), words.data(), bytes.size());
+  REQUIRE(bus.chip.debug_port().write(registers.general[CoreRegisters::sp], bytes));
+  bus.chip.debug_port().set_core_registers(registers);
+  bus.run_for(0.2);
+  bus.connect();
+  const auto crash = crash_of(bus);
+  CHECK(crash.exception == 4);
+  CHECK(crash.stack_pointer == registers.general[CoreRegisters::sp]);
+  CHECK(crash.link_register == link_register);
+  constexpr std::uint32_t stack_was_aligned = 1u << 9;
+  CHECK(crash.program_status ==
+        (negative_and_carry | is_thumb | (crash.stack_pointer % 8 != 0 ? stack_was_aligned : 0)));
+  return crash;
+}
+
 }  // namespace
 
 TEST_CASE("what only an error does with the memory is a fault, and the board says where") {
@@ -103,20 +164,21 @@ TEST_CASE("what only an error does with the memory is a fault, and the board say
       {"a bit's alias", store, 0x2200'0004, no_data | valid_address},
       {"data are run", 0x2000'0100, 0, no_instruction},
       {"null is run", 0x0000'0000, 0, no_instruction},
+      {"nothing answers", load, 0x6000'0000, (no_data | valid_address) << 8},
   };
   for (const Error& error : errors) {
     CAPTURE(error.name);
     const auto crash = crash_at(error.program_counter, error.r0);
-    CHECK(crash.exception == 4);  // MemManage
+    CHECK(crash.exception == (error.status < 1u << 8 ? 4 : 5));  // MemManage, BusFault
+    CHECK(crash.hard_fault_status == 0);
     CHECK(crash.configurable_fault_status == error.status);
     CHECK(crash.program_counter == error.program_counter);
-    if ((error.status & valid_address) != 0) CHECK(crash.fault_address == error.r0);
+    if ((error.status & (valid_address | valid_address << 8)) != 0) CHECK(crash.fault_address == error.r0);
   }
 }
 
 TEST_CASE("without a stack the bridges go off at once, although nothing can be stacked any more") {
   constexpr std::uint32_t memory_bottom = virtual_board::ccm_base, behind_ram = 0x2002'1000;
-  constexpr std::uint32_t if_then_bits = 0x0600'FC00;  // of xPSR: whether the next instructions are run at all
   constexpr std::uint16_t push = 0xB510, undefined = 0xDEFF;
   enum class Place { main_loop, control_interrupt, sleep };
   struct Loss {
@@ -161,7 +223,55 @@ TEST_CASE("without a stack the bridges go off at once, although nothing can be s
     const auto crash = crash_of(bus);
     CHECK(crash.exception == loss.exception);
     CHECK((crash.configurable_fault_status & loss.status) == loss.status);
+    constexpr std::uint32_t forced = 1u << 30;
+    CHECK(crash.hard_fault_status == (loss.exception == 3 ? forced : 0));
     CHECK(crash.stack_pointer == 0);
+  }
+}
+
+TEST_CASE("of link register and stack the first eight words that lie behind a call are noted, and no others") {
+  FirmwareOnBus bus(flashed_image());
+  bus.run_for(before_self_test_s);  // the start has copied the code of interrupts
+  const auto behind_bl = [&](std::uint32_t begin) { return place_behind(bus, begin, is_bl); };
+  const std::uint32_t by_address = behind_bl(code), later = behind_bl(by_address),
+                      in_interrupt = behind_bl(interrupt_code);
+  const std::uint32_t by_register = place_behind(
+      bus, code, [](std::uint16_t last, std::uint16_t before) { return is_blx(last) && !is_bl(last, before); });
+  REQUIRE(later != by_address);
+
+  SUBCASE("what looks like one") {
+    const std::uint32_t only_first_half = place_behind(bus, code, [](std::uint16_t last, std::uint16_t before) {
+      return is_first_half_of_bl(before) && !is_call(last, before);
+    });
+    const std::uint32_t only_second_half = place_behind(bus, code, [](std::uint16_t last, std::uint16_t before) {
+      return is_second_half_of_bl(last) && !is_call(last, before);
+    });
+    const std::uint32_t words[] = {
+        by_address,  // an address in Thumb code is odd where it is returned to
+        only_first_half | 1,
+        only_second_half | 1,
+        in_interrupt | 1,
+        0x0000'0101,                         // null
+        virtual_board::flash_base + 0x8101,  // the parameters
+        0x0810'0001,                         // behind the flash
+        0x2002'0101,                         // behind the memory
+        0x4001'0001,                         // a peripheral
+        0xFFFF'FFFF,
+        by_register | 1,
+    };
+    const auto crash = crash_with_stack(by_address | 1, words);
+    const std::vector<std::uint32_t> expected{by_address, in_interrupt, by_register, 0, 0, 0, 0, 0};
+    CHECK(std::ranges::equal(crash.callers, expected));
+  }
+
+  SUBCASE("more than have room") {
+    std::vector<std::uint32_t> words(10, by_address | 1);
+    words[6] = by_register | 1;  // with the link register the eighth
+    const auto crash = crash_with_stack(later | 1, words);
+    const std::vector<std::uint32_t> expected{later,      by_address, by_address, by_address,
+                                              by_address, by_address, by_address, by_register};
+    CHECK(std::ranges::equal(crash.callers, expected));
+    CHECK(crash.image_check == crash_with_stack(0, {}).image_check);
   }
 }
 
