@@ -66,6 +66,24 @@ TEST_CASE("a bit that flips in the settings switches the force off, and a reset 
   check_found_and_written_anew({settings + limit, settings + bytes + limit}, 0);
 }
 
+TEST_CASE("a flash that is damaged when the board starts is found before the first pulse, and before the main loop") {
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });  // the self-test has driven the bridges
+  // The last word that is looked at: the check in the main loop alone would take too long to come to it.
+  rig.control.inject({"flash_bit", text_of(firmware_symbol("image_check")), 0});
+  const double reset_s = rig.board_time_s();
+  rig.control.reset();
+  reconnect(rig);
+  rig.run(0.3);  // a round of the check is over by then, and so would be a self-test
+  CHECK(rig.pose().fault == Fault::memory_damaged);
+  const double driven_until_s = rig.control.truth().at("bridges_driven_until_s").get<double>();
+  CHECK(driven_until_s > 0.0);
+  CHECK(driven_until_s < reset_s);
+  const auto box = rig.device->black_box();
+  CHECK(box.fault == Fault::memory_damaged);
+  CHECK(box.rows_before == 0);  // of the 1.5 ms that the main loop looks back to as it begins
+}
+
 TEST_CASE("a bit that flips in the flash switches the force off, and no reset brings it back while it is wrong") {
   BoardRig rig;
   press_into_wall(rig);
