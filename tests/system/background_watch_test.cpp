@@ -129,6 +129,20 @@ TEST_CASE("a wire of the bridges that touches 3.3 V is noticed while they are of
   }
 }
 
+TEST_CASE(
+    "a wire of the bridges that touches 3.3 V for a quarter of a millisecond is borne: that is two looks at most") {
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  for (int i = 0; i < 9; ++i) {  // the looks come every three control periods
+    protocol::InjectionRequest touch{"wire_high", "bridges[1].leg_a"};
+    touch.for_s = 5 * control_period_s;
+    rig.control.inject(touch);
+    rig.run(0.01);
+    CHECK(rig.pose().state == State::ready);
+    rig.control.run(control_period_s);
+  }
+}
+
 TEST_CASE("before the arm knows its place a wire of the bridges is watched as well") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
