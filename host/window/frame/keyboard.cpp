@@ -6,7 +6,6 @@
 #include <GLFW/glfw3.h>
 #include <imgui_internal.h>
 
-
 namespace inkwell::window {
 
 namespace {
