@@ -62,6 +62,11 @@ TEST_CASE(
   CHECK(report.servo_cycles_longest > 500);  // it did run and was measured
   CHECK(report.servo_cycles_longest < bearable_cycles);
   CHECK(report.servo_overruns == 0);
+  // The poses tell of the longest as well, in parts of 255 of a period.
+  const auto largest = std::ranges::max_element(rig.poses(), {}, &protocol::PoseReport::servo_load)->servo_load;
+  const double told_cycles = largest / 255.0 * board::servo_cycles;
+  CHECK(told_cycles <= report.servo_cycles_longest);
+  CHECK(told_cycles > 0.9 * report.servo_cycles_longest);
   // Prefetch and cache of the flash are what the main loop has this from; the interrupts run without them.
   const double sleep_share = rig.control.status().all.at("sleep_share").get<double>();
   MESSAGE("simulation: the processor sleeps ", sleep_share, " of the time");
