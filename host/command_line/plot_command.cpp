@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,11 +41,6 @@ std::vector<std::string> draw_as_in_paper(const recording::Recording& recording,
   return experiment::draw_figures(recording, folder, {.wall = {}, .from_s = options.from_s, .to_s = options.to_s});
 }
 
-/// "results/recording"
-std::string name_with_folder(const std::filesystem::path& file) {
-  return (std::filesystem::absolute(file).parent_path().filename() / file.stem()).string();
-}
-
 std::string draw(recording::Recording recording, const PlotOptions& options) {
   if (!options.place.empty() && std::filesystem::path(options.place).extension() != ".png")
     throw UsageError(fmt::format("{} does not end in .png, and a figure is a PNG.", options.place));
@@ -52,10 +48,7 @@ std::string draw(recording::Recording recording, const PlotOptions& options) {
   std::optional<recording::Overlay> over;
   if (!options.over.empty()) {
     auto other = read_recording(options.over);
-    if (other.name == recording.name) {
-      recording.name = name_with_folder(options.file);
-      other.name = name_with_folder(options.over);
-    }
+    std::tie(recording.name, other.name) = recording::names_beside_each_other(options.file, options.over);
     over.emplace(std::move(other), recording, options.align);
   }
   if (over) figure.over = &*over;

@@ -58,6 +58,24 @@ device::ScopeSamples Overlay::beside(const device::ScopeSamples& of_base) const 
   return samples;
 }
 
+std::pair<std::string, std::string> names_beside_each_other(const std::filesystem::path& one,
+                                                            const std::filesystem::path& other) {
+  const auto canonical = [](const std::filesystem::path& file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file));
+  };
+  std::filesystem::path one_folder = canonical(one).replace_extension(),
+                        other_folder = canonical(other).replace_extension(), one_name, other_name;
+  if (one_folder == other_folder && one.extension() != other.extension())
+    return {one.filename().string(), other.filename().string()};
+  do {
+    one_name = one_folder.filename() / one_name;
+    other_name = other_folder.filename() / other_name;
+    one_folder = one_folder.parent_path();
+    other_folder = other_folder.parent_path();
+  } while (one_name == other_name && one_folder != other_folder);
+  return {one_name.parent_path().string(), other_name.parent_path().string()};  // what is empty at first ends in "/"
+}
+
 std::vector<std::string> common_marks(const Recording& a, const Recording& b) {
   std::vector<std::string> common;
   for (const Mark& mark : a.marks)

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,6 +26,8 @@ std::string speed_label(double speed) { return fmt::format("{:g} x", speed); }
 void ReplayBar::open(const std::filesystem::path& file) {
   replay_.emplace(recording::read(file));
   replay_->play();
+  file_ = file;
+  name_ = replay_->recording().name;
   over_.reset();
   problem_.clear();
   editor_ = {};
@@ -30,7 +35,11 @@ void ReplayBar::open(const std::filesystem::path& file) {
 }
 
 void ReplayBar::lay_over(const std::filesystem::path& file, const std::string& mark) {
-  over_.emplace(recording::read(file), replay_->recording(), mark);
+  recording::Recording over = recording::read(file);
+  std::string name;
+  std::tie(name, over.name) = recording::names_beside_each_other(file_, file);
+  over_.emplace(std::move(over), replay_->recording(), mark);
+  name_ = std::move(name);
   aligned_at_ = mark;
   replay_->seek(replay_->position_s());  // so that the scope is filled with both
 }
@@ -105,7 +114,7 @@ void ReplayBar::draw_controls(const Style& style) {
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
   const auto& recording = replay_->recording();
-  std::string name = recording.name;
+  std::string name = name_;
   if (recording.information.simulation) name += " (simulation)";
   if (!recording.complete) name += ", end missing";
   text(style.fonts.strong, style.palette->text, fitted(name, style.points(name_points)));
@@ -138,14 +147,17 @@ void ReplayBar::draw_over(const Style& style) {
         if (ImGui::Selectable(mark.c_str(), aligned_at_ == mark)) align_at(mark);
       ImGui::Separator();
       const bool goes = ImGui::Selectable("Take it away");
+      note_item("Take it away");
       ImGui::EndCombo();
       if (goes) {
         over_.reset();
+        name_ = replay_->recording().name;
         replay_->seek(replay_->position_s());
         return;
       }
     }
     note_item("over");
+    note_text(shown);
     help_on_hover("Laid over, paler", over_->recording().name, style);
   }
   if (const auto chosen = chooser_.draw(style)) try {

@@ -39,6 +39,20 @@ TEST_CASE("a recording is laid over another one from its begin on") {
   CHECK(overlay.beside(base.samples(20, 30)).values.front() == 20.0f);
 }
 
+TEST_CASE(
+    "two recordings have the names of their files, and with the folders that tell them apart if these are the same") {
+  const auto names = [](const char* one, const char* other) {
+    const auto [first, second] = names_beside_each_other(one, other);
+    return first + " " + second;
+  };
+  CHECK(names("/a/soft.h5", "/a/stiff.csv") == "soft stiff");
+  CHECK(names("/monday/push.h5", "/tuesday/push.csv") == "monday/push tuesday/push");
+  CHECK(names("/monday/arm/push.h5", "/tuesday/arm/push.h5") == "monday/arm/push tuesday/arm/push");
+  CHECK(names("/push.h5", "/tuesday/push.h5") == "push tuesday/push");
+  CHECK(names("/a/push.h5", "/a/push.csv") == "push.h5 push.csv");
+  CHECK(names("/a/push.h5", "/a/../a/push.h5") == "push push");  // it is the same
+}
+
 TEST_CASE("a mark that both hold aligns them") {
   auto base = ramp("base", 1000, 100);
   auto over = ramp("over", 5000, 100);

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <recording/recording.hpp>
@@ -28,6 +30,11 @@ class Overlay {
   std::uint32_t base_begins_periods_;  ///< the other's first control period
   std::int64_t shift_periods_ = 0;     ///< of the other's time, at which this one begins
 };
+
+/// What two recordings are called beside each other: their files without folder and ending, and with the folders, or
+/// the endings, that tell them apart where these are the same.
+std::pair<std::string, std::string> names_beside_each_other(const std::filesystem::path& one,
+                                                            const std::filesystem::path& other);
 
 /// The texts of marks that both hold, each once: by these they can be aligned.
 std::vector<std::string> common_marks(const Recording& a, const Recording& b);

@@ -48,6 +48,8 @@ class ReplayBar {
   void draw_track(ImVec2 corner, ImVec2 size, const Style& style);
 
   std::optional<recording::Replay> replay_;
+  std::filesystem::path file_;
+  std::string name_;  ///< with folders where the one that is laid over has the same
   std::optional<recording::Overlay> over_;
   std::string aligned_at_;  ///< text of a mark; empty: their begins
   FileChooser chooser_;

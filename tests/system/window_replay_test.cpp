@@ -1,0 +1,98 @@
+// Two recordings in the window: one that is replayed, and one that is laid over it.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <numbers>
+#include <string>
+
+#include <recording/recording.hpp>
+#include <recording/signals.hpp>
+#include <recording/writer.hpp>
+
+#include "window_rig.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using protocol::Signal;
+
+namespace {
+
+/// Half a second in which the force swings between -1 N and 1 N so many times.
+void write_swing(const std::string& file, double times) {
+  constexpr std::uint32_t periods = protocol::servo_rate_Hz / 2, first_period = 1000;
+  const auto signals = recording::standard_signals();
+  auto swing =
+      recording::Recording::without_samples({.parameters = protocol::default_parameters(), .signals = signals});
+  for (std::uint32_t i = 0; i < periods; ++i) {
+    const double angle_rad = 2 * std::numbers::pi * times * i / periods;
+    swing.periods.push_back(first_period + i);
+    for (std::size_t j = 0; j < signals.size(); ++j)
+      swing.columns[j].push_back(signals[j] == Signal::force_N ? static_cast<float>(std::sin(angle_rad)) : 0.0f);
+  }
+  std::filesystem::create_directories(std::filesystem::path(file).parent_path());
+  recording::save(swing, file);
+}
+
+Sight lay_over(WindowRig& rig, const std::string& file) {
+  rig.click("replay/Lay over");
+  rig.enter("choose a file/path", file);
+  rig.click("choose a file/Lay over");
+  return rig.look_until("it is laid over", [](const Sight& now) { return now.has("replay/over"); });
+}
+
+/// The window while nothing in it is under the mouse.
+Image picture_of(WindowRig& rig) {
+  rig.move_to({700, 60});
+  rig.look();
+  return rig.picture();
+}
+
+/// Pixels that differ below the replay's bar and beside the panes, where the plots are.
+std::size_t changed_in_plots(WindowRig& rig, const Image& one, const Image& other) {
+  const Sight sight = rig.look();
+  const Item bar = sight.item("replay/Close"), panes = sight.item("tabs/Tuning");
+  std::size_t changed = 0;
+  for (auto y = static_cast<std::size_t>(bar.y + 2 * bar.height); y < one.height; ++y)
+    for (std::size_t x = 0; x < static_cast<std::size_t>(panes.x); ++x) {
+      const auto a = one.at(x, y), b = other.at(x, y);
+      changed += a.red != b.red || a.green != b.green || a.blue != b.blue ? 1 : 0;
+    }
+  return changed;
+}
+
+}  // namespace
+
+TEST_CASE("another recording is laid over the one that is replayed, is drawn beside it, and is taken away") {
+  const TemporaryDirectory directory;
+  const std::string soft = directory.file("soft.h5"), stiff = directory.file("stiff.csv");
+  write_swing(soft, 3);
+  write_swing(stiff, 7);
+  WindowRig rig({"--layout", "contact", "replay", soft});
+  rig.look_until("it plays to its end", [](const Sight& now) { return now.has("replay/Play"); });
+  const Image alone = picture_of(rig);
+  REQUIRE(changed_in_plots(rig, alone, picture_of(rig)) == 0);
+
+  const Sight both = lay_over(rig, stiff);
+  CHECK(both.says("soft"));
+  CHECK(both.says("stiff"));
+  CHECK(changed_in_plots(rig, alone, picture_of(rig)) > 300);
+
+  rig.click("replay/over");
+  rig.click("##Combo_00/Take it away");
+  rig.look_until("it is away", [](const Sight& now) { return now.has("replay/Lay over"); });
+  CHECK(changed_in_plots(rig, alone, picture_of(rig)) == 0);
+}
+
+TEST_CASE("two recordings of the same name in the window are told apart by their folders") {
+  const TemporaryDirectory directory;
+  const std::string monday = directory.file("monday/push.csv"), tuesday = directory.file("tuesday/push.csv");
+  write_swing(monday, 3);
+  write_swing(tuesday, 7);
+  WindowRig rig({"replay", monday});
+  CHECK_FALSE(rig.look().says("monday"));
+  const Sight both = lay_over(rig, tuesday);
+  CHECK(both.says("monday/push"));
+  CHECK(both.says("tuesday/push"));
+}
