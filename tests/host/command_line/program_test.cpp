@@ -119,11 +119,11 @@ TEST_CASE("of several arms none is used that was not named, and the sentence say
                                                                    {"flash"}}) {
     auto words = command;
     words.insert(words.begin(), "inkwell");
-    const auto [exit_code, complaint] = run_here(words);
-    CAPTURE(complaint);
-    CHECK(exit_code == 1);
-    CHECK(contains(complaint, " 0011"));
-    CHECK(contains(complaint, " 0022"));
-    CHECK(contains(complaint, "--serial NUMBER"));
+    const Ended ended = run_here(words);
+    CAPTURE(ended.complaint);
+    CHECK(ended.exit_code == 1);
+    CHECK(contains(ended.complaint, " 0011"));
+    CHECK(contains(ended.complaint, " 0022"));
+    CHECK(contains(ended.complaint, "--serial NUMBER"));
   }
 }
