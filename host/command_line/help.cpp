@@ -128,6 +128,7 @@ std::optional<std::string> wrong_command(const CLI::App& program) {
                                          : std::string();
   if (command == &program) return fmt::format("{}`{} --help` lists the commands.", unknown, words);
   std::vector<std::string_view> names;
+  names.reserve(below.size());
   for (const Below& each : below) names.push_back(each.name);
   return fmt::format("{}Say which of these: {} {}.", unknown, words, fmt::join(names, ", "));
 }
