@@ -279,8 +279,8 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
                                              1000.0f * scene_.probe_m.y, 1000.0f * scene_.probe_m.z);
     const ImVec2 taken = ImGui::CalcTextSize(position.c_str());
     room_x -= taken.x;
-    list.AddText({room_x, origin_.y + size_.y - taken.y - style.points(12)}, packed(palette.text), position.c_str());
-    room_x -= style.points(16);
+    plate(list, style, {room_x, origin_.y + size_.y - taken.y - style.points(12)}, palette.text, position);
+    room_x -= style.points(22);
   }
   const char* help =
       input.hand == nullptr
@@ -288,7 +288,7 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
           : "Drag the sphere to move the hand (wheel: depth), drag elsewhere to turn, right drag to move";
   const float help_x = origin_.x + style.points(88);
   if (help_x + ImGui::CalcTextSize(help).x < room_x)
-    list.AddText({help_x, origin_.y + size_.y - style.points(27)}, packed(palette.text_quiet), help);
+    plate(list, style, {help_x, origin_.y + size_.y - style.points(27)}, palette.text_quiet, help);
   ImGui::PopFont();
 }
 

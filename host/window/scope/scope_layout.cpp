@@ -165,7 +165,8 @@ std::vector<ScopeSignal> shown_formulas(const ScopeLayout& layout) {
 std::string hint_for(const ScopePlot& plot, const SignalHistory& history) {
   if (plot.kind == PlotKind::xy && plot.signals.size() < 2)
     return "Drag a second signal in here from Signals, or click the title: it is drawn against the first.";
-  if (history.end() == history.begin()) return "Nothing has come yet: connect a device, or replay a recording.";
+  if (history.end() == history.begin())
+    return "Nothing has come yet. A connected device or a replayed recording brings it.";
   for (const ScopeSignal& signal : plot.signals)
     if (history.find(signal) == nullptr)
       return fmt::format("{} is not among the signals that come. Choose another one by the title, or record it.",
