@@ -13,6 +13,7 @@
 
 #include "guided_device.hpp"
 #include "interrupt.hpp"
+#include "store_commands.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -175,10 +176,11 @@ class GuideRun {
 };
 
 /// Whether what was changed shall outlive the device's power. Without an answer it is told how.
-bool wants_to_store(const Consent& consent, bool json, const InterruptGuard& interrupt) {
+bool wants_to_store(const DeviceOptions& options, const Consent& consent, const InterruptGuard& interrupt) {
   if (consent.store) return true;
-  if (json || consent.yes || isatty(STDIN_FILENO) != 1) {
-    fmt::print(stderr, "The changes last until the board loses its power. `inkwell parameters store` keeps them.\n");
+  if (options.json || consent.yes || isatty(STDIN_FILENO) != 1) {
+    if (!options.is_virtual)  // which ends before a further command could reach it
+      fmt::print(stderr, "The changes last until the board loses its power. `inkwell parameters store` keeps them.\n");
     return false;
   }
   fmt::print(stderr, "Store the changes on the board, so that they outlive its power? Type yes: ");
@@ -231,7 +233,7 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
     if (!failure.empty()) break;
   }
   bool is_stored = false;
-  if (failure.empty() && (has_changed || consent.store) && wants_to_store(consent, options.json, interrupt)) {
+  if (failure.empty() && (has_changed || consent.store) && wants_to_store(options, consent, interrupt)) {
     try {
       device.store_parameters();
       is_stored = true;
@@ -244,6 +246,7 @@ int run_guides(const DeviceOptions& options, const Consent& consent, const std::
   if (options.json) fmt::print("{}\n", (offers.size() == 1 ? results[0] : results).dump(2));
   std::fflush(stdout);
   if (!failure.empty()) throw device::Error(failure);
+  if (has_changed) tell_what_ends(options, is_stored);
   return 0;
 }
 

@@ -175,7 +175,8 @@ TEST_CASE("a virtual board of one command remembers in a file what was stored") 
   }
   const auto again = run({"tune", "current-loop", "--motor", "2", "--bandwidth", "600", "--yes", "--apply", "--json"});
   CHECK(nlohmann::json::parse(again.out).at("stored") == false);
-  CHECK(again.err.find("`inkwell parameters store` keeps them") != std::string::npos);
+  CHECK(again.err.find("Add --store to keep these values.") != std::string::npos);
+  CHECK(again.err.find("`inkwell parameters store`") == std::string::npos);
 }
 
 TEST_CASE("values that a virtual board of one command would lose are told of, and kept if they are stored at once") {
