@@ -147,6 +147,8 @@ Typed<device::ParameterFile> load_and_complain(const DeviceOptions& options, con
 /// What is in the way may be the only copy of a calibration.
 void check_is_free(const std::string& file) {
   std::error_code code;
+  if (std::filesystem::is_directory(file, code))
+    throw UsageError(fmt::format("{} is a folder. Give the name of a file in it.", file));
   if (std::filesystem::exists(file, code))
     throw UsageError(fmt::format("{} exists. Give another name, or --overwrite to replace what it holds.", file));
 }

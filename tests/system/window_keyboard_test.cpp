@@ -17,13 +17,19 @@ namespace {
 
 std::string part_of(const std::string& item) { return item.substr(0, item.find('/')); }
 
+/// Taps the key; what has the keyboard after the frames that a step takes, the search for another thing included.
+std::string tap(WindowRig& rig, const std::string& key) {
+  constexpr int frames = 4;
+  rig.tap_key(key);
+  for (int frame = 0; frame < frames; ++frame) rig.look();
+  return rig.look().with_keyboard();
+}
+
 /// The parts that have the keyboard one after the other while the key is pressed, until the first has it again.
 std::vector<std::string> tour(WindowRig& rig, const std::string& key) {
   std::vector<std::string> parts;
   for (int step = 0; step < 12; ++step) {
-    rig.press_key(key);
-    rig.look();
-    const std::string part = part_of(rig.look().with_keyboard());
+    const std::string part = part_of(tap(rig, key));
     if (!parts.empty() && part == parts.front()) return parts;
     parts.push_back(part);
   }
@@ -31,10 +37,7 @@ std::vector<std::string> tour(WindowRig& rig, const std::string& key) {
 }
 
 void go_to_part(WindowRig& rig, const std::string& part) {
-  for (int step = 0; step < 12 && part_of(rig.look().with_keyboard()) != part; ++step) {
-    rig.press_key("ctrl+Tab");
-    rig.look();
-  }
+  for (int step = 0; step < 12 && part_of(rig.look().with_keyboard()) != part; ++step) tap(rig, "ctrl+Tab");
   REQUIRE(part_of(rig.look().with_keyboard()) == part);
 }
 
@@ -45,8 +48,7 @@ std::set<std::string> go_to(WindowRig& rig, const std::string& key, const std::s
     const std::string now = rig.look().with_keyboard();
     on_the_way.insert(now);
     if (now == item) return on_the_way;
-    rig.press_key(key);
-    rig.look();
+    tap(rig, key);
   }
   FAIL("The key ", key, " has not come to ", item, " but to ", rig.look().with_keyboard());
   return on_the_way;
@@ -70,10 +72,10 @@ TEST_CASE("Ctrl+Tab gives the keyboard to every part of the window, and back") {
 
 TEST_CASE("every number of Tuning is reached by the arrow, typed and sent") {
   WindowRig rig;
-  rig.press_key("F3");
+  rig.tap_key("F3");
   rig.look_until("the guides have the keyboard",
                  [](const Sight& now) { return part_of(now.with_keyboard()) == "guides"; });
-  rig.press_key("F2");
+  rig.tap_key("F2");
   rig.look_until("tuning has it", [](const Sight& now) { return part_of(now.with_keyboard()) == "tuning"; });
   const auto on_the_way = go_to(rig, "Down", "tuning/wall_damping_Ns_per_m", 40);
   for (const char* passed : {"tuning/box_minimum_x_m", "tuning/box_maximum_z_m", "tuning/wall_stiffness_N_per_m"}) {
@@ -81,14 +83,14 @@ TEST_CASE("every number of Tuning is reached by the arrow, typed and sent") {
     CHECK(on_the_way.contains(passed));
   }
   const auto before = rig.look().applied_at_periods();
-  rig.press_key("Return");
+  rig.tap_key("Return");
   rig.look_until("it is typed in", [](const Sight& now) { return now.is_active("tuning/wall_damping_Ns_per_m"); });
   rig.type("1.5");
-  rig.press_key("Return");
+  rig.tap_key("Return");
   rig.look_until("it took effect", [&](const Sight& now) { return now.applied_at_periods() != before; });
   rig.look_until("the next is reached", [&rig](const Sight& now) {
     if (now.with_keyboard() != "tuning/wall_damping_Ns_per_m") return true;
-    rig.press_key("Down");
+    rig.tap_key("Down");
     return false;
   });
   CHECK(rig.close_and_read_parameters()[protocol::Parameter::wall_damping_Ns_per_m] == doctest::Approx(1.5));
@@ -98,17 +100,17 @@ TEST_CASE("a signal gets a plot of its own by Enter") {
   WindowRig rig({"--layout", "contact"});
   go_to_part(rig, "scope");
   go_to(rig, "Right", "scope/Signals", 12);
-  rig.press_key("Return");
+  rig.tap_key("Return");
   rig.look_until("the list is there", [](const Sight& now) { return now.has("scope/search"); });
   go_to(rig, "Left", "scope/layout", 12);
   go_to(rig, "Down", "scope/Position", 3);
   go_to(rig, "Left", "scope/search", 3);
-  rig.press_key("Return");
+  rig.tap_key("Return");
   rig.type("supply");
   rig.look_until("it is found", [](const Sight& now) { return now.has("scope/supply_V"); });
-  rig.press_key("Return");
+  rig.tap_key("Return");
   go_to(rig, "Down", "scope/supply_V", 12);
-  rig.press_key("Return");
+  rig.tap_key("Return");
   rig.click("scope/Signals");  // without the list only the plot's title has that name
   rig.look_until("the list is gone", [](const Sight& now) { return !now.has("scope/search"); });
   CHECK(rig.look().has("scope/supply_V"));
@@ -119,29 +121,50 @@ TEST_CASE("the arrows turn the scene, move the hand and the lines between the pa
   go_to_part(rig, "scene");
   const auto handle = [&rig] { return rig.look().item("scene/box_maximum_x_m"); };
   const auto before = handle();
-  rig.press_key("shift+Right");
+  tap(rig, "shift+Right");
   const auto turned = handle();
   CHECK(std::abs(turned.x - before.x) > 2.0);
-  rig.press_key("shift+Prior");
+  tap(rig, "shift+Prior");
   CHECK(std::abs(handle().x - turned.x) > 2.0);
 
   const device::Vector3 held_m = rig.true_probe_m();
-  for (int step = 0; step < 5; ++step) rig.press_key("ctrl+Right");
+  for (int step = 0; step < 5; ++step) tap(rig, "ctrl+Right");
   rig.control.run(0.5);
   rig.control.resume();
   CHECK(distance_m(rig.true_probe_m(), held_m) == doctest::Approx(0.01).epsilon(0.3));
 
   const auto view = rig.look().item("scene/view");
-  rig.press_key("alt+Left");
+  tap(rig, "alt+Left");
   CHECK(rig.look().item("scene/view").width == doctest::Approx(view.width - 20));
-  rig.press_key("alt+Up");
+  tap(rig, "alt+Up");
   CHECK(rig.look().item("scene/view").height == doctest::Approx(view.height - 20));
+}
+
+TEST_CASE("Escape leaves the keyboard where it is, and a button that changes its name keeps it") {
+  WindowRig rig;
+  go_to_part(rig, "status");
+  go_to(rig, "Right", "status/Switch force on", 12);
+  rig.tap_key("Return");
+  rig.look_until("the force is on", [](const Sight& now) { return now.state() == "active"; });
+  CHECK(rig.look().with_keyboard() == "status/Force is on");
+  rig.tap_key("Escape");
+  rig.look_until("it is off", [](const Sight& now) { return now.state() == "ready"; });
+  CHECK(rig.look().with_keyboard() == "status/Switch force on");
+}
+
+TEST_CASE("Enter twice does not forget a calibration") {
+  WindowRig rig;
+  rig.tap_key("F2");
+  go_to(rig, "Down", "tuning/Store on the board", 60);
+  go_to(rig, "Right", "tuning/Factory reset", 3);
+  tap(rig, "Return");
+  CHECK(rig.look().with_keyboard() == "factory reset/Cancel");
 }
 
 TEST_CASE("the page of keys is whole in the smallest window") {
   WindowRig rig;
   rig.resize(900, 560);
-  rig.press_key("F1");
+  rig.tap_key("F1");
   const auto close =
       rig.look_until("it is there", [](const Sight& now) { return now.can_click("Keys and mouse/Close"); })
           .item("Keys and mouse/Close");

@@ -62,6 +62,9 @@ std::size_t changed_in_plots(WindowRig& rig, const Image& one, const Image& othe
   return changed;
 }
 
+/// More than change when the curves move by a sample, as they may when they are read anew.
+constexpr std::size_t of_a_sample = 100;
+
 }  // namespace
 
 TEST_CASE("another recording is laid over the one that is replayed, is drawn beside it, and is taken away") {
@@ -77,12 +80,12 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
   const Sight both = lay_over(rig, stiff);
   CHECK(both.says("soft"));
   CHECK(both.says("stiff"));
-  CHECK(changed_in_plots(rig, alone, picture_of(rig)) > 300);
+  CHECK(changed_in_plots(rig, alone, picture_of(rig)) > 10 * of_a_sample);
 
   rig.click("replay/over");
   rig.click("##Combo_00/Take it away");
   rig.look_until("it is away", [](const Sight& now) { return now.has("replay/Lay over"); });
-  CHECK(changed_in_plots(rig, alone, picture_of(rig)) == 0);
+  CHECK(changed_in_plots(rig, alone, picture_of(rig)) < of_a_sample);
 }
 
 TEST_CASE("two recordings of the same name in the window are told apart by their folders") {

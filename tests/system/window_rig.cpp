@@ -172,6 +172,8 @@ void WindowRig::press_key(const std::string& key) {
   release_key(key);
 }
 
+void WindowRig::tap_key(const std::string& key) { play({"key", "--delay", "0", key}); }
+
 void WindowRig::enter(const std::string& field, const std::string& text) {
   click(field);
   press_key("ctrl+a");

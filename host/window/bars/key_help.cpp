@@ -22,7 +22,7 @@ constexpr auto left_rows = std::to_array<Row>({
     {"Escape, F12", "Switch the force off, always"},
     {"Space", "The same, except while a text is typed"},
     {"Values", ""},
-    {"Click a number", "Type another one"},
+    {"Click a number, or Enter", "Type another one"},
     {"Enter, or a click elsewhere", "Send what was typed"},
     {"Escape", "Keep the value that was there before"},
     {"Tab", "Send it and go to the next number"},
@@ -50,7 +50,7 @@ constexpr auto right_rows = std::to_array<Row>({
     {"1, 2", "Press the buttons of the simulated stylus"},
     {"Plots", ""},
     {"Drag, wheel, double click", "Move in time, zoom, go on"},
-    {"Shift+arrows", "Move in time, zoom"},
+    {"Shift+arrows", "Move in time, zoom; wind a replay"},
     {"Drag a cursor, or Ctrl+arrows", "Move the first cursor; with Ctrl+Shift the second"},
     {"Click a title, or Enter", "Choose what a plot shows"},
 });

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <frame/inspection.hpp>
+#include <frame/keyboard.hpp>
 #include <frame/widgets.hpp>
 
 namespace inkwell::window {
@@ -97,7 +98,7 @@ void ReplayBar::draw(ImVec2 place, ImVec2 size, const Style& style, ScopePane& s
 
 void ReplayBar::draw_controls(const Style& style) {
   const bool playing = replay_->is_playing();
-  if (toggle_button(playing ? "Pause##replay" : "Play##replay", playing, style, {style.points(62), 0})) {
+  if (toggle_button(playing ? "Pause###play" : "Play###play", playing, style, {style.points(62), 0})) {
     if (playing)
       replay_->pause();
     else
@@ -176,8 +177,13 @@ void ReplayBar::draw_track(ImVec2 corner, ImVec2 size, const Style& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::SetCursorScreenPos(corner);
   ImGui::InvisibleButton("track", size);
+  note_item("track");
   const double duration_s = std::max(replay_->duration_s(), 1.0 / protocol::servo_rate_Hz);
-  if (ImGui::IsItemActive()) replay_->seek(duration_s * static_cast<double>((mouse - corner.x) / size.x));
+  if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left))
+    replay_->seek(duration_s * static_cast<double>((mouse - corner.x) / size.x));
+  constexpr double step_part = 0.01;  // of the whole, by a key
+  if (const int steps = key_steps_in_part(ImGuiKeyModFlags_Shift).right; steps != 0)
+    replay_->seek(std::clamp(replay_->position_s() + step_part * steps * duration_s, 0.0, duration_s));
 
   const auto x_of = [&](double at_s) { return corner.x + static_cast<float>(at_s / duration_s) * size.x; };
   const float middle = corner.y + 0.5f * size.y, half = style.points(3), x = x_of(replay_->position_s());

@@ -173,8 +173,8 @@ void StatusBar::draw_buttons(ImVec2 corner, const Style& style, const DeviceView
   const bool can_switch_on = alive && view.state() == State::ready && !input.is_replay;
   const ImVec2 force_size = make_room(force_points);
   ImGui::BeginDisabled(!active && !can_switch_on);
-  if (active ? coloured_button("Force is on", palette.good, palette.on_good, force_size)
-             : toggle_button("Switch force on", can_switch_on, style, force_size)) {
+  if (active ? coloured_button("Force is on###force", palette.good, palette.on_good, force_size)
+             : toggle_button("Switch force on###force", can_switch_on, style, force_size)) {
     outcome.switch_force_on = !active;
     outcome.stop |= active;
   }

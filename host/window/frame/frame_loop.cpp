@@ -49,10 +49,11 @@ void FrameLoop::run() {
     Frame frame = next_frame();
     if (!is_due(frame)) continue;
     lay_out(frame);
+    if (content_.is_over()) break;
     if (!is_to_be_drawn(frame)) continue;
     draw(frame);
     show(frame);
-    if (frame.is_last || content_.is_over()) break;
+    if (frame.is_last) break;
   }
   if (!options_.frames_report) return;
   fmt::print("{}", frames_report_.text());

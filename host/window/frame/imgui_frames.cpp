@@ -64,6 +64,15 @@ ImGuiFrames::~ImGuiFrames() {
   ImGui::DestroyContext();
 }
 
+void ImGuiFrames::note_key_down(int key) {
+  taps_.note(key);
+  // With what is held at that moment, which may be let go as well before the next frame.
+  const bool* down = ImGui::GetIO().KeysDown;
+  for (const int modifier : {GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT,
+                             GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT})
+    if (down[modifier] && modifier != key) taps_.note(modifier);
+}
+
 void ImGuiFrames::begin() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
@@ -72,8 +81,13 @@ void ImGuiFrames::begin() {
   taps_.apply(io.KeysDown);
   io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL] || io.KeysDown[GLFW_KEY_RIGHT_CONTROL];
   io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT] || io.KeysDown[GLFW_KEY_RIGHT_SHIFT];
+  io.KeyAlt = io.KeysDown[GLFW_KEY_LEFT_ALT] || io.KeysDown[GLFW_KEY_RIGHT_ALT];
   // ImGui's own way from part to part takes two of them only unless Ctrl stays down, and shows their inner names.
   io.KeyMap[ImGuiKey_Tab] = io.KeyCtrl ? -1 : GLFW_KEY_TAB;
+  // Without anything to close or to leave ImGui would take the keyboard away from the thing that has it: Escape is for
+  // the force then.
+  constexpr ImGuiPopupFlags any = ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel;
+  io.KeyMap[ImGuiKey_Escape] = ImGui::IsAnyItemActive() || ImGui::IsPopupOpen("", any) ? GLFW_KEY_ESCAPE : -1;
   ImGui::NewFrame();
 }
 

@@ -41,7 +41,6 @@ void KeyboardTour::give_to(ImGuiWindow& part) {
   ImGui::FocusWindow(&into);
   if (into.NavLastIds[0] == 0) ImGui::NavInitWindow(&into, false);
   show_keyboard();
-  has_just_moved_ = true;
 }
 
 void KeyboardTour::begin_frame() {
@@ -72,7 +71,7 @@ void KeyboardTour::go_on(bool backwards) {
 
 void KeyboardTour::end_frame(const Style& style) {
   const ImGuiContext& context = *GImGui;
-  last_thing_is_gone_ = std::exchange(has_just_moved_, false) && context.NavId != 0 && !context.NavIdIsAlive;
+  last_thing_is_gone_ = context.NavId != 0 && !context.NavIdIsAlive && !context.NavDisableHighlight && !is_menu_open();
   if (context.NavDisableHighlight || context.NavWindow == nullptr || is_menu_open()) return;
   const ImGuiWindow& part = *context.NavWindow->RootWindow;
   if (!part.Active || (part.Flags & ImGuiWindowFlags_NoNavFocus) != 0) return;

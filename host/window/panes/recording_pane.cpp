@@ -55,7 +55,7 @@ bool record_button(const Style& style) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float height = style.points(34);
   const float middle = corner.x + 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize("Start recording").x);
-  const bool pressed = button("Start recording", {-1, height});
+  const bool pressed = button("Start recording###record", {-1, height});
   ImGui::GetWindowDrawList()->AddCircleFilled({middle - style.points(14), corner.y + 0.5f * height}, style.points(5),
                                               packed(style.palette->danger_text));
   return pressed;
@@ -243,7 +243,8 @@ void RecordingPane::draw_progress(const Style& style) {
   const Palette& palette = *style.palette;
   wrapped_text(palette.text_quiet, written_file_);
   draw_numbers(style, recorder_->status());
-  if (coloured_button("Stop recording", palette.raised_active, palette.text, {-1, style.points(34)})) return stop();
+  if (coloured_button("Stop recording###record", palette.raised_active, palette.text, {-1, style.points(34)}))
+    return stop();
   ImGui::Dummy({0, style.points(4)});
   const float button_width = style.points(64);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button_width - ImGui::GetStyle().ItemSpacing.x);

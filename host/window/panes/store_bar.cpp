@@ -58,8 +58,9 @@ Answer draw_question(const Question& question, bool has_device, const Style& sty
                       question.is_grave ? palette.on_danger : palette.pane, {style.points(180), 0}))
     answer = Answer::yes;
   ImGui::SameLine();
-  if (button("Cancel", {style.points(100), 0}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)))
-    answer = Answer::no;
+  const bool cancels = button("Cancel", {style.points(100), 0});
+  if (question.is_grave) ImGui::SetItemDefaultFocus();  // Enter twice must not lose a calibration
+  if (cancels || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) answer = Answer::no;
   if (!has_device) answer = Answer::no;
   if (answer != Answer::none) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();

@@ -83,7 +83,8 @@ void draw_toolbar(Timeline& timeline, Cursors& cursors, bool& with_statistics, S
                   const Style& style) {
   const bool paused = timeline.is_paused();
   same_line_if_room(style.points(58));
-  if (toggle_button(paused ? "Run" : "Pause", paused, style, {style.points(58), 0})) timeline.pause(!paused);
+  if (toggle_button(paused ? "Run###pause" : "Pause###pause", paused, style, {style.points(58), 0}))
+    timeline.pause(!paused);
   help_on_hover("", "A pause keeps the picture; drag to move in it, wheel to zoom, double click to run again.", style);
   draw_span(timeline, style);
   same_line_if_room(style.points(66));

@@ -20,7 +20,7 @@ class ImGuiFrames {
   ImGuiFrames& operator=(const ImGuiFrames&) = delete;
 
   /// Tells of every key that goes down, so that none is missed that comes up again before the next frame.
-  void note_key_down(int key) { taps_.note(key); }
+  void note_key_down(int key);
 
   void begin();
   ImVec2 size() const;  ///< of the window, in screen coordinates

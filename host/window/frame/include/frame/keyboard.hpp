@@ -29,7 +29,6 @@ class KeyboardTour {
   void give_to(ImGuiWindow& part);
 
   std::string wanted_;
-  bool has_just_moved_ = false;
   bool last_thing_is_gone_ = false;  ///< the first one then gets the keyboard
 };
 
