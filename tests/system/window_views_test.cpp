@@ -95,6 +95,14 @@ TEST_CASE("a signal is found by a word and dragged into a plot, and a formula is
   rig.look_until("it has a plot", [](const Sight& now) { return now.has("scope/difference_N"); });
 }
 
+TEST_CASE("where nothing answers at the address that was given, the window says so") {
+  WindowRig rig;
+  rig.control.usb(false);
+  rig.look_until("no arm is there", [](const Sight& now) { return now.says("No arm was found"); });
+  rig.control.quit();
+  rig.look_until("nobody answers", [](const Sight& now) { return now.says("Nothing answers at 127.0.0.1"); });
+}
+
 TEST_CASE("where there is no device, a button starts a virtual one") {
   WindowRig rig;
   rig.control.usb(false);

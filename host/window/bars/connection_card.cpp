@@ -64,7 +64,8 @@ ConnectionCardOutcome draw_connection_card(ImVec2 centre, const Style& style, co
     outcome.firmware = draw_firmware_part(style, firmware);
   } else {
     text(style.fonts.strong, connection_colour(view.status.connection, palette), connection_title(view.status));
-    const std::string& message = view.status.message.empty() ? view.list_error : view.status.message;
+    // Why nobody could be looked for tells more than that nobody was found.
+    const std::string& message = view.list_error.empty() ? view.status.message : view.list_error;
     wrapped_text(palette.text_quiet, message.empty() ? "Plug in the arm's USB cable. It is found by itself." : message);
     if (view.status.connection == Connection::incompatible)
       outcome.firmware.update = draw_firmware_offer(style, firmware);
