@@ -17,19 +17,12 @@ namespace {
 
 std::string part_of(const std::string& item) { return item.substr(0, item.find('/')); }
 
-/// Taps the key; what has the keyboard after the frames that a step takes, the search for another thing included.
-std::string tap(WindowRig& rig, const std::string& key) {
-  constexpr int frames = 4;
-  rig.tap_key(key);
-  for (int frame = 0; frame < frames; ++frame) rig.look();
-  return rig.look().with_keyboard();
-}
-
 /// The parts that have the keyboard one after the other while the key is pressed, until the first has it again.
 std::vector<std::string> tour(WindowRig& rig, const std::string& key) {
   std::vector<std::string> parts;
   for (int step = 0; step < 12; ++step) {
-    const std::string part = part_of(tap(rig, key));
+    rig.tap_key(key);
+    const std::string part = part_of(rig.look().with_keyboard());
     if (!parts.empty() && part == parts.front()) return parts;
     parts.push_back(part);
   }
@@ -37,7 +30,7 @@ std::vector<std::string> tour(WindowRig& rig, const std::string& key) {
 }
 
 void go_to_part(WindowRig& rig, const std::string& part) {
-  for (int step = 0; step < 12 && part_of(rig.look().with_keyboard()) != part; ++step) tap(rig, "ctrl+Tab");
+  for (int step = 0; step < 12 && part_of(rig.look().with_keyboard()) != part; ++step) rig.tap_key("ctrl+Tab");
   REQUIRE(part_of(rig.look().with_keyboard()) == part);
 }
 
@@ -48,7 +41,7 @@ std::set<std::string> go_to(WindowRig& rig, const std::string& key, const std::s
     const std::string now = rig.look().with_keyboard();
     on_the_way.insert(now);
     if (now == item) return on_the_way;
-    tap(rig, key);
+    rig.tap_key(key);
   }
   FAIL("The key ", key, " has not come to ", item, " but to ", rig.look().with_keyboard());
   return on_the_way;
@@ -121,22 +114,22 @@ TEST_CASE("the arrows turn the scene, move the hand and the lines between the pa
   go_to_part(rig, "scene");
   const auto handle = [&rig] { return rig.look().item("scene/box_maximum_x_m"); };
   const auto before = handle();
-  tap(rig, "shift+Right");
+  rig.tap_key("shift+Right");
   const auto turned = handle();
   CHECK(std::abs(turned.x - before.x) > 2.0);
-  tap(rig, "shift+Prior");
+  rig.tap_key("shift+Prior");
   CHECK(std::abs(handle().x - turned.x) > 2.0);
 
   const device::Vector3 held_m = rig.true_probe_m();
-  for (int step = 0; step < 5; ++step) tap(rig, "ctrl+Right");
+  for (int step = 0; step < 5; ++step) rig.tap_key("ctrl+Right");
   rig.control.run(0.5);
   rig.control.resume();
   CHECK(distance_m(rig.true_probe_m(), held_m) == doctest::Approx(0.01).epsilon(0.3));
 
   const auto view = rig.look().item("scene/view");
-  tap(rig, "alt+Left");
+  rig.tap_key("alt+Left");
   CHECK(rig.look().item("scene/view").width == doctest::Approx(view.width - 20));
-  tap(rig, "alt+Up");
+  rig.tap_key("alt+Up");
   CHECK(rig.look().item("scene/view").height == doctest::Approx(view.height - 20));
 }
 
@@ -157,7 +150,7 @@ TEST_CASE("Enter twice does not forget a calibration") {
   rig.tap_key("F2");
   go_to(rig, "Down", "tuning/Store on the board", 60);
   go_to(rig, "Right", "tuning/Factory reset", 3);
-  tap(rig, "Return");
+  rig.tap_key("Return");
   CHECK(rig.look().with_keyboard() == "factory reset/Cancel");
 }
 

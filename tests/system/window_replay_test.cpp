@@ -86,6 +86,17 @@ TEST_CASE("another recording is laid over the one that is replayed, is drawn bes
   rig.click("##Combo_00/Take it away");
   rig.look_until("it is away", [](const Sight& now) { return now.has("replay/Lay over"); });
   CHECK(changed_in_plots(rig, alone, picture_of(rig)) < of_a_sample);
+
+  const auto position = [](const Sight& sight) {
+    for (const auto& each : sight.all.at("texts"))
+      if (const auto text = each.get<std::string>(); text.ends_with(" s") && text.find(" of ") != std::string::npos)
+        return text;
+    return std::string();
+  };
+  const std::string at_the_end = position(rig.look());
+  REQUIRE(!at_the_end.empty());
+  rig.tap_key("shift+Left");  // the replay's bar was clicked last, so it has the keyboard
+  CHECK(position(rig.look()) != at_the_end);
 }
 
 TEST_CASE("two recordings of the same name in the window are told apart by their folders") {

@@ -172,7 +172,11 @@ void WindowRig::press_key(const std::string& key) {
   release_key(key);
 }
 
-void WindowRig::tap_key(const std::string& key) { play({"key", "--delay", "0", key}); }
+void WindowRig::tap_key(const std::string& key) {
+  constexpr int further_frames = 4;
+  play({"key", "--delay", "0", key});
+  for (int frame = 0; frame < further_frames; ++frame) look();
+}
 
 void WindowRig::enter(const std::string& field, const std::string& text) {
   click(field);

@@ -88,7 +88,8 @@ class WindowRig {
   void release_key(const std::string& key);
   /// As xdotool names it, with others that are held: "ctrl+z".
   void press_key(const std::string& key);
-  /// The same, down and up at once: on a busy machine the frame between them would last so long that it repeats.
+  /// The same, down and up at once: on a busy machine the frame between them would last so long that it repeats. Waits
+  /// for the frames that a step of the keyboard takes, the search for another thing included.
   void tap_key(const std::string& key);
   void type(const std::string& text);
   /// As setxkbmap names it: "de".
