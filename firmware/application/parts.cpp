@@ -22,8 +22,6 @@ static_assert(can_be_supervised(protocol::Parameter::current_limit_1_A) &&
               "a current at its limit would be taken for one that cannot be measured");
 static_assert(board::current_ripple_A(arm_defaults::motor::inductance_H) <= board::current_ripple_maximum_A,
               "the arm's motors need more inductance, or the board a faster PWM");
-static_assert(board::facts.bridge_dead_time_part() * board::supply_maximum_V < 0.5f * control::MotorWatch::bearable_V,
-              "the bridges' dead time takes so much voltage that the motors' watch would not trust a sound motor");
 static_assert(info(protocol::Parameter::voltage_limit_V).maximum == board::supply_maximum_V,
               "the largest voltage that may be asked for is the highest that the board's supply may have");
 static_assert(board::servo_rate_Hz == protocol::servo_rate_Hz, "board and protocol count time in the same periods");

@@ -40,11 +40,9 @@ bool over_current(const Triple& current_A, const Triple& limit_A, const Triple& 
   return false;
 }
 
-bool joints_implausible(const Triple& joint_rad, Transmission transmission, const Limits& limits) {
-  const Triple at_stops_rad{joint_rad[0], joint_rad[1], elbow_rad(joint_rad, transmission)};
-  for (std::size_t i = 0; i < 3; ++i)
-    if (at_stops_rad[i] < limits.joint_minimum_rad[i] || at_stops_rad[i] > limits.joint_maximum_rad[i]) return true;
-  return false;
+bool joint_implausible(std::size_t joint, const Triple& joint_rad, Transmission transmission, const Limits& limits) {
+  const float at_stop_rad = joint == 2 ? elbow_rad(joint_rad, transmission) : joint_rad[joint];
+  return at_stop_rad < limits.joint_minimum_rad[joint] || at_stop_rad > limits.joint_maximum_rad[joint];
 }
 
 float sum(const Triple& values) { return values[0] + values[1] + values[2]; }
@@ -213,7 +211,7 @@ void Controller::watch_motors(const Settings& settings) {
   if (!fits(motor_watch_, current_A_, joint_speed_rad_per_s_, settings.motor_model)) [[unlikely]]
     raise(Fault::motor_implausible);
   // What the bridges were told in the period before is what they do until the next.
-  turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V);
+  turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V);
 }
 
 void Controller::regulate_currents(const Settings& settings) {
@@ -277,7 +275,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
             over_current(current_A_, over_current_A_, samples.current_A, board_.current_measurable_A)) |
       watch(Fault::motor_hot, heat_.too_hot) |
       watch(Fault::encoder_implausible,
-            joints_implausible(probe_.joint_rad, settings.arm.transmission, settings.limits)) |
+            joint_implausible(turn_, probe_.joint_rad, settings.arm.transmission, settings.limits)) |
       watch(Fault::over_speed, speed_squared_m2_per_s2 > settings.limits.speed_limit_squared_m2_per_s2) |
       watch(Fault::host_silent, host_silence_periods_ > settings.limits.host_timeout_periods);
   const protocol::Events now = asked_.events | when(Event::measured, offsets_.measured()) |

@@ -204,7 +204,7 @@ struct Watch {
   States watched_in;
   Clearing clearing;
   Off off;
-  bool voids_reference = false;  ///< counts were lost: only the inkwell can tell again where the arm is
+  bool voids_reference = false;  ///< counts may be lost: only the inkwell can tell again where the arm is
 };
 
 /// Of several in one period the first is shown, because it explains the others. The first that was shown stays until
@@ -235,7 +235,7 @@ inline constexpr auto watch_table = []() {
       {Fault::bridge_fault, started, when_gone, coast},
       {Fault::over_current, started, when_gone, coast},
       {Fault::self_test_failed, State::testing, when_gone, coast},
-      {Fault::motor_implausible, with_force, at_once, coast},
+      {Fault::motor_implausible, with_force, at_once, coast, true},
       {Fault::motor_hot, started, when_gone, coast},
       {Fault::encoder_wire, moving, at_once, coast, true},
       {Fault::encoder_implausible, moving, at_once, coast, true},

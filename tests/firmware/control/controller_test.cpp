@@ -206,7 +206,7 @@ TEST_CASE("what the samples can show wrong switches the bridges off with the rig
       {Fault::samples_stale, [](Samples& s) { s.currents_measured = false; }, 1},
       {Fault::not_finite, [](Samples& s) { s.current_A[0] = std::numeric_limits<float>::quiet_NaN(); }, 1},
       {Fault::not_finite, [](Samples& s) { s.supply_V = std::numeric_limits<float>::infinity(); }, 1},
-      {Fault::encoder_implausible, [](Samples& s) { s.encoder_counts[0] += 12'000; }, 1},
+      {Fault::encoder_implausible, [](Samples& s) { s.encoder_counts[0] += 12'000; }, 3},
   };
   for (const BadSample& row : cases) {
     CAPTURE(static_cast<int>(row.fault));

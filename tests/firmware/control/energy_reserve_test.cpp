@@ -70,7 +70,7 @@ struct TurningArm {
     set[Parameter::wall_stiffness_N_per_m] = set[Parameter::wall_damping_Ns_per_m] = 0.0f;
     set[Parameter::program_force_change_N_per_s] = 20'000.0f;
     set[Parameter::force_ramp_s] = 0.0f;
-    set[Parameter::voltage_limit_V] = 0.5f;  // with the back EMF still less than may be missed in a motor
+    set[Parameter::voltage_limit_V] = 0.2f;  // with the back EMF still less than may be missed in a motor
     return set;
   }
   Vector3 three(Signal first) const {

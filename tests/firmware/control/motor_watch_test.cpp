@@ -19,13 +19,13 @@ constexpr MotorModel model{{2.0f, 4.0f, 8.0f}, {0.3f, -0.2f, 0.1f}};
 constexpr int never = 100'000;
 
 /// Looks at one motor in which nothing changes; how many it takes until it does not fit.
-int looks(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s) {
+int looks(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s, float dead_V = 0.0f) {
   MotorWatch watch;
   Triple currents_A{}, speeds_rad_per_s{};
   currents_A[motor] = current_A;
   speeds_rad_per_s[motor] = joint_speed_rad_per_s;
   for (int look = 1; look < never; ++look) {
-    turn_to(watch, motor, voltage_V);
+    turn_to(watch, motor, voltage_V, dead_V);
     if (!fits(watch, currents_A, speeds_rad_per_s, model)) return look;
   }
   return never;
@@ -40,17 +40,23 @@ TEST_CASE("a motor with the voltage of its resistance and its speed fits, in eit
   CHECK(looks(2, 0.0f, -0.25f, 20.0f) == never);  // shorted, and turned by a hand
 }
 
-TEST_CASE("a motor at rest without current may have the bearable voltage and no more") {
+TEST_CASE("a motor at rest without current may have the bearable voltage, and what dead time takes, and no more") {
   CHECK(looks(0, 0.99f * MotorWatch::bearable_V, 0.0f, 0.0f) == never);
   CHECK(looks(0, -0.99f * MotorWatch::bearable_V, 0.0f, 0.0f) == never);
   CHECK(looks(0, 1.1f * MotorWatch::bearable_V, 0.0f, 0.0f) < never);
   CHECK(looks(2, -1.1f * MotorWatch::bearable_V, 0.0f, 0.0f) < never);
+  for (const float dead_V : {0.1f, 0.5f}) {
+    CHECK(looks(0, 0.99f * (MotorWatch::bearable_V + dead_V), 0.0f, 0.0f, dead_V) == never);
+    CHECK(looks(0, 1.1f * (MotorWatch::bearable_V + dead_V), 0.0f, 0.0f, dead_V) < never);
+  }
 }
 
-TEST_CASE("a hot motor fits: half more resistance, a quarter less back EMF") {
+TEST_CASE("a hot motor fits, and one that was hot when it was measured: half more resistance, a quarter less of each") {
   for (const float sign : {1.0f, -1.0f}) {
     CHECK(looks(0, sign * (1.49f * 5.0f + MotorWatch::bearable_V), sign * 2.5f, 0.0f) == never);
     CHECK(looks(0, sign * (1.6f * 5.0f + MotorWatch::bearable_V), sign * 2.5f, 0.0f) < never);
+    CHECK(looks(0, sign * (0.76f * 5.0f - MotorWatch::bearable_V), sign * 2.5f, 0.0f) == never);
+    CHECK(looks(0, sign * (0.7f * 5.0f - MotorWatch::bearable_V), sign * 2.5f, 0.0f) < never);
     CHECK(looks(0, sign * (0.76f * 6.0f - MotorWatch::bearable_V), 0.0f, sign * 20.0f) == never);
     CHECK(looks(0, sign * (0.65f * 6.0f - MotorWatch::bearable_V), 0.0f, sign * 20.0f) < never);
   }
@@ -68,13 +74,13 @@ TEST_CASE("a current that turns round from one limit to the other in no time is 
   MotorWatch watch;
   const Triple still{};
   const auto look = [&](float voltage_V, float current_A) {
-    turn_to(watch, 0, voltage_V);
+    turn_to(watch, 0, voltage_V, 0.0f);
     return fits(watch, {current_A, 0.0f, 0.0f}, still, model);
   };
   for (int turn = 0; turn < 1'000; ++turn) {
     const float sign = turn % 2 == 0 ? 1.0f : -1.0f;
     CHECK(look(16.0f * sign, -2.5f * sign));
-    for (int rest = 0; rest < 6; ++rest) CHECK(look(5.0f * sign, 2.5f * sign));
+    for (int rest = 0; rest < 15; ++rest) CHECK(look(5.0f * sign, 2.5f * sign));
   }
 }
 
@@ -82,7 +88,7 @@ TEST_CASE("each motor has its own sum") {
   MotorWatch watch;
   for (int look = 0; look < 300; ++look) {
     const std::size_t motor = static_cast<std::size_t>(look % 3);
-    turn_to(watch, motor, motor == 2 ? 6.0f : 0.0f);
+    turn_to(watch, motor, motor == 2 ? 6.0f : 0.0f, 0.0f);
     if (fits(watch, {}, {}, model)) continue;
     CHECK(motor == 2);
     CHECK(watch.beyond_V[0] == 0.0f);
@@ -165,7 +171,13 @@ TEST_CASE("a reading that stands still takes the force away within milliseconds,
     CHECK(arm.controller.fault() == Fault::motor_implausible);
     CHECK_FALSE(arm.next.enabled);
     arm.controller.carry_out(tests::command(protocol::Command::clear_fault));
-    arm.run(2);
+    arm.samples.current_A = {};
+    arm.drive = {};
+    tests::run(arm.controller, arm.samples, arm.settings, 2);
+    CHECK(arm.controller.state() == protocol::State::unreferenced);
+    arm.samples.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
+    tests::run(arm.controller, arm.samples, arm.settings,
+               control::SwitchFilter::settle_periods + control::InkwellReference::still_periods + 10);
     CHECK(arm.controller.state() == protocol::State::ready);
     // What was summed is forgotten: sound again, it stays on.
     arm.controller.carry_out(tests::command(protocol::Command::enable_force));

@@ -37,7 +37,8 @@ inline protocol::CommandReport command(protocol::Command which) {
 
 /// For a rig in which no current flows: its loops may ask for less voltage than may be missed in a motor.
 inline protocol::ParameterSet without_motors(protocol::ParameterSet set) {
-  set[protocol::Parameter::voltage_limit_V] = 0.9f * control::MotorWatch::bearable_V;
+  set[protocol::Parameter::voltage_limit_V] =
+      0.9f * (control::MotorWatch::bearable_V + board_limits.dead_time_part * board::supply_minimum_V);
   return set;
 }
 

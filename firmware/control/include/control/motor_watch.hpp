@@ -26,11 +26,13 @@ struct MotorModel {
 };
 
 struct MotorWatch {
-  /// Dead time and switches of the bridges take half a volt, and the speed of an arm that is being stopped is known a
-  /// millisecond late.
-  static constexpr float bearable_V = 1.5f;
+  /// For the brushes, beside what the bridges' dead time takes. What ends by itself only adds to the sum: the voltage
+  /// that a change of current takes, and the speed of an arm that is being stopped, which is known a millisecond late.
+  static constexpr float bearable_V = 0.3f;
   /// Copper that is 100 K hotter than where it was measured has 39 % more resistance; switches and shunt add 4 %.
-  static constexpr float bearable_part_of_resistance = 0.5f;
+  static constexpr float bearable_more_resistance = 0.5f;
+  /// It has a fifth less if it was measured 60 K hotter.
+  static constexpr float bearable_less_resistance = 0.25f;
   /// Its magnets have then 20 % less.
   static constexpr float bearable_part_of_back_emf = 0.25f;
   /// A motor of 0.24 mH takes 1.2 mVs to turn its current round from one limit to the other.
@@ -42,28 +44,33 @@ struct MotorWatch {
   Triple beyond_V{};       ///< of each motor, the sum of what was beyond the bearable; 0 while its bridge is off
   std::size_t motor = 0;   ///< whose turn it is, 0..2
   float voltage_V = 0.0f;  ///< that its bridge had in the period that the present reading ends
+  float dead_V = 0.0f;     ///< what the bridge's dead time may have taken from it
 };
 
 /// What the model leaves unexplained of a motor's voltage, and how much a sound motor may leave.
 struct Unexplained {
   float voltage_V, bearable_V;
 };
-inline Unexplained unexplained(float voltage_V, float current_A, float joint_speed_rad_per_s, float resistance_ohm,
-                               float back_emf_Vs_per_rad) {
+inline Unexplained unexplained(float voltage_V, float dead_V, float current_A, float joint_speed_rad_per_s,
+                               float resistance_ohm, float back_emf_Vs_per_rad) {
   const float ohmic_V = resistance_ohm * current_A;
   const float back_emf_V = back_emf_Vs_per_rad * joint_speed_rad_per_s;
-  return {std::fabs(voltage_V - ohmic_V - back_emf_V),
-          MotorWatch::bearable_V + MotorWatch::bearable_part_of_resistance * std::fabs(ohmic_V) +
-              MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
+  const float left_V = voltage_V - ohmic_V - back_emf_V;
+  const float part_of_resistance =
+      left_V * ohmic_V > 0.0f ? MotorWatch::bearable_more_resistance : MotorWatch::bearable_less_resistance;
+  return {std::fabs(left_V), dead_V + MotorWatch::bearable_V + part_of_resistance * std::fabs(ohmic_V) +
+                                 MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
 }
 
 /// One control period: whether the motor whose turn it is still fits. `joint_speed_rad_per_s` belongs to it as well.
 bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s, const MotorModel& model);
 
-/// Ends the period: `motor`, 0..2, is next, and `voltage_V` is what its bridge is to have until then.
-inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V) {
+/// Ends the period: `motor`, 0..2, is next, and `voltage_V` is what its bridge is to have until then, give or take
+/// `dead_V`.
+inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, float dead_V) {
   watch.motor = motor;
   watch.voltage_V = voltage_V;
+  watch.dead_V = dead_V;
 }
 
 }  // namespace inkwell::control
