@@ -7,6 +7,7 @@
 namespace inkwell::application {
 
 using protocol::Fault;
+using protocol::Signal;
 using protocol::watch;
 
 bool BackgroundWatch::start() {
@@ -41,7 +42,24 @@ protocol::Watches BackgroundWatch::found_of_encoders() {
   bool dead = false;
   for (std::size_t i = 0; i < timer_counts.size(); ++i)
     dead |= is_dead(encoder_wires_[i], timer_counts[i], now_periods);
-  return watch(Fault::encoder_wire, dead);
+  return watch(Fault::encoder_wire, dead) | watch(Fault::encoder_implausible, an_encoder_is_stuck());
+}
+
+bool BackgroundWatch::an_encoder_is_stuck() {
+  const std::uint32_t recorded = host_link.samples.recorded();
+  if (recorded == 0) return false;
+  const link::Sample& newest = host_link.samples[recorded - 1];
+  const bool in_inkwell = (newest.summary.switches & static_cast<unsigned>(protocol::Switch::inkwell)) != 0;
+  const bool held = in_inkwell || !protocol::force_is_on(newest.summary.state);
+  constexpr protocol::EachAxis<Signal> encoders_counts = Signal::encoder_1_counts, currents_A = Signal::current_1_A;
+  const control::Triple& moving_A = host_link.parameters.settings().limits.moving_A;
+  bool stuck = false;
+  for (std::size_t i = 0; i < stuck_encoders_.size(); ++i) {
+    const auto counts = static_cast<std::int32_t>(newest.signals[encoders_counts[i]]);
+    stuck |=
+        is_stuck(stuck_encoders_[i], counts, newest.signals[currents_A[i]], newest.summary.periods, held, moving_A[i]);
+  }
+  return stuck;
 }
 
 protocol::Watches BackgroundWatch::found_of_bridges() {

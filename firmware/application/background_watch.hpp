@@ -10,6 +10,7 @@
 #include <control/analog_supply.hpp>
 #include <control/bridge_wire.hpp>
 #include <control/encoder_wire.hpp>
+#include <control/stuck_encoder.hpp>
 #include <control/supply_ripple.hpp>
 #include <protocol/supervision.hpp>
 
@@ -36,6 +37,7 @@ class BackgroundWatch {
   void tell(protocol::Watches found);
   protocol::Watches found_of_supplies();
   protocol::Watches found_of_encoders();
+  bool an_encoder_is_stuck();
   protocol::Watches found_of_bridges();
 
   MemoryCheck memory_check_;
@@ -43,6 +45,7 @@ class BackgroundWatch {
       .bearable_counts = static_cast<std::int32_t>(protocol::supply_ripple_V / board::facts.supply_step_V())};
   control::AnalogSupply analog_supply_;
   std::array<control::EncoderWire, 3> encoder_wires_{};
+  std::array<control::StuckEncoder, 3> stuck_encoders_{};
   control::BridgeWire bridge_wire_;
   unsigned rounds_ = 0;  ///< of the main loop, since the last look
 };

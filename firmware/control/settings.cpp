@@ -1,6 +1,9 @@
 #include <control/settings.hpp>
 
+#include <algorithm>
+
 #include <control/conditioning.hpp>
+#include <control/stuck_encoder.hpp>
 #include <protocol/faults.hpp>
 
 namespace inkwell::control {
@@ -98,14 +101,22 @@ Limits limits(const ParameterSet& set) {
   constexpr float over_current_minimum_A = 0.5f;
   // Counts may be lost or the stops yield a little before the angles are called impossible.
   constexpr float joint_margin_rad = 0.35f;
+  const Triple ratio = set.of_each(Parameter::gear_ratio_1);
+  const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
+  const float moving_Nm = StuckEncoder::moving_force_N * std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
 
-  Limits limits{set.of_each(protocol::lower_stops), set.of_each(protocol::upper_stops),
-                set.of_each(Parameter::current_limit_1_A), 0.0f, periods_in(set[Parameter::host_timeout_s])};
+  Limits limits{set.of_each(protocol::lower_stops),
+                set.of_each(protocol::upper_stops),
+                set.of_each(Parameter::current_limit_1_A),
+                {},
+                0.0f,
+                periods_in(set[Parameter::host_timeout_s])};
   for (std::size_t i = 0; i < 3; ++i) {
     limits.joint_minimum_rad[i] -= joint_margin_rad;
     limits.joint_maximum_rad[i] += joint_margin_rad;
     const float over_A = protocol::over_current_ratio * limits.over_current_A[i];
     limits.over_current_A[i] = over_A > over_current_minimum_A ? over_A : over_current_minimum_A;
+    limits.moving_A[i] = moving_Nm / (ratio[i] * constant_Nm_per_A[i]);
   }
   const float speed_m_per_s = set[Parameter::speed_limit_m_per_s];
   limits.speed_limit_squared_m2_per_s2 = speed_m_per_s * speed_m_per_s;

@@ -1,0 +1,60 @@
+// Whether an encoder stands still against its motor's current.
+//
+// Nothing but its encoder says where a joint is, so one that is stuck looks like a joint that is held. What tells them
+// apart is that nothing holds an arm so well: a motor that presses otherwise than before turns the joint, if only by
+// what the arm's cables and links and a hand or a stop give way. The stiffness of an Omni at the stylus is 1 to 2 N/mm,
+// so a newton turns its joints by ten counts. Friction keeps a joint where it is as long as the force changes by no
+// more than twice the friction, 0.5 N on an Omni.
+//
+// The bound is a change of 2 N at the end of the longer link with no more than a count to either side. An arm that has
+// four times an Omni's friction and ten times its stiffness keeps within it. A count to either side is what an encoder
+// with one dead wire shows, too slowly for control/encoder_wire.hpp where the arm moves slowly.
+//
+// An arm that turns round stands for a moment, and a wall's force may rise meanwhile: 30 ms and 0.5 A were seen. So the
+// change counts from 0.1 s on after the joint came to stand. The current is that of some ten milliseconds: a force that
+// turns round faster than the arm can follow leaves no trace in it.
+//
+// Only the inkwell holds better. While the stylus is in it nothing is compared.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <control/conditioning.hpp>
+
+namespace inkwell::control {
+
+struct StuckEncoder {
+  /// The change of force at the end of the longer link that turns every joint.
+  static constexpr float moving_force_N = 2.0f;
+  static constexpr std::uint32_t bearable_counts = 1;
+  static constexpr std::uint32_t settle_periods = periods_in(0.1f);
+  /// Of a new reading, of which there is one in three periods at best: a low-pass of 9.6 ms.
+  static constexpr float weight = 1.0f / 64.0f;
+
+  std::int32_t counts = 0;          ///< where it stands
+  std::uint32_t since_periods = 0;  ///< since when
+  float current_A = 0.0f;           ///< of its motor, filtered
+  float settled_A = 0.0f;           ///< what it was when the joint had settled
+};
+
+/// One look at an encoder and its motor's current, at `now_periods` of the control period's count. True while it stands
+/// although the current has changed by more than `moving_A`. `held` says that the joint may stand: it is then looked at
+/// anew.
+inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A, std::uint32_t now_periods, bool held,
+                     float moving_A) {
+  encoder.current_A += StuckEncoder::weight * (current_A - encoder.current_A);
+  const std::uint32_t away =
+      static_cast<std::uint32_t>(counts) - static_cast<std::uint32_t>(encoder.counts) + StuckEncoder::bearable_counts;
+  if (held || away > 2 * StuckEncoder::bearable_counts) {
+    encoder.counts = counts;
+    encoder.since_periods = now_periods;
+  }
+  if (now_periods - encoder.since_periods < StuckEncoder::settle_periods) {
+    encoder.settled_A = encoder.current_A;
+    return false;
+  }
+  return std::fabs(encoder.current_A - encoder.settled_A) > moving_A;
+}
+
+}  // namespace inkwell::control

@@ -1,0 +1,103 @@
+// What an encoder that stands may be told by, and what must not be taken for one.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <control/settings.hpp>
+#include <control/stuck_encoder.hpp>
+#include <firmware/control/arms.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::is_stuck;
+using control::StuckEncoder;
+
+constexpr float moving_A = 1.0f;
+constexpr int looks_per_s = static_cast<int>(protocol::servo_rate_Hz) / 3;
+
+/// Looks for a second at `counts(time_s)` and `current_A(time_s)`.
+template <class Counts, class Current>
+bool told(Counts counts, Current current_A, bool held = false, std::int32_t begin = 0) {
+  StuckEncoder encoder{.counts = begin};
+  for (int look = 0; look < looks_per_s; ++look) {
+    const float time_s = static_cast<float>(look) / looks_per_s;
+    const auto now_periods = static_cast<std::uint32_t>(3 * look);
+    if (is_stuck(encoder, counts(time_s), current_A(time_s), now_periods, held, moving_A)) return true;
+  }
+  return false;
+}
+
+/// From one current to another, between 0.2 and 0.7 s.
+auto rising(float from_A, float to_A) {
+  return [=](float time_s) { return from_A + (to_A - from_A) * std::clamp(2.0f * time_s - 0.4f, 0.0f, 1.0f); };
+}
+std::int32_t standing(float) { return 4711; }
+
+TEST_CASE("an encoder that stands while the current changes by more than it may is stuck, either way") {
+  CHECK_FALSE(told(standing, rising(0.3f, 1.28f)));
+  CHECK(told(standing, rising(0.3f, 1.32f)));
+  CHECK_FALSE(told(standing, rising(0.3f, -0.68f)));
+  CHECK(told(standing, rising(0.3f, -0.72f)));
+}
+
+TEST_CASE("what the current was before it came to stand does not count") {
+  // From 0 to 1.9 A, but with a step of two counts when half of it is there.
+  const auto stepping = [](float time_s) { return time_s < 0.45f ? 100 : 102; };
+  CHECK_FALSE(told(stepping, rising(0.0f, 1.9f)));
+  const auto back = [](float time_s) { return time_s < 0.45f ? 100 : 98; };
+  CHECK_FALSE(told(back, rising(0.0f, 1.9f)));
+}
+
+TEST_CASE("an arm that turns round stands for a moment while a force may rise") {
+  // It comes to stand at 0.2 s, when the current begins to rise by 2.5 A: within that time, and within twice as long.
+  for (const float stands_s : {0.09f, 0.2f}) {
+    const auto turning_round = [=](float time_s) {
+      return time_s < 0.2f ? static_cast<std::int32_t>(1e4f * time_s)
+                           : 2'000 - static_cast<std::int32_t>(1e4f * std::max(0.0f, time_s - 0.2f - stands_s));
+    };
+    const auto current_A = [](float time_s) { return 2.5f * std::clamp(10.0f * (time_s - 0.2f), 0.0f, 2.0f); };
+    CHECK(told(turning_round, current_A) == (stands_s > 0.1f));
+  }
+}
+
+TEST_CASE("a count to and fro is not motion: one wire may be dead") {
+  const auto dithering = [](float time_s) { return 100 + static_cast<std::int32_t>(40.0f * time_s) % 2; };
+  CHECK(told(dithering, rising(0.0f, 1.1f), false, 100));
+  const auto below = [](float time_s) { return 100 - static_cast<std::int32_t>(40.0f * time_s) % 2; };
+  CHECK(told(below, rising(0.0f, 1.1f), false, 100));
+}
+
+TEST_CASE("a current that turns round faster than an arm can follow leaves no trace, one that lasts does") {
+  const auto square = [](float rate_Hz) {
+    return [=](float time_s) { return std::fmod(time_s * rate_Hz, 1.0f) < 0.5f ? 2.5f : -2.5f; };
+  };
+  CHECK_FALSE(told(standing, square(400.0f)));
+  CHECK(told(standing, square(10.0f)));
+}
+
+TEST_CASE("while the arm is held by anything nothing counts, and what was before is forgotten") {
+  CHECK_FALSE(told(standing, rising(0.0f, 2.5f), true));
+  StuckEncoder encoder;
+  std::uint32_t now_periods = 0;
+  const auto look = [&](float current_A, bool held) {
+    for (int i = 0; i < 1'000; ++i) CHECK_FALSE(is_stuck(encoder, 7, current_A, now_periods += 3, held, moving_A));
+  };
+  look(0.0f, false);
+  look(2.5f, true);
+  look(2.5f, false);
+}
+
+TEST_CASE("what moves a joint is two newtons at the end of the longer link, by the motor's constant and gear") {
+  using enum protocol::Parameter;
+  protocol::ParameterSet set = tests::omni_parameters();
+  set[link_3_m] = 0.2f;
+  set[torque_constant_2_Nm_per_A] = 0.05f;
+  set[motor_3_reversed] = 1.0f;
+  const auto settings = control::prepare(set);
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(settings.limits.moving_A[i] == doctest::Approx(0.4f * std::fabs(settings.motors.ampere_per_Nm[i])));
+}
+
+}  // namespace

@@ -1,0 +1,89 @@
+// An encoder that stands still: told by the current that no longer turns its joint, or by the voltage of a motor that
+// turns. What sound encoders show while a hand and a program do the same is taken for neither.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hazards.hpp"
+
+using namespace inkwell;
+using namespace inkwell::tests;
+using protocol::Fault;
+using protocol::ForceMode;
+using protocol::Parameter;
+using protocol::State;
+
+namespace {
+
+device::Vector3 beside(double x_m, double y_m, double z_m) {
+  return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
+}
+
+Fault fault_of(BoardRig& rig) {
+  rig.run(0.01);
+  return rig.pose().fault;
+}
+
+/// A program pulls harder and harder for a second, up to 6 N, while the hand holds on.
+void pull(BoardRig& rig, const std::array<float, 3>& along) {
+  for (int millisecond = 0; millisecond < 1'000; ++millisecond) {
+    const float force_N = 0.006f * static_cast<float>(millisecond);
+    rig.device->send_force(
+        {.force_N = {force_N * along[0], force_N * along[1], force_N * along[2]}, .mode = ForceMode::beside_walls});
+    rig.control.run(0.001);
+  }
+}
+
+void make_strong(BoardRig& rig) {
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.set({{Parameter::force_limit_N, 8.0f}, {Parameter::speed_limit_m_per_s, 10.0f}});
+}
+
+}  // namespace
+
+TEST_CASE("slow motion: a joint that a force no longer seems to turn takes it away, and the place of the arm with it") {
+  struct Pulled {
+    std::string joint;
+    std::array<float, 3> along;  ///< a direction that its motor takes a good part of
+  };
+  for (const Pulled& pulled : {Pulled{"1", {1.0f, 0.0f, 0.0f}}, {"2", {0.0f, 0.7f, -0.7f}}, {"3", {0.0f, 0.7f, 0.7f}}})
+    for (const bool sound : {true, false}) {
+      CAPTURE(pulled.joint);
+      CAPTURE(sound);
+      BoardRig rig;
+      make_strong(rig);
+      if (!sound) rig.control.inject({.fault = "encoder_stuck", .of = pulled.joint});
+      rig.run(0.2);
+      REQUIRE(protocol::force_is_on(rig.pose().state));
+      pull(rig, pulled.along);
+      CHECK(protocol::info(fault_of(rig)).name ==
+            protocol::info(sound ? Fault::none : Fault::encoder_implausible).name);
+      CHECK(bridges_enabled(rig.control) == sound);
+      if (sound) continue;
+      rig.command(protocol::Command::clear_fault);
+      rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
+    }
+}
+
+TEST_CASE("fast motion without a force: a motor whose voltage tells that it turns takes the place of the arm away") {
+  for (const std::string joint : {"1", "2", "3", "none"}) {
+    CAPTURE(joint);
+    const bool sound = joint == "none";
+    BoardRig rig;
+    make_strong(rig);
+    if (!sound) rig.control.inject({.fault = "encoder_stuck", .of = joint});
+    std::vector<device::HandWaypoint> path;
+    for (int i = 1; i <= 6; ++i)
+      path.push_back({0.09 * i, i % 2 == 0 ? beside(-0.04, -0.03, -0.03) : beside(0.04, 0.03, 0.03)});
+    rig.control.hand_path(path);
+    rig.run(0.5);
+    CHECK(protocol::info(fault_of(rig)).name == protocol::info(sound ? Fault::none : Fault::motor_implausible).name);
+    CHECK(bridges_enabled(rig.control) == sound);
+    if (sound) continue;
+    rig.command(protocol::Command::clear_fault);
+    rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
+  }
+}
