@@ -87,7 +87,8 @@ std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
 /// Why a wire may be broken unnoticed, by what it is for.
 std::string_view reason_of_wire(std::string_view wire) {
   if (wire.starts_with("encoders"))
-    return "A dead wire shows by a count that goes to and fro, and that only while the joint moves.";
+    return "A dead wire shows by a count that goes to and fro, or by a motor that turns or presses otherwise than "
+           "before while the joint does not seem to move.";
   if (wire.starts_with("bridges"))
     return "While no current is asked of the motor, none is missed, and the legs' levels are looked at while the "
            "bridges "
@@ -115,10 +116,11 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::wires_shorted: return "The two agreed, or nothing compares them.";
     case InjectedFault::wire_spikes: return "The inputs' filters and the next look at them bear it.";
     case InjectedFault::encoder_stuck:
+      return "It shows by a motor that turns or presses otherwise than before while the joint does not seem to move.";
     case InjectedFault::encoder_lost_counts:
     case InjectedFault::encoder_slip:
-      return "No second sensor knows the joint; only an angle far beyond its stop is noticed, or a fast motor's "
-             "missing back EMF.";
+      return "No second sensor knows the joint, and a motor's voltage may differ by more; only an angle far beyond its "
+             "stop is noticed.";
     case InjectedFault::shunt_gain:
       return "Voltage, reading and speed fit within what a hot motor may differ by; the next self-test tells.";
     case InjectedFault::shunt_offset:

@@ -77,7 +77,7 @@ void bring_into(BoardRun& board, const Case& the_case) {
   }
   if (situation == CaseSituation::motion) {
     std::vector<device::HandWaypoint> path{{0.0, middle_m}};
-    for (int turn = 0; turn < 8; ++turn) {
+    for (int turn = 0; turn < 12; ++turn) {
       Vector3 side_m = middle_m;
       for (double& along_m : side_m) along_m += (turn % 2 == 0 ? swing_m : -swing_m) / std::sqrt(3.0);
       path.push_back({(turn + 1) * swing_s, side_m});

@@ -158,7 +158,7 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(text.find("at 3 random\ninstants. 4 of ") != std::string::npos);
   CHECK(text.find("are of the 0.3 s after") != std::string::npos);
   CHECK(text.find("in control\nperiods of 50 us.") != std::string::npos);
-  CHECK(text.find("free space, 60 mm in 0.15 s, with all joints.") != std::string::npos);
+  CHECK(text.find("free space, 60 mm in 0.1 s, with all joints.") != std::string::npos);
   CHECK(text.find("| `bridge_fault` | bridge_fault | 1.5 | 2.49 | 1.3 | 4.4 | clear_fault |") != std::string::npos);
   CHECK(text.find("| `motor_hot:2` | - | stayed on | 9.50 | 0.0 | 0.0 | none needed; position 12 mm off |") !=
         std::string::npos);

@@ -26,7 +26,7 @@ std::string meaning_of(CaseSituation situation);
 constexpr bool is_active(CaseSituation situation) { return situation >= CaseSituation::rest; }
 
 /// The swing of `motion`: to either side, along all axes; from one side to the other.
-inline constexpr double swing_m = 0.03, swing_s = 0.15;
+inline constexpr double swing_m = 0.03, swing_s = 0.10;
 
 inline constexpr unsigned phases = 3;
 
