@@ -7,7 +7,7 @@
 // more than twice the friction, 0.5 N on an Omni.
 //
 // The bound is a change of 2 N at the end of the longer link with no more than a count to either side. An arm that has
-// four times an Omni's friction and ten times its stiffness keeps within it. A count to either side is what an encoder
+// twice an Omni's friction and four times its stiffness still turns by more. A count to either side is what an encoder
 // with one dead wire shows, too slowly for control/encoder_wire.hpp where the arm moves slowly.
 //
 // An arm that turns round stands for a moment, and a wall's force may rise meanwhile: 30 ms and 0.5 A were seen. So the
