@@ -230,6 +230,47 @@ TEST_CASE("what the samples can show wrong switches the bridges off with the rig
   }
 }
 
+/// What a ready controller says to an arm that stands so; the third angle is the elbow's, from link 2 to link 3.
+Fault fault_at(const Settings& settings, const control::Triple& at_stops_rad) {
+  control::Triple joint_rad = at_stops_rad;
+  if (settings.arm.transmission == control::Transmission::parallelogram) joint_rad[2] += joint_rad[1];
+  Samples samples = tests::samples_at_rest();
+  for (std::size_t i = 0; i < 3; ++i)
+    samples.encoder_counts[i] = static_cast<std::int32_t>(
+        std::lround((joint_rad[i] - settings.encoders.inkwell_rad[i]) / settings.encoders.rad_per_count[i]));
+  Controller controller = tests::ready_controller(settings);
+  tests::run(controller, samples, settings, 3);
+  return controller.fault();
+}
+
+TEST_CASE("a joint beyond its stop is told, the elbow by its angle between the links, and none within") {
+  constexpr float beyond_rad = 0.01f;
+  for (const tests::Arm& arm : tests::all_arms()) {
+    CAPTURE(arm.name);
+    const Settings settings = control::prepare(arm.parameters);
+    const control::Triple &lower_rad = settings.limits.joint_minimum_rad,
+                          &upper_rad = settings.limits.joint_maximum_rad;
+    control::Triple middle_rad{};
+    for (std::size_t i = 0; i < 3; ++i) middle_rad[i] = 0.5f * (lower_rad[i] + upper_rad[i]);
+    const auto with = [](control::Triple at_rad, std::size_t joint, float angle_rad) {
+      at_rad[joint] = angle_rad;
+      return at_rad;
+    };
+    for (std::size_t joint = 0; joint < 3; ++joint) {
+      CAPTURE(joint);
+      CHECK(fault_at(settings, with(middle_rad, joint, lower_rad[joint] - beyond_rad)) == Fault::encoder_implausible);
+      CHECK(fault_at(settings, with(middle_rad, joint, lower_rad[joint] + beyond_rad)) == Fault::none);
+      CHECK(fault_at(settings, with(middle_rad, joint, upper_rad[joint] - beyond_rad)) == Fault::none);
+      CHECK(fault_at(settings, with(middle_rad, joint, upper_rad[joint] + beyond_rad)) == Fault::encoder_implausible);
+    }
+    // With joints 2 and 3 at their ends together, the third of a parallelogram is far beyond the elbow's stops.
+    for (const auto& ends_rad : {lower_rad, upper_rad}) {
+      const float inward_rad = ends_rad == lower_rad ? beyond_rad : -beyond_rad;
+      CHECK(fault_at(settings, {middle_rad[0], ends_rad[1] + inward_rad, ends_rad[2] + inward_rad}) == Fault::none);
+    }
+  }
+}
+
 TEST_CASE("a probe beyond its speed limit is let go") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::active_controller(settings);
