@@ -26,10 +26,6 @@ using protocol::State;
 
 namespace {
 
-device::Vector3 beside(double x_m, double y_m, double z_m) {
-  return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
-}
-
 /// Fast free motion of all joints, as in the campaign.
 void swing(BoardRig& rig, int times) {
   std::vector<device::HandWaypoint> path;

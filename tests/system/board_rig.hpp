@@ -62,5 +62,9 @@ double largest_current_A(device::ControlClient& control);
 
 /// The middle of the default arm's box, within its reach.
 inline constexpr device::Vector3 free_point_m{0.0, 0.0, -0.03};
+/// The point so far from it.
+constexpr device::Vector3 beside(double x_m, double y_m, double z_m) {
+  return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
+}
 
 }  // namespace inkwell::tests

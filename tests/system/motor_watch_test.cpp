@@ -122,10 +122,6 @@ void check(WatchedRig& rig, const std::string& what) {
   rig.start_anew();
 }
 
-device::Vector3 beside(double x_m, double y_m, double z_m) {
-  return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
-}
-
 /// The hand goes to and fro between two points, so many times a second.
 void swing(WatchedRig& rig, device::Vector3 from_m, device::Vector3 to_m, double half_period_s, int times,
            double stiffness_N_per_m = 1500, double damping_Ns_per_m = 12) {

@@ -17,10 +17,6 @@ using protocol::State;
 
 namespace {
 
-device::Vector3 beside(double x_m, double y_m, double z_m) {
-  return {free_point_m[0] + x_m, free_point_m[1] + y_m, free_point_m[2] + z_m};
-}
-
 Fault fault_of(BoardRig& rig) {
   rig.run(0.01);
   return rig.pose().fault;
@@ -86,4 +82,28 @@ TEST_CASE("fast motion without a force: a motor whose voltage tells that it turn
     rig.command(protocol::Command::clear_fault);
     rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
   }
+}
+
+TEST_CASE("in the inkwell the arm stands although a force pulls at it, and no encoder is taken for stuck") {
+  BoardRig rig;
+  rig.make_active();
+  rig.set({{Parameter::force_limit_N, 8.0f}});
+  rig.run(0.2);
+  pull(rig, {0.6f, 0.0f, 0.0f});
+  CHECK(protocol::info(fault_of(rig)).name == protocol::info(Fault::none).name);
+  CHECK(largest_current_A(rig.control) > 1.0);
+  CHECK(protocol::is_closed(rig.pose().switches, protocol::Switch::inkwell));
+}
+
+TEST_CASE("a test's current on a joint that does not seem to turn is no fault: without the force nothing is compared") {
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  rig.take_to(free_point_m);
+  rig.control.inject({.fault = "encoder_stuck", .of = "1"});
+  rig.run(0.2);
+  rig.device->send(protocol::Command::test_current, {.motor = 1, .amplitude = 1.2f, .duration_s = 0.1f});
+  rig.run(0.05);
+  CHECK(largest_current_A(rig.control) > 1.1);
+  rig.run(0.2);
+  CHECK(rig.pose().state == State::ready);
 }
