@@ -22,10 +22,6 @@ using protocol::State;
 using protocol::watch;
 using protocol::when;
 
-bool is_closed(std::uint8_t switches, protocol::Switch which) {
-  return (switches & static_cast<std::uint8_t>(which)) != 0;
-}
-
 std::uint8_t bit(ForceSource source, bool is_felt) {
   return is_felt ? static_cast<std::uint8_t>(source) : std::uint8_t{0};
 }
@@ -104,7 +100,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   update_heat(heat_, turn_, current_A_[turn_], settings.heat);
   // While walls push, a new reference would move the probe under the hand.
   if (!force_is_on())
-    update_reference(reference_, encoder_counts_, is_closed(switches_.closed, protocol::Switch::inkwell));
+    update_reference(reference_, encoder_counts_, protocol::is_closed(switches_.closed, protocol::Switch::inkwell));
 }
 
 void Controller::find_pose(const Settings& settings) {

@@ -25,10 +25,6 @@ struct WatchOptions {
   double rate_Hz = 10;
 };
 
-bool is_pressed(const PoseReport& pose, protocol::Switch which) {
-  return (pose.switches & static_cast<std::uint8_t>(which)) != 0;
-}
-
 std::vector<std::string_view> force_sources(const PoseReport& pose) {
   std::vector<std::string_view> names;
   for (const auto& row : protocol::force_source_table)
@@ -62,9 +58,9 @@ nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::
           {"force_sources", force_sources(pose)},
           {"limits", limits(pose)},
           {"joint_rad", {pose.joint_rad[0], pose.joint_rad[1], pose.joint_rad[2]}},
-          {"button_1", is_pressed(pose, protocol::Switch::button_1)},
-          {"button_2", is_pressed(pose, protocol::Switch::button_2)},
-          {"inkwell", is_pressed(pose, protocol::Switch::inkwell)},
+          {"button_1", is_closed(pose.switches, protocol::Switch::button_1)},
+          {"button_2", is_closed(pose.switches, protocol::Switch::button_2)},
+          {"inkwell", is_closed(pose.switches, protocol::Switch::inkwell)},
           {"supply_V", pose.supply_dV / 10.0},
           {"lost", lost}};
 }
@@ -80,9 +76,10 @@ void print_line(const PoseReport& pose, std::uint64_t lost) {
   fmt::print("{:9.3f}  {:<12} {:8.2f} {:8.2f} {:8.2f}  {:7.2f} {:7.2f} {:7.2f}  {}{}{} {:>6}  {}\n",
              static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz,
              pose.state == protocol::State::fault ? info(pose.fault).name : info(pose.state).name, 1e3f * p[0],
-             1e3f * p[1], 1e3f * p[2], f[0], f[1], f[2], is_pressed(pose, protocol::Switch::button_1) ? "1 " : "- ",
-             is_pressed(pose, protocol::Switch::button_2) ? "2 " : "- ",
-             is_pressed(pose, protocol::Switch::inkwell) ? "inkwell" : "-      ", lost, force_of(pose));
+             1e3f * p[1], 1e3f * p[2], f[0], f[1], f[2],
+             is_closed(pose.switches, protocol::Switch::button_1) ? "1 " : "- ",
+             is_closed(pose.switches, protocol::Switch::button_2) ? "2 " : "- ",
+             is_closed(pose.switches, protocol::Switch::inkwell) ? "inkwell" : "-      ", lost, force_of(pose));
 }
 
 int watch(const DeviceOptions& options, const WatchOptions& watch_options) {

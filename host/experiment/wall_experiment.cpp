@@ -191,7 +191,7 @@ Push push_by_user(PacedDevice& device, const recording::Information& about, BoxW
   const ParameterSet& parameters = about.parameters;
   progress("Take the stylus out of the inkwell to the middle of the box. The force will come on there.", 0.25);
   const auto in_the_middle = [&](const auto& pose) {
-    return is_clear(pose, parameters) && (pose.switches & static_cast<std::uint8_t>(protocol::Switch::inkwell)) == 0;
+    return is_clear(pose, parameters) && !is_closed(pose.switches, protocol::Switch::inkwell);
   };
   device.wait_for_pose(in_the_middle, user_limit_s,
                        "The stylus did not come to the middle of the box. Run the experiment again.");

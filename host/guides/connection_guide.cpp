@@ -68,8 +68,8 @@ class PressButton final : public Step {
   bool advance(const Observation& now, DevicePort&) override {
     const auto wanted = button_ == 1 ? protocol::Switch::button_1 : protocol::Switch::button_2;
     const auto other = button_ == 1 ? protocol::Switch::button_2 : protocol::Switch::button_1;
-    now_pressed_ = is_closed(*now.pose, wanted);
-    if (is_closed(*now.pose, other) && !now_pressed_)
+    now_pressed_ = is_closed(now.pose->switches, wanted);
+    if (is_closed(now.pose->switches, other) && !now_pressed_)
       hint_ = "the other button is pressed; if it is the right one, the buttons' wires are swapped";
     seen_ |= now_pressed_;
     if (since_.seconds(*now.pose) > user_limit_s)

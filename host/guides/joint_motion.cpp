@@ -55,7 +55,7 @@ std::string forward_direction(const protocol::ParameterSet& parameters, int join
 
 bool RestInInkwell::advance(const Observation& now, DevicePort&) {
   const auto& pose = *now.pose;
-  const bool closed = is_closed(pose, protocol::Switch::inkwell);
+  const bool closed = is_closed(pose.switches, protocol::Switch::inkwell);
   const bool referenced = pose.state == State::ready;
   checks_ = {{"inkwell switch", closed ? 1.0 : 0.0, "", "closed", closed},
              {"state " + std::string(info(pose.state).name), referenced ? 1.0 : 0.0, "", "ready", referenced}};

@@ -25,7 +25,7 @@ class UserMoves : public Step {
   void confirm() override { confirmed_ = true; }
 
   bool advance(const Observation& now, DevicePort&) override {
-    const bool pressed = is_closed(*now.pose, protocol::Switch::button_1);
+    const bool pressed = is_closed(now.pose->switches, protocol::Switch::button_1);
     if (pressed && !was_pressed_) confirmed_ = true;
     was_pressed_ = pressed;
     if (since_.seconds(*now.pose) > user_limit_s) throw device::Error(too_late());

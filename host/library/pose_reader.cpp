@@ -39,10 +39,9 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control:
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) pose.rotation[3 * row + column] = rotation[column][row];
   pose.force_sources = report.force_sources;
-  const auto pressed = [&](protocol::Switch which) { return (report.switches & static_cast<unsigned>(which)) != 0; };
-  pose.button_1 = pressed(protocol::Switch::button_1);
-  pose.button_2 = pressed(protocol::Switch::button_2);
-  pose.in_inkwell = pressed(protocol::Switch::inkwell);
+  pose.button_1 = is_closed(report.switches, protocol::Switch::button_1);
+  pose.button_2 = is_closed(report.switches, protocol::Switch::button_2);
+  pose.in_inkwell = is_closed(report.switches, protocol::Switch::inkwell);
   pose.supply_V = report.supply_dV / 10.0;
   return pose;
 }

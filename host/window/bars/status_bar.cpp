@@ -135,7 +135,7 @@ void StatusBar::draw_switches(ImVec2 corner, const Style& style, std::uint8_t sw
   ImDrawList& list = *ImGui::GetWindowDrawList();
   float x = corner.x;
   for (const auto& [name, which] : all) {
-    const bool on = (switches & static_cast<std::uint8_t>(which)) != 0;
+    const bool on = is_closed(switches, which);
     list.AddCircleFilled({x + style.points(4), corner.y + style.points(19)}, style.points(3.2f),
                          packed(on ? palette.accent : palette.raised_active));
     list.AddText(font, font->FontSize, {x + style.points(12), corner.y + style.points(12)},

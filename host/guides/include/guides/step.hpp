@@ -107,8 +107,4 @@ class Stopwatch {
   std::uint32_t began_ = 0;
 };
 
-inline bool is_closed(const protocol::PoseReport& pose, protocol::Switch which) {
-  return (pose.switches & static_cast<std::uint8_t>(which)) != 0;
-}
-
 }  // namespace inkwell::guides
