@@ -1,8 +1,10 @@
 // What stands for the boot loader in the chip's system memory (AN2606).
 #pragma once
 
-#include <chip/chip.hpp>
 #include <cstdint>
+
+#include <chip/chip.hpp>
+#include <chip/memory_map.hpp>
 
 namespace inkwell::virtual_board {
 
