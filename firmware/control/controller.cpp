@@ -59,8 +59,14 @@ void Controller::carry_out(const protocol::CommandReport& command) {
   host_alive();
   switch (command.command) {
     case Command::enable_force: asked_.events |= events(Event::enable); break;
-    case Command::disable_force: asked_.events |= events(Event::disable); break;
-    case Command::stop: asked_.events |= events(Event::stop); break;
+    case Command::disable_force:
+      asked_.events |= events(Event::disable);
+      test_.end();
+      break;
+    case Command::stop:  // also if the host is gone
+      asked_.events |= events(Event::stop);
+      test_.end();
+      break;
     case Command::clear_fault: asked_.events |= events(Event::clear); break;
     case Command::self_test: asked_.events |= events(Event::self_test); break;
     case Command::test_current:
@@ -231,6 +237,17 @@ void Controller::regulate_currents(const Settings& settings) {
   drive_.enabled = true;
 }
 
+/// A test has no force that is limited, so it ends where a force would: too fast an arm, a host that fell silent.
+void Controller::follow_test(protocol::Watches found) {
+  constexpr protocol::Watches ends = watch(Fault::over_speed) | watch(Fault::host_silent);
+  if ((found & ends) == 0) {
+    --test_.remaining_periods;
+    return;
+  }
+  test_.end();
+  drive_ = {};
+}
+
 // A current limit that is lowered holds for the references at once, but a current takes time to follow: the loop's, and
 // the winding's where the voltage is bounded.
 void Controller::follow_over_current(const Settings& settings) {
@@ -280,7 +297,8 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   if (!surely_stays(supervisor_.state, {now, found})) [[unlikely]]
     change_state(advance(supervisor_, {now, found}));
   asked_ = {.events = lasting_events_};
-  if (test_.runs()) --test_.remaining_periods;
+  if (test_.runs()) [[unlikely]]
+    follow_test(found);
   if (brake_.is_on()) [[unlikely]] {
     advance(brake_, speed_squared_m2_per_s2, found);
     drive_.brake = brake_.is_on();
@@ -293,7 +311,7 @@ void Controller::change_state(const Supervisor& next) {
   const bool force_was_on = std::exchange(force_is_on_, protocol::force_is_on(next.state));
   // A change of state switches off in the period in which it is decided, not one later.
   if (!(force_was_on && force_is_on_)) drive_ = {};
-  if (next.state != State::ready) test_ = {};
+  if (next.state != State::ready) test_.end();
   pulses_.stop();
   if (next.state == State::testing) {
     ++self_tests_;

@@ -122,6 +122,38 @@ TEST_CASE("test pulses run in `ready` only, and not for motors or times that mak
   CHECK_FALSE(enabled_after(tests::ready_controller(settings), pulse(Command::test_current, 1, 1.0f, -1.0f)));
 }
 
+TEST_CASE("a test pulse ends with a stop, a host that falls silent and an arm that gets too fast") {
+  const Settings settings = control::prepare(tests::paper_parameters());
+  const auto started = [&settings] {
+    Controller controller = tests::ready_controller(settings);
+    controller.carry_out(pulse(Command::test_current, 1, 1.0f, 0.4f));
+    CHECK(tests::run(controller, tests::samples_at_rest(), settings, 20).enabled);
+    return controller;
+  };
+  for (const Command last : {Command::stop, Command::disable_force}) {
+    CAPTURE(static_cast<int>(last));
+    Controller controller = started();
+    controller.carry_out(tests::command(last));
+    CHECK_FALSE(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
+  }
+
+  Controller silent = started();
+  const auto patience_periods = static_cast<int>(settings.limits.host_timeout_periods);
+  CHECK(tests::run(silent, tests::samples_at_rest(), settings, patience_periods - 21).enabled);
+  CHECK_FALSE(tests::run(silent, tests::samples_at_rest(), settings, 3).enabled);
+  CHECK(silent.state() == State::ready);
+
+  Controller fast = started();
+  Samples samples = tests::samples_at_rest();
+  bool enabled = true;
+  for (int i = 0; i < 100 && enabled; ++i) {
+    for (auto& counts : samples.encoder_counts) counts += 5;
+    enabled = tests::run(fast, samples, settings, 1).enabled;
+  }
+  CHECK_FALSE(enabled);
+  CHECK(fast.state() == State::ready);
+}
+
 TEST_CASE("a hot motor's pulse is held back") {
   protocol::ParameterSet set = tests::paper_parameters();
   set[protocol::Parameter::winding_time_constant_s] = 0.25f;

@@ -116,6 +116,7 @@ class Controller {
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
   void follow_over_current(const Settings& settings);
+  void follow_test(protocol::Watches found);
   [[gnu::cold]] void drive_pulses(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void change_state(const Supervisor& next);

@@ -19,6 +19,7 @@ struct TestPulse {
   std::uint32_t remaining_periods = 0;  ///< of both together; 0 when no test runs
 
   bool runs() const { return remaining_periods > 0; }
+  void end() { remaining_periods = 0; }
   /// What is asked of the motor in this period.
   float value() const { return remaining_periods > pulse_periods ? amplitude : 0.0f; }
 };
