@@ -48,6 +48,30 @@ TEST_CASE("the force goes off when the host falls silent") {
   CHECK(rig.pose().fault == protocol::Fault::host_silent);
 }
 
+TEST_CASE("a test's pulse goes off with a stop, a host that falls silent and a cable that is pulled") {
+  const auto stop = [](BoardRig& rig) {
+    rig.command(protocol::Command::stop);
+    rig.run(0.02);
+  };
+  const auto fall_silent = [](BoardRig& rig) { rig.run_silent(0.07); };
+  const auto pull_cable = [](BoardRig& rig) {
+    rig.control.usb(false);
+    rig.control.run(0.02);
+  };
+  for (const std::function<void(BoardRig&)>& end :
+       {std::function<void(BoardRig&)>(stop), {fall_silent}, {pull_cable}}) {
+    BoardRig rig;
+    rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+    rig.set({{Parameter::host_timeout_s, 0.05f}});
+    rig.device->send(protocol::Command::test_current, {.motor = 2, .amplitude = 1.0f, .duration_s = 0.4f});
+    rig.run(0.02);
+    REQUIRE(largest_current_A(rig.control) > 0.9);
+    end(rig);
+    CHECK(largest_current_A(rig.control) < 0.02);
+    CHECK_FALSE(bridges_enabled(rig.control));
+  }
+}
+
 TEST_CASE("a supply that fails switches the bridges off and says so") {
   BoardRig rig;
   rig.make_active();

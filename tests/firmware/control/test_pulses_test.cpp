@@ -139,16 +139,25 @@ TEST_CASE("a test pulse ends with a stop, a host that falls silent and an arm th
 
   Controller silent = started();
   const auto patience_periods = static_cast<int>(settings.limits.host_timeout_periods);
-  CHECK(tests::run(silent, tests::samples_at_rest(), settings, patience_periods - 21).enabled);
-  CHECK_FALSE(tests::run(silent, tests::samples_at_rest(), settings, 3).enabled);
+  CHECK(tests::run(silent, tests::samples_at_rest(), settings, patience_periods - 20).enabled);
+  CHECK_FALSE(tests::run(silent, tests::samples_at_rest(), settings, 1).enabled);
   CHECK(silent.state() == State::ready);
+  silent.host_alive();
+  CHECK_FALSE(tests::run(silent, tests::samples_at_rest(), settings, 2).enabled);
 
   Controller fast = started();
   Samples samples = tests::samples_at_rest();
+  const auto speed_m_per_s = [&fast] {
+    const auto signals = fast.signals();
+    return std::hypot(signals[Signal::velocity_x_m_s], signals[Signal::velocity_y_m_s],
+                      signals[Signal::velocity_z_m_s]);
+  };
+  const float limit_m_per_s = tests::paper_parameters()[protocol::Parameter::speed_limit_m_per_s];
   bool enabled = true;
   for (int i = 0; i < 100 && enabled; ++i) {
     for (auto& counts : samples.encoder_counts) counts += 5;
     enabled = tests::run(fast, samples, settings, 1).enabled;
+    CHECK(enabled == (speed_m_per_s() <= limit_m_per_s));
   }
   CHECK_FALSE(enabled);
   CHECK(fast.state() == State::ready);
