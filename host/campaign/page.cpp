@@ -192,31 +192,49 @@ std::string undetected(const Groups& groups, const std::vector<CaseFault>& fault
   return text;
 }
 
-/// At worst, of all cases with the force on.
+/// At worst, of all cases with the force on. How much more energy than without a fault it was is told of the situations
+/// only in which a sound case was run.
 std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faults) {
   struct Worst {
     double value = 0.0;
-    std::string where = "no case";
+    std::string where;
     void see(double other, const CaseFault& fault, CaseSituation situation) {
-      if (other > value) *this = {other, fmt::format("`{}` in {}", fault.name(), name_of(situation))};
+      if (where.empty() || other > value) *this = {other, fmt::format("`{}` in {}", fault.name(), name_of(situation))};
     }
-  } force_N, energy_J;
+  } force_N, more_J;
+  std::vector<std::string_view> not_compared;
   for (const CaseSituation situation : situations) {
-    const auto* sound = find(groups, "none", situation);
-    if (sound == nullptr || !is_active(situation)) continue;
-    const double sound_J = summarise(*sound).energy_J;
+    if (!is_active(situation)) continue;
+    const auto* sound_cases = find(groups, "none", situation);
+    const Summary sound = sound_cases == nullptr ? Summary{} : summarise(*sound_cases);
     for (const CaseFault& fault : faults) {
       const auto* results = find(groups, fault.name(), situation);
-      if (results == nullptr) continue;
-      const Summary s = summarise(*results);
+      const Summary s = results == nullptr ? Summary{} : summarise(*results);
+      if (s.cases == 0) continue;
       force_N.see(s.peak_force_N, fault, situation);
-      energy_J.see(s.energy_J - sound_J, fault, situation);
+      if (!fault.fault) continue;
+      if (sound.cases > 0)
+        more_J.see(s.energy_J - sound.energy_J, fault, situation);
+      else if (not_compared.empty() || not_compared.back() != name_of(situation))
+        not_compared.push_back(name_of(situation));
     }
   }
-  return fmt::format(
-      "\n## At the hand\n\nWith the force on the hand felt at most {:.2f} N ({}), and got at most {:.1f} mJ more than "
-      "without a fault in the same situation ({}).\n",
-      force_N.value, force_N.where, 1e3 * energy_J.value, energy_J.where);
+  std::string text = "\n## At the hand\n\n";
+  if (force_N.where.empty())
+    return text + "No case with the force on was run, so what the hand would have felt cannot be told.\n";
+  text += fmt::format("With the force on the hand felt at most {:.2f} N ({})", force_N.value, force_N.where);
+  if (more_J.where.empty())
+    text += ".";
+  else if (more_J.value <= 0)
+    text += ", and got no more energy than without a fault in the same situation.";
+  else
+    text += fmt::format(", and got at most {:.1f} mJ more than without a fault in the same situation ({}).",
+                        1e3 * more_J.value, more_J.where);
+  if (!not_compared.empty())
+    text += fmt::format(
+        " How much more energy it got than without a fault cannot be told of {}: the case `none` was not run there.",
+        fmt::join(not_compared, ", "));
+  return text + "\n";
 }
 
 std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faults) {

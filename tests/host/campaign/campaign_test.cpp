@@ -183,6 +183,38 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK_THROWS_AS(write_page({}, page), device::Error);
 }
 
+TEST_CASE("a page of some of the cases tells what can be told, and says what cannot") {
+  const TemporaryDirectory directory;
+  const auto page = directory / "campaign.md";
+  const auto page_of = [&](const std::vector<Result>& results) {
+    write_page(results, page);
+    return content_of(page);
+  };
+  Result off = seen("bridge_fault", "ready", 1);
+  CHECK(page_of({off}).find("No case with the force on was run") != std::string::npos);
+
+  Result pressed = seen("bridge_fault", "wall", 1), swung = seen("bridge_fault", "motion", 1);
+  pressed.peak_force_N = 2.98;
+  pressed.energy_J = 0.002;
+  swung.peak_force_N = 1.5;
+  swung.energy_J = 0.030;
+  const std::string alone = page_of({off, pressed, swung});
+  CHECK(alone.find("felt at most 2.98 N (`bridge_fault` in wall). How much more energy") != std::string::npos);
+  CHECK(alone.find("cannot be told of wall, motion: the case `none` was not run there.") != std::string::npos);
+  CHECK(alone.find("no case)") == std::string::npos);
+
+  Result sound = seen("none", "wall", 1), failed = seen("none", "motion", 1);
+  failed.error = "The board did not start.";
+  const std::string partly = page_of({sound, failed, pressed, swung});
+  CHECK(partly.find("felt at most 2.98 N (`bridge_fault` in wall), and got at most 2.0 mJ more than without a fault in "
+                    "the same situation (`bridge_fault` in wall). How") != std::string::npos);
+  CHECK(partly.find("cannot be told of motion:") != std::string::npos);
+  sound.energy_J = 0.003;
+  CHECK(page_of({sound, pressed}).find("and got no more energy than without a fault in the same situation.\n") !=
+        std::string::npos);
+  CHECK(page_of({sound}).find("felt at most 0.00 N (`none` in wall).\n") != std::string::npos);
+}
+
 TEST_CASE("a restart is noticed, a lock-up or bridges that went off are not by themselves") {
   const TemporaryDirectory directory;
   Result restarted = seen("logic_sag", "rest", 1), stuck = seen("logic_sag", "rest", 2),
