@@ -11,15 +11,13 @@
 
 #include <campaign/run.hpp>
 #include <device/error.hpp>
-#include <protocol/reports.hpp>
 #include <recording/write_text.hpp>
 
-#include "plot.hpp"
+#include "page_plots.hpp"
 
 namespace inkwell::campaign {
 namespace {
 
-constexpr double control_period_s = 1.0 / protocol::servo_rate_Hz;
 constexpr double bearable_part_of_limit = 1.05;
 
 using Key = std::pair<std::string, std::string>;  // fault, situation
@@ -244,7 +242,7 @@ std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faul
       const auto* results = find(groups, fault.name(), situation);
       if (results == nullptr || !is_active(situation)) continue;
       const Summary s = summarise(*results);
-      if (s.peak_force_N <= bearable_part_of_limit * results->front().force_limit_N) continue;
+      if (s.peak_force_N <= bearable_part_of_limit * force_limit_N(*results)) continue;
       rows += fmt::format("| `{}` | {} | {:.1f} | {:.0f} | {:.0f} | {} | {} |\n", fault.name(), name_of(situation),
                           s.peak_force_N, 1e3 * s.energy_J, 1e3 * s.travel_m,
                           s.detected_as.empty() ? "-" : s.detected_as, off_text(s));
@@ -281,39 +279,6 @@ std::string not_run(std::span<const Result> results) {
                           result.error);
   if (text.empty()) return text;
   return "\n## Could not be run\n\n| case | what | why |\n| --- | --- | --- |\n" + text;
-}
-
-std::string off_plot(std::span<const Result> results) {
-  constexpr double limits[] = {1, 2, 5, 20, 100, 1000};
-  std::vector<Bar> bars;
-  for (const double limit : limits) bars.push_back({fmt::format("to {}", limit), 0});
-  bars.push_back({"more", 0});
-  bars.push_back({"stayed on", 0});
-  for (const Result& result : results) {
-    if (!result.error.empty() || !result.bridges_were_on || result.fault == "none") continue;
-    if (!result.off_after_s) {
-      ++bars.back().count;
-      continue;
-    }
-    std::size_t bin = 0;
-    while (bin < std::size(limits) && *result.off_after_s > limits[bin] * control_period_s) ++bin;
-    ++bars[bin].count;
-  }
-  return histogram_svg("Simulation: cases by control periods until the bridges were off", bars);
-}
-
-std::string force_plot(std::span<const Result> results) {
-  constexpr double step_N = 1.0;
-  constexpr std::size_t steps = 10;
-  std::vector<Bar> bars;
-  for (std::size_t i = 0; i < steps; ++i)
-    bars.push_back(
-        {fmt::format("{:.0f}-{:.0f} N", step_N * static_cast<double>(i), step_N * static_cast<double>(i + 1)), 0});
-  bars.push_back({"more", 0});
-  for (const Result& result : results)
-    if (result.error.empty() && result.bridges_were_on)
-      ++bars[std::min(steps, static_cast<std::size_t>(result.peak_force_N / step_N))].count;
-  return histogram_svg("Simulation: cases by the peak force at the hand after the fault", bars);
 }
 
 void add(std::set<std::string>& names, const std::string& name) {
@@ -364,8 +329,8 @@ periods of {:.0f} us.
 ![until the bridges were off]({}-off.svg)
 ![peak force]({}-force.svg)
 )";
-  std::string text = fmt::format(head, phases, results.size(), all_cases().size(), results.front().force_limit_N,
-                                 observed_s, 1e6 * control_period_s, stem, stem);
+  std::string text = fmt::format(head, phases, results.size(), all_cases().size(), force_limit_N(results), observed_s,
+                                 1e6 * control_period_s, stem, stem);
   text += went_on(results) + at_the_hand(groups, faults) + above_limit(groups, faults) + undetected(groups, faults) +
           not_run(results) + tables(groups, faults);
   recording::write_text(page, text);

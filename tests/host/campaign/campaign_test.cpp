@@ -171,9 +171,8 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(text.find("`bridge_fault` | wall") == std::string::npos);  // it was noticed
   const std::string plot = content_of(directory / "campaign-off.svg");
   CHECK(text.find("campaign-off.svg") != std::string::npos);
-  CHECK(plot.find(">to 2</text>") != std::string::npos);
+  CHECK(plot.find(">1 to 2</text>") != std::string::npos);
   CHECK(plot.find(">stayed on</text>") != std::string::npos);
-  CHECK(content_of(directory / "campaign-force.svg").find("</svg>") != std::string::npos);
   Result sound = seen("none", "wall", 1);
   sound.energy_J = 0.0003;
   write_page(std::array{quick, sound}, page);
@@ -213,6 +212,58 @@ TEST_CASE("a page of some of the cases tells what can be told, and says what can
   CHECK(page_of({sound, pressed}).find("and got no more energy than without a fault in the same situation.\n") !=
         std::string::npos);
   CHECK(page_of({sound}).find("felt at most 0.00 N (`none` in wall).\n") != std::string::npos);
+}
+
+TEST_CASE("the force limit is that of the cases that could be run") {
+  const TemporaryDirectory directory;
+  const auto page = directory / "campaign.md";
+  Result failed = seen("bridge_fault", "wall", 1), run = seen("bridge_fault", "wall", 2);
+  failed.error = "The board did not start.";
+  failed.force_limit_N = 0;
+  run.peak_force_N = 2.0;
+  write_page(std::array{failed, run}, page);
+  CHECK(content_of(page).find("The force limit is 3.3 N") != std::string::npos);
+  CHECK(content_of(page).find("a twentieth of it: none.") != std::string::npos);
+}
+
+TEST_CASE("the plots say what is counted, in which unit, what a colour means and where the limit is") {
+  const TemporaryDirectory directory;
+  Result sound = seen("none", "wall", 1), button = seen("wire_open:button_1", "wall", 1),
+         hot = seen("motor_hot:2", "wall", 1), quick = seen("bridge_fault", "wall", 1),
+         moved = seen("bridge_fault", "motion", 1);
+  sound.peak_force_N = 2.41;
+  button.peak_force_N = 2.45;
+  hot.peak_force_N = 4.2;
+  quick.peak_force_N = 0.3;
+  quick.off_after_s = moved.off_after_s = 75e-6;
+  moved.peak_force_N = 0.8;
+  const auto plots_of = [&](const std::vector<Result>& results) {
+    write_page(results, directory / "campaign.md");
+    return std::pair{content_of(directory / "campaign-off.svg"), content_of(directory / "campaign-force.svg")};
+  };
+  const auto count = [](const std::string& text, const std::string& part) {
+    int found = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+  };
+  const auto [off, force] = plots_of({sound, button, hot, quick});
+  CHECK(count(off, "in control periods of 50 μs</text>") == 1);
+  CHECK(count(off, "stayed on: 1 of 2 are wires") == 1);
+  CHECK(count(off, "#b9c1ca") == 2);  // its bar, and what it means
+  CHECK(count(force, ">peak force at the hand, N</text>") == 1);
+  CHECK(count(force, ">force limit 3.3 N</text>") == 1);
+  CHECK(count(force, "no more; without a fault: wall 2.4 N") == 1);
+  // Up to the largest force and no further: nine classes, of which three have a case; what it would have been anyway
+  // is quiet. Each colour once more, for its meaning.
+  CHECK(count(force, ">4.5</text>") == 1);
+  CHECK(count(force, ">5</text>") == 0);
+  CHECK(count(force, "#b9c1ca") == 3);
+  CHECK(count(force, "#3b6ea5") == 2);
+  CHECK(count(force, "not compared") == 0);
+  const std::string few = plots_of({sound, moved}).second;
+  CHECK(count(few, "or not compared: no case") == 1);
+  // Few bars do not cut off the title or a colour's meaning.
+  CHECK(std::stoul(few.substr(few.find("width=\"") + 7)) > 600);
 }
 
 TEST_CASE("a restart is noticed, a lock-up or bridges that went off are not by themselves") {
