@@ -144,7 +144,7 @@ void add_page(CLI::App& command, CampaignOptions& options) {
 
 void add_jobs(CLI::App& command, CampaignOptions& options) {
   command.add_option("--jobs", options.jobs, "So many cases at once")
-      ->check(CLI::Range(1, 256))
+      ->check(whole_number_within(1, 256))
       ->type_name("NUMBER")
       ->capture_default_str();
 }

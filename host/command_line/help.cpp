@@ -62,9 +62,10 @@ void set_help_style(CLI::App& program) { program.formatter(std::make_shared<Help
 
 namespace {
 
-CLI::Validator number_that(bool (*fits)(float), const char* what) {
+template <class Fits>
+CLI::Validator number_that(Fits fits, std::string what) {
   return CLI::Validator(
-      [fits, what](const std::string& text) {
+      [fits, what = std::move(what)](const std::string& text) {
         const auto value = device::parse_number(text);
         return value && std::isfinite(*value) && fits(*value)
                    ? std::string()
@@ -81,6 +82,23 @@ CLI::Validator zero_or_more() {
 
 CLI::Validator more_than_zero() {
   return number_that([](float value) { return value > 0; }, "more than 0");
+}
+
+CLI::Validator number_within(double low, double high) {
+  return number_that([from = static_cast<float>(low),
+                      to = static_cast<float>(high)](float value) { return value >= from && value <= to; },
+                     fmt::format("from {} to {}", low, high));
+}
+
+CLI::Validator whole_number_within(int low, int high) {
+  return CLI::Validator(
+      [low, high](const std::string& text) {
+        int value = 0;
+        return CLI::detail::lexical_cast(text, value) && value >= low && value <= high
+                   ? std::string()
+                   : fmt::format("{} does not do. Give a whole number from {} to {}.", text, low, high);
+      },
+      "");
 }
 
 CLI::Validator not_empty() {

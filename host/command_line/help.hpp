@@ -17,6 +17,8 @@ void add_examples(CLI::App& command, const std::string& examples);
 /// Checks of a number that name the range as a person would.
 CLI::Validator zero_or_more();
 CLI::Validator more_than_zero();
+CLI::Validator number_within(double low, double high);
+CLI::Validator whole_number_within(int low, int high);
 
 /// An empty text where a device or a file is named is a variable of a script that was not set: it must not become the
 /// device that is there without the option.

@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "help.hpp"
+#include "wrong_value.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -67,13 +68,12 @@ int run(int argument_count, char** arguments) {
   } catch (const CLI::RequiredError& error) {
     return complain(UsageError(wrong_command(program).value_or(error.what())), wrong_usage);
   } catch (const CLI::ExtrasError& error) {
-    if (const auto sentence = wrong_command(program)) return complain(UsageError(*sentence), wrong_usage);
-    program.exit(error);
-    return wrong_usage;
+    const auto sentence = wrong_command(program);
+    return complain(UsageError(sentence ? *sentence : sentence_of(program, error)), wrong_usage);
   } catch (const CLI::ParseError& error) {
-    const bool is_help = error.get_exit_code() == 0;
-    program.exit(error);
-    return is_help ? success : wrong_usage;
+    if (error.get_exit_code() != 0) return complain(UsageError(sentence_of(program, error)), wrong_usage);
+    program.exit(error);  // the help, or the version
+    return success;
   }
   try {
     return action();

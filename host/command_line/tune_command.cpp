@@ -11,13 +11,13 @@ void add_loop_options(CLI::App& guide, guides::CurrentLoopOptions& loop) {
       .add_option_function<int>(
           "--motor", [&loop](int motor) { loop.motors = {motor}; }, "This motor only, 1 to 3; all three unless given")
       ->type_name("NUMBER")
-      ->check(CLI::Range(1, 3));
+      ->check(whole_number_within(1, 3));
   guide
       .add_option("--bandwidth", loop.bandwidth_Hz,
                   fmt::format("Bandwidth of the current loops, {} to {} Hz", guides::bandwidth_minimum_Hz,
                               guides::bandwidth_maximum_Hz))
       ->type_name("HZ")
-      ->check(CLI::Range(guides::bandwidth_minimum_Hz, guides::bandwidth_maximum_Hz))
+      ->check(number_within(guides::bandwidth_minimum_Hz, guides::bandwidth_maximum_Hz))
       ->capture_default_str();
 }
 

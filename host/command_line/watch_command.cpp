@@ -123,7 +123,7 @@ void add_watch_command(const Place& place) {
       ->check(more_than_zero());
   command->add_option("--rate", watch_options->rate_Hz, "Lines a second, 0.1 to 1000")
       ->type_name("HZ")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(number_within(0.1, 1000.0))
       ->capture_default_str();
   add_examples(*command, "inkwell watch\ninkwell watch --virtual --seconds 2 --rate 100 --json");
   command->callback([place, watch_options] {

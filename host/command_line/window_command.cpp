@@ -84,16 +84,16 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
       .add_option("--scale", window.scale,
                   "Size of fonts, spacing and the window, 0.5 to 4; the display's own unless given")
       ->type_name("FACTOR")
-      ->check(CLI::Range(0.5, 4.0))
+      ->check(number_within(0.5, 4.0))
       ->group(group);
   program.add_option("--width", window.width, "Width of the window: pixels, or on a fine display several for each")
       ->type_name("POINTS")
-      ->check(CLI::Range(window::smallest_window_points.width, 16384))
+      ->check(whole_number_within(window::smallest_window_points.width, 16384))
       ->capture_default_str()
       ->group(group);
   program.add_option("--height", window.height, "Height of the window, likewise")
       ->type_name("POINTS")
-      ->check(CLI::Range(window::smallest_window_points.height, 16384))
+      ->check(whole_number_within(window::smallest_window_points.height, 16384))
       ->capture_default_str()
       ->group(group);
   program.add_option("--screenshot", window.screenshot, "Write a picture of the window to this PNG file and close")

@@ -165,6 +165,28 @@ TEST_CASE("the companion refuses what it does not know") {
     check_refused(result, {"--seconds", "-1", "more than 0"});
     CHECK(result.err.size() < 200);  // a range to the largest number there is helps nobody
   }
+  SUBCASE("what is no number, of an option or an argument of any command") {
+    const auto says = [](const std::vector<std::string>& words, const std::string& sentence) {
+      const auto result = run_program("inkwell", words);
+      CHECK(result.exit_code == 2);
+      CHECK(result.err == "inkwell: " + sentence + "\n");
+    };
+    says({"campaign", "run", "17", "abc"},
+         "abc is no number for CASE. Give one such as 12; `inkwell campaign run --help` explains it.");
+    says({"campaign", "run", "-3"},
+         "-3 does not do for CASE. Give a whole number that is not negative, such as 12; "
+         "`inkwell campaign run --help` explains it.");
+    says({"soak", "--seed", "x"}, "x is no number for --seed. Give one such as 12; `inkwell soak --help` explains it.");
+    says({"--virtual", "--seed", "1.5", "info"},
+         "1.5 does not do for --seed. Give a whole number that is not "
+         "negative, such as 12; `inkwell --help` explains it.");
+    says({"--json=maybe", "info"},
+         "--json takes no value such as maybe. Leave that out; `inkwell --help` explains it.");
+    says({"campaign", "--jobs", "two"}, "--jobs: two does not do. Give a whole number from 1 to 256.");
+    says({"watch", "--rate", "nan"}, "--rate: nan does not do. Give a number that is from 0.1 to 1000.");
+    says({"soak", "--seconds"},
+         "Nothing stands behind --seconds. Give it its value; `inkwell soak --help` explains it.");
+  }
   SUBCASE("layout") {
     check_refused(run_program("inkwell", {"--virtual", "--layout", "nonsense"}), {"nonsense", "--layout", "paper"});
   }

@@ -1,0 +1,78 @@
+#include "wrong_value.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <device/parameter_file.hpp>
+
+namespace inkwell::command_line {
+namespace {
+
+/// An option or argument that was given, and the command that it belongs to.
+struct Given {
+  const CLI::Option* option;
+  std::string command;
+};
+
+template <class Which>
+std::optional<Given> find_given(const CLI::App& app, const std::string& words, Which which) {
+  for (const CLI::Option* option : app.get_options([](const CLI::Option*) { return true; }))
+    if (which(*option)) return Given{option, words};
+  for (const CLI::App* command : app.get_subcommands())
+    if (auto found = find_given(*command, fmt::format("{} {}", words, command->get_name()), which)) return found;
+  return std::nullopt;
+}
+
+std::string name_of(const CLI::Option& option) {
+  std::string name = option.get_name();
+  if (option.get_positional())
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return name;
+}
+
+/// What cannot be converted is meant as a number in this program; one that is refused all the same has to be whole.
+std::string of_conversion(const Given& given) {
+  const auto is_number = [](const std::string& text) { return device::parse_number(text).has_value(); };
+  const auto& values = given.option->results();
+  const std::string name = name_of(*given.option), help = fmt::format("`{} --help` explains it.", given.command);
+  if (given.option->get_items_expected_max() == 0)
+    return fmt::format("{} takes no value such as {}. Leave that out; {}", name, CLI::detail::join(values, " "), help);
+  // Of several values CLI11 does not say which it means.
+  const auto no_number = std::ranges::find_if_not(values, is_number);
+  if (no_number != values.end())
+    return fmt::format("{} is no number for {}. Give one such as 12; {}", *no_number, name, help);
+  return fmt::format("{} does not do for {}. Give a whole number that is not negative, such as 12; {}",
+                     CLI::detail::join(values, " "), name, help);
+}
+
+/// "--seconds: 1 required SECONDS missing"
+std::optional<std::string> of_missing_value(const CLI::App& program, std::string_view raw) {
+  if (!raw.ends_with(" missing") || raw.find(" required ") == std::string_view::npos) return std::nullopt;
+  const std::string name(raw.substr(0, raw.find(':')));
+  const auto given =
+      find_given(program, program.get_name(), [&](const auto& option) { return option.get_name() == name; });
+  if (!given) return std::nullopt;
+  return fmt::format("Nothing stands behind {}. Give it its value; `{} --help` explains it.", name_of(*given->option),
+                     given->command);
+}
+
+}  // namespace
+
+std::string sentence_of(const CLI::App& program, const CLI::ParseError& error) {
+  std::string raw = error.what();
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+    const auto given = find_given(program, program.get_name(), [&](const CLI::Option& option) {
+      return option.count() > 0 && raw == CLI::ConversionError(option.get_name(), option.results()).what();
+    });
+    if (given) return of_conversion(*given);
+  }
+  if (const auto sentence = of_missing_value(program, raw)) return *sentence;
+  if (raw.ends_with('.')) return raw;  // a check of ours has said what to give
+  return fmt::format("{}\nRun with --help for more information.", raw);
+}
+
+}  // namespace inkwell::command_line
