@@ -4,7 +4,10 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -16,6 +19,7 @@
 #include <soak/run.hpp>
 
 #include "help.hpp"
+#include "interrupt.hpp"
 
 namespace inkwell::command_line {
 namespace {
@@ -28,26 +32,46 @@ struct SoakOptions {
   std::string file;
 };
 
-std::vector<unsigned> numbers_of(const SoakOptions& command) {
-  if (command.sitting) return {*command.sitting};
-  std::vector<unsigned> numbers(soak::sittings_in(command.board_time_s, command.choices));
-  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<unsigned>(i + 1);
-  return numbers;
+struct Plan {
+  soak::Choices choices;
+  std::vector<unsigned> numbers;  ///< of the sittings
+};
+
+/// All sittings are as long as each other, so that their sum is the time that was asked for, whatever the jobs are.
+Plan plan_of(const SoakOptions& command) {
+  if (command.sitting) return {command.choices, {*command.sitting}};
+  const unsigned count = soak::sittings_in(command.board_time_s, command.choices);
+  Plan plan{command.choices, std::vector<unsigned>(count)};
+  plan.choices.sitting_s = command.board_time_s / count;
+  std::iota(plan.numbers.begin(), plan.numbers.end(), 1u);
+  return plan;
 }
 
-/// Before an hour of work, not after it.
-void check_writable(const SoakOptions& command) {
-  if (!command.file.empty()) recording::write_text(command.file, "");
+/// Before an hour of work, not after it. What is there stays as it is until the result takes its place.
+void check_writable(const std::string& file) {
+  std::error_code ignored;
+  const bool was_there = std::filesystem::exists(file, ignored);
+  if (!std::ofstream(file, std::ios::app))
+    throw device::Error(fmt::format("{} cannot be written. Name another file with --out.", file));
+  if (!was_there) std::filesystem::remove(file, ignored);
 }
 
-/// Each on a board of its own; as many at once as there are jobs.
-std::vector<soak::Sitting> run_sittings(const DeviceOptions& options, const SoakOptions& command) {
+/// What is known of the sittings, and why there are no more.
+struct Outcome {
+  soak::Soak soak;
+  std::string trouble;
+};
+
+/// Each on a board of its own; as many at once as there are jobs. Ctrl-C ends those that are under way.
+Outcome run_sittings(const DeviceOptions& options, const SoakOptions& command) {
   const auto board = options.virtual_board(device::SimulationMode::fast, BoardPace::as_asked);
-  const std::vector<unsigned> numbers = numbers_of(command);
+  const auto [choices, numbers] = plan_of(command);
+  Outcome outcome{{choices.seed, choices.sitting_s, choices.use_s, false, {}}, ""};
   std::vector<soak::Sitting> sittings(numbers.size());
   std::atomic<std::size_t> next{0};
   std::mutex telling;
-  std::string trouble;
+  const InterruptGuard interrupt;
+  const auto is_stopped = [&] { return interrupt.was_asked_to_end(); };
   const auto tell = [&](const std::string& text) {
     if (options.json) return;
     const std::lock_guard lock(telling);
@@ -55,26 +79,29 @@ std::vector<soak::Sitting> run_sittings(const DeviceOptions& options, const Soak
     std::fflush(stdout);
   };
   const auto work = [&] {
-    for (std::size_t i; (i = next++) < numbers.size();) try {
-        sittings[i] = soak::run_sitting(numbers[i], command.choices, board, tell);
+    for (std::size_t i; !is_stopped() && (i = next++) < numbers.size();) try {
+        sittings[i] = soak::run_sitting(numbers[i], choices, board, tell, is_stopped);
       } catch (const std::exception& error) {  // of a thread it would end the program
         const std::lock_guard lock(telling);
-        trouble = fmt::format("Sitting {}: {}", numbers[i], error.what());
+        outcome.trouble = fmt::format("Sitting {}: {}", numbers[i], error.what());
         next = numbers.size();
       }
   };
   std::vector<std::thread> workers;
   for (unsigned i = 0; i < command.jobs; ++i) workers.emplace_back(work);
   for (auto& worker : workers) worker.join();
-  if (!trouble.empty()) throw device::Error(trouble);
-  return sittings;
+  outcome.soak.stopped = is_stopped() || !outcome.trouble.empty();
+  std::ranges::copy_if(sittings, std::back_inserter(outcome.soak.sittings),
+                       [](const soak::Sitting& sitting) { return sitting.number != 0; });
+  return outcome;
 }
 
 int run_soak(const DeviceOptions& options, const SoakOptions& command) {
-  check_writable(command);
-  const soak::Soak result{command.choices.seed, command.choices.sitting_s, command.choices.use_s,
-                          run_sittings(options, command)};
-  if (!command.file.empty()) recording::write_text(command.file, soak::json_of(result));
+  if (!command.file.empty()) check_writable(command.file);
+  const auto [result, trouble] = run_sittings(options, command);
+  const bool is_known = trouble.empty() || !result.sittings.empty();
+  if (!command.file.empty() && is_known) recording::write_text(command.file, soak::json_of(result));
+  if (!trouble.empty()) throw device::Error(trouble);
   fmt::print("{}", options.json ? soak::json_of(result) : soak::table_of(result));
   return soak::finding_count(result) > 0 ? 1 : 0;
 }
@@ -86,23 +113,23 @@ void add_soak_command(const Place& place) {
   auto* command = place.program.add_subcommand(
       "soak",
       "Random use, faults, pulled cables and storms of parameters on virtual boards, judged all along.\n"
-      "Exit code 1: something was found.");
-  const auto positive = CLI::Range(0.1, 1e6).description("");
-  command->add_option("--seconds", options->board_time_s, "Board time of all boards together")
+      "Ctrl-C ends it and tells what is known so far. Exit code 1: something was found.");
+  const auto positive = number_within(0.1, 1e6);
+  command->add_option("--seconds", options->board_time_s, "Board time of all boards together, shared alike")
       ->check(positive)
       ->type_name("SECONDS")
       ->capture_default_str();
   command->add_option("--jobs", options->jobs, "So many boards at once")
-      ->check(CLI::Range(1, 256))
+      ->check(whole_number_within(1, 256))
       ->type_name("NUMBER")
       ->capture_default_str();
   command->add_option("--seed", options->choices.seed, "Of all that is random")
       ->type_name("NUMBER")
       ->capture_default_str();
   command->add_option("--sitting", options->sitting, "Only this board of the seed, from its start, as it went before")
-      ->check(CLI::Range(1, 1000000).description(""))
+      ->check(whole_number_within(1, 1000000))
       ->type_name("NUMBER");
-  command->add_option("--sitting-seconds", options->choices.sitting_s, "Board time of one board, at least")
+  command->add_option("--sitting-seconds", options->choices.sitting_s, "Board time of one board, at most")
       ->check(positive)
       ->type_name("SECONDS")
       ->capture_default_str();

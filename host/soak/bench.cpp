@@ -79,6 +79,7 @@ void Bench::pass(double time_s, bool gives_sign_of_life) {
     look();
     until_close_look_s_ -= step_s;
     if (until_close_look_s_ <= 0) look_closely();
+    if (is_over && is_over()) throw SittingOver();
     if (was_connected && !board.connected() && is_sound() && !device_may_go)
       fail(Complaint::no_answer, "the device went away");
   }

@@ -21,12 +21,16 @@ struct PhaseFailed : device::Error {
   using Error::Error;
 };
 
+/// The sitting is over in the middle of a phase. No error, so that nothing on the way takes it for one of the board's.
+struct SittingOver {};
+
 class Bench {
  public:
   Bench(unsigned number, const Choices& choices, const device::VirtualBoardOptions& board);
 
   // ---- time, looked at all along
   /// Lets board time pass with the host's signs of life or without.
+  /// Throws SittingOver at the end of the sitting.
   void pass(double time_s, bool gives_sign_of_life = true);
   /// What the simulation knows at this instant.
   void look();
@@ -72,6 +76,8 @@ class Bench {
   const Choices choices;
   protocol::ParameterSet defaults{}, accepted{};
   protocol::ParameterSet stored{};  ///< what a start gives
+  /// Asked all along; none while the board starts, which a sitting does in any case.
+  std::function<bool()> is_over;
   /// The cable is out, or the program is killed.
   bool device_may_go = false;
   bool is_sound() const { return disturbance_ == Disturbance::none; }

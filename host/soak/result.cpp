@@ -14,7 +14,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Losses, poses, scope_samples, wide_scope_samp
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sitting, number, board_time_s, phases, findings, faults_put_in, faults_told,
                                    restarts, peak_motor_force_N, peak_part_of_limit, longest_interrupt_part,
                                    transactions, refused_transactions, poses, lost)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Soak, seed, sitting_s, use_s, sittings)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Soak, seed, sitting_s, use_s, stopped, sittings)
 
 namespace {
 
@@ -90,7 +90,8 @@ std::string repeat_command(const Soak& soak, unsigned sitting) {
 }
 
 std::string table_of(const Soak& soak) {
-  std::string text = fmt::format("\nSimulation: {} boards, seed {}\n", soak.sittings.size(), soak.seed);
+  std::string text = fmt::format("\nSimulation: {} boards, seed {}{}\n", soak.sittings.size(), soak.seed,
+                                 soak.stopped ? ", stopped before its time was over" : "");
   text += row("board time, all boards together",
               fmt::format("{:.1f} s", sum<double>(soak, [](const auto& s) { return s.board_time_s; })));
   text += row("phases", std::to_string(sum<std::size_t>(soak, [](const auto& s) { return s.phases.size(); }))) +

@@ -16,15 +16,15 @@ constexpr double board_lives_s = 1e6;
 class Run {
  public:
   Run(unsigned number, const Choices& choices, const device::VirtualBoardOptions& board,
-      const std::function<void(const std::string&)>& tell)
-      : bench_(number, choices, board), tell_(tell) {}
+      const std::function<void(const std::string&)>& tell, const std::function<bool()>& is_stopped)
+      : bench_(number, choices, board), tell_(tell), is_stopped_(is_stopped) {
+    bench_.is_over = [this] { return is_over(); };
+  }
 
   Sitting all() {
-    std::vector<Kind> deck = shuffled_deck(bench_.random);
-    const std::size_t first_deck = deck.size();
+    std::vector<Kind> deck;
     bool goes_on = true;
-    while (goes_on &&
-           (bench_.sitting.phases.size() < first_deck || bench_.oracle.board_time_s() < bench_.choices.sitting_s)) {
+    while (goes_on && !is_over()) {
       if (deck.empty()) deck = shuffled_deck(bench_.random);
       goes_on = phase(deck.back());
       deck.pop_back();
@@ -33,7 +33,11 @@ class Run {
   }
 
  private:
-  /// False if the board cannot be used any more.
+  bool is_over() const {
+    return bench_.oracle.board_time_s() >= bench_.choices.sitting_s || (is_stopped_ && is_stopped_());
+  }
+
+  /// False if the board cannot be used any more, or the sitting is over.
   bool phase(Kind kind) {
     PhaseResult result{.number = static_cast<unsigned>(bench_.sitting.phases.size() + 1),
                        .kind = std::string(info(kind).name),
@@ -41,18 +45,28 @@ class Run {
     bench_.oracle.begin(result.number, kind);
     bool goes_on = true;
     try {
-      result.what = play(bench_, kind);
-      bench_.check_all();
-    } catch (const PhaseFailed& failure) {
-      goes_on = begin_anew();
-    } catch (const device::Error& error) {
-      bench_.oracle.complain(Complaint::no_answer, error.what());
-      goes_on = begin_anew();
+      goes_on = played(kind, result);
+    } catch (const SittingOver&) {
+      if (result.what.empty()) result.what = "cut off: the sitting is over";
+      goes_on = false;
     }
     result.duration_s = bench_.oracle.board_time_s() - result.begin_s;
     bench_.sitting.phases.push_back(result);
     if (tell_) tell_(line_of(bench_.sitting, result) + new_findings());
     return goes_on;
+  }
+
+  bool played(Kind kind, PhaseResult& result) {
+    try {
+      result.what = play(bench_, kind);
+      bench_.check_all();
+      return true;
+    } catch (const PhaseFailed& failure) {
+      return begin_anew();
+    } catch (const device::Error& error) {
+      bench_.oracle.complain(Complaint::no_answer, error.what());
+      return begin_anew();
+    }
   }
 
   /// After a phase that failed, so that the next one is not blamed.
@@ -101,18 +115,19 @@ class Run {
 
   Bench bench_;
   const std::function<void(const std::string&)>& tell_;
+  const std::function<bool()>& is_stopped_;
   std::size_t told_ = 0;
 };
 
 }  // namespace
 
 Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoardOptions board,
-                    const std::function<void(const std::string&)>& tell) {
+                    const std::function<void(const std::string&)>& tell, const std::function<bool()>& is_stopped) {
   board.real_time = false;
   board.paused = true;
   board.seconds = board_lives_s;
   board.seed = choices.seed + number;
-  return Run(number, choices, board, tell).all();
+  return Run(number, choices, board, tell, is_stopped).all();
 }
 
 unsigned sittings_in(double board_time_s, const Choices& choices) {

@@ -178,6 +178,15 @@ void note_lost(Bench& bench, const std::vector<Signal>& signals, unsigned long l
     bench.oracle.complain(Complaint::lost_packets, fmt::format("{} samples of {} signals", lost, signals.size()));
 }
 
+/// A file that does not outlive its phase, however that ends.
+struct RemovedAtTheEnd {
+  std::filesystem::path file;
+  ~RemovedAtTheEnd() {
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  }
+};
+
 void stop_scope(Bench& bench) {
   bench.board.device().select_signals({});
   bench.pass(step_s);
@@ -284,6 +293,7 @@ std::string use_recording(Bench& bench, double time_s) {
   const auto file =
       std::filesystem::temp_directory_path() /
       fmt::format("inkwell-soak-{}-{}.{}", ::getpid(), bench.sitting.number, bench.random.chance(0.5) ? "h5" : "csv");
+  const RemovedAtTheEnd removed{file};
   unsigned long samples = 0, lost = 0;
   bench.board.device().select_signals(signals);
   recording::RecorderStatus status;
@@ -303,7 +313,6 @@ std::string use_recording(Bench& bench, double time_s) {
   note_lost(bench, signals, lost);
   stop_scope(bench);
   const auto read_back = recording::read(file);
-  std::filesystem::remove(file);
   bench.sitting.lost.recorded_samples += samples - read_back.size();
   if (read_back.size() != samples || !read_back.complete || !status.error.empty())
     bench.oracle.complain(Complaint::lost_packets, fmt::format("of {} samples {} are in the recording. {}", samples,

@@ -1,6 +1,10 @@
-// A short soak: each kind of phase at least once, with the firmware that is flashed. tools/soak runs an hour of it.
+// A short soak: each kind of phase at least once, with the firmware that is flashed. tools/soak runs an hour of it. And
+// that a soak lasts as long as was asked for.
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -16,15 +20,23 @@
 using namespace inkwell;
 using namespace inkwell::tests;
 
+namespace {
+
+nlohmann::json json_in(const std::string& file) {
+  std::ifstream written(file);
+  return nlohmann::json::parse(std::string{std::istreambuf_iterator<char>(written), {}});
+}
+
+}  // namespace
+
 TEST_CASE("a short soak with every kind of phase finds nothing") {
   const TemporaryDirectory directory;
   const std::string file = directory.file("soak.json");
-  const auto run = run_program("inkwell", {"soak", "--seed", "1", "--sitting", "1", "--sitting-seconds", "1",
+  const auto run = run_program("inkwell", {"soak", "--seed", "1", "--sitting", "1", "--sitting-seconds", "36",
                                            "--use-seconds", "0.4", "--out", file});
   INFO(run.out, run.err);
   CHECK(run.exit_code == 0);
-  std::ifstream written(file);
-  const auto json = nlohmann::json::parse(std::string{std::istreambuf_iterator<char>(written), {}});
+  const auto json = json_in(file);
   CHECK(json.at("false_trips") == 0);
   CHECK(json.at("findings") == 0);
   const auto& sitting = json.at("sittings").at(0);
@@ -36,4 +48,63 @@ TEST_CASE("a short soak with every kind of phase finds nothing") {
   CHECK(sitting.at("faults_told").at("host_silent").get<int>() >= 1);
   CHECK(sitting.at("faults_told").at("over_speed").get<int>() >= 1);
   CHECK(sitting.at("restarts").get<int>() >= 1);
+}
+
+TEST_CASE("the boards of a soak share the seconds that were asked for, and do the same each time") {
+  const TemporaryDirectory directory;
+  const auto soak = [&](const std::string& name, const std::string& jobs) {
+    const auto run = run_program("inkwell", {"soak", "--seconds", "3", "--sitting-seconds", "2", "--seed", "7",
+                                             "--jobs", jobs, "--out", directory.file(name)});
+    INFO(run.out, run.err);
+    CHECK(run.exit_code == 0);
+    return json_in(directory.file(name));
+  };
+  const auto json = soak("one.json", "1");
+  REQUIRE(json.at("sittings").size() == 2);
+  for (const auto& sitting : json.at("sittings"))
+    CHECK(std::fabs(sitting.at("board_time_s").get<double>() - 1.5) < 0.05);
+  CHECK(json.at("stopped") == false);
+  CHECK(soak("again.json", "2") == json);
+}
+
+TEST_CASE("a soak takes no time and no length that is no number") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("soak.json");
+  for (const char* option : {"--seconds", "--sitting-seconds", "--use-seconds"})
+    for (const char* value : {"nan", "inf", "-1", "0"}) {
+      const auto run = run_program("inkwell", {"soak", "--sitting-seconds", "1", "--out", file, option, value});
+      CAPTURE(run.err);
+      CHECK(run.exit_code == 2);
+      CHECK(run.err.find("from 0.1 to 1000000") != std::string::npos);
+      CHECK_FALSE(std::filesystem::exists(file));
+    }
+}
+
+TEST_CASE("a soak whose next board does not start says why, and writes what is known so far") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("soak.json"), image = directory.file("inkwell.elf");
+  std::filesystem::copy_file(build_directory() + "/../board/inkwell.elf", image);
+  RunningProgram run({build_directory() + "/inkwell", "--virtual", "--elf", image, "soak", "--seconds", "1000",
+                      "--sitting-seconds", "2", "--use-seconds", "0.4", "--out", file});
+  run.read_line();  // the first board is in use
+  std::filesystem::remove(image);
+  CHECK(run.wait() == 1);
+  const auto json = json_in(file);
+  CHECK(json.at("stopped") == true);
+  CHECK(json.at("sittings").size() >= 1);
+  CHECK(json.at("sittings").size() < 500);
+}
+
+TEST_CASE("a soak that is stopped writes what is known so far") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("soak.json");
+  RunningProgram run(
+      {build_directory() + "/inkwell", "soak", "--seconds", "100000", "--use-seconds", "0.4", "--out", file});
+  run.read_line();  // its first phase is over
+  CHECK_FALSE(std::filesystem::exists(file));
+  kill(run.process(), SIGINT);
+  CHECK(run.wait() == 0);
+  const auto json = json_in(file);
+  CHECK(json.at("stopped") == true);
+  CHECK(json.at("sittings").at(0).at("phases").size() >= 1);
 }

@@ -12,7 +12,7 @@ using namespace inkwell::soak;
 namespace {
 
 Soak some_soak() {
-  Soak soak{.seed = 42, .sitting_s = 300, .use_s = 4, .sittings = {}};
+  Soak soak{.seed = 42, .sitting_s = 300, .use_s = 4, .stopped = false, .sittings = {}};
   Sitting first{.number = 1, .board_time_s = 301.5};
   first.phases = {{1, "walls", 0.2, 2.0, "pressed"}, {2, "fault", 2.2, 3.0, "supply_cut"}};
   first.faults_put_in = {{"supply_cut", 1}};
@@ -54,7 +54,16 @@ TEST_CASE("the JSON has each phase and finding, and the sums that a script asks 
   CHECK(json.at("sittings").at(1).at("findings").at(0).at("text") == "over_current");
 }
 
-TEST_CASE("so many sittings as have the time together, one at least") {
+TEST_CASE("a soak that was stopped says so") {
+  Soak soak = some_soak();
+  CHECK_FALSE(has(table_of(soak), "stopped"));
+  CHECK(nlohmann::json::parse(json_of(soak)).at("stopped") == false);
+  soak.stopped = true;
+  CHECK(has(table_of(soak), "stopped before its time was over"));
+  CHECK(nlohmann::json::parse(json_of(soak)).at("stopped") == true);
+}
+
+TEST_CASE("so many sittings as share the time, one at least") {
   CHECK(sittings_in(3600, {.sitting_s = 300}) == 12);
   CHECK(sittings_in(3601, {.sitting_s = 300}) == 13);
   CHECK(sittings_in(1, {.sitting_s = 300}) == 1);

@@ -45,6 +45,7 @@ struct Sitting {
 struct Soak {
   std::uint64_t seed = 1;
   double sitting_s = 0, use_s = 0;
+  bool stopped = false;  ///< before the time was over: by the user, or as a board could not be used
   std::vector<Sitting> sittings;
 };
 
