@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <crash/crash_text.hpp>
-#include <device/fault_text.hpp>
+#include <device/clear_fault.hpp>
 #include <protocol/black_box.hpp>
 #include <recording/black_box.hpp>
 #include <recording/writer.hpp>
@@ -89,12 +89,6 @@ void print(const BlackBoxReport& box, const Image& image) {
   print_crash(box, image);
 }
 
-/// With the items of a self-test that failed.
-std::string line_of(Fault fault, device::Device& device) {
-  return fault == Fault::self_test_failed ? device::fault_line(fault, device.read_self_test())
-                                          : device::fault_line(fault);
-}
-
 void tell_fault(const DeviceOptions& options, device::Device& device, const PoseReport& pose, const BlackBoxReport& box,
                 const Image& image) {
   const bool is_fault = pose.state == State::fault;
@@ -106,7 +100,7 @@ void tell_fault(const DeviceOptions& options, device::Device& device, const Pose
     return;
   }
   if (is_fault)
-    fmt::print("{}\n", line_of(pose.fault, device));
+    fmt::print("{}\n", device::fault_line(pose.fault, device));
   else
     fmt::print("No fault. The device is {}: {}\n", info(pose.state).name, info(pose.state).meaning);
   print(box, image);
@@ -163,18 +157,15 @@ int save_black_box(const DeviceOptions& device_options, const FaultOptions& opti
   return 0;
 }
 
-/// The board clears a fault whose cause is gone, and latches it again if it is not.
 int clear_fault(const DeviceOptions& options) {
-  constexpr std::uint32_t patience_periods = protocol::servo_rate_Hz / 5;
   const auto connection = connect(options);
   device::Device& device = *connection.device;
   PoseReport pose = next_pose(device);
-  const bool was_fault = pose.state == State::fault;
-  device.send(protocol::Command::clear_fault);
-  const std::uint32_t begin_periods = pose.time_periods;
-  while (was_fault && pose.time_periods - begin_periods < patience_periods) pose = next_pose(device);
-  if (pose.state == State::fault)
-    throw device::Error(fmt::format("The fault is there again. {}", line_of(pose.fault, device)));
+  const auto shown = [&] { return device::ShownFault{pose.time_periods, pose.state, pose.fault}; };
+  device::clear_fault(device, shown(), [&] {
+    pose = next_pose(device);
+    return shown();
+  });
   tell_fault(options, device, pose, device.black_box(), std::nullopt);
   return 0;
 }

@@ -1,11 +1,13 @@
 #include "arm.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <device/board_store.hpp>
+#include <device/clear_fault.hpp>
 #include <device/fault_text.hpp>
 
 #include "errors.hpp"
@@ -20,6 +22,18 @@ using protocol::Command;
 constexpr auto ask_again = 100ms;
 /// Until the fading of this program's last force has begun.
 constexpr auto farewell = 5ms;
+
+/// A board from which no pose comes for so long is reset, or paused.
+constexpr double silence_s = 2.0;
+
+/// What a pose of the library's tells of faults, and no more.
+device::ShownFault shown_fault(const inkwell_pose& pose) {
+  const auto periods = static_cast<std::uint64_t>(std::llround(pose.time_s * protocol::servo_rate_Hz));
+  const auto state = pose.state == INKWELL_FAULT      ? protocol::State::fault
+                     : pose.state == INKWELL_STARTING ? protocol::State::testing
+                                                      : protocol::State::ready;
+  return {static_cast<std::uint32_t>(periods), state, static_cast<protocol::Fault>(pose.fault)};
+}
 
 void refuse_in_fault(const inkwell_pose& pose) {
   if (pose.state == INKWELL_FAULT) throw NotNow(device::fault_line(static_cast<protocol::Fault>(pose.fault)));
@@ -92,6 +106,14 @@ void Arm::enable_force(double timeout_s) {
 }
 
 void Arm::disable_force() { device().send(Command::disable_force); }
+
+void Arm::clear_fault() {
+  inkwell_pose seen = pose();
+  device::clear_fault(device(), shown_fault(seen), [&] {
+    seen = wait_for_pose(silence_s, seen.sequence);
+    return shown_fault(seen);
+  });
+}
 
 void Arm::claim() {
   if (drives_) return;

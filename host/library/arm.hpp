@@ -46,6 +46,8 @@ class Arm {
 
   void enable_force(double timeout_s);
   void disable_force();
+  /// Throws FaultStays if its cause is still there.
+  void clear_fault();
   void set_force_mode(protocol::ForceMode mode) { force_.set_mode(mode); }
   void set_force(const double (&force_N)[3]);
   void place_shapes(const device::Shapes& shapes);

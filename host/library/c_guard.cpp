@@ -4,6 +4,7 @@
 
 #include <device/address.hpp>
 #include <device/board_store.hpp>
+#include <device/clear_fault.hpp>
 
 #include "text_copy.hpp"
 
@@ -36,6 +37,8 @@ inkwell_result result_of_exception() noexcept {
   } catch (const device::Refused& error) {
     return fail(INKWELL_REFUSED, error.what());
   } catch (const device::NotStored& error) {
+    return fail(INKWELL_REFUSED, error.what());
+  } catch (const device::FaultStays& error) {
     return fail(INKWELL_REFUSED, error.what());
   } catch (const device::NotTested& error) {
     return fail(INKWELL_REFUSED, error.what());

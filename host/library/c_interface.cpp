@@ -163,7 +163,7 @@ inkwell_result inkwell_stop(inkwell_arm* arm) {
 }
 
 inkwell_result inkwell_clear_fault(inkwell_arm* arm) {
-  return guarded([&] { arm_of(arm).device().send(protocol::Command::clear_fault); });
+  return guarded([&] { arm_of(arm).clear_fault(); });
 }
 
 inkwell_result inkwell_set_force_mode(inkwell_arm* arm, inkwell_force_mode mode) {

@@ -19,6 +19,22 @@ TEST_CASE("an arm that does not know where it is gives no force until it was in 
   virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
 }
 
+TEST_CASE("a fault whose cause stays cannot be cleared, and the sentence says what to mend") {
+  Board board;
+  VirtualArm virtual_arm(board.address);
+  virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
+  CHECK(inkwell_clear_fault(virtual_arm.arm) == INKWELL_OK);  // there is none
+  board.control.inject({"bridge_fault"});
+  virtual_arm.wait_until([](const auto& pose) { return pose.state == INKWELL_FAULT; });
+  CHECK(inkwell_clear_fault(virtual_arm.arm) == INKWELL_REFUSED);
+  CHECK(says("The fault is there again. bridge_fault: A bridge reported"));
+  board.control.heal("bridge_fault");
+  CHECK(inkwell_clear_fault(virtual_arm.arm) == INKWELL_OK);
+  inkwell_pose pose;
+  REQUIRE(inkwell_get_pose(virtual_arm.arm, &pose) == INKWELL_OK);
+  CHECK(pose.state == INKWELL_READY);
+}
+
 TEST_CASE("an arm of another version of the protocol is not opened, and the sentence tells the versions") {
   Board board(next_protocol);
   inkwell_arm* arm = nullptr;

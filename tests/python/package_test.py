@@ -251,6 +251,17 @@ class Programs(unittest.TestCase):
             with inkwell.open(board.address) as second, self.assertRaises(inkwell.InUse):
                 second.set_force((0, 0, 0))
 
+    def test_a_fault_whose_cause_stays_is_raised(self):
+        with VirtualBoard(BUILD) as board, inkwell.open(board.address) as arm:
+            arm.clear_fault()  # there is none
+            board.call("inject", fault="bridge_fault")
+            wait_until(arm, lambda pose: pose.state == inkwell.State.FAULT)
+            with self.assertRaisesRegex(inkwell.Refused, "The fault is there again. bridge_fault: A bridge reported"):
+                arm.clear_fault()
+            board.call("heal", fault="bridge_fault")
+            arm.clear_fault()
+            self.assertEqual(arm.pose.state, inkwell.State.READY)
+
     def test_the_scope_is_free_after_its_use(self):
         with VirtualBoard(BUILD) as board, inkwell.open(board.address) as first, inkwell.open(board.address) as second:
             for arm in first, second:

@@ -337,6 +337,18 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   CHECK(json.at("items").at(17).at("result") == "failed");
   CHECK(json.at("items").at(16).at("figure").get<double>() == doctest::Approx(2.3).epsilon(0.1));
   CHECK(json.at("items").at(5).at("figure").is_null());
+
+  // Clearing tests anew, and is not over before that.
+  const auto clear = [&] { return run_program("inkwell", {"fault", "clear", "--usbip", port}); };
+  const auto again = clear();
+  CHECK(again.exit_code == 1);
+  CHECK(again.err.find("The fault is there again. self_test_failed: ") != std::string::npos);
+  CHECK(again.err.find("there is no force: motor_2.") != std::string::npos);
+  rig.control.heal_all();
+  const auto cleared = clear();
+  CHECK(cleared.exit_code == 0);
+  CHECK(cleared.out.starts_with("No fault."));
+  CHECK(cleared.out.find("The device is testing") == std::string::npos);
 }
 
 }  // namespace inkwell::tests

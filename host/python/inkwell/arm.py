@@ -168,7 +168,8 @@ class Arm:
         self._native.stop()
 
     def clear_fault(self) -> None:
-        """Clears a fault whose cause is gone."""
+        """Clears a fault whose cause is gone, and waits for a fifth of a second whether it stays away. Raises Refused with
+        the remedy if its cause is still there."""
         self._native.clear_fault()
 
     def set_force_mode(self, mode: ForceMode) -> None:

@@ -220,7 +220,9 @@ INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout
 INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
 /* Takes the force away at once. */
 INKWELL_API inkwell_result inkwell_stop(inkwell_arm* arm);
-/* Clears a fault whose cause is gone. */
+/* Clears a fault whose cause is gone, and waits for a fifth of a second whether it stays away; if the board tests itself
+ * anew, until that is over. If the cause is still there it is INKWELL_REFUSED, and the sentence names the fault that is
+ * there again with its remedy. Without a fault there is nothing to wait for. */
 INKWELL_API inkwell_result inkwell_clear_fault(inkwell_arm* arm);
 
 /* What becomes of the walls while a program sends forces. */
