@@ -1,5 +1,6 @@
 #include "commands.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -131,9 +132,11 @@ BlackBoxReport complete_black_box(device::Device& device) {
 }
 
 int save_black_box(const DeviceOptions& device_options, const FaultOptions& options) {
+  if (!options.overwrite && std::filesystem::exists(options.file))
+    throw UsageError(
+        fmt::format("{} exists. Give another name, or --overwrite to replace what it holds.", options.file));
   try {
-    recording::check_can_be_created(options.file,
-                                    options.overwrite ? recording::Existing::is_replaced : recording::Existing::stays);
+    recording::check_can_be_created(options.file, recording::Existing::is_replaced);
   } catch (const device::Error& error) {
     throw UsageError(error.what());
   }

@@ -126,7 +126,7 @@ TEST_CASE("the black box is told of, saved as an ordinary recording, and gone wh
 
   const auto exists = rig.run({"fault", "--out", file});
   CHECK(exists.exit_code == 2);
-  CHECK(exists.err.find("exists") != std::string::npos);
+  CHECK(exists.err.find("exists. Give another name, or --overwrite to replace") != std::string::npos);
   CHECK(rig.run({"fault", "--out", file, "--overwrite"}).exit_code == 0);
   for (const auto& words : std::vector<std::vector<std::string>>{{"fault", "--overwrite"},
                                                                  {"fault", "--out", ""},
