@@ -62,7 +62,9 @@ TEST_CASE("a fault put in by the control socket comes at its time, is told, is n
   CHECK(rig.control.status().all.at("injected")[1].at("amount") == 9.0);
   rig.control.heal("shunt_high");
   CHECK(rig.control.status().all.at("injected").size() == 1);
-  CHECK_THROWS_WITH_AS(rig.control.heal("shunt_high", "2"), doctest::Contains("is not put in"), device::Error);
+  CHECK_THROWS_WITH_AS(rig.control.heal("shunt_high", "2"), doctest::Contains("shunt_high 2 is not put in"),
+                       device::Error);
+  CHECK_THROWS_WITH_AS(rig.control.heal("supply_cut"), doctest::Contains("supply_cut is not put in"), device::Error);
   rig.control.heal_all();
   CHECK(rig.control.status().all.at("injected").empty());
 }

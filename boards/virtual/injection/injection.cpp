@@ -134,8 +134,8 @@ Injection checked(const protocol::InjectionRequest& request, const board::Facts&
   if (request.amount && !info.has_amount())
     throw InvalidInjection(fmt::format("{} has no amount; leave {} out", info.name, *request.amount));
   if (!(injection.amount >= info.minimum && injection.amount <= info.maximum))
-    throw InvalidInjection(fmt::format("{} {} {} is outside {} to {}", info.name, injection.amount, info.unit,
-                                       info.minimum, info.maximum));
+    throw InvalidInjection(fmt::format("{} {}{}{} is outside {} to {}", info.name, injection.amount,
+                                       info.unit.empty() ? "" : " ", info.unit, info.minimum, info.maximum));
   check_time(request.after_s, "the time until it comes");
   if (request.for_s) check_time(*request.for_s, "how long it lasts");
   injection.after_s = request.after_s;

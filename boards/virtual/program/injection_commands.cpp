@@ -93,7 +93,8 @@ json heal(const json& request, Simulation& simulation) {
     // Any place will do, if none is named.
     const std::string of = fault && wanted.of.empty() ? wanted.of : checked(wanted, simulation.board().facts()).of;
     const unsigned healed = injector.heal(fault.value(), of);
-    if (healed == 0) throw Refused(fmt::format("{} {} is not put in; status lists what is", wanted.fault, of));
+    if (healed == 0)
+      throw Refused(fmt::format("{}{}{} is not put in; status lists what is", wanted.fault, of.empty() ? "" : " ", of));
     return {{"healed", healed}};
   } catch (const InvalidInjection& error) {
     throw Refused(error.what());
