@@ -36,6 +36,9 @@ bool over_current(const Triple& current_A, const Triple& limit_A, const Triple& 
   return false;
 }
 
+/// Of a limit, each third period: from the largest limit to the smallest in 10 ms.
+constexpr float over_current_fall_A = 0.06f;
+
 bool joint_implausible(std::size_t joint, const Triple& joint_rad, Transmission transmission, const Limits& limits) {
   const float at_stop_rad = joint == 2 ? elbow_rad(joint_rad, transmission) : joint_rad[joint];
   return at_stop_rad < limits.joint_minimum_rad[joint] || at_stop_rad > limits.joint_maximum_rad[joint];
@@ -71,7 +74,7 @@ void Controller::carry_out(const protocol::CommandReport& command) {
     case Command::self_test: asked_.events |= events(Event::self_test); break;
     case Command::test_current:
     case Command::test_voltage:
-      if (supervisor_.state == State::ready)
+      if (supervisor_.state == State::ready && !test_.runs())
         test_ = start_test_pulse(command.test, command.command == Command::test_current ? TestPulse::Quantity::current
                                                                                         : TestPulse::Quantity::voltage);
       break;
@@ -201,7 +204,7 @@ void Controller::find_current_references(const Settings& settings) {
   reference_A_ = references.reference_A;
   limits_ |= bit(Limit::current, references.limited);
   if (!test_.runs() || test_.quantity != TestPulse::Quantity::current) return;
-  const float limit_A = settings.motors.allowed_A(test_.motor, heat_.beyond);
+  const float limit_A = std::min(settings.motors.allowed_A(test_.motor, heat_.beyond), test_limit_A(settings));
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
 }
 
@@ -230,7 +233,7 @@ void Controller::regulate_currents(const Settings& settings) {
   for (std::size_t i = 0; i < 3; ++i) {
     const CurrentLoopStep step = regulate(loops_[i], reference_A_[i], current_A_[i], settings.current_loop, bound_V);
     const bool voltage_test = test_.runs() && test_.quantity == TestPulse::Quantity::voltage && test_.motor == i;
-    const float voltage_V = voltage_test ? clamp(test_.value(), -bound_V, bound_V) : step.voltage_V;
+    const float voltage_V = voltage_test ? clamp(test_voltage_V(settings), -bound_V, bound_V) : step.voltage_V;
     loops_[i] = voltage_test ? CurrentLoop{} : step.loop;
     drive_.duty[i] = clamp(voltage_V * supply_.per_V, -board_.duty_limit, board_.duty_limit);
   }
@@ -251,9 +254,18 @@ void Controller::follow_test(protocol::Watches found) {
 // A current limit that is lowered holds for the references at once, but a current takes time to follow: the loop's, and
 // the winding's where the voltage is bounded.
 void Controller::follow_over_current(const Settings& settings) {
-  constexpr float fall_A = 0.02f;  // in a period: from the largest limit to the smallest in 10 ms
-  for (std::size_t i = 0; i < 3; ++i)
-    over_current_A_[i] = std::max(settings.limits.over_current_A[i], over_current_A_[i] - fall_A);
+  over_current_A_[turn_] =
+      std::max(settings.limits.over_current_A[turn_], over_current_A_[turn_] - over_current_fall_A);
+}
+
+float Controller::test_limit_A(const Settings& settings) const {
+  return control::test_limit_A(jacobian_, test_.motor, settings.force_limit_N,
+                               settings.motors.ampere_per_Nm[test_.motor]);
+}
+
+// The resistance is not known before it is tested, so what the current must not exceed is looked at in each period.
+float Controller::test_voltage_V(const Settings& settings) const {
+  return std::fabs(current_A_[test_.motor]) > test_limit_A(settings) ? 0.0f : test_.value();
 }
 
 void Controller::drive_pulses(const Settings& settings) {
@@ -262,10 +274,12 @@ void Controller::drive_pulses(const Settings& settings) {
                                          .current_limit_A = settings.motors.current_limit_A,
                                          .supply_V = supply_.supply_V,
                                          .dead_time_part = board_.dead_time_part});
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i)
     drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
-    over_current_A_[i] = SelfTestPulses::bearable_A;  // at least, whatever its own limit is: follow_over_current()
-  }
+  // At least that, whatever their own limits are.
+  for (std::size_t i = 0; i < 3; ++i)
+    over_current_A_[i] = std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A);
+  over_current_A_[turn_] += over_current_fall_A;  // follow_over_current() takes it away in this period
   drive_.enabled = true;
 }
 

@@ -15,6 +15,7 @@
 #include <recording/current_step.hpp>
 
 #include "joint_motion.hpp"
+#include "pulse_size.hpp"
 
 namespace inkwell::guides {
 namespace {
@@ -68,7 +69,7 @@ double held(const ParameterSet& set, protocol::EachAxis<Parameter> rows, int mot
 
 /// Test pulses stay well below what the motor may carry.
 float test_current_A(const ParameterSet& set, int motor) {
-  return std::min(step_A, 0.5f * set[of_number(Parameter::current_limit_1_A, motor)]);
+  return std::min({step_A, 0.5f * set[of_number(Parameter::current_limit_1_A, motor)], allowed_pulse_A(set, motor)});
 }
 
 class IdentifyMotor final : public Step {
@@ -88,8 +89,10 @@ class IdentifyMotor final : public Step {
 
   void begin(const Observation& now, DevicePort& port) override {
     set_ = *now.parameters;
+    const float resistance_ohm = set_[of_number(Parameter::motor_resistance_1_ohm, motor_)];
+    first_V_ = std::min(first_voltage_V, allowed_pulse_A(set_, motor_) * resistance_ohm);
     tuning_->name_board(now.information ? now.information->board_name : "");
-    start_pulse(first_voltage_V, now, port);
+    start_pulse(first_V_, now, port);
   }
   void receive(const device::ScopeSamples& samples) override {
     if (recorder_) recorder_->receive(samples);
@@ -100,7 +103,7 @@ class IdentifyMotor final : public Step {
     pulses_.push_back(taken_pulse());
     if (pulses_.size() == 2) choose_voltage();
     if (pulses_.size() < 2 * (1 + pairs_of_pulses)) {
-      const float amplitude_V = pulses_.size() < 2 ? first_voltage_V : voltage_V_;
+      const float amplitude_V = pulses_.size() < 2 ? first_V_ : voltage_V_;
       start_pulse(pulses_.size() % 2 == 0 ? amplitude_V : -amplitude_V, now, port);
       return false;
     }
@@ -147,11 +150,33 @@ class IdentifyMotor final : public Step {
     return pulse;
   }
 
-  /// The second voltage asks for the current of the later step test, by what the first pulses showed.
+  /// The second voltage asks for twice the current of the later step test, as far as that is allowed, by the current
+  /// that the first one came to. What the bridges' dead time took from that is a fact of the board.
   void choose_voltage() {
-    const double resistance_ohm = identify(pulses_, period_s, ripple_A).resistance_ohm;
-    const double wanted_A = 2.0 * static_cast<double>(test_current_A(set_, motor_));
-    voltage_V_ = std::clamp(static_cast<float>(resistance_ohm * wanted_A), first_voltage_V, largest_voltage_V);
+    identify(pulses_, period_s, ripple_A);  // says so if there is no such circuit
+    const auto wanted_A =
+        static_cast<double>(std::min(2.0f * test_current_A(set_, motor_), allowed_pulse_A(set_, motor_)));
+    const double lost_V = std::min(dead_time_V(), 0.5 * static_cast<double>(first_V_));
+    const double resistance_ohm = (static_cast<double>(first_V_) - lost_V) / settled_A();
+    voltage_V_ = std::clamp(static_cast<float>(lost_V + resistance_ohm * wanted_A), first_V_, largest_voltage_V);
+  }
+
+  double dead_time_V() const {
+    if (tuning_->board == nullptr) return 0.0;
+    return static_cast<double>(tuning_->board->bridge_dead_time_part()) * recorder_->values_of(Signal::supply_V).back();
+  }
+
+  /// Mean over both pulses of the last millisecond in which their voltage was on.
+  double settled_A() const {
+    constexpr std::size_t samples = protocol::servo_rate_Hz / 1000;
+    double sum_A = 0.0;
+    for (const VoltagePulse& pulse : pulses_) {
+      const auto last_on = std::ranges::find_if(pulse.voltage_V.rbegin(), pulse.voltage_V.rend(),
+                                                [](double voltage_V) { return voltage_V != 0.0; });
+      const auto end = static_cast<std::size_t>(pulse.voltage_V.rend() - last_on);
+      for (std::size_t i = end < samples ? 0 : end - samples; i < end; ++i) sum_A += std::abs(pulse.current_A[i]);
+    }
+    return sum_A / static_cast<double>(samples * pulses_.size());
   }
 
   void report(const MotorCircuit& circuit) {
@@ -176,7 +201,7 @@ class IdentifyMotor final : public Step {
   std::shared_ptr<Findings> findings_;
   int motor_;
   ParameterSet set_{};
-  float voltage_V_ = first_voltage_V;
+  float first_V_ = first_voltage_V, voltage_V_ = first_voltage_V;
   std::optional<PulseRecorder> recorder_;
   std::vector<VoltagePulse> pulses_;
 };

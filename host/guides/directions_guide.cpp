@@ -9,6 +9,7 @@
 #include <guides/pulse_recorder.hpp>
 
 #include "joint_motion.hpp"
+#include "pulse_size.hpp"
 
 namespace inkwell::guides {
 namespace {
@@ -37,7 +38,8 @@ class PulseMotor final : public Step {
 
   void begin(const Observation& now, DevicePort&) override {
     const auto& set = *now.parameters;
-    amplitude_A_ = std::min(pulse_A, 0.5f * set[of_number(Parameter::current_limit_1_A, motor_)]);
+    amplitude_A_ =
+        std::min({pulse_A, 0.5f * set[of_number(Parameter::current_limit_1_A, motor_)], allowed_pulse_A(set, motor_)});
     since_.start(*now.pose);
   }
   void receive(const device::ScopeSamples& samples) override {

@@ -23,11 +23,8 @@ const char* phase_name(Phase phase) {
   return "";
 }
 
-/// A pulse of nothing takes the place of one that runs.
-void make_safe(DevicePort& port) {
-  port.send(protocol::Command::disable_force);
-  port.send(protocol::Command::test_voltage, {1, 0.0f, protocol::servo_period_s});
-}
+/// Ends a test's pulse as well.
+void make_safe(DevicePort& port) { port.send(protocol::Command::disable_force); }
 
 }  // namespace
 

@@ -14,7 +14,7 @@ constexpr double scope_limit_s = 2.0, pulse_limit_s = 1.0;
 
 PulseRecorder::PulseRecorder(protocol::Command command, const protocol::TestPulse& pulse,
                              std::vector<protocol::Signal> signals, protocol::Signal seen_in)
-    : command_(command), pulse_(pulse), seen_in_(seen_in) {
+    : command_(command), pulse_(pulse), seen_in_(seen_in), rest_samples_(samples_before) {
   recording::Information information;
   information.signals = std::move(signals);
   recording_ = recording::Recording::without_samples(std::move(information));
@@ -46,6 +46,7 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
       throw device::Error(
           "Samples of the scope were lost again and again. Close other programs that load this "
           "computer and start the guide again.");
+    rest_samples_ = std::max(samples_before, samples_of_pulse());
     start_over(pose);
   }
   if (state_ == State::waits_for_scope) {
@@ -60,7 +61,7 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
   const auto& seen = recording_.column(seen_in_);
   const auto begin =
       static_cast<std::size_t>(std::ranges::find_if(seen, [](float value) { return value != 0.0f; }) - seen.begin());
-  const auto needed = static_cast<std::size_t>(2.0f * pulse_.duration_s * protocol::servo_rate_Hz);
+  const std::size_t needed = 2 * samples_of_pulse();
   if (recording_.size() < begin + needed || begin == recording_.size()) {
     if (since_.seconds(pose) > pulse_limit_s + 2.0 * static_cast<double>(pulse_.duration_s))
       throw device::Error(
@@ -75,11 +76,16 @@ bool PulseRecorder::advance(const protocol::PoseReport& pose, DevicePort& port) 
   return true;
 }
 
-// A recording that is made again may begin while the pulse of the one before is still on.
+std::size_t PulseRecorder::samples_of_pulse() const {
+  return static_cast<std::size_t>(std::lround(pulse_.duration_s * protocol::servo_rate_Hz));
+}
+
+// A recording that is made again may begin while the pulse of the one before is still on, or in the rest after it, in
+// which the board takes no other.
 bool PulseRecorder::is_at_rest() const {
   const auto& seen = recording_.column(seen_in_);
-  if (seen.size() < samples_before) return false;
-  return std::all_of(seen.end() - static_cast<std::ptrdiff_t>(samples_before), seen.end(),
+  if (seen.size() < rest_samples_) return false;
+  return std::all_of(seen.end() - static_cast<std::ptrdiff_t>(rest_samples_), seen.end(),
                      [](float value) { return value == 0.0f; });
 }
 

@@ -25,10 +25,6 @@ float at(const nlohmann::json& truth, const char* name, std::size_t axis) {
   return truth.at(member).get<float>();
 }
 
-control::Vector3 cross(const control::Vector3& a, const control::Vector3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// Status and truth both count them from the power on, with the trial of the watchdog as the first.
 unsigned restarts_of(const nlohmann::json& answer) { return std::max(answer.at("resets").get<unsigned>(), 1u) - 1; }
 

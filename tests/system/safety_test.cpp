@@ -53,7 +53,7 @@ TEST_CASE("a test's pulse goes off with a stop, a host that falls silent and a c
     rig.command(protocol::Command::stop);
     rig.run(0.02);
   };
-  const auto fall_silent = [](BoardRig& rig) { rig.run_silent(0.07); };
+  const auto fall_silent = [](BoardRig& rig) { rig.run_silent(0.06); };
   const auto pull_cable = [](BoardRig& rig) {
     rig.control.usb(false);
     rig.control.run(0.02);
@@ -63,8 +63,8 @@ TEST_CASE("a test's pulse goes off with a stop, a host that falls silent and a c
     BoardRig rig;
     rig.run_until([](const auto& pose) { return pose.state == State::ready; });
     rig.set({{Parameter::host_timeout_s, 0.05f}});
-    rig.device->send(protocol::Command::test_current, {.motor = 2, .amplitude = 1.0f, .duration_s = 0.4f});
-    rig.run(0.02);
+    rig.device->send(protocol::Command::test_current, {.motor = 2, .amplitude = 1.0f, .duration_s = 0.1f});
+    rig.run(0.01);
     REQUIRE(largest_current_A(rig.control) > 0.9);
     end(rig);
     CHECK(largest_current_A(rig.control) < 0.02);

@@ -174,19 +174,19 @@ struct ControllerReport {
 enum class Command : std::uint8_t {
   heartbeat = 0,         ///< nothing but a sign of life
   enable_force = 1,      ///< from ready on, by a ramp
-  disable_force = 2,     ///< by a ramp, soft_landing_s
+  disable_force = 2,     ///< by a ramp, soft_landing_s; a test ends at once
   clear_fault = 3,       ///< if its cause is gone
   select_signals = 4,    ///< starts the scope with these signals; none stops it
-  test_current = 5,      ///< in `ready`: one pulse of current in one motor, then zero for as long
-  test_voltage = 6,      ///< in `ready`: one pulse of voltage on one motor, then zero volts for as long
-  stop = 7,              ///< switches the force off at once
+  test_current = 5,      ///< in `ready`, and no test runs: one pulse of current in one motor, then zero for as long
+  test_voltage = 6,      ///< likewise: one pulse of voltage on one motor, then zero volts for as long
+  stop = 7,              ///< switches force and test off at once
   self_test = 8,         ///< in `unreferenced`, `ready`, and in a fault before the first test that passes
   store_parameters = 9,  ///< keeps the parameters as they are now over a start; where may_store() (protocol/store.hpp)
   factory_reset = 10,    ///< forgets what is stored, and gives every parameter its default; likewise
 };
 
 inline constexpr std::size_t scope_signals_maximum = 32;
-inline constexpr float test_duration_maximum_s = 0.5f;
+inline constexpr float test_duration_maximum_s = 0.1f;
 
 #pragma pack(push, 1)
 
@@ -197,8 +197,10 @@ struct SignalSelection {
 
 struct TestPulse {
   std::uint8_t motor;  ///< 1..3
-  float amplitude;     ///< A or V; bounded by the current limit or the voltage limit
-  float duration_s;    ///< 0..test_duration_maximum_s
+  /// A or V; bounded by the current limit or the voltage limit, and by the current that makes force_limit_N in this
+  /// pose.
+  float amplitude;
+  float duration_s;  ///< 0..test_duration_maximum_s
 };
 
 /// Output report. A report of another version, length or with an unknown command is ignored and not

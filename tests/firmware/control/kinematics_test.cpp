@@ -205,10 +205,6 @@ TEST_CASE("the links' ends: constant lengths, and the last one is the probe") {
   }
 }
 
-Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// The paper's Eq. 10 to 15 word for word: z, x and x component of (L1 + L2 + L3) x F, (L2 + L3) x F and L3 x F, with
 /// L1 = 0. For a serial arm in the paper's frame it is exact for joint 1 everywhere, and for joints 2 and 3 at
 /// q1 = pi/2 only; joint_torques() is the general law.

@@ -2,8 +2,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <firmware/control/arms.hpp>
 #include <firmware/control/simulated_arm.hpp>
@@ -26,13 +28,21 @@ protocol::CommandReport pulse(Command which, std::uint8_t motor, float amplitude
   return report;
 }
 
+/// What force_limit_N allows a motor in the inkwell: its torque pushes where the other joints cannot give way.
+float test_limit_A(const Settings& settings, std::size_t motor) {
+  const auto jacobian = control::forward_kinematics(settings.encoders.inkwell_rad, settings.arm).jacobian;
+  const control::Vector3 normal = control::cross(jacobian.column[(motor + 1) % 3], jacobian.column[(motor + 2) % 3]);
+  const float lever_m = control::dot(jacobian.column[motor], normal) / std::sqrt(control::dot(normal, normal));
+  return std::fabs(settings.force_limit_N * lever_m * settings.motors.ampere_per_Nm[motor]);
+}
+
 TEST_CASE("a test pulse of current: its motor only, its time, its limit, then zero for as long") {
   const Settings settings = control::prepare(tests::paper_parameters());
   Controller controller = tests::ready_controller(settings);
   controller.carry_out(pulse(Command::test_current, 2, 99.0f, 0.01f));
   for (int i = 0; i < 200; ++i) {
     CHECK(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
-    CHECK(controller.signals()[Signal::current_reference_2_A] == settings.motors.current_limit_A[1]);
+    CHECK(controller.signals()[Signal::current_reference_2_A] == doctest::Approx(test_limit_A(settings, 1)));
     CHECK(controller.signals()[Signal::current_reference_1_A] == 0.0f);
   }
   for (int i = 0; i < 200; ++i) {
@@ -41,6 +51,103 @@ TEST_CASE("a test pulse of current: its motor only, its time, its limit, then ze
   }
   CHECK_FALSE(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
   CHECK(controller.state() == State::ready);
+}
+
+/// Takes a ready arm to these angles, as fast as its encoders may.
+void move_to(Controller& controller, Samples& samples, const control::Triple& joint_rad, const Settings& settings) {
+  std::array<std::int32_t, 3> there_counts;
+  for (std::size_t i = 0; i < 3; ++i)
+    there_counts[i] = static_cast<std::int32_t>(
+        std::lround((joint_rad[i] - settings.encoders.inkwell_rad[i]) / settings.encoders.rad_per_count[i]));
+  while (samples.encoder_counts != there_counts) {
+    for (std::size_t i = 0; i < 3; ++i)
+      samples.encoder_counts[i] += std::clamp<std::int32_t>(there_counts[i] - samples.encoder_counts[i], -15, 15);
+    tests::run(controller, samples, settings, 1);
+  }
+}
+
+/// Of a hand that holds the probe against one motor's torque and none of the others: J' F = torque, by Cramer's rule.
+double held_N(const control::Jacobian& jacobian, std::size_t motor, double torque_Nm) {
+  const auto column = [&](std::size_t i) {
+    const control::Vector3& v = jacobian.column[i % 3];
+    return std::array<double, 3>{v.x, v.y, v.z};
+  };
+  const auto own = column(motor), p = column(motor + 1), q = column(motor + 2);
+  const std::array<double, 3> across{p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+  const double determinant = own[0] * across[0] + own[1] * across[1] + own[2] * across[2];
+  return std::fabs(torque_Nm / determinant) * std::hypot(across[0], across[1], across[2]);
+}
+
+TEST_CASE("a test pulse of current makes no more force at the hand than force_limit_N, whatever the arm and its pose") {
+  constexpr double limit_N = 0.8;
+  tests::Random random(7);
+  for (const tests::Arm& arm : tests::all_arms()) {
+    CAPTURE(arm.name);
+    protocol::ParameterSet set = tests::without_motors(arm.parameters);
+    set[protocol::Parameter::force_limit_N] = static_cast<float>(limit_N);
+    const Settings settings = control::prepare(set);
+    const Controller ready = tests::ready_controller(settings);
+    double largest_N = 0.0;
+    for (int pose = 0; pose < 10; ++pose) {
+      Controller there = ready;
+      Samples samples = tests::samples_at_rest();
+      move_to(there, samples, tests::random_joints(set, random), settings);
+      REQUIRE(there.state() == State::ready);
+      const control::Triple joint_rad = control::joint_angles(samples.encoder_counts, settings.encoders);
+      const control::Jacobian jacobian = control::forward_kinematics(joint_rad, settings.arm).jacobian;
+      for (std::uint8_t motor = 1; motor <= 3; ++motor) {
+        Controller controller = there;
+        controller.carry_out(pulse(Command::test_current, motor, -99.0f, 0.01f));
+        tests::run(controller, samples, settings, 1);
+        const std::size_t i = motor - 1u;
+        const float current_A = controller.signals()[of_axis(Signal::current_reference_1_A, i)];
+        const double force_N = held_N(jacobian, i, static_cast<double>(current_A / settings.motors.ampere_per_Nm[i]));
+        CHECK(force_N < limit_N * 1.001);
+        largest_N = std::max(largest_N, force_N);
+      }
+    }
+    CHECK(largest_N == doctest::Approx(limit_N).epsilon(1e-3));
+  }
+}
+
+TEST_CASE(
+    "a test pulse of voltage stops driving where its current would make too large a force, whatever the resistance") {
+  using arm_defaults::motor::inductance_H;
+  for (const auto& [resistance_ohm, amplitude_V] : {std::pair(0.4f, 2.0f), {2.0f, 8.0f}, {40.0f, 8.0f}}) {
+    CAPTURE(resistance_ohm);
+    const Settings settings = control::prepare(tests::paper_parameters());
+    Controller controller = tests::ready_controller(settings);
+    Samples samples = tests::samples_at_rest();
+    controller.carry_out(pulse(Command::test_voltage, 2, amplitude_V, 0.1f));
+    const float limit_A = test_limit_A(settings, 1);
+    REQUIRE(amplitude_V < settings.current_loop.voltage_limit_V);
+    float current_A = 0.0f, largest_A = 0.0f, applied_V = 0.0f;
+    for (int period = 0; period < 4'000; ++period) {
+      samples.current_A[1] = current_A;
+      controller.host_alive();
+      const Drive drive = tests::run(controller, samples, settings, 1);
+      const float settled_A = applied_V / resistance_ohm;
+      current_A =
+          settled_A + (current_A - settled_A) * std::exp(-protocol::servo_period_s * resistance_ohm / inductance_H);
+      largest_A = std::max(largest_A, current_A);
+      applied_V = drive.enabled ? drive.duty[1] * samples.supply_V : 0.0f;
+    }
+    CHECK(controller.state() == State::ready);
+    // It is known a period late, and acts a period later.
+    CHECK(largest_A < limit_A + 2.0f * amplitude_V * protocol::servo_period_s / inductance_H);
+    CHECK(largest_A > 0.9f * std::min(limit_A, amplitude_V / resistance_ohm));
+  }
+}
+
+TEST_CASE("while a test pulse runs another one is not begun, so that it lasts no longer than its time") {
+  const Settings settings = control::prepare(tests::paper_parameters());
+  Controller controller = tests::ready_controller(settings);
+  controller.carry_out(pulse(Command::test_current, 2, 0.2f, 0.01f));
+  for (int i = 0; i < 400; ++i) {
+    CHECK(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
+    controller.carry_out(pulse(Command::test_current, 3, 0.2f, 0.01f));
+    CHECK(controller.signals()[Signal::current_reference_3_A] == 0.0f);
+  }
 }
 
 TEST_CASE("a test pulse of current is the loop's: where the current is there it drives nothing") {
@@ -164,15 +271,24 @@ TEST_CASE("a test pulse ends with a stop, a host that falls silent and an arm th
 }
 
 TEST_CASE("a hot motor's pulse is held back") {
-  protocol::ParameterSet set = tests::paper_parameters();
+  protocol::ParameterSet set = tests::without_motors(tests::paper_parameters());
+  set[protocol::Parameter::force_limit_N] = info(protocol::Parameter::force_limit_N).maximum;
   set[protocol::Parameter::winding_time_constant_s] = 0.25f;
   set[protocol::Parameter::winding_heat_part] = 1.0f;
   const float bears_A = set[protocol::Parameter::continuous_current_2_A];
-  const Settings settings = control::prepare(set);
+  Settings settings = control::prepare(set);
+  settings.motor_model.resistance_ohm = {};  // or it would be told that no voltage explains the current
   Controller controller = tests::ready_controller(settings);
   auto warm = tests::samples_at_rest();
   warm.current_A[1] += bears_A;
-  tests::run(controller, warm, settings, 40'000);
+  controller.carry_out(tests::command(Command::enable_force));
+  for (int i = 0; i < 40'000; ++i) {
+    controller.host_alive();
+    tests::run(controller, warm, settings, 1);
+  }
+  REQUIRE(controller.force_is_on());
+  controller.carry_out(tests::command(Command::stop));
+  tests::run(controller, tests::samples_at_rest(), settings, 1);
   controller.carry_out(pulse(Command::test_current, 2, 99.0f, 0.01f));
   tests::run(controller, warm, settings, 1);
   CHECK(controller.signals()[Signal::current_reference_2_A] == doctest::Approx(bears_A).epsilon(0.02));

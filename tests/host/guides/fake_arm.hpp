@@ -40,11 +40,14 @@ class FakeArm final : public guides::DevicePort {
   }
 
   // ---- what guides ask of it ----
-  void send(protocol::Command command) override { commands.push_back(command); }
+  void send(protocol::Command command) override {
+    commands.push_back(command);
+    if (command == protocol::Command::disable_force) left_ = 0;
+  }
   void send(protocol::Command command, const protocol::TestPulse& pulse) override {
     commands.push_back(command);
     pulses.push_back(pulse);
-    if (!now_.connected) return;
+    if (!now_.connected || left_ > 0) return;
     pulse_ = pulse;
     is_voltage_ = command == protocol::Command::test_voltage;
     length_ = static_cast<int>(std::lround(pulse.duration_s * protocol::servo_rate_Hz));

@@ -116,6 +116,8 @@ class Controller {
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
   void follow_over_current(const Settings& settings);
+  [[gnu::cold]] float test_limit_A(const Settings& settings) const;
+  [[gnu::cold]] float test_voltage_V(const Settings& settings) const;
   void follow_test(protocol::Watches found);
   [[gnu::cold]] void drive_pulses(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);

@@ -1,9 +1,14 @@
 // Pulses for testing and identifying a motor: commands test_current and test_voltage.
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include <control/conditioning.hpp>
+#include <control/kinematics.hpp>
+#include <control/trigonometry.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::control {
@@ -31,6 +36,18 @@ constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPuls
       wanted.duration_s < protocol::test_duration_maximum_s ? wanted.duration_s : protocol::test_duration_maximum_s;
   const std::uint32_t periods = periods_in(duration_s);
   return {quantity, static_cast<std::uint8_t>(wanted.motor - 1), wanted.amplitude, periods, 2 * periods};
+}
+
+/// The current of a motor, 0..2, that makes `force_limit_N` at a hand that holds the probe in this pose. The force of
+/// one motor's torque stands across what the other two joints move: it is torque over the part of the joint's own
+/// column of the Jacobian in that direction. 0 where a pose has no such direction.
+inline float test_limit_A(const Jacobian& jacobian, std::size_t motor, float force_limit_N, float ampere_per_Nm) {
+  const auto& [one, two, three] = jacobian.column;
+  const Vector3 across = motor == 0 ? cross(two, three) : motor == 1 ? cross(three, one) : cross(one, two);
+  const float squared = dot(across, across);
+  if (!(squared > 0.0f)) return 0.0f;
+  const float lever_m = dot(jacobian.column[motor], across) * reciprocal_square_root(squared);
+  return std::fabs(force_limit_N * lever_m * ampere_per_Nm);
 }
 
 }  // namespace inkwell::control

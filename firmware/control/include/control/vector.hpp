@@ -21,6 +21,9 @@ constexpr Vector3 operator+(const Vector3& a, const Vector3& b) { return {a.x + 
 constexpr Vector3 operator-(const Vector3& a, const Vector3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 constexpr Vector3 operator*(float s, const Vector3& a) { return {s * a.x, s * a.y, s * a.z}; }
 constexpr float dot(const Vector3& a, const Vector3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 
 /// `value` moved into [low, high]. Written so that it compiles to compares and selects.
 constexpr float clamp(float value, float low, float high) { return value < low ? low : (value > high ? high : value); }

@@ -29,12 +29,14 @@ class PulseRecorder {
   enum class State : std::uint8_t { waits_for_scope, waits_for_end, done };
   void start_over(const protocol::PoseReport& pose);
   bool is_at_rest() const;
+  std::size_t samples_of_pulse() const;
 
   protocol::Command command_;
   protocol::TestPulse pulse_;
   protocol::Signal seen_in_;
   recording::Recording recording_;
   State state_ = State::waits_for_scope;
+  std::size_t rest_samples_;  ///< that have to show zero before a pulse is sent
   Stopwatch since_;
   int attempts_left_ = 3;
 };
