@@ -76,6 +76,12 @@ void BlackBox::start(Fault raised, const protocol::CrashFacts& crash) {
     if (!is_sound(before(number), number)) break;
     ++rows_before_;
   }
+  // The signals around the first fault stay; what the processor noted goes with them, as it is looked for there.
+  if (is_kept && crash.exception != 0) {
+    ++notes_.cause.later_crashes;
+    notes_.cause.crash = crash;
+    notes_.cause.check = check_of(notes_.cause);
+  }
   if (!is_kept) {
     notes_.rows_added = 0;
     keep(raised, rows_before_ != 0 ? before(notes_.rows_written - 1).row.time_periods : 0, true, crash);
@@ -127,6 +133,7 @@ void BlackBox::keep(Fault fault, std::uint32_t period, bool is_restart, const pr
   notes_.cause = {.fault = static_cast<std::uint32_t>(fault),
                   .period = period,
                   .is_restart = is_restart,
+                  .later_crashes = 0,
                   .crash = crash,
                   .check = 0};
   notes_.cause.check = check_of(notes_.cause);
@@ -148,6 +155,7 @@ protocol::BlackBoxReport BlackBox::report() const {
   report.is_restart = notes_.cause.is_restart != 0;
   report.fault = static_cast<Fault>(notes_.cause.fault);
   report.fault_periods = notes_.cause.period;
+  report.later_crashes = notes_.cause.later_crashes;
   report.rows_before = static_cast<std::uint16_t>(rows_before_);
   report.row_count = static_cast<std::uint16_t>(row_count());
   report.crash = notes_.cause.crash;

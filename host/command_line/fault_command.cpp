@@ -46,7 +46,14 @@ Image image_of(const BlackBoxReport& box, const FaultOptions& options) {
 }
 
 void print_crash(const BlackBoxReport& box, const Image& image) {
-  if (has_crash(box)) fmt::print("{}\n", crash::text(box.crash, image ? &*image : nullptr));
+  if (!has_crash(box)) {
+    if (image) fmt::print("No crash of the firmware is kept, so there is nothing to name by the ELF.\n");
+    return;
+  }
+  if (box.later_crashes == 1) fmt::print("After that fault the board was restarted by this:\n");
+  if (box.later_crashes > 1)
+    fmt::print("After that fault the board was restarted {} times, at last by this:\n", box.later_crashes);
+  fmt::print("{}\n", crash::text(box.crash, image ? &*image : nullptr));
 }
 
 ordered_json crash_json(const protocol::CrashFacts& crash, const Image& image) {
@@ -75,13 +82,14 @@ ordered_json to_json(const BlackBoxReport& box, const Image& image) {
                     {"rows_before", box.rows_before},
                     {"complete", box.is_complete != 0},
                     {"restart", box.is_restart != 0},
+                    {"later_crashes", box.later_crashes},
                     {"crash", nullptr}};
   if (has_crash(box)) json["crash"] = crash_json(box.crash, image);
   return json;
 }
 
 void print(const BlackBoxReport& box, const Image& image) {
-  if (box.fault == Fault::none) return;
+  if (box.fault == Fault::none) return print_crash(box, image);
   fmt::print(
       "A black box is kept: every signal around {} at {:.3f} s, each millisecond, {} rows before it and {} from "
       "then on{}. `inkwell fault --out FILE` saves it; it goes when the force is switched on.\n",

@@ -146,6 +146,43 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
   CHECK(saved.exit_code == 0);
 }
 
+TEST_CASE("a crash while the black box of another fault is kept is told beside it, the newest of two") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.inject({.fault = "bridge_fault", .for_s = 0.01});
+  rig.run(0.2);
+  const auto address = "127.0.0.1:" + std::to_string(rig.board.usbip_port());
+  const auto image = (std::filesystem::path(build_directory()) / ".." / "board" / "inkwell.elf").string();
+  const auto told = [&](std::vector<std::string> more) {
+    rig.device.reset();
+    rig.control.resume();
+    more.insert(more.begin(), {"fault", "--usbip", address});
+    const auto shown = run_program("inkwell", more);
+    INFO(shown.err);
+    CHECK(shown.exit_code == 0);
+    rig.control.stand_by();
+    rig.connect();
+    return shown.out;
+  };
+  CHECK(told({"--elf", image}).find("No crash of the firmware is kept") != std::string::npos);
+  for (const std::uint32_t astray : {0x60000000u, 0x64000000u}) {
+    CAPTURE(astray);
+    rig.control.inject({"program_astray", std::to_string(astray)});
+    rig.control.run(0.02);
+    reconnect(rig);
+    rig.run(0.3);
+    const auto box = rig.device->black_box();
+    CHECK(box.fault == Fault::bridge_fault);
+    CHECK(box.later_crashes == (astray == 0x60000000u ? 1 : 2));
+    CHECK(box.crash.program_counter == astray);
+    const std::string text = told({});
+    CHECK(text.find("every signal around bridge_fault") != std::string::npos);
+    CHECK(text.find(astray == 0x60000000u ? "After that fault the board was restarted by this:"
+                                          : "After that fault the board was restarted 2 times") != std::string::npos);
+    CHECK(text.find("it went to run from where nothing is") != std::string::npos);
+  }
+}
+
 TEST_CASE("firmware that hung leaves the rows before, and its black box says that the watchdog bit") {
   BoardRig rig;
   press_into_wall(rig);

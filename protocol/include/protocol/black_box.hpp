@@ -46,7 +46,9 @@ struct BlackBoxReport {
   std::uint16_t rows_before;    ///< how many of the rows are from before the fault; the first ones
   std::uint16_t row_count;      ///< up to black_box_rows_maximum
   std::uint32_t fault_periods;  ///< the control period of the fault, or of the last row before a restart
-  CrashFacts crash;             ///< of the restart
+  /// Restarts after a crash since then; the signals stay those around the first fault.
+  std::uint32_t later_crashes;
+  CrashFacts crash;  ///< of the newest restart after a crash
 };
 
 /// Feature report, set: stalled if it is of another version or length.
@@ -74,7 +76,7 @@ struct BlackBoxRowsReport {
   BlackBoxRow rows[black_box_report_rows];
 };
 
-static_assert(sizeof(CrashFacts) == 120 && sizeof(BlackBoxReport) == 132);
+static_assert(sizeof(CrashFacts) == 120 && sizeof(BlackBoxReport) == 136);
 static_assert(sizeof(BlackBoxRequest) == 4);
 static_assert(sizeof(BlackBoxRow) == 4 + 4 * (signal_count + force_law_signals_maximum));
 static_assert(sizeof(BlackBoxRowsReport) == 8 + black_box_report_rows * sizeof(BlackBoxRow) &&

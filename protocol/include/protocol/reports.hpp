@@ -37,7 +37,7 @@ static_assert(std::endian::native == std::endian::little, "the structures go ove
 #endif
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 12 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
+inline constexpr std::uint16_t protocol_version = 13 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;

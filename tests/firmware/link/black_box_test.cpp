@@ -210,14 +210,15 @@ TEST_CASE("a main loop that comes when the time after a fault is over adds nothi
 TEST_CASE("a black box that is kept survives resets of every cause") {
   Board board;
   meet_fault(board);
-  for (const Fault raised : {Fault::none, Fault::watchdog, Fault::processor_fault, Fault::none}) {
-    board.start(raised, crash);
+  for (const Fault raised : {Fault::none, Fault::watchdog, Fault::logic_supply_low, Fault::none}) {
+    board.start(raised);
     board.run(200, raised == Fault::none ? State::ready : State::fault, raised);
     CHECK(board.box->report().fault == Fault::supply_low);
     CHECK(board.box->report().fault_periods == 1007);
     CHECK(board.box->report().is_complete);
     CHECK_FALSE(board.box->report().is_restart);
     CHECK(board.box->report().crash.exception == 0);
+    CHECK(board.box->report().later_crashes == 0);
     CHECK(board.periods() == around_fault);
   }
   board.run(1, State::active);
@@ -254,6 +255,35 @@ TEST_CASE("a run that crashed leaves its last rows, and what the processor noted
   CHECK(report.crash.hard_fault_status == 0x4000'0000);
   CHECK(report.crash.fault_address == 0x6000'0000);
   CHECK(board.periods() == Periods{920, 940, 960, 980, 1000});
+}
+
+TEST_CASE("crashes while a black box is kept: the newest is told, with their number, and the signals stay") {
+  const auto check = [](Board& board, Fault first_fault, const Periods& first_periods) {
+    for (std::uint32_t crashes = 1; crashes <= 2; ++crashes) {
+      protocol::CrashFacts newest = crash;
+      newest.program_counter += 0x100 * crashes;
+      board.start(Fault::processor_fault, newest);
+      board.run(200, State::fault, Fault::processor_fault);
+      board.start();  // and it is kept as well
+      const auto report = board.box->report();
+      CHECK(report.fault == first_fault);
+      CHECK(report.later_crashes == crashes);
+      CHECK(report.crash.program_counter == newest.program_counter);
+      CHECK(board.periods() == first_periods);
+    }
+    board.run(1, State::active);
+    CHECK_FALSE(board.is_kept());
+    CHECK(board.box->report().later_crashes == 0);
+    CHECK(board.box->report().crash.exception == 0);
+  };
+  Board with_fault;
+  meet_fault(with_fault);
+  check(with_fault, Fault::supply_low, around_fault);
+  Board with_crash;
+  with_crash.run(1007, State::active);
+  with_crash.start(Fault::processor_fault, crash);
+  CHECK(with_crash.box->report().later_crashes == 0);
+  check(with_crash, Fault::processor_fault, {920, 940, 960, 980, 1000});
 }
 
 TEST_CASE("a crash before anything was recorded is told without rows") {

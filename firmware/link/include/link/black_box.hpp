@@ -18,6 +18,7 @@ struct BlackBoxNotes {
     std::uint32_t fault;  ///< protocol::Fault
     std::uint32_t period;
     std::uint32_t is_restart;
+    std::uint32_t later_crashes;
     protocol::CrashFacts crash;
     std::uint32_t check;
   };
