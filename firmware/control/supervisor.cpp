@@ -81,8 +81,11 @@ Supervisor advance(const Supervisor& supervisor, const Situation& situation) {
   protocol::Events now = situation.events;
   if (supervisor.state == State::fault) [[unlikely]]
     now |= protocol::when(Event::cause, (situation.found & hindrance[static_cast<std::size_t>(supervisor.fault)]) != 0);
+  // On its way to the boot loader a board still knows what was told.
+  now |= protocol::when(Event::told, supervisor.fault != Fault::none);
   for (const Way* way = here.ways_begin; way != here.ways_end; ++way)
-    if (way->is_open(now)) return {way->to, Fault::none};
+    if (way->is_open(now))
+      return {way->to, way->to == State::update || way->to == State::fault ? supervisor.fault : Fault::none};
   return supervisor;
 }
 

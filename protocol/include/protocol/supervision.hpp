@@ -103,7 +103,8 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
   X(512, stop, "the command stop came, or the host is gone")                          \
   X(1024, landed, "the force has fallen to nothing") \
   X(2048, tested, "the self-test has come to its end, and nothing that takes the force away has failed") \
-  X(4096, self_test, "the command self_test came")
+  X(4096, self_test, "the command self_test came") \
+  X(8192, told, "a fault was told before, and nobody has cleared it")
 // clang-format on
 
 /// What the supervisor decides by.
@@ -178,6 +179,7 @@ inline constexpr auto way_table = std::to_array<Way>({
     {State::fault, State::testing, events(Event::self_test, Event::measured), events(Event::cause, Event::tested)},
     {State::fault, State::unreferenced, events(Event::clear, Event::tested), events(Event::cause, Event::referenced)},
     {State::fault, State::ready, events(Event::clear, Event::tested, Event::referenced), events(Event::cause)},
+    {State::update, State::fault, events(Event::told), events(Event::update)},
     {State::update, State::starting, 0, events(Event::update, Event::measured)},
     {State::update, State::testing, events(Event::measured), events(Event::update, Event::tested)},
     {State::update, State::unreferenced, events(Event::tested), events(Event::update, Event::referenced)},

@@ -196,4 +196,24 @@ TEST_CASE("no force comes on while the board leaves for its boot loader, and it 
   CHECK(controller.state() == State::ready);
 }
 
+TEST_CASE("a fault that stands while the board leaves for its boot loader stands when it stays after all") {
+  const Settings settings = free_space();
+  Samples samples = tests::samples_at_rest();
+  Controller controller = tests::active_controller(settings);
+  samples.bridge_fault = true;
+  tests::run(controller, samples, settings, 1);
+  REQUIRE(controller.fault() == Fault::bridge_fault);
+  controller.leave_for_update();
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.state() == State::update);
+  CHECK(controller.fault() == Fault::bridge_fault);
+  samples.bridge_fault = false;
+  tests::run(controller, samples, settings, 2);
+  CHECK(controller.state() == State::fault);
+  CHECK(controller.fault() == Fault::bridge_fault);
+  controller.carry_out(tests::command(Command::clear_fault));
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.state() == State::ready);
+}
+
 }  // namespace

@@ -97,6 +97,19 @@ TEST_CASE("for the boot loader every state is left, and the device is where it w
   CHECK(next(State::update, good) == State::ready);
 }
 
+TEST_CASE("the boot loader takes no fault away: it is there again if the device stays") {
+  for (const auto& row : protocol::fault_table) {
+    const auto fault = static_cast<Fault>(row.code);
+    if (fault == Fault::none) continue;
+    CAPTURE(row.name);
+    const Supervisor leaving = advance(faulty(fault), {good | events(Event::update), 0});
+    CHECK(leaving == Supervisor{State::update, fault});
+    CHECK(advance(leaving, {good | events(Event::update, Event::clear), 0}) == leaving);
+    for (const Events now : {Events{0}, events(Event::measured), events(Event::measured, Event::tested), good})
+      CHECK(advance(leaving, {now, 0}) == faulty(fault));
+  }
+}
+
 struct FaultCase {
   Fault fault;
   std::vector<State> watched_in;
