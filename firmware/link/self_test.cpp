@@ -55,9 +55,8 @@ void SelfTest::follow(const control::Controller& controller, const control::Sett
 void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) {
   test_ = begun_.load();
   for (std::size_t i = static_cast<std::size_t>(first_of_each_test); i < entries_.size(); ++i) entries_[i] = {};
-  float largest_A = 0.0f;
-  for (const float each_A : offset_A) largest_A = each_A * each_A > largest_A * largest_A ? each_A : largest_A;
-  note(Item::current_offsets, Result::passed, largest_A);  // others have a fault of their own, and are never tested
+  offset_A_ = offset_A;
+  test_since_ = samples_.recorded();
   note(Item::analog_supply, readings.analog_supply_is_right, readings.analog_supply_V);
   for (std::size_t i = 0; i < readings.gimbal_ratio.size(); ++i) {
     const float ratio = readings.gimbal_ratio[i];
@@ -66,6 +65,21 @@ void SelfTest::begin(const Readings& readings, const control::Triple& offset_A) 
   wire_ = 0;
   looks_ = rounds_ = failures_ = 0;
   phase_ = Phase::wires;
+}
+
+/// As the sensors read now. What they read as the board started is taken off already.
+void SelfTest::note_offsets() {
+  const std::uint32_t recorded = samples_.recorded();
+  float largest_A = 0.0f;
+  for (std::size_t i = 0; i < 3; ++i) {
+    float sum_A = 0.0f;
+    for (std::uint32_t back = 1; back <= offset_readings; ++back)
+      sum_A += samples_[recorded - back].signals[of_axis(protocol::Signal::current_1_A, i)];
+    const float reads_A = offset_A_[i] + sum_A * (1.0f / static_cast<float>(offset_readings));
+    if (reads_A * reads_A > largest_A * largest_A) largest_A = reads_A;
+  }
+  constexpr float plausible_A = control::CurrentOffsets::plausible_A;
+  note(Item::current_offsets, largest_A <= plausible_A && largest_A >= -plausible_A, largest_A);
 }
 
 void SelfTest::break_off() {
@@ -80,6 +94,10 @@ void SelfTest::begin_round() {
 }
 
 void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model) {
+  if (entry(Item::current_offsets).result == Result::not_done) {
+    if (samples_.recorded() - test_since_ < off_periods + offset_readings) return;
+    note_offsets();
+  }
   bool rests = true;
   for (std::size_t i = 0; i < 3; ++i) {
     const float back_emf_V = signals[of_axis(protocol::Signal::joint_speed_1_rad_s, i)] * model.back_emf_Vs_per_rad[i];
@@ -129,8 +147,12 @@ protocol::SelfTestReport SelfTest::report() const {
   report.tests_ended = tests_ended_;
   report.time_periods = samples_.recorded();
   for (std::size_t i = 0; i < entries_.size(); ++i) report.entries[i] = entries_[i];
-  if (report.time_periods > 0 && samples_[report.time_periods - 1].summary.fault == protocol::Fault::current_sensor)
-    report.entries[static_cast<std::size_t>(Item::current_offsets)].result = Result::failed;
+  if (report.time_periods == 0) return report;
+  // What is watched all the time tells more than a look did.
+  const protocol::Fault told = samples_[report.time_periods - 1].summary.fault;
+  const auto fail = [&report](Item item) { report.entries[static_cast<std::size_t>(item)].result = Result::failed; };
+  if (told == protocol::Fault::current_sensor) fail(Item::current_offsets);
+  if (told == protocol::Fault::memory_damaged) fail(Item::flash);
   return report;
 }
 

@@ -35,7 +35,7 @@ inline constexpr std::string_view bridge_remedy =
 // clang-format off
 /// X(id, name, unit of its figure, whether a failure takes the force away, what it means if it passes, remedy)
 #define INKWELL_SELF_TEST_ITEMS(X)                                                                                     \
-  X(0, flash, "", true, "The firmware in the flash, and its copies in the RAM, are those that were built.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
+  X(0, flash, "", true, "The firmware in the flash, its copies in the RAM and the parameters in use are undamaged.", "Reset the board. If it comes back, flash the firmware anew; if it still comes back, replace the chip.") \
   X(1, ram, "", true, "The RAM keeps each bit of a pattern. It is looked at when the power comes, not at a reset.", "Switch the power off and on. If it comes back, replace the chip.") \
   X(2, watchdog, "ms", true, "The watchdog's oscillator runs, it has taken the time after which it bites, and when the power came it was left to bite and did so in time.", "Switch the power off and on. If it comes back, replace the chip.") \
   X(3, current_offsets, "A", true, "With the bridges off the current sensors read zero, in the middle of the converters' range.", "Check the shunt amplifiers and their reference, then reset the board.") \

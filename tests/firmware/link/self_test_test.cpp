@@ -1,6 +1,8 @@
 // The self-test as main loop and control interrupt lead it together.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include <firmware/control/arms.hpp>
 #include <firmware/control/simulated_arm.hpp>
 #include <firmware/control/simulated_motors.hpp>
@@ -26,6 +28,7 @@ struct Board {
   float analog_supply_V = 3.3f;
   bool analog_supply_is_right = true;
   tests::SimulatedMotors motors;
+  control::Triple offset_A{};  ///< of the current sensors
   tests::FakeClock clock;
   control::Drive drive;
   std::optional<SelfTestItem> floating;  ///< a wire that nothing drives
@@ -38,6 +41,7 @@ struct Board {
     control::Triple told_V{};
     for (std::size_t i = 0; i < 3; ++i) told_V[i] = drive.duty[i] * samples.supply_V;
     samples.current_A = motors.step(told_V);
+    for (std::size_t i = 0; i < 3; ++i) samples.current_A[i] += offset_A[i];
     drive = controller.step(samples, settings, clock);
     if (controller.state() == State::testing) link.self_test.exchange(controller);
     driven_periods += drive.enabled;
@@ -295,6 +299,38 @@ TEST_CASE("a current sensor that is off zero is told by its item as well, althou
   CHECK(board.controller.fault() == Fault::current_sensor);
   CHECK(board.result(SelfTestItem::current_offsets) == SelfTestResult::failed);
   CHECK(board.result(SelfTestItem::motor_1) == SelfTestResult::not_done);
+}
+
+TEST_CASE("the offsets of the current sensors are those of now, not of the start") {
+  Board board;
+  board.run_while(State::starting);
+  board.run_while(State::testing);
+  CHECK(std::fabs(board.figure(SelfTestItem::current_offsets)) < 0.001f);
+  board.offset_A[2] = -0.2f;
+  board.controller.carry_out(tests::command(Command::self_test));
+  board.run(1);
+  board.run_while(State::testing);
+  CHECK(board.figure(SelfTestItem::current_offsets) == doctest::Approx(-0.2).epsilon(0.01));
+  CHECK(board.result(SelfTestItem::current_offsets) == SelfTestResult::passed);
+  board.offset_A[2] = -0.3f;  // not yet for so long that it were a fault by itself
+  board.controller.carry_out(tests::command(Command::self_test));
+  board.run(1);
+  board.run_while(State::testing);
+  CHECK(board.figure(SelfTestItem::current_offsets) == doctest::Approx(-0.3).epsilon(0.01));
+  CHECK(board.result(SelfTestItem::current_offsets) == SelfTestResult::failed);
+  CHECK(board.controller.state() == State::fault);
+}
+
+TEST_CASE("memory that is told to be damaged fails its item, whatever the look at the start gave") {
+  Board board;
+  board.link.self_test.note(SelfTestItem::flash, true);
+  board.run_while(State::starting);
+  board.run_while(State::testing);
+  CHECK(board.result(SelfTestItem::flash) == SelfTestResult::passed);
+  board.controller.raise(Fault::memory_damaged);
+  board.run(1);
+  CHECK(board.controller.fault() == Fault::memory_damaged);
+  CHECK(board.result(SelfTestItem::flash) == SelfTestResult::failed);
 }
 
 TEST_CASE("a fault in the middle of the pulses switches off at once, and the next test begins with the first motor") {

@@ -31,6 +31,8 @@ class SelfTest {
   static constexpr float rest_V = 0.3f;
   /// Of a potentiometer's track at each end: its wiper never gets there.
   static constexpr float gimbal_rail_part = 0.01f;
+  /// The current sensors are looked at once a current that a pulse left has ended: twelve time constants of a motor.
+  static constexpr std::uint32_t off_periods = control::periods_in(0.0012f), offset_readings = 16;
 
   explicit SelfTest(const SampleRing& samples) : samples_(samples) {}
 
@@ -72,6 +74,7 @@ class SelfTest {
   protocol::SelfTestEntry& entry(Item item) { return entries_[static_cast<std::size_t>(item)]; }
   void note(Item item, Result result, float figure);
   void begin(const Readings& readings, const control::Triple& offset_A);
+  void note_offsets();
   void break_off();
   void wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model);
   void begin_round();
@@ -88,7 +91,8 @@ class SelfTest {
   std::size_t wire_ = 0;
   std::uint32_t looks_ = 0;  ///< in which that wire followed
   std::uint32_t rounds_ = 0, failures_ = 0;
-  std::uint32_t waits_since_ = 0;  ///< samples recorded by then
+  std::uint32_t test_since_ = 0, waits_since_ = 0;  ///< samples recorded by then
+  control::Triple offset_A_{};                      ///< of the sensors, as they were measured at the start
 
   /// Number of the test, and what the interrupt is to do in it; 0 once that is done.
   Shared<std::uint32_t> order_{0};
