@@ -211,12 +211,25 @@ void Controller::find_current_references(const Settings& settings) {
 void Controller::watch_motors(const Settings& settings) {
   if (!force_is_on()) {
     motor_watch_ = {};
+    watch_idle_currents();
     return;
   }
   if (!fits(motor_watch_, current_A_, joint_speed_rad_per_s_, settings.motor_model)) [[unlikely]]
     raise(Fault::motor_implausible);
+  off_zero_periods_ = 0;
   // What the bridges were told in the period before is what they do until the next.
   turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V);
+}
+
+/// What the sensors show while the bridges have been off for a while is their offset, and it was measured.
+void Controller::watch_idle_currents() {
+  bool is_zero = drive_.enabled || drive_.brake || !offsets_.measured();
+  if (!is_zero) {
+    is_zero = true;
+    for (const float each_A : current_A_) is_zero = is_zero && std::fabs(each_A) <= CurrentOffsets::plausible_A;
+  }
+  off_zero_periods_ = is_zero ? 0 : off_zero_periods_ + 1;
+  if (off_zero_periods_ >= CurrentOffsets::patience_periods) raise(Fault::current_sensor);
 }
 
 void Controller::regulate_currents(const Settings& settings) {

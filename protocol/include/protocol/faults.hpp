@@ -24,7 +24,7 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(1, bridge_fault, "A bridge reported over-current, over-temperature or under-voltage.", "Check the motor wiring for a short, let the bridges cool, then clear the fault.") \
   X(2, supply_low, "The supply of the bridges is below {supply_minimum_V} V.", "Check the {supply_nominal_V} V supply and its fuse, then clear the fault.")       \
   X(3, supply_high, "The supply of the bridges is above {supply_maximum_V} V.", "Use a supply of {supply_nominal_V} V; if it rises while the arm is moved fast, add bulk capacitance. Then clear the fault.") \
-  X(4, current_sensor, "A current sensor does not read zero while its bridge is off.", "Check the shunt amplifier of that motor and its {shunt_amplifier_offset_V} V reference, then reset the board.") \
+  X(4, current_sensor, "A current sensor does not read zero while its bridge is off.", "Check the shunt amplifier of that motor and its {shunt_amplifier_offset_V} V reference, then clear the fault. If it was there from the start, reset the board: it measures them anew.") \
   X(5, over_current, "A motor current exceeded {over_current_percent} % of its limit, or what its sensor can measure.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
   X(6, over_speed, "The probe moved faster than speed_limit_m_per_s.", "Hold the stylus, lower wall_stiffness_N_per_m if it was thrown out of a wall, then clear the fault.") \
   X(7, encoder_implausible, "A joint angle lies far beyond its stop, or an encoder stands still although its motor presses otherwise than before: counts were lost, or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \
@@ -33,7 +33,7 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(10, watchdog, "The board was restarted by its watchdog.", "Report this with the firmware version, then clear the fault.")    \
   X(11, processor_fault, "The processor met a fault; it switched the bridges off and restarted.", "Report this with the firmware version, then clear the fault.") \
   X(12, not_finite, "A value in the control path was not a finite number.", "Check the parameters of the arm, load the defaults, then clear the fault.") \
-  X(13, samples_stale, "A motor's current was not measured in a control period, or supply and gimbal for {samples_stale_ms} ms.", "If it comes back after the fault is cleared, reset the board and report this with the firmware version.") \
+  X(13, samples_stale, "A motor's current was not measured in a control period, or supply and gimbal for {samples_stale_ms} ms.", "Clear the fault. If it comes back, reset the board and report this with the firmware version.") \
   X(14, crystal_failed, "The board's crystal stopped, or swung late; the motors were off until the board had started anew.", "Check the crystal, its two capacitors and their joints, then clear the fault. If it comes back, replace the crystal.") \
   X(15, force_law, "The force law of this image gave a force that is no finite number.", "Look in the force law for a division by zero, the root of a negative number or a state that grows without end, or put its parameters back to their defaults. Then clear the fault.") \
   X(16, motor_hot, "A motor is {motor_heat_beyond_percent} % hotter than it bears, although its current is held back.", "Let it cool below {motor_heat_holds_back_percent} %; while it does, check its wiring and its current sensor, or what tested it. Then clear the fault.") \

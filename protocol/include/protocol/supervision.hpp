@@ -229,7 +229,7 @@ inline constexpr auto watch_table = []() {
       {Fault::logic_supply_low, every, when_gone, coast},
       {Fault::analog_supply, every, when_gone, coast},
       {Fault::bridge_wire, every, when_gone, coast},
-      {Fault::current_sensor, every, by_reset, coast},
+      {Fault::current_sensor, every, when_gone, coast},
       {Fault::samples_stale, started, when_gone, coast},
       {Fault::supply_low, started, when_gone, coast},
       {Fault::supply_high, started, when_gone, coast},

@@ -302,6 +302,50 @@ TEST_CASE("offsets of the current sensors are taken off, and a broken sensor is 
   CHECK(broken.fault() == Fault::current_sensor);
 }
 
+TEST_CASE("a current sensor that drifts off zero while the bridges are off is told, in every state without a force") {
+  const Settings settings = settings_near_wall();
+  constexpr float drift_A = control::CurrentOffsets::plausible_A;
+  for (Controller controller : {tests::started_controller(settings), tests::ready_controller(settings)}) {
+    Samples samples = tests::samples_at_rest();
+    samples.current_A[2] = -0.9f * drift_A;
+    tests::run(controller, samples, settings, 1'000);
+    CHECK(controller.fault() == Fault::none);
+    samples.current_A[2] = -1.1f * drift_A;
+    tests::run(controller, samples, settings, control::CurrentOffsets::patience_periods - 1);
+    samples.current_A[2] = 0.0f;  // the current of a winding that was switched off has ended by then
+    tests::run(controller, samples, settings, 1);
+    CHECK(controller.fault() == Fault::none);
+    samples.current_A[2] = -1.1f * drift_A;
+    tests::run(controller, samples, settings, control::CurrentOffsets::patience_periods);
+    CHECK(controller.fault() == Fault::current_sensor);
+    samples.current_A[2] = 0.0f;
+    controller.carry_out(tests::command(Command::clear_fault));
+    tests::run(controller, samples, settings, 1);
+    CHECK(controller.state() != State::fault);
+  }
+}
+
+TEST_CASE("currents while a brake shorts the motors are no drift") {
+  const Settings settings = settings_near_wall();
+  Controller controller = tests::active_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  Drive drive;
+  for (int i = 0; i < 60 && protocol::force_is_on(controller.state()); ++i) {
+    samples.encoder_counts[0] += 8;
+    drive = tests::run(controller, samples, settings, 1);
+  }
+  REQUIRE(drive.brake);
+  samples.current_A[0] = 0.6f;
+  for (std::uint32_t i = 0; i < 2 * control::CurrentOffsets::patience_periods; ++i) {
+    samples.encoder_counts[0] += 8;
+    CHECK(tests::run(controller, samples, settings, 1).brake);
+  }
+  samples.current_A[0] = 0.0f;
+  controller.carry_out(tests::command(Command::clear_fault));
+  tests::run(controller, samples, settings, 10);
+  CHECK(controller.state() == State::ready);
+}
+
 TEST_CASE("a raised fault is shown, and one from before the start leads back to starting") {
   const Settings settings = settings_near_wall();
   Controller controller{tests::board_limits};
@@ -315,15 +359,16 @@ TEST_CASE("a raised fault is shown, and one from before the start leads back to 
 }
 
 TEST_CASE("a motor that gets hot although nothing is asked of it is a fault until it has cooled") {
-  protocol::ParameterSet set = tests::omni_parameters();
+  protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
   set[protocol::Parameter::winding_time_constant_s] = 0.1f;
   set[protocol::Parameter::winding_heat_part] = 1.0f;
-  const Settings settings = control::prepare(set);
-  Controller controller = tests::ready_controller(settings);
+  Settings settings = control::prepare(set);
+  settings.motor_model.resistance_ohm = {};  // or it would be told that no voltage explains the current
+  Controller controller = tests::active_controller(settings);
   Samples samples = tests::samples_at_rest();
   const float offset_A = samples.current_A[1];
   samples.current_A[1] = offset_A + 1.3f * set[protocol::Parameter::continuous_current_2_A];
-  tests::run(controller, samples, settings, 10'000);
+  run_with_host(controller, samples, settings, 10'000);
   CHECK(controller.fault() == Fault::motor_hot);
   controller.carry_out(tests::command(Command::clear_fault));
   tests::run(controller, samples, settings, 1);
@@ -354,32 +399,34 @@ TEST_CASE("a reading near a rail of its sensor is an over-current whatever the o
 
 TEST_CASE("a current limit that is lowered gives the current time to follow, and then holds for it") {
   Settings settings = settings_near_wall();
-  Controller controller = tests::ready_controller(settings);
+  settings.motor_model.resistance_ohm = {};  // or it would be told that no voltage explains the current
+  Controller controller = tests::active_controller(settings);
   Samples samples = tests::samples_at_rest();
   constexpr float current_A = 2.0f;
   samples.current_A[1] = current_A;
-  tests::run(controller, samples, settings, 10);
-  REQUIRE(controller.state() == State::ready);
+  run_with_host(controller, samples, settings, 10);
+  REQUIRE(controller.force_is_on());
   constexpr float lowered_A = 0.5f;
   settings.limits.over_current_A[1] = lowered_A;
-  tests::run(controller, samples, settings, 1);
-  CHECK(controller.state() == State::ready);
+  run_with_host(controller, samples, settings, 1);
+  CHECK(controller.force_is_on());
   // A current that falls by 15 mA in a period.
   for (float left_A = current_A; left_A > lowered_A; left_A -= 0.015f) {
     samples.current_A[1] = left_A;
-    tests::run(controller, samples, settings, 1);
-    REQUIRE(controller.state() == State::ready);
+    run_with_host(controller, samples, settings, 1);
+    REQUIRE(controller.force_is_on());
   }
   samples.current_A[1] = lowered_A - 0.01f;
-  tests::run(controller, samples, settings, 300);
-  CHECK(controller.state() == State::ready);
-  // Raised, it holds at once.
+  run_with_host(controller, samples, settings, 300);
+  CHECK(controller.force_is_on());
+  // Raised, it holds before a current can have followed.
   settings.limits.over_current_A[1] = current_A + 0.01f;
+  run_with_host(controller, samples, settings, 3);
   samples.current_A[1] = current_A;
-  tests::run(controller, samples, settings, 1);
-  CHECK(controller.state() == State::ready);
+  run_with_host(controller, samples, settings, 1);
+  CHECK(controller.force_is_on());
   settings.limits.over_current_A[1] = lowered_A;
-  tests::run(controller, samples, settings, 200);
+  run_with_host(controller, samples, settings, 200);
   CHECK(controller.fault() == Fault::over_current);
 }
 

@@ -21,6 +21,8 @@ struct CurrentOffsets {
   static constexpr std::uint32_t duration_periods = periods_in(0.1f);
   /// An amplifier with a reference of 1 % and its own offset stays within 0.1 A; more is a broken sensor.
   static constexpr float plausible_A = 0.25f;
+  /// Longer than a current lasts in a winding whose bridge was switched off.
+  static constexpr std::uint32_t patience_periods = periods_in(0.01f);
 
   Triple sum_A{};
   Triple offset_A{};

@@ -115,6 +115,8 @@ class Controller {
   void find_current_references(const Settings& settings);
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);
+  [[gnu::cold]] void watch_idle_currents();
+  [[gnu::cold]] void watch_inkwell_switch(const Settings& settings);
   void follow_over_current(const Settings& settings);
   [[gnu::cold]] float test_limit_A(const Settings& settings) const;
   [[gnu::cold]] float test_voltage_V(const Settings& settings) const;
@@ -136,7 +138,8 @@ class Controller {
   std::array<CurrentLoop, 3> loops_{};
   MotorHeat heat_;
   MotorWatch motor_watch_;
-  Triple over_current_A_{};  ///< a measured current beyond it is a fault
+  Triple over_current_A_{};             ///< a measured current beyond it is a fault
+  std::uint32_t off_zero_periods_ = 0;  ///< in a row, while no bridge was on
   TestPulse test_;
   std::uint32_t self_tests_ = 0;
   Supervisor supervisor_;
