@@ -30,14 +30,16 @@ void filter_supply(SupplyFilter& filter, float sample_V) {
   filter.per_V = reciprocal(filter.supply_V > SupplyFilter::floor_V ? filter.supply_V : SupplyFilter::floor_V);
 }
 
-void debounce(SwitchFilter& filter, std::uint8_t switches) {
-  if (switches != filter.candidate) {
-    filter.candidate = switches;
-    filter.stable_periods = 0;
-    return;
+void debounce(SwitchFilter& filter, std::uint8_t switches, std::size_t turn) {
+  constexpr std::uint8_t settle_looks = (SwitchFilter::settle_periods + SwitchFilter::count - 1) / SwitchFilter::count;
+  const unsigned changed = (unsigned{switches} ^ filter.closed) & 1u << turn;
+  std::uint8_t& looks = filter.looks[turn];
+  if (changed == 0) {
+    looks = 0;
+  } else if (++looks == settle_looks) {
+    filter.closed = static_cast<std::uint8_t>(filter.closed ^ changed);
+    looks = 0;
   }
-  if (filter.stable_periods < SwitchFilter::settle_periods) ++filter.stable_periods;
-  if (filter.stable_periods == SwitchFilter::settle_periods) filter.closed = filter.candidate;
 }
 
 bool update_reference(InkwellReference& reference, const std::array<std::int32_t, 3>& encoder_counts,

@@ -99,7 +99,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
     for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
   // The bridges are off until the offsets are known, so what the sensors read is their offset.
   if (!offsets_.measured()) measure_offsets(offsets_, samples.current_A);
-  debounce(switches_, samples.switches);
+  debounce(switches_, samples.switches, turn_);
   filter_supply(supply_, samples.supply_V);
   encoder_counts_ = samples.encoder_counts;
   for (std::size_t i = 0; i < 3; ++i) current_A_[i] = samples.current_A[i] - offsets_.offset_A[i];

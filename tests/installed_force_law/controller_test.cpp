@@ -89,10 +89,10 @@ TEST_CASE("a law is told which switches are closed, debounced") {
     rig.samples.switches = static_cast<std::uint8_t>(which);
     rig.run(1);
     CHECK(rig.law_switches() == 0.0f);
-    rig.run(control::SwitchFilter::settle_periods);
+    rig.run(control::SwitchFilter::settle_periods + control::SwitchFilter::count);
     CHECK(rig.law_switches() == static_cast<float>(which));
     rig.samples.switches = 0;
-    rig.run(control::SwitchFilter::settle_periods + 1);
+    rig.run(control::SwitchFilter::settle_periods + control::SwitchFilter::count);
     CHECK(rig.law_switches() == 0.0f);
   }
 }

@@ -64,6 +64,7 @@ enum class ReportId : std::uint8_t {
 
 /// Bits of PoseReport::switches.
 enum class Switch : std::uint8_t { button_1 = 1, button_2 = 2, inkwell = 4 };
+inline constexpr std::size_t switch_count = 3;
 
 constexpr bool is_closed(std::uint8_t switches, Switch which) {
   return (switches & static_cast<std::uint8_t>(which)) != 0;

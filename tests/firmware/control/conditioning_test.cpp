@@ -52,15 +52,26 @@ TEST_CASE("the supply is filtered, and its reciprocal is ready and finite even w
 
 TEST_CASE("switches count after 5 ms without change") {
   SwitchFilter filter;
-  for (int i = 0; i < 1'000; ++i) debounce(filter, i % 50 < 25 ? 1 : 0);
+  std::uint32_t period = 0;
+  const auto show = [&](std::uint8_t switches, std::uint32_t periods) {
+    for (; periods > 0; --periods, ++period) debounce(filter, switches, period % SwitchFilter::count);
+  };
+  for (int i = 0; i < 20; ++i) {
+    show(1, SwitchFilter::settle_periods - 10);
+    show(0, 10);
+  }
   CHECK(filter.closed == 0);
-  debounce(filter, 5);
-  for (std::uint32_t i = 0; i < SwitchFilter::settle_periods - 1; ++i) debounce(filter, 5);
+  show(5, SwitchFilter::settle_periods - 2);
   CHECK(filter.closed == 0);
-  debounce(filter, 5);
+  show(5, 5);
   CHECK(filter.closed == 5);
-  debounce(filter, 0);
+  show(0, 3);
   CHECK(filter.closed == 5);
+  // Whatever the others do.
+  for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 5 : 4, 1);
+  CHECK((filter.closed & 4) == 4);
+  for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 1 : 0, 1);
+  CHECK((filter.closed & 4) == 0);
 }
 
 TEST_CASE("the inkwell gives its reference once the arm has been still in it for 0.1 s") {

@@ -53,16 +53,17 @@ void filter_supply(SupplyFilter& filter, float sample_V);
 
 // ---- switches ------------------------------------------------------------------------------------------
 
-/// Takes over what all switches have shown without change for 5 ms.
+/// Takes over what a switch has shown without change for 5 ms, whatever the others do. They take turns.
 struct SwitchFilter {
   static constexpr std::uint32_t settle_periods = periods_in(0.005f);
+  static constexpr std::size_t count = protocol::switch_count;
 
   std::uint8_t closed = 0;
-  std::uint8_t candidate = 0;
-  std::uint32_t stable_periods = 0;
+  std::array<std::uint8_t, count> looks{};  ///< in a row in which a switch showed something else
 };
 
-void debounce(SwitchFilter& filter, std::uint8_t switches);
+/// `turn`: whose turn it is, 0..SwitchFilter::count - 1.
+void debounce(SwitchFilter& filter, std::uint8_t switches, std::size_t turn);
 
 // ---- inkwell -------------------------------------------------------------------------------------------
 
