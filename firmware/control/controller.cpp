@@ -101,6 +101,7 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   if (!offsets_.measured()) measure_offsets(offsets_, samples.current_A);
   debounce(switches_, samples.switches, turn_);
   filter_supply(supply_, samples.supply_V);
+  jump_bits_ = jumps(encoder_counts_, samples.encoder_counts, settings.encoders.jump_counts);
   encoder_counts_ = samples.encoder_counts;
   for (std::size_t i = 0; i < 3; ++i) current_A_[i] = samples.current_A[i] - offsets_.offset_A[i];
   const float ratio = samples.gimbal_ratio[turn_];
@@ -264,6 +265,12 @@ void Controller::follow_test(protocol::Watches found) {
   drive_ = {};
 }
 
+/// By the joint whose turn it is. Before there is a reference the angle means nothing, and no state watches it.
+void Controller::watch_inkwell_switch(const Settings& settings) {
+  if (std::fabs(probe_.joint_rad[turn_] - settings.encoders.inkwell_rad[turn_]) > settings.limits.inkwell_play_rad)
+    raise(Fault::inkwell_implausible);
+}
+
 // A current limit that is lowered holds for the references at once, but a current takes time to follow: the loop's, and
 // the winding's where the voltage is bounded.
 void Controller::follow_over_current(const Settings& settings) {
@@ -299,6 +306,8 @@ void Controller::drive_pulses(const Settings& settings) {
 void Controller::supervise(const Samples& samples, const Settings& settings) {
   ++host_silence_periods_;
   follow_over_current(settings);
+  if (protocol::is_closed(switches_.closed, protocol::Switch::inkwell)) [[unlikely]]
+    watch_inkwell_switch(settings);
   // Force and torques are in the references, as far as a motor takes part.
   const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(reference_A_) + sum(current_A_) +
                            sum(drive_.duty) + supply_.supply_V;
@@ -315,12 +324,15 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
             over_current(current_A_, over_current_A_, samples.current_A, board_.current_measurable_A)) |
       watch(Fault::motor_hot, heat_.too_hot) |
       watch(Fault::encoder_implausible,
-            joint_implausible(turn_, probe_.joint_rad, settings.arm.transmission, settings.limits)) |
+            jump_bits_ != 0 || joint_implausible(turn_, probe_.joint_rad, settings.arm.transmission, settings.limits)) |
       watch(Fault::over_speed, speed_squared_m2_per_s2 > settings.limits.speed_limit_squared_m2_per_s2) |
       watch(Fault::host_silent, host_silence_periods_ > settings.limits.host_timeout_periods);
   const protocol::Events now = asked_.events | when(Event::measured, offsets_.measured()) |
                                when(Event::referenced, reference_.valid) | when(Event::risen, force_gain_ == 1.0f) |
                                when(Event::landed, force_gain_ == 0.0f) | when(Event::held_back, limits_ != 0);
+  // Also where another fault is told, or was: what was lost is not back when that one is cleared.
+  if ((found & protocol::voiding_watches) != 0 && reference_.valid) [[unlikely]]
+    forget(reference_, (found & watch(Fault::inkwell_implausible)) != 0);
   if (!surely_stays(supervisor_.state, {now, found})) [[unlikely]]
     change_state(advance(supervisor_, {now, found}));
   asked_ = {.events = lasting_events_};
@@ -348,7 +360,6 @@ void Controller::change_state(const Supervisor& next) {
     brake_.begin();
   else
     brake_ = {};
-  if (protocol::voids_reference(next.fault)) forget(reference_);
 }
 
 void Controller::write_signals(protocol::SignalValues& signals) const {

@@ -32,9 +32,15 @@ EncoderScale encoders(const ParameterSet& set) {
   const Triple counts_per_turn = set.of_each(Parameter::encoder_1_counts_per_turn);
   const Triple ratio = set.of_each(Parameter::gear_ratio_1);
   const Triple reversed = set.of_each(Parameter::encoder_1_reversed);
-  EncoderScale scale{{}, set.of_each(Parameter::inkwell_joint_1_rad)};
-  for (std::size_t i = 0; i < 3; ++i)
+  EncoderScale scale{{}, set.of_each(Parameter::inkwell_joint_1_rad), 0};
+  constexpr float farthest_rad = 100.0f * protocol::servo_period_s;
+  float farthest_counts = 15.0f;  // a coarse encoder may dither
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float counts_per_rad = counts_per_turn[i] * ratio[i] / turn_rad;
     scale.rad_per_count[i] = sign(reversed[i]) * turn_rad / (counts_per_turn[i] * ratio[i]);
+    farthest_counts = std::max(farthest_counts, farthest_rad * counts_per_rad);
+  }
+  scale.jump_counts = std::bit_ceil(static_cast<std::uint32_t>(farthest_counts) + 1);
   return scale;
 }
 
@@ -103,13 +109,12 @@ Limits limits(const ParameterSet& set) {
   constexpr float joint_margin_rad = 0.35f;
   const Triple ratio = set.of_each(Parameter::gear_ratio_1);
   const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
-  const float moving_Nm = StuckEncoder::moving_force_N * std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
+  const float longer_m = std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
+  const float moving_Nm = StuckEncoder::moving_force_N * longer_m;
 
-  Limits limits{set.of_each(protocol::lower_stops),
-                set.of_each(protocol::upper_stops),
-                set.of_each(Parameter::current_limit_1_A),
-                {},
-                0.0f,
+  Limits limits{set.of_each(protocol::lower_stops),        set.of_each(protocol::upper_stops),
+                set.of_each(Parameter::current_limit_1_A), {},
+                InkwellReference::play_m / longer_m,       0.0f,
                 periods_in(set[Parameter::host_timeout_s])};
   for (std::size_t i = 0; i < 3; ++i) {
     limits.joint_minimum_rad[i] -= joint_margin_rad;

@@ -100,7 +100,9 @@ std::string_view reason_of_wire(std::string_view wire) {
   if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
   if (wire == "supply") return "It reads a sound supply.";
   if (wire == "usb_supply") return "It stands as with the cable in.";
-  return "A switch that is open or closed looks like one that is let go of or pressed.";
+  return "A switch that is open or closed looks like one that is let go of or pressed; the inkwell's is told where it "
+         "is "
+         "closed elsewhere.";
 }
 
 /// Why a fault may pass unnoticed with the force on, as far as its row of the table tells.
@@ -117,8 +119,9 @@ std::string_view reason(const CaseFault& fault) {
       return "It shows by a motor that turns or presses otherwise than before while the joint does not seem to move.";
     case InjectedFault::encoder_lost_counts:
     case InjectedFault::encoder_slip:
-      return "No second sensor knows the joint, and a motor's voltage may differ by more; only an angle far beyond its "
-             "stop is noticed.";
+      return "No second sensor knows the joint, and a motor's voltage may differ by more; what is noticed is an angle "
+             "far "
+             "beyond its stop, a jump of 16 counts, and a place that is not the inkwell while its switch is closed.";
     case InjectedFault::shunt_gain:
       return "Voltage, reading and speed fit within what a hot motor may differ by; the next self-test tells.";
     case InjectedFault::shunt_offset:

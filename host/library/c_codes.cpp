@@ -53,8 +53,8 @@ constexpr Code faults[] = {CODE(FAULT_NONE),
                            CODE(FAULT_ENCODER_WIRE),
                            CODE(FAULT_BRIDGE_WIRE),
                            CODE(FAULT_ANALOG_SUPPLY),
-
-                           CODE(FAULT_SELF_TEST_FAILED)};
+                           CODE(FAULT_SELF_TEST_FAILED),
+                           CODE(FAULT_INKWELL_IMPLAUSIBLE)};
 static_assert(std::ranges::equal(faults, protocol::fault_table, [](const Code& c, const protocol::CodeInfo& row) {
   return c.value == row.code && is_capital_of(c.name, "FAULT_", row.name);
 }));

@@ -231,8 +231,17 @@ void Bench::dock() {
   for (double waited_s = 0; waited_s < longest_s; waited_s += look_every_s) {
     pass(look_every_s);
     // Counts were lost, and only here the board finds the arm again. Whether that may be is the oracle's to say.
-    if (board.is(State::fault) && board.pose()->fault == protocol::Fault::encoder_implausible)
+    if (board.is(State::fault)) {
+      const protocol::Fault told = board.pose()->fault;
+      if ((Oracle::lost_counts & protocol::watch(told)) == 0) continue;
       board.command(Command::clear_fault);
+      // Then the switch has to be seen open as well.
+      if (told == protocol::Fault::inkwell_implausible) {
+        board.control().dock(false);
+        pass(look_every_s);
+        board.control().dock(true);
+      }
+    }
     if (board.is(State::ready) && board.control().truth().at("inkwell_switch").get<bool>()) return pass(rest_s);
   }
   fail(Complaint::no_answer, "the board did not find its reference in the inkwell");

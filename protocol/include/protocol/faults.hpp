@@ -27,7 +27,7 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(4, current_sensor, "A current sensor does not read zero while its bridge is off.", "Check the shunt amplifier of that motor and its {shunt_amplifier_offset_V} V reference, then clear the fault. If it was there from the start, reset the board: it measures them anew.") \
   X(5, over_current, "A motor current exceeded {over_current_percent} % of its limit, or what its sensor can measure.", "Check the motor wiring and lower the gains of the current loop, then clear the fault.") \
   X(6, over_speed, "The probe moved faster than speed_limit_m_per_s.", "Hold the stylus, lower wall_stiffness_N_per_m if it was thrown out of a wall, then clear the fault.") \
-  X(7, encoder_implausible, "A joint angle lies far beyond its stop, or an encoder stands still although its motor presses otherwise than before: counts were lost, or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \
+  X(7, encoder_implausible, "A joint angle lies far beyond its stop, an encoder jumped, or stands still although its motor presses otherwise than before: counts were lost, or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \
   X(8, host_silent, "The host was silent for longer than host_timeout_s while the force was on.", "Reconnect the companion, clear the fault, then switch the force on again.") \
   X(9, servo_overrun, "The control interrupt did not finish within its period.", "Report this with the firmware version: it is a defect of the firmware. Then clear the fault.") \
   X(10, watchdog, "The board was restarted by its watchdog.", "Report this with the firmware version, then clear the fault.")    \
@@ -44,7 +44,8 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(21, encoder_wire, "An encoder's count goes to and fro by one and no further, faster than anything can shake the arm: one of its two signal wires is dead.", "Check that encoder's plug and both of its signal wires, put the stylus into the inkwell, then clear the fault.") \
   X(22, bridge_wire, "The enable wire or a leg's wire of the bridges is not at the level that the chip gives it.", "Look for a wire between the chip and the bridges that touches ground, a supply or another wire. Then clear the fault.") \
   X(23, analog_supply, "The converters' reference VDDA, which feeds amplifiers and potentiometers too, is more than {analog_supply_percent} % off its 3.3 V.", "Check the board's regulator, and the ferrite and the capacitors of VDDA. Then clear the fault.") \
-  X(24, self_test_failed, "The self-test has found something without which there is no force.", "`inkwell self-test --last` names it and says what to do. Then `inkwell self-test` tests again; the fault goes if it passes.")
+  X(24, self_test_failed, "The self-test has found something without which there is no force.", "`inkwell self-test --last` names it and says what to do. Then `inkwell self-test` tests again; the fault goes if it passes.") \
+  X(25, inkwell_implausible, "The inkwell's switch is closed, but by the encoders the arm is somewhere else: counts were lost, or the switch or its wire is stuck.", "Check the inkwell's switch, its wire and the encoder plugs. Clear the fault, take the stylus out of the inkwell and put it in once more.")
 
 /// X(code, name, cause, remedy)
 #define INKWELL_REFUSALS(X)                                                                                                       \

@@ -17,7 +17,7 @@ namespace inkwell::protocol {
 /// X(id, name, whether the hand feels a force, meaning)
 #define INKWELL_STATES(X)                                                                                          \
   X(0, starting, false, "The board measures its current sensors. This takes a tenth of a second.")                 \
-  X(1, unreferenced, false, "Put the stylus into the inkwell once, so that the board knows where the arm is.")     \
+  X(1, unreferenced, false, "Put the stylus into the inkwell once, so that the board knows where the arm is. Take it out before if it is in.") \
   X(2, ready, false, "The pose is valid. The force is off.")                                                       \
   X(3, active, true, "The pose is valid. The force is on.")                                                        \
   X(4, fault, false, "The motors are off because of the fault shown.")                                             \
@@ -241,6 +241,7 @@ inline constexpr auto watch_table = []() {
       {Fault::motor_hot, started, when_gone, coast},
       {Fault::encoder_wire, moving, at_once, coast, true},
       {Fault::encoder_implausible, moving, at_once, coast, true},
+      {Fault::inkwell_implausible, moving, at_once, coast, true},
       {Fault::over_speed, with_force, at_once, brake},
       {Fault::host_silent, driven, at_once, brake},
   });
@@ -277,6 +278,9 @@ constexpr Watches watches(Predicate is_so) {
     if (is_so(watch_table[i])) bits |= 1u << i;
   return bits;
 }
+
+/// What says that counts may be lost, whatever else is found and in whatever state.
+inline constexpr Watches voiding_watches = watches([](const Watch& row) { return row.voids_reference; });
 
 /// Whether the place of the arm has to be learnt anew after this fault. No table is read for it.
 constexpr bool voids_reference(Fault fault) {

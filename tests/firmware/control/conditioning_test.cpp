@@ -103,7 +103,7 @@ TEST_CASE("the inkwell gives its reference once the arm has been still in it for
   CHECK(reference.counts[0] == 104);
 
   // Forgotten while the stylus rests there: it is taken once more after as long.
-  forget(reference);
+  forget(reference, false);
   CHECK_FALSE(reference.valid);
   for (std::uint32_t i = 0; i < InkwellReference::still_periods; ++i)
     CHECK_FALSE(update_reference(reference, counts, true));

@@ -124,18 +124,31 @@ std::vector<FaultCase> fault_cases() {
                                    State::active,  State::limited,      State::landing};
   const std::vector<State> all{State::starting, State::testing, State::unreferenced, State::ready,
                                State::ramping,  State::active,  State::limited,      State::landing};
-  return {{Fault::memory_damaged, all, false},    {Fault::crystal_failed, all, true},
-          {Fault::processor_fault, all, true},    {Fault::watchdog, all, true},
-          {Fault::servo_overrun, all, true},      {Fault::not_finite, all, false},
-          {Fault::force_law, all, true},          {Fault::current_sensor, all, false},
-          {Fault::samples_stale, started, false}, {Fault::supply_low, started, false},
-          {Fault::supply_high, started, false},   {Fault::bridge_fault, started, false},
-          {Fault::over_current, started, false},  {Fault::motor_implausible, force, true},
-          {Fault::motor_hot, started, false},     {Fault::encoder_implausible, moving, true},
-          {Fault::over_speed, force, true},       {Fault::host_silent, driven, true},
-          {Fault::logic_supply_low, all, false},  {Fault::supply_ripple, started, false},
-          {Fault::encoder_wire, moving, true},    {Fault::bridge_wire, all, false},
-          {Fault::analog_supply, all, false},     {Fault::self_test_failed, {State::testing}, false}};
+  return {{Fault::memory_damaged, all, false},
+          {Fault::crystal_failed, all, true},
+          {Fault::processor_fault, all, true},
+          {Fault::watchdog, all, true},
+          {Fault::servo_overrun, all, true},
+          {Fault::not_finite, all, false},
+          {Fault::force_law, all, true},
+          {Fault::current_sensor, all, false},
+          {Fault::samples_stale, started, false},
+          {Fault::supply_low, started, false},
+          {Fault::supply_high, started, false},
+          {Fault::bridge_fault, started, false},
+          {Fault::over_current, started, false},
+          {Fault::motor_implausible, force, true},
+          {Fault::motor_hot, started, false},
+          {Fault::encoder_implausible, moving, true},
+          {Fault::over_speed, force, true},
+          {Fault::host_silent, driven, true},
+          {Fault::logic_supply_low, all, false},
+          {Fault::supply_ripple, started, false},
+          {Fault::encoder_wire, moving, true},
+          {Fault::bridge_wire, all, false},
+          {Fault::analog_supply, all, false},
+          {Fault::self_test_failed, {State::testing}, false},
+          {Fault::inkwell_implausible, moving, true}};
 }
 
 TEST_CASE("each fault is looked for in its states and in no other") {
@@ -177,7 +190,7 @@ TEST_CASE("the place of the arm is void after faults that an encoder may have br
     CAPTURE(static_cast<int>(row.fault));
     CHECK(protocol::voids_reference(row.fault) ==
           (row.fault == Fault::encoder_implausible || row.fault == Fault::encoder_wire ||
-           row.fault == Fault::motor_implausible));
+           row.fault == Fault::motor_implausible || row.fault == Fault::inkwell_implausible));
   }
   CHECK_FALSE(protocol::voids_reference(Fault::none));
 }

@@ -72,6 +72,9 @@ struct InkwellReference {
   static constexpr std::uint32_t still_periods = periods_in(0.1f);
   /// An encoder may dither by this while the arm counts as still.
   static constexpr std::int32_t still_counts = 1;
+  /// Farther from the inkwell, at the stylus, its switch is not closed by the stylus: it closes a little before the
+  /// stylus rests, and is believed 5 ms late when a hand pulls it out.
+  static constexpr float play_m = 0.02f;
 
   std::array<std::int32_t, 3> counts{};       ///< in the inkwell, since power-up
   std::array<std::int32_t, 3> rest_counts{};  ///< where the arm has been still
@@ -79,10 +82,10 @@ struct InkwellReference {
   bool valid = false;
 };
 
-/// The stylus has to be put in once more.
-constexpr void forget(InkwellReference& reference) {
+/// The stylus has to be put in once more; `switch_in_doubt`: the switch has to be seen open before that.
+constexpr void forget(InkwellReference& reference, bool switch_in_doubt) {
   reference.counts = {};
-  reference.rested_periods = 0;
+  reference.rested_periods = switch_in_doubt ? InkwellReference::still_periods + 1 : 0;
   reference.valid = false;
 }
 

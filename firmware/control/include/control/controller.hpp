@@ -22,9 +22,9 @@
 
 namespace inkwell::control {
 
-/// Everything between the samples and the duties. Single-threaded: all but the constructor is called in the
-/// control interrupt, in the order settings_changed / carry_out / host_alive / drive / replace_shapes /
-/// leave_for_update / raise, self-test, step, finish.
+/// Everything between the samples and the duties. Single-threaded: all that changes it is called in the control
+/// interrupt, in the order settings_changed / carry_out / host_alive / drive / replace_shapes / leave_for_update /
+/// raise, self-test, step, finish; before that interrupt runs, the constructor and raise.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board) : board_(board) {}
@@ -160,6 +160,7 @@ class Controller {
 
   // Results of this period, in the order of the path.
   std::array<std::int32_t, 3> encoder_counts_{};  ///< since power-up
+  std::uint32_t jump_bits_ = 0;                   ///< 0 unless one of them moved by more than an arm can
   std::array<std::int32_t, 3> counts_since_inkwell_{};
   Triple current_A_{};
   Probe probe_;  ///< what the force law is given

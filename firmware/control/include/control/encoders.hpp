@@ -20,9 +20,21 @@ constexpr std::int32_t unwrap(std::int32_t unwrapped, TimerCount timer_count) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(unwrapped) + static_cast<std::uint32_t>(step));
 }
 
+/// Not 0 if one of them moved by `jump_counts` (EncoderScale) or more; backwards by one more.
+constexpr std::uint32_t jumps(const std::array<std::int32_t, 3>& before, const std::array<std::int32_t, 3>& now,
+                              std::uint32_t jump_counts) {
+  std::uint32_t all = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    all |= static_cast<std::uint32_t>(now[i]) - static_cast<std::uint32_t>(before[i]) + jump_counts;
+  return all & (0u - 2 * jump_counts);
+}
+
 struct EncoderScale {
   Triple rad_per_count;  ///< negative where the encoder counts down when its joint turns forward
   Triple inkwell_rad;    ///< joint angles while the stylus is in the inkwell
+  /// An encoder that moves by so many in a control period did not count what its joint did: 100 rad/s at least. A power
+  /// of two, so that one look judges all three.
+  std::uint32_t jump_counts;
 };
 
 /// Joint angles for counts since the inkwell (paper, section 3.1).

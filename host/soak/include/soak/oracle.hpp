@@ -65,13 +65,16 @@ enum class Disturbance : std::uint8_t {
 class Oracle {
  public:
   static constexpr double force_tolerance = 1.05;
+  /// By what a board may find out that an encoder counted wrongly.
+  static constexpr protocol::Watches lost_counts =
+      protocol::watch(protocol::Fault::encoder_implausible) | protocol::watch(protocol::Fault::inkwell_implausible);
 
   void begin(unsigned phase, Kind kind);
   /// The cause is gone: nothing may be told any more in this phase.
   void allow_no_fault() { may_tell_ = 0; }
   /// The cause is gone, but not what it did to a reference: counts that were lost may be noticed until there is
   /// another.
-  void allow_lost_counts() { may_tell_ = protocol::watch(protocol::Fault::encoder_implausible); }
+  void allow_lost_counts() { may_tell_ = lost_counts; }
   void disturb(Disturbance disturbance) { disturbance_ = disturbance; }
 
   /// Asked for from now on.
