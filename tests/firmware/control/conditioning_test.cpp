@@ -67,6 +67,15 @@ TEST_CASE("switches count after 5 ms without change") {
   CHECK(filter.closed == 5);
   show(0, 3);
   CHECK(filter.closed == 5);
+  // One that changes back in the very moment in which it was believed is followed too.
+  for (std::uint32_t later = 0; later < 6; ++later) {
+    CAPTURE(later);
+    SwitchFilter other;
+    for (std::uint32_t i = 0; i < SwitchFilter::settle_periods + later; ++i)
+      debounce(other, 1, i % SwitchFilter::count);
+    for (std::uint32_t i = 0; i < 2 * SwitchFilter::settle_periods; ++i) debounce(other, 0, i % SwitchFilter::count);
+    CHECK(other.closed == 0);
+  }
   // Whatever the others do.
   for (std::uint32_t i = 0; i <= SwitchFilter::settle_periods; ++i) show(i % 8 < 4 ? 5 : 4, 1);
   CHECK((filter.closed & 4) == 4);

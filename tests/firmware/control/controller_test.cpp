@@ -332,6 +332,35 @@ TEST_CASE("a current sensor that drifts off zero while the bridges are off is to
   }
 }
 
+TEST_CASE(
+    "what a sensor read before the force was on is not counted on when it goes, nor what it read before it was "
+    "measured") {
+  const Settings settings = settings_near_wall();
+  constexpr std::uint32_t patience_periods = control::CurrentOffsets::patience_periods;
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  samples.current_A[0] = 0.5f;
+  tests::run(controller, samples, settings, patience_periods - 20);
+  controller.carry_out(tests::command(Command::enable_force));
+  run_with_host(controller, samples, settings, 1);
+  REQUIRE(controller.force_is_on());
+  samples.current_A[0] = 0.0f;
+  run_with_host(controller, samples, settings, 100);
+  controller.carry_out(tests::command(Command::stop));
+  samples.current_A[0] = 0.5f;  // in a winding that was just switched off
+  tests::run(controller, samples, settings, 30);
+  samples.current_A[0] = 0.0f;
+  tests::run(controller, samples, settings, 10);
+  CHECK(controller.state() == State::ready);
+
+  Controller starting{tests::board_limits};
+  samples.current_A[1] = 1.0f;  // an amplifier that settles
+  tests::run(starting, samples, settings, patience_periods + 50);
+  samples.current_A[1] = 0.0f;
+  tests::run(starting, samples, settings, control::CurrentOffsets::duration_periods);
+  CHECK(starting.state() == State::testing);
+}
+
 TEST_CASE("currents while a brake shorts the motors are no drift") {
   const Settings settings = settings_near_wall();
   Controller controller = tests::active_controller(settings);

@@ -302,6 +302,11 @@ TEST_CASE("a current sensor that is off zero is told by its item as well, althou
 }
 
 TEST_CASE("the offsets of the current sensors are those of now, not of the start") {
+  Board with_offset;
+  with_offset.offset_A[0] = 0.1f;  // which the board takes off, and tells all the same
+  with_offset.run_while(State::starting);
+  with_offset.run_while(State::testing);
+  CHECK(with_offset.figure(SelfTestItem::current_offsets) == doctest::Approx(0.1).epsilon(0.01));
   Board board;
   board.run_while(State::starting);
   board.run_while(State::testing);
