@@ -224,12 +224,10 @@ void Controller::watch_motors(const Settings& settings) {
 
 /// What the sensors show while the bridges have been off for a while is their offset, and it was measured.
 void Controller::watch_idle_currents() {
-  bool is_zero = drive_.enabled || drive_.brake || !offsets_.measured();
-  if (!is_zero) {
-    is_zero = true;
-    for (const float each_A : current_A_) is_zero = is_zero && std::fabs(each_A) <= CurrentOffsets::plausible_A;
-  }
-  off_zero_periods_ = is_zero ? 0 : off_zero_periods_ + 1;
+  bool off_zero = false;
+  if (!drive_.enabled && !drive_.brake && offsets_.measured())
+    for (const float each_A : current_A_) off_zero = off_zero || !(std::fabs(each_A) <= CurrentOffsets::plausible_A);
+  off_zero_periods_ = off_zero ? off_zero_periods_ + 1 : 0;
   if (off_zero_periods_ >= CurrentOffsets::patience_periods) raise(Fault::current_sensor);
 }
 
@@ -294,11 +292,11 @@ void Controller::drive_pulses(const Settings& settings) {
                                          .current_limit_A = settings.motors.current_limit_A,
                                          .supply_V = supply_.supply_V,
                                          .dead_time_part = board_.dead_time_part});
-  for (std::size_t i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < 3; ++i) {
     drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
-  // At least that, whatever their own limits are.
-  for (std::size_t i = 0; i < 3; ++i)
+    // At least that, whatever their own limits are.
     over_current_A_[i] = std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A);
+  }
   over_current_A_[turn_] += over_current_fall_A;  // follow_over_current() takes it away in this period
   drive_.enabled = true;
 }

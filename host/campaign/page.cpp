@@ -100,9 +100,8 @@ std::string_view reason_of_wire(std::string_view wire) {
   if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
   if (wire == "supply") return "It reads a sound supply.";
   if (wire == "usb_supply") return "It stands as with the cable in.";
-  return "A switch that is open or closed looks like one that is let go of or pressed; the inkwell's is told where it "
-         "is "
-         "closed elsewhere.";
+  return "A switch that is open or closed looks like one that is let go of or pressed; the inkwell's is told where "
+         "it is closed elsewhere.";
 }
 
 /// Why a fault may pass unnoticed with the force on, as far as its row of the table tells.
@@ -119,9 +118,9 @@ std::string_view reason(const CaseFault& fault) {
       return "It shows by a motor that turns or presses otherwise than before while the joint does not seem to move.";
     case InjectedFault::encoder_lost_counts:
     case InjectedFault::encoder_slip:
-      return "No second sensor knows the joint, and a motor's voltage may differ by more; what is noticed is an angle "
-             "far "
-             "beyond its stop, a jump of 16 counts, and a place that is not the inkwell while its switch is closed.";
+      return "No second sensor knows the joint, and a motor's voltage may differ by more; what is noticed is an "
+             "angle far beyond its stop, a jump of 16 counts, and a place that is not the inkwell while its switch is "
+             "closed.";
     case InjectedFault::shunt_gain:
       return "Voltage, reading and speed fit within what a hot motor may differ by; the next self-test tells.";
     case InjectedFault::shunt_offset:
@@ -131,9 +130,8 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::motor_open:
     case InjectedFault::leg_open: return "While no current is asked of the motor, none is missed.";
     case InjectedFault::motor_shorted:
-      return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; the "
-             "next "
-             "self-test tells.";
+      return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; "
+             "the next self-test tells.";
     case InjectedFault::motor_hot:
       return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; nothing "
              "measures the torque.";

@@ -233,7 +233,7 @@ void Bench::dock() {
     // Counts were lost, and only here the board finds the arm again. Whether that may be is the oracle's to say.
     if (board.is(State::fault)) {
       const protocol::Fault told = board.pose()->fault;
-      if ((Oracle::lost_counts & protocol::watch(told)) == 0) continue;
+      if ((lost_counts & protocol::watch(told)) == 0) continue;
       board.command(Command::clear_fault);
       // Then the switch has to be seen open as well.
       if (told == protocol::Fault::inkwell_implausible) {

@@ -235,17 +235,9 @@ TEST_CASE("what the samples can show wrong switches the bridges off with the rig
 Fault fault_at(const Settings& settings, const control::Triple& at_stops_rad) {
   control::Triple joint_rad = at_stops_rad;
   if (settings.arm.transmission == control::Transmission::parallelogram) joint_rad[2] += joint_rad[1];
-  std::array<std::int32_t, 3> there_counts;
-  for (std::size_t i = 0; i < 3; ++i)
-    there_counts[i] = static_cast<std::int32_t>(
-        std::lround((joint_rad[i] - settings.encoders.inkwell_rad[i]) / settings.encoders.rad_per_count[i]));
   Samples samples = tests::samples_at_rest();
   Controller controller = tests::ready_controller(settings);
-  while (samples.encoder_counts != there_counts) {
-    for (std::size_t i = 0; i < 3; ++i)
-      samples.encoder_counts[i] += std::clamp<std::int32_t>(there_counts[i] - samples.encoder_counts[i], -15, 15);
-    tests::run(controller, samples, settings, 1);
-  }
+  tests::move_to(controller, samples, tests::counts_at(joint_rad, settings), settings);
   tests::run(controller, samples, settings, 3);
   return controller.fault();
 }

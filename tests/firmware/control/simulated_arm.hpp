@@ -1,6 +1,12 @@
 // What several tests of the controller need: a clock, samples, and a controller brought into a state.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
 #include <control/controller.hpp>
 #include <omni_driver/facts.hpp>
 
@@ -52,6 +58,28 @@ inline control::Drive run(control::Controller& controller, const control::Sample
     controller.finish(clock);
   }
   return drive;
+}
+
+/// What the encoders count at these angles, from the inkwell on.
+inline std::array<std::int32_t, 3> counts_at(const control::Triple& joint_rad, const control::Settings& settings) {
+  std::array<std::int32_t, 3> counts;
+  for (std::size_t i = 0; i < 3; ++i)
+    counts[i] = static_cast<std::int32_t>(
+        std::lround((joint_rad[i] - settings.encoders.inkwell_rad[i]) / settings.encoders.rad_per_count[i]));
+  return counts;
+}
+
+/// To these counts from where the samples are, by at most so many in so many periods; the host stays.
+inline void move_to(control::Controller& controller, control::Samples& samples,
+                    const std::array<std::int32_t, 3>& there_counts, const control::Settings& settings,
+                    std::int32_t step_counts = 15, std::uint32_t step_periods = 1) {
+  while (samples.encoder_counts != there_counts) {
+    for (std::size_t i = 0; i < 3; ++i)
+      samples.encoder_counts[i] +=
+          std::clamp<std::int32_t>(there_counts[i] - samples.encoder_counts[i], -step_counts, step_counts);
+    controller.host_alive();
+    run(controller, samples, settings, step_periods);
+  }
 }
 
 /// Past the measurement of the offsets and a self-test that passes: state `unreferenced`.

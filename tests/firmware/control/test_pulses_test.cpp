@@ -53,19 +53,6 @@ TEST_CASE("a test pulse of current: its motor only, its time, its limit, then ze
   CHECK(controller.state() == State::ready);
 }
 
-/// Takes a ready arm to these angles, as fast as its encoders may.
-void move_to(Controller& controller, Samples& samples, const control::Triple& joint_rad, const Settings& settings) {
-  std::array<std::int32_t, 3> there_counts;
-  for (std::size_t i = 0; i < 3; ++i)
-    there_counts[i] = static_cast<std::int32_t>(
-        std::lround((joint_rad[i] - settings.encoders.inkwell_rad[i]) / settings.encoders.rad_per_count[i]));
-  while (samples.encoder_counts != there_counts) {
-    for (std::size_t i = 0; i < 3; ++i)
-      samples.encoder_counts[i] += std::clamp<std::int32_t>(there_counts[i] - samples.encoder_counts[i], -15, 15);
-    tests::run(controller, samples, settings, 1);
-  }
-}
-
 /// Of a hand that holds the probe against one motor's torque and none of the others: J' F = torque, by Cramer's rule.
 double held_N(const control::Jacobian& jacobian, std::size_t motor, double torque_Nm) {
   const auto column = [&](std::size_t i) {
@@ -91,7 +78,7 @@ TEST_CASE("a test pulse of current makes no more force at the hand than force_li
     for (int pose = 0; pose < 10; ++pose) {
       Controller there = ready;
       Samples samples = tests::samples_at_rest();
-      move_to(there, samples, tests::random_joints(set, random), settings);
+      tests::move_to(there, samples, tests::counts_at(tests::random_joints(set, random), settings), settings);
       REQUIRE(there.state() == State::ready);
       const control::Triple joint_rad = control::joint_angles(samples.encoder_counts, settings.encoders);
       const control::Jacobian jacobian = control::forward_kinematics(joint_rad, settings.arm).jacobian;

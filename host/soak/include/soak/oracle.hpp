@@ -65,9 +65,6 @@ enum class Disturbance : std::uint8_t {
 class Oracle {
  public:
   static constexpr double force_tolerance = 1.05;
-  /// By what a board may find out that an encoder counted wrongly.
-  static constexpr protocol::Watches lost_counts =
-      protocol::watch(protocol::Fault::encoder_implausible) | protocol::watch(protocol::Fault::inkwell_implausible);
 
   void begin(unsigned phase, Kind kind);
   /// The cause is gone: nothing may be told any more in this phase.

@@ -17,6 +17,10 @@
 
 namespace inkwell::soak {
 
+/// By what a board may find out that an encoder counted wrongly.
+inline constexpr protocol::Watches lost_counts =
+    protocol::watch(protocol::Fault::encoder_implausible) | protocol::watch(protocol::Fault::inkwell_implausible);
+
 // clang-format off
 /// X(name, cards in a deck, faults that may be told, what is done)
 #define INKWELL_SOAK_KINDS(X)                                                                                          \
@@ -28,7 +32,7 @@ namespace inkwell::soak {
   X(scope, 1, 0, "The scope runs and changes its signals.")                                                            \
   X(recording, 1, 0, "The scope is recorded into a file that is read again.")                                          \
   X(live_storm, 2, 0, "Parameters change under the hand, legal ones and illegal ones.")                                \
-  X(wide_storm, 1, protocol::watch(protocol::Fault::encoder_implausible) | protocol::watch(protocol::Fault::inkwell_implausible), \
+  X(wide_storm, 1, lost_counts, \
     "Any legal values of all parameters, and illegal ones, with the force off; stops and scales of the joints among them.") \
   X(store, 1, 0, "Parameters are stored, restored and forgotten; the board starts anew with them, and while it stores.") \
   X(cable, 1, protocol::watch(protocol::Fault::host_silent), "The cable is pulled and put back.")                      \
