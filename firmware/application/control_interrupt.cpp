@@ -76,6 +76,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
                     .switches = controller.switches(),
                     .force_sources = controller.force_sources(),
                     .limits = controller.limits(),
+                    .is_referenced = controller.is_referenced(),
                     .command_token = host_link.commands.last_token(),
                     .periods = period,
                     .begin_cycles = begin_cycles};

@@ -34,7 +34,8 @@ bool PoseRecorder::read(protocol::PoseReport& report) const {
   copy_three(report.gimbal_rad, Signal::gimbal_1_rad);
   copy_three(report.force_N, Signal::force_x_N);
   copy_three(report.joint_rad, Signal::joint_1_rad);
-  report.limits = summary.limits;
+  report.limits = summary.limits & 127u;
+  report.is_referenced = summary.is_referenced;
   report.switches = summary.switches & 15u;
   report.force_sources = summary.force_sources & 15u;
   report.servo_load = saturate_to_byte(static_cast<float>(longest_cycles_.load()) * load_per_cycle_);

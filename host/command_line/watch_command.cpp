@@ -52,6 +52,7 @@ nlohmann::ordered_json to_json(const PoseReport& pose, double host_time_s, std::
           {"host_time_s", host_time_s},
           {"state", info(pose.state).name},
           {"fault", info(pose.fault).name},
+          {"referenced", pose.is_referenced != 0},
           {"position_m", {pose.position_m[0], pose.position_m[1], pose.position_m[2]}},
           {"gimbal_rad", {pose.gimbal_rad[0], pose.gimbal_rad[1], pose.gimbal_rad[2]}},
           {"force_N", {pose.force_N[0], pose.force_N[1], pose.force_N[2]}},

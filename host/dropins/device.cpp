@@ -40,11 +40,6 @@ Vector turn_rad(const double (&from)[9], const double (&to)[9]) {
 
 }  // namespace
 
-bool comes_only_with_force(int fault) {
-  return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT ||
-         fault == INKWELL_FAULT_MOTOR_IMPLAUSIBLE;
-}
-
 bool* Capabilities::find(Enum value) {
   switch (value) {
 #define X(code, name, text, at_start) \
@@ -111,20 +106,10 @@ void Device::look() {
       for (std::size_t i = 0; i < 3; ++i)
         seen.angular_velocity_rad_per_s[i] += part * (turned_rad[i] / passed_s - seen.angular_velocity_rad_per_s[i]);
     }
-    note_reference(seen.pose);
     if (seen.pose.sequence != now_.pose.sequence) is_silent_ = false;
     if (is_silent_) raise(comm_error, "The device sends no poses. Reset the board, or let a paused virtual board run.");
   }
   before_ = std::exchange(now_, seen);
-}
-
-/// The board does not tell in a fault whether it knows where the arm is. It keeps what it knew, but for lost counts.
-void Device::note_reference(const inkwell_pose& pose) {
-  const bool is_fault = pose.state == INKWELL_FAULT;
-  if (pose.state == INKWELL_READY || pose.state == INKWELL_ACTIVE || (is_fault && comes_only_with_force(pose.fault)))
-    is_referenced_ = true;
-  if (pose.state == INKWELL_UNREFERENCED || (is_fault && pose.fault == INKWELL_FAULT_ENCODER_IMPLAUSIBLE))
-    is_referenced_ = false;
 }
 
 /// Raises what came up since the last frame, once.
@@ -180,13 +165,14 @@ void Device::end_frame() {
 
 Calibration Device::calibration() {
   inkwell_pose pose;
-  const auto result = inkwell_get_pose(arm(), &pose);
+  int is_referenced = 0;
+  auto result = inkwell_is_referenced(arm(), &is_referenced);
+  if (result == INKWELL_OK) result = inkwell_get_pose(arm(), &pose);
   if (result != INKWELL_OK) {
     raise(comm_error, inkwell_error_text(), result);
     return calibration_needs_manual_input;
   }
-  note_reference(pose);
-  return is_referenced_         ? calibration_ok
+  return is_referenced != 0     ? calibration_ok
          : pose.in_inkwell != 0 ? calibration_needs_update
                                 : calibration_needs_manual_input;
 }

@@ -59,9 +59,6 @@ struct Settings {
   double status_light = 0.0;
 };
 
-/// Faults that come only while the force is on, before which the arm knew where it was.
-bool comes_only_with_force(int fault);
-
 /// Every member that is not marked otherwise is called with the lock of Devices.
 class Device {
  public:
@@ -108,7 +105,6 @@ class Device {
   };
   void raise(ErrorCode code, const std::string& sentence = {}, int internal_code = 0) const;
   void look();
-  void note_reference(const inkwell_pose& pose);
   void note_condition();
   void send();
   std::optional<Vector> demanded_force() const;
@@ -128,7 +124,6 @@ class Device {
   ForceGuard guard_;
   ErrorCode dropped_for_ = success;  ///< why the last frame's force was dropped
   bool scheduler_runs_ = false;
-  bool is_referenced_ = false;  ///< in a fault, as far as is known
   bool was_warm_ = false;
   int fault_ = 0;
   std::atomic<bool> is_silent_ = false;

@@ -40,6 +40,7 @@ class Arm {
   ScopeStream& scope() { return scope_; }
 
   inkwell_pose pose() const { return poses_.newest(); }
+  bool is_referenced() const { return poses_.is_referenced(); }
   /// The first pose after the one with `sequence`.
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;

@@ -116,6 +116,10 @@ inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell
   });
 }
 
+inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced) {
+  return guarded([&] { *required(is_referenced, "The place for the answer") = arm_of(arm).is_referenced() ? 1 : 0; });
+}
+
 inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_rad[3], double position_m[3],
                                           double jacobian[9]) {
   return guarded([&] {

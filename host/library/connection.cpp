@@ -64,7 +64,7 @@ void Connection::read_poses(std::promise<void>& opened, bool& is_open) {
   while (!ends_) {
     if (const auto report = arm_.device->read_pose(read_timeout)) {
       const auto pose = reader.read(*report, geometry());
-      poses_.publish(pose);
+      poses_.publish(pose, report->is_referenced);
       // A board of its own has its stylus in the inkwell until the program moves the hand.
       if (!is_open && (!arm_.board || knows_where_it_is(pose))) {
         is_open = true;

@@ -13,9 +13,10 @@ Clock::time_point in(double seconds) {
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::clamp(seconds, 0.0, 1e6)));
 }
 
-void PoseFeed::publish(const inkwell_pose& pose) {
+void PoseFeed::publish(const inkwell_pose& pose, bool is_referenced) {
   const std::lock_guard lock(mutex_);
   newest_ = pose;
+  is_referenced_ = is_referenced;
   changed_.notify_all();
 }
 
@@ -45,6 +46,12 @@ inkwell_pose PoseFeed::newest() const {
   const std::unique_lock lock(mutex_);
   require_open(lock);
   return newest_;
+}
+
+bool PoseFeed::is_referenced() const {
+  const std::unique_lock lock(mutex_);
+  require_open(lock);
+  return is_referenced_;
 }
 
 }  // namespace inkwell::library

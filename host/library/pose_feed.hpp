@@ -18,7 +18,7 @@ Clock::time_point in(double seconds);
 
 class PoseFeed {
  public:
-  void publish(const inkwell_pose& pose);
+  void publish(const inkwell_pose& pose, bool is_referenced);
   /// The link is lost and no pose comes any more; the first reason counts.
   void end(const std::string& reason);
   std::optional<std::string> end_reason() const;
@@ -27,6 +27,8 @@ class PoseFeed {
 
   /// Throws Disconnected after the end.
   inkwell_pose newest() const;
+  /// Whether the arm knows its place, by the newest pose. Throws Disconnected after the end.
+  bool is_referenced() const;
   /// The newest pose, once it fulfils the condition or the time is over. Throws Disconnected after the end.
   template <class Condition>
   inkwell_pose wait(Condition condition, Clock::time_point give_up_at = Clock::time_point::max()) const {
@@ -44,6 +46,7 @@ class PoseFeed {
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   inkwell_pose newest_{};
+  bool is_referenced_ = false;
   std::optional<std::string> end_reason_;
 };
 

@@ -104,6 +104,13 @@ Pose Arm::wait_for_pose(double timeout_s) {
   return pose;
 }
 
+bool Arm::is_referenced() {
+  const Use arm(*this);
+  int is_referenced = 0;
+  call([&] { return inkwell_is_referenced(arm, &is_referenced); });
+  return is_referenced != 0;
+}
+
 inkwell_information Arm::information() {
   const Use arm(*this);
   inkwell_information information;

@@ -30,6 +30,7 @@ class Arm {
   Pose wait_for_pose(double timeout_s);
   inkwell_information information();
   std::string board_name();
+  bool is_referenced();
 
   void enable_force(double timeout_s);
   void disable_force();

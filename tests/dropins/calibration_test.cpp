@@ -1,4 +1,4 @@
-// Whether the arm knows where it is, as HDAPI asks it, also in faults, in which the board does not tell.
+// Whether the arm knows where it is, as HDAPI asks it, also in faults.
 #include <doctest/doctest.h>
 
 #include <device/device.hpp>
@@ -20,7 +20,7 @@ protocol::PoseReport read_until(device::Device& arm, Condition condition) {
     if (const auto pose = arm.read_pose(60s); pose && condition(*pose)) return *pose;
 }
 
-TEST_CASE("an arm that a program finds in a fault that comes only with force knows where it is") {
+TEST_CASE("an arm that a program finds in a fault knows where it is, if nothing says that counts were lost") {
   Board board;
   forget_errors();
   const auto driver = device::Device::open(*board.board.find());
@@ -44,16 +44,13 @@ TEST_CASE("an arm that lost counts does not know any more where it is") {
   CHECK(says(HD_FORCE_ERROR, "encoder"));
 }
 
-TEST_CASE("the faults that come only with force are those of the supervisor's table") {
-  for (const auto& row : protocol::watch_table) {
-    bool only_with_force = true;
-    for (std::size_t i = 0; i < protocol::state_count; ++i) {
-      const auto state = static_cast<State>(i);
-      if (row.watched_in.contains(state) && !protocol::force_is_on(state)) only_with_force = false;
-    }
-    CHECK_MESSAGE(dropins::comes_only_with_force(static_cast<int>(row.fault)) == only_with_force,
-                  std::string(protocol::info(row.fault).name));
-  }
+TEST_CASE("an arm in the inkwell that it does not find there is to be put into it anew") {
+  Held held;
+  held.control.inject({.fault = "wire_low", .of = "inkwell_switch"});
+  CHECK(until([] { return hdCheckCalibration() != HD_CALIBRATION_OK; }));
+  CHECK(hdCheckCalibration() == HD_CALIBRATION_NEEDS_UPDATE);
+  held.frame([] {});
+  CHECK(says(HD_FORCE_ERROR, "inkwell"));
 }
 
 }  // namespace

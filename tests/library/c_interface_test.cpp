@@ -35,6 +35,10 @@ TEST_CASE("an arm tells who it is and where the stylus is") {
 
   const auto pose = virtual_arm.wait_until([](const auto& now) { return now.state == INKWELL_READY; });
   CHECK(pose.in_inkwell == 1);
+  int is_referenced = 0;
+  REQUIRE(inkwell_is_referenced(virtual_arm.arm, &is_referenced) == INKWELL_OK);
+  CHECK(is_referenced == 1);
+  CHECK(inkwell_is_referenced(virtual_arm.arm, nullptr) == INKWELL_BAD_ARGUMENT);
   CHECK(pose.supply_V == doctest::Approx(18.0).epsilon(0.05));
   for (int row = 0; row < 3; ++row)
     for (int other = 0; other < 3; ++other) {

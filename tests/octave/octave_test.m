@@ -98,6 +98,7 @@ while abs(pose.position_m(1) - 0.005) > 0.0007 || abs(pose.velocity_m_s(1)) > 0.
 end
 assert(pose.force_N(1), 1.5, 0.2);
 assert(! pose.limited_by_force);
+assert(pose.is_referenced);
 assert(pose.state, 'active');
 
 % A limit that holds the force back is told.

@@ -323,10 +323,12 @@ class Programs(unittest.TestCase):
     def test_an_arm_that_does_not_know_where_it_is(self):
         with VirtualBoard(BUILD, in_inkwell=False) as board, inkwell.open(board.address) as arm:
             wait_until(arm, lambda pose: pose.state == inkwell.State.UNREFERENCED)
+            self.assertFalse(arm.is_referenced)
             with self.assertRaisesRegex(inkwell.Refused, "Put the stylus into the inkwell"):
                 arm.enable_force(0.1)
             board.call("dock", docked=True)
             wait_until(arm, lambda pose: pose.state == inkwell.State.READY)
+            self.assertTrue(arm.is_referenced)
 
     def test_devices(self):
         said = run("import os; os.environ['INKWELL_DEVICE'] = 'virtual'\n"

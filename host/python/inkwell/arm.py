@@ -137,6 +137,12 @@ class Arm:
     # ---- pose ------------------------------------------------------------------------------------------------
 
     @property
+    def is_referenced(self) -> bool:
+        """Whether the arm knows where it is: since the stylus rested in the inkwell, and until counts may have been
+        lost. Otherwise the newest pose's position, joints and rotation mean nothing."""
+        return self._native.is_referenced()
+
+    @property
     def pose(self) -> Pose:
         """The newest pose, at once."""
         return self._native.pose()

@@ -25,11 +25,6 @@ glm::vec3 up_of(control::Frame frame) {
 
 }  // namespace
 
-bool is_referenced(const protocol::PoseReport& pose) {
-  return pose.state == protocol::State::ready || protocol::force_is_on(pose.state) ||
-         (pose.state == protocol::State::fault && !protocol::voids_reference(pose.fault));
-}
-
 glm::mat3 workspace_to_view(control::Frame frame) {
   if (frame == control::Frame::omni) return glm::mat3{1.0f};
   // The paper's x points from the base to the user, y to the user's right, z up. Columns are where x, y, z go.
@@ -41,7 +36,7 @@ SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const pr
   const control::Triple inkwell_rad{parameters[Parameter::inkwell_joint_1_rad],
                                     parameters[Parameter::inkwell_joint_2_rad],
                                     parameters[Parameter::inkwell_joint_3_rad]};
-  const bool posed = pose && is_referenced(*pose);
+  const bool posed = pose && pose->is_referenced;
   const control::Triple joint_rad =
       posed ? control::Triple{pose->joint_rad[0], pose->joint_rad[1], pose->joint_rad[2]} : inkwell_rad;
   const control::LinkEnds ends = control::link_ends(joint_rad, settings.arm);

@@ -274,7 +274,7 @@ void ScenePane::draw_labels(const ScenePaneInput& input) const {
     }
   }
   float room_x = origin_.x + size_.x - style.points(16);
-  if (input.pose && is_referenced(*input.pose)) {
+  if (input.pose && input.pose->is_referenced) {
     const std::string position = fmt::format("x {:+6.1f}   y {:+6.1f}   z {:+6.1f} mm", 1000.0f * scene_.probe_m.x,
                                              1000.0f * scene_.probe_m.y, 1000.0f * scene_.probe_m.z);
     const ImVec2 taken = ImGui::CalcTextSize(position.c_str());

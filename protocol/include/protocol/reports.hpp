@@ -37,7 +37,7 @@ static_assert(std::endian::native == std::endian::little, "the structures go ove
 #endif
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 13 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
+inline constexpr std::uint16_t protocol_version = 14 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -145,9 +145,10 @@ struct PoseReport {
   ReportId report_id = ReportId::pose;
   State state;
   Fault fault;
-  std::uint8_t limits;         ///< bits of Limit
-  std::uint32_t sequence;      ///< frames of the bus since it runs; a gap is a frame without a report
-  std::uint32_t time_periods;  ///< control periods since the board started; wraps after 59 hours
+  std::uint8_t limits : 7;         ///< bits of Limit
+  std::uint8_t is_referenced : 1;  ///< 1: it is known where the arm is; else joints and position mean nothing
+  std::uint32_t sequence;          ///< frames of the bus since it runs; a gap is a frame without a report
+  std::uint32_t time_periods;      ///< control periods since the board started; wraps after 59 hours
   float position_m[3];
   float gimbal_rad[3];
   float force_N[3];

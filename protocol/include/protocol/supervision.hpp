@@ -282,19 +282,6 @@ constexpr Watches watches(Predicate is_so) {
 /// What says that counts may be lost, whatever else is found and in whatever state.
 inline constexpr Watches voiding_watches = watches([](const Watch& row) { return row.voids_reference; });
 
-/// Whether the place of the arm has to be learnt anew after this fault. No table is read for it.
-constexpr bool voids_reference(Fault fault) {
-  constexpr std::uint32_t codes = []() {
-    std::uint32_t bits = 0;
-    for (const Watch& row : watch_table)
-      if (row.voids_reference) bits |= 1u << static_cast<unsigned>(row.fault);
-    return bits;
-  }();
-  static_assert(fault_table.size() <= 32);
-  const auto code = static_cast<unsigned>(fault);
-  return code < fault_table.size() && (codes >> code & 1u) != 0;
-}
-
 // ---- the tables are whole ----------------------------------------------------------------------------------
 
 namespace detail {

@@ -32,16 +32,9 @@ Settings free_space(protocol::ParameterSet set = tests::omni_parameters()) {
   return control::prepare(set);
 }
 
-/// To these counts from where the samples are, as fast as an arm may move.
-void move_to(Controller& controller, Samples& samples, const std::array<std::int32_t, 3>& there_counts,
-             const Settings& settings) {
-  while (samples.encoder_counts != there_counts) {
-    for (std::size_t i = 0; i < 3; ++i)
-      samples.encoder_counts[i] += std::clamp<std::int32_t>(there_counts[i] - samples.encoder_counts[i], -1, 1);
-    controller.host_alive();
-    tests::run(controller, samples, settings, 4);
-  }
-}
+/// As fast as an arm may move with the force on.
+constexpr std::int32_t step_counts = 1;
+constexpr std::uint32_t step_periods = 4;
 
 State state_after_clearing(Controller& controller, const Samples& samples, const Settings& settings) {
   controller.carry_out(tests::command(Command::clear_fault));
@@ -118,9 +111,11 @@ TEST_CASE("a jump beside another fault, and one while it is told, void the place
     samples.bridge_fault = true;
     if (at_once) samples.encoder_counts[1] += 300;
     tests::run(controller, samples, settings, 1);
+    CHECK(controller.is_referenced() == !at_once);
     samples.encoder_counts[1] += at_once ? 0 : 300;
     tests::run(controller, samples, settings, 5);
     CHECK(controller.fault() == Fault::bridge_fault);
+    CHECK_FALSE(controller.is_referenced());
     samples.bridge_fault = false;
     CHECK(state_after_clearing(controller, samples, settings) == State::unreferenced);
   }
@@ -144,7 +139,7 @@ TEST_CASE("a closed inkwell's switch far from the inkwell is a fault, with the f
           auto there_counts = samples.encoder_counts;
           there_counts[joint] =
               static_cast<std::int32_t>(std::lround(part_of_play * play_rad / settings.encoders.rad_per_count[joint]));
-          move_to(controller, samples, there_counts, settings);
+          tests::move_to(controller, samples, there_counts, settings, step_counts, step_periods);
           REQUIRE(controller.fault() == Fault::none);
           samples.switches = inkwell_closed;
           controller.host_alive();
@@ -160,14 +155,14 @@ TEST_CASE("a switch that was closed elsewhere gives no reference before it was s
   const Settings settings = free_space();
   Controller controller = tests::ready_controller(settings);
   Samples samples = tests::samples_at_rest();
-  move_to(controller, samples, {600, 0, 0}, settings);
+  tests::move_to(controller, samples, {600, 0, 0}, settings, step_counts, step_periods);
   samples.switches = inkwell_closed;
   tests::run(controller, samples, settings, rest_periods);
   REQUIRE(controller.fault() == Fault::inkwell_implausible);
   REQUIRE(state_after_clearing(controller, samples, settings) == State::unreferenced);
   // The wire still touches ground, and the arm rests in many places.
   for (const std::int32_t counts : {600, 900, 0}) {
-    move_to(controller, samples, {counts, 0, 0}, settings);
+    tests::move_to(controller, samples, {counts, 0, 0}, settings, step_counts, step_periods);
     tests::run(controller, samples, settings, 3 * rest_periods);
     CHECK(controller.state() == State::unreferenced);
   }

@@ -21,11 +21,20 @@ protocol::SignalValues some_signals(float offset = 0.25f) {
 
 struct Recorded {
   link::Link& fresh = test::fresh_link();
+  bool is_referenced = true;
   PoseRecorder& poses = fresh.poses;
 
   void record(const protocol::SignalValues& signals, std::uint32_t period, std::uint32_t servo_cycles = 100) {
     test::interrupt(fresh, signals,
-                    {protocol::State::ready, protocol::Fault::none, 5, 6, 2, 42, period, period * cycles_per_period});
+                    {.state = protocol::State::ready,
+                     .fault = protocol::Fault::none,
+                     .switches = 5,
+                     .force_sources = 6,
+                     .limits = 2,
+                     .is_referenced = is_referenced,
+                     .command_token = 42,
+                     .periods = period,
+                     .begin_cycles = period * cycles_per_period});
     poses.note_load(servo_cycles);
   }
 };
@@ -57,13 +66,17 @@ TEST_CASE("a report shows the newest period and its signals") {
   CHECK(int{report.switches} == 5);
   CHECK(int{report.force_sources} == 6);
   CHECK(int{report.limits} == 2);
+  CHECK(int{report.is_referenced} == 1);
   CHECK(report.command_token == 42);
   CHECK(report.supply_dV == 180);
   CHECK(report.servo_load == 3);  // 100 of 8400 cycles
 
+  recorded.is_referenced = false;
   recorded.record(some_signals(0.5f), 1020);
   REQUIRE(recorder.take(report));
   CHECK(report.time_periods == 1020);
+  CHECK(int{report.limits} == 2);
+  CHECK(int{report.is_referenced} == 0);
   const float position_m = report.position_m[0];
   CHECK(position_m == static_cast<float>(Signal::position_x_m) + 0.5f);
 }

@@ -137,7 +137,11 @@ struct DeviceBench {
       signals[protocol::Signal::position_x_m] = static_cast<float>(periods);
       signals[protocol::Signal::gimbal_1_rad] = 1e-4f * static_cast<float>(periods % 30'000);
       interrupt(link, signals,
-                {state, fault, 0, 0, 0, link.commands.last_token(), periods, periods * cycles_per_period});
+                {.state = state,
+                 .fault = fault,
+                 .command_token = link.commands.last_token(),
+                 .periods = periods,
+                 .begin_cycles = periods * cycles_per_period});
       link.poses.note_load(100);
       port.pass_period();
       link.scope.pack();

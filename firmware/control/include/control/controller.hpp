@@ -97,6 +97,7 @@ class Controller {
   std::uint8_t switches() const { return switches_.closed; }                ///< bits of protocol::Switch, debounced
   std::uint8_t force_sources() const { return force_sources_; }             ///< bits of protocol::ForceSource
   std::uint8_t limits() const { return limits_; }                           ///< bits of protocol::Limit
+  bool is_referenced() const { return reference_.valid; }                   ///< it is known where the arm is
   std::uint32_t late_force_reports() const { return late_force_reports_; }  ///< since the start
   std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt

@@ -17,6 +17,7 @@ struct PeriodSummary {
   std::uint8_t switches;       ///< bits of protocol::Switch
   std::uint8_t force_sources;  ///< bits of protocol::ForceSource
   std::uint8_t limits;         ///< bits of protocol::Limit
+  bool is_referenced;          ///< it is known where the arm is
   std::uint8_t command_token;  ///< CommandQueue::last_token()
   std::uint32_t periods;       ///< number of this control period
   std::uint32_t begin_cycles;  ///< the cycle counter at its begin

@@ -202,6 +202,10 @@ INKWELL_API inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose
 /* Waits for the next pose that this thread has not seen. */
 INKWELL_API inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose);
 
+/* 1 while the arm knows where it is: since the stylus rested in the inkwell, and until counts may have been lost. With
+ * 0 the newest pose's position, joints and rotation mean nothing. */
+INKWELL_API inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced);
+
 /* Where the probe is for these joint angles, and how it moves: `jacobian`, row by row in m/rad, times the joints'
  * speeds is the probe's velocity; its transpose times a force is the joints' torques. Each may be NULL. */
 INKWELL_API inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_rad[3], double position_m[3],
@@ -221,9 +225,9 @@ INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout
 INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
 /* Takes the force away at once. */
 INKWELL_API inkwell_result inkwell_stop(inkwell_arm* arm);
-/* Clears a fault whose cause is gone, and waits for a fifth of a second whether it stays away; if the board tests itself
- * anew, until that is over. If the cause is still there it is INKWELL_REFUSED, and the sentence names the fault that is
- * there again with its remedy. Without a fault there is nothing to wait for. */
+/* Clears a fault whose cause is gone, and waits for a fifth of a second whether it stays away; if the board tests
+ * itself anew, until that is over. If the cause is still there it is INKWELL_REFUSED, and the sentence names the fault
+ * that is there again with its remedy. Without a fault there is nothing to wait for. */
 INKWELL_API inkwell_result inkwell_clear_fault(inkwell_arm* arm);
 
 /* What becomes of the walls while a program sends forces. */

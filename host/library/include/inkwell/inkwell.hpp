@@ -81,6 +81,11 @@ class Arm {
     require(inkwell_get_information(get(), &information));
     return information;
   }
+  bool is_referenced() const {
+    int is_referenced = 0;
+    require(inkwell_is_referenced(get(), &is_referenced));
+    return is_referenced != 0;
+  }
   std::string board_name() const {
     char name[INKWELL_BOARD_NAME_SIZE];
     require(inkwell_get_board_name(get(), name));

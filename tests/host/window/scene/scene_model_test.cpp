@@ -15,6 +15,7 @@ namespace {
 protocol::PoseReport pose_at(float joint_1_rad, float joint_2_rad, float joint_3_rad, protocol::State state) {
   protocol::PoseReport pose{};
   pose.state = state;
+  pose.is_referenced = state == protocol::State::ready || protocol::force_is_on(state);
   pose.joint_rad[0] = joint_1_rad;
   pose.joint_rad[1] = joint_2_rad;
   pose.joint_rad[2] = joint_3_rad;
@@ -41,6 +42,19 @@ TEST_CASE("until the arm has been in the inkwell it is drawn there") {
   const SceneModel scene = window::build_scene(pose_at(0.9f, 1.5f, 0.9f, protocol::State::unreferenced), parameters);
   CHECK(glm::length(scene.probe_m - scene.inkwell_m) < 1e-6f);
   CHECK_FALSE(scene.in_contact);
+}
+
+TEST_CASE("in a fault the arm is drawn where it is as long as that is known, whatever the fault") {
+  const auto parameters = protocol::default_parameters();
+  const glm::vec3 place_m = window::build_scene(middle_pose(protocol::State::ready), parameters).probe_m;
+  auto pose = middle_pose(protocol::State::fault);
+  pose.fault = protocol::Fault::supply_low;
+  SceneModel scene = window::build_scene(pose, parameters);
+  CHECK(glm::length(scene.probe_m - scene.inkwell_m) < 1e-6f);
+  pose.is_referenced = true;
+  scene = window::build_scene(pose, parameters);
+  CHECK(glm::length(scene.probe_m - place_m) < 1e-6f);
+  CHECK(glm::length(scene.probe_m - scene.inkwell_m) > 0.02f);
 }
 
 TEST_CASE("a wall pushes back when the sphere is in it and the force is on") {

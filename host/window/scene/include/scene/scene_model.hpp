@@ -43,11 +43,8 @@ struct SceneModel {
   control::Frame frame;
 };
 
-/// The picture of a pose. Without a referenced pose (`unreferenced`, `starting`) the arm is drawn in the inkwell.
+/// The picture of a pose. Without a referenced pose the arm is drawn in the inkwell.
 SceneModel build_scene(const std::optional<protocol::PoseReport>& pose, const protocol::ParameterSet& parameters);
-
-/// True if the pose's joint angles mean something: the arm has been in the inkwell.
-bool is_referenced(const protocol::PoseReport& pose);
 
 /// True if a person could see the difference in the scene.
 bool looks_different(const std::optional<protocol::PoseReport>& a, const std::optional<protocol::PoseReport>& b);
