@@ -14,6 +14,10 @@
 // change counts from 0.1 s on after the joint came to stand. The current is that of some ten milliseconds: a force that
 // turns round faster than the arm can follow leaves no trace in it.
 //
+// A hand that slides along a wall may balance such a change while friction holds the joint: once in an hour of random
+// use on the virtual board. To compare only while the other joints stand as well would rule that out, but then walls
+// would never tell a stuck encoder, for their force changes only where some joint is seen to move.
+//
 // Only the inkwell holds better. While the stylus is in it nothing is compared.
 #pragma once
 
