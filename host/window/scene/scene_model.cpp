@@ -103,7 +103,8 @@ bool looks_different(const std::optional<protocol::PoseReport>& first,
   constexpr float visible_m = 2e-4f;
   constexpr float visible_N = 0.02f;
   constexpr float visible_rad = 0.02f;
-  if (a.state != b.state || a.fault != b.fault || a.switches != b.switches) return true;
+  if (a.state != b.state || a.fault != b.fault || a.switches != b.switches || a.is_referenced != b.is_referenced)
+    return true;
   for (int i = 0; i < 3; ++i)
     if (std::abs(a.position_m[i] - b.position_m[i]) > visible_m || std::abs(a.force_N[i] - b.force_N[i]) > visible_N ||
         std::abs(a.gimbal_rad[i] - b.gimbal_rad[i]) > visible_rad)

@@ -123,6 +123,7 @@ TEST_CASE("the pose at a position is what the device reported then") {
   CHECK(pose->force_N[0] == 2400.0f + place(Signal::force_x_N));
   CHECK(pose->gimbal_rad[2] == 2400.0f + place(Signal::gimbal_3_rad));
   CHECK(pose->state == protocol::State::active);
+  CHECK(int{pose->is_referenced} == 1);
 
   auto without_force = recorded(standard_signals(), {{2000, 10}});
   for (std::size_t j = 0; j < without_force.columns.size(); ++j)

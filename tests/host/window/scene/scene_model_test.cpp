@@ -142,6 +142,7 @@ TEST_CASE("a pose looks different when a person could see it") {
   SUBCASE("force") { b.force_N[2] = 0.1f; }
   SUBCASE("stylus") { b.gimbal_rad[0] = 0.1f; }
   SUBCASE("state") { b.state = protocol::State::fault; }
+  SUBCASE("its place is lost") { b.is_referenced = !a.is_referenced; }
   CHECK(window::looks_different(a, b));
   CHECK(window::looks_different(a, std::nullopt));
 }
