@@ -172,9 +172,11 @@ Calibration Device::calibration() {
     raise(comm_error, inkwell_error_text(), result);
     return calibration_needs_manual_input;
   }
-  return is_referenced != 0     ? calibration_ok
-         : pose.in_inkwell != 0 ? calibration_needs_update
-                                : calibration_needs_manual_input;
+  // In a fault a switch that is closed may be what is wrong, and nothing is calibrated before it is cleared.
+  const bool is_about_to_be = pose.in_inkwell != 0 && pose.state != INKWELL_FAULT;
+  return is_referenced != 0 ? calibration_ok
+         : is_about_to_be   ? calibration_needs_update
+                            : calibration_needs_manual_input;
 }
 
 // ---- the force as a whole ----------------------------------------------------------------------------------

@@ -2,9 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <device/device.hpp>
-#include <dropins/device.hpp>
 #include <protocol/reports.hpp>
-#include <protocol/supervision.hpp>
 
 #include "held.hpp"
 
@@ -44,11 +42,11 @@ TEST_CASE("an arm that lost counts does not know any more where it is") {
   CHECK(says(HD_FORCE_ERROR, "encoder"));
 }
 
-TEST_CASE("an arm in the inkwell that it does not find there is to be put into it anew") {
+TEST_CASE("an inkwell's switch that is closed elsewhere voids the calibration, and a person has to see to it") {
   Held held;
   held.control.inject({.fault = "wire_low", .of = "inkwell_switch"});
   CHECK(until([] { return hdCheckCalibration() != HD_CALIBRATION_OK; }));
-  CHECK(hdCheckCalibration() == HD_CALIBRATION_NEEDS_UPDATE);
+  CHECK(hdCheckCalibration() == HD_CALIBRATION_NEEDS_MANUAL_INPUT);
   held.frame([] {});
   CHECK(says(HD_FORCE_ERROR, "inkwell"));
 }
