@@ -119,7 +119,9 @@ Answers information(const Arguments& arguments) {
 
 Answers pose(const Arguments& arguments) {
   inkwell_pose pose;
-  int is_referenced;
+  // Asked of the pose before and of one that is as new or newer: true if it holds for the one between.
+  int was_referenced, is_referenced;
+  require(inkwell_is_referenced(find(arguments)->second, &was_referenced));
   require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));
   require(inkwell_is_referenced(find(arguments)->second, &is_referenced));
   static const char* const states[] = {"starting", "unreferenced", "ready", "active", "fault"};
@@ -147,7 +149,7 @@ Answers pose(const Arguments& arguments) {
   mxArray* values[] = {mxCreateDoubleScalar(pose.time_s),
                        mxCreateString(pose.state >= 0 && pose.state < 5 ? states[pose.state] : "unknown"),
                        mxCreateString(inkwell_fault_text(pose.fault)),
-                       mxCreateLogicalScalar(is_referenced != 0),
+                       mxCreateLogicalScalar(was_referenced != 0 && is_referenced != 0),
                        column(pose.position_m, 3),
                        column(pose.velocity_m_s, 3),
                        rotation,
