@@ -36,8 +36,8 @@ double mean_square(const device::Trace& trace, const std::string& column) {
 
 namespace {
 
-/// Half of the period, and what the limits of energy and change may add to it.
-constexpr std::uint32_t bearable_cycles = board::servo_cycles / 2 + 300;
+/// Half of the period, and what the limits of energy and change, and where code comes to lie, may add to it.
+constexpr std::uint32_t bearable_cycles = board::servo_cycles / 2 + 350;
 
 }  // namespace
 
