@@ -57,7 +57,7 @@ TEST_CASE("a file that is no program for the chip's flash is refused with a sent
   CHECK(contains(message_of<NoImage>([] { read_image(std::span<const std::byte>(), "none.elf"); }), "no ELF"));
   CHECK(contains(message_of<NoImage>([] { read_image("/nowhere/at/all.elf"); }), "no firmware"));
   CHECK(contains(message_of<NoImage>([] { read_image("/tmp"); }), "no firmware"));
-  CHECK(contains(message_of<NoImage>([] { read_image("/proc/self/exe"); }), "32-bit ARM"));
+  CHECK(contains(message_of<NoImage>([] { read_image("/bin/sh"); }), "32-bit ARM"));
   const auto good = made_elf(made_segments(identity_of("omni_driver")));
   REQUIRE_NOTHROW(read_image(good, "made.elf"));
   for (std::size_t length = 4; length < good.size(); length += 7)
