@@ -22,6 +22,12 @@ void write_attribute(hid_t object, const char* name, hid_t type, const void* val
 
 }  // namespace
 
+Handle file_access() {
+  Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(list.id(), false, true);
+  return list;
+}
+
 Handle text_type(std::size_t bytes) {
   Handle type = byte_text_type(bytes);
   H5Tset_cset(type.id(), H5T_CSET_UTF8);

@@ -47,6 +47,11 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
+/// For opening a file, without the library's own lock on it. That lock goes over to every process that is started
+/// meanwhile, and stays until the last of them has ended: nobody could open the recording until then. Two writers are
+/// kept apart by the file's name, which must be new.
+Handle file_access();
+
 /// Fixed-length UTF-8 text.
 Handle text_type(std::size_t bytes);
 /// The same for programs that know no UTF-8 and refuse the whole file for it, as Octave's `load` does: bytes of which

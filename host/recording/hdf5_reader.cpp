@@ -16,8 +16,9 @@ class Hdf5Reader {
   explicit Hdf5Reader(const std::filesystem::path& file) : name_(file.string()) {
     // A file of an earlier version that its writer did not close says so until someone clears the mark; readers of
     // HDF5's single-writer mode may open it all the same.
-    file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!file_) file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT), H5Fclose);
+    const Handle access = file_access();
+    file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
+    if (!file_) file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id()), H5Fclose);
     if (!file_) fail("is damaged: HDF5 cannot open it");
     if (read_text_attribute(file_.id(), "format") != format_name) fail("is an HDF5 file, but no recording");
   }

@@ -85,7 +85,7 @@ class Hdf5Writer final : public Writer {
 
  private:
   static Handle access() {
-    Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    Handle list = file_access();
     H5Pset_libver_bounds(list.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
     // The library's cache of what lies where would write parts of it when it likes; for some megabytes it need not.
     H5AC_cache_config_t cache{};

@@ -342,6 +342,27 @@ TEST_CASE("a recording survives the death of its program") {
   }
 }
 
+TEST_CASE("a recording can be read while a process runs that was started meanwhile") {
+  const TemporaryDirectory directory;
+  const auto file = directory.file("run.h5");
+  Recorder recorder(file, about());
+  struct Other {
+    pid_t process = fork();
+    ~Other() {
+      kill(process, SIGKILL);
+      waitpid(process, nullptr, 0);
+    }
+  } other;
+  if (other.process == 0) {
+    pause();
+    _exit(0);
+  }
+  REQUIRE(other.process > 0);
+  recorder.push(samples(1, 9'000));
+  CHECK(recorder.stop().error.empty());
+  check_is_whole(read(file), 1, 9'000);
+}
+
 TEST_CASE("a full disk ends the recording with a sentence and keeps what was written") {
   const TemporaryDirectory directory;
   for (const char* name : {"a.h5", "a.csv"}) {
