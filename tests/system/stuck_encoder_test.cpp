@@ -2,7 +2,9 @@
 // turns. What sound encoders show while a hand and a program do the same is taken for neither.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -22,10 +24,11 @@ Fault fault_of(BoardRig& rig) {
   return rig.pose().fault;
 }
 
-/// A program pulls harder and harder for a second, up to 6 N, while the hand holds on.
+/// A program pulls for a second, harder and harder up to 6 N, then less, then harder again, while the hand holds on.
 void pull(BoardRig& rig, const std::array<float, 3>& along) {
   for (int millisecond = 0; millisecond < 1'000; ++millisecond) {
-    const float force_N = 0.006f * static_cast<float>(millisecond);
+    const float part = std::fmod(0.0015f * static_cast<float>(millisecond), 1.0f);  // of up and down
+    const float force_N = 12.0f * std::min(part, 1.0f - part);
     rig.device->send_force(
         {.force_N = {force_N * along[0], force_N * along[1], force_N * along[2]}, .mode = ForceMode::beside_walls});
     rig.control.run(0.001);

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <control/settings.hpp>
@@ -29,44 +30,65 @@ bool told(Counts counts, Current current_A, bool held = false, std::int32_t begi
   return false;
 }
 
+/// From one current to the next and so on, each within 0.15 s, from 0.2 s on.
+template <std::size_t size>
+auto through(const std::array<float, size>& currents_A) {
+  return [=](float time_s) {
+    float current_A = currents_A[0];
+    for (std::size_t i = 1; i < size; ++i) {
+      const float part = std::clamp((time_s - 0.2f) / 0.15f - static_cast<float>(i - 1), 0.0f, 1.0f);
+      current_A += part * (currents_A[i] - currents_A[i - 1]);
+    }
+    return current_A;
+  };
+}
 /// From one current to another, between 0.2 and 0.7 s.
 auto rising(float from_A, float to_A) {
   return [=](float time_s) { return from_A + (to_A - from_A) * std::clamp(2.0f * time_s - 0.4f, 0.0f, 1.0f); };
 }
 std::int32_t standing(float) { return 4711; }
 
-TEST_CASE("an encoder that stands while the current changes by more than it may is stuck, either way") {
-  CHECK_FALSE(told(standing, rising(0.3f, 1.28f)));
-  CHECK(told(standing, rising(0.3f, 1.32f)));
-  CHECK_FALSE(told(standing, rising(0.3f, -0.68f)));
-  CHECK(told(standing, rising(0.3f, -0.72f)));
+TEST_CASE("an encoder that stands while the current changes by thrice as much as it may is stuck, either way") {
+  CHECK_FALSE(told(standing, rising(0.3f, 3.25f)));
+  CHECK(told(standing, rising(0.3f, 3.36f)));
+  CHECK_FALSE(told(standing, rising(0.3f, -2.65f)));
+  CHECK(told(standing, rising(0.3f, -2.76f)));
 }
 
-TEST_CASE("what the current was before it came to stand does not count") {
-  // From 0 to 1.9 A, but with a step of two counts when half of it is there.
+TEST_CASE("pressed, let go and pressed again: two changes are borne, whichever way, the third is not") {
+  CHECK_FALSE(told(standing, through(std::array{0.0f, 1.2f})));
+  CHECK_FALSE(told(standing, through(std::array{0.0f, 1.2f, 0.0f})));
+  CHECK(told(standing, through(std::array{0.0f, 1.2f, 0.0f, 1.2f})));
+  CHECK(told(standing, through(std::array{1.2f, 0.0f, 1.2f, 0.0f})));
+  CHECK_FALSE(told(standing, through(std::array{0.0f, 0.9f, 0.0f, 0.9f, 0.0f})));
+}
+
+TEST_CASE("what changed before it came to stand does not count") {
+  // From 0 to 5.8 A, but with a step of two counts when half of it is there.
   const auto stepping = [](float time_s) { return time_s < 0.45f ? 100 : 102; };
-  CHECK_FALSE(told(stepping, rising(0.0f, 1.9f)));
+  CHECK(told(standing, rising(0.0f, 5.8f)));
+  CHECK_FALSE(told(stepping, rising(0.0f, 5.8f)));
   const auto back = [](float time_s) { return time_s < 0.45f ? 100 : 98; };
-  CHECK_FALSE(told(back, rising(0.0f, 1.9f)));
+  CHECK_FALSE(told(back, rising(0.0f, 5.8f)));
 }
 
 TEST_CASE("an arm that turns round stands for a moment while a force may rise") {
-  // It comes to stand at 0.2 s, when the current begins to rise by 2.5 A: within that time, and within twice as long.
+  // It comes to stand at 0.2 s, when the current begins to rise by 8 A: within that time, and within twice as long.
   for (const float stands_s : {0.09f, 0.2f}) {
     const auto turning_round = [=](float time_s) {
       return time_s < 0.2f ? static_cast<std::int32_t>(1e4f * time_s)
                            : 2'000 - static_cast<std::int32_t>(1e4f * std::max(0.0f, time_s - 0.2f - stands_s));
     };
-    const auto current_A = [](float time_s) { return 2.5f * std::clamp(10.0f * (time_s - 0.2f), 0.0f, 2.0f); };
+    const auto current_A = [](float time_s) { return 4.0f * std::clamp(10.0f * (time_s - 0.2f), 0.0f, 2.0f); };
     CHECK(told(turning_round, current_A) == (stands_s > 0.1f));
   }
 }
 
 TEST_CASE("a count to and fro is not motion: one wire may be dead") {
   const auto dithering = [](float time_s) { return 100 + static_cast<std::int32_t>(40.0f * time_s) % 2; };
-  CHECK(told(dithering, rising(0.0f, 1.1f), false, 100));
+  CHECK(told(dithering, rising(0.0f, 3.2f), false, 100));
   const auto below = [](float time_s) { return 100 - static_cast<std::int32_t>(40.0f * time_s) % 2; };
-  CHECK(told(below, rising(0.0f, 1.1f), false, 100));
+  CHECK(told(below, rising(0.0f, 3.2f), false, 100));
 }
 
 TEST_CASE("a current that turns round faster than an arm can follow leaves no trace, one that lasts does") {
@@ -78,14 +100,16 @@ TEST_CASE("a current that turns round faster than an arm can follow leaves no tr
 }
 
 TEST_CASE("while the arm is held by anything nothing counts, and what was before is forgotten") {
-  CHECK_FALSE(told(standing, rising(0.0f, 2.5f), true));
+  CHECK_FALSE(told(standing, rising(0.0f, 8.0f), true));
   StuckEncoder encoder;
   std::uint32_t now_periods = 0;
   const auto look = [&](float current_A, bool held) {
     for (int i = 0; i < 1'000; ++i) CHECK_FALSE(is_stuck(encoder, 7, current_A, now_periods += 3, held, moving_A));
   };
   look(0.0f, false);
+  look(2.5f, false);
   look(2.5f, true);
+  look(0.0f, false);
   look(2.5f, false);
 }
 

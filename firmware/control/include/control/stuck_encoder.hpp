@@ -10,13 +10,13 @@
 // twice an Omni's friction and four times its stiffness still turns by more. A count to either side is what an encoder
 // with one dead wire shows, too slowly for control/encoder_wire.hpp where the arm moves slowly.
 //
-// An arm that turns round stands for a moment, and a wall's force may rise meanwhile: 30 ms and 0.5 A were seen. So the
-// change counts from 0.1 s on after the joint came to stand. The current is that of some ten milliseconds: a force that
-// turns round faster than the arm can follow leaves no trace in it.
+// A sound joint bears one such change now and then: a hand that slides along a wall, or presses into it aslant, may
+// pull by just as much less or more as the wall's force falls or rises, and friction holds the joint to the count. It
+// bears no third one, so three of them in one standstill are told: pressed, let go, pressed again, or 6 N more.
 //
-// A hand that slides along a wall may balance such a change while friction holds the joint: once in an hour of random
-// use on the virtual board. To compare only while the other joints stand as well would rule that out, but then walls
-// would never tell a stuck encoder, for their force changes only where some joint is seen to move.
+// An arm that turns round stands for a moment, and a wall's force may rise meanwhile: 30 ms and 0.5 A were seen. So
+// changes count from 0.1 s on after the joint came to stand. The current is that of some ten milliseconds: a force that
+// turns round faster than the arm can follow leaves no trace in it.
 //
 // Only the inkwell holds better. While the stylus is in it nothing is compared.
 #pragma once
@@ -29,8 +29,9 @@
 namespace inkwell::control {
 
 struct StuckEncoder {
-  /// The change of force at the end of the longer link that turns every joint.
+  /// The change of force at the end of the longer link that turns every joint but by a coincidence.
   static constexpr float moving_force_N = 2.0f;
+  static constexpr unsigned bearable_changes = 2;
   static constexpr std::uint32_t bearable_counts = 1;
   static constexpr std::uint32_t settle_periods = periods_in(0.1f);
   /// Of a new reading, of which there is one in three periods at best: a low-pass of 9.6 ms.
@@ -39,12 +40,13 @@ struct StuckEncoder {
   std::int32_t counts = 0;          ///< where it stands
   std::uint32_t since_periods = 0;  ///< since when
   float current_A = 0.0f;           ///< of its motor, filtered
-  float settled_A = 0.0f;           ///< what it was when the joint had settled
+  float settled_A = 0.0f;           ///< what it was when the joint had settled, or at the last change
+  unsigned changes = 0;             ///< in this standstill
 };
 
 /// One look at an encoder and its motor's current, at `now_periods` of the control period's count. True while it stands
-/// although the current has changed by more than `moving_A`. `held` says that the joint may stand: it is then looked at
-/// anew.
+/// although the current has changed by more than `moving_A` more often than a sound joint bears. `held` says that the
+/// joint may stand: it is then looked at anew.
 inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A, std::uint32_t now_periods, bool held,
                      float moving_A) {
   encoder.current_A += StuckEncoder::weight * (current_A - encoder.current_A);
@@ -53,12 +55,17 @@ inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A
   if (held || away > 2 * StuckEncoder::bearable_counts) {
     encoder.counts = counts;
     encoder.since_periods = now_periods;
+    encoder.changes = 0;
   }
   if (now_periods - encoder.since_periods < StuckEncoder::settle_periods) {
     encoder.settled_A = encoder.current_A;
     return false;
   }
-  return std::fabs(encoder.current_A - encoder.settled_A) > moving_A;
+  if (std::fabs(encoder.current_A - encoder.settled_A) > moving_A) {
+    encoder.settled_A = encoder.current_A;
+    ++encoder.changes;
+  }
+  return encoder.changes > StuckEncoder::bearable_changes;
 }
 
 }  // namespace inkwell::control
