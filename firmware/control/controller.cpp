@@ -252,15 +252,20 @@ void Controller::regulate_currents(const Settings& settings) {
   drive_.enabled = true;
 }
 
-/// A test has no force that is limited, so it ends where a force would: too fast an arm, a host that fell silent.
-void Controller::follow_test(protocol::Watches found) {
+/// A test has no force that is limited, so it ends where a force would: too fast an arm, a host that fell silent, and,
+/// its pulse, what may be given ahead.
+void Controller::follow_test(protocol::Watches found, const Settings& settings) {
   constexpr protocol::Watches ends = watch(Fault::over_speed) | watch(Fault::host_silent);
-  if ((found & ends) == 0) {
-    --test_.remaining_periods;
+  if ((found & ends) != 0) {
+    test_.end();
+    drive_ = {};
     return;
   }
-  test_.end();
-  drive_ = {};
+  --test_.remaining_periods;
+  // Of a motor's electrical power its back EMF's part becomes motion.
+  const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[test_.motor] * joint_speed_rad_per_s_[test_.motor];
+  test_.given_J += back_emf_V * current_A_[test_.motor] * protocol::servo_period_s;
+  if (test_.given_J > settings.energy.reserve_J) test_.rest();
 }
 
 /// By the joint whose turn it is. Before there is a reference the angle means nothing, and no state watches it.
@@ -335,7 +340,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
     change_state(advance(supervisor_, {now, found}));
   asked_ = {.events = lasting_events_};
   if (test_.runs()) [[unlikely]]
-    follow_test(found);
+    follow_test(found, settings);
   if (brake_.is_on()) [[unlikely]] {
     advance(brake_, speed_squared_m2_per_s2, found);
     drive_.brake = brake_.is_on();

@@ -257,6 +257,42 @@ TEST_CASE("a test pulse ends with a stop, a host that falls silent and an arm th
   CHECK(fast.state() == State::ready);
 }
 
+TEST_CASE("a test pulse gives the arm no more than the reserve of energy, then rests for its time; and may take any") {
+  constexpr float reserve_J = 0.004f, current_A = 0.5f, duration_s = 0.1f;
+  protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
+  set[protocol::Parameter::energy_reserve_J] = reserve_J;
+  const Settings settings = control::prepare(set);
+  const float step_J = current_A * settings.motor_model.back_emf_Vs_per_rad[1] * settings.encoders.rad_per_count[1];
+  for (const Command which : {Command::test_current, Command::test_voltage})
+    for (const bool gives : {true, false}) {
+      CAPTURE(static_cast<int>(which));
+      CAPTURE(gives);
+      Controller controller = tests::ready_controller(settings);
+      Samples samples = tests::samples_at_rest();
+      samples.current_A[1] = current_A;
+      controller.carry_out(pulse(which, 2, 1.0f, duration_s));
+      double given_J = 0.0;
+      int pulse_periods = 0, rest_periods = 0;
+      for (int period = 0; period < 4'000; ++period) {
+        if (period % 4 == 0) {  // some 4 rad/s
+          samples.encoder_counts[1] += (step_J > 0.0f) == gives ? 1 : -1;
+          given_J += std::fabs(step_J);
+        }
+        controller.host_alive();
+        if (!tests::run(controller, samples, settings, 1).enabled) break;
+        const bool is_driven = which == Command::test_current
+                                   ? controller.signals()[Signal::current_reference_2_A] != 0.0f
+                                   : controller.signals()[Signal::duty_2] != 0.0f;
+        ++(is_driven ? pulse_periods : rest_periods);
+        if (is_driven && gives) CHECK(given_J < 1.1 * reserve_J);
+      }
+      CHECK(rest_periods == doctest::Approx(2'000).epsilon(1e-3));
+      CHECK(pulse_periods == (gives ? doctest::Approx(4.0 * reserve_J / std::fabs(step_J)).epsilon(0.1)
+                                    : doctest::Approx(2'000).epsilon(1e-3)));
+      CHECK(controller.state() == State::ready);
+    }
+}
+
 TEST_CASE("a hot motor's pulse is held back") {
   protocol::ParameterSet set = tests::without_motors(tests::paper_parameters());
   set[protocol::Parameter::force_limit_N] = info(protocol::Parameter::force_limit_N).maximum;

@@ -121,7 +121,7 @@ class Controller {
   void follow_over_current(const Settings& settings);
   [[gnu::cold]] float test_limit_A(const Settings& settings) const;
   [[gnu::cold]] float test_voltage_V(const Settings& settings) const;
-  void follow_test(protocol::Watches found);
+  void follow_test(protocol::Watches found, const Settings& settings);
   [[gnu::cold]] void drive_pulses(const Settings& settings);
   void supervise(const Samples& samples, const Settings& settings);
   void change_state(const Supervisor& next);

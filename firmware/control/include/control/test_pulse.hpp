@@ -22,9 +22,12 @@ struct TestPulse {
   float amplitude = 0.0f;               ///< A or V
   std::uint32_t pulse_periods = 0;      ///< length of the pulse, and of the rest after it
   std::uint32_t remaining_periods = 0;  ///< of both together; 0 when no test runs
+  float given_J = 0.0f;                 ///< to the arm and the hand on it, so far
 
   bool runs() const { return remaining_periods > 0; }
   void end() { remaining_periods = 0; }
+  /// The pulse is over, its rest is not: a host that asks for one after the other has to wait.
+  void rest() { remaining_periods = remaining_periods < pulse_periods ? remaining_periods : pulse_periods; }
   /// What is asked of the motor in this period.
   float value() const { return remaining_periods > pulse_periods ? amplitude : 0.0f; }
 };
@@ -42,8 +45,8 @@ constexpr TestPulse start_test_pulse(const protocol::TestPulse& wanted, TestPuls
 /// one motor's torque stands across what the other two joints move: it is torque over the part of the joint's own
 /// column of the Jacobian in that direction. 0 where a pose has no such direction.
 inline float test_limit_A(const Jacobian& jacobian, std::size_t motor, float force_limit_N, float ampere_per_Nm) {
-  const auto& [one, two, three] = jacobian.column;
-  const Vector3 across = motor == 0 ? cross(two, three) : motor == 1 ? cross(three, one) : cross(one, two);
+  const std::size_t next = motor == 2 ? 0 : motor + 1, last = motor == 0 ? 2 : motor - 1;
+  const Vector3 across = cross(jacobian.column[next], jacobian.column[last]);
   const float squared = dot(across, across);
   if (!(squared > 0.0f)) return 0.0f;
   const float lever_m = dot(jacobian.column[motor], across) * reciprocal_square_root(squared);
