@@ -21,7 +21,7 @@ protocol::ControllerReport controller_report(const protocol::PoseReport& pose) {
       static_cast<unsigned>(protocol::Switch::button_1) | static_cast<unsigned>(protocol::Switch::button_2);
   protocol::ControllerReport report{};
   for (std::size_t i = 0; i < 3; ++i) {
-    report.position[i] = steps(pose.position_m[i], per_m);
+    if (pose.is_referenced != 0) report.position[i] = steps(pose.position_m[i], per_m);
     report.angle[i] = steps(pose.gimbal_rad[i], per_rad);
   }
   report.buttons = static_cast<std::uint16_t>(pose.switches & buttons);

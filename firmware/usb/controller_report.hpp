@@ -1,4 +1,4 @@
-// The pose as a multi-axis controller reports it.
+// The pose as a multi-axis controller reports it: in the middle of its axes while nobody knows where the arm is.
 #pragma once
 
 #include <protocol/reports.hpp>
