@@ -11,6 +11,14 @@ std::uint8_t saturate_to_byte(float value) {
   return value < 255.0f ? static_cast<std::uint8_t>(value) : std::uint8_t{255};
 }
 
+constexpr unsigned known_limits() {
+  unsigned bits = 0;
+  for (const auto& row : protocol::limit_table) bits |= static_cast<unsigned>(row.limit);
+  return bits;
+}
+constexpr unsigned limits_in_report = 127;
+static_assert((known_limits() & ~limits_in_report) == 0, "PoseReport::limits has no room for a limit");
+
 }  // namespace
 
 const Sample* PoseRecorder::newest() const {
@@ -34,7 +42,7 @@ bool PoseRecorder::read(protocol::PoseReport& report) const {
   copy_three(report.gimbal_rad, Signal::gimbal_1_rad);
   copy_three(report.force_N, Signal::force_x_N);
   copy_three(report.joint_rad, Signal::joint_1_rad);
-  report.limits = summary.limits & 127u;
+  report.limits = summary.limits & limits_in_report;
   report.is_referenced = summary.is_referenced;
   report.switches = summary.switches & 15u;
   report.force_sources = summary.force_sources & 15u;

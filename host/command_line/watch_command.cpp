@@ -71,14 +71,18 @@ void print_head() {
              "force x y z / N", "switches", "lost", "force of");
 }
 
-void print_line(const PoseReport& pose, std::uint64_t lost) {
+std::string position_of(const PoseReport& pose) {
+  if (pose.is_referenced == 0) return "unknown";
   const auto& p = pose.position_m;
+  return fmt::format("{:8.2f} {:8.2f} {:8.2f}", 1e3f * p[0], 1e3f * p[1], 1e3f * p[2]);
+}
+
+void print_line(const PoseReport& pose, std::uint64_t lost) {
   const auto& f = pose.force_N;
-  fmt::print("{:9.3f}  {:<12} {:8.2f} {:8.2f} {:8.2f}  {:7.2f} {:7.2f} {:7.2f}  {}{}{} {:>6}  {}\n",
+  fmt::print("{:9.3f}  {:<12} {:>26}  {:7.2f} {:7.2f} {:7.2f}  {}{}{} {:>6}  {}\n",
              static_cast<double>(pose.time_periods) / protocol::servo_rate_Hz,
-             pose.state == protocol::State::fault ? info(pose.fault).name : info(pose.state).name, 1e3f * p[0],
-             1e3f * p[1], 1e3f * p[2], f[0], f[1], f[2],
-             is_closed(pose.switches, protocol::Switch::button_1) ? "1 " : "- ",
+             pose.state == protocol::State::fault ? info(pose.fault).name : info(pose.state).name, position_of(pose),
+             f[0], f[1], f[2], is_closed(pose.switches, protocol::Switch::button_1) ? "1 " : "- ",
              is_closed(pose.switches, protocol::Switch::button_2) ? "2 " : "- ",
              is_closed(pose.switches, protocol::Switch::inkwell) ? "inkwell" : "-      ", lost, force_of(pose));
 }

@@ -16,10 +16,6 @@ using namespace std::chrono_literals;
 constexpr double first_pose_limit_s = 60.0;
 constexpr auto read_timeout = 2ms;
 
-bool knows_where_it_is(const inkwell_pose& pose) {
-  return pose.state != INKWELL_STARTING && pose.state != INKWELL_UNREFERENCED;
-}
-
 }  // namespace
 
 Connection::Connection(const std::string& address, PoseFeed& poses) : poses_(poses) {
@@ -66,7 +62,7 @@ void Connection::read_poses(std::promise<void>& opened, bool& is_open) {
       const auto pose = reader.read(*report, geometry());
       poses_.publish(pose, report->is_referenced);
       // A board of its own has its stylus in the inkwell until the program moves the hand.
-      if (!is_open && (!arm_.board || knows_where_it_is(pose))) {
+      if (!is_open && (!arm_.board || report->is_referenced != 0)) {
         is_open = true;
         opened.set_value();
       }

@@ -32,7 +32,10 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control:
     pose.gimbal_rad[i] = gimbal_rad[i] = report.gimbal_rad[i];
     pose.force_N[i] = report.force_N[i];
   }
-  velocity_.add(pose.time_s, position_m);
+  if (report.is_referenced == 0)
+    velocity_ = {};  // there is none, and no way leads from there to where the arm is
+  else
+    velocity_.add(pose.time_s, position_m);
   const auto velocity_m_s = velocity_.velocity_m_s();
   for (std::size_t i = 0; i < 3; ++i) pose.velocity_m_s[i] = velocity_m_s[i];
   const glm::mat3 rotation = kinematics::stylus_rotation(joint_rad, gimbal_rad, geometry);

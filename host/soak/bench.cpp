@@ -102,7 +102,7 @@ void Bench::look_closely() {
 
 /// The pose is a little older than the truth.
 void Bench::check_pose() {
-  if (!board.pose() || board.is(State::starting) || board.is(State::testing) || board.is(State::unreferenced)) return;
+  if (!board.pose() || board.pose()->is_referenced == 0) return;
   const auto truth = board.control().truth();
   double squares_m2 = 0, squares_m2_per_s2 = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

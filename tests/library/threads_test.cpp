@@ -152,6 +152,8 @@ TEST_CASE("a lost arm ends every call, in every thread, and its servo") {
   CHECK(inkwell_start_servo(arm, servo, nullptr) == INKWELL_DISCONNECTED);
   double value = 0;
   CHECK(inkwell_get_parameter(arm, "wall_stiffness_N_per_m", &value) == INKWELL_DISCONNECTED);
+  int is_referenced = 0;
+  CHECK(inkwell_is_referenced(arm, &is_referenced) == INKWELL_DISCONNECTED);
 }
 
 TEST_CASE("changed parameters of the arm do not disturb its velocity") {

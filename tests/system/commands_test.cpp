@@ -176,6 +176,31 @@ TEST_CASE("the reference alone tells where each field of what goes over the wire
   CHECK(reference.find(fmt::format("| `scope_magic` | {} |", protocol::scope_magic)) != std::string::npos);
 }
 
+TEST_CASE("while nobody knows where the arm is, watching it shows no place; programs are told") {
+  BoardAndCompanion rig;
+  rig.wait_for_device();
+  const auto first_line = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command{"watch", "--seconds", "0.05"};
+    command.insert(command.end(), more.begin(), more.end());
+    auto result = rig.run(command);
+    REQUIRE(result.exit_code == 0);
+    return result.out;
+  };
+  const auto is_referenced = [&] {
+    const std::string text = first_line({"--json"});
+    return nlohmann::json::parse(text.substr(0, text.find('\n'))).at("referenced").get<bool>();
+  };
+  CHECK(is_referenced());
+  CHECK(first_line({}).find("unknown") == std::string::npos);
+  // The encoder slips by farther than a joint turns in a control period.
+  rig.control.dock(false);
+  rig.control.inject({.fault = "encoder_slip", .of = "1"});
+  rig.control.run(0.05);
+  rig.control.resume();
+  CHECK_FALSE(is_referenced());
+  CHECK(first_line({}).find("unknown") != std::string::npos);
+}
+
 TEST_CASE("the arms that are there are listed by serial number") {
   BoardAndCompanion rig;
   rig.wait_for_device();

@@ -129,7 +129,8 @@ typedef enum inkwell_state INKWELL_AS_INT {
   INKWELL_UNREFERENCED = 1, /* the stylus has to rest in the inkwell once */
   INKWELL_READY = 2,        /* the pose is valid, the force is off */
   INKWELL_ACTIVE = 3,       /* the pose is valid, the force is on */
-  INKWELL_FAULT = 4         /* the force is off, and inkwell_fault_text() says why */
+  INKWELL_FAULT = 4         /* the force is off, and inkwell_fault_text() says why; inkwell_is_referenced() tells
+                               whether the pose is valid */
 } inkwell_state;
 
 /* Why the device is in INKWELL_FAULT. A code that is not here is of firmware that this library does not know. */
