@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <campaign/handling.hpp>
+
 #include "hazards.hpp"
 
 using namespace inkwell;
@@ -65,6 +67,32 @@ TEST_CASE("slow motion: a joint that a force no longer seems to turn takes it aw
       rig.command(protocol::Command::clear_fault);
       rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
     }
+}
+
+TEST_CASE(
+    "slow motion at the usual force limit: pressed into a wall, let go and pressed again, a stuck encoder is told") {
+  for (const bool sound : {true, false}) {
+    CAPTURE(sound);
+    BoardRig rig;
+    rig.make_active();
+    const auto pressed_m = campaign::beyond_forward_wall_m(rig.device->parameters(), 1.0);
+    auto let_go_m = pressed_m;
+    let_go_m[2] -= 0.012;
+    rig.take_to(let_go_m);
+    rig.run(0.3);
+    if (!sound) rig.control.inject({.fault = "encoder_stuck", .of = "2"});
+    std::vector<device::HandWaypoint> path;
+    for (int i = 0; i < 6; ++i) path.push_back({0.4 * (i + 1), i % 2 == 0 ? pressed_m : let_go_m});
+    rig.control.hand_path(path);
+    float peak_N = 0.0f;
+    for (int i = 0; i < 48; ++i) {
+      rig.run(0.05);
+      peak_N = std::max(peak_N, rig.pose().force_N[2] * -1.0f);
+    }
+    CHECK(peak_N > 2.9f);
+    CHECK(protocol::info(fault_of(rig)).name == protocol::info(sound ? Fault::none : Fault::encoder_implausible).name);
+    CHECK(bridges_enabled(rig.control) == sound);
+  }
 }
 
 TEST_CASE("fast motion without a force: a motor whose voltage tells that it turns takes the place of the arm away") {
