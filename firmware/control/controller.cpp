@@ -262,10 +262,11 @@ void Controller::follow_test(protocol::Watches found, const Settings& settings) 
     return;
   }
   --test_.remaining_periods;
-  // Of a motor's electrical power its back EMF's part becomes motion.
+  // Of a motor's electrical power its back EMF's part becomes motion. What the hand gives counts as well: which way a
+  // motor or an encoder counts may be wrong yet, and these pulses are what finds it out.
   const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[test_.motor] * joint_speed_rad_per_s_[test_.motor];
-  test_.given_J += back_emf_V * current_A_[test_.motor] * protocol::servo_period_s;
-  if (test_.given_J > settings.energy.reserve_J) test_.rest();
+  test_.moved_J += std::fabs(back_emf_V * current_A_[test_.motor]) * protocol::servo_period_s;
+  if (test_.moved_J > settings.energy.reserve_J) test_.rest();
 }
 
 /// By the joint whose turn it is. Before there is a reference the angle means nothing, and no state watches it.

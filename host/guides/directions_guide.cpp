@@ -121,8 +121,9 @@ class PulseMotor final : public Step {
     if (std::abs(difference_rad) < smallest_turn_rad)
       throw device::Error(
           fmt::format("Joint {} did not turn. Hold the stylus more loosely, check that the cable of the "
-                      "transmission is on its capstan, and start the guide again.",
-                      motor_));
+                      "transmission is on its capstan and that energy_reserve_J ({:.3f} J), at which a pulse ends, "
+                      "is not far below its default, and start the guide again.",
+                      motor_, (*now.parameters)[Parameter::energy_reserve_J]));
     const auto place = static_cast<std::size_t>(motor_ - 1);
     const bool encoder_wrong = (*reversed_)[place].value_or(false);
     const bool forward = (difference_rad > 0) != encoder_wrong;

@@ -32,7 +32,9 @@ Segment find_segment(const VoltagePulse& pulse) {
   const auto first = static_cast<std::size_t>(begin - voltage.begin());
   const auto last = static_cast<std::size_t>(end - voltage.begin());
   if (last - first < shortest + settled_after)
-    throw device::Error("The voltage pulse is too short to identify the motor. Start the guide again.");
+    throw device::Error(
+        "The voltage pulse is too short to identify the motor. If energy_reserve_J or force_limit_N is small it ends "
+        "before its time: raise them. Then start the guide again, and hold the stylus still.");
   return {&pulse, first, first + settled_after, last};
 }
 

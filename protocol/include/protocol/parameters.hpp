@@ -45,7 +45,7 @@ enum class ParameterKind : std::uint8_t {
   X(204, force_ramp_s, real, "s", 0.0f, 2.0f, 0.25f, "contact", "Time in which the force rises from nothing to full after it is switched on.") \
   X(205, soft_landing_s, real, "s", 0.0f, 1.0f, 0.05f, "contact", "Time in which the force falls to nothing when it is switched off in an orderly way. A stop, a fault and a host that is gone take it away at once.") \
   X(206, force_change_N_per_s, real, "N/s", 100.0f, 100000.0f, 5000.0f, "contact", "How fast the force may change, whatever it comes from; a faster change takes as long as it needs.") \
-  X(207, energy_reserve_J, real, "J", 0.001f, 1.0f, 0.05f, "contact", "Energy that the arm may give the hand at most beyond what the hand gave it. The reserve is full when the force comes, and filled again by a hand that presses and by power_given_W. A test's pulse may give as much.") \
+  X(207, energy_reserve_J, real, "J", 0.001f, 1.0f, 0.05f, "contact", "Energy that the arm may give the hand at most beyond what the hand gave it. The reserve is full when the force comes, and filled again by a hand that presses and by power_given_W. A test's pulse ends once it moved as much.") \
   X(208, power_given_W, real, "W", 0.0f, 20.0f, 1.0f, "contact", "Power that the arm may give the hand for ever. With an empty reserve what of the force drives the motion gives way to it; walls need none.") \
   X(220, program_force_expiry_s, real, "s", 0.005f, 0.5f, 0.05f, "program force", "Silence of a program on the PC after which its force fades within 10 ms.") \
   X(221, program_force_change_N_per_s, real, "N/s", 1.0f, 20000.0f, 1000.0f, "program force", "How fast the force that a program asks for may change; a faster one is stretched in time.") \

@@ -179,8 +179,8 @@ enum class Command : std::uint8_t {
   disable_force = 2,     ///< by a ramp, soft_landing_s; a test ends at once
   clear_fault = 3,       ///< if its cause is gone
   select_signals = 4,    ///< starts the scope with these signals; none stops it
-  test_current = 5,      ///< in `ready`, and no test runs: one pulse of current in one motor, then zero for as long
-  test_voltage = 6,      ///< likewise: one pulse of voltage on one motor, then zero volts for as long
+  test_current = 5,      ///< in `ready`, and no test runs: one pulse of current in a motor, then a rest as long
+  test_voltage = 6,      ///< likewise: one pulse of voltage on a motor, then a rest as long
   stop = 7,              ///< switches force and test off at once
   self_test = 8,         ///< in `unreferenced`, `ready`, and in a fault before the first test that passes
   store_parameters = 9,  ///< keeps the parameters as they are now over a start; where may_store() (protocol/store.hpp)
@@ -202,7 +202,7 @@ struct TestPulse {
   /// A or V; bounded by the current limit or the voltage limit, and by the current that makes force_limit_N in this
   /// pose.
   float amplitude;
-  float duration_s;  ///< 0..test_duration_maximum_s
+  float duration_s;  ///< 0..test_duration_maximum_s; the pulse ends before if it moved energy_reserve_J
 };
 
 /// Output report. A report of another version, length or with an unknown command is ignored and not

@@ -38,19 +38,21 @@ float test_limit_A(const Settings& settings, std::size_t motor) {
 
 TEST_CASE("a test pulse of current: its motor only, its time, its limit, then zero for as long") {
   const Settings settings = control::prepare(tests::paper_parameters());
-  Controller controller = tests::ready_controller(settings);
-  controller.carry_out(pulse(Command::test_current, 2, 99.0f, 0.01f));
-  for (int i = 0; i < 200; ++i) {
-    CHECK(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
-    CHECK(controller.signals()[Signal::current_reference_2_A] == doctest::Approx(test_limit_A(settings, 1)));
-    CHECK(controller.signals()[Signal::current_reference_1_A] == 0.0f);
+  for (std::size_t motor = 0; motor < 3; ++motor) {
+    CAPTURE(motor);
+    Controller controller = tests::ready_controller(settings);
+    controller.carry_out(pulse(Command::test_current, static_cast<std::uint8_t>(motor + 1), 99.0f, 0.01f));
+    const auto check_references = [&](float expected_A) {
+      CHECK(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
+      constexpr protocol::EachAxis<Signal> references_A = Signal::current_reference_1_A;
+      for (std::size_t i = 0; i < 3; ++i)
+        CHECK(controller.signals()[references_A[i]] == doctest::Approx(i == motor ? expected_A : 0.0f));
+    };
+    for (int i = 0; i < 200; ++i) check_references(test_limit_A(settings, motor));
+    for (int i = 0; i < 200; ++i) check_references(0.0f);
+    CHECK_FALSE(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
+    CHECK(controller.state() == State::ready);
   }
-  for (int i = 0; i < 200; ++i) {
-    CHECK(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
-    CHECK(controller.signals()[Signal::current_reference_2_A] == 0.0f);
-  }
-  CHECK_FALSE(tests::run(controller, tests::samples_at_rest(), settings, 1).enabled);
-  CHECK(controller.state() == State::ready);
 }
 
 /// Of a hand that holds the probe against one motor's torque and none of the others: J' F = torque, by Cramer's rule.
@@ -257,26 +259,28 @@ TEST_CASE("a test pulse ends with a stop, a host that falls silent and an arm th
   CHECK(fast.state() == State::ready);
 }
 
-TEST_CASE("a test pulse gives the arm no more than the reserve of energy, then rests for its time; and may take any") {
+TEST_CASE(
+    "a test pulse moves no more energy than the reserve, whichever way its encoder counts, then rests for its time") {
   constexpr float reserve_J = 0.004f, current_A = 0.5f, duration_s = 0.1f;
   protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
   set[protocol::Parameter::energy_reserve_J] = reserve_J;
   const Settings settings = control::prepare(set);
-  const float step_J = current_A * settings.motor_model.back_emf_Vs_per_rad[1] * settings.encoders.rad_per_count[1];
+  const float step_J =
+      std::fabs(current_A * settings.motor_model.back_emf_Vs_per_rad[1] * settings.encoders.rad_per_count[1]);
   for (const Command which : {Command::test_current, Command::test_voltage})
-    for (const bool gives : {true, false}) {
+    for (const int periods_per_count : {4, -4, 0}) {  // some 4 rad/s
       CAPTURE(static_cast<int>(which));
-      CAPTURE(gives);
+      CAPTURE(periods_per_count);
       Controller controller = tests::ready_controller(settings);
       Samples samples = tests::samples_at_rest();
       samples.current_A[1] = current_A;
       controller.carry_out(pulse(which, 2, 1.0f, duration_s));
-      double given_J = 0.0;
+      double moved_J = 0.0;
       int pulse_periods = 0, rest_periods = 0;
       for (int period = 0; period < 4'000; ++period) {
-        if (period % 4 == 0) {  // some 4 rad/s
-          samples.encoder_counts[1] += (step_J > 0.0f) == gives ? 1 : -1;
-          given_J += std::fabs(step_J);
+        if (periods_per_count != 0 && period % periods_per_count == 0) {
+          samples.encoder_counts[1] += periods_per_count > 0 ? 1 : -1;
+          moved_J += static_cast<double>(step_J);
         }
         controller.host_alive();
         if (!tests::run(controller, samples, settings, 1).enabled) break;
@@ -284,11 +288,11 @@ TEST_CASE("a test pulse gives the arm no more than the reserve of energy, then r
                                    ? controller.signals()[Signal::current_reference_2_A] != 0.0f
                                    : controller.signals()[Signal::duty_2] != 0.0f;
         ++(is_driven ? pulse_periods : rest_periods);
-        if (is_driven && gives) CHECK(given_J < 1.1 * reserve_J);
+        if (is_driven) CHECK(moved_J < 1.1 * static_cast<double>(reserve_J));
       }
       CHECK(rest_periods == doctest::Approx(2'000).epsilon(1e-3));
-      CHECK(pulse_periods == (gives ? doctest::Approx(4.0 * reserve_J / std::fabs(step_J)).epsilon(0.1)
-                                    : doctest::Approx(2'000).epsilon(1e-3)));
+      const double to_reserve = 4.0 * static_cast<double>(reserve_J / step_J);
+      CHECK(pulse_periods == doctest::Approx(periods_per_count == 0 ? 2'000.0 : to_reserve).epsilon(0.1));
       CHECK(controller.state() == State::ready);
     }
 }

@@ -13,7 +13,7 @@
 
 namespace inkwell::control {
 
-/// A pulse under way: `amplitude`, then zero for as long, so that the decay is seen too.
+/// A pulse under way: `amplitude`, then zero for as long as it was asked to last, so that the decay is seen too.
 struct TestPulse {
   enum class Quantity : std::uint8_t { current, voltage };
 
@@ -22,7 +22,7 @@ struct TestPulse {
   float amplitude = 0.0f;               ///< A or V
   std::uint32_t pulse_periods = 0;      ///< length of the pulse, and of the rest after it
   std::uint32_t remaining_periods = 0;  ///< of both together; 0 when no test runs
-  float given_J = 0.0f;                 ///< to the arm and the hand on it, so far
+  float moved_J = 0.0f;                 ///< between the motor and the arm, either way, so far
 
   bool runs() const { return remaining_periods > 0; }
   void end() { remaining_periods = 0; }
