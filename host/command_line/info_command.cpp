@@ -56,6 +56,7 @@ ordered_json to_json(const device::Information& information, const protocol::Sto
   if (pose) {
     json["state"] = info(pose->state).name;
     json["fault"] = info(pose->fault).name;
+    json["referenced"] = pose->is_referenced != 0;
     json["supply_V"] = pose->supply_dV / 10.0;
   }
   return json;
@@ -92,6 +93,8 @@ void print(const device::Information& information, const protocol::StoreReport& 
   fmt::print("supply              {:.1f} V\n", pose->supply_dV / 10.0);
   fmt::print("state               {}: {}\n", info(pose->state).name, info(pose->state).meaning);
   if (pose->fault != protocol::Fault::none) fmt::print("fault               {}\n", device::fault_line(pose->fault));
+  fmt::print("place of the arm    {}\n",
+             pose->is_referenced != 0 ? "known" : "unknown: put the stylus into the inkwell once");
 }
 
 }  // namespace

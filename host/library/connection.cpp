@@ -62,7 +62,7 @@ void Connection::read_poses(std::promise<void>& opened, bool& is_open) {
       const auto pose = reader.read(*report, geometry());
       poses_.publish(pose, report->is_referenced);
       // A board of its own has its stylus in the inkwell until the program moves the hand.
-      if (!is_open && (!arm_.board || report->is_referenced != 0)) {
+      if (!is_open && (!arm_.board || (report->is_referenced != 0 && pose.state != INKWELL_STARTING))) {
         is_open = true;
         opened.set_value();
       }

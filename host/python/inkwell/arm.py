@@ -139,7 +139,7 @@ class Arm:
     @property
     def is_referenced(self) -> bool:
         """Whether the arm knows where it is: since the stylus rested in the inkwell, and until counts may have been
-        lost. Otherwise the newest pose's position, joints, rotation and velocity mean nothing."""
+        lost. Otherwise the newest pose's position, joints and rotation mean nothing, and its velocity is 0."""
         return self._native.is_referenced()
 
     @property

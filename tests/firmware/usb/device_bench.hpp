@@ -139,6 +139,7 @@ struct DeviceBench {
       interrupt(link, signals,
                 {.state = state,
                  .fault = fault,
+                 .is_referenced = true,
                  .command_token = link.commands.last_token(),
                  .periods = periods,
                  .begin_cycles = periods * cycles_per_period});

@@ -204,7 +204,7 @@ INKWELL_API inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose
 INKWELL_API inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose);
 
 /* 1 while the arm knows where it is: since the stylus rested in the inkwell, and until counts may have been lost. With
- * 0 the newest pose's position, joints, rotation and velocity mean nothing. */
+ * 0 the newest pose's position, joints and rotation mean nothing, and its velocity is 0. */
 INKWELL_API inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced);
 
 /* Where the probe is for these joint angles, and how it moves: `jacobian`, row by row in m/rad, times the joints'
