@@ -47,9 +47,10 @@ class QuietHdf5 {
   void* data_ = nullptr;
 };
 
-/// For opening a file, without the library's own lock on it. That lock goes over to every process that is started
-/// meanwhile, and stays until the last of them has ended: nobody could open the recording until then. Two writers are
-/// kept apart by the file's name, which must be new.
+/// For opening a file, without the library's own lock on it, unless the environment's HDF5_USE_FILE_LOCKING wants it.
+/// That lock goes over to every process that is started meanwhile, and stays until the last of them has ended: nobody
+/// could open the recording until then. Two recorders are kept apart by the file's name, which must be new; other
+/// programs are not kept from writing into a recording that is being made.
 Handle file_access();
 
 /// Fixed-length UTF-8 text.

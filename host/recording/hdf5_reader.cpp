@@ -19,7 +19,7 @@ class Hdf5Reader {
     const Handle access = file_access();
     file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
     if (!file_) file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id()), H5Fclose);
-    if (!file_) fail("is damaged: HDF5 cannot open it");
+    if (!file_) fail("is damaged, or is being written just now: HDF5 cannot open it");
     if (read_text_attribute(file_.id(), "format") != format_name) fail("is an HDF5 file, but no recording");
   }
 
@@ -44,8 +44,8 @@ class Hdf5Reader {
     } catch (const device::Error&) {
       if (complete == 1) throw;
       recording_.marks.clear();
-      recording_.remarks.push_back(
-          fmt::format("The marks of {} are left out: its program ended while it wrote one.", name_));
+      recording_.remarks.push_back(fmt::format(
+          "The marks of {} are left out: its program ended while it wrote one, or writes one just now.", name_));
     }
     recording_.complete = complete == 1 && whole == samples;
     return std::move(recording_);

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <thread>
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -349,11 +350,13 @@ TEST_CASE("a recording can be read while a process runs that was started meanwhi
   struct Other {
     pid_t process = fork();
     ~Other() {
+      if (process <= 0) return;
       kill(process, SIGKILL);
       waitpid(process, nullptr, 0);
     }
   } other;
   if (other.process == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     pause();
     _exit(0);
   }
