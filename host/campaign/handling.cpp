@@ -1,6 +1,9 @@
 #include <campaign/handling.hpp>
 
+#include <cmath>
 #include <cstddef>
+
+#include <campaign/cases.hpp>
 
 namespace inkwell::campaign {
 namespace {
@@ -32,6 +35,21 @@ Vector3 into_wall_m(const ParameterSet& parameters, experiment::BoxWall wall, do
   target_m[static_cast<std::size_t>(wall.axis)] =
       contact_m + wall.side * (force_N / hand_stiffness_N_per_m + force_N / stiffness_N_per_m);
   return target_m;
+}
+
+Vector3 beyond_forward_wall_m(const ParameterSet& parameters, double part_of_limit) {
+  const double force_N = part_of_limit * static_cast<double>(parameters[Parameter::force_limit_N]);
+  return into_wall_m(parameters, experiment::forward_wall(parameters), force_N);
+}
+
+std::vector<device::HandWaypoint> swings(const Vector3& middle_m, int count) {
+  std::vector<device::HandWaypoint> path;
+  for (int turn = 0; turn < count; ++turn) {
+    Vector3 side_m = middle_m;
+    for (double& along_m : side_m) along_m += (turn % 2 == 0 ? swing_m : -swing_m) / std::sqrt(3.0);
+    path.push_back({(turn + 1) * swing_s, side_m});
+  }
+  return path;
 }
 
 void take_by_hand(BoardRun& board, Vector3 target_m, double duration_s) {

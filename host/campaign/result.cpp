@@ -27,8 +27,8 @@ namespace inkwell::campaign {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, error, injected_at_s, place,
                                    bridges_were_on, off_after_s, bridges_went_on, detected_as, fault_on_healing,
-                                   restarts, locked_up, force_limit_N, peak_force_N, energy_J, travel_m, recovery,
-                                   position_error_m)
+                                   restarts, locked_up, force_limit_N, peak_force_N, energy_J, travel_m,
+                                   noticed_in_use_as, noticed_in_use_s, peak_force_in_use_N, recovery, position_error_m)
 
 namespace {
 
@@ -43,6 +43,10 @@ void require_counts(const nlohmann::json& result) {
 }
 
 }  // namespace
+
+bool is_detected(const Result& result) { return !result.detected_as.empty() || result.restarts > 0; }
+
+bool is_unnoticed(const Result& result) { return !is_detected(result) && !result.off_after_s; }
 
 std::string text_of(const Result& result) { return nlohmann::json(result).dump(2) + "\n"; }
 

@@ -6,8 +6,9 @@
 
 #include <campaign/board_run.hpp>
 #include <campaign/handling.hpp>
-#include <experiment/wall.hpp>
 #include <protocol/reports.hpp>
+
+#include "use.hpp"
 
 namespace inkwell::campaign {
 namespace {
@@ -19,8 +20,8 @@ using protocol::Parameter;
 using protocol::ParameterSet;
 using protocol::State;
 
-constexpr double push_part_of_limit = 0.75;
-constexpr double longest_case_s = 60;  // of board time
+constexpr double push_part_of_limit = 0.75;  ///< of the force limit
+constexpr double longest_case_s = 60;        // of board time
 constexpr double longest_phase_s = 0.1;
 
 struct NotReached : device::Error {
@@ -33,12 +34,6 @@ void expect(bool reached, const char* what) {
 
 bool is_about_the_host(const CaseFault& fault) {
   return fault.fault == InjectedFault::usb_cut || fault.fault == InjectedFault::host_silent;
-}
-
-/// The wall in front of the arm, pressed with a part of the force limit.
-Vector3 beyond_forward_wall_m(const ParameterSet& parameters) {
-  const double force_N = push_part_of_limit * static_cast<double>(parameters[Parameter::force_limit_N]);
-  return into_wall_m(parameters, experiment::forward_wall(parameters), force_N);
 }
 
 void bring_into(BoardRun& board, const Case& the_case) {
@@ -72,16 +67,12 @@ void bring_into(BoardRun& board, const Case& the_case) {
   board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
   const Vector3 middle_m = middle_of_box_m(parameters);
   if (situation == CaseSituation::wall) {
-    board.control().hand_path({{0.0, middle_m}, {0.3, beyond_forward_wall_m(parameters)}});
+    board.control().hand_path({{0.0, middle_m}, {0.3, beyond_forward_wall_m(parameters, push_part_of_limit)}});
     board.run(0.45);
   }
   if (situation == CaseSituation::motion) {
-    std::vector<device::HandWaypoint> path{{0.0, middle_m}};
-    for (int turn = 0; turn < 12; ++turn) {
-      Vector3 side_m = middle_m;
-      for (double& along_m : side_m) along_m += (turn % 2 == 0 ? swing_m : -swing_m) / std::sqrt(3.0);
-      path.push_back({(turn + 1) * swing_s, side_m});
-    }
+    std::vector<device::HandWaypoint> path = swings(middle_m, 12);
+    path.insert(path.begin(), {0.0, middle_m});
     board.control().hand_path(path);
     board.run(0.3);
   }
@@ -136,7 +127,8 @@ bool tries_to_work(BoardRun& board) {
   }
 }
 
-void recover(BoardRun& board, const Case& the_case, Result& result) {
+/// What the board tells of it, if it still can.
+void notice(BoardRun& board, const Case& the_case, Result& result) {
   board.run(0.02, false);
   note_fault(board, result.detected_as);
   // A board that has started anew tells why, if its USB lives.
@@ -144,12 +136,16 @@ void recover(BoardRun& board, const Case& the_case, Result& result) {
     board.run(0.15);
     note_fault(board, result.detected_as);
   }
+}
+
+void recover(BoardRun& board, const Case& the_case, Result& result) {
   // What was noticed before the cause was gone; a device that could not be asked tells afterwards.
   const bool could_tell = board.connected();
   board.control().heal_all();
   if (!board.connected()) board.connect(0.5);
   board.run(0.05);
-  if (result.detected_as.empty()) note_fault(board, could_tell ? result.fault_on_healing : result.detected_as);
+  if (result.detected_as.empty() && result.noticed_in_use_as.empty())
+    note_fault(board, could_tell ? result.fault_on_healing : result.detected_as);
   const bool stayed = is_active(the_case.situation) ? board.force_is_on() : result.restarts == 0;
   const bool was_fault = board.is(State::fault);
   if (tries_to_work(board)) {
@@ -190,6 +186,10 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
     board.run(slices_s);
     board.run_exactly(until_fault_s - slices_s);
     observe(board, the_case, result);
+    notice(board, the_case, result);
+    if (is_active(the_case.situation) && is_unnoticed(result) && board.connected() &&
+        !is_about_the_host(the_case.fault))
+      use_on(board, result);
     recover(board, the_case, result);
   } catch (const device::Error& error) {
     result.error = error.what();

@@ -45,6 +45,18 @@ TEST_CASE("without a fault the hand feels the wall and nothing happens") {
   CHECK(result.position_error_m.value() < 0.0005);
 }
 
+TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound arm bears it") {
+  const Result stuck = result_of("encoder_stuck:2 rest 1");
+  CHECK(stuck.detected_as.empty());
+  CHECK(stuck.noticed_in_use_as == "motor_implausible");
+  CHECK(stuck.noticed_in_use_s.value() < 1.5);
+  CHECK(stuck.recovery == "clear_fault");
+  const Result sound = result_of("none motion 1");
+  CHECK(sound.noticed_in_use_as.empty());
+  CHECK_FALSE(sound.noticed_in_use_s);
+  CHECK(sound.peak_force_in_use_N.value() == doctest::Approx(sound.force_limit_N).epsilon(0.1));
+}
+
 TEST_CASE("electrical faults that the firmware knows take the bridges off within two control periods") {
   struct Known {
     const char* name;

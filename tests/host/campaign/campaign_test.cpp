@@ -163,7 +163,7 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(text.find("| `motor_hot:2` | - | stayed on | 9.50 | 0.0 | 0.0 | none needed; position 12 mm off |") !=
         std::string::npos);
   CHECK(text.find("| `motor_hot:2` | - | were off |") != std::string::npos);
-  CHECK(text.find("| `motor_hot:2` | motion | The current loop makes up for it") != std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | motion | not used | - | The current loop makes up for it") != std::string::npos);
   CHECK(text.find("| `motor_hot:2` | motion | 9.5 | 0 | 0 | - | stayed on |") != std::string::npos);
   CHECK(text.find("| `bridge_fault` | wall | 2.5 |") == std::string::npos);  // within the limit
   CHECK(text.find("| " + std::to_string(failed.number) + " | `dma_stopped` rest 3 | The device did not enumerate. |") !=
@@ -299,6 +299,34 @@ TEST_CASE("a bridge that went on though it was off stands on the page before all
   CHECK(text.find("`bridge_fault` ready 1") == std::string::npos);
 }
 
+TEST_CASE("what was not noticed is told with what became of it in use, and with what a sound arm showed there") {
+  const TemporaryDirectory directory;
+  Result stuck = seen("encoder_stuck:2", "rest", 1), stuck_later = seen("encoder_stuck:2", "wall", 2),
+         hot = seen("motor_hot:2", "rest", 1), sound = seen("none", "rest", 1);
+  for (Result* result : {&stuck, &stuck_later, &hot, &sound}) result->peak_force_in_use_N = 3.25;
+  stuck.noticed_in_use_as = "encoder_implausible";
+  stuck.noticed_in_use_s = 0.9;
+  stuck_later.peak_force_in_use_N = 3.4;
+  stuck_later.noticed_in_use_as = "motor_implausible";
+  stuck_later.noticed_in_use_s = 1.75;
+  const auto text_with = [&](const std::vector<Result>& results) {
+    write_page(results, directory / "campaign.md");
+    return content_of(directory / "campaign.md");
+  };
+  const std::string text = text_with({stuck, stuck_later, hot, sound});
+  CHECK(text.find("pressed 3 times into the wall in front of it with the force limit and swung 4 times") !=
+        std::string::npos);
+  CHECK(text.find("Without a fault it felt 3.25 N, and none of 1 cases told one.") != std::string::npos);
+  CHECK(text.find("| `encoder_stuck:2` | rest, wall | encoder_implausible; motor_implausible, 1.75 s | 3.40 | ") !=
+        std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | rest | - | 3.25 | ") != std::string::npos);
+  stuck.noticed_in_use_s = std::nullopt;
+  sound.noticed_in_use_s = 0.1;
+  const std::string other = text_with({stuck, stuck_later, hot, sound});
+  CHECK(other.find("| rest, wall | motor_implausible (1 of 2), 1.75 s | ") != std::string::npos);
+  CHECK(other.find("and 1 of 1 cases told one.") != std::string::npos);
+}
+
 TEST_CASE("each fault that passes unnoticed with the force on has a reason on the page") {
   const TemporaryDirectory directory;
   std::vector<Result> results;
@@ -308,7 +336,7 @@ TEST_CASE("each fault that passes unnoticed with the force on has a reason on th
   const std::string text = content_of(directory / "campaign.md");
   for (const Result& result : results) {
     CAPTURE(result.fault);
-    const std::string row = "| `" + result.fault + "` | rest | ";
+    const std::string row = "| `" + result.fault + "` | rest | not used | - | ";
     const auto at = text.find(row);
     REQUIRE(at != std::string::npos);
     const std::string reason = text.substr(at + row.size(), text.find(" |\n", at) - at - row.size());
@@ -316,6 +344,6 @@ TEST_CASE("each fault that passes unnoticed with the force on has a reason on th
     CHECK(reason.ends_with("."));
     CHECK(reason.find("motors are off") == std::string::npos);  // not with the force on
   }
-  CHECK(text.find("`shunt_frozen:2` | rest | Voltage, reading and speed fit") != std::string::npos);
-  CHECK(text.find("`program_astray` | rest | The code that it came to returned") != std::string::npos);
+  CHECK(text.find("`shunt_frozen:2` | rest | not used | - | Voltage, reading and speed fit") != std::string::npos);
+  CHECK(text.find("`program_astray` | rest | not used | - | The code that it came to returned") != std::string::npos);
 }

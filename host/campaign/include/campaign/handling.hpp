@@ -1,6 +1,8 @@
 // What a user does with hand and host: takes the stylus, presses it into a wall, switches the force on again.
 #pragma once
 
+#include <vector>
+
 #include <campaign/board_run.hpp>
 #include <experiment/wall.hpp>
 #include <protocol/parameters.hpp>
@@ -13,6 +15,10 @@ inline constexpr double hand_stiffness_N_per_m = 600, hand_damping_Ns_per_m = 8;
 device::Vector3 middle_of_box_m(const protocol::ParameterSet& parameters);
 /// Where the hand pulls to, beyond the wall, so that hand and wall in series press with this force.
 device::Vector3 into_wall_m(const protocol::ParameterSet& parameters, experiment::BoxWall wall, double force_N);
+/// The wall in front of the arm, pressed with this part of the force limit.
+device::Vector3 beyond_forward_wall_m(const protocol::ParameterSet& parameters, double part_of_limit);
+/// From one side of this point to the other and back, as in CaseSituation::motion.
+std::vector<device::HandWaypoint> swings(const device::Vector3& middle_m, int count);
 /// Takes the stylus where it is, out of the inkwell if it is there, and brings it to the target.
 void take_by_hand(BoardRun& board, device::Vector3 target_m, double duration_s);
 

@@ -29,11 +29,20 @@ struct Result {
 
   double force_limit_N = 0;
   double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the fault came
-  std::string recovery;                                 ///< what gave the force back; the page shows it as it is
-  std::optional<double> position_error_m;               ///< in the end, of what the device believes
+  /// Of a fault that was not told with the force on, what was told while the arm was used on; empty: nothing.
+  std::string noticed_in_use_as;
+  std::optional<double> noticed_in_use_s;     ///< since then
+  std::optional<double> peak_force_in_use_N;  ///< at the hand; none: it was not used on
+  std::string recovery;                       ///< what gave the force back; the page shows it as it is
+  std::optional<double> position_error_m;     ///< in the end, of what the device believes
 
   bool operator==(const Result&) const = default;
 };
+
+/// A fault was told, or the board restarted; a lock-up is what the fault did, not what the board noticed of it.
+bool is_detected(const Result& result);
+/// Neither that, nor did the bridges go off.
+bool is_unnoticed(const Result& result);
 
 /// A JSON object with a member for each field, and a line feed.
 std::string text_of(const Result& result);

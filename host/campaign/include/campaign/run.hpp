@@ -9,6 +9,9 @@ namespace inkwell::campaign {
 
 /// So long after the fault came, bridges and hand are watched.
 inline constexpr double observed_s = 0.3;
+/// What was not noticed by then with the force on is used on: pressed into the wall in front so often with the force
+/// limit, and swung so often.
+inline constexpr int use_presses = 3, use_swings = 4;
 
 /// The same case gives the same result on any machine. What keeps it from being run is told in Result::error.
 Result run_case(const Case& the_case, device::VirtualBoardOptions board = {});

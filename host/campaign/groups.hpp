@@ -1,0 +1,28 @@
+// Results by fault and situation.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <campaign/cases.hpp>
+#include <campaign/result.hpp>
+
+namespace inkwell::campaign {
+
+using Groups = std::map<std::pair<std::string, std::string>, std::vector<Result>>;  // by fault, situation
+
+inline Groups group(std::span<const Result> results) {
+  Groups groups;
+  for (const Result& result : results) groups[{result.fault, result.situation}].push_back(result);
+  return groups;
+}
+
+inline const std::vector<Result>* find(const Groups& groups, const std::string& fault, CaseSituation situation) {
+  const auto found = groups.find({fault, std::string(name_of(situation))});
+  return found == groups.end() ? nullptr : &found->second;
+}
+
+}  // namespace inkwell::campaign
