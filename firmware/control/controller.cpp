@@ -253,7 +253,7 @@ void Controller::regulate_currents(const Settings& settings) {
 }
 
 /// A test has no force that is limited, so it ends where a force would: too fast an arm, a host that fell silent, and,
-/// its pulse, what may be given ahead.
+/// its pulse, at the energy that may be given ahead.
 void Controller::follow_test(protocol::Watches found, const Settings& settings) {
   constexpr protocol::Watches ends = watch(Fault::over_speed) | watch(Fault::host_silent);
   if ((found & ends) != 0) {

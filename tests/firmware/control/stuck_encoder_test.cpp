@@ -72,6 +72,22 @@ TEST_CASE("what changed before it came to stand does not count") {
   CHECK_FALSE(told(back, rising(0.0f, 5.8f)));
 }
 
+TEST_CASE("what changed up to the look in which a joint breaks loose does not count for where it stands next") {
+  // The first change is there somewhere among these looks; two more come when the joint stands again.
+  const auto current_A = [](int look) {
+    if (look >= 3'500) return look < 5'000 ? 0.0f : 0.8f;
+    return 0.8f * std::clamp(static_cast<float>(look - 2'000) / 400.0f, 0.0f, 1.0f);
+  };
+  int told_of = 0;
+  for (int look_of_step = 2'300; look_of_step < 2'600; ++look_of_step) {
+    StuckEncoder encoder{.counts = 100};
+    for (int look = 0; look < 6'000; ++look)
+      told_of += is_stuck(encoder, look < look_of_step ? 100 : 102, current_A(look),
+                          static_cast<std::uint32_t>(3 * look), false, 0.7f);
+  }
+  CHECK(told_of == 0);
+}
+
 TEST_CASE("an arm that turns round stands for a moment while a force may rise") {
   // It comes to stand at 0.2 s, when the current begins to rise by 8 A: within that time, and within twice as long.
   for (const float stands_s : {0.09f, 0.2f}) {

@@ -12,8 +12,8 @@
 //
 // A sound joint bears one such change now and then: a hand that slides along a wall, or presses into it aslant, may
 // pull by just as much less or more as the wall's force falls or rises, and friction holds the joint to the count. In
-// an hour of random use on the virtual board that came once, and no second one in the same standstill. Three are told:
-// pressed, let go and pressed again, or 4.5 N more.
+// an hour of random use on the virtual board no sound joint swung by 1 N more than twice in one standstill, and by 2 N
+// more than once. Three of the bound are told: pressed, let go and pressed again, or 4.5 N more.
 //
 // An arm that turns round stands for a moment, and a wall's force may rise meanwhile: 30 ms and 0.5 A were seen. So
 // changes count from 0.1 s on after the joint came to stand. The current is that of some ten milliseconds: a force that
@@ -62,7 +62,7 @@ inline bool is_stuck(StuckEncoder& encoder, std::int32_t counts, float current_A
   const bool settles = now_periods - encoder.since_periods < StuckEncoder::settle_periods;
   encoder.least_A = std::min(encoder.least_A, encoder.current_A);
   encoder.most_A = std::max(encoder.most_A, encoder.current_A);
-  const bool changed = encoder.most_A - encoder.least_A > moving_A;
+  const bool changed = !settles && encoder.most_A - encoder.least_A > moving_A;
   if (settles || changed) encoder.least_A = encoder.most_A = encoder.current_A;
   if (changed) ++encoder.changes;
   return encoder.changes > StuckEncoder::bearable_changes;
