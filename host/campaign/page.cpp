@@ -95,7 +95,8 @@ std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faul
   std::string text = "\n## At the hand\n\n";
   if (force_N.where.empty())
     return text + "No case with the force on was run, so what the hand would have felt cannot be told.\n";
-  text += fmt::format("With the force on the hand felt at most {:.2f} N ({})", force_N.value, force_N.where);
+  text +=
+      fmt::format("With the force on the hand felt at most {:.2f} N in that time ({})", force_N.value, force_N.where);
   if (more_J.where.empty())
     text += ".";
   else if (more_J.value <= 0)
@@ -117,7 +118,12 @@ std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faul
       const auto* results = find(groups, fault.name(), situation);
       if (results == nullptr || !is_active(situation)) continue;
       const Summary s = summarise(*results);
-      if (s.peak_force_N <= bearable_part_of_limit * force_limit_N(*results)) continue;
+      const double bearable_N = bearable_part_of_limit * force_limit_N(*results);
+      for (const Result& r : *results)
+        if (r.peak_force_in_use_N.value_or(0.0) > bearable_N)
+          rows += fmt::format("| `{}` | {}, used on | {:.1f} | - | - | {} | - |\n", fault.name(), name_of(situation),
+                              *r.peak_force_in_use_N, r.noticed_in_use_as.empty() ? "-" : r.noticed_in_use_as);
+      if (s.peak_force_N <= bearable_N) continue;
       rows += fmt::format("| `{}` | {} | {:.1f} | {:.0f} | {:.0f} | {} | {} |\n", fault.name(), name_of(situation),
                           s.peak_force_N, 1e3 * s.energy_J, 1e3 * s.travel_m,
                           s.detected_as.empty() ? "-" : s.detected_as, off_text(s));
@@ -156,6 +162,13 @@ std::string not_run(std::span<const Result> results) {
   return "\n## Could not be run\n\n| case | what | why |\n| --- | --- | --- |\n" + text;
 }
 
+std::string recovery_of(const Result& r) {
+  if (!r.fault_on_healing.empty())
+    return fmt::format("{} of the {} that healing brought", r.recovery, r.fault_on_healing);
+  if (!r.noticed_in_use_as.empty()) return fmt::format("{} of the {} in use", r.recovery, r.noticed_in_use_as);
+  return r.recovery;
+}
+
 void add(std::set<std::string>& names, const std::string& name) {
   if (!name.empty()) names.insert(name);
 }
@@ -170,9 +183,7 @@ Summary summarise(std::span<const Result> results) {
     ++s.cases;
     s.detected += is_detected(r);
     add(faults, told(r));
-    add(recoveries, r.fault_on_healing.empty()
-                        ? r.recovery
-                        : fmt::format("{} of the {} that healing brought", r.recovery, r.fault_on_healing));
+    add(recoveries, recovery_of(r));
     s.were_on += r.bridges_were_on;
     s.went_off += r.off_after_s.has_value();
     s.off_after_s = std::max(s.off_after_s, r.off_after_s.value_or(0.0));
@@ -197,7 +208,8 @@ Made by `inkwell campaign`; do not edit. The firmware that is flashed runs on th
 in while the arm is unreferenced, ready, at rest, pressed into a stiff wall and in fast motion, at {} random
 instants. {} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row
 `none` is what the hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how far
-the probe lags behind the hand) are of the {} s after the fault came. Of three motors that are wired alike the
+the probe lags behind the hand) are of the {} s after the fault came, recovery and position of the end, after
+the use that "Not noticed" tells of. Of three motors that are wired alike the
 second stands for all. "bridges off" is when no bridge that is on had a leg at the supply any more, in control
 periods of {:.0f} us.
 

@@ -87,7 +87,8 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::program_astray:
       return "The code that it came to returned to the main loop, and had changed nothing that is checked.";
     case InjectedFault::exception_lost:
-      return "The force does not need it; a host that it keeps from being heard is missed later than a case lasts.";
+      return "The force does not need it; a host that it keeps from being heard is missed after host_timeout_s, 2 s in "
+             "these cases.";
     case InjectedFault::exception_late: return "Late by less than what the firmware watches for.";
     case InjectedFault::adc_stopped: return "None is known: each conversion of a current has to be a new one.";
     case InjectedFault::dma_stopped: return "None is known: the age of supply and gimbal is watched.";
@@ -103,7 +104,11 @@ std::string_view reason(const CaseFault& fault) {
 class InUse {
  public:
   void see(const Result& result) {
-    if (!result.peak_force_in_use_N) return;
+    if (!result.error.empty()) return;
+    if (!result.peak_force_in_use_N) {
+      ++not_used_;
+      return;
+    }
     ++used_;
     peak_N_ = std::max(peak_N_, *result.peak_force_in_use_N);
     if (!result.noticed_in_use_s) return;
@@ -116,13 +121,14 @@ class InUse {
   double peak_N() const { return peak_N_; }
   std::string text() const {
     if (used_ == 0) return "not used";
-    if (noticed_ == 0) return "-";
-    return fmt::format("{}{}, {:.2f} s", fmt::join(names_, "; "),
-                       noticed_ < used_ ? fmt::format(" ({} of {})", noticed_, used_) : "", after_s_);
+    const std::string left_out = not_used_ == 0 ? "" : fmt::format("; {} not used", not_used_);
+    if (noticed_ == 0) return "-" + left_out;
+    return fmt::format("{}{}, {:.2f} s{}", fmt::join(names_, "; "),
+                       noticed_ < used_ ? fmt::format(" ({} of {})", noticed_, used_) : "", after_s_, left_out);
   }
 
  private:
-  unsigned used_ = 0, noticed_ = 0;
+  unsigned used_ = 0, not_used_ = 0, noticed_ = 0;
   double peak_N_ = 0, after_s_ = 0;
   std::set<std::string> names_;
 };
@@ -140,14 +146,13 @@ InUse sound_in_use(const Groups& groups) {
 std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults) {
   std::string text = fmt::format(
       "\n## Not noticed\n\nWith the force on, in at least one of the cases that were run, the bridges stayed on and no "
-      "fault was told. The hand then used the arm on: it went on as before, pressed {} times into the wall in front of "
-      "it with the force "
-      "limit and swung {} times as in motion. The third column is what was told meanwhile, and at worst how long after "
-      "the use began; the fourth what the hand felt at most in it.",
-      use_presses, use_swings);
+      "fault was told. The hand then went on: for {} s as before, then it pressed {} times into the wall in front with "
+      "the force limit and swung {} times. What was told meanwhile stands in the third column, with the longest time "
+      "since it went on; the fourth is what the hand felt at most.",
+      goes_on_s, use_presses, use_swings);
   if (const InUse sound = sound_in_use(groups); sound.used() > 0)
-    text += fmt::format(" Without a fault it felt {:.2f} N, and {} of {} cases told one.", sound.peak_N(),
-                        sound.noticed() == 0 ? "none" : fmt::format("{}", sound.noticed()), sound.used());
+    text += fmt::format(" Without a fault it felt {:.2f} N at most, and a fault was told in {} of {} cases.",
+                        sound.peak_N(), sound.noticed(), sound.used());
   text +=
       "\n\n| fault | situations | noticed in use | peak force in use, N | reason |\n| --- | --- | --- | --- | --- |\n";
   for (const CaseFault& fault : faults) {

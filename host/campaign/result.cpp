@@ -56,7 +56,8 @@ Result parse_result(const std::string& text) {
     require_counts(result);
     return result.get<Result>();
   } catch (const nlohmann::json::exception& error) {
-    throw device::Error(fmt::format("This is no result of a case: {}. Run the case again.", error.what()));
+    throw device::Error(fmt::format(
+        "This is no result of a case by this version: {}. Remove it, and run the case again.", error.what()));
   }
 }
 

@@ -20,7 +20,7 @@ using protocol::Parameter;
 using protocol::ParameterSet;
 using protocol::State;
 
-constexpr double push_part_of_limit = 0.75;  ///< of the force limit
+constexpr double push_part_of_limit = 0.75;  // of the force limit
 constexpr double longest_case_s = 60;        // of board time
 constexpr double longest_phase_s = 0.1;
 
@@ -36,7 +36,13 @@ bool is_about_the_host(const CaseFault& fault) {
   return fault.fault == InjectedFault::usb_cut || fault.fault == InjectedFault::host_silent;
 }
 
-void bring_into(BoardRun& board, const Case& the_case) {
+/// Without the interrupt of the USB (RM0090, vector table) the board hears nothing.
+bool is_unheard(const CaseFault& fault) {
+  return is_about_the_host(fault) || (fault.fault == InjectedFault::exception_lost && fault.of == "83");
+}
+
+/// Gives the parameters that the board has then.
+ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   const CaseSituation situation = the_case.situation;
   // Before the first instruction the stylus is on its way out: nobody tells the board where it is.
   if (situation == CaseSituation::unreferenced) {
@@ -50,12 +56,13 @@ void bring_into(BoardRun& board, const Case& the_case) {
   if (!is_about_the_host(the_case.fault)) board.set({{Parameter::host_timeout_s, 2.0f}});
   if (situation == CaseSituation::unreferenced) {
     expect(board.wait_for(State::unreferenced, 1.0), "the board knew where the arm is.");
-    return board.run(0.3);
+    board.run(0.3);
+    return parameters;
   }
   expect(board.wait_for(State::ready, 1.0), "the board did not find its reference.");
   take_by_hand(board, middle_of_box_m(parameters), 0.4);
   board.run(0.6);
-  if (situation == CaseSituation::ready) return;
+  if (situation == CaseSituation::ready) return parameters;
   if (situation == CaseSituation::wall) {
     const float stiffest = protocol::info(Parameter::wall_stiffness_N_per_m).maximum;
     board.set({{Parameter::wall_stiffness_N_per_m, stiffest}});
@@ -77,6 +84,7 @@ void bring_into(BoardRun& board, const Case& the_case) {
     board.run(0.3);
   }
   expect(board.force_is_on(), "the force went off before the fault came.");
+  return parameters;
 }
 
 /// The instant of a phase: the same for each fault, so that the control tells what would have been without.
@@ -127,8 +135,8 @@ bool tries_to_work(BoardRun& board) {
   }
 }
 
-/// What the board tells of it, if it still can.
-void notice(BoardRun& board, const Case& the_case, Result& result) {
+/// What the board tells of it; false if it cannot.
+bool notice(BoardRun& board, const Case& the_case, Result& result) {
   board.run(0.02, false);
   note_fault(board, result.detected_as);
   // A board that has started anew tells why, if its USB lives.
@@ -136,11 +144,11 @@ void notice(BoardRun& board, const Case& the_case, Result& result) {
     board.run(0.15);
     note_fault(board, result.detected_as);
   }
+  return board.connected();
 }
 
-void recover(BoardRun& board, const Case& the_case, Result& result) {
-  // What was noticed before the cause was gone; a device that could not be asked tells afterwards.
-  const bool could_tell = board.connected();
+/// What was noticed before the cause was gone counts; a device that could not tell does so afterwards.
+void recover(BoardRun& board, const Case& the_case, bool could_tell, Result& result) {
   board.control().heal_all();
   if (!board.connected()) board.connect(0.5);
   board.run(0.05);
@@ -178,19 +186,18 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   options.seed = chooses ? the_case.number : the_case.phase;
   try {
     BoardRun board(options);
-    bring_into(board, the_case);
-    result.force_limit_N = static_cast<double>(board.device().parameters()[Parameter::force_limit_N]);
+    const ParameterSet parameters = bring_into(board, the_case);
+    result.force_limit_N = static_cast<double>(parameters[Parameter::force_limit_N]);
     const double until_fault_s = phase_s(the_case);
     constexpr double whole_slices_s = 0.01;
     const double slices_s = std::floor(until_fault_s / whole_slices_s) * whole_slices_s;
     board.run(slices_s);
     board.run_exactly(until_fault_s - slices_s);
     observe(board, the_case, result);
-    notice(board, the_case, result);
-    if (is_active(the_case.situation) && is_unnoticed(result) && board.connected() &&
-        !is_about_the_host(the_case.fault))
-      use_on(board, result);
-    recover(board, the_case, result);
+    const bool could_tell = notice(board, the_case, result);
+    if (is_active(the_case.situation) && is_unnoticed(result) && could_tell && !is_unheard(the_case.fault))
+      use_on(board, parameters, result);
+    recover(board, the_case, could_tell, result);
   } catch (const device::Error& error) {
     result.error = error.what();
   }

@@ -12,9 +12,6 @@ namespace {
 using device::HandWaypoint;
 using protocol::State;
 
-/// Until a swinging hand has come to the end of its way.
-constexpr double goes_on_s = 0.6;
-
 std::vector<HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters) {
   const device::Vector3 middle_m = middle_of_box_m(parameters);
   const device::Vector3 pressed_m = beyond_forward_wall_m(parameters, 1.0);
@@ -33,7 +30,7 @@ std::vector<HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& pa
 
 }  // namespace
 
-void use_on(BoardRun& board, Result& result) {
+void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& result) {
   auto& control = board.control();
   const unsigned restarts_before = control.status().all.value("resets", 0u);
   control.meter_start();
@@ -41,22 +38,27 @@ void use_on(BoardRun& board, Result& result) {
   const auto use_for = [&](double time_s) {
     constexpr double look_s = 0.01;
     for (const double until_s = used_s + time_s; used_s < until_s; used_s += look_s) {
-      if (!board.connected() || board.is(State::fault)) return;
+      if (!board.connected() || !board.force_is_on()) return;
       board.run(look_s);
     }
   };
   use_for(goes_on_s);
-  if (board.connected() && !board.is(State::fault)) {
-    const auto path = pressing_and_swinging(board.device().parameters());
-    control.hand_path(path);
-    use_for(path.back().after_s);
+  const auto path = pressing_and_swinging(parameters);
+  if (board.connected() && board.force_is_on()) control.hand_path(path);
+  use_for(path.back().after_s);
+  const bool restarted = control.status().all.value("resets", 0u) > restarts_before;
+  if (!board.connected() && !restarted) return;  // a device that cannot be used
+  if (!restarted && board.force_is_on()) {
+    result.peak_force_in_use_N = control.meter_read().peak_force_N;
+    return;
   }
+  result.noticed_in_use_s = used_s;
+  board.run(observed_s, false);  // what the hand feels then counts as well
   result.peak_force_in_use_N = control.meter_read().peak_force_N;
-  if (board.is(State::fault))
-    result.noticed_in_use_as = protocol::info(board.pose()->fault).name;
-  else if (control.status().all.value("resets", 0u) > restarts_before)
-    result.noticed_in_use_as = "restart";
-  if (!result.noticed_in_use_as.empty()) result.noticed_in_use_s = used_s;
+  if (restarted && !board.connected() && board.connect(0.3)) board.run(0.15);
+  result.noticed_in_use_as = board.is(State::fault) ? protocol::info(board.pose()->fault).name
+                             : restarted            ? "restart"
+                                                    : "force off";
 }
 
 }  // namespace inkwell::campaign

@@ -6,9 +6,8 @@
 
 namespace inkwell::campaign {
 
-/// Goes on as before for a while, presses the arm into the wall in front of it, then swings it, until the board tells a
-/// fault. Fills in
-/// what the result says about use. Throws device::Error if the device cannot be asked.
-void use_on(BoardRun& board, Result& result);
+/// Goes on as before for a while, presses the arm into the wall in front of it, then swings it, until the force goes
+/// off. Fills in what the result says about use: nothing, if the device goes away without a restart.
+void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& result);
 
 }  // namespace inkwell::campaign

@@ -122,6 +122,7 @@ int merge_results(const CampaignOptions& command) {
 int run_missing(const DeviceOptions& options, const CampaignOptions& command) {
   make_folder(command.folder, "--out");
   make_folder_of_page(command);
+  campaign::load_all(command.folder);  // what cannot be read is told before hours of cases, not after them
   std::vector<Case> missing;
   for (const Case& c : campaign::all_cases())
     if (!std::filesystem::exists(campaign::file_of(command.folder, c.number))) missing.push_back(c);

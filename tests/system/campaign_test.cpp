@@ -51,6 +51,9 @@ TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound
   CHECK(stuck.noticed_in_use_as == "motor_implausible");
   CHECK(stuck.noticed_in_use_s.value() < 1.5);
   CHECK(stuck.recovery == "clear_fault");
+  CHECK(stuck.fault_on_healing.empty());
+  const Result unheard = result_of("exception_lost:83 rest 1");
+  CHECK_FALSE(unheard.peak_force_in_use_N);
   const Result sound = result_of("none motion 1");
   CHECK(sound.noticed_in_use_as.empty());
   CHECK_FALSE(sound.noticed_in_use_s);

@@ -176,7 +176,7 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   Result sound = seen("none", "wall", 1);
   sound.energy_J = 0.0003;
   write_page(std::array{quick, sound}, page);
-  CHECK(content_of(page).find("at most 2.49 N (`bridge_fault` in wall), and got at most 1.0 mJ more") !=
+  CHECK(content_of(page).find("at most 2.49 N in that time (`bridge_fault` in wall), and got at most 1.0 mJ more") !=
         std::string::npos);
   CHECK(content_of(page).find("more than the force limit and a twentieth of it: none.") != std::string::npos);
   CHECK_THROWS_AS(write_page({}, page), device::Error);
@@ -198,20 +198,22 @@ TEST_CASE("a page of some of the cases tells what can be told, and says what can
   swung.peak_force_N = 1.5;
   swung.energy_J = 0.030;
   const std::string alone = page_of({off, pressed, swung});
-  CHECK(alone.find("felt at most 2.98 N (`bridge_fault` in wall). How much more energy") != std::string::npos);
+  CHECK(alone.find("felt at most 2.98 N in that time (`bridge_fault` in wall). How much more energy") !=
+        std::string::npos);
   CHECK(alone.find("cannot be told of wall, motion: the case `none` was not run there.") != std::string::npos);
   CHECK(alone.find("no case)") == std::string::npos);
 
   Result sound = seen("none", "wall", 1), failed = seen("none", "motion", 1);
   failed.error = "The board did not start.";
   const std::string partly = page_of({sound, failed, pressed, swung});
-  CHECK(partly.find("felt at most 2.98 N (`bridge_fault` in wall), and got at most 2.0 mJ more than without a fault in "
+  CHECK(partly.find("felt at most 2.98 N in that time (`bridge_fault` in wall), and got at most 2.0 mJ more than "
+                    "without a fault in "
                     "the same situation (`bridge_fault` in wall). How") != std::string::npos);
   CHECK(partly.find("cannot be told of motion:") != std::string::npos);
   sound.energy_J = 0.003;
   CHECK(page_of({sound, pressed}).find("and got no more energy than without a fault in the same situation.\n") !=
         std::string::npos);
-  CHECK(page_of({sound}).find("felt at most 0.00 N (`none` in wall).\n") != std::string::npos);
+  CHECK(page_of({sound}).find("felt at most 0.00 N in that time (`none` in wall).\n") != std::string::npos);
 }
 
 TEST_CASE("the force limit is that of the cases that could be run") {
@@ -314,9 +316,12 @@ TEST_CASE("what was not noticed is told with what became of it in use, and with 
     return content_of(directory / "campaign.md");
   };
   const std::string text = text_with({stuck, stuck_later, hot, sound});
-  CHECK(text.find("pressed 3 times into the wall in front of it with the force limit and swung 4 times") !=
+  CHECK(
+      text.find("for 0.6 s as before, then it pressed 3 times into the wall in front with the force limit and swung 4 "
+                "times.") != std::string::npos);
+  CHECK(text.find("Without a fault it felt 3.25 N at most, and a fault was told in 0 of 1 cases.") !=
         std::string::npos);
-  CHECK(text.find("Without a fault it felt 3.25 N, and none of 1 cases told one.") != std::string::npos);
+  CHECK(text.find("none needed of the encoder_implausible in use") != std::string::npos);
   CHECK(text.find("| `encoder_stuck:2` | rest, wall | encoder_implausible; motor_implausible, 1.75 s | 3.40 | ") !=
         std::string::npos);
   CHECK(text.find("| `motor_hot:2` | rest | - | 3.25 | ") != std::string::npos);
@@ -324,7 +329,12 @@ TEST_CASE("what was not noticed is told with what became of it in use, and with 
   sound.noticed_in_use_s = 0.1;
   const std::string other = text_with({stuck, stuck_later, hot, sound});
   CHECK(other.find("| rest, wall | motor_implausible (1 of 2), 1.75 s | ") != std::string::npos);
-  CHECK(other.find("and 1 of 1 cases told one.") != std::string::npos);
+  CHECK(other.find("a fault was told in 1 of 1 cases.") != std::string::npos);
+  stuck.peak_force_in_use_N = std::nullopt;
+  hot.peak_force_in_use_N = 3.6;
+  const std::string third = text_with({stuck, stuck_later, hot, sound});
+  CHECK(third.find("| rest, wall | motor_implausible, 1.75 s; 1 not used | ") != std::string::npos);
+  CHECK(third.find("| `motor_hot:2` | rest, used on | 3.6 | - | - | - | - |") != std::string::npos);
 }
 
 TEST_CASE("each fault that passes unnoticed with the force on has a reason on the page") {
