@@ -3,7 +3,7 @@ function pose = inkwell_pose(arm)
 %
 %   pose.time_s         board time, s
 %   pose.state          'starting', 'unreferenced', 'ready', 'active' (the force is on) or 'fault'
-%   pose.is_referenced  true while the arm knows where it is; else position, joints, rotation mean nothing
+%   pose.is_referenced  true while the arm knows where it is; else position, joints and rotation mean nothing
 %   pose.position_m     of the probe, where the stylus is held, m, 3 x 1
 %   pose.velocity_m_s   over the last 8 ms, m/s, 3 x 1
 %   pose.rotation       of the stylus, 3 x 3; the columns are its x, y and z axis

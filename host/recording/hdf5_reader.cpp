@@ -19,7 +19,7 @@ class Hdf5Reader {
     const Handle access = file_access();
     file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
     if (!file_) file_ = Handle(H5Fopen(name_.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id()), H5Fclose);
-    if (!file_) fail("is damaged, or is being written just now: HDF5 cannot open it");
+    if (!file_) fail("is damaged, or is being written: HDF5 cannot open it. Try again once its recorder has ended");
     if (read_text_attribute(file_.id(), "format") != format_name) fail("is an HDF5 file, but no recording");
   }
 

@@ -191,6 +191,7 @@ TEST_CASE("while nobody knows where the arm is, watching it shows no place; prog
     return nlohmann::json::parse(text.substr(0, text.find('\n'))).at("referenced").get<bool>();
   };
   CHECK(is_referenced());
+  CHECK(rig.run({"info"}).out.find("place of the arm    known") != std::string::npos);
   CHECK(first_line({}).find("unknown") == std::string::npos);
   // The encoder slips by farther than a joint turns in a control period.
   rig.control.dock(false);
@@ -198,6 +199,8 @@ TEST_CASE("while nobody knows where the arm is, watching it shows no place; prog
   rig.control.run(0.05);
   rig.control.resume();
   CHECK_FALSE(is_referenced());
+  CHECK(rig.run({"info"}).out.find("unknown: put the stylus into the inkwell") != std::string::npos);
+  CHECK_FALSE(nlohmann::json::parse(rig.run({"info", "--json"}).out).at("referenced").get<bool>());
   CHECK(first_line({}).find("unknown") != std::string::npos);
 }
 

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <thread>
 
+#include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -347,6 +348,14 @@ TEST_CASE("a recording can be read while a process runs that was started meanwhi
   const TemporaryDirectory directory;
   const auto file = directory.file("run.h5");
   Recorder recorder(file, about());
+  bool is_open = false;
+  for (const auto& entry : fs::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    if (fs::read_symlink(entry.path(), gone) != fs::canonical(file)) continue;
+    is_open = true;
+    CHECK((fcntl(std::stoi(entry.path().filename().string()), F_GETFD) & FD_CLOEXEC) != 0);
+  }
+  CHECK(is_open);
   struct Other {
     pid_t process = fork();
     ~Other() {
