@@ -95,7 +95,8 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::ram_bit:
       return "Of the RAM only the interrupts' code and tables and the settings are checked; the byte was not used, or "
              "written anew before.";
-    case InjectedFault::flash_bit: return "The bit lay outside the image: in the sectors of the stored parameters, or where nothing lies.";
+    case InjectedFault::flash_bit:
+      return "The bit lay outside the image: in the sectors of the stored parameters, or where nothing lies.";
   }
   return "";
 }
