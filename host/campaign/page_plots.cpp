@@ -55,22 +55,21 @@ std::string off_plot(std::span<const Result> results) {
       ++bars[static_cast<std::size_t>(bin)].count;
     } else {
       ++bars.back().count;
+      if (!is_unnoticed(result) || !result.noticed_in_use_as.empty()) continue;
       ++bars.back().quiet;
       wires += result.fault.starts_with("wire");
     }
   }
-  const unsigned stayed_on = bars.back().count;
+  const unsigned unnoticed = bars.back().quiet;
   return svg_of(
       {.title = "Simulation: how soon after a fault all bridges were off, of cases with the force on",
        .axis = fmt::format("time until they were off, in control periods of {:.0f} μs", 1e6 * control_period_s),
        .bars = std::move(bars),
        .last_apart = true,
-       .strong_means = "went off",
-       .quiet_means =
-           stayed_on == 0
-               ? ""
-               : fmt::format("stayed on: {} of {} are wires, such as a button's; reasons under “Not noticed”", wires,
-                             stayed_on)});
+       .strong_means = "went off, or stayed on and a fault was told, at once or while the arm was used on",
+       .quiet_means = unnoticed == 0 ? ""
+                                     : fmt::format("not noticed: {} of {} are wires, such as a button's; reasons below",
+                                                   wires, unnoticed)});
 }
 
 std::string force_plot(std::span<const Result> results) {

@@ -248,9 +248,13 @@ TEST_CASE("the plots say what is counted, in which unit, what a colour means and
     for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
     return found;
   };
+  Result later = seen("encoder_stuck:2", "wall", 1);
+  later.peak_force_N = 2.45;
+  later.noticed_in_use_as = "encoder_implausible";
+  CHECK(count(plots_of({sound, later}).first, "not noticed: ") == 0);
   const auto [off, force] = plots_of({sound, button, hot, quick});
   CHECK(count(off, "in control periods of 50 μs</text>") == 1);
-  CHECK(count(off, "stayed on: 1 of 2 are wires") == 1);
+  CHECK(count(off, "not noticed: 1 of 2 are wires") == 1);
   CHECK(count(off, "#b9c1ca") == 2);  // its bar, and what it means
   CHECK(count(force, ">peak force at the hand, N</text>") == 1);
   CHECK(count(force, ">force limit 3.3 N</text>") == 1);
