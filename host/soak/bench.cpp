@@ -225,13 +225,16 @@ void Bench::take_out() {
 }
 
 void Bench::dock() {
-  // A reference is taken anew once the arm has been still in the inkwell for a while.
-  constexpr double longest_s = 2.0, look_every_s = 0.02, rest_s = 0.3;
+  // A reference is taken anew once the arm has been still in the inkwell for a while, and what was lost before is told
+  // only there, some milliseconds after the switch has closed.
+  constexpr double longest_s = 2.3, look_every_s = 0.02, rest_s = 0.3;
   board.control().dock(true);
+  double rested_s = 0;
   for (double waited_s = 0; waited_s < longest_s; waited_s += look_every_s) {
     pass(look_every_s);
     // Counts were lost, and only here the board finds the arm again. Whether that may be is the oracle's to say.
     if (board.is(State::fault)) {
+      rested_s = 0;
       const protocol::Fault told = board.pose()->fault;
       if ((lost_counts & protocol::watch(told)) == 0) continue;
       board.command(Command::clear_fault);
@@ -242,7 +245,9 @@ void Bench::dock() {
         board.control().dock(true);
       }
     }
-    if (board.is(State::ready) && board.control().truth().at("inkwell_switch").get<bool>()) return pass(rest_s);
+    const bool rests = board.is(State::ready) && board.control().truth().at("inkwell_switch").get<bool>();
+    rested_s = rests ? rested_s + look_every_s : 0.0;
+    if (rested_s >= rest_s) return;
   }
   fail(Complaint::no_answer, "the board did not find its reference in the inkwell");
 }
@@ -256,7 +261,9 @@ void Bench::give_up_force() {
 
 void Bench::make_ready() {
   if (!board.connected()) connect();
-  if (board.is(State::fault)) fail(Complaint::no_answer, "the phase before left a fault");
+  if (board.is(State::fault))
+    fail(Complaint::no_answer,
+         fmt::format("the phase before left the fault {}", protocol::info(board.pose()->fault).name));
   if (board.force_is_on()) give_up_force();
   if (board.is(State::starting) || board.is(State::testing)) pass(0.3);
   if (board.is(State::unreferenced)) dock();
