@@ -36,6 +36,12 @@ bool BoardRun::connect(double limit_s) {
   }
 }
 
+bool BoardRun::connect_after_restart() {
+  if (!connect(0.3)) return false;
+  run(0.15);
+  return true;
+}
+
 void BoardRun::set(std::initializer_list<device::ParameterChange> changes) {
   device_->set_parameters(std::vector<device::ParameterChange>(changes));
 }
@@ -43,6 +49,8 @@ void BoardRun::set(std::initializer_list<device::ParameterChange> changes) {
 void BoardRun::pass(double time_s) { control_.run(time_s); }
 
 bool BoardRun::is_locked_up() { return control_.status().all.contains("locked_up"); }
+
+unsigned BoardRun::resets() { return control_.status().all.value("resets", 0u); }
 
 void BoardRun::let_go_of_device() {
   device_.reset();

@@ -19,8 +19,7 @@ std::string_view reason_of_wire(std::string_view wire) {
            "and again, while the joint does not seem to move.";
   if (wire.starts_with("bridges"))
     return "While no current is asked of the motor, none is missed, and the legs' levels are looked at while the "
-           "bridges "
-           "are off only.";
+           "bridges are off only.";
   if (wire.starts_with("bridge_fault"))
     return "It stands as with sound bridges. The self-test at the next start tells one that is broken, not one that "
            "touches the supply.";

@@ -6,6 +6,7 @@
 
 #include <campaign/board_run.hpp>
 #include <campaign/handling.hpp>
+#include <chip/exception_numbers.hpp>
 #include <protocol/reports.hpp>
 
 #include "use.hpp"
@@ -36,9 +37,11 @@ bool is_about_the_host(const CaseFault& fault) {
   return fault.fault == InjectedFault::usb_cut || fault.fault == InjectedFault::host_silent;
 }
 
-/// Without the interrupt of the USB (RM0090, vector table) the board hears nothing.
+/// Without the interrupt of the USB the board hears nothing.
 bool is_unheard(const CaseFault& fault) {
-  return is_about_the_host(fault) || (fault.fault == InjectedFault::exception_lost && fault.of == "83");
+  constexpr unsigned of_usb = virtual_board::exception_of(virtual_board::otg_fs_position);
+  return is_about_the_host(fault) ||
+         (fault.fault == InjectedFault::exception_lost && fault.of == std::to_string(of_usb));
 }
 
 /// Gives the parameters that the board has then.
@@ -96,7 +99,7 @@ double phase_s(const Case& the_case) {
 void observe(BoardRun& board, const Case& the_case, Result& result) {
   auto& control = board.control();
   const auto before = control.truth();
-  const unsigned restarts_before = control.status().all.value("resets", 0u);
+  const unsigned resets_before = board.resets();
   result.injected_at_s = before.at("board_time_s");
   result.bridges_were_on = bridges_drive(before);
   if (const auto& fault = the_case.fault; fault.fault) {
@@ -117,7 +120,7 @@ void observe(BoardRun& board, const Case& the_case, Result& result) {
   result.energy_J = reading.energy_J;
   result.travel_m = the_case.situation == CaseSituation::motion ? reading.lag_m : reading.travel_m;
   result.locked_up = board.is_locked_up();
-  result.restarts = control.status().all.value("resets", 0u) - restarts_before;
+  result.restarts = board.resets() - resets_before;
 }
 
 void note_fault(const BoardRun& board, std::string& name) {
@@ -140,10 +143,9 @@ bool notice(BoardRun& board, const Case& the_case, Result& result) {
   board.run(0.02, false);
   note_fault(board, result.detected_as);
   // A board that has started anew tells why, if its USB lives.
-  if ((result.restarts > 0 || !board.connected()) && !is_about_the_host(the_case.fault) && board.connect(0.3)) {
-    board.run(0.15);
+  if ((result.restarts > 0 || !board.connected()) && !is_about_the_host(the_case.fault) &&
+      board.connect_after_restart())
     note_fault(board, result.detected_as);
-  }
   return board.connected();
 }
 

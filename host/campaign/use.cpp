@@ -32,7 +32,7 @@ std::vector<HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& pa
 
 void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& result) {
   auto& control = board.control();
-  const unsigned restarts_before = control.status().all.value("resets", 0u);
+  const unsigned resets_before = board.resets();
   control.meter_start();
   double used_s = 0;
   const auto use_for = [&](double time_s) {
@@ -46,7 +46,7 @@ void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& r
   const auto path = pressing_and_swinging(parameters);
   if (board.connected() && board.force_is_on()) control.hand_path(path);
   use_for(path.back().after_s);
-  const bool restarted = control.status().all.value("resets", 0u) > restarts_before;
+  const bool restarted = board.resets() > resets_before;
   if (!board.connected() && !restarted) return;  // a device that cannot be used
   if (!restarted && board.force_is_on()) {
     result.peak_force_in_use_N = control.meter_read().peak_force_N;
@@ -55,7 +55,7 @@ void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& r
   result.noticed_in_use_s = used_s;
   board.run(observed_s, false);  // what the hand feels then counts as well
   result.peak_force_in_use_N = control.meter_read().peak_force_N;
-  if (restarted && !board.connected() && board.connect(0.3)) board.run(0.15);
+  if (restarted && !board.connected()) board.connect_after_restart();
   result.noticed_in_use_as = board.is(State::fault) ? protocol::info(board.pose()->fault).name
                              : restarted            ? "restart"
                                                     : "force off";

@@ -177,8 +177,8 @@ class Hdf5Writer final : public Writer {
   void open_for_writing(const Information& about) {
     file_ = Handle(H5Fopen(file_name_.c_str(), H5F_ACC_RDWR, access().id()), H5Fclose);
     if (!file_) fail();
-    ::fcntl(descriptor(), F_SETFD,
-            FD_CLOEXEC);  // a process that is started meanwhile would keep a removed file's space
+    // A process that is started meanwhile would keep the space of a file that is removed.
+    ::fcntl(descriptor(), F_SETFD, FD_CLOEXEC);
     const auto open = [&](const std::string& path) {
       Handle dataset(H5Dopen2(file_.id(), path.c_str(), H5P_DEFAULT), H5Dclose);
       if (!dataset) fail();

@@ -20,6 +20,8 @@ class BoardRun {
 
   /// Waits until the board shows its device and opens it; false if it does not in that time.
   bool connect(double limit_s);
+  /// The same for a board that has started anew, until it had time to tell why.
+  bool connect_after_restart();
   bool connected() const { return device_ != nullptr; }
   device::Device& device() { return *device_; }
   void set(std::initializer_list<device::ParameterChange> changes);
@@ -43,6 +45,8 @@ class BoardRun {
   bool is(protocol::State state) const { return pose_ && pose_->state == state; }
   bool force_is_on() const { return pose_ && protocol::force_is_on(pose_->state); }
   bool is_locked_up();
+  /// How often the chip was reset since the power came, also by its watchdog.
+  unsigned resets();
   void reset();
   device::ControlClient& control() { return control_; }
   device::Vector3 true_position_m();
