@@ -126,7 +126,7 @@ protocol::CrashFacts crash_with_stack(std::uint32_t link_register, std::span<con
   constexpr std::uint32_t negative_and_carry = 0xA000'0000, is_thumb = 1u << 24, all_flags = 0xF800'0000;
   registers.xpsr = (registers.xpsr & ~(if_then_bits | all_flags)) | negative_and_carry;
   std::vector<std::uint8_t> bytes(words.size_bytes());
-  std::memcpy(bytes.data(), words.data(), bytes.size());
+  if (!words.empty()) std::memcpy(bytes.data(), words.data(), bytes.size());
   REQUIRE(bus.chip.debug_port().write(registers.general[CoreRegisters::sp], bytes));
   bus.chip.debug_port().set_core_registers(registers);
   bus.run_for(0.2);
