@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include <campaign/cases.hpp>
+#include <campaign/run.hpp>
 
 namespace inkwell::campaign {
 namespace {
@@ -49,6 +50,23 @@ std::vector<device::HandWaypoint> swings(const Vector3& middle_m, int count) {
     for (double& along_m : side_m) along_m += (turn % 2 == 0 ? swing_m : -swing_m) / std::sqrt(3.0);
     path.push_back({(turn + 1) * swing_s, side_m});
   }
+  return path;
+}
+
+std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters) {
+  const Vector3 middle_m = middle_of_box_m(parameters);
+  const Vector3 pressed_m = beyond_forward_wall_m(parameters, 1.0);
+  std::vector<device::HandWaypoint> path;
+  double at_s = 0.1;
+  path.push_back({at_s, middle_m});
+  for (int press = 0; press < use_presses; ++press)
+    for (const auto& target_m : {pressed_m, middle_m}) {
+      path.push_back({at_s += 0.15, target_m});
+      path.push_back({at_s += 0.1, target_m});
+    }
+  for (const device::HandWaypoint& swung : swings(middle_m, use_swings))
+    path.push_back({at_s + swung.after_s, swung.target_m});
+  path.push_back({at_s + use_swings * swing_s + 0.2, middle_m});
   return path;
 }
 

@@ -1,35 +1,10 @@
 #include "use.hpp"
 
-#include <vector>
-
 #include <campaign/handling.hpp>
 #include <campaign/run.hpp>
 #include <protocol/reports.hpp>
 
 namespace inkwell::campaign {
-namespace {
-
-using device::HandWaypoint;
-using protocol::State;
-
-std::vector<HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters) {
-  const device::Vector3 middle_m = middle_of_box_m(parameters);
-  const device::Vector3 pressed_m = beyond_forward_wall_m(parameters, 1.0);
-  std::vector<HandWaypoint> path;
-  double at_s = 0.1;
-  path.push_back({at_s, middle_m});
-  for (int press = 0; press < use_presses; ++press)
-    for (const auto& target_m : {pressed_m, middle_m}) {
-      path.push_back({at_s += 0.15, target_m});
-      path.push_back({at_s += 0.1, target_m});
-    }
-  for (const HandWaypoint& swung : swings(middle_m, use_swings)) path.push_back({at_s + swung.after_s, swung.target_m});
-  path.push_back({at_s + use_swings * swing_s + 0.2, middle_m});
-  return path;
-}
-
-}  // namespace
-
 void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& result) {
   auto& control = board.control();
   const unsigned resets_before = board.resets();
@@ -56,9 +31,9 @@ void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& r
   board.run(observed_s, false);  // what the hand feels then counts as well
   result.peak_force_in_use_N = control.meter_read().peak_force_N;
   if (restarted && !board.connected()) board.connect_after_restart();
-  result.noticed_in_use_as = board.is(State::fault) ? protocol::info(board.pose()->fault).name
-                             : restarted            ? "restart"
-                                                    : "force off";
+  result.noticed_in_use_as = board.is(protocol::State::fault) ? protocol::info(board.pose()->fault).name
+                             : restarted                      ? "restart"
+                                                              : "force off";
 }
 
 }  // namespace inkwell::campaign

@@ -54,7 +54,7 @@ TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound
   CHECK(stuck.fault_on_healing.empty());
   const Result unheard = result_of("exception_lost:83 rest 1");
   CHECK_FALSE(unheard.peak_force_in_use_N);
-  const Result sound = result_of("none motion 1");
+  const Result sound = result_of("none motion 3");
   CHECK(sound.noticed_in_use_as.empty());
   CHECK_FALSE(sound.noticed_in_use_s);
   CHECK(sound.peak_force_in_use_N.value() == doctest::Approx(sound.force_limit_N).epsilon(0.1));

@@ -1,9 +1,11 @@
 // The list of cases, their files, and the page that is made of them.
 #include <campaign/cases.hpp>
+#include <campaign/handling.hpp>
 #include <campaign/page.hpp>
 #include <campaign/result.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -303,6 +305,26 @@ TEST_CASE("a bridge that went on though it was off stands on the page before all
   CHECK(text.find("| " + std::to_string(on.number) + " | `wire_high:bridge_enable` ready 2 | 1.25 | 0.0 | 0.0 | - |") !=
         std::string::npos);
   CHECK(text.find("`bridge_fault` ready 1") == std::string::npos);
+}
+
+TEST_CASE(
+    "in use the hand presses thrice into the wall, swings to either side and ends in the middle, without a jump") {
+  const auto parameters = protocol::default_parameters();
+  const auto middle_m = middle_of_box_m(parameters), pressed_m = beyond_forward_wall_m(parameters, 1.0);
+  int presses = 0, swings_there = 0;
+  double last_s = 0;
+  device::Vector3 last_m = middle_m;
+  const auto path = pressing_and_swinging(parameters);
+  for (const auto& [after_s, target_m] : path) {
+    CHECK(after_s > last_s);
+    presses += target_m == pressed_m && last_m != pressed_m;
+    swings_there += std::abs(target_m[0] - middle_m[0]) > 0.01;
+    last_s = after_s;
+    last_m = target_m;
+  }
+  CHECK(presses == 3);
+  CHECK(swings_there == 4);
+  CHECK(last_m == middle_m);
 }
 
 TEST_CASE("what was not noticed is told with what became of it in use, and with what a sound arm showed there") {
