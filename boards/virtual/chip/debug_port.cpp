@@ -69,6 +69,7 @@ bool ChipDebugPort::read(std::uint32_t address, std::span<std::uint8_t> bytes) {
 }
 
 bool ChipDebugPort::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return true;  // gdb asks so whether it may write in binary
   const auto size = static_cast<std::uint32_t>(bytes.size());
   if (auto* place = machine_.memory.ram_at(address, size)) {
     std::memcpy(place, bytes.data(), bytes.size());
