@@ -40,18 +40,19 @@ INKWELL_INTERRUPT control::Samples read_samples() {
 INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
   if (drive.enabled)
     bridges.write(drive.duty);
-  else if (drive.brake)
-    bridges.write_brake();
   else
-    return bridges.disable();
-  bridges.enable();
+    bridges.write_brake();  // also while they are off: that is what they begin with when they come on
+  if (drive.enabled || drive.brake)
+    bridges.enable();
+  else
+    bridges.disable();
 }
 
 }  // namespace
 
 extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t begin_cycles = clock.begin();
-  bridges.begin_period();
+  bridges.begin_period();   // and lets the bridges stay on, if they are
   bridges.write_neutral();  // an interrupt that does not finish in time leaves the motors without voltage
 
   const std::uint32_t period = controller.periods();
@@ -89,6 +90,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   host_link.status.record(controller.state(), controller.motor_heat(), controller.servo_cycles(),
                           controller.late_force_reports(), overrun);
   completed_periods.store(controller.periods());
+  bridges.end_period();
 }
 
 }  // namespace inkwell::application

@@ -16,6 +16,7 @@ namespace {
 using TIM1 = RegistersOf<Bridges, registers::TIM1>;
 using TIM8 = RegistersOf<Bridges, registers::TIM8>;
 using Enable = DigitalOutput<Bridges, board::facts.bridge_enable>;
+using Heartbeat = DigitalOutput<Bridges, board::facts.bridge_heartbeat>;
 
 /// Master mode of TIM1: what its trigger output shows (RM0090, TIMx_CR2, MMS).
 constexpr std::uint32_t trigger_on_enable = 0b001;
@@ -70,6 +71,9 @@ void start_together() {
   TIM1::CR2::write(TIM1::CR2::MMS(trigger_on_update));
 }
 
+/// A flag is cleared by writing 0 to it; writing 1 to the others leaves them alone.
+void clear_update() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
+
 /// Four microseconds: a hundred picofarads.
 constexpr std::uint32_t fault_pull_cycles = board::processor_Hz / 250'000;
 
@@ -91,6 +95,7 @@ void connect_pins() {
 
 void Bridges::start() {
   Enable::start();
+  Heartbeat::start();
   start_clocks_of<Bridges, registers::TIM1, registers::TIM8>();
   // A debugger that halts the processor stops the timers: a halt must not leave the last duty on the motors for good.
   // That the outputs go idle as well is to be seen on the bench (the board's README.md, "First power-up").
@@ -110,9 +115,12 @@ INKWELL_INTERRUPT void Bridges::write_neutral() {
 }
 
 INKWELL_INTERRUPT void Bridges::write(const std::array<float, 3>& duty) {
-  write_legs<0>(leg_compares(duty[0]));
-  write_legs<1>(leg_compares(duty[1]));
-  write_legs<2>(leg_compares(duty[2]));
+  std::array<LegCompares, 3> legs;
+#pragma GCC unroll 1  // thrice the code would not be quicker
+  for (std::size_t i = 0; i < legs.size(); ++i) legs[i] = leg_compares(duty[i]);
+  write_legs<0>(legs[0]);
+  write_legs<1>(legs[1]);
+  write_legs<2>(legs[2]);
 }
 
 INKWELL_INTERRUPT void Bridges::write_brake() {
@@ -156,16 +164,23 @@ bool Bridges::fault_wire_of_tim8_floats() const {
 
 bool Bridges::enable_is_high() const { return DigitalInput<Bridges, board::facts.bridge_enable>::is_high(); }
 
+bool Bridges::heartbeat_is_high() const { return DigitalInput<Bridges, board::facts.bridge_heartbeat>::is_high(); }
+
 bool Bridges::a_leg_is_high() const {
   constexpr auto& bridges = board::facts.bridges;
   return any_is_high<bridges[0].leg_a.pin, bridges[1].leg_a.pin, bridges[2].leg_a.pin>() ||
          any_is_high<bridges[0].leg_b.pin, bridges[1].leg_b.pin, bridges[2].leg_b.pin>();
 }
 
-INKWELL_INTERRUPT void Bridges::begin_period() { TIM1::SR::write(~TIM1::SR::UIF::mask); }
+INKWELL_INTERRUPT void Bridges::begin_period() {
+  Heartbeat::set_high();
+  clear_update();
+}
+
+INKWELL_INTERRUPT void Bridges::end_period() { Heartbeat::set_low(); }
 
 bool Bridges::wait_for_update() {
-  begin_period();
+  clear_update();
   return wait_for(2 * board::servo_cycles, [this] { return period_is_over(); }) && TIM8::CR1::CEN::is_set();
 }
 

@@ -153,6 +153,19 @@ TEST_CASE("before the arm knows its place a wire of the bridges is watched as we
   check_clears_when_gone(rig, State::unreferenced);
 }
 
+TEST_CASE(
+    "a heartbeat's wire that touches 3.3 V lets go of the bridges at once, and is noticed with the force on and off") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.inject({.fault = "wire_high", .of = "bridge_heartbeat"});
+  rig.control.run(2 * control_period_s);
+  CHECK_FALSE(bridges_enabled(rig.control));
+  check_told(rig, Fault::bridge_wire);
+  check_clears_when_gone(rig, State::ready);
+  rig.control.inject({.fault = "wire_high", .of = "bridge_heartbeat"});
+  check_told(rig, Fault::bridge_wire);
+}
+
 TEST_CASE("an enable wire that touches ground is noticed within eight control periods of the force") {
   BoardRig rig;
   press_into_wall(rig);

@@ -94,12 +94,16 @@ TEST_CASE("a processor that stands still for a moment while no interrupt runs is
   CHECK(protocol::force_is_on(rig.pose().state));
 }
 
-TEST_CASE("a debug probe that halts the core takes the voltage off the motors, and the watchdog waits for it") {
+TEST_CASE(
+    "a debug probe that halts the core takes the voltage off the motors and lets go of the bridges, and the watchdog "
+    "waits for it") {
   BoardRig rig;
   press_into_wall(rig);
   REQUIRE(any_motor_driven(rig.control));
   rig.control.inject({"core_halted", "", 0.1});
-  CHECK_FALSE(any_leg_high_within(rig.control, 0.001));
+  CHECK_FALSE(any_leg_high_within(rig.control, 0.0001));
+  CHECK_FALSE(bridges_enabled(rig.control));
+  CHECK_FALSE(any_leg_high_within(rig.control, 0.0009));
   rig.control.run(0.098);
   CHECK_FALSE(any_leg_high_within(rig.control, 0.0005));
   rig.control.run(0.001);
@@ -112,7 +116,10 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
   BoardRig rig;
   press_into_wall(rig);
   rig.control.inject({"exception_lost", std::to_string(control_interrupt)});
-  rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
+  rig.control.run(0.0001);
+  CHECK(watchdog_bites(rig.control) == 0);
+  CHECK_FALSE(bridges_enabled(rig.control));  // no heartbeat any more
+  rig.control.run(0.04);                      // the slowest watchdog of the data sheet bites after 38 ms
   CHECK(watchdog_bites(rig.control) == 1);
   check_bridges_off(rig);
   rig.control.heal("exception_lost");

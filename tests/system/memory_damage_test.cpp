@@ -49,7 +49,7 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
   // Each where nothing is read or run meanwhile: it is to be found before it does harm.
   constexpr std::uint32_t memory_management_vector = 0x10;
   const std::uint32_t places[] = {firmware_symbol("interrupt_vectors") + memory_management_vector,
-                                  firmware_symbol("write_brake"), firmware_symbol("nowhere")};
+                                  firmware_symbol("leave_out"), firmware_symbol("nowhere")};
   for (const std::uint32_t address : places) {
     CAPTURE(address);
     check_found_and_written_anew({address}, 7);

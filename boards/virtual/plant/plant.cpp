@@ -68,6 +68,7 @@ Plant::Plant(const arms::Description& arm, const board::Facts& board, const Plan
       imperfections_(options.imperfections),
       motors_{motor_drive(arm, board, 0, imperfections_), motor_drive(arm, board, 1, imperfections_),
               motor_drive(arm, board, 2, imperfections_)},
+      hold_ticks_(ticks(static_cast<double>(board.bridge_hold_s))),
       supply_(imperfections_, static_cast<double>(board::supply_nominal_V)),
       supply_divided_V_(supply_.bus_V() / static_cast<double>(board.supply_divider())),
       analog_supply_V_(reference_V),
@@ -94,6 +95,7 @@ Plant::Plant(const arms::Description& arm, const board::Facts& board, const Plan
     gimbal_rad_[i] = 0.25 * square + 0.5 * slope + offset;
   }
   wire(board_.bridge_enable, Role::enable, 0);
+  wire(board_.bridge_heartbeat, Role::heartbeat, 0);
 }
 
 void Plant::connect(InputPins& pins) {
@@ -115,15 +117,34 @@ void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
   if (index >= wires_.size() || wires_[index].role == Role::none) return;
   run_until(now);
   const Wire wire = wires_[index];
-  if (wire.role == Role::enable) {
-    bridges_enabled_ = level == PinLevel::high;  // the board's pull-down keeps a floating pin low
-    if (!bridges_enabled_) tripped_ = false;
-    for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
-  } else {
-    leg_pins_[wire.motor][wire.role == Role::leg_a ? 0 : 1] = level;
-    update_legs(wire.motor, now);
+  if (wire.role == Role::enable || wire.role == Role::heartbeat) {
+    // A retriggerable monostable, 74LVC1G123: cleared by the enable wire, started anew by the heartbeat, and by the
+    // enable wire while the heartbeat is high (its data sheet, function table). The board's pull-downs keep pins that
+    // float low.
+    bool& wire_high = wire.role == Role::enable ? enable_high_ : heartbeat_high_;
+    const bool rises = level == PinLevel::high && !wire_high;
+    wire_high = level == PinLevel::high;
+    if (rises && enable_high_ && heartbeat_high_) held_until_ = now + hold_ticks_;
+    if (!enable_high_) held_until_ = now;
+    enable_bridges(enable_high_ && held_until_ > now, now);
+    return;
   }
+  leg_pins_[wire.motor][wire.role == Role::leg_a ? 0 : 1] = level;
+  update_legs(wire.motor, now);
   note_driving(now);
+}
+
+void Plant::enable_bridges(bool enabled, Ticks now) {
+  if (enabled == bridges_enabled_) return;
+  bridges_enabled_ = enabled;
+  if (!enabled) tripped_ = false;
+  for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
+  note_driving(now);
+}
+
+/// If their time is over by then.
+void Plant::let_go_of_bridges(Ticks until) {
+  if (bridges_enabled_ && held_until_ <= until) enable_bridges(false, held_until_);
 }
 
 void Plant::note_driving(Ticks now) {
@@ -228,9 +249,11 @@ void Plant::advance(Ticks now) {
 
 void Plant::run_until(Ticks now) {
   while (next_step_ <= now) {
+    let_go_of_bridges(next_step_);
     step();
     next_step_ += step_ticks;
   }
+  let_go_of_bridges(now);
   now_ = std::max(now_, now);
 }
 

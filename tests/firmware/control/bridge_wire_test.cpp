@@ -25,14 +25,15 @@ TEST_CASE("while the bridges are off every wire must be low, while they are on t
     BridgePins pins;
     bool sound;
   };
-  constexpr Row rows[] = {{{.on = false, .enable_is_high = false, .a_leg_is_high = false}, true},
-                          {{.on = false, .enable_is_high = true, .a_leg_is_high = false}, false},
-                          {{.on = false, .enable_is_high = false, .a_leg_is_high = true}, false},
-                          {{.on = false, .enable_is_high = true, .a_leg_is_high = true}, false},
-                          {{.on = true, .enable_is_high = true, .a_leg_is_high = false}, true},
-                          {{.on = true, .enable_is_high = true, .a_leg_is_high = true}, true},
-                          {{.on = true, .enable_is_high = false, .a_leg_is_high = false}, false},
-                          {{.on = true, .enable_is_high = false, .a_leg_is_high = true}, false}};
+  constexpr Row rows[] = {
+      {{.on = false, .enable_is_high = false, .heartbeat_is_high = false, .a_leg_is_high = false}, true},
+      {{.on = false, .enable_is_high = true, .heartbeat_is_high = false, .a_leg_is_high = false}, false},
+      {{.on = false, .enable_is_high = false, .heartbeat_is_high = false, .a_leg_is_high = true}, false},
+      {{.on = false, .enable_is_high = true, .heartbeat_is_high = false, .a_leg_is_high = true}, false},
+      {{.on = true, .enable_is_high = true, .heartbeat_is_high = false, .a_leg_is_high = false}, true},
+      {{.on = true, .enable_is_high = true, .heartbeat_is_high = false, .a_leg_is_high = true}, true},
+      {{.on = true, .enable_is_high = false, .heartbeat_is_high = false, .a_leg_is_high = false}, false},
+      {{.on = true, .enable_is_high = false, .heartbeat_is_high = false, .a_leg_is_high = true}, false}};
   for (const Row& row : rows) {
     CAPTURE(row.pins.on);
     CAPTURE(row.pins.enable_is_high);
@@ -41,8 +42,14 @@ TEST_CASE("while the bridges are off every wire must be low, while they are on t
   }
 }
 
+TEST_CASE(
+    "a heartbeat that is high outside the control interrupt touches something, whether the bridges are on or off") {
+  CHECK(looks({.on = false, .enable_is_high = false, .heartbeat_is_high = true, .a_leg_is_high = false}) == 2);
+  CHECK(looks({.on = true, .enable_is_high = true, .heartbeat_is_high = true, .a_leg_is_high = false}) == 2);
+}
+
 TEST_CASE("one wrong look is borne, and a right one makes up for all before it") {
-  constexpr BridgePins sound{false, false, false}, wrong{false, true, false};
+  constexpr BridgePins sound{}, wrong{.enable_is_high = true};
   BridgeWire wire;
   for (int i = 0; i < 100; ++i) {
     look_at(wire, wrong);

@@ -18,6 +18,7 @@ inline constexpr Facts bench_modules{
                 {1, {{'A', 8}, 1}, {{'C', 6}, 3}}},
     // BOOT1, which the boot loader wants low: the bridges' pull-downs do both.
     .bridge_enable = {'B', 2},
+    .bridge_heartbeat = {'B', 1},
     .bridge_fault_tim1 = {{'B', 12}, 1},
     .bridge_fault_tim8 = {{'A', 6}, 3},
     .motor_current = {{{'C', 1}, 11}, {{'C', 2}, 12}, {{'C', 3}, 13}},
@@ -37,6 +38,7 @@ inline constexpr Facts bench_modules{
     .debug_clock = {'A', 14},
 
     .crystal_Hz = 16'000'000,
+    .bridge_hold_s = 82e-6f,
     .bridge_dead_time_s = 0.09e-6f,  // DRV8313 data sheet, "Output dead time"
     .shunt_ohm = 0.005f,
     .shunt_amplifier_gain = 50.0f,

@@ -15,6 +15,7 @@ inline constexpr Facts omni_driver{
                 {2, {{'A', 9}, 1}, {{'C', 7}, 3}},
                 {3, {{'A', 10}, 1}, {{'C', 8}, 3}}},
     .bridge_enable = {'B', 1},
+    .bridge_heartbeat = {'C', 9},
     .bridge_fault_tim1 = {{'B', 12}, 1},
     .bridge_fault_tim8 = {{'A', 6}, 3},
     .motor_current = {{{'C', 0}, 10}, {{'C', 1}, 11}, {{'C', 2}, 12}},
@@ -34,6 +35,7 @@ inline constexpr Facts omni_driver{
     .debug_clock = {'A', 14},
 
     .crystal_Hz = 8'000'000,
+    .bridge_hold_s = 82e-6f,
     .bridge_dead_time_s = 0.2e-6f,
     .shunt_ohm = 0.020f,
     .shunt_amplifier_gain = 20.0f,

@@ -3,6 +3,7 @@
 //
 // While the bridges are off the enable wire and all legs must be low, and while they are on the enable wire must be
 // high. The legs then switch and tell nothing; that a motor does as they say is what control/motor_watch.hpp looks at.
+// The heartbeat is high in the control interrupt only, and whoever can look at it is not in that.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +12,10 @@ namespace inkwell::control {
 
 /// All of one instant.
 struct BridgePins {
-  bool on;  ///< what the control interrupt told the bridges
-  bool enable_is_high;
-  bool a_leg_is_high;
+  bool on = false;  ///< what the control interrupt told the bridges
+  bool enable_is_high = false;
+  bool heartbeat_is_high = false;
+  bool a_leg_is_high = false;
 };
 
 struct BridgeWire {
@@ -28,7 +30,8 @@ constexpr bool touches(const BridgeWire& wire) { return wire.wrong_looks > Bridg
 
 /// One look.
 constexpr void look_at(BridgeWire& wire, const BridgePins& pins) {
-  const bool wrong = pins.on ? !pins.enable_is_high : pins.enable_is_high || pins.a_leg_is_high;
+  const bool wrong =
+      pins.heartbeat_is_high || (pins.on ? !pins.enable_is_high : pins.enable_is_high || pins.a_leg_is_high);
   if (!wrong)
     wire.wrong_looks = 0;
   else if (!touches(wire))

@@ -239,14 +239,20 @@ TEST_CASE("encoders, shunts and motors by their numbers") {
 
 TEST_CASE("legs of bridges by motor and terminal") {
   Rig rig("converters");  // which leaves the bridges alone
-  const auto enable = [&](bool on) {
-    rig.wires.output_changed(board::omni_driver.bridge_enable.port, board::omni_driver.bridge_enable.number,
-                             on ? PinLevel::high : PinLevel::low, rig.chip.now());
+  const auto drive = [&](board::Pin pin, bool high) {
+    rig.wires.output_changed(pin.port, pin.number, high ? PinLevel::high : PinLevel::low, rig.chip.now());
+  };
+  const auto enable = [&](bool on) { drive(board::omni_driver.bridge_enable, on); };
+  const auto run_on = [&](double time_s) {  // with heartbeats
+    for (double left_s = time_s; left_s > 0; left_s -= 50e-6) {
+      for (const bool high : {true, false}) drive(board::omni_driver.bridge_heartbeat, high);
+      rig.run(50e-6);
+    }
   };
   const auto trips = [&](const std::string& fault) {
     rig.inject(fault);
     enable(true);
-    rig.run(0.0005);
+    run_on(0.0005);
     const bool tripped = rig.plant.truth(rig.chip.now()).bridge_fault;
     enable(false);
     rig.injector.heal_all();
@@ -254,10 +260,10 @@ TEST_CASE("legs of bridges by motor and terminal") {
   };
   CHECK(trips("leg_high:2B"));
   const auto& leg_a = board::omni_driver.bridges[0].leg_a.pin;
-  rig.wires.output_changed(leg_a.port, leg_a.number, PinLevel::high, rig.chip.now());
+  drive(leg_a, true);
   CHECK(trips("leg_low:1A"));
   CHECK_FALSE(trips("leg_high:1A"));
-  rig.wires.output_changed(leg_a.port, leg_a.number, PinLevel::low, rig.chip.now());
+  drive(leg_a, false);
   CHECK_FALSE(trips("leg_open:3A"));
   CHECK_FALSE(trips("leg_slow:3A=0.00002"));
 
@@ -265,13 +271,13 @@ TEST_CASE("legs of bridges by motor and terminal") {
   const auto risen_A = [&](const std::string& fault) {
     if (!fault.empty()) rig.inject(fault);
     enable(true);
-    rig.run(0.0001);
+    run_on(0.0001);
     const auto& leg = board::omni_driver.bridges[2].leg_a.pin;
-    rig.wires.output_changed(leg.port, leg.number, PinLevel::high, rig.chip.now());
-    rig.run(0.00005);
+    drive(leg, true);
+    run_on(0.00005);
     const double current_A = rig.plant.truth(rig.chip.now()).current_A[2];
     enable(false);
-    rig.wires.output_changed(leg.port, leg.number, PinLevel::low, rig.chip.now());
+    drive(leg, false);
     rig.run(0.0005);
     rig.injector.heal_all();
     return current_A;

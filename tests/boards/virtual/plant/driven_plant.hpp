@@ -64,9 +64,17 @@ struct DrivenPlant {
   }
 
   void enable(bool on) {
-    plant.output_changed(facts.bridge_enable.port, facts.bridge_enable.number, on ? PinLevel::high : PinLevel::low,
-                         now);
+    set_enable(on);
+    beat();
   }
+  void set_enable(bool on) { drive(facts.bridge_enable, on ? PinLevel::high : PinLevel::low); }
+  /// As each control interrupt does, unless it `is_halted`.
+  void beat() {
+    if (is_halted) return;
+    drive(facts.bridge_heartbeat, PinLevel::high);
+    drive(facts.bridge_heartbeat, PinLevel::low);
+  }
+  void drive(board::Pin pin, PinLevel level) { plant.output_changed(pin.port, pin.number, level, now); }
   void legs(PinLevel level) {
     for (const auto& bridge : facts.bridges)
       for (const auto& leg : {bridge.leg_a, bridge.leg_b})
@@ -74,7 +82,10 @@ struct DrivenPlant {
   }
   /// Runs without any edge.
   void idle(double time_s) {
-    for (const Ticks end = now + ticks(time_s); now < end;) plant.advance(now += servo_period);
+    for (const Ticks end = now + ticks(time_s); now < end;) {
+      beat();
+      plant.advance(now += servo_period);
+    }
   }
   /// Runs with PWM at these duties.
   void run(double time_s, std::array<double, 3> duty) {
@@ -95,6 +106,7 @@ struct DrivenPlant {
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.at < b.at; });
     const Ticks end = now + ticks(time_s);
     for (unsigned period = 0; now < end; ++period) {
+      if (period % board::pwm_periods_per_servo_period == 0) beat();
       for (const Edge& edge : edges) plant.output_changed(edge.pin.port, edge.pin.number, edge.level, now + edge.at);
       now += pwm_period;
       if (period % board::pwm_periods_per_servo_period == 2) {
@@ -114,6 +126,7 @@ struct DrivenPlant {
   Plant plant;
   std::array<std::int64_t, 3> counts_at_start{};
   Ticks now = 0;
+  bool is_halted = false;
 };
 
 inline Vector3 free_joints(const arms::Description& arm) {

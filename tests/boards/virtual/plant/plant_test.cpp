@@ -160,6 +160,50 @@ TEST_CASE("bridges without their enable pin never switch") {
   CHECK(driven.plant.truth(driven.now).current_A.norm() == 0.0);
 }
 
+TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever level it stops at") {
+  const Ticks hold = ticks(static_cast<double>(board::omni_driver.bridge_hold_s));
+  for (const PinLevel stopped_at : {PinLevel::high, PinLevel::low, PinLevel::floating}) {
+    CAPTURE(static_cast<int>(stopped_at));
+    DrivenPlant driven(test::omni());
+    const auto is_on_at = [&](Ticks when) { return driven.plant.truth(when).bridges_enabled; };
+    driven.enable(true);
+    driven.run(0.003, {0.3, 0.3, -0.3});
+    CHECK(driven.plant.truth(driven.now).current_A.norm() > 1.0);
+    driven.legs(PinLevel::low);
+    driven.beat();
+    const Ticks newest = driven.now;
+    driven.drive(board::omni_driver.bridge_heartbeat, stopped_at == PinLevel::high ? PinLevel::low : PinLevel::high);
+    driven.now += 10;
+    driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);
+    // The rise that came last starts the time anew, whether it came with this level or before it.
+    const Ticks off = (stopped_at == PinLevel::high ? driven.now : newest) + hold;
+    CHECK(is_on_at(off - 1));
+    CHECK_FALSE(is_on_at(off));
+    driven.now = off;
+    driven.is_halted = true;
+    driven.idle(0.0005);
+    CHECK(driven.plant.truth(driven.now).current_A.norm() == 0.0);
+    // Neither wire's level brings them back, only a heartbeat.
+    driven.set_enable(false);
+    driven.drive(board::omni_driver.bridge_heartbeat, PinLevel::low);
+    driven.set_enable(true);
+    CHECK_FALSE(is_on_at(driven.now));
+    driven.is_halted = false;
+    driven.beat();
+    CHECK(is_on_at(driven.now));
+    driven.set_enable(false);
+    driven.set_enable(true);
+    CHECK_FALSE(is_on_at(driven.now));
+    // It begins in the control interrupt as well, in which the heartbeat is high.
+    driven.set_enable(false);
+    CHECK_FALSE(is_on_at(driven.now));
+    driven.drive(board::omni_driver.bridge_heartbeat, PinLevel::high);
+    CHECK_FALSE(is_on_at(driven.now));
+    driven.set_enable(true);
+    CHECK(is_on_at(driven.now));
+  }
+}
+
 TEST_CASE("the supply sags under load, rises while the arm is braked, and is measured") {
   auto arm = test::frictionless(test::omni());
   arm.simulation.gravity_m_per_s2 = 0.0;

@@ -92,7 +92,7 @@ class Plant final : public Circuit {
   const Hand& hand() const { return hand_; }
 
  private:
-  enum class Role : std::uint8_t { none, leg_a, leg_b, enable };
+  enum class Role : std::uint8_t { none, leg_a, leg_b, enable, heartbeat };
   struct Wire {
     Role role = Role::none;
     std::uint8_t motor = 0;
@@ -105,6 +105,8 @@ class Plant final : public Circuit {
   void show_inputs();
   void show(char port, unsigned pin, PinLevel level, PinLevel& shown);
   void update_legs(unsigned motor, Ticks now);
+  void enable_bridges(bool enabled, Ticks now);
+  void let_go_of_bridges(Ticks until);
   double noise(double rms) { return rms * normal_(random_); }
   double gimbal_V(unsigned axis);
   double shunt_V(unsigned motor);
@@ -121,6 +123,8 @@ class Plant final : public Circuit {
   std::array<MotorDrive, 3> motors_;
   std::array<std::array<PinLevel, 2>, 3> leg_pins_;
   bool bridges_enabled_ = false, bridge_fault_ = false;
+  bool enable_high_ = false, heartbeat_high_ = false;  ///< the two wires to the monostable before the bridges
+  Ticks hold_ticks_, held_until_ = 0;                  ///< its time, and when that will be over
   Supply supply_;
   double supply_divided_V_;  ///< at the pin, behind the divider and its capacitor
   double analog_supply_V_;

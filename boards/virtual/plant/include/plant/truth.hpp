@@ -25,7 +25,7 @@ struct Truth {
   std::array<std::int64_t, 3> encoder_counts{};
   bool hand_holds = false, docked = false, inkwell_switch = false, bridge_fault = false;
   std::array<bool, 2> buttons{};
-  bool bridges_enabled = false;                         ///< their enable wire is high
+  bool bridges_enabled = false;                         ///< their own enable input is high
   Ticks driven_until = 0;                               ///< when a bridge that was on had a leg at the supply last
   std::array<std::array<PinLevel, 2>, 3> leg_levels{};  ///< what the chip drives the inputs of the bridges with
 };
