@@ -344,7 +344,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
     follow_test(found, settings);
   if (brake_.is_on()) [[unlikely]] {
     advance(brake_, speed_squared_m2_per_s2, found);
-    drive_.brake = brake_.is_on();
+    drive_.brake = shorts(brake_, current_A_, settings.limits.gentle_brake_A);
   }
 }
 

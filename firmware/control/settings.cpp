@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <control/brake.hpp>
 #include <control/conditioning.hpp>
 #include <control/stuck_encoder.hpp>
 #include <protocol/faults.hpp>
@@ -111,17 +112,24 @@ Limits limits(const ParameterSet& set) {
   const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
   const float longer_m = std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
   const float moving_Nm = StuckEncoder::moving_force_N * longer_m;
+  const float gentle_Nm = Brake::gentle_part_of_force_limit * set[Parameter::force_limit_N] * longer_m;
 
-  Limits limits{set.of_each(protocol::lower_stops),        set.of_each(protocol::upper_stops),
-                set.of_each(Parameter::current_limit_1_A), {},
-                InkwellReference::play_m / longer_m,       0.0f,
+  Limits limits{set.of_each(protocol::lower_stops),
+                set.of_each(protocol::upper_stops),
+                set.of_each(Parameter::current_limit_1_A),
+                {},
+                {},
+                InkwellReference::play_m / longer_m,
+                0.0f,
                 periods_in(set[Parameter::host_timeout_s])};
   for (std::size_t i = 0; i < 3; ++i) {
     limits.joint_minimum_rad[i] -= joint_margin_rad;
     limits.joint_maximum_rad[i] += joint_margin_rad;
     const float over_A = protocol::over_current_ratio * limits.over_current_A[i];
     limits.over_current_A[i] = over_A > over_current_minimum_A ? over_A : over_current_minimum_A;
-    limits.moving_A[i] = moving_Nm / (ratio[i] * constant_Nm_per_A[i]);
+    const float joint_Nm_per_A = ratio[i] * constant_Nm_per_A[i];
+    limits.moving_A[i] = moving_Nm / joint_Nm_per_A;
+    limits.gentle_brake_A[i] = gentle_Nm / joint_Nm_per_A;
   }
   const float speed_m_per_s = set[Parameter::speed_limit_m_per_s];
   limits.speed_limit_squared_m2_per_s2 = speed_m_per_s * speed_m_per_s;

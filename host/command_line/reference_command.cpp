@@ -99,6 +99,15 @@ std::string_view text(protocol::Clearing clearing) {
   return "";
 }
 
+std::string_view text(protocol::Off off) {
+  switch (off) {
+    case protocol::Off::coast: return "coasts";
+    case protocol::Off::brake: return "is braked";
+    case protocol::Off::brake_gently: return "is braked gently";
+  }
+  return "";
+}
+
 void print_supervision() {
   fmt::print("\n## States\n\n| code | state | force | meaning |\n| --- | --- | --- | --- |\n");
   for (std::size_t i = 0; i < protocol::state_count; ++i) {
@@ -115,12 +124,12 @@ void print_supervision() {
   for (const auto& row : protocol::event_table) fmt::print("| {} | {} |\n", row.name, row.meaning);
   fmt::print(
       "\n## What is watched\n\nOf several faults in one period the first in this list is told. A motor that brakes is "
-      "shorted through the low sides of its bridge until the arm is slow.\n\n"
+      "shorted through the low sides of its bridge until the arm is slow; gently: not while it presses with more "
+      "than a part of the force limit.\n\n"
       "| fault | watched while | can be cleared | an arm that moves |\n| --- | --- | --- | --- |\n");
   for (const auto& row : protocol::watch_table)
     fmt::print("| {} | {} | {}{} | {} |\n", info(row.fault).name, names_of(row.watched_in), text(row.clearing),
-               row.voids_reference ? ", and asks for the inkwell anew" : "",
-               row.off == protocol::Off::brake ? "is braked" : "coasts");
+               row.voids_reference ? ", and asks for the inkwell anew" : "", text(row.off));
 }
 
 void print_self_test() {

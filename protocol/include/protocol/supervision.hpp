@@ -197,8 +197,9 @@ enum class Clearing : std::uint8_t {
 
 /// What becomes of the motors while a fault takes the force away from a hand that moves.
 enum class Off : std::uint8_t {
-  coast,  ///< bridges off: what does not trust currents, bridges, supply or the measure of speed
-  brake,  ///< all low sides on, so that the motors' own voltage brakes them, until the probe is slow
+  coast,         ///< bridges off: what does not trust currents, bridges, supply or the measure of speed
+  brake,         ///< all low sides on, so that the motors' own voltage brakes them, until the probe is slow
+  brake_gently,  ///< likewise, with a part of the force limit at most: a hand may well hold the arm and go on
 };
 
 struct Watch {
@@ -243,7 +244,7 @@ inline constexpr auto watch_table = []() {
       {Fault::encoder_implausible, moving, at_once, coast, true},
       {Fault::inkwell_implausible, moving, at_once, coast, true},
       {Fault::over_speed, with_force, at_once, brake},
-      {Fault::host_silent, driven, at_once, brake},
+      {Fault::host_silent, driven, at_once, brake_gently},
   });
 }();
 

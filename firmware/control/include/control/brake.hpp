@@ -3,6 +3,10 @@
 // With all low sides on, each motor drives a current through its own resistance that works against its motion, as a
 // damper does, and nothing but heat comes of it. It needs no controller, so it is what is left to do for an arm that a
 // fault has let loose; a bridge or a current that cannot be trusted is better left alone.
+//
+// A damper resists the more the faster a hand swings the arm. Where it has to be gentle, a control period in which a
+// current is larger than a part of the force limit takes is one in which the motors are let go. Their currents are gone
+// after some microseconds then, and take a period or more to come back.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +20,14 @@ struct Brake {
   /// Below it the arm coasts: the heaviest arm of the descriptions then holds less than a millijoule.
   static constexpr float speed_m_per_s = 0.1f;
   static constexpr std::uint32_t duration_maximum_periods = periods_in(0.5f);
+  /// Of the force limit, what one motor resists with at most if it has to be gentle, at the end of the longer link.
+  static constexpr float gentle_part_of_force_limit = 0.15f;
 
   std::uint32_t remaining_periods = 0;
+  bool is_gentle = false;
 
   /// A fault has taken the force away.
-  void begin() { remaining_periods = duration_maximum_periods; }
+  void begin() { *this = {duration_maximum_periods, false}; }
   bool is_on() const { return remaining_periods != 0; }
 };
 
@@ -32,5 +39,9 @@ constexpr bool may_brake(protocol::Watches found) {
 /// One control period, that in which it begins as well. `speed_squared_m2_per_s2`: of the probe; `found`: by the
 /// supervisor.
 void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Watches found);
+
+/// Whether the motors are shorted in this period. `gentle_A`: Limits::gentle_brake_A. A current that is no number lets
+/// them go.
+bool shorts(const Brake& brake, const Triple& current_A, const Triple& gentle_A);
 
 }  // namespace inkwell::control
