@@ -66,6 +66,9 @@ TEST_CASE("a hand that the host has left alone is braked gently: a motor that re
   CHECK_FALSE(shorts(brake, {0.0f, 0.0f, -0.301f}, gentle_A));
   CHECK_FALSE(shorts(brake, {0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f}, gentle_A));
   CHECK_FALSE(shorts(Brake{}, {}, gentle_A));
+  Brake over = brake;
+  advance(over, slow, watch(Fault::host_silent));
+  CHECK_FALSE(shorts(over, {}, gentle_A));
 }
 
 TEST_CASE("an arm that is too fast is braked with all that its motors have, unless the host fell silent as well") {

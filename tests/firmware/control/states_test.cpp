@@ -151,6 +151,29 @@ TEST_CASE("an arm that is let loose is braked from the same period on, until it 
   CHECK_FALSE(tests::run(controller, samples, settings, 1'000).brake);
 }
 
+TEST_CASE("an arm whose host fell silent is braked gently: not in a period in which a motor resists with more") {
+  Settings settings = free_space();
+  Samples samples = tests::samples_at_rest();
+  Controller controller = tests::active_controller(settings);
+  controller.host_alive();
+  settings.limits.host_timeout_periods = 40;
+  control::Drive drive;
+  for (int i = 0; i < 100 && controller.state() != State::fault; ++i) {
+    samples.encoder_counts[0] += i % 2;  // some 0.3 m/s, below its limit
+    drive = tests::run(controller, samples, settings, 1);
+  }
+  REQUIRE(controller.fault() == Fault::host_silent);
+  CHECK(drive.brake);
+  const float gentle_A = settings.limits.gentle_brake_A[0];
+  for (const bool resists : {true, false, true}) {
+    samples.current_A[0] = resists ? 1.1f * gentle_A : 0.9f * gentle_A;
+    samples.encoder_counts[0] += 1;
+    drive = tests::run(controller, samples, settings, 1);
+    CHECK_FALSE(drive.enabled);
+    CHECK(drive.brake == !resists);
+  }
+}
+
 TEST_CASE("an arm whose force a user stops is not braked, however fast it is") {
   const Settings settings = free_space();
   Samples samples = tests::samples_at_rest();

@@ -177,6 +177,8 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);
     // The rise that came last starts the time anew, whether it came with this level or before it.
     const Ticks off = (stopped_at == PinLevel::high ? driven.now : newest) + hold;
+    driven.now += 10;
+    driven.drive(board::omni_driver.bridge_heartbeat, stopped_at);  // still there, which is no rise
     CHECK(is_on_at(off - 1));
     CHECK_FALSE(is_on_at(off));
     driven.now = off;
@@ -202,6 +204,28 @@ TEST_CASE("bridges whose heartbeat stops are let go after their time, whatever l
     driven.set_enable(true);
     CHECK(is_on_at(driven.now));
   }
+}
+
+TEST_CASE("bridges are let go at the same instant however far the plant is run at once") {
+  const auto halted = [](Ticks slice) {
+    DrivenPlant driven(test::omni());
+    driven.plant.dock(false);
+    driven.enable(true);
+    driven.run(0.003, {0.3, 0.3, -0.3});
+    driven.beat();
+    const Ticks newest = driven.now;
+    const auto& leg = driven.facts.bridges[1].leg_a.pin;
+    driven.drive(leg, PinLevel::high);
+    for (const Ticks end = driven.now + ticks(0.001); driven.now < end;) driven.plant.advance(driven.now += slice);
+    const Truth t = driven.plant.truth(driven.now);
+    CHECK(t.driven_until - newest == ticks(static_cast<double>(board::omni_driver.bridge_hold_s)));
+    return t;
+  };
+  const Truth at_once = halted(ticks(0.001)), bit_by_bit = halted(ticks(0.000001));
+  CHECK(at_once.current_A.norm() == 0.0);
+  CHECK(at_once.joint_speeds_rad_s[1] != 0.0);
+  CHECK((at_once.joint_speeds_rad_s - bit_by_bit.joint_speeds_rad_s).norm() < 1e-12);
+  CHECK(at_once.supply_V == doctest::Approx(bit_by_bit.supply_V).epsilon(1e-9));
 }
 
 TEST_CASE("the supply sags under load, rises while the arm is braked, and is measured") {
