@@ -52,7 +52,7 @@ INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
 
 extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t begin_cycles = clock.begin();
-  bridges.begin_period();   // and lets the bridges stay on, if they are
+  bridges.begin_period();
   bridges.write_neutral();  // an interrupt that does not finish in time leaves the motors without voltage
 
   const std::uint32_t period = controller.periods();

@@ -137,6 +137,7 @@ INKWELL_INTERRUPT void Bridges::enable() {
   TIM8::SR::write(~TIM8::SR::BIF::mask);
   TIM1::BDTR::write(outputs_off | TIM1::BDTR::MOE::mask);
   TIM8::BDTR::write(outputs_off | TIM8::BDTR::MOE::mask);
+  Heartbeat::set_high();
   Enable::set_high();
 }
 
@@ -173,7 +174,7 @@ bool Bridges::a_leg_is_high() const {
 }
 
 INKWELL_INTERRUPT void Bridges::begin_period() {
-  Heartbeat::set_high();
+  if (enabled_) Heartbeat::set_high();
   clear_update();
 }
 

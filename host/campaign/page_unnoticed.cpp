@@ -82,8 +82,9 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
     case InjectedFault::usb_cut:
     case InjectedFault::host_silent: return "None is known: a host that is not heard is missed.";
-    case InjectedFault::core_stalled: return "None is known: the watchdog is not fed.";
-    case InjectedFault::core_halted: return "None is known: the timers stop with the core.";
+    case InjectedFault::core_stalled:
+      return "None is known: the heartbeat stops with the core, and the watchdog is not fed.";
+    case InjectedFault::core_halted: return "None is known: the heartbeat and the timers stop with the core.";
     case InjectedFault::program_astray:
       return "The code that it came to returned to the main loop, and had changed nothing that is checked.";
     case InjectedFault::exception_lost:

@@ -166,6 +166,19 @@ TEST_CASE(
   check_told(rig, Fault::bridge_wire);
 }
 
+TEST_CASE("an enable wire that touches 3.3 V under a force leaves the arm to coast all the same once that goes off") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.inject({.fault = "wire_high", .of = "bridge_enable"});
+  rig.run(0.02);
+  CHECK(protocol::force_is_on(rig.pose().state));
+  rig.command(protocol::Command::stop);
+  rig.run_until([](const auto& pose) { return !protocol::force_is_on(pose.state); });
+  rig.control.run(2 * control_period_s);
+  CHECK_FALSE(bridges_enabled(rig.control));
+  check_told(rig, Fault::bridge_wire);
+}
+
 TEST_CASE("an enable wire that touches ground is noticed within eight control periods of the force") {
   BoardRig rig;
   press_into_wall(rig);

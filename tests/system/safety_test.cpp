@@ -1,6 +1,8 @@
 // What keeps a hand safe: no force before the reference, none without a host, bridges off on a fault.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <string>
 
@@ -140,6 +142,49 @@ TEST_CASE("an arm that is too fast is braked by its motors' own voltage until it
   rig.run(0.3);
   CHECK_FALSE(bridges_enabled(rig.control));
   CHECK(largest_current_A(rig.control) < 0.02);
+}
+
+/// A hand that goes on swinging while the host has fallen silent.
+void let_host_fall_silent(BoardRig& rig) {
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.control.hand_path({{0.1, {0.0, 0.06, -0.03}}, {0.25, {0.0, -0.06, -0.03}}, {0.4, {0.0, 0.06, -0.03}}});
+  rig.run(0.13);
+  rig.set({{Parameter::host_timeout_s, 0.05f}});  // its last word
+}
+
+TEST_CASE("an arm whose host fell silent while a hand swings it is braked now and then, and no leg is high meanwhile") {
+  BoardRig rig;
+  let_host_fall_silent(rig);
+  rig.control.run(0.0501);
+  int on = 0, off = 0;
+  double largest_A = 0;
+  for (int period = 0; period < 400; ++period) {
+    CHECK_FALSE(any_leg_high(rig.control));
+    (bridges_enabled(rig.control) ? on : off) += 1;
+    for (int part = 0; part < 5; ++part) {
+      rig.control.run(control_period_s / 5);
+      largest_A = std::max(largest_A, largest_current_A(rig.control));
+    }
+  }
+  CHECK(on > 50);
+  CHECK(off > 50);
+  CHECK(largest_A > 0.1);
+  CHECK(largest_A < 0.6);  // of bridges that came on, or were let go, half a period later it is 0.66
+  rig.control.run(0.5);
+  CHECK_FALSE(bridges_enabled(rig.control));
+}
+
+TEST_CASE("a bridge that tells of a fault ends the gentle brake as well") {
+  BoardRig rig;
+  let_host_fall_silent(rig);
+  rig.control.run(0.06);
+  rig.control.inject({"bridge_fault"});
+  rig.control.run(1.5 * control_period_s);
+  for (int period = 0; period < 40; ++period) {
+    rig.control.run(control_period_s);
+    CHECK_FALSE(bridges_enabled(rig.control));
+  }
 }
 
 TEST_CASE("where a bridge tells of a fault meanwhile the arm is not braked any more") {

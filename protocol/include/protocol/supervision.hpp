@@ -199,7 +199,8 @@ enum class Clearing : std::uint8_t {
 enum class Off : std::uint8_t {
   coast,         ///< bridges off: what does not trust currents, bridges, supply or the measure of speed
   brake,         ///< all low sides on, so that the motors' own voltage brakes them, until the probe is slow
-  brake_gently,  ///< likewise, with a part of the force limit at most: a hand may well hold the arm and go on
+  brake_gently,  ///< likewise, but bridges off in each period in which a motor was measured above a part of the force
+                 ///< limit: a hand may well go on
 };
 
 struct Watch {

@@ -82,6 +82,10 @@ TEST_CASE("an arm that is too fast is braked with all that its motors have, unle
   CHECK_FALSE(shorts(brake, large_A, gentle_A));
   brake.begin();
   CHECK(shorts(brake, large_A, gentle_A));
+  // Also the other way round: it is the hand that makes it fast.
+  Brake silent = begun(watch(Fault::host_silent));
+  advance(silent, fast, watch(Fault::over_speed));
+  CHECK_FALSE(shorts(silent, large_A, gentle_A));
 }
 
 TEST_CASE("gentle is a part of the force limit at the end of the longer link, by each motor's constant and gear") {

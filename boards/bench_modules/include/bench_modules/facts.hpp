@@ -16,7 +16,7 @@ inline constexpr Facts bench_modules{
     .bridges = {{3, {{'A', 10}, 1}, {{'C', 8}, 3}},
                 {2, {{'A', 9}, 1}, {{'C', 7}, 3}},
                 {1, {{'A', 8}, 1}, {{'C', 6}, 3}}},
-    // BOOT1, which the boot loader wants low: the bridges' pull-downs do both.
+    // BOOT1, which the boot loader wants low: the monostable's pull-down does both.
     .bridge_enable = {'B', 2},
     .bridge_heartbeat = {'B', 1},
     .bridge_fault_tim1 = {{'B', 12}, 1},

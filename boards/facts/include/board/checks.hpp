@@ -63,10 +63,9 @@ struct Checks {
   static_assert(facts.crystal_Hz >= 4'000'000 && facts.crystal_Hz <= 26'000'000, "HSE (data sheet)");
   static_assert(facts.pll_m() >= 2 && facts.pll_m() <= 63);
 
-  // With a sixth for the parts' tolerances: longer than from one control interrupt to the next, at most two of them.
-  static_assert(facts.bridge_hold_s * 5 / 6 > 1.25f / servo_rate_Hz &&
-                    facts.bridge_hold_s * 7 / 6 < 2.0f / servo_rate_Hz,
-                "the bridges would be let go between two heartbeats, or held too long");
+  static_assert(facts.bridge_hold_shortest_s() > 1.25f / servo_rate_Hz &&
+                    facts.bridge_hold_longest_s() < 2.0f / servo_rate_Hz,
+                "the bridges would be let go between two heartbeats, or held for longer than two control periods");
   static_assert(facts.current_measurable_A() < facts.current_linear_A() &&
                 facts.current_linear_A() < facts.current_range_A());
   static_assert(facts.supply_divider() * adc_reference_V > supply_maximum_V + 6.0f, "over-voltage must be measurable");

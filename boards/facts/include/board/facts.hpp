@@ -149,7 +149,8 @@ struct Facts {
   /// A pull-down on the board keeps them off through reset, and while the boot loader in the chip runs: it must be none
   /// of the pins that the loader pulls up or drives (AN2606).
   Pin bridge_enable;
-  /// Rises with each control interrupt and falls before its end.
+  /// While the bridges are on it rises with each control interrupt, and falls before its end. A pin beside no leg's: an
+  /// edge that comes over from there would be taken for one of its own.
   Pin bridge_heartbeat;
   /// Open-drain fault of the bridges, low is a fault. Both pins hang on the one wire: each switches its
   /// timer's outputs off in hardware (RM0090, "Using the break function").
@@ -177,6 +178,10 @@ struct Facts {
   float supply_upper_ohm, supply_lower_ohm;  ///< the divider of the bridges' supply
   /// In front of the pins: what a channel leaves in the converter's sampling capacitor, the next one's must bear.
   float current_filter_ohm, current_filter_F, gimbal_track_ohm, gimbal_filter_F, supply_filter_F;
+
+  /// By the tolerances of the monostable and its two parts, a sixth together.
+  constexpr float bridge_hold_shortest_s() const { return bridge_hold_s * 5 / 6; }
+  constexpr float bridge_hold_longest_s() const { return bridge_hold_s * 7 / 6; }
 
   constexpr std::uint32_t pll_m() const { return crystal_Hz / pll_input_Hz; }
   /// What the dead time takes from a motor's voltage, in parts of the supply: both legs wait once in each PWM period.

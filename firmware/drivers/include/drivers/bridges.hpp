@@ -62,7 +62,7 @@ class Bridges {
   /// An update came since the last call of begin_period(): called at the end of the control interrupt, it tells
   /// that the interrupt took longer than its period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
-  /// The heartbeat rises: the bridges may stay on for `bridge_hold_s`.
+  /// If the bridges are on the heartbeat rises: they may stay so for `bridge_hold_s`.
   void begin_period();
   /// The heartbeat falls, so that it can rise again.
   void end_period();
