@@ -90,23 +90,31 @@ std::string axis_of(const Histogram& histogram, const Layout& layout) {
                     "cases");
 }
 
+constexpr int key_indent = 18, key_line = 18;
+
+/// As wide as those of a wide sans-serif font.
+constexpr std::size_t title_letter = 8, letter = 7;
+
+/// So that no text is cut off beside few bars.
+int end_of_texts(const Histogram& histogram) {
+  const std::size_t longest = std::max(histogram.strong_means.size(), histogram.quiet_means.size());
+  return left + static_cast<int>(std::max(title_letter * histogram.title.size(), key_indent + letter * longest));
+}
+
+int end_of_drawing(const Histogram& histogram, const Layout& layout) {
+  return std::max(layout.end(), end_of_texts(histogram));
+}
+
 std::string limit_of(const Histogram& histogram, const Layout& layout) {
   if (!histogram.limit) return {};
   const int x = layout.edge(histogram.limit->bars);
-  const bool is_far_right = x > layout.end() - 2 * bar_width;
-  return line(x, above - 22, x, base, fmt::format("stroke=\"{}\" stroke-dasharray=\"5 3\"", limit_colour)) +
-         text({x + (is_far_right ? -6 : 6), above - 14, is_far_right ? "end" : "start",
+  const int reach = x + 6 + static_cast<int>(letter * histogram.limit->text.size());
+  const bool has_room = reach <= end_of_drawing(histogram, layout);
+  return line(x, above - 32, x, base, fmt::format("stroke=\"{}\" stroke-dasharray=\"5 3\"", limit_colour)) +
+         // Above the number on the highest bar.
+         text({x + (has_room ? 6 : -6), above - 23, has_room ? "start" : "end",
                fmt::format("fill=\"{}\"", limit_colour)},
               histogram.limit->text);
-}
-
-constexpr int key_indent = 18, key_line = 18;
-
-/// So that no text is cut off beside few bars. The letters are as wide as those of a wide sans-serif font.
-int end_of_texts(const Histogram& histogram) {
-  constexpr std::size_t title_letter = 8, letter = 7;
-  const std::size_t longest = std::max(histogram.strong_means.size(), histogram.quiet_means.size());
-  return left + static_cast<int>(std::max(title_letter * histogram.title.size(), key_indent + letter * longest));
 }
 
 std::string key_of(const Histogram& histogram) {
@@ -127,7 +135,7 @@ std::string key_of(const Histogram& histogram) {
 std::string svg_of(const Histogram& histogram) {
   const Layout layout(histogram);
   const int entries = !histogram.strong_means.empty() + !histogram.quiet_means.empty();
-  const int width = std::max(layout.end(), end_of_texts(histogram)) + right, tall = base + 50 + key_line * entries + 6;
+  const int width = end_of_drawing(histogram, layout) + right, tall = base + 50 + key_line * entries + 6;
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
              "font-family=\"sans-serif\" font-size=\"12\" fill=\"{2}\">\n"
