@@ -132,7 +132,6 @@ INKWELL_INTERRUPT void Bridges::write_brake() {
 INKWELL_INTERRUPT void Bridges::enable() {
   if (enabled_) return;
   enabled_ = true;
-  // A flag is cleared by writing 0 to it; writing 1 to the others leaves them alone.
   TIM1::SR::write(~TIM1::SR::BIF::mask);
   TIM8::SR::write(~TIM8::SR::BIF::mask);
   TIM1::BDTR::write(outputs_off | TIM1::BDTR::MOE::mask);

@@ -16,6 +16,10 @@ TEST_CASE("bench modules: a crystal of 16 MHz, of which the PLL takes an eighth"
   CHECK(facts.pll_m() == 8);
 }
 
+TEST_CASE("heartbeat: 8.2 k and 10 nF hold the bridges for 82 us") {
+  CHECK(board::bench_modules.bridge_hold_s == Approx(8.2e3 * 10e-9));
+}
+
 TEST_CASE("bench modules: bridges with a dead time of 90 ns") {
   CHECK(facts.bridge_dead_time_s == 90e-9f);
   CHECK(facts.bridge_dead_time_part() == Approx(0.0108));

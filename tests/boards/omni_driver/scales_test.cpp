@@ -32,6 +32,12 @@ TEST_CASE("PWM: 60 kHz centre-aligned in 1400 steps, three periods to a control 
   CHECK(board::current_ripple_A(0.238e-3f) == Approx(0.157563));
 }
 
+TEST_CASE("heartbeat: 8.2 k and 10 nF hold the bridges for 82 us, 69 to 96 with tolerances of 10, 1 and 5 %") {
+  CHECK(board::omni_driver.bridge_hold_s == Approx(8.2e3 * 10e-9));
+  CHECK(board::omni_driver.bridge_hold_shortest_s() < 82e-6 * 0.9 * 0.99 * 0.95);
+  CHECK(board::omni_driver.bridge_hold_longest_s() == Approx(82e-6 * 1.1 * 1.01 * 1.05).epsilon(0.001));
+}
+
 TEST_CASE("motor current: 20 mohm and a gain of 20 are 0.4 V/A around 1.65 V, 496.5 counts an ampere") {
   CHECK(1.0 / board::omni_driver.current_step_A() == Approx(496.485));
   CHECK(board::shunt_amplifier_offset_V == Approx(1.65));
