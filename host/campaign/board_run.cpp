@@ -87,17 +87,21 @@ void BoardRun::command(protocol::Command command) {
 }
 
 void BoardRun::run(double time_s, bool gives_sign_of_life) {
-  for (double left_s = time_s; left_s > 1e-9; left_s -= slice_s) {
+  double left_s = time_s;
+  while (left_s > 1e-9) {
     if (gives_sign_of_life && slices_++ % slices_per_sign_of_life == 0) command(protocol::Command::heartbeat);
     pass(std::min(left_s, slice_s));
+    left_s -= slice_s;
     read_poses();
   }
 }
 
 bool BoardRun::wait_for(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
-  for (double waited_s = 0; waited_s < limit_s; waited_s += slice_s) {
+  double waited_s = 0;
+  while (waited_s < limit_s) {
     if (pose_ && condition(*pose_)) return true;
     run(slice_s);
+    waited_s += slice_s;
   }
   return pose_ && condition(*pose_);
 }

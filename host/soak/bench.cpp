@@ -68,9 +68,11 @@ double Bench::motor_force_N(const nlohmann::json& truth) const {
 }
 
 void Bench::pass(double time_s, bool gives_sign_of_life) {
-  for (double left_s = time_s; left_s > 1e-9; left_s -= look_s) {
+  double left_s = time_s;
+  while (left_s > 1e-9) {
     const bool was_connected = board.connected();
     const double step_s = std::min(left_s, look_s);
+    left_s -= look_s;
     board.run(step_s, gives_sign_of_life);
     look();
     until_close_look_s_ -= step_s;
@@ -230,8 +232,10 @@ void Bench::dock() {
   constexpr double longest_s = 2.3, look_every_s = 0.02, rest_s = 0.3;
   board.control().dock(true);
   double rested_s = 0;
-  for (double waited_s = 0; waited_s < longest_s; waited_s += look_every_s) {
+  double waited_s = 0;
+  while (waited_s < longest_s) {
     pass(look_every_s);
+    waited_s += look_every_s;
     // Counts were lost, and only here the board finds the arm again. Whether that may be is the oracle's to say.
     if (board.is(State::fault)) {
       rested_s = 0;

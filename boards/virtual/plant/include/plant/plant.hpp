@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -114,7 +115,7 @@ class Plant final : public Circuit {
   bool shoots_through() const;
   void note_driving(Ticks now);
 
-  std::array<Wire, 16 * 9> wires_{};  ///< ports A to I
+  std::array<Wire, std::size_t{16} * 9> wires_{};  ///< ports A to I
 
   const board::Facts& board_;
 
