@@ -24,7 +24,7 @@ std::string_view reason_of_wire(std::string_view wire) {
     return "It stands as with sound bridges. The self-test at the next start tells one that is broken, not one that "
            "touches the supply.";
   if (wire == "bridge_enable") return "It stands as with the force on, and so does the chip's own pin.";
-  if (wire == "bridge_heartbeat") return "Without it the bridges are off, which shows once a current is asked for.";
+  if (wire == "bridge_heartbeat") return "None is known: without it the bridges are off.";
   if (wire.starts_with("motor_current"))
     return "The reading stays near what is asked for, or what it leads to within what a hot motor may differ by.";
   if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";

@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-
 #include <cmath>
 #include <string>
 
@@ -144,6 +143,8 @@ TEST_CASE("an arm that is too fast is braked by its motors' own voltage until it
   CHECK(largest_current_A(rig.control) < 0.02);
 }
 
+namespace {
+
 /// A hand that goes on swinging while the host has fallen silent.
 void let_host_fall_silent(BoardRig& rig) {
   rig.make_active();
@@ -152,6 +153,8 @@ void let_host_fall_silent(BoardRig& rig) {
   rig.run(0.13);
   rig.set({{Parameter::host_timeout_s, 0.05f}});  // its last word
 }
+
+}  // namespace
 
 TEST_CASE("an arm whose host fell silent while a hand swings it is braked now and then, and no leg is high meanwhile") {
   BoardRig rig;

@@ -68,7 +68,7 @@ Plant::Plant(const arms::Description& arm, const board::Facts& board, const Plan
       imperfections_(options.imperfections),
       motors_{motor_drive(arm, board, 0, imperfections_), motor_drive(arm, board, 1, imperfections_),
               motor_drive(arm, board, 2, imperfections_)},
-      hold_ticks_(ticks(static_cast<double>(board.bridge_hold_s))),
+      hold_(ticks(static_cast<double>(board.bridge_hold_s))),
       supply_(imperfections_, static_cast<double>(board::supply_nominal_V)),
       supply_divided_V_(supply_.bus_V() / static_cast<double>(board.supply_divider())),
       analog_supply_V_(reference_V),
@@ -118,15 +118,9 @@ void Plant::output_changed(char port, unsigned pin, PinLevel level, Ticks now) {
   run_until(now);
   const Wire wire = wires_[index];
   if (wire.role == Role::enable || wire.role == Role::heartbeat) {
-    // A retriggerable monostable, 74LVC1G123: cleared by the enable wire, started anew by the heartbeat, and by the
-    // enable wire while the heartbeat is high (its data sheet, function table). The board's pull-downs keep pins that
-    // float low.
-    bool& wire_high = wire.role == Role::enable ? enable_high_ : heartbeat_high_;
-    const bool rises = level == PinLevel::high && !wire_high;
-    wire_high = level == PinLevel::high;
-    if (rises && enable_high_ && heartbeat_high_) held_until_ = now + hold_ticks_;
-    if (!enable_high_) held_until_ = now;
-    enable_bridges(enable_high_ && held_until_ > now, now);
+    const bool high = level == PinLevel::high;  // the board's pull-downs keep pins that float low
+    wire.role == Role::enable ? hold_.drive_clear(high, now) : hold_.drive_trigger(high, now);
+    enable_bridges(hold_.ends_at() > now, now);
     return;
   }
   leg_pins_[wire.motor][wire.role == Role::leg_a ? 0 : 1] = level;
@@ -144,7 +138,7 @@ void Plant::enable_bridges(bool enabled, Ticks now) {
 
 /// If their time is over by then.
 void Plant::let_go_of_bridges(Ticks until) {
-  if (bridges_enabled_ && held_until_ <= until) enable_bridges(false, held_until_);
+  if (bridges_enabled_ && hold_.ends_at() <= until) enable_bridges(false, hold_.ends_at());
 }
 
 void Plant::note_driving(Ticks now) {

@@ -168,7 +168,7 @@ struct Facts {
   Pin debug_data, debug_clock;                      ///< SWDIO, SWCLK
 
   std::uint32_t crystal_Hz;
-  float bridge_hold_s;
+  float bridge_hold_s;  ///< of the monostable, by its resistor and capacitor
   /// Made by the bridge itself; the firmware does not add to it.
   float bridge_dead_time_s;
   float shunt_ohm, shunt_amplifier_gain;

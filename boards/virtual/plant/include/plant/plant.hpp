@@ -18,6 +18,7 @@
 #include <plant/hand.hpp>
 #include <plant/hand_meter.hpp>
 #include <plant/imperfections.hpp>
+#include <plant/monostable.hpp>
 #include <plant/motor_drive.hpp>
 #include <plant/motor_fault.hpp>
 #include <plant/quadrature_encoder.hpp>
@@ -124,8 +125,7 @@ class Plant final : public Circuit {
   std::array<MotorDrive, 3> motors_;
   std::array<std::array<PinLevel, 2>, 3> leg_pins_;
   bool bridges_enabled_ = false, bridge_fault_ = false;
-  bool enable_high_ = false, heartbeat_high_ = false;  ///< the two wires to the monostable before the bridges
-  Ticks hold_ticks_, held_until_ = 0;                  ///< its time, and when that will be over
+  Monostable hold_;  ///< what `bridges_enabled_` follows
   Supply supply_;
   double supply_divided_V_;  ///< at the pin, behind the divider and its capacitor
   double analog_supply_V_;
