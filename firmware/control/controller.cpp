@@ -219,7 +219,8 @@ void Controller::watch_motors(const Settings& settings) {
     raise(Fault::motor_implausible);
   off_zero_periods_ = 0;
   // What the bridges were told in the period before is what they do until the next.
-  turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V);
+  turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V,
+          bridge_loss(bridge_part_[turn_], board_.dead_time_part, supply_.supply_V));
 }
 
 /// What the sensors show while the bridges have been off for a while is their offset, and it was measured.

@@ -8,6 +8,7 @@ void SelfTestPulses::size_pulses(const PulseScale& scale) {
   const float resistance_ohm = scale.resistance_ohm[motor_];
   const float limit_A = scale.current_limit_A[motor_];
   const float ohmic_V = std::min(resistance_ohm * std::clamp(limit_A, high_minimum_A, high_A), ohmic_maximum_V);
+  round_.supply_V = scale.supply_V;
   round_.dead_V = scale.dead_time_part * scale.supply_V;
   PulseRound::Motor& motor = round_.motors[motor_];
   motor.takes_part = limit_A > 0.0f;

@@ -103,6 +103,8 @@ PulseJudgement judge(const control::PulseRound& round, const control::Settings& 
     const OfMotor found = judge_motor(round.motors[i], i, expected);
     judgement.motors[i] = found.motor;
     judgement.bridges[i] = found.bridge;
+    if (found.bridge.result == Result::passed)
+      judgement.bridge_part[i] = std::max(found.bridge.figure / round.supply_V, 0.0f);
     const Found wires = judge_wires(round.motors[i], i, expected);
     judgement.wires = i == 0 ? wires : worse(judgement.wires, wires);
   }

@@ -61,8 +61,8 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::motor_open:
     case InjectedFault::leg_open: return "While no current is asked of the motor, none is missed.";
     case InjectedFault::motor_shorted:
-      return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; "
-             "the next self-test tells.";
+      return "With a small current its voltage stays within what a sound motor may differ by; the next self-test "
+             "tells.";
     case InjectedFault::motor_hot:
       return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; nothing "
              "measures the torque.";

@@ -63,7 +63,7 @@ TEST_CASE("from power-up through the inkwell to force, with the bridges off unti
   CHECK(controller.state() == State::starting);
   CHECK_FALSE(tests::run(controller, samples, settings, 1'099).enabled);
   CHECK(controller.state() == State::testing);
-  controller.pass_self_test();
+  controller.pass_self_test({});
   CHECK_FALSE(tests::run(controller, samples, settings, 1).enabled);
   CHECK(controller.state() == State::unreferenced);
   controller.carry_out(tests::command(Command::enable_force));

@@ -9,6 +9,7 @@
 namespace {
 
 using namespace inkwell;
+using control::BridgeLoss;
 using control::fits;
 using control::MotorModel;
 using control::MotorWatch;
@@ -19,13 +20,13 @@ constexpr MotorModel model{{2.0f, 4.0f, 8.0f}, {0.3f, -0.2f, 0.1f}};
 constexpr int never = 100'000;
 
 /// Looks at one motor in which nothing changes; how many it takes until it does not fit.
-int looks(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s, float dead_V = 0.0f) {
+int looks(std::size_t motor, float voltage_V, float current_A, float joint_speed_rad_per_s, BridgeLoss loss = {}) {
   MotorWatch watch;
   Triple currents_A{}, speeds_rad_per_s{};
   currents_A[motor] = current_A;
   speeds_rad_per_s[motor] = joint_speed_rad_per_s;
   for (int look = 1; look < never; ++look) {
-    turn_to(watch, motor, voltage_V, dead_V);
+    turn_to(watch, motor, voltage_V, loss);
     if (!fits(watch, currents_A, speeds_rad_per_s, model)) return look;
   }
   return never;
@@ -46,9 +47,40 @@ TEST_CASE("a motor at rest without current may have the bearable voltage, and wh
   CHECK(looks(0, 1.1f * MotorWatch::bearable_V, 0.0f, 0.0f) < never);
   CHECK(looks(2, -1.1f * MotorWatch::bearable_V, 0.0f, 0.0f) < never);
   for (const float dead_V : {0.1f, 0.5f}) {
-    CHECK(looks(0, 0.99f * (MotorWatch::bearable_V + dead_V), 0.0f, 0.0f, dead_V) == never);
-    CHECK(looks(0, 1.1f * (MotorWatch::bearable_V + dead_V), 0.0f, 0.0f, dead_V) < never);
+    CHECK(looks(0, 0.99f * (MotorWatch::bearable_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) == never);
+    CHECK(looks(0, 1.1f * (MotorWatch::bearable_V + dead_V), 0.0f, 0.0f, {0.0f, dead_V}) < never);
   }
+}
+
+TEST_CASE("what a bridge takes at least is missed in a voltage that is too small for a current with one sign") {
+  constexpr BridgeLoss loss{0.4f, 0.5f};
+  for (const float sign : {1.0f, -1.0f}) {
+    // 2 V for the resistance, of which a quarter may be missing.
+    for (const float bridge_V : {0.4f, 0.5f})
+      CHECK(looks(0, sign * (2.0f + bridge_V), sign * 1.0f, 0.0f, loss) == never);
+    const float least_V = 2.0f + 0.4f - MotorWatch::bearable_V - 0.5f;
+    CHECK(looks(0, sign * (least_V + 0.02f), sign * 1.0f, 0.0f, loss) == never);
+    CHECK(looks(0, sign * (least_V - 0.02f), sign * 1.0f, 0.0f, loss) < never);
+    const float most_V = 2.0f + 0.5f + MotorWatch::bearable_V + 1.0f;
+    CHECK(looks(0, sign * (most_V - 0.02f), sign * 1.0f, 0.0f, loss) == never);
+    CHECK(looks(0, sign * (most_V + 0.02f), sign * 1.0f, 0.0f, loss) < never);
+    // A small current may turn round in each period of the PWM, and the bridge then gives as much as it takes.
+    const float steady_A = MotorWatch::steady_A;
+    const float small_V = -0.5f - MotorWatch::bearable_V + 0.75f * 2.0f * steady_A + 0.02f;
+    CHECK(looks(0, sign * small_V, sign * 0.99f * steady_A, 0.0f, loss) == never);
+    CHECK(looks(0, sign * small_V, sign * 1.01f * steady_A, 0.0f, loss) < never);
+  }
+}
+
+TEST_CASE("a bridge that was measured takes at least that, and at most that or what its dead time takes") {
+  const auto takes = [](float measured_part, float least_V, float most_V) {
+    const BridgeLoss loss = control::bridge_loss(measured_part, 0.02f, 20.0f);
+    CHECK(loss.least_V == doctest::Approx(least_V));
+    CHECK(loss.most_V == doctest::Approx(most_V));
+  };
+  takes(0.01f, 0.2f, 0.4f);
+  takes(0.03f, 0.6f, 0.6f);
+  takes(0.0f, 0.0f, 0.4f);
 }
 
 TEST_CASE("a hot motor fits, and one that was hot when it was measured: half more resistance, a quarter less of each") {
@@ -74,7 +106,7 @@ TEST_CASE("a current that turns round from one limit to the other in no time is 
   MotorWatch watch;
   const Triple still{};
   const auto look = [&](float voltage_V, float current_A) {
-    turn_to(watch, 0, voltage_V, 0.0f);
+    turn_to(watch, 0, voltage_V, {});
     return fits(watch, {current_A, 0.0f, 0.0f}, still, model);
   };
   for (int turn = 0; turn < 1'000; ++turn) {
@@ -88,7 +120,7 @@ TEST_CASE("each motor has its own sum") {
   MotorWatch watch;
   for (int look = 0; look < 300; ++look) {
     const std::size_t motor = static_cast<std::size_t>(look % 3);
-    turn_to(watch, motor, motor == 2 ? 6.0f : 0.0f, 0.0f);
+    turn_to(watch, motor, motor == 2 ? 6.0f : 0.0f, {});
     if (fits(watch, {}, {}, model)) continue;
     CHECK(motor == 2);
     CHECK(watch.beyond_V[0] == 0.0f);

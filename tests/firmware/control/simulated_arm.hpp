@@ -43,8 +43,7 @@ inline protocol::CommandReport command(protocol::Command which) {
 
 /// For a rig in which no current flows: its loops may ask for less voltage than may be missed in a motor.
 inline protocol::ParameterSet without_motors(protocol::ParameterSet set) {
-  set[protocol::Parameter::voltage_limit_V] =
-      0.9f * (control::MotorWatch::bearable_V + board_limits.dead_time_part * board::supply_minimum_V);
+  set[protocol::Parameter::voltage_limit_V] = 0.9f * control::MotorWatch::bearable_V;
   return set;
 }
 
@@ -86,7 +85,7 @@ inline void move_to(control::Controller& controller, control::Samples& samples,
 inline control::Controller started_controller(const control::Settings& settings) {
   control::Controller controller{board_limits};
   run(controller, samples_at_rest(), settings, control::CurrentOffsets::duration_periods);
-  controller.pass_self_test();
+  controller.pass_self_test({});
   run(controller, samples_at_rest(), settings, 1);
   return controller;
 }

@@ -65,6 +65,7 @@ TEST_CASE("sound motors pass, with their resistance, what the bridge takes, and 
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK(judgement.motors[i].figure == doctest::Approx(2.27).epsilon(0.01));
     CHECK(judgement.bridges[i].figure == doctest::Approx(0.432).epsilon(0.02));
+    CHECK(judgement.bridge_part[i] == doctest::Approx(0.024).epsilon(0.02));
   }
   CHECK(judgement.wires.figure < 0.01f);
 }
@@ -136,6 +137,7 @@ TEST_CASE("a leg that is half a microsecond slow is told by the bridge's item, a
   CHECK(judgement.bridges[1].result == SelfTestResult::failed);
   CHECK(judgement.any(SelfTestResult::failed));
   CHECK(judgement.bridges[1].figure == doctest::Approx(0.864).epsilon(0.05));
+  CHECK(judgement.bridge_part[1] == 0.0f);
   CHECK_FALSE(info(protocol::SelfTestItem::bridge_2).takes_force);
 }
 

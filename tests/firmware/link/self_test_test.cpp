@@ -131,6 +131,37 @@ TEST_CASE("on command it tests anew, from unreferenced and ready, and comes back
   CHECK(protocol::force_is_on(board.controller.state()));
 }
 
+TEST_CASE("what a bridge takes is known from the test, so half a motor's turns are missed at a usual force") {
+  for (const bool is_tested : {true, false}) {
+    CAPTURE(is_tested);
+    Board board;
+    board.run_while(State::starting);
+    board.run_while(State::testing);
+    if (!is_tested) board.controller.pass_self_test({});
+    board.samples.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
+    board.run_while(State::unreferenced);
+    board.controller.carry_out(tests::command(Command::enable_force));
+    board.run(2);
+    REQUIRE(protocol::force_is_on(board.controller.state()));
+    const auto push = [&](int periods) {
+      for (; periods > 0; --periods) {
+        board.controller.host_alive();
+        board.controller.drive({{2.5f, 0.0f, 0.0f}, protocol::ForceMode::beside_walls}, board.settings);
+        board.run(1);
+      }
+    };
+    push(2'000);
+    std::size_t strongest = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+      if (std::fabs(board.samples.current_A[i]) > std::fabs(board.samples.current_A[strongest])) strongest = i;
+    CAPTURE(board.samples.current_A[strongest]);
+    REQUIRE(protocol::force_is_on(board.controller.state()));
+    board.motors.motors[strongest].resistance_ohm *= 0.5f;
+    push(2'000);
+    CHECK((board.controller.fault() == Fault::motor_implausible) == is_tested);
+  }
+}
+
 TEST_CASE("what fails takes the force away, is believed the second time, and goes only by a test that passes") {
   Board board;
   board.motors.motors[1].is_open = true;

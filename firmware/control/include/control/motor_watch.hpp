@@ -25,10 +25,26 @@ struct MotorModel {
   Triple back_emf_Vs_per_rad;
 };
 
+/// What a bridge takes from its motor's voltage, always against the current: by its dead time, its diodes, and the
+/// motor's brushes. With little or no current it takes anything from none to the most.
+struct BridgeLoss {
+  float least_V, most_V;
+};
+
+/// `measured_part` of the supply, 0 where nothing has measured it; else no more than the dead time takes is expected.
+inline BridgeLoss bridge_loss(float measured_part, float dead_time_part, float supply_V) {
+  const float most_part = measured_part > dead_time_part ? measured_part : dead_time_part;
+  return {measured_part * supply_V, most_part * supply_V};
+}
+
 struct MotorWatch {
-  /// For the brushes, beside what the bridges' dead time takes. What ends by itself only adds to the sum: the voltage
-  /// that a change of current takes, and the speed of an arm that is being stopped, which is known a millisecond late.
+  /// For the brushes and sensors that err, beside what the bridge takes. What ends by itself only adds to the sum: the
+  /// voltage that a change of current takes, and the speed of an arm that is being stopped, which is known a
+  /// millisecond late.
   static constexpr float bearable_V = 0.3f;
+  /// From here on a current keeps its sign all through the PWM's period, ripple and all, so that its bridge takes what
+  /// it takes from any.
+  static constexpr float steady_A = 0.3f;
   /// Copper that is 100 K hotter than where it was measured has 39 % more resistance; switches and shunt add 4 %.
   static constexpr float bearable_more_resistance = 0.5f;
   /// It has a fifth less if it was measured 60 K hotter.
@@ -44,33 +60,36 @@ struct MotorWatch {
   Triple beyond_V{};       ///< of each motor, the sum of what was beyond the bearable; 0 while its bridge is off
   std::size_t motor = 0;   ///< whose turn it is, 0..2
   float voltage_V = 0.0f;  ///< that its bridge had in the period that the present reading ends
-  float dead_V = 0.0f;     ///< what the bridge's dead time may have taken from it
+  BridgeLoss loss{};       ///< what the bridge took from it
 };
 
 /// What the model leaves unexplained of a motor's voltage, and how much a sound motor may leave.
 struct Unexplained {
   float voltage_V, bearable_V;
 };
-inline Unexplained unexplained(float voltage_V, float dead_V, float current_A, float joint_speed_rad_per_s,
+inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float current_A, float joint_speed_rad_per_s,
                                float resistance_ohm, float back_emf_Vs_per_rad) {
   const float ohmic_V = resistance_ohm * current_A;
   const float back_emf_V = back_emf_Vs_per_rad * joint_speed_rad_per_s;
   const float left_V = voltage_V - ohmic_V - back_emf_V;
+  const bool is_more = left_V * current_A > 0.0f;
   const float part_of_resistance =
-      left_V * ohmic_V > 0.0f ? MotorWatch::bearable_more_resistance : MotorWatch::bearable_less_resistance;
-  return {std::fabs(left_V), dead_V + MotorWatch::bearable_V + part_of_resistance * std::fabs(ohmic_V) +
+      is_more ? MotorWatch::bearable_more_resistance : MotorWatch::bearable_less_resistance;
+  // A bridge only takes: a voltage that is too small for its current lacks that as well.
+  const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V;
+  return {std::fabs(left_V), bridge_V + MotorWatch::bearable_V + part_of_resistance * std::fabs(ohmic_V) +
                                  MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
 }
 
 /// One control period: whether the motor whose turn it is still fits. `joint_speed_rad_per_s` belongs to it as well.
 bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s, const MotorModel& model);
 
-/// Ends the period: `motor`, 0..2, is next, and `voltage_V` is what its bridge is to have until then, give or take
-/// `dead_V`.
-inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, float dead_V) {
+/// Ends the period: `motor`, 0..2, is next, and `voltage_V` is what its bridge is to have until then, of which it takes
+/// `loss`.
+inline void turn_to(MotorWatch& watch, std::size_t motor, float voltage_V, const BridgeLoss& loss) {
   watch.motor = motor;
   watch.voltage_V = voltage_V;
-  watch.dead_V = dead_V;
+  watch.loss = loss;
 }
 
 }  // namespace inkwell::control

@@ -30,6 +30,7 @@ struct PulseRound {
     bool takes_part = false;
   };
   std::array<Motor, 3> motors{};
+  float supply_V = 0.0f;
   float dead_V = 0.0f;  ///< what the bridges' dead time takes
 };
 

@@ -31,6 +31,7 @@ struct PulseJudgement {
   std::array<Found, 3> motors;   ///< ohm: the sign with the larger error
   std::array<Found, 3> bridges;  ///< V that the bridge takes
   Found wires;                   ///< A, the largest in a sensor that should see none
+  control::Triple bridge_part;   ///< of the supply, what a bridge that passes takes; 0 of others
 
   bool any(Result result) const;
   /// Of an arm that moved too fast for pulses.
