@@ -13,6 +13,8 @@ namespace {
 INKWELL_CORE_COUPLED drivers::CycleCounter clock;
 INKWELL_CORE_COUPLED std::array<std::int32_t, 3> encoder_counts;
 
+constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(protocol::main_loop_stalled_s);
+
 INKWELL_INTERRUPT std::uint8_t switch_bits(const drivers::SwitchContacts& contacts) {
   const auto bit = [](bool closed, protocol::Switch which) { return closed ? static_cast<unsigned>(which) : 0u; };
   return static_cast<std::uint8_t>(bit(contacts.button_1, protocol::Switch::button_1) |
@@ -65,6 +67,8 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
   if (host_link.update_asked.load()) controller.leave_for_update();
   controller.raise(host_link.found_in_main_loop.load());
+  if (period - main_loop_periods.load() > main_loop_stalled_periods) [[unlikely]]
+    controller.raise(protocol::Fault::main_loop_stalled);
 
   write_bridges(controller.step(samples, settings, clock));
   if (controller.state() == protocol::State::testing) [[unlikely]]

@@ -100,6 +100,7 @@ int main() {
 
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
+    main_loop_periods.store(periods);
     usb_device.poll();
     host_link.stored.follow(host_link.parameters, protocol::force_is_on(host_link.status.state()), periods);
     if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update &&

@@ -47,5 +47,6 @@ Part<drivers::OtgFs> usb_port;
 Part<drivers::ParameterFlash> parameter_flash;
 
 link::Shared<std::uint32_t> completed_periods{0};
+link::Shared<std::uint32_t> main_loop_periods{0};
 
 }  // namespace inkwell::application

@@ -49,5 +49,7 @@ extern link::Link host_link;
 
 /// Control periods completed, for the main loop.
 extern link::Shared<std::uint32_t> completed_periods;
+/// As many as there were when the main loop came round last, for the control interrupt.
+extern link::Shared<std::uint32_t> main_loop_periods;
 
 }  // namespace inkwell::application

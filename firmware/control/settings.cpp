@@ -1,6 +1,7 @@
 #include <control/settings.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include <control/brake.hpp>
 #include <control/conditioning.hpp>
@@ -61,14 +62,23 @@ Box box(const ParameterSet& set) {
           vector_of(set.of_each(Parameter::box_maximum_x_m)) - radius};
 }
 
-Motors motors(const ParameterSet& set) {
+/// Torque of each motor at its joint, negative for a reversed one. Its back EMF is the same: a newton metre for an
+/// ampere is a volt second for a radian.
+Triple joint_Nm_per_A(const ParameterSet& set) {
   const Triple ratio = set.of_each(Parameter::gear_ratio_1);
   const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
   const Triple reversed = set.of_each(Parameter::motor_1_reversed);
+  Triple joint{};
+  for (std::size_t i = 0; i < 3; ++i) joint[i] = sign(reversed[i]) * ratio[i] * constant_Nm_per_A[i];
+  return joint;
+}
+
+Motors motors(const ParameterSet& set) {
+  const Triple joint = joint_Nm_per_A(set);
   const Triple continuous_A = set.of_each(Parameter::continuous_current_1_A);
   Motors motors{{}, set.of_each(Parameter::current_limit_1_A), {}};
   for (std::size_t i = 0; i < 3; ++i) {
-    motors.ampere_per_Nm[i] = sign(reversed[i]) / (ratio[i] * constant_Nm_per_A[i]);
+    motors.ampere_per_Nm[i] = 1.0f / joint[i];
     const float more_A = motors.current_limit_A[i] - continuous_A[i];
     motors.ampere_per_heat[i] = more_A > 0.0f ? more_A / (1.0f - protocol::motor_heat_holds_back_from) : 0.0f;
   }
@@ -78,14 +88,7 @@ Motors motors(const ParameterSet& set) {
 }
 
 MotorModel motor_model(const ParameterSet& set) {
-  const Triple ratio = set.of_each(Parameter::gear_ratio_1);
-  const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
-  const Triple reversed = set.of_each(Parameter::motor_1_reversed);
-  MotorModel model{set.of_each(Parameter::motor_resistance_1_ohm), {}};
-  // A newton metre for an ampere is a volt second for a radian.
-  for (std::size_t i = 0; i < 3; ++i)
-    model.back_emf_Vs_per_rad[i] = sign(reversed[i]) * ratio[i] * constant_Nm_per_A[i];
-  return model;
+  return {set.of_each(Parameter::motor_resistance_1_ohm), joint_Nm_per_A(set)};
 }
 
 HeatScale heat(const ParameterSet& set) {
@@ -108,8 +111,7 @@ Limits limits(const ParameterSet& set) {
   constexpr float over_current_minimum_A = 0.5f;
   // Counts may be lost or the stops yield a little before the angles are called impossible.
   constexpr float joint_margin_rad = 0.35f;
-  const Triple ratio = set.of_each(Parameter::gear_ratio_1);
-  const Triple constant_Nm_per_A = set.of_each(Parameter::torque_constant_1_Nm_per_A);
+  const Triple joint = joint_Nm_per_A(set);
   const float longer_m = std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
   const float moving_Nm = StuckEncoder::moving_force_N * longer_m;
   const float gentle_Nm = Brake::gentle_part_of_force_limit * set[Parameter::force_limit_N] * longer_m;
@@ -127,9 +129,8 @@ Limits limits(const ParameterSet& set) {
     limits.joint_maximum_rad[i] += joint_margin_rad;
     const float over_A = protocol::over_current_ratio * limits.over_current_A[i];
     limits.over_current_A[i] = over_A > over_current_minimum_A ? over_A : over_current_minimum_A;
-    const float joint_Nm_per_A = ratio[i] * constant_Nm_per_A[i];
-    limits.moving_A[i] = moving_Nm / joint_Nm_per_A;
-    limits.gentle_brake_A[i] = gentle_Nm / joint_Nm_per_A;
+    limits.moving_A[i] = moving_Nm / std::fabs(joint[i]);
+    limits.gentle_brake_A[i] = gentle_Nm / std::fabs(joint[i]);
   }
   const float speed_m_per_s = set[Parameter::speed_limit_m_per_s];
   limits.speed_limit_squared_m2_per_s2 = speed_m_per_s * speed_m_per_s;

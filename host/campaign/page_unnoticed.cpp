@@ -85,6 +85,7 @@ std::string_view reason(const CaseFault& fault) {
     case InjectedFault::core_stalled:
       return "None is known: the heartbeat stops with the core, and the watchdog is not fed.";
     case InjectedFault::core_halted: return "None is known: the heartbeat and the timers stop with the core.";
+    case InjectedFault::main_loop_stalled: return "None is known: the control interrupt misses it.";
     case InjectedFault::program_astray:
       return "The code that it came to returned to the main loop, and had changed nothing that is checked.";
     case InjectedFault::exception_lost:

@@ -132,6 +132,39 @@ TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of
   CHECK(rig.pose().fault != Fault::watchdog);
 }
 
+TEST_CASE("a main loop that hangs is missed by the control interrupt after 10 ms, long before the watchdog bites") {
+  BoardRig rig;
+  constexpr double patience_s = static_cast<double>(protocol::main_loop_stalled_s);
+  press_into_wall(rig);
+  rig.control.inject({"main_loop_stalled", "", 0.95 * patience_s});
+  rig.control.run(patience_s);
+  CHECK(any_motor_driven(rig.control));
+  rig.run(0.1);
+  CHECK(force_is_on(rig.pose().state));
+
+  rig.control.inject({"main_loop_stalled", "", 0.1});
+  rig.control.run(0.95 * patience_s);
+  CHECK(bridges_enabled(rig.control));
+  rig.control.run(0.05 * patience_s + 2 * control_period_s);
+  check_bridges_off(rig);
+  CHECK(watchdog_bites(rig.control) == 0);
+  rig.control.run(0.04);  // the slowest watchdog of the data sheet bites after 38 ms
+  CHECK(watchdog_bites(rig.control) == 1);
+  check_fault_after_restart(rig, Fault::watchdog);
+}
+
+TEST_CASE("a main loop that comes back before the watchdog bites says that it was missed") {
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.inject({"main_loop_stalled", "", 1.2 * static_cast<double>(protocol::main_loop_stalled_s)});
+  rig.run(0.1);
+  CHECK(rig.pose().state == State::fault);
+  CHECK(rig.pose().fault == Fault::main_loop_stalled);
+  CHECK(watchdog_bites(rig.control) == 0);
+  rig.command(protocol::Command::clear_fault);
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+}
+
 TEST_CASE("a crystal that stops switches the bridges off at once; the board starts when it swings again, and tells") {
   BoardRig rig;
   press_into_wall(rig);

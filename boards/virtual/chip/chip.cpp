@@ -70,6 +70,7 @@ void Chip::start_boot_loader() {
 }
 void Chip::jump(std::uint32_t address) { parts_->execution.jump(address); }
 void Chip::stall(Ticks duration) { parts_->execution.stall(duration); }
+void Chip::stall_thread(Ticks duration) { parts_->execution.stall_thread(duration); }
 void Chip::halt(Ticks duration) {
   auto& p = *parts_;
   p.execution.halt(duration);

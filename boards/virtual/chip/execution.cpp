@@ -48,6 +48,7 @@ void Execution::reset(ResetCause cause) {
   processor_.reset(system_control_.vector_table());
   processor_.anchor(machine_.timeline.now());
   machine_.core_stalls_until = machine_.supply_is_low ? never : 0;
+  machine_.thread_stalls_until = 0;
   machine_.debug_halt.set_halted(false);
   state_ = State::runs;
   lockup_reason_.clear();
@@ -132,6 +133,10 @@ Stop Execution::run_slices(Ticks when) {
     if (state_ != State::runs) continue;
     if (processor_.waits_for_flash()) {
       stand_until(when, never);
+      continue;
+    }
+    if (thread_stands()) {
+      stand_until(when, machine_.thread_stalls_until);
       continue;
     }
 
@@ -343,7 +348,7 @@ void Execution::handle_return() {
     case Processor::Return::protected_stack: return handle_lost_frame(true);
   }
   processor_.watch_masks(false);
-  if (processor_.returned_to_thread() && system_control_.sleeps_on_exit()) state_ = State::sleeps;
+  if (processor_.is_in_thread() && system_control_.sleeps_on_exit()) state_ = State::sleeps;
 }
 
 void Execution::handle(Outcome outcome) {

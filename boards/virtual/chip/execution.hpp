@@ -24,6 +24,7 @@ class Execution {
   void reset(ResetCause cause);
   void jump(std::uint32_t address);
   void stall(Ticks duration) { machine_.core_stalls_until = machine_.timeline.now() + duration; }
+  void stall_thread(Ticks duration) { machine_.thread_stalls_until = machine_.timeline.now() + duration; }
   void halt(Ticks duration) {
     stall(duration);
     machine_.debug_halt.set_halted(true);
@@ -50,6 +51,10 @@ class Execution {
   void take_exception();
   void sleep_until(Ticks when);
   bool core_stands() const { return machine_.clock_is_lost || machine_.core_stalls_until > machine_.timeline.now(); }
+  bool thread_stands() const {
+    return machine_.thread_stalls_until > machine_.timeline.now() && processor_.is_in_thread() &&
+           processor_.masks().are_open();
+  }
   /// The core does nothing until `goes_on_at`, or for a while if that is `never`.
   void stand_until(Ticks when, Ticks goes_on_at);
   bool wakes() const;

@@ -18,6 +18,7 @@ inline constexpr int priority_lowest = 256;
 struct Masks {
   bool primask = false, faultmask = false;
   std::uint32_t basepri = 0;
+  bool are_open() const { return !primask && !faultmask && basepri == 0; }
 };
 
 class Nvic final : public InterruptController {

@@ -176,7 +176,7 @@ class Processor final : public ClockUser, private EngineCalls {
   Return return_from_exception(std::uint32_t vector_table);
   /// Starts a handler on the frame of one that has just ended. False: it is not valid.
   bool chain_exception(unsigned exception, std::uint32_t vector_table);
-  bool returned_to_thread() const { return current_exception_ == exception_none; }
+  bool is_in_thread() const { return current_exception_ == exception_none; }
   /// Of the exception that was entered last, if it left room for floats.
   std::optional<FloatFrame> take_float_frame() { return std::exchange(float_frame_, std::nullopt); }
   // float_guards.cpp

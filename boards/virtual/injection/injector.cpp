@@ -244,6 +244,7 @@ void Injector::put_into_chip(const Injection& injection, bool in) {
     case InjectedFault::usb_cut: return victims_.plug(!in);
     case InjectedFault::host_silent: return victims_.let_host_ask(!in);
     case InjectedFault::core_stalled: return chip.stall(in ? ticks(amount) : 0);
+    case InjectedFault::main_loop_stalled: return chip.stall_thread(in ? ticks(amount) : 0);
     case InjectedFault::core_halted: return chip.halt(in ? ticks(amount) : 0);
     case InjectedFault::program_astray:
       if (in) chip.jump(*injection.address);

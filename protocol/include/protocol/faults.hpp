@@ -12,6 +12,8 @@ namespace inkwell::protocol {
 inline constexpr float over_current_ratio = 1.5f;
 /// Supply and gimbal are not known any more if they were not measured for longer.
 inline constexpr float samples_stale_s = 0.001f;
+/// The main loop did not come round for longer. The watchdog's shortest time is longer than that.
+inline constexpr float main_loop_stalled_s = 0.01f;
 /// The supply of the bridges swings by more to either side of its mean (control/supply_ripple.hpp).
 inline constexpr float supply_ripple_V = 1.0f;
 /// The converters' reference is off by a larger part of what it should be (control/analog_supply.hpp).
@@ -45,7 +47,8 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(22, bridge_wire, "The wire of enable, heartbeat or a leg of the bridges is not at the level that the chip gives it.", "Look for a wire between the chip and the bridges that touches ground, a supply or another wire. Then clear the fault.") \
   X(23, analog_supply, "The converters' reference VDDA, which feeds amplifiers and potentiometers too, is more than {analog_supply_percent} % off its 3.3 V.", "Check the board's regulator, and the ferrite and the capacitors of VDDA. Then clear the fault.") \
   X(24, self_test_failed, "The self-test has found something without which there is no force.", "`inkwell self-test --last` names it and says what to do. Then `inkwell self-test` tests again; the fault goes if it passes.") \
-  X(25, inkwell_implausible, "The inkwell's switch is closed, but by the encoders the arm is somewhere else: counts were lost, or the switch or its wire is stuck.", "Check the inkwell's switch, its wire and the encoder plugs. Clear the fault, take the stylus out of the inkwell and put it in once more.")
+  X(25, inkwell_implausible, "The inkwell's switch is closed, but by the encoders the arm is somewhere else: counts were lost, or the switch or its wire is stuck.", "Check the inkwell's switch, its wire and the encoder plugs. Clear the fault, take the stylus out of the inkwell and put it in once more.") \
+  X(26, main_loop_stalled, "The main loop, which speaks with the host, did not come round for {main_loop_stalled_ms} ms.", "Report this with the firmware version: it is a defect of the firmware. Then clear the fault.")
 
 /// X(code, name, cause, remedy)
 #define INKWELL_REFUSALS(X)                                                                                                       \

@@ -67,6 +67,7 @@ inline constexpr double wire_spike_s = 2e-6;
   X(host_silent, usb, none, "", 0, 0, 0, "The host asks and sends nothing; frames go on.")                                         \
   X(core_stalled, core, none, "s", 0, 1000, 1, "The core stands for so long; all else goes on.")                                   \
   X(core_halted, core, none, "s", 0, 1000, 1, "A debug probe halts the core for so long.")                                         \
+  X(main_loop_stalled, core, none, "s", 0, 1000, 1, "The main loop hangs for so long; interrupts go on.")                          \
   X(program_astray, core, address, "", 0, 0, 0, "The program counter is thrown there, into the flash unless given.")               \
   X(exception_lost, core, exception, "", 0, 0, 0, "An interrupt never reaches the core.")                                          \
   X(exception_late, core, exception, "cycles", 1, 1000000, 4200, "An interrupt comes so many cycles late.")                        \

@@ -226,6 +226,7 @@ inline constexpr auto watch_table = []() {
       {Fault::processor_fault, every, at_once, coast},
       {Fault::watchdog, every, at_once, coast},
       {Fault::servo_overrun, every, at_once, coast},
+      {Fault::main_loop_stalled, started, at_once, coast},
       {Fault::not_finite, every, when_gone, coast},
       {Fault::force_law, every, at_once, brake},
       {Fault::logic_supply_low, every, when_gone, coast},

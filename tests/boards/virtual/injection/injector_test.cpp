@@ -384,6 +384,18 @@ TEST_CASE("the core that stands, interrupts that stay away or come late, convert
     rig.injector.heal_all();
     CHECK(handled(rig) >= 18);
   }
+  Rig stalled;
+  const auto looped = [&stalled] { return stalled.chip.memory_word(0x2001F008); };  // counted by its main loop
+  stalled.inject("main_loop_stalled=10");
+  const auto before = looped();
+  CHECK(handled(stalled) >= 19);
+  CHECK(looped() == before);
+  stalled.injector.heal_all();
+  CHECK(handled(stalled) >= 18);
+  CHECK(looped() > before + 1000);
+  stalled.inject("main_loop_stalled=0.0005");
+  CHECK(handled(stalled) >= 19);
+  CHECK(looped() > before + 1600);
   Rig late;
   late.inject("exception_late:34=12600");  // a period and a half, so that every second one falls into the next
   CHECK(handled(late) < 15);
