@@ -141,6 +141,13 @@ TEST_CASE("a leg that is half a microsecond slow is told by the bridge's item, a
   CHECK_FALSE(info(protocol::SelfTestItem::bridge_2).takes_force);
 }
 
+TEST_CASE("a bridge that seems to give a little, by errors of its sensor, takes none") {
+  const auto judgement = with_second([](auto& motor) { motor.dead_V *= -0.2f; });
+  CHECK(judgement.bridges[1].result == SelfTestResult::passed);
+  CHECK(judgement.bridges[1].figure < -0.05f);
+  CHECK(judgement.bridge_part[1] == 0.0f);
+}
+
 TEST_CASE("swapped current wires, and two that touch, are told by the wires' item") {
   Bench swapped;
   std::swap(swapped.simulated.motors[0].sensor, swapped.simulated.motors[2].sensor);
