@@ -65,7 +65,7 @@ bool BackgroundWatch::an_encoder_is_stuck() {
 protocol::Watches BackgroundWatch::found_of_bridges() {
   const std::uint32_t periods_before = completed_periods.load();
   const control::BridgePins pins{bridges.are_on(), bridges.enable_is_high(), bridges.heartbeat_is_high(),
-                                 bridges.a_leg_is_high()};
+                                 bridges.hold_is_high(), bridges.a_leg_is_high()};
   // If a control interrupt came in between, the bridges may have been told something else than the pins showed.
   if (completed_periods.load() == periods_before) look_at(bridge_wire_, pins);
   return watch(Fault::bridge_wire, touches(bridge_wire_));

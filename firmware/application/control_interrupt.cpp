@@ -10,6 +10,9 @@
 namespace inkwell::application {
 namespace {
 
+using protocol::Fault;
+using protocol::watch;
+
 INKWELL_CORE_COUPLED drivers::CycleCounter clock;
 INKWELL_CORE_COUPLED std::array<std::int32_t, 3> encoder_counts;
 
@@ -54,7 +57,7 @@ INKWELL_INTERRUPT void write_bridges(const control::Drive& drive) {
 
 extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t begin_cycles = clock.begin();
-  bridges.begin_period();
+  const bool bridges_were_let_go = bridges.begin_period();
   bridges.write_neutral();  // an interrupt that does not finish in time leaves the motors without voltage
 
   const std::uint32_t period = controller.periods();
@@ -66,9 +69,9 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
   if (host_link.update_asked.load()) controller.leave_for_update();
-  controller.raise(host_link.found_in_main_loop.load());
-  if (period - main_loop_periods.load() > main_loop_stalled_periods) [[unlikely]]
-    controller.raise(protocol::Fault::main_loop_stalled);
+  const bool main_loop_stalls = period - main_loop_periods.load() > main_loop_stalled_periods;
+  controller.raise(host_link.found_in_main_loop.load() | watch(Fault::main_loop_stalled, main_loop_stalls) |
+                   watch(Fault::heartbeat_missed, bridges_were_let_go));
 
   write_bridges(controller.step(samples, settings, clock));
   if (controller.state() == protocol::State::testing) [[unlikely]]
@@ -90,7 +93,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   controller.finish(clock);
 
   const bool overrun = bridges.period_is_over();
-  if (overrun) controller.raise(protocol::Fault::servo_overrun);
+  if (overrun) controller.raise(Fault::servo_overrun);
   host_link.status.record(controller.state(), controller.motor_heat(), controller.servo_cycles(),
                           controller.late_force_reports(), overrun);
   completed_periods.store(controller.periods());

@@ -19,11 +19,11 @@ void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Watches foun
   if ((found & gentle) != 0) brake.is_gentle = true;
 }
 
-bool shorts(const Brake& brake, const Triple& current_A, const Triple& gentle_A) {
-  if (!brake.is_on() || !brake.is_gentle) return brake.is_on();
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!(std::fabs(current_A[i]) <= gentle_A[i])) return false;
-  return true;
+bool shorts(const Brake& brake, const Triple& current_A, const Triple& limit_A) {
+  const float part = brake.is_gentle ? Brake::gentle_part : 1.0f;
+  bool is_on = brake.is_on();
+  for (std::size_t i = 0; i < 3; ++i) is_on = is_on && std::fabs(current_A[i]) <= part * limit_A[i];
+  return is_on;
 }
 
 }  // namespace inkwell::control

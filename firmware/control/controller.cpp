@@ -220,7 +220,7 @@ void Controller::watch_motors(const Settings& settings) {
   off_zero_periods_ = 0;
   // What the bridges were told in the period before is what they do until the next.
   turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V,
-          bridge_loss(bridge_part_[turn_], board_.dead_time_part, supply_.supply_V));
+          {bridge_loss_part_[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
 }
 
 /// What the sensors show while the bridges have been off for a while is their offset, and it was measured.
@@ -345,7 +345,7 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
     follow_test(found, settings);
   if (brake_.is_on()) [[unlikely]] {
     advance(brake_, speed_squared_m2_per_s2, found);
-    drive_.brake = shorts(brake_, current_A_, settings.limits.gentle_brake_A);
+    drive_.brake = shorts(brake_, current_A_, settings.limits.brake_A);
   }
 }
 

@@ -114,7 +114,7 @@ Limits limits(const ParameterSet& set) {
   const Triple joint = joint_Nm_per_A(set);
   const float longer_m = std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
   const float moving_Nm = StuckEncoder::moving_force_N * longer_m;
-  const float gentle_Nm = Brake::gentle_part_of_force_limit * set[Parameter::force_limit_N] * longer_m;
+  const float brake_Nm = set[Parameter::force_limit_N] * longer_m;
 
   Limits limits{set.of_each(protocol::lower_stops),
                 set.of_each(protocol::upper_stops),
@@ -130,7 +130,7 @@ Limits limits(const ParameterSet& set) {
     const float over_A = protocol::over_current_ratio * limits.over_current_A[i];
     limits.over_current_A[i] = over_A > over_current_minimum_A ? over_A : over_current_minimum_A;
     limits.moving_A[i] = moving_Nm / std::fabs(joint[i]);
-    limits.gentle_brake_A[i] = gentle_Nm / std::fabs(joint[i]);
+    limits.brake_A[i] = brake_Nm / std::fabs(joint[i]);
   }
   const float speed_m_per_s = set[Parameter::speed_limit_m_per_s];
   limits.speed_limit_squared_m2_per_s2 = speed_m_per_s * speed_m_per_s;

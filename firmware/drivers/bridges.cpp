@@ -17,6 +17,7 @@ using TIM1 = RegistersOf<Bridges, registers::TIM1>;
 using TIM8 = RegistersOf<Bridges, registers::TIM8>;
 using Enable = DigitalOutput<Bridges, board::facts.bridge_enable>;
 using Heartbeat = DigitalOutput<Bridges, board::facts.bridge_heartbeat>;
+using Hold = DigitalInput<Bridges, board::facts.bridge_hold>;
 
 /// Master mode of TIM1: what its trigger output shows (RM0090, TIMx_CR2, MMS).
 constexpr std::uint32_t trigger_on_enable = 0b001;
@@ -96,6 +97,7 @@ void connect_pins() {
 void Bridges::start() {
   Enable::start();
   Heartbeat::start();
+  Hold::start(Pull::down);  // of a wire that is broken
   start_clocks_of<Bridges, registers::TIM1, registers::TIM8>();
   // A debugger that halts the processor stops the timers: a halt must not leave the last duty on the motors for good.
   // That the outputs go idle as well is to be seen on the bench (the board's README.md, "First power-up").
@@ -166,15 +168,20 @@ bool Bridges::enable_is_high() const { return DigitalInput<Bridges, board::facts
 
 bool Bridges::heartbeat_is_high() const { return DigitalInput<Bridges, board::facts.bridge_heartbeat>::is_high(); }
 
+bool Bridges::hold_is_high() const { return Hold::is_high(); }
+
 bool Bridges::a_leg_is_high() const {
   constexpr auto& bridges = board::facts.bridges;
   return any_is_high<bridges[0].leg_a.pin, bridges[1].leg_a.pin, bridges[2].leg_a.pin>() ||
          any_is_high<bridges[0].leg_b.pin, bridges[1].leg_b.pin, bridges[2].leg_b.pin>();
 }
 
-INKWELL_INTERRUPT void Bridges::begin_period() {
-  if (enabled_) Heartbeat::set_high();
+INKWELL_INTERRUPT bool Bridges::begin_period() {
   clear_update();
+  if (!enabled_) return false;
+  const bool were_let_go = !Hold::is_high();
+  Heartbeat::set_high();
+  return were_let_go;
 }
 
 INKWELL_INTERRUPT void Bridges::end_period() { Heartbeat::set_low(); }

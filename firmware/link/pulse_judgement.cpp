@@ -104,7 +104,7 @@ PulseJudgement judge(const control::PulseRound& round, const control::Settings& 
     judgement.motors[i] = found.motor;
     judgement.bridges[i] = found.bridge;
     if (found.bridge.result == Result::passed)
-      judgement.bridge_part[i] = std::max(found.bridge.figure / round.supply_V, 0.0f);
+      judgement.bridge_loss_part[i] = std::clamp(found.bridge.figure, 0.0f, round.dead_V) / round.supply_V;
     const Found wires = judge_wires(round.motors[i], i, expected);
     judgement.wires = i == 0 ? wires : worse(judgement.wires, wires);
   }

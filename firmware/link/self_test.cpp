@@ -122,10 +122,11 @@ void SelfTest::end_round(const PulseJudgement& judgement) {
 }
 
 void SelfTest::note_pulses(const PulseJudgement& judgement) {
-  bridge_part_ = judgement.bridge_part;
   for (std::size_t i = 0; i < 3; ++i) {
     note(of_axis(Item::motor_1, i), judgement.motors[i].result, judgement.motors[i].figure);
     note(of_axis(Item::bridge_1, i), judgement.bridges[i].result, judgement.bridges[i].figure);
+    // One that cannot be told anew takes what it took.
+    if (judgement.bridges[i].result == Result::passed) bridge_loss_part_[i] = judgement.bridge_loss_part[i];
   }
   note(Item::current_wires, judgement.wires.result, judgement.wires.figure);
 }
@@ -170,7 +171,7 @@ INKWELL_INTERRUPT void SelfTest::exchange(control::Controller& controller) {
   switch (static_cast<Order>(order % orders)) {
     case Order::none: return;
     case Order::pulses: pulses_run_ = true; return controller.start_pulses();
-    case Order::pass: return controller.pass_self_test(bridge_part_);
+    case Order::pass: return controller.pass_self_test(bridge_loss_part_);
     case Order::fail: return controller.raise(protocol::Fault::self_test_failed);
   }
 }

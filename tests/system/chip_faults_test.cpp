@@ -108,8 +108,30 @@ TEST_CASE(
   CHECK_FALSE(any_leg_high_within(rig.control, 0.0005));
   rig.control.run(0.001);
   CHECK(restarts(rig.control) == 0);
+  // The force does not come back by itself.
+  CHECK_FALSE(any_leg_high_within(rig.control, 0.0005));
   rig.control.run(0.05);
   CHECK(restarts(rig.control) == 0);
+  check_bridges_off(rig);
+  rig.run(0.01);
+  CHECK(rig.pose().fault == Fault::heartbeat_missed);
+}
+
+TEST_CASE("a core that stands long enough for the bridges to let go has to be asked for the force again") {
+  for (const double stands_s : {0.2e-3, 1e-3, 8e-3}) {
+    CAPTURE(stands_s);
+    BoardRig rig;
+    press_into_wall(rig);
+    rig.control.inject({"core_stalled", "", stands_s});
+    rig.control.run(stands_s + 2 * control_period_s);
+    check_bridges_off(rig);
+    rig.run(0.02);
+    CHECK(restarts(rig.control) == 0);
+    CHECK(rig.pose().state == State::fault);
+    CHECK((rig.pose().fault == Fault::heartbeat_missed || rig.pose().fault == Fault::servo_overrun));
+    rig.command(protocol::Command::clear_fault);
+    rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  }
 }
 
 TEST_CASE("the watchdog bites when the control interrupt is dead and the rest of the firmware lives") {

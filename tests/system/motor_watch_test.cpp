@@ -100,8 +100,8 @@ class WatchedRig : public BoardRig {
       fastest_rad_per_s = std::max(fastest_rad_per_s, std::fabs(value[6 + motor]));
       const float told_V = told_V_.front()[motor];
       told_V_.pop_front();
-      const control::BridgeLoss loss =
-          control::bridge_loss(bridge_part_[motor], board::omni_driver.bridge_dead_time_part(), value[9]);
+      const float dead_part = board::omni_driver.bridge_dead_time_part();
+      const control::BridgeLoss loss{std::min(bridge_part_[motor], dead_part) * value[9], dead_part * value[9]};
       turn_to(watch_, motor, told_V, loss);
       fits(watch_, {value[3], value[4], value[5]}, {value[6], value[7], value[8]}, settings_.motor_model);
       nearest_V = std::max(nearest_V, watch_.beyond_V[motor]);

@@ -108,6 +108,7 @@ void Plant::connect(InputPins& pins) {
   inputs_stale_ = true;
   shown_.fill(PinLevel::floating);  // as the chip sees a pin that nothing drives
   show_inputs();
+  show_hold();
 }
 
 // ---- the chip's calls ----------------------------------------------------------------------------------
@@ -132,6 +133,7 @@ void Plant::enable_bridges(bool enabled, Ticks now) {
   if (enabled == bridges_enabled_) return;
   bridges_enabled_ = enabled;
   if (!enabled) tripped_ = false;
+  show_hold();
   for (unsigned i = 0; i < 3; ++i) update_legs(i, now);
   note_driving(now);
 }
@@ -291,6 +293,11 @@ void Plant::show(char port, unsigned pin, PinLevel level, PinLevel& shown) {
   if (level == shown) return;
   shown = level;
   pins_->drive(port, pin, level);
+}
+
+/// At once: it tells how long the bridges were on.
+void Plant::show_hold() {
+  if (pins_ != nullptr) show(board_.bridge_hold.port, board_.bridge_hold.number, level_of(bridges_enabled_), shown_[6]);
 }
 
 void Plant::show_inputs() {

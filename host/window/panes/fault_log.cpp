@@ -18,6 +18,7 @@ constexpr int patience_answers = 8;
 /// anew.
 bool stops_the_count(const device::PutInFault& put_in) {
   const auto fault = protocol::find_injection(put_in.fault);
+  if (fault == protocol::InjectedFault::main_loop_stalled) return false;  // interrupts go on
   return !fault || protocol::info(*fault).part == protocol::InjectionPart::core;
 }
 

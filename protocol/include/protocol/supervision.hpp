@@ -197,10 +197,10 @@ enum class Clearing : std::uint8_t {
 
 /// What becomes of the motors while a fault takes the force away from a hand that moves.
 enum class Off : std::uint8_t {
-  coast,         ///< bridges off: what does not trust currents, bridges, supply or the measure of speed
-  brake,         ///< all low sides on, so that the motors' own voltage brakes them, until the probe is slow
-  brake_gently,  ///< likewise, but bridges off in each period in which a motor was measured above a part of the force
-                 ///< limit: a hand may well go on
+  coast,  ///< bridges off: what does not trust currents, bridges, supply or the measure of speed
+  brake,  ///< all low sides on, so that the motors' own voltage brakes them, until the probe is slow; bridges off in
+          ///< each period in which a motor was measured above what the force limit takes
+  brake_gently,  ///< likewise, but above a part of that: a hand may well go on
 };
 
 struct Watch {
@@ -226,6 +226,8 @@ inline constexpr auto watch_table = []() {
       {Fault::processor_fault, every, at_once, coast},
       {Fault::watchdog, every, at_once, coast},
       {Fault::servo_overrun, every, at_once, coast},
+      {Fault::heartbeat_missed, every, at_once, coast},
+      // Not in `starting`: the control interrupt runs a while before the main loop does.
       {Fault::main_loop_stalled, started, at_once, coast},
       {Fault::not_finite, every, when_gone, coast},
       {Fault::force_law, every, at_once, brake},

@@ -57,38 +57,40 @@ TEST_CASE("half a second is the longest") {
   CHECK(periods <= 10'000);
 }
 
-TEST_CASE("a hand that the host has left alone is braked gently: a motor that resists with more lets all go") {
-  constexpr control::Triple gentle_A{0.1f, 0.2f, 0.3f};
-  const Brake brake = begun(watch(Fault::host_silent));
-  CHECK(shorts(brake, {0.1f, -0.2f, 0.3f}, gentle_A));
-  CHECK_FALSE(shorts(brake, {-0.101f, 0.0f, 0.0f}, gentle_A));
-  CHECK_FALSE(shorts(brake, {0.0f, 0.201f, 0.0f}, gentle_A));
-  CHECK_FALSE(shorts(brake, {0.0f, 0.0f, -0.301f}, gentle_A));
-  CHECK_FALSE(shorts(brake, {0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f}, gentle_A));
-  CHECK_FALSE(shorts(Brake{}, {}, gentle_A));
-  Brake over = brake;
-  advance(over, slow, watch(Fault::host_silent));
-  CHECK_FALSE(shorts(over, {}, gentle_A));
+TEST_CASE("a motor that resists with more than the force limit lets all go, of a gentle brake with a part of it") {
+  constexpr control::Triple limit_A{1.0f, 2.0f, 3.0f};
+  for (const Fault fault : {Fault::over_speed, Fault::force_law, Fault::host_silent}) {
+    const float part = fault == Fault::host_silent ? Brake::gentle_part : 1.0f;
+    const Brake brake = begun(watch(fault));
+    CHECK(shorts(brake, {part * 0.999f, part * -1.999f, part * 2.999f}, limit_A));
+    CHECK_FALSE(shorts(brake, {part * -1.001f, 0.0f, 0.0f}, limit_A));
+    CHECK_FALSE(shorts(brake, {0.0f, part * 2.001f, 0.0f}, limit_A));
+    CHECK_FALSE(shorts(brake, {0.0f, 0.0f, part * -3.001f}, limit_A));
+    CHECK_FALSE(shorts(brake, {0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f}, limit_A));
+    Brake over = brake;
+    advance(over, slow, watch(fault));
+    CHECK_FALSE(shorts(over, {}, limit_A));
+  }
+  CHECK_FALSE(shorts(Brake{}, {}, limit_A));
 }
 
-TEST_CASE("an arm that is too fast is braked with all that its motors have, unless the host fell silent as well") {
-  constexpr control::Triple gentle_A{0.1f, 0.1f, 0.1f}, large_A{2.0f, -2.0f, 2.0f};
-  CHECK(shorts(begun(watch(Fault::over_speed)), large_A, gentle_A));
-  CHECK(shorts(begun(watch(Fault::force_law)), large_A, gentle_A));
+TEST_CASE("a brake is gentle once the host was silent, until the next begins") {
+  constexpr control::Triple limit_A{1.0f, 1.0f, 1.0f}, resists_A{0.5f, -0.5f, 0.5f};
   Brake brake = begun(watch(Fault::over_speed));
+  CHECK(shorts(brake, resists_A, limit_A));
   advance(brake, fast, watch(Fault::host_silent));
-  CHECK_FALSE(shorts(brake, large_A, gentle_A));
+  CHECK_FALSE(shorts(brake, resists_A, limit_A));
   advance(brake, fast, 0);
-  CHECK_FALSE(shorts(brake, large_A, gentle_A));
+  CHECK_FALSE(shorts(brake, resists_A, limit_A));
   brake.begin();
-  CHECK(shorts(brake, large_A, gentle_A));
+  CHECK(shorts(brake, resists_A, limit_A));
   // Also the other way round: it is the hand that makes it fast.
   Brake silent = begun(watch(Fault::host_silent));
   advance(silent, fast, watch(Fault::over_speed));
-  CHECK_FALSE(shorts(silent, large_A, gentle_A));
+  CHECK_FALSE(shorts(silent, resists_A, limit_A));
 }
 
-TEST_CASE("gentle is a part of the force limit at the end of the longer link, by each motor's constant and gear") {
+TEST_CASE("the limit is that of the force at the end of the longer link, by each motor's constant and gear") {
   using enum protocol::Parameter;
   protocol::ParameterSet set = tests::omni_parameters();
   set[force_limit_N] = 2.0f;
@@ -96,10 +98,8 @@ TEST_CASE("gentle is a part of the force limit at the end of the longer link, by
   set[torque_constant_2_Nm_per_A] = 0.05f;
   set[motor_3_reversed] = 1.0f;
   const auto settings = control::prepare(set);
-  const float gentle_Nm = 2.0f * Brake::gentle_part_of_force_limit * 0.2f;
   for (std::size_t i = 0; i < 3; ++i)
-    CHECK(settings.limits.gentle_brake_A[i] ==
-          doctest::Approx(gentle_Nm * std::fabs(settings.motors.ampere_per_Nm[i])));
+    CHECK(settings.limits.brake_A[i] == doctest::Approx(2.0f * 0.2f * std::fabs(settings.motors.ampere_per_Nm[i])));
 }
 
 TEST_CASE("only after the faults that leave bridges, currents and speeds to be trusted, alone or beside others") {

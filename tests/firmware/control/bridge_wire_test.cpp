@@ -48,6 +48,12 @@ TEST_CASE(
   CHECK(looks({.on = true, .enable_is_high = true, .heartbeat_is_high = true, .a_leg_is_high = false}) == 2);
 }
 
+TEST_CASE("bridges that are held on while they should be off are told; while they should be on, elsewhere") {
+  CHECK(looks({.on = false, .hold_is_high = true}) == 2);
+  CHECK(looks({.on = true, .enable_is_high = true, .hold_is_high = true}) == 0);
+  CHECK(looks({.on = true, .enable_is_high = true, .hold_is_high = false}) == 0);
+}
+
 TEST_CASE("one wrong look is borne, and a right one makes up for all before it") {
   constexpr BridgePins sound{}, wrong{.enable_is_high = true};
   BridgeWire wire;

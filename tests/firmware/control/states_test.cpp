@@ -164,7 +164,7 @@ TEST_CASE("an arm whose host fell silent is braked gently: not in a period in wh
   }
   REQUIRE(controller.fault() == Fault::host_silent);
   CHECK(drive.brake);
-  const float gentle_A = settings.limits.gentle_brake_A[0];
+  const float gentle_A = control::Brake::gentle_part * settings.limits.brake_A[0];
   for (const bool resists : {true, false, true}) {
     samples.current_A[0] = resists ? 1.1f * gentle_A : 0.9f * gentle_A;
     samples.encoder_counts[0] += 1;

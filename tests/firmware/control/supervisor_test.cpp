@@ -129,6 +129,7 @@ std::vector<FaultCase> fault_cases() {
           {Fault::processor_fault, all, true},
           {Fault::watchdog, all, true},
           {Fault::servo_overrun, all, true},
+          {Fault::heartbeat_missed, all, true},
           {Fault::main_loop_stalled, started, true},
           {Fault::not_finite, all, false},
           {Fault::force_law, all, true},

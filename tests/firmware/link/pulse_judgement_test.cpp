@@ -65,7 +65,7 @@ TEST_CASE("sound motors pass, with their resistance, what the bridge takes, and 
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK(judgement.motors[i].figure == doctest::Approx(2.27).epsilon(0.01));
     CHECK(judgement.bridges[i].figure == doctest::Approx(0.432).epsilon(0.02));
-    CHECK(judgement.bridge_part[i] == doctest::Approx(0.024).epsilon(0.02));
+    CHECK(judgement.bridge_loss_part[i] == doctest::Approx(0.024).epsilon(0.02));
   }
   CHECK(judgement.wires.figure < 0.01f);
 }
@@ -137,15 +137,23 @@ TEST_CASE("a leg that is half a microsecond slow is told by the bridge's item, a
   CHECK(judgement.bridges[1].result == SelfTestResult::failed);
   CHECK(judgement.any(SelfTestResult::failed));
   CHECK(judgement.bridges[1].figure == doctest::Approx(0.864).epsilon(0.05));
-  CHECK(judgement.bridge_part[1] == 0.0f);
+  CHECK(judgement.bridge_loss_part[1] == 0.0f);
   CHECK_FALSE(info(protocol::SelfTestItem::bridge_2).takes_force);
+}
+
+TEST_CASE("a bridge is known to take what was measured, but no more than its dead time does") {
+  const auto half = with_second([](auto& motor) { motor.dead_V *= 0.5f; });
+  CHECK(half.bridge_loss_part[1] == doctest::Approx(0.012).epsilon(0.04));
+  const auto more = with_second([](auto& motor) { motor.dead_V *= 1.5f; });
+  CHECK(more.bridges[1].figure == doctest::Approx(0.648).epsilon(0.04));
+  CHECK(more.bridge_loss_part[1] == doctest::Approx(0.024).epsilon(0.001));
 }
 
 TEST_CASE("a bridge that seems to give a little, by errors of its sensor, takes none") {
   const auto judgement = with_second([](auto& motor) { motor.dead_V *= -0.2f; });
   CHECK(judgement.bridges[1].result == SelfTestResult::passed);
   CHECK(judgement.bridges[1].figure < -0.05f);
-  CHECK(judgement.bridge_part[1] == 0.0f);
+  CHECK(judgement.bridge_loss_part[1] == 0.0f);
 }
 
 TEST_CASE("swapped current wires, and two that touch, are told by the wires' item") {

@@ -19,6 +19,7 @@ inline constexpr Facts bench_modules{
     // BOOT1, which the boot loader wants low: the monostable's pull-down does both.
     .bridge_enable = {'B', 2},
     .bridge_heartbeat = {'B', 1},
+    .bridge_hold = {'B', 0},
     .bridge_fault_tim1 = {{'B', 12}, 1},
     .bridge_fault_tim8 = {{'A', 6}, 3},
     .motor_current = {{{'C', 1}, 11}, {{'C', 2}, 12}, {{'C', 3}, 13}},

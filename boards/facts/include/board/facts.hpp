@@ -152,6 +152,8 @@ struct Facts {
   /// While the bridges are on it rises with each control interrupt, and falls before its end. A pin beside no leg's: an
   /// edge that comes over from there would be taken for one of its own.
   Pin bridge_heartbeat;
+  /// The monostable's output, at which the bridges' enables hang too: high as long as they may switch.
+  Pin bridge_hold;
   /// Open-drain fault of the bridges, low is a fault. Both pins hang on the one wire: each switches its
   /// timer's outputs off in hardware (RM0090, "Using the break function").
   PeripheralPin bridge_fault_tim1, bridge_fault_tim8;
@@ -202,22 +204,22 @@ struct Facts {
   /// One of the cable's two wires of data.
   constexpr bool is_usb_data(Pin pin) const { return pin == usb_minus.pin || pin == usb_plus.pin; }
   /// Every use, under the same names and in the same order on every board.
-  constexpr std::array<PinUse, 34> pin_uses() const {
+  constexpr std::array<PinUse, 35> pin_uses() const {
 #define INKWELL_USE(fact) \
   PinUse { #fact, fact }
     return {
-        INKWELL_USE(encoders[0].a),     INKWELL_USE(encoders[0].b),    INKWELL_USE(encoders[1].a),
-        INKWELL_USE(encoders[1].b),     INKWELL_USE(encoders[2].a),    INKWELL_USE(encoders[2].b),
-        INKWELL_USE(bridges[0].leg_a),  INKWELL_USE(bridges[0].leg_b), INKWELL_USE(bridges[1].leg_a),
-        INKWELL_USE(bridges[1].leg_b),  INKWELL_USE(bridges[2].leg_a), INKWELL_USE(bridges[2].leg_b),
-        INKWELL_USE(bridge_enable),     INKWELL_USE(bridge_heartbeat), INKWELL_USE(bridge_fault_tim1),
-        INKWELL_USE(bridge_fault_tim8), INKWELL_USE(motor_current[0]), INKWELL_USE(motor_current[1]),
-        INKWELL_USE(motor_current[2]),  INKWELL_USE(gimbal[0]),        INKWELL_USE(gimbal[1]),
-        INKWELL_USE(gimbal[2]),         INKWELL_USE(supply),           INKWELL_USE(button_1),
-        INKWELL_USE(button_2),          INKWELL_USE(inkwell_switch),   INKWELL_USE(status_led),
-        INKWELL_USE(usb_minus),         INKWELL_USE(usb_plus),         INKWELL_USE(usb_supply),
-        INKWELL_USE(console_transmit),  INKWELL_USE(console_receive),  INKWELL_USE(debug_data),
-        INKWELL_USE(debug_clock),
+        INKWELL_USE(encoders[0].a),     INKWELL_USE(encoders[0].b),     INKWELL_USE(encoders[1].a),
+        INKWELL_USE(encoders[1].b),     INKWELL_USE(encoders[2].a),     INKWELL_USE(encoders[2].b),
+        INKWELL_USE(bridges[0].leg_a),  INKWELL_USE(bridges[0].leg_b),  INKWELL_USE(bridges[1].leg_a),
+        INKWELL_USE(bridges[1].leg_b),  INKWELL_USE(bridges[2].leg_a),  INKWELL_USE(bridges[2].leg_b),
+        INKWELL_USE(bridge_enable),     INKWELL_USE(bridge_heartbeat),  INKWELL_USE(bridge_hold),
+        INKWELL_USE(bridge_fault_tim1), INKWELL_USE(bridge_fault_tim8), INKWELL_USE(motor_current[0]),
+        INKWELL_USE(motor_current[1]),  INKWELL_USE(motor_current[2]),  INKWELL_USE(gimbal[0]),
+        INKWELL_USE(gimbal[1]),         INKWELL_USE(gimbal[2]),         INKWELL_USE(supply),
+        INKWELL_USE(button_1),          INKWELL_USE(button_2),          INKWELL_USE(inkwell_switch),
+        INKWELL_USE(status_led),        INKWELL_USE(usb_minus),         INKWELL_USE(usb_plus),
+        INKWELL_USE(usb_supply),        INKWELL_USE(console_transmit),  INKWELL_USE(console_receive),
+        INKWELL_USE(debug_data),        INKWELL_USE(debug_clock),
     };
 #undef INKWELL_USE
   }

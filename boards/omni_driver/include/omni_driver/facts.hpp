@@ -16,6 +16,7 @@ inline constexpr Facts omni_driver{
                 {3, {{'A', 10}, 1}, {{'C', 8}, 3}}},
     .bridge_enable = {'B', 1},
     .bridge_heartbeat = {'B', 9},
+    .bridge_hold = {'B', 8},
     .bridge_fault_tim1 = {{'B', 12}, 1},
     .bridge_fault_tim8 = {{'A', 6}, 3},
     .motor_current = {{{'C', 0}, 10}, {{'C', 1}, 11}, {{'C', 2}, 12}},

@@ -5,10 +5,10 @@
 // controller, so it is what is left to do for an arm that a fault has let loose; a bridge or a current that cannot be
 // trusted is better left alone.
 //
-// A damper resists the more the faster a hand swings the arm. Where it has to be gentle, a control period in which a
-// current is larger than a part of the force limit takes is one in which the motors are let go. Their currents are gone
-// after some microseconds then, and take a period or more to come back. A brake that was gentle stays so, however fast
-// the arm gets: it is the hand that makes it fast.
+// A damper resists the more the faster a hand swings the arm. So a control period in which a current is larger than the
+// force limit takes is one in which the motors are let go; where the brake has to be gentle, than a part of it takes.
+// Their currents are gone after some microseconds then, and take a period or more to come back. A brake that was gentle
+// stays so, however fast the arm gets: it is the hand that makes it fast.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,9 @@ struct Brake {
   /// Below it the arm coasts: the heaviest arm of the descriptions then holds less than a millijoule.
   static constexpr float speed_m_per_s = 0.1f;
   static constexpr std::uint32_t duration_maximum_periods = periods_in(0.5f);
-  /// Of the force limit, at the end of the longer link: a motor that is measured above it has all let go for a period.
-  /// Computed for an Omni at its usual limit, one resists with 0.3 to 0.6 N on the average up to 2 m/s, with 1.1 N
-  /// at 3.
-  static constexpr float gentle_part_of_force_limit = 0.15f;
+  /// Of Limits::brake_A. Computed for an Omni at its usual limit, one motor resists with 0.3 to 0.6 N on the average up
+  /// to 2 m/s, with 1.1 N at 3.
+  static constexpr float gentle_part = 0.15f;
 
   std::uint32_t remaining_periods = 0;
   bool is_gentle = false;
@@ -44,8 +43,7 @@ constexpr bool may_brake(protocol::Watches found) {
 /// supervisor.
 void advance(Brake& brake, float speed_squared_m2_per_s2, protocol::Watches found);
 
-/// Whether the motors are shorted in this period. `gentle_A`: Limits::gentle_brake_A. A current that is no number lets
-/// them go.
-bool shorts(const Brake& brake, const Triple& current_A, const Triple& gentle_A);
+/// Whether the motors are shorted in this period. `limit_A`: Limits::brake_A. A current that is no number lets them go.
+bool shorts(const Brake& brake, const Triple& current_A, const Triple& limit_A);
 
 }  // namespace inkwell::control

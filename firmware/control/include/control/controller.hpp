@@ -79,11 +79,11 @@ class Controller {
   bool pulses_run() const { return pulses_.runs(); }
   const PulseRound& pulse_round() const { return pulses_.round(); }
   const Triple& current_offsets_A() const { return offsets_.offset_A; }
-  /// The self-test is over, and nothing has failed that takes the force away. `bridge_part` of the supply is what each
-  /// bridge takes from its motor, 0 where that was not measured.
-  void pass_self_test(const Triple& bridge_part) {
+  /// The self-test is over, and nothing has failed that takes the force away. `bridge_loss_part` of the supply is what
+  /// each bridge takes at least from its motor, 0 to the dead time's part; 0 where that was never measured.
+  void pass_self_test(const Triple& bridge_loss_part) {
     asked_.events |= lasting_events_ = protocol::events(protocol::Event::tested);
-    bridge_part_ = bridge_part;
+    bridge_loss_part_ = bridge_loss_part;
   }
   /// It has begun so many times since the start.
   std::uint32_t self_tests() const { return self_tests_; }
@@ -131,7 +131,7 @@ class Controller {
   void change_state(const Supervisor& next);
 
   BoardLimits board_;
-  Triple bridge_part_{};  ///< of the supply: what each bridge takes, as the last self-test that passed measured it
+  Triple bridge_loss_part_{};  ///< as pass_self_test() was told
 
   // Remembered from period to period.
   std::uint32_t periods_ = 0;

@@ -3,7 +3,8 @@
 // A motor takes the voltage R i + k w: its resistance times its current, and its back EMF. The voltage is the one that
 // its bridge was told, the current comes from the shunt, the speed from the encoder. A current reading that stands
 // still, is another motor's or is too small makes the current loop drive the motor with a voltage that the reading does
-// not explain; so does a motor that is open, or a leg of its bridge that does not follow. The force is then any.
+// not explain; so does a motor that is open, or a leg of its bridge that does not follow. The force is then any. A
+// voltage that is too small for its current tells of a motor with shorted turns, or of a reading that is too large.
 //
 // Both sides are compared as long as the bridges drive by their current loops. What they differ by beyond what a sound
 // motor may is summed over time, to a flux: an inductance that is left out of the equation adds no more than its own
@@ -25,21 +26,16 @@ struct MotorModel {
   Triple back_emf_Vs_per_rad;
 };
 
-/// What a bridge takes from its motor's voltage, always against the current: by its dead time, its diodes, and the
-/// motor's brushes. With little or no current it takes anything from none to the most.
+/// What a bridge takes from its motor's voltage, always against the current. With little or no current it may give as
+/// much.
 struct BridgeLoss {
-  float least_V, most_V;
+  float least_V;  ///< as the self-test has measured, so no less; 0 where it has not
+  float most_V;   ///< by its dead time
 };
 
-/// `measured_part` of the supply, 0 where nothing has measured it; else no more than the dead time takes is expected.
-inline BridgeLoss bridge_loss(float measured_part, float dead_time_part, float supply_V) {
-  const float most_part = measured_part > dead_time_part ? measured_part : dead_time_part;
-  return {measured_part * supply_V, most_part * supply_V};
-}
-
 struct MotorWatch {
-  /// For the brushes and sensors that err, beside what the bridge takes. What ends by itself only adds to the sum: the
-  /// voltage that a change of current takes, and the speed of an arm that is being stopped, which is known a
+  /// For brushes, diodes and sensors that err, beside what the bridge takes. What ends by itself only adds to the sum:
+  /// the voltage that a change of current takes, and the speed of an arm that is being stopped, which is known a
   /// millisecond late.
   static constexpr float bearable_V = 0.3f;
   /// From here on a current keeps its sign all through the PWM's period, ripple and all, so that its bridge takes what

@@ -30,7 +30,7 @@ struct Limits {
   Triple joint_maximum_rad;
   Triple over_current_A;   ///< a measured current beyond it is a fault, once it had time to fall below
   Triple moving_A;         ///< an encoder that stands while its motor's current changes by more is a fault
-  Triple gentle_brake_A;   ///< motors that brake gently are let go beyond it
+  Triple brake_A;          ///< that the force limit takes: motors that brake are let go beyond it
   float inkwell_play_rad;  ///< farther from the inkwell its switch is not closed by the stylus
   float speed_limit_squared_m2_per_s2;
   std::uint32_t host_timeout_periods;

@@ -22,10 +22,11 @@ namespace inkwell::drivers {
 class Bridges {
  public:
   static constexpr std::array claims{
-      peripheral<registers::TIM1>(),      peripheral<registers::TIM8>(),       pin(board::facts.bridge_enable),
-      pin(board::facts.bridge_heartbeat), pin(board::facts.bridges[0].leg_a),  pin(board::facts.bridges[1].leg_a),
-      pin(board::facts.bridges[2].leg_a), pin(board::facts.bridges[0].leg_b),  pin(board::facts.bridges[1].leg_b),
-      pin(board::facts.bridges[2].leg_b), pin(board::facts.bridge_fault_tim1), pin(board::facts.bridge_fault_tim8)};
+      peripheral<registers::TIM1>(),      peripheral<registers::TIM8>(),      pin(board::facts.bridge_enable),
+      pin(board::facts.bridge_heartbeat), pin(board::facts.bridge_hold),      pin(board::facts.bridges[0].leg_a),
+      pin(board::facts.bridges[1].leg_a), pin(board::facts.bridges[2].leg_a), pin(board::facts.bridges[0].leg_b),
+      pin(board::facts.bridges[1].leg_b), pin(board::facts.bridges[2].leg_b), pin(board::facts.bridge_fault_tim1),
+      pin(board::facts.bridge_fault_tim8)};
 
   /// Sets up both timers and lets them run with all outputs off. Their update triggers the ADCs from now on.
   void start();
@@ -52,9 +53,11 @@ class Bridges {
   /// pull-up. While the bridges are off; no interrupt, which might take that for a fault, comes for 8 us.
   bool fault_wire_of_tim1_floats() const;
   bool fault_wire_of_tim8_floats() const;
-  /// What the enable wire, the heartbeat's and the legs' wires are, at the chip's pins, whoever drives them there.
+  /// What the enable wire, the heartbeat's, the monostable's output and the legs' wires are, at the chip's pins,
+  /// whoever drives them there.
   bool enable_is_high() const;
   bool heartbeat_is_high() const;
+  bool hold_is_high() const;
   bool a_leg_is_high() const;
   /// As the control interrupt has left them.
   bool are_on() const { return enabled_; }
@@ -63,7 +66,8 @@ class Bridges {
   /// that the interrupt took longer than its period.
   bool period_is_over() const { return RegistersOf<Bridges, registers::TIM1>::SR::UIF::is_set(); }
   /// If the bridges are on the heartbeat rises: they may stay so for `bridge_hold_s`.
-  void begin_period();
+  /// True if they were to be on and had been let go: the heartbeat before came too long ago, or did not reach them.
+  [[nodiscard]] bool begin_period();
   /// The heartbeat falls, so that it can rise again.
   void end_period();
 

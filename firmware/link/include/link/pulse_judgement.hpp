@@ -28,10 +28,10 @@ struct PulseJudgement {
     Result result = Result::not_done;
     float figure = 0.0f;
   };
-  std::array<Found, 3> motors;   ///< ohm: the sign with the larger error
-  std::array<Found, 3> bridges;  ///< V that the bridge takes
-  Found wires;                   ///< A, the largest in a sensor that should see none
-  control::Triple bridge_part;   ///< of the supply, what a bridge that passes takes; 0 of others
+  std::array<Found, 3> motors;       ///< ohm: the sign with the larger error
+  std::array<Found, 3> bridges;      ///< V that the bridge takes
+  Found wires;                       ///< A, the largest in a sensor that should see none
+  control::Triple bridge_loss_part;  ///< of the supply: what a bridge that passes takes, as far as its dead time does
 
   bool any(Result result) const;
   /// Of an arm that moved too fast for pulses.

@@ -105,6 +105,7 @@ class Plant final : public Circuit {
   void step();
   void finish_docking();
   void show_inputs();
+  void show_hold();
   void show(char port, unsigned pin, PinLevel level, PinLevel& shown);
   void update_legs(unsigned motor, Ticks now);
   void enable_bridges(bool enabled, Ticks now);
@@ -155,7 +156,7 @@ class Plant final : public Circuit {
   std::array<QuadratureEncoder::Levels, 3> encoder_levels_{};
   std::array<bool, 2> buttons_{};
   bool usb_supply_ = false;
-  std::array<PinLevel, 6> shown_{};  ///< buttons, inkwell switch, two pins of the fault wire, USB supply
+  std::array<PinLevel, 7> shown_{};  ///< buttons, inkwell switch, two pins of the fault wire, USB supply, hold
 
   // Gimbal: joint angles and the inverse of the potentiometers' characteristic
   std::array<std::array<double, 3>, 3> gimbal_terms_;  ///< square, slope, offset of each

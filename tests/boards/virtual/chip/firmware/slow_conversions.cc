@@ -13,7 +13,7 @@ AnalogInputs analog_inputs;
 Bridges bridges;
 
 void period() {
-  bridges.begin_period();
+  static_cast<void>(bridges.begin_period());
   static_cast<void>(analog_inputs.take_currents());
   const std::uint32_t age = analog_inputs.slow_age_periods();
   if (age > results[2]) results[2] = age;
