@@ -100,7 +100,6 @@ int main() {
 
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
-    main_loop_periods.store(periods);
     usb_device.poll();
     host_link.stored.follow(host_link.parameters, protocol::force_is_on(host_link.status.state()), periods);
     if (usb_device.leaves_for_update() && host_link.status.state() == protocol::State::update &&
@@ -110,7 +109,7 @@ int main() {
     host_link.black_box.follow();
     background_watch.look();
     follow_self_test(background_watch);
-    feed_watchdog();
+    prove_that_it_runs();
     show_state();
     drivers::sleep_unless([periods] { return completed_periods.load() != periods; });
   }

@@ -40,9 +40,11 @@ void follow_self_test(const BackgroundWatch& background_watch) {
   if (const auto wire = test.wanted_wire()) test.note_wire(floats(*wire));
 }
 
-void feed_watchdog() {
+void prove_that_it_runs() {
+  static_assert(protocol::main_loop_stalled_s < 0.8f * drivers::IndependentWatchdog::shortest_timeout_s);
   static std::uint32_t fed_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();
+  main_loop_periods.store(periods);
   if (periods != fed_at_periods) watchdog.feed();
   fed_at_periods = periods;
 }

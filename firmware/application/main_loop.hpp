@@ -5,8 +5,9 @@
 
 namespace inkwell::application {
 
-/// The watchdog is fed by the main loop, and only if the control interrupt ran: it bites when either hangs.
-void feed_watchdog();
+/// Once a round. The watchdog is fed only if the control interrupt ran too, so it bites when either hangs; the control
+/// interrupt misses the rounds sooner.
+void prove_that_it_runs();
 
 /// Goes on with the self-test, if there is one.
 void follow_self_test(const BackgroundWatch& background_watch);

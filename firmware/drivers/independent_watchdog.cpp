@@ -10,10 +10,9 @@ namespace {
 using IWDG = RegistersOf<IndependentWatchdog, registers::IWDG>;
 
 constexpr std::uint32_t key_start = 0xCCCC, key_unlock = 0x5555, key_feed = 0xAAAA;
-constexpr std::uint32_t oscillator_Hz = 32'000;  // 17 to 47 kHz by the data sheet
-constexpr std::uint32_t timeout_ms = 20;
 constexpr std::uint32_t divider = 4;  // which every reset leaves, and only a reset stops it
-constexpr std::uint32_t reload = oscillator_Hz / divider * timeout_ms / 1000 - 1;
+constexpr std::uint32_t reload =
+    IndependentWatchdog::oscillator_Hz / divider * IndependentWatchdog::timeout_ms / 1000 - 1;
 
 }  // namespace
 

@@ -1,6 +1,8 @@
 // The independent watchdog (RM0090, chapter IWDG): resets the chip unless it is fed.
 #pragma once
 
+#include <cstdint>
+
 #include <drivers/claims.hpp>
 #include <registers/peripherals.hpp>
 
@@ -9,6 +11,11 @@ namespace inkwell::drivers {
 class IndependentWatchdog {
  public:
   static constexpr std::array claims{peripheral<registers::IWDG>()};
+
+  static constexpr std::uint32_t oscillator_Hz = 32'000, fastest_oscillator_Hz = 47'000;  // 17 to 47 kHz (data sheet)
+  static constexpr std::uint32_t timeout_ms = 20;
+  static constexpr float shortest_timeout_s =
+      1e-3f * timeout_ms * static_cast<float>(oscillator_Hz) / static_cast<float>(fastest_oscillator_Hz);
 
   /// Once started it cannot be stopped. It bites after 20 ms, 14 to 38 ms over the spread of its oscillator. A
   /// debugger that halts the processor halts it too. False if it has not taken that time, because its oscillator does
