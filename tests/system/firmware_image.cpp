@@ -40,17 +40,17 @@ std::vector<Elf32_Shdr> read_sections(const std::string& elf) {
 
 }  // namespace
 
-std::uint32_t firmware_symbol(std::string_view name) {
+FirmwareSymbol firmware_place(std::string_view name) {
   const std::string elf = read_firmware();
   const auto sections = read_sections(elf);
   const auto symbols = std::ranges::find(sections, Elf32_Word{SHT_SYMTAB}, &Elf32_Shdr::sh_type);
   REQUIRE(symbols != sections.end());
   const std::size_t names = sections.at(symbols->sh_link).sh_offset;
-  std::vector<std::uint32_t> found;
+  std::vector<FirmwareSymbol> found;
   for (std::size_t offset = 0; offset < symbols->sh_size; offset += sizeof(Elf32_Sym)) {
     const auto symbol = read_header<Elf32_Sym>(elf, symbols->sh_offset + offset);
     if (std::string_view(elf.c_str() + names + symbol.st_name).find(name) != std::string_view::npos)
-      found.push_back(symbol.st_value & ~1u);
+      found.push_back({symbol.st_value & ~1u, symbol.st_size});
   }
   INFO("the firmware's symbol ", name);
   REQUIRE(found.size() == 1);

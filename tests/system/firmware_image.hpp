@@ -6,8 +6,15 @@
 
 namespace inkwell::tests {
 
-/// The function or variable whose mangled name has this in it; fails the test unless there is exactly one.
-std::uint32_t firmware_symbol(std::string_view name);
+/// A function or variable.
+struct FirmwareSymbol {
+  std::uint32_t address, size_bytes;
+  bool contains(std::uint32_t place) const { return place >= address && place - address < size_bytes; }
+};
+
+/// The one whose mangled name has this in it; fails the test unless there is exactly one.
+FirmwareSymbol firmware_place(std::string_view name);
+inline std::uint32_t firmware_symbol(std::string_view name) { return firmware_place(name).address; }
 
 /// Where the firmware waits for the reset that it has asked for: "dsb", and a branch back to it.
 std::uint32_t endless_loop_address();

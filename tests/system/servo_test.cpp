@@ -5,14 +5,23 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
 #include <numeric>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <omni_driver/facts.hpp>
 
+#include <stepped_board.hpp>
+
 #include "board_rig.hpp"
+#include "firmware_image.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -36,8 +45,9 @@ double mean_square(const device::Trace& trace, const std::string& column) {
 
 namespace {
 
-/// Half of the period, and what the limits of energy and change, and where code comes to lie, may add to it.
-constexpr std::uint32_t bearable_cycles = board::servo_cycles / 2 + 350;
+/// Half of the period, and what the limits of energy and change, a change of state at the same time, and where code
+/// comes to lie, may add to it.
+constexpr std::uint32_t bearable_cycles = board::servo_cycles / 2 + 500;
 
 }  // namespace
 
@@ -104,6 +114,41 @@ device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched,
 }
 
 }  // namespace
+
+TEST_CASE("supervisor and motors' watch cost the longest control interrupt at most 300 instructions, the heat 100") {
+  const auto profile = std::filesystem::temp_directory_path() / fmt::format("inkwell-watches-{}", getpid());
+  {
+    auto options = stepped_board(device::SimulationMode::exact, device::CyclePricing::likely);
+    options.profile = profile;
+    BoardRig rig(options);
+    rig.make_active();
+    rig.take_to(free_point_m);
+    rig.set(
+        {{Parameter::box_minimum_z_m, -0.02f}, {Parameter::box_maximum_x_m, 0.0f}, {Parameter::box_maximum_y_m, 0.0f}});
+    rig.take_to({0.02, 0.02, -0.045}, 0.3);
+  }
+  std::vector<std::uint32_t> executed;
+  std::ifstream file(profile);
+  for (std::string address, cycles; file >> address >> cycles;)
+    executed.push_back(static_cast<std::uint32_t>(std::stoul(address, nullptr, 16)));
+  std::filesystem::remove(profile);
+  const auto instructions_in = [&](std::initializer_list<std::string_view> functions) {
+    std::ptrdiff_t count = 0;
+    for (const auto function : functions)
+      count += std::ranges::count_if(
+          executed, [place = firmware_place(function)](std::uint32_t address) { return place.contains(address); });
+    return count;
+  };
+  const auto watching = instructions_in({"Controller9supervise", "Controller12watch_motors"});
+  const auto heat = instructions_in({"7control11update_heat"});
+  MESSAGE("simulation: of ", executed.size(), " instructions ", watching, " supervise, ", heat,
+          " are the motors' heat");
+  CHECK(executed.size() > 1'000);
+  CHECK(watching > 100);
+  CHECK(watching <= 300);
+  CHECK(heat > 10);
+  CHECK(heat <= 100);
+}
 
 TEST_CASE("eight planes cost at most 250 cycles while none is touched, and leave a third of the period at worst") {
   BoardRig rig(device::SimulationMode::fast, 1, device::CyclePricing::conservative);
