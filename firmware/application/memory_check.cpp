@@ -46,7 +46,7 @@ bool MemoryCheck::step() {
   else if (part_ <= copies().size())
     check_copy();
   else
-    check_settings();
+    check_parameters();
   return sound_;
 }
 
@@ -77,9 +77,13 @@ void MemoryCheck::check_copy() {
   ++part_;
 }
 
-void MemoryCheck::check_settings() {
-  sound_ = host_link.parameters.settings_are_intact();
-  begin_round();
+// One sum in a step, for the same reason.
+void MemoryCheck::check_parameters() {
+  switch (part_++ - copies().size()) {
+    case 1: sound_ = host_link.parameters.settings_are_intact(); break;
+    case 2: sound_ = host_link.parameters.values_are_intact(); break;
+    default: sound_ = host_link.stored.is_intact(); begin_round();
+  }
 }
 
 }  // namespace inkwell::application

@@ -1,37 +1,22 @@
 #include <link/parameter_store.hpp>
 
-#include <bit>
 #include <cstddef>
-#include <cstring>
 
 namespace inkwell::link {
-namespace {
-
-/// Differs for any two that differ in a bit, and for most others.
-std::uint32_t sum_of(const control::Settings& settings) {
-  static_assert(sizeof settings % sizeof(std::uint32_t) == 0);
-  const auto* bytes = reinterpret_cast<const std::byte*>(&settings);
-  std::uint32_t sum = 0;
-  for (std::size_t at = 0; at < sizeof settings; at += sizeof sum) {
-    std::uint32_t word;
-    std::memcpy(&word, bytes + at, sizeof word);
-    sum = std::rotl(sum, 1) ^ word;
-  }
-  return sum;
-}
-
-}  // namespace
 
 ParameterStore::ParameterStore()
-    : values_(image_defaults()), settings_{control::prepare(values_)}, settings_sum_{sum_of(settings_.used())} {}
+    : values_(image_defaults()), settings_{control::prepare(values())}, settings_sum_{sum_of(settings_.used())} {}
 
 bool ParameterStore::settings_are_intact() const {
   return settings_.is_offered() || sum_of(settings_.used()) == settings_sum_;
 }
 
+// Not even a whole new set takes the place of a damaged one: it would hide the damage from who tells of it.
+control::Settings* ParameterStore::place_of_next() { return values_.is_intact() ? settings_.next() : nullptr; }
+
 void ParameterStore::offer(control::Settings& place, const protocol::ParameterSet& set) {
-  values_ = set;
-  place = control::prepare(values_);
+  values_.put(set);
+  place = control::prepare(set);
   settings_sum_ = sum_of(place);
   settings_.offer();
 }
@@ -42,20 +27,20 @@ void ParameterStore::start_with(const protocol::ParameterSet& set) {
 }
 
 bool ParameterStore::restore_defaults() {
-  control::Settings* next = settings_.next();
+  control::Settings* next = place_of_next();
   if (next != nullptr) offer(*next, image_defaults());
   return next != nullptr;
 }
 
 protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on,
-                                         const protocol::ParameterSet* stored) {
+                                         const Guarded<protocol::ParameterSet>* stored) {
   ++transactions_;
   ParameterCheck check;
-  control::Settings* next = settings_.next();
-  if (next == nullptr)
+  control::Settings* next = place_of_next();
+  if (next == nullptr || (stored != nullptr && !stored->is_intact()))
     check.refusal = protocol::Refusal::busy;
   else
-    check = check_transaction(report, values_, force_is_on, stored);
+    check = check_transaction(report, values(), force_is_on, stored != nullptr ? &stored->value() : nullptr);
 
   refusal_ = check.refusal;
   refused_id_ = check.parameter_id;
@@ -76,7 +61,7 @@ std::size_t read_set(const protocol::ParameterSet& set, protocol::ReportId id, p
 }
 
 std::size_t ParameterStore::read(protocol::ParametersReport& report) const {
-  return read_set(values_, protocol::ReportId::parameters, protocol::ParameterOperation::set, report);
+  return read_set(values(), protocol::ReportId::parameters, protocol::ParameterOperation::set, report);
 }
 
 protocol::TransactionReport ParameterStore::result() const {

@@ -40,7 +40,7 @@ bool is_known(std::uint32_t id, bool same_law) {
 
 }  // namespace
 
-StoredParameters::StoredParameters() : set_(image_defaults()) {}
+StoredParameters::StoredParameters() : set_(image_defaults()), writing_(set_) {}
 
 void StoredParameters::start(FlashMemory& memory, std::array<std::uint8_t, 3> version, ParameterStore& parameters) {
   for (std::size_t i = 0; i < version.size(); ++i) firmware_version_ |= std::uint32_t{version[i]} << 8 * i;
@@ -82,11 +82,11 @@ void StoredParameters::load(ParameterStore& parameters) {
   }
   stored.make_consistent();
   at_start_.out_of_range = stored.refused();
-  set_ = stored.set();
+  set_.put(stored.set());
   is_as_written_here_ = stored.refused() == 0 && same_law &&
                         head.parameter_table_hash == protocol::parameter_table_hash &&
                         head.firmware_version == firmware_version_;
-  parameters.start_with(set_);
+  parameters.start_with(stored.set());
 }
 
 void StoredParameters::ask(protocol::Command command, bool may) {
@@ -102,23 +102,33 @@ void StoredParameters::ask(protocol::Command command, bool may) {
 void StoredParameters::follow(ParameterStore& parameters, bool force_is_on, std::uint32_t periods) {
   if (!is_busy() || force_is_on || periods - last_step_periods_ < periods_between_words) return;
   last_step_periods_ = periods;
-  if (is_writing_)
+  if (!(parameters.values_are_intact() && is_intact()))
+    give_up();
+  else if (is_writing_)
     write();
   else if (is_resetting_)
     is_resetting_ = !parameters.restore_defaults();
   else
-    begin(parameters.values());
+    begin(parameters.guarded_values());
   if (!is_busy() && result_ == StoreResult::under_way) result_ = result_of_reset_;
 }
 
-void StoredParameters::begin(const ParameterSet& held) {
+// What stands in the flash by then is not whole and does not count, or is a factory reset that the next start carries
+// out.
+void StoredParameters::give_up() {
+  wanted_ = Wanted::nothing;
+  is_writing_ = is_resetting_ = false;
+  result_ = StoreResult::flash_failed;
+}
+
+void StoredParameters::begin(const Guarded<ParameterSet>& held) {
   const Wanted wanted = std::exchange(wanted_, Wanted::nothing);
   result_of_reset_ = StoreResult::done;
   result_ = StoreResult::under_way;
   if (wanted == Wanted::store) {
-    if (has_parameters() && is_as_written_here_ && are_equal(held, set_)) return;
+    if (has_parameters() && is_as_written_here_ && are_equal(held.value(), set_.value())) return;
     writing_ = held;
-    return begin_record(RecordKind::parameters, put_entries(held));
+    return begin_record(RecordKind::parameters, put_entries(writing_.value()));
   }
   if (contents_ == StoreContents::nothing || contents_ == StoreContents::factory_reset) {
     result_of_reset_ = StoreResult::nothing_stored;
@@ -130,7 +140,7 @@ void StoredParameters::begin(const ParameterSet& held) {
 
 void StoredParameters::begin_record(RecordKind kind, std::size_t entries) {
   kind_ = kind;
-  is_writing_ = has_flash_ && log_.begin(head(kind), std::span(payload_).first(2 * entries));
+  is_writing_ = has_flash_ && log_.begin(head(kind), std::span(payload_.value()).first(2 * entries));
   if (!is_writing_) result_ = StoreResult::no_room;
 }
 
@@ -146,17 +156,19 @@ RecordHead StoredParameters::head(RecordKind kind) const {
 /// because this one's parameters have the same ids.
 std::size_t StoredParameters::put_entries(const ParameterSet& held) {
   std::size_t count = 0;
+  auto& payload = payload_.open();
   const auto put = [&](std::uint32_t id, std::uint32_t value) {
-    payload_[2 * count] = id;
-    payload_[2 * count + 1] = value;
+    payload[2 * count] = id;
+    payload[2 * count + 1] = value;
     ++count;
   };
   for (std::size_t i = 0; i < image_parameter_count(); ++i)
     put(image_parameter_id(i), std::bit_cast<std::uint32_t>(held.values[i]));
-  if (!has_parameters()) return count;
-  const auto& old = log_.newest()->payload;
+  const std::span<const std::uint32_t> old =
+      has_parameters() ? log_.newest()->payload : std::span<const std::uint32_t>{};
   for (std::size_t i = 0; i + 1 < old.size() && count < entries_maximum; i += 2)
     if (!belongs_to_a_law(old[i]) && !is_known(old[i], true)) put(old[i], old[i + 1]);
+  payload_.seal();
   return count;
 }
 
@@ -175,7 +187,7 @@ void StoredParameters::write() {
     return;
   }
   contents_ = StoreContents::factory_reset;
-  set_ = image_defaults();
+  set_.put(image_defaults());
   is_resetting_ = true;
 }
 
@@ -185,7 +197,7 @@ protocol::StoreReport StoredParameters::report(const ParameterSet& held) const {
   report.result = result_;
   report.contents = contents_;
   for (std::size_t i = 0; i < image_parameter_count(); ++i)
-    report.differing = static_cast<std::uint16_t>(report.differing + differ(held.values[i], set_.values[i]));
+    report.differing = static_cast<std::uint16_t>(report.differing + differ(held.values[i], next_start().values[i]));
   report.stores_left = static_cast<std::uint16_t>(log_.room(2 * (image_parameter_count() + at_start_.unknown)));
   report.commands = commands_;
   report.records_written = log_.records_written();
@@ -194,7 +206,7 @@ protocol::StoreReport StoredParameters::report(const ParameterSet& held) const {
 }
 
 std::size_t StoredParameters::read(protocol::ParametersReport& report) const {
-  return read_set(set_, protocol::ReportId::stored, protocol::ParameterOperation::restore_stored, report);
+  return read_set(next_start(), protocol::ReportId::stored, protocol::ParameterOperation::restore_stored, report);
 }
 
 }  // namespace inkwell::link

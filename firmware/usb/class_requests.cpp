@@ -129,7 +129,7 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
   if (setup.value == report_value(feature_report, ReportId::shapes)) return link_.program.accept_shapes(data);
   if (setup.value == report_value(feature_report, ReportId::black_box_rows)) return link_.black_box.select_rows(data);
   // What is wrong with a transaction is told by the TransactionReport, not by a stall.
-  link_.parameters.accept(data, force_is_on(), link_.stored.has_parameters() ? &link_.stored.next_start() : nullptr);
+  link_.parameters.accept(data, force_is_on(), link_.stored.restorable());
   return true;
 }
 

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include <control/settings.hpp>
+#include <link/parameter_store.hpp>
 #include <protocol/parameters.hpp>
+#include <protocol/store.hpp>
 
 #include "firmware_image.hpp"
 #include "hazards.hpp"
@@ -15,6 +17,7 @@
 using namespace inkwell;
 using namespace inkwell::tests;
 using protocol::Fault;
+using protocol::Parameter;
 using protocol::State;
 
 namespace {
@@ -43,6 +46,13 @@ void check_found_and_written_anew(const std::vector<std::uint32_t>& places, int 
   rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
 }
 
+/// In a set of parameters, a byte of the force limit whose highest bit makes it twice or half of what it was.
+constexpr std::uint32_t byte_of_force_limit = sizeof(float) * static_cast<std::uint32_t>(Parameter::force_limit_N) + 2;
+
+/// The link begins with the parameters that are held; behind their store comes what the next start would give them.
+std::uint32_t held_force_limit() { return firmware_symbol("host_link") + byte_of_force_limit; }
+std::uint32_t stored_force_limit() { return held_force_limit() + std::uint32_t{sizeof(link::ParameterStore)}; }
+
 }  // namespace
 
 TEST_CASE("a bit that flips in what the interrupts run from switches the force off, and a reset writes it anew") {
@@ -57,13 +67,58 @@ TEST_CASE("a bit that flips in what the interrupts run from switches the force o
 }
 
 TEST_CASE("a bit that flips in the settings switches the force off, and a reset prepares them anew") {
-  // The link begins with the parameters and the two places of the settings, of which the interrupt uses one.
-  const std::uint32_t settings = firmware_symbol("host_link") + sizeof(protocol::ParameterSet);
+  // Behind the parameters lie the two places of the settings, of which the interrupt uses one.
+  const std::uint32_t settings = firmware_symbol("host_link") + sizeof(link::Guarded<protocol::ParameterSet>);
   constexpr std::uint32_t bytes = sizeof(control::Settings);
   // The last bit of a limit that is far away: it is to be found before it does harm.
   constexpr std::uint32_t limit =
       offsetof(control::Settings, limits) + offsetof(control::Limits, speed_limit_squared_m2_per_s2);
   check_found_and_written_anew({settings + limit, settings + bytes + limit}, 0);
+}
+
+TEST_CASE(
+    "a bit that flips in a parameter switches the force off, although nobody uses it, and a reset writes it anew") {
+  check_found_and_written_anew({held_force_limit()}, 7);
+}
+
+TEST_CASE("a parameter of which a bit has flipped is neither taken over nor stored") {
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  const float force_limit_N = rig.device->parameters()[Parameter::force_limit_N];
+  rig.control.inject({"ram_bit", text_of(held_force_limit()), 7});
+  const float damaged_N = rig.device->parameters()[Parameter::force_limit_N];
+  CHECK((damaged_N == 2.0f * force_limit_N || damaged_N == 0.5f * force_limit_N));
+  SUBCASE("by a transaction of another parameter") {
+    CHECK_THROWS_AS(rig.set({{Parameter::wall_damping_Ns_per_m, 1.0f}}), device::Refused);
+  }
+  SUBCASE("with all other parameters") {
+    rig.command(protocol::Command::store_parameters);
+    rig.run(0.02);
+    CHECK(rig.device->store_report().result == protocol::StoreResult::flash_failed);
+  }
+  SUBCASE("nor hidden by the defaults") { CHECK_THROWS_AS(rig.device->restore_default_parameters(), device::Refused); }
+  rig.run_until(is_in_fault, 0.5);
+  CHECK(rig.pose().fault == Fault::memory_damaged);
+  CHECK(rig.device->store_report().records_written == 0);
+
+  rig.control.reset();
+  reconnect(rig);
+  CHECK(rig.device->parameters()[Parameter::force_limit_N] == force_limit_N);
+}
+
+TEST_CASE("a bit that flips in what the next start would give is told, and is not restored") {
+  BoardRig rig;
+  rig.run_until([](const auto& pose) { return pose.state == State::ready; });
+  rig.command(protocol::Command::store_parameters);
+  while (rig.device->store_report().contents != protocol::StoreContents::parameters) rig.run(0.02);
+  const float force_limit_N = rig.device->parameters()[Parameter::force_limit_N];
+  rig.control.inject({"ram_bit", text_of(stored_force_limit()), 7});
+  CHECK(rig.device->stored_parameters()[Parameter::force_limit_N] != force_limit_N);
+  CHECK_THROWS_WITH_AS(rig.device->restore_stored_parameters(),
+                       doctest::Contains(protocol::info(protocol::Refusal::busy).cause.data()), device::Refused);
+  CHECK(rig.device->parameters()[Parameter::force_limit_N] == force_limit_N);
+  rig.run_until(is_in_fault, 0.5);
+  CHECK(rig.pose().fault == Fault::memory_damaged);
 }
 
 TEST_CASE("a flash that is damaged when the board starts is found before the first pulse, and before the main loop") {

@@ -259,4 +259,54 @@ TEST_CASE("a bit of the settings that changes by itself is found, whichever it i
   CHECK(store.settings_are_intact());
 }
 
+TEST_CASE("a bit of the values that changes by itself is found, whichever it is") {
+  ParameterStore store;
+  REQUIRE(store.accept(Transaction{entry(Parameter::force_limit_N, 1.5f)}.bytes(), false) == Refusal::accepted);
+  CHECK(store.values_are_intact());
+  for (const float& value : store.values().values) {
+    test::flip_bit(value);
+    CHECK_FALSE(store.values_are_intact());
+    CHECK_FALSE(store.guarded_values().is_intact());
+    test::flip_bit(value);
+  }
+  CHECK(store.values_are_intact());
+}
+
+TEST_CASE("nothing is made of damaged values, and nothing hides them, be it a transaction or the defaults") {
+  ParameterStore store;
+  REQUIRE(store.accept(Transaction{entry(Parameter::force_limit_N, 1.5f)}.bytes(), false) == Refusal::accepted);
+  store.take(1);
+  Transaction transaction{entry(Parameter::force_limit_N, 1.0f)};
+  SUBCASE("one value, which may be the damaged one") {}
+  SUBCASE("all of them") {
+    transaction = Transaction{};
+    transaction.report().operation = protocol::ParameterOperation::restore_defaults;
+  }
+  const float& force_limit_N = store.values().values[static_cast<std::size_t>(Parameter::force_limit_N)];
+  test::flip_bit(force_limit_N);
+  check_refused(store, transaction.bytes(), Refusal::busy);
+  CHECK_FALSE(store.restore_defaults());
+  CHECK(!store.take(2));
+  CHECK_FALSE(store.values_are_intact());
+  test::flip_bit(force_limit_N);
+  CHECK(store.accept(transaction.bytes(), false) == Refusal::accepted);
+}
+
+TEST_CASE("what is stored is restored, unless a bit of it has changed by itself") {
+  ParameterStore store;
+  protocol::ParameterSet set = protocol::default_parameters();
+  set[Parameter::force_limit_N] = 1.5f;
+  const link::Guarded stored(set);
+  Transaction restore{};
+  restore.report().operation = protocol::ParameterOperation::restore_stored;
+  test::flip_bit(stored.value().values[3]);
+  const protocol::ParameterSet before = store.values();
+  CHECK(store.accept(restore.bytes(), false, &stored) == Refusal::busy);
+  CHECK(store.values() == before);
+  CHECK(!store.take(1));
+  test::flip_bit(stored.value().values[3]);
+  CHECK(store.accept(restore.bytes(), false, &stored) == Refusal::accepted);
+  CHECK(store.values() == set);
+}
+
 }  // namespace inkwell

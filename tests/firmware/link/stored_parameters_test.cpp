@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <bit>
+#include <cstring>
 #include <initializer_list>
 #include <utility>
 #include <vector>
@@ -454,6 +455,83 @@ TEST_CASE("stored parameters: the report of what is stored is one to restore it 
   for (std::size_t i = 0; i < report.count; ++i)
     if (report.entries[i].id == id_of(force_limit)) found = report.entries[i].value == 1.25f;
   CHECK(found);
+}
+
+TEST_CASE("stored parameters: values of which a bit has changed are not stored, nor replaced by the defaults") {
+  for (const Command command : {Command::store_parameters, Command::factory_reset}) {
+    PlainFlash flash;
+    store_in(flash, force_limit, 1.25f);
+    Board board(flash);
+    board.set(link_length, 0.15f);
+    test::flip_bit(board.parameters.values().values[static_cast<std::size_t>(force_limit)]);
+    const unsigned words = flash.words_programmed;
+    CHECK(board.run(command) == StoreResult::flash_failed);
+    CHECK(flash.words_programmed == words);
+    CHECK_FALSE(board.parameters.values_are_intact());
+    CHECK(Board(flash).held(force_limit) == 1.25f);
+  }
+}
+
+TEST_CASE("stored parameters: a bit that changes while they are written leaves what was stored before") {
+  PlainFlash flash;
+  store_in(flash, force_limit, 1.25f);
+  Board board(flash);
+  board.set(force_limit, 1.5f);
+  board.stored.ask(Command::store_parameters, true);
+  for (int i = 0; i < 5; ++i) board.step();
+  test::flip_bit(board.parameters.values().values[0]);
+  CHECK(board.finish() == StoreResult::flash_failed);
+  CHECK(Board(flash).held(force_limit) == 1.25f);
+  test::flip_bit(board.parameters.values().values[0]);
+  CHECK(board.store() == StoreResult::done);
+  CHECK(Board(flash).held(force_limit) == 1.5f);
+}
+
+TEST_CASE("stored parameters: a bit that changes in any word of what is written, or of what is stored, is found") {
+  PlainFlash flash;
+  Board board(flash);
+  board.set(force_limit, 1.2345f);
+  REQUIRE(board.store() == StoreResult::done);
+  CHECK(board.stored.is_intact());
+  // They are private; the force limit's value, which nothing else has, tells where they are.
+  auto* const bytes = reinterpret_cast<std::byte*>(&board.stored);
+  unsigned places = 0;
+  for (std::size_t at = 0; at < sizeof board.stored; at += sizeof(float)) {
+    float value;
+    std::memcpy(&value, bytes + at, sizeof value);
+    if (value != 1.2345f) continue;
+    ++places;
+    bytes[at] ^= std::byte{0x10};
+    CHECK_FALSE(board.stored.is_intact());
+    CHECK(board.store() == StoreResult::flash_failed);
+    bytes[at] ^= std::byte{0x10};
+  }
+  CHECK(places == 3);  // the set of the next start, the one that was written, and the words that went into the flash
+  CHECK(board.stored.is_intact());
+}
+
+TEST_CASE("stored parameters: a factory reset that meets a damaged value ends, and the next start carries it out") {
+  PlainFlash flash;
+  store_in(flash, force_limit, 1.25f);
+  Board board(flash);
+  board.stored.ask(Command::factory_reset, true);
+  while (board.report().contents == StoreContents::parameters) board.step();
+  CHECK(board.stored.is_busy());
+  test::flip_bit(board.parameters.values().values[static_cast<std::size_t>(force_limit)]);
+  CHECK(board.finish() == StoreResult::flash_failed);
+  CHECK_FALSE(board.parameters.values_are_intact());
+  CHECK(Board(flash).held(force_limit) == default_of(force_limit));
+}
+
+TEST_CASE("stored parameters: what is restorable is the next start's, once there is one") {
+  PlainFlash flash;
+  Board board(flash);
+  CHECK(board.stored.restorable() == nullptr);
+  board.set(force_limit, 1.25f);
+  CHECK(board.store() == StoreResult::done);
+  REQUIRE(board.stored.restorable() != nullptr);
+  CHECK(&board.stored.restorable()->value() == &board.stored.next_start());
+  CHECK(board.stored.restorable()->is_intact());
 }
 
 TEST_CASE("stored parameters: without a flash nothing can be stored") {

@@ -1,7 +1,9 @@
-// Builds ParametersReports as a host sends them.
+// Builds ParametersReports as a host sends them, and damages what became of them.
 #pragma once
 
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 
@@ -28,6 +30,11 @@ class Transaction {
 
 inline protocol::ParameterEntry entry(protocol::Parameter parameter, float value) {
   return {protocol::info(parameter).id, 0, value};
+}
+
+/// By itself, as radiation does.
+inline void flip_bit(const float& value, unsigned bit = 20) {
+  const_cast<float&>(value) = std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) ^ 1u << bit);
 }
 
 }  // namespace inkwell::test

@@ -6,6 +6,7 @@
 #include <span>
 
 #include <control/settings.hpp>
+#include <link/guarded.hpp>
 #include <link/handover.hpp>
 #include <link/parameter_check.hpp>
 #include <link/shared.hpp>
@@ -29,12 +30,13 @@ class ParameterStore {
   // ---- main loop ----
 
   /// Checks a ParametersReport and, if it is sound, offers its settings to the interrupt. A refused one
-  /// changes nothing but result(). `busy` while the transaction before has not been taken yet. `stored` is what
-  /// restore_stored gives; null is nothing.
+  /// changes nothing but result(). `busy` while the transaction before has not been taken yet, and for good where a bit
+  /// of a set has changed by itself, which the background watch tells. `stored` is what restore_stored gives; null is
+  /// nothing.
   protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on,
-                           const protocol::ParameterSet* stored = nullptr);
+                           const Guarded<protocol::ParameterSet>* stored = nullptr);
 
-  /// Without a transaction, while the force is off. False while the one before has not been taken yet.
+  /// Without a transaction, while the force is off. False, and nothing done, where accept() would be busy.
   [[nodiscard]] bool restore_defaults();
 
   /// Every parameter of the table and of the force law, in this order; returns the bytes of the report that are used.
@@ -43,7 +45,11 @@ class ParameterStore {
   /// What became of the last transaction.
   protocol::TransactionReport result() const;
 
-  const protocol::ParameterSet& values() const { return values_; }
+  const protocol::ParameterSet& values() const { return values_.value(); }
+  /// With the sum by which they were accepted.
+  const Guarded<protocol::ParameterSet>& guarded_values() const { return values_; }
+  /// Whether they are bit for bit those that were accepted.
+  bool values_are_intact() const { return values_.is_intact(); }
 
   /// Whether the interrupt's settings are bit for bit those that were prepared. True while others wait to be taken.
   bool settings_are_intact() const;
@@ -59,9 +65,10 @@ class ParameterStore {
   const control::Settings& settings() const { return settings_.used(); }
 
  private:
+  control::Settings* place_of_next();
   void offer(control::Settings& place, const protocol::ParameterSet& set);
 
-  protocol::ParameterSet values_;
+  Guarded<protocol::ParameterSet> values_;
   Handover<control::Settings> settings_;
   std::uint32_t settings_sum_;  ///< of the newest
   Shared<std::uint32_t> applied_at_periods_{0};

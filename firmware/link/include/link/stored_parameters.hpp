@@ -24,14 +24,19 @@ class StoredParameters {
 
   /// store_parameters or factory_reset has come; `may` is whether it may be carried out.
   void ask(protocol::Command command, bool may);
-  /// One step of what was asked for, now and then. It may hold up the main loop for as long as the flash takes for a
+  /// One step of what was asked for, now and then; given up as flash_failed where a bit of what it goes by has changed
+  /// by itself, which the background watch tells. It may hold up the main loop for as long as the flash takes for a
   /// word; `periods` are control periods, by which words keep their distance, so that poses stay in time.
   void follow(ParameterStore& parameters, bool force_is_on, std::uint32_t periods);
   /// Something that was asked for is not over.
   bool is_busy() const { return wanted_ != Wanted::nothing || is_writing_ || is_resetting_; }
 
   /// What the next start would give every parameter.
-  const protocol::ParameterSet& next_start() const { return set_; }
+  const protocol::ParameterSet& next_start() const { return set_.value(); }
+  /// What restore_stored gives; null is nothing.
+  const Guarded<protocol::ParameterSet>* restorable() const { return has_parameters() ? &set_ : nullptr; }
+  /// Whether what it holds, and writes, is bit for bit what it was given.
+  bool is_intact() const { return set_.is_intact() && writing_.is_intact() && payload_.is_intact(); }
   bool has_parameters() const { return contents_ == protocol::StoreContents::parameters; }
   protocol::StoreReport report(const protocol::ParameterSet& held) const;
   /// As the ParametersReport of next_start(); returns the bytes that are used.
@@ -45,15 +50,16 @@ class StoredParameters {
   static constexpr std::size_t entries_maximum = protocol::parameter_entries_maximum + 32;
 
   void load(ParameterStore& parameters);
-  void begin(const protocol::ParameterSet& held);
+  void give_up();
+  void begin(const Guarded<protocol::ParameterSet>& held);
   void begin_record(RecordKind kind, std::size_t entries);
   void write();
   std::size_t put_entries(const protocol::ParameterSet& held);
   RecordHead head(RecordKind kind) const;
 
+  Guarded<protocol::ParameterSet> set_;
   FlashLog log_;
   bool has_flash_ = false;
-  protocol::ParameterSet set_;
   protocol::StoreContents contents_ = protocol::StoreContents::nothing;
   bool is_as_written_here_ = false;  ///< the newest record has just what this firmware would write for `set_`
   protocol::StoreReport at_start_{};
@@ -66,8 +72,8 @@ class StoredParameters {
   std::uint32_t commands_ = 0;
   std::uint32_t last_step_periods_ = 0;
   RecordKind kind_ = RecordKind::parameters;
-  protocol::ParameterSet writing_{};
-  std::array<std::uint32_t, 2 * entries_maximum> payload_{};
+  Guarded<protocol::ParameterSet> writing_;
+  Guarded<std::array<std::uint32_t, 2 * entries_maximum>> payload_{{}};
 };
 
 }  // namespace inkwell::link

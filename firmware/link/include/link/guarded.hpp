@@ -1,0 +1,49 @@
+// A value of the main loop's that stays for long: a bit of it that changes by itself is noticed.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace inkwell::link {
+
+/// Differs for any two that differ in a bit, and for most others.
+template <class T>
+std::uint32_t sum_of(const T& value) {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof value % sizeof(std::uint32_t) == 0);
+  const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+  std::uint32_t sum = 0;
+  for (std::size_t at = 0; at < sizeof value; at += sizeof sum) {
+    std::uint32_t word;
+    std::memcpy(&word, bytes + at, sizeof word);
+    sum = std::rotl(sum, 1) ^ word;
+  }
+  return sum;
+}
+
+/// A copy takes the sum along, so what is damaged stays so.
+template <class T>
+class Guarded {
+ public:
+  explicit Guarded(const T& value) { put(value); }
+
+  void put(const T& value) {
+    value_ = value;
+    seal();
+  }
+  /// To change it in place; seal() ends that.
+  T& open() { return value_; }
+  void seal() { sum_ = sum_of(value_); }
+
+  const T& value() const { return value_; }
+  /// Whether it is bit for bit what was put.
+  bool is_intact() const { return sum_of(value_) == sum_; }
+
+ private:
+  T value_;
+  std::uint32_t sum_;
+};
+
+}  // namespace inkwell::link
