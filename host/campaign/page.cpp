@@ -219,7 +219,8 @@ periods of {:.0f} us.
   std::string text = fmt::format(head, phases, results.size(), all_cases().size(), force_limit_N(results), observed_s,
                                  1e6 * control_period_s, stem, stem);
   text += went_on(results) + at_the_hand(groups, faults) + above_limit(groups, faults) + unnoticed(groups, faults) +
-          not_run(results) + tables(groups, faults);
+          off_but_not_told(groups, faults) + unnoticed_without_force(groups, faults) + not_run(results) +
+          tables(groups, faults);
   recording::write_text(page, text);
   recording::write_text(page.parent_path() / (stem + "-off.svg"), off_plot(results));
   recording::write_text(page.parent_path() / (stem + "-force.svg"), force_plot(results));

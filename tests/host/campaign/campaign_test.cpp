@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -286,7 +287,8 @@ TEST_CASE("a restart is noticed, a lock-up or bridges that went off are not by t
   write_page(all, directory / "campaign.md");
   const std::string text = content_of(directory / "campaign.md");
   CHECK(text.find("| `logic_sag` | locked up; restart (1 of 3) |") != std::string::npos);
-  CHECK(text.find("| `logic_sag` | rest (1 of 3) |") != std::string::npos);  // what locked up with the bridges on
+  CHECK(text.find("| `logic_sag` | rest (1 of 3) | not used |") != std::string::npos);  // locked up with the bridges on
+  CHECK(text.find("| `logic_sag` | rest (1 of 3) | - | The chip stands") != std::string::npos);  // they went off
 }
 
 TEST_CASE("a bridge that went on though it was off stands on the page before all else, and only then") {
@@ -363,23 +365,125 @@ TEST_CASE("what was not noticed is told with what became of it in use, and with 
   CHECK(third.find("| `motor_hot:2` | rest, used on | 3.6 | - | - | - | - |") != std::string::npos);
 }
 
-TEST_CASE("each fault that passes unnoticed with the force on has a reason on the page") {
+TEST_CASE("bridges that went off while nothing was told are listed with what was told later, and only they") {
   const TemporaryDirectory directory;
-  std::vector<Result> results;
-  for (const CaseFault& fault : case_faults())
-    if (fault.fault) results.push_back(seen(fault.name(), "rest", 1));
-  write_page(results, directory / "campaign.md");
-  const std::string text = content_of(directory / "campaign.md");
-  for (const Result& result : results) {
-    CAPTURE(result.fault);
-    const std::string row = "| `" + result.fault + "` | rest | not used | - | ";
-    const auto at = text.find(row);
-    REQUIRE(at != std::string::npos);
-    const std::string reason = text.substr(at + row.size(), text.find(" |\n", at) - at - row.size());
-    CHECK(reason.size() > 20);
-    CHECK(reason.ends_with("."));
-    CHECK(reason.find("motors are off") == std::string::npos);  // not with the force on
+  const auto section_of = [&](const std::vector<Result>& results) {
+    write_page(results, directory / "campaign.md");
+    const std::string text = content_of(directory / "campaign.md");
+    const auto begin = text.find("## Off, but not told");
+    return text.substr(begin, text.find("\n## ", begin) - begin);
+  };
+  Result halted = seen("core_halted", "wall", 1), halted_at_rest = seen("core_halted", "rest", 2),
+         told = seen("core_halted", "rest", 3), off_before = seen("core_halted", "ready", 1),
+         stayed = seen("core_halted", "motion", 1), failed = seen("core_halted", "motion", 2);
+  for (Result* result : {&halted, &halted_at_rest, &told, &failed}) result->off_after_s = 1e-6;
+  halted.fault_on_healing = "encoder_implausible";
+  told.detected_as = "watchdog";
+  told.fault_on_healing = "over_speed";
+  failed.error = "The board did not start.";
+  const std::string row =
+      "| `core_halted` | rest (1 of 2), wall | encoder_implausible | A core that stands tells nothing.";
+  const std::string section = section_of({halted, halted_at_rest, told, off_before, stayed, failed});
+  CHECK(section.find(row) != std::string::npos);
+  CHECK(std::ranges::count(section, '`') == 2);
+  CHECK(section_of({halted_at_rest}).find("| `core_halted` | rest | - | ") != std::string::npos);
+  CHECK(section_of({told, off_before, stayed, failed}).ends_with("but no fault was told: none.\n"));
+}
+
+TEST_CASE("what was not noticed without force is listed as well, in a table of its own") {
+  const TemporaryDirectory directory;
+  const auto section_of = [&](const std::vector<Result>& results) {
+    write_page(results, directory / "campaign.md");
+    const std::string text = content_of(directory / "campaign.md");
+    const auto begin = text.find("## Not noticed without force");
+    return text.substr(begin, text.find("\n## ", begin) - begin);
+  };
+  Result lost = seen("encoder_slip:2=400", "unreferenced", 1), jumped = seen("encoder_slip:2=400", "ready", 1),
+         pressed = seen("encoder_slip:2=400", "wall", 1), sound = seen("none", "ready", 1);
+  jumped.detected_as = "encoder_implausible";
+  const std::string section = section_of({lost, jumped, pressed, sound});
+  CHECK(section.find("| `encoder_slip:2=400` | unreferenced | The hand holds the joint still") != std::string::npos);
+  CHECK(std::ranges::count(section, '`') == 2);
+  CHECK(section_of({jumped, pressed, sound}).ends_with("in which no fault was told: none.\n"));
+}
+
+TEST_CASE("each fault that passes without a word has a reason on the page, in each of its three tables") {
+  const TemporaryDirectory directory;
+  struct Table {
+    const char* situation;
+    std::optional<double> off_after_s;
+    std::string before_reason;
+  };
+  std::string text;
+  for (const Table& table :
+       {Table{"ready", {}, "ready | "}, {"rest", 1e-6, "rest | - | "}, {"rest", {}, "rest | not used | - | "}}) {
+    std::vector<Result> results;
+    for (const CaseFault& fault : case_faults())
+      if (fault.fault) {
+        results.push_back(seen(fault.name(), table.situation, 1));
+        results.back().off_after_s = table.off_after_s;
+      }
+    write_page(results, directory / "campaign.md");
+    text = content_of(directory / "campaign.md");
+    for (const Result& result : results) {
+      CAPTURE(result.fault);
+      CAPTURE(table.before_reason);
+      const std::string row = "| `" + result.fault + "` | " + table.before_reason;
+      const auto at = text.find(row);
+      REQUIRE(at != std::string::npos);
+      const std::string reason = text.substr(at + row.size(), text.find(" |\n", at) - at - row.size());
+      CHECK(reason.size() > 20);
+      CHECK(reason.ends_with("."));
+      // What is so with the bridges off is no reason with the force on.
+      if (result.situation == "rest")
+        CHECK(reason.find("as it has to be while the bridges are off") == std::string::npos);
+    }
   }
   CHECK(text.find("`shunt_frozen:2` | rest | not used | - | Voltage, reading and speed fit") != std::string::npos);
   CHECK(text.find("`program_astray` | rest | not used | - | The code that it came to returned") != std::string::npos);
+}
+
+TEST_CASE("what a fault does without force, or silently, has reasons of its own") {
+  const TemporaryDirectory directory;
+  struct Row {
+    const char *fault, *situation, *reason;
+  };
+  for (const Row& row : {Row{"wire_low:inkwell_switch", "unreferenced", "Before there is a reference it looks like"},
+                         {"wire_open:inkwell_switch", "unreferenced", "A switch that is open"},
+                         {"wire_low:bridge_fault_tim8", "ready", "This pin is seen by the break input of TIM8"},
+                         {"wire_open:bridge_fault_tim8", "ready", "It stands as with sound bridges."},
+                         {"wire_spikes:bridge_fault_tim8", "ready", "This pin is seen"},
+                         {"wire_spikes:inkwell_switch", "ready", "The inputs' filters"},
+                         {"wire_open:bridges[1].leg_a", "ready", "It is low, as a leg has to be"},
+                         {"wire_frozen:bridge_enable", "ready", "It is low, as it has to be"},
+                         {"wire_open:bridge_heartbeat", "ready", "It is low, as it has to be"},
+                         {"wire_frozen:motor_current[1]", "ready", "No current flows"},
+                         {"wire_open:encoders[1].a", "ready", "The hand holds the joint still"},
+                         {"wire_open:usb_supply", "ready", "It is a cable that is pulled"},
+                         {"wire_low:usb_supply", "rest", "It is a cable that is pulled"},
+                         {"wire_high:usb_supply", "ready", "It stands as with the cable in."},
+                         {"wire_open:bridge_enable", "rest", "The bridges miss it"},
+                         {"wire_low:bridge_heartbeat", "rest", "The bridges miss it"},
+                         {"wire_open:supply", "rest", "None is known"},
+                         {"crystal_drift", "ready", "USB is lost with the clock"},
+                         {"crystal_drift", "rest", "USB is lost with the clock"},
+                         {"usb_cut", "ready", "It is a cable that is pulled"},
+                         {"usb_cut", "rest", "It is a cable that is pulled"},
+                         {"host_silent", "ready", "A host is missed while the force is on only."},
+                         {"host_silent", "rest", "Nobody asks"},
+                         {"core_halted", "ready", "A core that stands tells nothing; it goes on"},
+                         {"wires_shorted:encoders[1].a+encoders[1].b", "ready", "The two agree while"},
+                         {"encoder_stuck:2", "ready", "The hand holds the joint still, and no motor"},
+                         {"shunt_gain:2", "ready", "No current flows, and it reads none"},
+                         {"motor_hot:2", "ready", "No current flows; a motor that is 100 K"},
+                         {"leg_open:2A", "ready", "The bridges are off and no current flows"},
+                         {"leg_high:2A", "ready", "The bridge trips when"},
+                         {"bridge_fault", "rest", "None is known: what takes the bridges off is told."}}) {
+    CAPTURE(row.fault);
+    CAPTURE(row.situation);
+    Result result = seen(row.fault, row.situation, 1);
+    if (result.bridges_were_on) result.off_after_s = 1e-6;
+    write_page(std::array{result}, directory / "campaign.md");
+    CHECK(content_of(directory / "campaign.md").find(std::string(" | ") + row.reason) != std::string::npos);
+  }
 }

@@ -1,0 +1,198 @@
+#include "reasons.hpp"
+
+namespace inkwell::campaign {
+
+using protocol::InjectedFault;
+
+namespace {
+
+/// Why a wire may be broken unnoticed, by what it is for.
+std::string_view reason_of_wire(std::string_view wire) {
+  if (wire.starts_with("encoders"))
+    return "A dead wire shows by a count that goes to and fro, or by a motor that turns, or presses otherwise again "
+           "and again, while the joint does not seem to move.";
+  if (wire.starts_with("bridges"))
+    return "While no current is asked of the motor, none is missed, and the legs' levels are looked at while the "
+           "bridges are off only.";
+  if (wire.starts_with("bridge_fault"))
+    return "It stands as with sound bridges. The self-test at the next start tells one that is broken, not one that "
+           "touches the supply.";
+  if (wire == "bridge_enable") return "It stands as with the force on, and so does the chip's own pin.";
+  if (wire == "bridge_heartbeat") return "None is known: without it the bridges are off.";
+  if (wire.starts_with("motor_current"))
+    return "The reading stays near what is asked for, or what it leads to within what a hot motor may differ by.";
+  if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
+  if (wire == "supply") return "It reads a sound supply.";
+  if (wire == "usb_supply") return "It stands as with the cable in.";
+  return "A switch that is open or closed looks like one that is let go of or pressed; the inkwell's is told where "
+         "it is closed elsewhere.";
+}
+
+constexpr std::string_view cable_is_out =
+    "It is a cable that is pulled: no fault, but the force has to be switched on again; the host sees the device go.";
+constexpr std::string_view usb_is_lost =
+    "USB is lost with the clock, as with a cable that is pulled, which is no fault.";
+constexpr std::string_view break_of_tim8 =
+    "This pin is seen by the break input of TIM8 only, while the bridges are on; the self-test's pulses put them on.";
+
+/// The same while the bridges are off.
+std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire) {
+  if (wire.starts_with("encoders"))
+    return "The hand holds the joint still; a dead wire shows by a count that goes to and fro when it turns, once "
+           "there "
+           "is a reference.";
+  if (wire.starts_with("bridges"))
+    return "It is low, as a leg has to be while the bridges are off; the next self-test tells, or the motors' watch "
+           "once "
+           "a current is asked for.";
+  if (wire == "bridge_fault_tim8" && fault == InjectedFault::wire_low) return break_of_tim8;
+  if (wire == "bridge_enable" || wire == "bridge_heartbeat")
+    return "It is low, as it has to be while the bridges are off; the next self-test tells, or the motors' watch once "
+           "a "
+           "current is asked for.";
+  if (wire.starts_with("motor_current"))
+    return "No current flows, and it reads none; the next self-test tells, or the motors' watch once a current is "
+           "asked "
+           "for.";
+  if (wire == "usb_supply" && (fault == InjectedFault::wire_open || fault == InjectedFault::wire_low))
+    return cable_is_out;
+  if (wire == "inkwell_switch" && fault == InjectedFault::wire_low)
+    return "Before there is a reference it looks like a stylus in the inkwell, and nothing else knows where that is: "
+           "the "
+           "board takes the arm to be there.";
+  return reason_of_wire(wire);
+}
+
+}  // namespace
+
+std::string_view reason_with_force(InjectedFault fault, std::string_view of) {
+  switch (fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen: return reason_of_wire(of);
+    case InjectedFault::wires_shorted: return "The two agreed, or nothing compares them.";
+    case InjectedFault::wire_spikes: return "The inputs' filters and the next look at them bear it.";
+    case InjectedFault::encoder_stuck:
+      return "It shows by a motor that turns, or presses otherwise again and again, while the joint does not seem to "
+             "move.";
+    case InjectedFault::encoder_lost_counts:
+    case InjectedFault::encoder_slip:
+      return "No second sensor knows the joint, and a motor's voltage may differ by more; what is noticed is an "
+             "angle far beyond its stop, a jump of 16 counts, and a place that is not the inkwell while its switch is "
+             "closed.";
+    case InjectedFault::shunt_gain:
+      return "Voltage, reading and speed fit within what a hot motor may differ by; the next self-test tells.";
+    case InjectedFault::shunt_offset:
+    case InjectedFault::shunt_frozen: return "Voltage, reading and speed fit within what a hot motor may differ by.";
+    case InjectedFault::shunt_high:
+    case InjectedFault::shunt_low: return "None is known: a reading at its rail is more than any sensor can show.";
+    case InjectedFault::motor_open:
+    case InjectedFault::leg_open: return "While no current is asked of the motor, none is missed.";
+    case InjectedFault::motor_shorted:
+      return "With a small current its voltage stays within what a sound motor may differ by; the next self-test "
+             "tells.";
+    case InjectedFault::motor_hot:
+      return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; nothing "
+             "measures the torque.";
+    case InjectedFault::leg_high:
+    case InjectedFault::leg_low: return "The leg's other switch, at which the bridge trips, was not turned on.";
+    case InjectedFault::leg_slow:
+      return "The current loop makes up for it, and what the leg takes is within what a sound one may.";
+    case InjectedFault::bridge_fault: return "None is known: the timers' break inputs see the wire.";
+    case InjectedFault::supply_sag:
+    case InjectedFault::supply_spike:
+    case InjectedFault::supply_cut: return "The capacitors bear it for that long.";
+    case InjectedFault::supply_ripple:
+      return "It swings by less than a volt, which sound motors may bring about, or has not swung often enough.";
+    case InjectedFault::logic_sag: return "The voltage is above 2.9 V, or it was over before the main loop looked.";
+    case InjectedFault::analog_sag: return "Within what a sound regulator and the reference may be off.";
+    case InjectedFault::crystal_stop: return "None is known: the clock's own guard sees it.";
+    case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
+    case InjectedFault::usb_cut:
+    case InjectedFault::host_silent: return "None is known: a host that is not heard is missed.";
+    case InjectedFault::core_stalled:
+      return "None is known: the heartbeat stops with the core, and the watchdog is not fed.";
+    case InjectedFault::core_halted: return "None is known: the heartbeat and the timers stop with the core.";
+    case InjectedFault::main_loop_stalled: return "None is known: the control interrupt misses it.";
+    case InjectedFault::program_astray:
+      return "The code that it came to returned to the main loop, and had changed nothing that is checked.";
+    case InjectedFault::exception_lost:
+      return "The force does not need it; a host that it keeps from being heard is missed after host_timeout_s, 2 s in "
+             "these cases.";
+    case InjectedFault::exception_late: return "Late by less than what the firmware watches for.";
+    case InjectedFault::adc_stopped: return "None is known: each conversion of a current has to be a new one.";
+    case InjectedFault::dma_stopped: return "None is known: the age of supply and gimbal is watched.";
+    case InjectedFault::ram_bit:
+      return "Of the RAM only the interrupts' code and tables and the settings are checked; the byte was not used, or "
+             "written anew before.";
+    case InjectedFault::flash_bit:
+      return "The bit lay outside the image: in the sectors of the stored parameters, or where nothing lies.";
+  }
+  return "";
+}
+
+std::string_view reason_without_force(InjectedFault fault, std::string_view of) {
+  switch (fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen: return reason_of_idle_wire(fault, of);
+    case InjectedFault::wire_spikes:
+      if (of == "bridge_fault_tim8") return break_of_tim8;
+      return reason_with_force(fault, of);
+    case InjectedFault::wires_shorted:
+      return "The two agree while the bridges are off and the hand holds the joint still.";
+    case InjectedFault::encoder_stuck: return "The hand holds the joint still, and no motor turns it.";
+    case InjectedFault::encoder_lost_counts:
+    case InjectedFault::encoder_slip:
+      return "The hand holds the joint still, so that no count comes; what is lost before there is a reference does "
+             "not matter, because the inkwell gives it anew.";
+    case InjectedFault::shunt_gain:
+    case InjectedFault::shunt_frozen:
+      return "No current flows, and it reads none; the next self-test tells, or the motors' watch once a current is "
+             "asked for.";
+    case InjectedFault::motor_hot:
+      return "No current flows; a motor that is 100 K hotter passes the self-test as well.";
+    case InjectedFault::motor_open:
+    case InjectedFault::motor_shorted:
+    case InjectedFault::leg_open:
+    case InjectedFault::leg_slow: return "The bridges are off and no current flows; the next self-test tells.";
+    case InjectedFault::leg_high:
+    case InjectedFault::leg_low:
+      return "The bridge trips when the leg's other switch joins it: in the next self-test, or once the force is on.";
+    case InjectedFault::crystal_drift: return usb_is_lost;
+    case InjectedFault::usb_cut: return cable_is_out;
+    case InjectedFault::host_silent: return "A host is missed while the force is on only.";
+    case InjectedFault::core_halted:
+      return "A core that stands tells nothing; it goes on as if nothing had been, because nothing moved meanwhile.";
+    default: return reason_with_force(fault, of);
+  }
+}
+
+std::string_view reason_of_silence(InjectedFault fault, std::string_view of) {
+  switch (fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen:
+      if (of == "usb_supply") return cable_is_out;
+      if (of == "bridge_enable" || of == "bridge_heartbeat")
+        return "The bridges miss it, the chip's own pin stands as it should; it is told once a current is asked for "
+               "that "
+               "does not come.";
+      break;
+    case InjectedFault::logic_sag: return "The chip stands as long as its supply is too low, and tells nothing.";
+    case InjectedFault::crystal_drift: return usb_is_lost;
+    case InjectedFault::usb_cut: return cable_is_out;
+    case InjectedFault::host_silent: return "Nobody asks; it is told once the host asks again.";
+    case InjectedFault::core_halted:
+      return "A core that stands tells nothing. When it goes on it tells that the arm has moved by more than it may, "
+             "if "
+             "it has.";
+    default: break;
+  }
+  return "None is known: what takes the bridges off is told.";
+}
+
+}  // namespace inkwell::campaign
