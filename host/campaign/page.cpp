@@ -65,8 +65,16 @@ std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
   return text;
 }
 
-/// At worst, of all cases with the force on. How much more energy than without a fault it was is told of the situations
-/// only in which a sound case was run.
+/// The case without a fault that began alike.
+const Result* sound_of(const Groups& groups, CaseSituation situation, unsigned phase) {
+  if (const auto* results = find(groups, "none", situation))
+    for (const Result& result : *results)
+      if (result.error.empty() && result.phase == phase) return &result;
+  return nullptr;
+}
+
+/// At worst, of all cases with the force on. How much more energy than without a fault it was is told of the instants
+/// only at which a sound case was run.
 std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faults) {
   struct Worst {
     double value = 0.0;
@@ -78,18 +86,18 @@ std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faul
   std::vector<std::string_view> not_compared;
   for (const CaseSituation situation : situations) {
     if (!is_active(situation)) continue;
-    const auto* sound_cases = find(groups, "none", situation);
-    const Summary sound = sound_cases == nullptr ? Summary{} : summarise(*sound_cases);
     for (const CaseFault& fault : faults) {
       const auto* results = find(groups, fault.name(), situation);
-      const Summary s = results == nullptr ? Summary{} : summarise(*results);
-      if (s.cases == 0) continue;
-      force_N.see(s.peak_force_N, fault, situation);
-      if (!fault.fault) continue;
-      if (sound.cases > 0)
-        more_J.see(s.energy_J - sound.energy_J, fault, situation);
-      else if (not_compared.empty() || not_compared.back() != name_of(situation))
-        not_compared.push_back(name_of(situation));
+      if (results == nullptr) continue;
+      for (const Result& r : *results) {
+        if (!r.error.empty()) continue;
+        force_N.see(r.peak_force_N, fault, situation);
+        if (!fault.fault) continue;
+        if (const Result* const sound = sound_of(groups, situation, r.phase))
+          more_J.see(r.energy_J - sound->energy_J, fault, situation);
+        else if (not_compared.empty() || not_compared.back() != name_of(situation))
+          not_compared.push_back(name_of(situation));
+      }
     }
   }
   std::string text = "\n## At the hand\n\n";
@@ -100,13 +108,15 @@ std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faul
   if (more_J.where.empty())
     text += ".";
   else if (more_J.value <= 0)
-    text += ", and got no more energy than without a fault in the same situation.";
+    text += ", and got no more energy than without a fault in the same situation at the same instant.";
   else
-    text += fmt::format(", and got at most {:.1f} mJ more than without a fault in the same situation ({}).",
-                        1e3 * more_J.value, more_J.where);
+    text += fmt::format(
+        ", and got at most {:.1f} mJ more than without a fault in the same situation at the same instant ({}).",
+        1e3 * more_J.value, more_J.where);
   if (!not_compared.empty())
     text += fmt::format(
-        " How much more energy it got than without a fault cannot be told of {}: the case `none` was not run there.",
+        " How much more energy it got than without a fault cannot be told of {}: the case `none` was not run at each "
+        "of its instants.",
         fmt::join(not_compared, ", "));
   return text + "\n";
 }

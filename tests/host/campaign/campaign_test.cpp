@@ -203,20 +203,45 @@ TEST_CASE("a page of some of the cases tells what can be told, and says what can
   const std::string alone = page_of({off, pressed, swung});
   CHECK(alone.find("felt at most 2.98 N in that time (`bridge_fault` in wall). How much more energy") !=
         std::string::npos);
-  CHECK(alone.find("cannot be told of wall, motion: the case `none` was not run there.") != std::string::npos);
+  CHECK(alone.find("cannot be told of wall, motion: the case `none` was not run at each of its instants.") !=
+        std::string::npos);
   CHECK(alone.find("no case)") == std::string::npos);
 
   Result sound = seen("none", "wall", 1), failed = seen("none", "motion", 1);
   failed.error = "The board did not start.";
   const std::string partly = page_of({sound, failed, pressed, swung});
   CHECK(partly.find("felt at most 2.98 N in that time (`bridge_fault` in wall), and got at most 2.0 mJ more than "
-                    "without a fault in "
-                    "the same situation (`bridge_fault` in wall). How") != std::string::npos);
+                    "without a fault in the same situation at the same instant (`bridge_fault` in wall). How") !=
+        std::string::npos);
   CHECK(partly.find("cannot be told of motion:") != std::string::npos);
   sound.energy_J = 0.003;
-  CHECK(page_of({sound, pressed}).find("and got no more energy than without a fault in the same situation.\n") !=
+  CHECK(page_of({sound, pressed})
+            .find("and got no more energy than without a fault in the same situation at the same instant.\n") !=
         std::string::npos);
   CHECK(page_of({sound}).find("felt at most 0.00 N in that time (`none` in wall).\n") != std::string::npos);
+}
+
+TEST_CASE("energy is compared with that of the same instant, so that none hides behind another instant's") {
+  const TemporaryDirectory directory;
+  Result slow = seen("none", "motion", 1), fast = seen("none", "motion", 2), hit = seen("bridge_fault", "motion", 1),
+         other = seen("bridge_fault", "motion", 2), third = seen("bridge_fault", "motion", 3);
+  slow.energy_J = 0.010;
+  fast.energy_J = 0.100;
+  hit.energy_J = 0.060;
+  other.energy_J = 0.090;
+  third.energy_J = 0.200;
+  const auto text_of_page = [&](const std::vector<Result>& results) {
+    write_page(results, directory / "campaign.md");
+    return content_of(directory / "campaign.md");
+  };
+  const std::string text = text_of_page({slow, fast, hit, other});
+  CHECK(text.find("at most 50.0 mJ more than without a fault in the same situation at the same instant") !=
+        std::string::npos);
+  CHECK(text.find("cannot be told") == std::string::npos);
+  // An instant without a sound case is compared with no other one.
+  const std::string partly = text_of_page({slow, fast, hit, other, third});
+  CHECK(partly.find("at most 50.0 mJ more") != std::string::npos);
+  CHECK(partly.find("cannot be told of motion: ") != std::string::npos);
 }
 
 TEST_CASE("the force limit is that of the cases that could be run") {
