@@ -182,6 +182,7 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
   options.real_time = false;
   options.paused = true;
   options.seconds = longest_case_s;
+  options.brown_out_level = 3;  // as on a board that was flashed
   // A place that the seed chooses is another one each time; all else begins alike for each fault.
   const auto& fault = the_case.fault.fault;
   const bool chooses = fault && protocol::info(*fault).place == protocol::InjectionPlace::address;

@@ -71,6 +71,8 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   if (!options.flash.empty()) arguments.insert(arguments.end(), {"--flash", options.flash.string()});
   if (options.host_clock_ppm != 0.0)
     arguments.insert(arguments.end(), {"--host-clock-ppm", std::to_string(options.host_clock_ppm)});
+  if (options.brown_out_level != 0)
+    arguments.insert(arguments.end(), {"--brown-out", std::to_string(options.brown_out_level)});
   if (options.real_time) arguments.push_back("--real-time");
   if (options.paused) arguments.push_back("--paused");
   if (options.seconds) arguments.insert(arguments.end(), {"--seconds", std::to_string(*options.seconds)});

@@ -126,6 +126,7 @@ Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoar
   board.real_time = false;
   board.paused = true;
   board.seconds = board_lives_s;
+  board.brown_out_level = 3;  // as on a board that was flashed
   board.seed = choices.seed + number;
   return Run(number, choices, board, tell, is_stopped).all();
 }

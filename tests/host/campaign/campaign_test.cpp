@@ -3,6 +3,7 @@
 #include <campaign/handling.hpp>
 #include <campaign/page.hpp>
 #include <campaign/result.hpp>
+#include <campaign/run.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -71,6 +72,15 @@ TEST_CASE("the list has every fault of the table in every situation, three times
   // SysTick, and positions 18 and 67 of RM0090's vector table.
   for (const char* exception : {"15", "34", "83"})
     CHECK(names.contains("exception_lost:" + std::string(exception) + " rest 1"));
+}
+
+TEST_CASE("a case runs on a board with the brown-out level of one that was flashed") {
+  const TemporaryDirectory directory;
+  const auto program = directory / "board";
+  std::ofstream(program) << "#!/bin/sh\necho \"$@\" > '" << directory.path() << "/arguments'\nexit 1\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  CHECK_FALSE(run_case(all_cases()[0], {.program = program, .elf = program}).error.empty());
+  CHECK(content_of(directory / "arguments").find(" --brown-out 3 ") != std::string::npos);
 }
 
 TEST_CASE("a result comes back from its file as it was, and a damaged file is named") {
@@ -157,10 +167,11 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   write_page(std::array{quick, missed, off, failed}, page);
   const std::string text = content_of(page);
   CHECK(text.find("simulation") != std::string::npos);
+  CHECK(text.find("whose brown-out level\nis 3, as `inkwell flash` sets it;") != std::string::npos);
   CHECK(text.find("4 of " + std::to_string(all_cases().size()) + " cases were run") != std::string::npos);
-  CHECK(text.find("at 3 random\ninstants. 4 of ") != std::string::npos);
+  CHECK(text.find("at 3 random instants. 4 of ") != std::string::npos);
   CHECK(text.find("are of the 0.3 s after") != std::string::npos);
-  CHECK(text.find("in control\nperiods of 50 us.") != std::string::npos);
+  CHECK(text.find("in control periods of 50 us.") != std::string::npos);
   CHECK(text.find("free space, 60 mm in 0.1 s, with all joints.") != std::string::npos);
   CHECK(text.find("| `bridge_fault` | bridge_fault | 1.5 | 2.49 | 1.3 | 4.4 | clear_fault |") != std::string::npos);
   CHECK(text.find("| `motor_hot:2` | - | stayed on | 9.50 | 0.0 | 0.0 | none needed; position 12 mm off |") !=

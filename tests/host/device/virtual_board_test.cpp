@@ -109,13 +109,14 @@ TEST_CASE("a virtual board gets the options that are seldom given, and no others
   const Script script(std::string("echo \"$@\" > arguments\n") + run_until_told);
   auto options = script.options();
   options.host_clock_ppm = -500.0;
+  options.brown_out_level = 3;
   options.real_time = false;
   options.strict = true;
   options.profile = "longest.txt";
   const device::VirtualBoard board(options);
-  CHECK(script.file("arguments") ==
-        "--elf " + options.elf.string() +
-            " --mode fast --pricing likely --seed 1 --host-clock-ppm -500.000000 --strict --profile longest.txt");
+  CHECK(script.file("arguments") == "--elf " + options.elf.string() +
+                                        " --mode fast --pricing likely --seed 1 --host-clock-ppm -500.000000 "
+                                        "--brown-out 3 --strict --profile longest.txt");
 }
 
 TEST_CASE("of all that a virtual board said before it failed the end is told") {

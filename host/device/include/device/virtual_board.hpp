@@ -32,10 +32,11 @@ struct VirtualBoardOptions {
   std::filesystem::path profile;  ///< file for the longest interrupt, written at the board's end; empty: none
   SimulationMode mode = SimulationMode::fast;
   CyclePricing pricing = CyclePricing::likely;
-  std::uint64_t seed = 1;       ///< of its noise and of its serial number
-  double host_clock_ppm = 0.0;  ///< how much faster than board time the clock of its USB host is
-  bool real_time = true;        ///< paces board time to the wall clock
-  bool paused = false;          ///< starts with board time standing still
+  std::uint64_t seed = 1;        ///< of its noise and of its serial number
+  double host_clock_ppm = 0.0;   ///< how much faster than board time the clock of its USB host is
+  unsigned brown_out_level = 0;  ///< in its option bytes: 0 is off, as in a new chip; `inkwell flash` sets 3
+  bool real_time = true;         ///< paces board time to the wall clock
+  bool paused = false;           ///< starts with board time standing still
   /// Of board time, then it ends. A processor that locks up does not stop the time then, as its watchdog may bite.
   std::optional<double> seconds = {};
   bool from_boot_loader = false;  ///< the chip's boot loader starts the firmware, not a reset
