@@ -56,7 +56,8 @@ std::vector<std::string> places(InjectedFault fault) {
 }  // namespace
 
 std::string_view name_of(CaseSituation situation) {
-  constexpr std::string_view names[] = {"unreferenced", "ready", "rest", "wall", "motion"};
+  constexpr std::string_view names[] = {"unreferenced", "ready",   "rest",    "wall",   "motion",
+                                        "ramping",      "limited", "landing", "testing"};
   return names[static_cast<std::size_t>(situation)];
 }
 
@@ -70,6 +71,15 @@ std::string meaning_of(CaseSituation situation) {
     case CaseSituation::motion:
       return fmt::format("The force is on; the hand swings it through free space, {:.0f} mm in {} s, with all joints.",
                          2e3 * swing_m, swing_s);
+    case CaseSituation::ramping:
+      return "The hand presses it into that wall while the force rises, as slowly as it can.";
+    case CaseSituation::limited:
+      return "The force is on; the hand presses it so far into that wall that the force limit holds back.";
+    case CaseSituation::landing:
+      return "The hand presses it into that wall while the force falls softly, as slowly as it can; it is not used on.";
+    case CaseSituation::testing:
+      return "The hand holds it in free space; the fault comes while the self-test makes the first motor's pulses. "
+             "Without a fault the bridges go off as well, when the pulses are over.";
   }
   return "";
 }
@@ -105,7 +115,8 @@ std::vector<Case> all_cases() {
   unsigned number = 0;
   for (const CaseFault& fault : case_faults())
     for (const CaseSituation situation : situations)
-      for (unsigned phase = 1; phase <= phases; ++phase) cases.push_back({++number, fault, situation, phase});
+      for (unsigned phase = 1; phase <= phases_of(situation); ++phase)
+        cases.push_back({++number, fault, situation, phase});
   return cases;
 }
 

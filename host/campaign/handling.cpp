@@ -92,7 +92,7 @@ bool regains_force(BoardRun& board) {
     board.control().dock(true);
     if (!board.wait_for(State::ready, 2.0)) return false;
   }
-  if (board.is(State::ready)) board.command(Command::enable_force);
+  if (board.is(State::ready) || board.is(State::landing)) board.command(Command::enable_force);
   if (!board.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5)) return false;
   board.run(0.1);
   return board.force_is_on() && bridges_drive(board.control().truth());

@@ -216,11 +216,14 @@ void write_page(std::span<const Result> results, const std::filesystem::path& pa
 
 Made by `inkwell campaign`; do not edit. The firmware that is flashed runs on the virtual board, whose brown-out level
 is 3, as `inkwell flash` sets it; each fault is put in while the arm is unreferenced, ready, at rest, pressed into a
-stiff wall and in fast motion, at {} random instants. {} of {} cases were run. A row tells the worst of its instants.
-The force limit is {:.1f} N; the row `none` is what the hand feels without a fault. Peak force, energy given to the hand
-and travel (in motion: how far the probe lags behind the hand) are of the {} s after the fault came, recovery and
-position of the end, after the use that "Not noticed" tells of. Of three motors that are wired alike the second stands
-for all. "bridges off" is when no bridge that is on had a leg at the supply any more, in control periods of {:.0f} us.
+stiff wall and in fast motion, at {} random instants, and at one while the force rises, is held back by its limit and
+falls, pressed into that wall, and while the board tests itself. The states starting, fault and update are not tried: no
+leg is at the supply in them, the first lasts a tenth of a second, and in the others no further fault is told.
+{} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row `none` is what the
+hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how far the probe lags behind
+the hand) are of the {} s after the fault came, recovery and position of the end, after the use that "Not noticed" tells
+of. Of three motors that are wired alike the second stands for all. "bridges off" is when no bridge that is on had a leg
+at the supply any more, in control periods of {:.0f} us.
 
 ![until the bridges were off]({}-off.svg)
 ![peak force]({}-force.svg)

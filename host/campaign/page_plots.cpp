@@ -11,7 +11,10 @@
 namespace inkwell::campaign {
 namespace {
 
-bool was_driven(const Result& result) { return result.error.empty() && result.bridges_were_on; }
+/// With the force on, which the self-test's pulses are not.
+bool was_driven(const Result& result) {
+  return result.error.empty() && result.bridges_were_on && result.situation != name_of(CaseSituation::testing);
+}
 
 /// What the hand feels without a fault, at most; by situation.
 std::map<std::string, double> sound_forces_N(std::span<const Result> results) {

@@ -24,8 +24,8 @@ std::string_view reason_of_wire(std::string_view wire) {
   if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
   if (wire == "supply") return "It reads a sound supply.";
   if (wire == "usb_supply") return "It stands as with the cable in.";
-  return "A switch that is open or closed looks like one that is let go of or pressed; the inkwell's is told where "
-         "it is closed elsewhere.";
+  return "A switch that is open or closed looks like one that is let go of or pressed; the inkwell's is told where it "
+         "is closed elsewhere.";
 }
 
 constexpr std::string_view cable_is_out =
@@ -39,27 +39,25 @@ constexpr std::string_view break_of_tim8 =
 std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire) {
   if (wire.starts_with("encoders"))
     return "The hand holds the joint still; a dead wire shows by a count that goes to and fro when it turns, once "
-           "there "
-           "is a reference.";
+           "there is a reference.";
   if (wire.starts_with("bridges"))
     return "It is low, as a leg has to be while the bridges are off; the next self-test tells, or the motors' watch "
-           "once "
-           "a current is asked for.";
+           "once a current is asked for.";
   if (wire == "bridge_fault_tim8" && fault == InjectedFault::wire_low) return break_of_tim8;
-  if (wire == "bridge_enable" || wire == "bridge_heartbeat")
+  if (wire == "bridge_enable")
+    return "The chip's own pin is as it has to be. If the bridges see it low, the next self-test tells; if high, the "
+           "heartbeat that ends takes them off all the same.";
+  if (wire == "bridge_heartbeat")
     return "It is low, as it has to be while the bridges are off; the next self-test tells, or the motors' watch once "
-           "a "
-           "current is asked for.";
+           "a current is asked for.";
   if (wire.starts_with("motor_current"))
     return "No current flows, and it reads none; the next self-test tells, or the motors' watch once a current is "
-           "asked "
-           "for.";
+           "asked for.";
   if (wire == "usb_supply" && (fault == InjectedFault::wire_open || fault == InjectedFault::wire_low))
     return cable_is_out;
   if (wire == "inkwell_switch" && fault == InjectedFault::wire_low)
     return "Before there is a reference it looks like a stylus in the inkwell, and nothing else knows where that is: "
-           "the "
-           "board takes the arm to be there.";
+           "the board takes the arm to be there. During a self-test the reference is given up without a fault.";
   return reason_of_wire(wire);
 }
 
@@ -78,8 +76,8 @@ std::string_view reason_with_force(InjectedFault fault, std::string_view of) {
              "move.";
     case InjectedFault::encoder_lost_counts:
     case InjectedFault::encoder_slip:
-      return "No second sensor knows the joint, and a motor's voltage may differ by more; what is noticed is an "
-             "angle far beyond its stop, a jump of 16 counts, and a place that is not the inkwell while its switch is "
+      return "No second sensor knows the joint, and a motor's voltage may differ by more; what is noticed is an angle "
+             "far beyond its stop, a jump of 16 counts, and a place that is not the inkwell while its switch is "
              "closed.";
     case InjectedFault::shunt_gain:
       return "Voltage, reading and speed fit within what a hot motor may differ by; the next self-test tells.";
@@ -109,8 +107,8 @@ std::string_view reason_with_force(InjectedFault fault, std::string_view of) {
     case InjectedFault::analog_sag: return "Within what a sound regulator and the reference may be off.";
     case InjectedFault::crystal_stop: return "None is known: the clock's own guard sees it.";
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
-    case InjectedFault::usb_cut:
-    case InjectedFault::host_silent: return "None is known: a host that is not heard is missed.";
+    case InjectedFault::usb_cut: return "None is known: a host that is not heard is missed.";
+    case InjectedFault::host_silent: return "A force that falls by itself needs no host.";
     case InjectedFault::core_stalled:
       return "None is known: the heartbeat stops with the core, and the watchdog is not fed.";
     case InjectedFault::core_halted: return "None is known: the heartbeat and the timers stop with the core.";
@@ -145,15 +143,16 @@ std::string_view reason_without_force(InjectedFault fault, std::string_view of) 
       return "The two agree while the bridges are off and the hand holds the joint still.";
     case InjectedFault::encoder_stuck: return "The hand holds the joint still, and no motor turns it.";
     case InjectedFault::encoder_lost_counts:
+      return "The hand holds the joint still, so that no count comes that could be lost.";
     case InjectedFault::encoder_slip:
-      return "The hand holds the joint still, so that no count comes; what is lost before there is a reference does "
-             "not matter, because the inkwell gives it anew.";
+      return "Before there is a reference it does not matter; during a self-test the reference is given up without a "
+             "fault. Either way the inkwell gives a new one.";
     case InjectedFault::shunt_gain:
     case InjectedFault::shunt_frozen:
       return "No current flows, and it reads none; the next self-test tells, or the motors' watch once a current is "
              "asked for.";
     case InjectedFault::motor_hot:
-      return "No current flows; a motor that is 100 K hotter passes the self-test as well.";
+      return "A motor that is 100 K hotter passes the self-test, and nothing else drives it without force.";
     case InjectedFault::motor_open:
     case InjectedFault::motor_shorted:
     case InjectedFault::leg_open:
@@ -179,8 +178,7 @@ std::string_view reason_of_silence(InjectedFault fault, std::string_view of) {
       if (of == "usb_supply") return cable_is_out;
       if (of == "bridge_enable" || of == "bridge_heartbeat")
         return "The bridges miss it, the chip's own pin stands as it should; it is told once a current is asked for "
-               "that "
-               "does not come.";
+               "that does not come.";
       break;
     case InjectedFault::logic_sag: return "The chip stands as long as its supply is too low, and tells nothing.";
     case InjectedFault::crystal_drift: return usb_is_lost;
@@ -188,8 +186,7 @@ std::string_view reason_of_silence(InjectedFault fault, std::string_view of) {
     case InjectedFault::host_silent: return "Nobody asks; it is told once the host asks again.";
     case InjectedFault::core_halted:
       return "A core that stands tells nothing. When it goes on it tells that the arm has moved by more than it may, "
-             "if "
-             "it has.";
+             "if it has.";
     default: break;
   }
   return "None is known: what takes the bridges off is told.";

@@ -23,7 +23,7 @@ using protocol::State;
 
 constexpr double push_part_of_limit = 0.75;  // of the force limit
 constexpr double longest_case_s = 60;        // of board time
-constexpr double longest_phase_s = 0.1;
+constexpr double more_than_limit = 1.2;      // presses as far as so much of it would
 
 struct NotReached : device::Error {
   using Error::Error;
@@ -42,6 +42,46 @@ bool is_unheard(const CaseFault& fault) {
   constexpr unsigned of_usb = virtual_board::exception_of(virtual_board::otg_fs_position);
   return is_about_the_host(fault) ||
          (fault.fault == InjectedFault::exception_lost && fault.of == std::to_string(of_usb));
+}
+
+/// As stiff, or as slow, as it can be.
+void set_to_maximum(BoardRun& board, ParameterSet& parameters, Parameter parameter) {
+  const float maximum = protocol::info(parameter).maximum;
+  board.set({{parameter, maximum}});
+  parameters[parameter] = maximum;
+}
+
+/// Until its first pulse has begun.
+void begin_self_test(BoardRun& board) {
+  constexpr double look_s = 0.0005, longest_s = 0.05;
+  board.command(Command::self_test);
+  bool has_begun = false;
+  for (double waited_s = 0; !has_begun && waited_s < longest_s; waited_s += look_s) {
+    board.run_exactly(look_s);
+    has_begun = bridges_drive(board.control().truth());
+  }
+  expect(has_begun, "the self-test made no pulse.");
+}
+
+/// The arm is at the middle of the box, and the force is off.
+void switch_force_on(BoardRun& board, ParameterSet& parameters, CaseSituation situation) {
+  if (is_pressed(situation)) set_to_maximum(board, parameters, Parameter::wall_stiffness_N_per_m);
+  if (situation == CaseSituation::ramping) set_to_maximum(board, parameters, Parameter::force_ramp_s);
+  if (situation == CaseSituation::landing) set_to_maximum(board, parameters, Parameter::soft_landing_s);
+  board.command(Command::enable_force);
+  expect(board.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5),
+         "the force did not go on.");
+  if (situation != CaseSituation::ramping) board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
+}
+
+/// Where the situation has the name of a state, the board has to be in it.
+bool is_there(const BoardRun& board, CaseSituation situation) {
+  switch (situation) {
+    case CaseSituation::ramping: return board.is(State::ramping);
+    case CaseSituation::limited: return board.is(State::limited);
+    case CaseSituation::landing: return board.is(State::landing);
+    default: return board.force_is_on();
+  }
 }
 
 /// Gives the parameters that the board has then.
@@ -66,19 +106,20 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   take_by_hand(board, middle_of_box_m(parameters), 0.4);
   board.run(0.6);
   if (situation == CaseSituation::ready) return parameters;
-  if (situation == CaseSituation::wall) {
-    const float stiffest = protocol::info(Parameter::wall_stiffness_N_per_m).maximum;
-    board.set({{Parameter::wall_stiffness_N_per_m, stiffest}});
-    parameters[Parameter::wall_stiffness_N_per_m] = stiffest;
+  if (situation == CaseSituation::testing) {
+    begin_self_test(board);
+    return parameters;
   }
-  board.command(Command::enable_force);
-  expect(board.wait_for([](const auto& pose) { return protocol::force_is_on(pose.state); }, 0.5),
-         "the force did not go on.");
-  board.run(static_cast<double>(parameters[Parameter::force_ramp_s]) + 0.05);
+  switch_force_on(board, parameters, situation);
   const Vector3 middle_m = middle_of_box_m(parameters);
-  if (situation == CaseSituation::wall) {
-    board.control().hand_path({{0.0, middle_m}, {0.3, beyond_forward_wall_m(parameters, push_part_of_limit)}});
+  if (is_pressed(situation)) {
+    const double part_of_limit = situation == CaseSituation::limited ? more_than_limit : push_part_of_limit;
+    board.control().hand_path({{0.0, middle_m}, {0.3, beyond_forward_wall_m(parameters, part_of_limit)}});
     board.run(0.45);
+  }
+  if (situation == CaseSituation::landing) {
+    board.command(Command::disable_force);
+    board.run(0.05);
   }
   if (situation == CaseSituation::motion) {
     std::vector<device::HandWaypoint> path = swings(middle_m, 12);
@@ -86,12 +127,14 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
     board.control().hand_path(path);
     board.run(0.3);
   }
-  expect(board.force_is_on(), "the force went off before the fault came.");
+  expect(is_there(board, situation), "the force is not what the situation asks for.");
   return parameters;
 }
 
 /// The instant of a phase: the same for each fault, so that the control tells what would have been without.
 double phase_s(const Case& the_case) {
+  // A motor's pulses take 4 ms: those of the second, which has the faults, are still to come.
+  const double longest_phase_s = the_case.situation == CaseSituation::testing ? 0.004 : 0.1;
   std::mt19937 random(100 * static_cast<unsigned>(the_case.situation) + the_case.phase);
   return longest_phase_s * static_cast<double>(random() >> 8) / static_cast<double>(1u << 24);
 }
@@ -198,8 +241,8 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
     board.run_exactly(until_fault_s - slices_s);
     observe(board, the_case, result);
     const bool could_tell = notice(board, the_case, result);
-    if (is_active(the_case.situation) && is_unnoticed(result) && could_tell && !is_unheard(the_case.fault))
-      use_on(board, parameters, result);
+    const bool lasts = is_active(the_case.situation) && the_case.situation != CaseSituation::landing;
+    if (lasts && is_unnoticed(result) && could_tell && !is_unheard(the_case.fault)) use_on(board, parameters, result);
     recover(board, the_case, could_tell, result);
   } catch (const device::Error& error) {
     result.error = error.what();

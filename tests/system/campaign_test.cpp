@@ -2,8 +2,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <tuple>
 
+#include <campaign/board_run.hpp>
 #include <campaign/cases.hpp>
+#include <campaign/handling.hpp>
 #include <campaign/result.hpp>
 #include <campaign/run.hpp>
 #include <temporary_directory.hpp>
@@ -43,6 +46,46 @@ TEST_CASE("without a fault the hand feels the wall and nothing happens") {
   CHECK(result.travel_m < 0.001);
   CHECK(result.recovery == "none needed");
   CHECK(result.position_error_m.value() < 0.0005);
+}
+
+TEST_CASE("the force that rises, falls or is held back is less than, or as much as, the force limit") {
+  for (const auto& [name, least, most] :
+       {std::tuple{"none ramping 1", 0.1, 0.7}, {"none limited 1", 0.9, 1.05}, {"none landing 1", 0.1, 0.76}}) {
+    const Result result = result_of(name);
+    CHECK(result.bridges_were_on);
+    CHECK_FALSE(result.off_after_s);
+    CHECK(result.detected_as.empty());
+    CHECK(result.peak_force_N > least * result.force_limit_N);
+    CHECK(result.peak_force_N < most * result.force_limit_N);
+    CHECK(result.recovery == "none needed");
+    CHECK(result.peak_force_in_use_N.has_value() == (result.situation != "landing"));
+  }
+}
+
+TEST_CASE("the self-test's pulses end by themselves, and the second motor's find what came during the first's") {
+  const Result sound = result_of("none testing 1");
+  CHECK(sound.bridges_were_on);
+  CHECK(sound.off_after_s.value() > 0.0095);  // four pulses of a millisecond for each motor, less the first's four
+  CHECK(sound.off_after_s.value() < 0.014);
+  CHECK(sound.detected_as.empty());
+  CHECK(sound.recovery == "none needed");
+  const Result open = result_of("motor_open:2 testing 1");
+  CHECK(open.detected_as == "self_test_failed");
+  CHECK(open.recovery == "clear_fault");
+}
+
+TEST_CASE("a force that is falling is switched on again before it counts as regained") {
+  campaign::BoardRun board({.real_time = false, .paused = true});
+  REQUIRE(board.connect(1.0));
+  board.set({{protocol::Parameter::host_timeout_s, 2.0f}, {protocol::Parameter::soft_landing_s, 1.0f}});
+  REQUIRE(board.wait_for(protocol::State::ready, 1.0));
+  REQUIRE(campaign::regains_force(board));
+  board.run(0.3);
+  board.command(protocol::Command::disable_force);
+  REQUIRE(board.wait_for(protocol::State::landing, 0.1));
+  CHECK(campaign::regains_force(board));
+  CHECK(board.force_is_on());
+  CHECK_FALSE(board.is(protocol::State::landing));
 }
 
 TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound arm bears it") {

@@ -19,6 +19,7 @@
 #include <temporary_directory.hpp>
 
 #include <device/error.hpp>
+#include <protocol/supervision.hpp>
 
 using namespace inkwell;
 using namespace inkwell::campaign;
@@ -47,21 +48,21 @@ Result seen(const std::string& fault, const std::string& situation, unsigned pha
 
 }  // namespace
 
-TEST_CASE("the list has every fault of the table in every situation, three times, and is numbered through") {
+TEST_CASE("the list has every fault of the table in every situation, three times or once, and is numbered through") {
   const auto cases = all_cases();
   std::set<std::string> names;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     CHECK(cases[i].number == i + 1);
     CHECK(names.insert(cases[i].name()).second);
   }
-  CHECK(cases.size() == case_faults().size() * 15);
+  CHECK(cases.size() == case_faults().size() * (5 * 3 + 4));
   CHECK_FALSE(cases[0].fault.fault);
   for (const auto& row : protocol::injection_table) {
     CAPTURE(row.name);
     for (const CaseSituation situation : situations)
       CHECK(std::ranges::count_if(cases, [&](const Case& c) {
               return c.fault.fault && protocol::info(*c.fault.fault).name == row.name && c.situation == situation;
-            }) >= 3);
+            }) >= phases_of(situation));
   }
   // Wires by what the board's facts call them, those of one motor; none that a host or a probe hangs on.
   CHECK(names.contains("wire_open:encoders[1].a wall 2"));
@@ -69,9 +70,29 @@ TEST_CASE("the list has every fault of the table in every situation, three times
   CHECK_FALSE(names.contains("wire_open:encoders[0].a wall 1"));
   CHECK_FALSE(names.contains("wire_open:usb_plus wall 1"));
   CHECK(names.contains("supply_spike+0.005 motion 3"));
+  CHECK(names.contains("none wall 3"));
+  for (const char* once : {"ramping", "limited", "landing", "testing"}) {
+    CHECK(names.contains("none " + std::string(once) + " 1"));
+    CHECK_FALSE(names.contains("none " + std::string(once) + " 2"));
+  }
   // SysTick, and positions 18 and 67 of RM0090's vector table.
   for (const char* exception : {"15", "34", "83"})
     CHECK(names.contains("exception_lost:" + std::string(exception) + " rest 1"));
+}
+
+TEST_CASE("every state of the board in which more than its first fault can be told is tried") {
+  const auto is_tried = [](const protocol::StateInfo& state) {
+    // While the force is on it is tried at rest, in the wall and in motion.
+    return state.name == "active" ||
+           std::ranges::any_of(situations, [&](CaseSituation situation) { return name_of(situation) == state.name; });
+  };
+  for (std::size_t i = 0; i < protocol::state_count; ++i) {
+    const auto state = static_cast<protocol::State>(i);
+    CAPTURE(protocol::info(state).name);
+    const bool is_watched = std::ranges::any_of(
+        protocol::watch_table, [&](const protocol::Watch& row) { return row.watched_in.contains(state); });
+    CHECK(is_tried(protocol::info(state)) == (is_watched && state != protocol::State::starting));
+  }
 }
 
 TEST_CASE("a case runs on a board with the brown-out level of one that was flashed") {
@@ -169,9 +190,10 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(text.find("simulation") != std::string::npos);
   CHECK(text.find("whose brown-out level\nis 3, as `inkwell flash` sets it;") != std::string::npos);
   CHECK(text.find("4 of " + std::to_string(all_cases().size()) + " cases were run") != std::string::npos);
-  CHECK(text.find("at 3 random instants. 4 of ") != std::string::npos);
+  CHECK(text.find("and in the others no further fault is told.\n4 of ") != std::string::npos);
+  CHECK(text.find("fast motion, at 3 random instants, and at one while the force rises") != std::string::npos);
   CHECK(text.find("are of the 0.3 s after") != std::string::npos);
-  CHECK(text.find("in control periods of 50 us.") != std::string::npos);
+  CHECK(text.find("at the supply any more, in control periods of 50 us.") != std::string::npos);
   CHECK(text.find("free space, 60 mm in 0.1 s, with all joints.") != std::string::npos);
   CHECK(text.find("| `bridge_fault` | bridge_fault | 1.5 | 2.49 | 1.3 | 4.4 | clear_fault |") != std::string::npos);
   CHECK(text.find("| `motor_hot:2` | - | stayed on | 9.50 | 0.0 | 0.0 | none needed; position 12 mm off |") !=
@@ -426,6 +448,35 @@ TEST_CASE("bridges that went off while nothing was told are listed with what was
   CHECK(section_of({told, off_before, stayed, failed}).ends_with("but no fault was told: none.\n"));
 }
 
+TEST_CASE("situations with one instant stand beside those with three, and the self-test's pulses are no force") {
+  const TemporaryDirectory directory;
+  std::vector<Result> results;
+  for (const char* situation : {"wall", "ramping", "limited", "landing", "testing"}) {
+    results.push_back(seen("none", situation, 1));
+    results.push_back(seen("motor_hot:2", situation, 1));
+  }
+  for (Result& result : results) {
+    const bool is_test = result.situation == "testing";
+    result.bridges_were_on = true;
+    result.peak_force_N = is_test ? 9.0 : 2.0;
+    result.energy_J = is_test ? 0.5 : 0.001;
+    if (is_test) result.off_after_s = 0.01;
+  }
+  write_page(results, directory / "campaign.md");
+  const std::string text = content_of(directory / "campaign.md");
+  for (const char* heading : {"wall", "ramping", "limited", "landing", "testing"})
+    CHECK(text.find("\n## " + std::string(heading) + "\n\n") != std::string::npos);
+  CHECK(text.find("felt at most 2.00 N in that time") != std::string::npos);
+  CHECK(text.find("a twentieth of it: none.") != std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | wall, ramping, limited, landing | not used |") != std::string::npos);
+  CHECK(text.find("bridges went off, but no fault was told: none.") != std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | testing | A motor that is 100 K") != std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | - | 200 | 9.00 | 500.0 |") != std::string::npos);
+  const std::string force = content_of(directory / "campaign-force.svg");
+  CHECK(force.find("wall 2.0 N, ramping 2.0 N, limited 2.0 N, landing 2.0 N<") != std::string::npos);
+  CHECK(content_of(directory / "campaign-off.svg").find("not noticed: 0 of 4 are wires") != std::string::npos);
+}
+
 TEST_CASE("what was not noticed without force is listed as well, in a table of its own") {
   const TemporaryDirectory directory;
   const auto section_of = [&](const std::vector<Result>& results) {
@@ -438,7 +489,8 @@ TEST_CASE("what was not noticed without force is listed as well, in a table of i
          pressed = seen("encoder_slip:2=400", "wall", 1), sound = seen("none", "ready", 1);
   jumped.detected_as = "encoder_implausible";
   const std::string section = section_of({lost, jumped, pressed, sound});
-  CHECK(section.find("| `encoder_slip:2=400` | unreferenced | The hand holds the joint still") != std::string::npos);
+  CHECK(section.find("| `encoder_slip:2=400` | unreferenced | Before there is a reference it does") !=
+        std::string::npos);
   CHECK(std::ranges::count(section, '`') == 2);
   CHECK(section_of({jumped, pressed, sound}).ends_with("in which no fault was told: none.\n"));
 }
@@ -491,7 +543,7 @@ TEST_CASE("what a fault does without force, or silently, has reasons of its own"
                          {"wire_spikes:bridge_fault_tim8", "ready", "This pin is seen"},
                          {"wire_spikes:inkwell_switch", "ready", "The inputs' filters"},
                          {"wire_open:bridges[1].leg_a", "ready", "It is low, as a leg has to be"},
-                         {"wire_frozen:bridge_enable", "ready", "It is low, as it has to be"},
+                         {"wire_frozen:bridge_enable", "ready", "The chip's own pin is as it has to be."},
                          {"wire_open:bridge_heartbeat", "ready", "It is low, as it has to be"},
                          {"wire_frozen:motor_current[1]", "ready", "No current flows"},
                          {"wire_open:encoders[1].a", "ready", "The hand holds the joint still"},
@@ -509,16 +561,18 @@ TEST_CASE("what a fault does without force, or silently, has reasons of its own"
                          {"host_silent", "rest", "Nobody asks"},
                          {"core_halted", "ready", "A core that stands tells nothing; it goes on"},
                          {"wires_shorted:encoders[1].a+encoders[1].b", "ready", "The two agree while"},
+                         {"host_silent", "landing", "A force that falls by itself"},
+                         {"encoder_lost_counts:2=0.1", "ready", "The hand holds the joint still, so that no count"},
                          {"encoder_stuck:2", "ready", "The hand holds the joint still, and no motor"},
                          {"shunt_gain:2", "ready", "No current flows, and it reads none"},
-                         {"motor_hot:2", "ready", "No current flows; a motor that is 100 K"},
+                         {"motor_hot:2", "ready", "A motor that is 100 K hotter passes the self-test, and"},
                          {"leg_open:2A", "ready", "The bridges are off and no current flows"},
                          {"leg_high:2A", "ready", "The bridge trips when"},
                          {"bridge_fault", "rest", "None is known: what takes the bridges off is told."}}) {
     CAPTURE(row.fault);
     CAPTURE(row.situation);
     Result result = seen(row.fault, row.situation, 1);
-    if (result.bridges_were_on) result.off_after_s = 1e-6;
+    if (row.situation == std::string("rest")) result.off_after_s = 1e-6;
     write_page(std::array{result}, directory / "campaign.md");
     CHECK(content_of(directory / "campaign.md").find(std::string(" | ") + row.reason) != std::string::npos);
   }

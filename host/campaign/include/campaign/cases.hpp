@@ -1,4 +1,4 @@
-// The fault campaign as a list of jobs: every fault, in every situation of the arm, at three random instants.
+// The fault campaign as a list of jobs: every fault, in every situation of the arm, at random instants.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,32 @@ enum class CaseSituation : std::uint8_t {
   rest,          ///< the same with the force on, in free space
   wall,          ///< pressed into a wall of the highest stiffness
   motion,        ///< the force on, swung fast through free space
+  ramping,       ///< pressed into that wall while the force rises
+  limited,       ///< pressed into it so far that the force limit holds back
+  landing,       ///< pressed into it while the force falls
+  testing,       ///< ready, while the self-test makes its pulses
 };
-inline constexpr CaseSituation situations[] = {CaseSituation::unreferenced, CaseSituation::ready, CaseSituation::rest,
-                                               CaseSituation::wall, CaseSituation::motion};
+inline constexpr CaseSituation situations[] = {
+    CaseSituation::unreferenced, CaseSituation::ready,   CaseSituation::rest,
+    CaseSituation::wall,         CaseSituation::motion,  CaseSituation::ramping,
+    CaseSituation::limited,      CaseSituation::landing, CaseSituation::testing};
 std::string_view name_of(CaseSituation situation);
 /// A sentence with its figures.
 std::string meaning_of(CaseSituation situation);
-constexpr bool is_active(CaseSituation situation) { return situation >= CaseSituation::rest; }
+/// The hand feels a force. The self-test's pulses are none.
+constexpr bool is_active(CaseSituation situation) {
+  return situation >= CaseSituation::rest && situation != CaseSituation::testing;
+}
+constexpr bool is_pressed(CaseSituation situation) {
+  return is_active(situation) && situation != CaseSituation::rest && situation != CaseSituation::motion;
+}
 
 /// The swing of `motion`: to either side, along all axes; from one side to the other.
 inline constexpr double swing_m = 0.03, swing_s = 0.10;
 
+/// How many instants; where little else goes on, one has to do.
 inline constexpr unsigned phases = 3;
+constexpr unsigned phases_of(CaseSituation situation) { return situation <= CaseSituation::motion ? phases : 1; }
 
 /// A fault at a place; none is the control, in which nothing is put in.
 struct CaseFault {
@@ -44,7 +58,7 @@ struct Case {
   unsigned number;  ///< from 1 on; the same as long as the table of faults is
   CaseFault fault;
   CaseSituation situation;
-  unsigned phase;  ///< 1 to phases
+  unsigned phase;  ///< 1 to phases_of(situation)
 
   std::string name() const;
 };
