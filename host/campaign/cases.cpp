@@ -29,6 +29,14 @@ constexpr unsigned exceptions[] = {virtual_board::exception_systick,
                                    virtual_board::exception_of(virtual_board::converters_position),
                                    virtual_board::exception_of(virtual_board::otg_fs_position)};
 
+/// Tried besides that of the table, or that of case_faults().
+constexpr struct {
+  InjectedFault fault;
+  double amount;
+} more_amounts[] = {{InjectedFault::shunt_gain, 2},
+                    {InjectedFault::logic_sag, 2.86},  // below 2.9 V, above the brown-out
+                    {InjectedFault::analog_sag, 3.5}};
+
 std::vector<std::string> places(InjectedFault fault) {
   std::vector<std::string> places;
   switch (protocol::info(fault).place) {
@@ -104,7 +112,12 @@ std::vector<CaseFault> case_faults() {
       if (fault == InjectedFault::supply_spike) made.for_s = 0.005;
       if (fault == InjectedFault::encoder_lost_counts) made.amount = 0.1;
       if (fault == InjectedFault::encoder_slip) made.amount = 400;
-      faults.push_back(std::move(made));
+      faults.push_back(made);
+      for (const auto& more : more_amounts)
+        if (more.fault == fault) {
+          made.amount = more.amount;
+          faults.push_back(made);
+        }
     }
   }
   return faults;

@@ -75,6 +75,10 @@ TEST_CASE("the list has every fault of the table in every situation, three times
     CHECK(names.contains("none " + std::string(once) + " 1"));
     CHECK_FALSE(names.contains("none " + std::string(once) + " 2"));
   }
+  // As the table has it, and more or less.
+  for (const char* amount :
+       {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag", "analog_sag=3.5"})
+    CHECK(names.contains(std::string(amount) + " rest 1"));
   // SysTick, and positions 18 and 67 of RM0090's vector table.
   for (const char* exception : {"15", "34", "83"})
     CHECK(names.contains("exception_lost:" + std::string(exception) + " rest 1"));
