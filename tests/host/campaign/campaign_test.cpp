@@ -279,6 +279,8 @@ TEST_CASE("energy is compared with that of the same instant, so that none hides 
   const std::string partly = text_of_page({slow, fast, hit, other, third});
   CHECK(partly.find("at most 50.0 mJ more") != std::string::npos);
   CHECK(partly.find("cannot be told of motion: ") != std::string::npos);
+  third.error = "The board did not start.";
+  CHECK(text_of_page({slow, fast, hit, other, third}).find("cannot be told") == std::string::npos);
 }
 
 TEST_CASE("the force limit is that of the cases that could be run") {
