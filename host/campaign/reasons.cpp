@@ -19,6 +19,7 @@ std::string_view reason_of_wire(std::string_view wire) {
            "touches the supply.";
   if (wire == "bridge_enable") return "It stands as with the force on, and so does the chip's own pin.";
   if (wire == "bridge_heartbeat") return "None is known: without it the bridges are off.";
+  if (wire == "bridge_hold") return "It stands as with the bridges on.";
   if (wire.starts_with("motor_current"))
     return "The reading stays near what is asked for, or what it leads to within what a hot motor may differ by.";
   if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
@@ -45,11 +46,11 @@ std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire)
            "once a current is asked for.";
   if (wire == "bridge_fault_tim8" && fault == InjectedFault::wire_low) return break_of_tim8;
   if (wire == "bridge_enable")
-    return "The chip's own pin is as it has to be. If the bridges see it low, the next self-test tells; if high, the "
+    return "The chip's own pin is as it has to be. If the bridges see it low, the first heartbeat tells; if high, the "
            "heartbeat that ends takes them off all the same.";
   if (wire == "bridge_heartbeat")
-    return "It is low, as it has to be while the bridges are off; the next self-test tells, or the motors' watch once "
-           "a current is asked for.";
+    return "It is low, as it has to be while the bridges are off; the first heartbeat tells.";
+  if (wire == "bridge_hold") return "It is low, as it has to be while the bridges are off; the first heartbeat tells.";
   if (wire.starts_with("motor_current"))
     return "No current flows, and it reads none; the next self-test tells, or the motors' watch once a current is "
            "asked for.";
@@ -164,7 +165,8 @@ std::string_view reason_without_force(InjectedFault fault, std::string_view of) 
     case InjectedFault::usb_cut: return cable_is_out;
     case InjectedFault::host_silent: return "A host is missed while the force is on only.";
     case InjectedFault::core_halted:
-      return "A core that stands tells nothing; it goes on as if nothing had been, because nothing moved meanwhile.";
+      return "A core that stands tells nothing; it goes on as if nothing had been, because the bridges were off and "
+             "nothing moved meanwhile.";
     default: return reason_with_force(fault, of);
   }
 }
@@ -176,17 +178,13 @@ std::string_view reason_of_silence(InjectedFault fault, std::string_view of) {
     case InjectedFault::wire_high:
     case InjectedFault::wire_frozen:
       if (of == "usb_supply") return cable_is_out;
-      if (of == "bridge_enable" || of == "bridge_heartbeat")
-        return "The bridges miss it, the chip's own pin stands as it should; it is told once a current is asked for "
-               "that does not come.";
       break;
     case InjectedFault::logic_sag: return "The chip stands as long as its supply is too low, and tells nothing.";
     case InjectedFault::crystal_drift: return usb_is_lost;
     case InjectedFault::usb_cut: return cable_is_out;
     case InjectedFault::host_silent: return "Nobody asks; it is told once the host asks again.";
     case InjectedFault::core_halted:
-      return "A core that stands tells nothing. When it goes on it tells that the arm has moved by more than it may, "
-             "if it has.";
+      return "A core that stands tells nothing; when it goes on it tells that the bridges were let go.";
     default: break;
   }
   return "None is known: what takes the bridges off is told.";
