@@ -80,6 +80,7 @@ int main() {
   analog_inputs.start();
   const protocol::Fault fault = fault_of_start(reset_cause, crash, started_late);
   if (fault != protocol::Fault::none) controller.raise(fault);
+  take_motor_heat(reset_cause.power_on());
   host_link.black_box.start(fault, crash.value_or(protocol::CrashFacts{}));
   BackgroundWatch background_watch;
   host_link.self_test.note(protocol::SelfTestItem::flash, background_watch.start());
@@ -109,6 +110,7 @@ int main() {
     host_link.black_box.follow();
     background_watch.look();
     follow_self_test(background_watch);
+    keep_motor_heat();
     prove_that_it_runs();
     show_state();
     drivers::sleep_unless([periods] { return completed_periods.load() != periods; });

@@ -1,5 +1,7 @@
 #include "main_loop.hpp"
 
+#include <link/motor_heat_keeper.hpp>
+
 #include "parts.hpp"
 
 namespace inkwell::application {
@@ -26,7 +28,23 @@ bool floats(protocol::SelfTestItem wire) {
   return number % 2 == 0 ? encoders.wire_a_floats(number / 2) : encoders.wire_b_floats(number / 2);
 }
 
+[[gnu::section(".noinit")]] link::MotorHeatKeeper motor_heat_keeper;
+
 }  // namespace
+
+void take_motor_heat(bool power_has_come) {
+  if (const auto warmth = motor_heat_keeper.start(power_has_come)) controller.start_warm(*warmth);
+}
+
+// As often as it changes: in every round it would take a third of the main loop's sleep. If the control interrupt
+// comes in between, a motor's housing may be one update newer than its heat, by the little that it warms in one.
+void keep_motor_heat() {
+  static std::uint32_t kept_at_periods = 0;
+  const std::uint32_t periods = completed_periods.load();
+  if (periods - kept_at_periods < control::MotorHeat::periods_per_update) return;
+  kept_at_periods = periods;
+  motor_heat_keeper.leave(controller.warmth());
+}
 
 void follow_self_test(const BackgroundWatch& background_watch) {
   link::SelfTest& test = host_link.self_test;

@@ -12,6 +12,13 @@ void prove_that_it_runs();
 /// Goes on with the self-test, if there is one.
 void follow_self_test(const BackgroundWatch& background_watch);
 
+/// Before the control interrupt runs: the motors are as warm as the run before left them, unless the power has just
+/// come.
+void take_motor_heat(bool power_has_come);
+
+/// Keeps how warm they are for the next start.
+void keep_motor_heat();
+
 /// By the status LED.
 void show_state();
 

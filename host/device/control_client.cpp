@@ -94,6 +94,7 @@ void ControlClient::stand_by() { call({{"command", "stand_by"}}); }
 void ControlClient::run(double for_s) { call({{"command", "run"}, {"for_s", for_s}}); }
 void ControlClient::resume() { call({{"command", "resume"}}); }
 void ControlClient::reset() { call({{"command", "reset"}}); }
+void ControlClient::cut_power() { call({{"command", "cut_power"}}); }
 void ControlClient::quit() { call({{"command", "quit"}}); }
 void ControlClient::usb(bool connected) { call({{"command", "usb"}, {"connected", connected}}); }
 void ControlClient::buttons(bool first, bool second) { call({{"command", "buttons"}, {"pressed", {first, second}}}); }

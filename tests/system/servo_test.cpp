@@ -22,6 +22,7 @@
 
 #include "board_rig.hpp"
 #include "firmware_image.hpp"
+#include "hazards.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -191,6 +192,47 @@ TEST_CASE("a motor that holds against a wall warms as its true current says") {
   }
   MESSAGE("simulation: heat of the hottest motor ", hottest, " of what its continuous current leads to");
   CHECK(hottest > 0.1);
+}
+
+TEST_CASE("a motor that was warm before a restart is as warm after it, but not after the power was cut") {
+  BoardRig rig;
+  rig.make_active();
+  rig.take_to(free_point_m);
+  rig.set({{Parameter::box_maximum_z_m, -0.04f},
+           {Parameter::winding_time_constant_s, 0.25f},
+           {Parameter::winding_heat_part, 0.5f},
+           {Parameter::housing_time_constant_s, 1.0f}});
+  rig.run(1.0);
+  const auto hottest = [&] { return std::ranges::max(rig.device->information().report.motor_heat); };
+  const auto is_kept = [&](float before) {
+    // With the parameters that a start has the heat goes in many seconds.
+    const float after = hottest();
+    MESSAGE("simulation: heat ", before, " before the restart, ", after, " after it");
+    CHECK(after > 0.9f * before);
+    CHECK(after < 1.02f * before);
+  };
+  const float warm = hottest();
+  REQUIRE(warm > 0.1f);
+  SUBCASE("by the reset pin, twice at once") {
+    rig.control.reset();
+    rig.control.run(0.02);
+    rig.control.reset();
+    reconnect(rig);
+    is_kept(warm);
+  }
+  SUBCASE("by the watchdog") {
+    rig.control.inject({"main_loop_stalled", "", 10.0});
+    rig.control.run(0.06);
+    reconnect(rig);
+    CHECK(watchdog_bites(rig.control) == 1);
+    is_kept(warm);
+  }
+  rig.control.cut_power();
+  reconnect(rig);
+  CHECK(hottest() < 1e-3f);  // of the self-test
+  rig.control.reset();
+  reconnect(rig);
+  CHECK(hottest() < 1e-3f);  // of the self-test
 }
 
 TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way together, and nothing trips") {

@@ -408,6 +408,41 @@ TEST_CASE("a motor that gets hot although nothing is asked of it is a fault unti
   CHECK(controller.state() == State::ready);
 }
 
+TEST_CASE("a motor that was hot before a restart is as hot after it, and goes on to cool") {
+  protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
+  set[protocol::Parameter::winding_time_constant_s] = 0.2f;
+  set[protocol::Parameter::housing_time_constant_s] = 2.0f;
+  const Settings settings = control::prepare(set);
+  const Samples samples = tests::samples_at_rest();
+  Controller controller{tests::board_limits};
+  CHECK(controller.warmth().heat == control::Triple{});
+  controller.start_warm({{1.0f, 0.5f, 0.25f}, {0.75f, 0.5f, 0.125f}, 0});
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.motor_heat() == control::Triple{1.0f, 0.5f, 0.25f});
+  CHECK(controller.warmth().heat == control::Triple{1.0f, 0.5f, 0.25f});
+  CHECK(controller.warmth().housing == control::Triple{0.75f, 0.5f, 0.125f});
+  CHECK(controller.warmth().too_hot == 0);
+  tests::run(controller, samples, settings, 4'000);  // 0.2 s
+  CHECK(controller.fault() == Fault::none);
+  const float winding = std::exp(-1.0f), housing = std::exp(-0.1f);
+  CHECK(controller.motor_heat()[0] == doctest::Approx(0.25f * winding + 0.75f * housing).epsilon(0.01));
+  CHECK(controller.motor_heat()[1] == doctest::Approx(0.5f * housing).epsilon(0.01));
+  CHECK(controller.motor_heat()[2] == doctest::Approx(0.125f * (winding + housing)).epsilon(0.01));
+
+  // What the run before found too hot has to cool as far as it would have had to.
+  Controller hot{tests::board_limits};
+  hot.start_warm({{1.1f, 0.0f, 0.0f}, {1.1f, 0.0f, 0.0f}, 1});
+  CHECK(hot.warmth().too_hot == 1);
+  tests::run(hot, samples, settings, 2'200);
+  CHECK(hot.motor_heat()[0] < 1.1f);
+  CHECK(hot.fault() == Fault::motor_hot);
+  CHECK(hot.warmth().too_hot == 1);
+  tests::run(hot, samples, settings, 10'000);
+  hot.carry_out(tests::command(Command::clear_fault));
+  tests::run(hot, samples, settings, 1);
+  CHECK(hot.fault() == Fault::none);
+}
+
 TEST_CASE("a reading near a rail of its sensor is an over-current whatever the offset is") {
   const Settings settings = settings_near_wall();
   for (const float offset_A : {-0.2f, 0.2f}) {

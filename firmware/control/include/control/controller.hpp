@@ -24,10 +24,17 @@ namespace inkwell::control {
 
 /// Everything between the samples and the duties. Single-threaded: all that changes it is called in the control
 /// interrupt, in the order settings_changed / carry_out / host_alive / drive / replace_shapes / leave_for_update /
-/// raise, self-test, step, finish; before that interrupt runs, the constructor and raise.
+/// raise, self-test, step, finish; before that interrupt runs, the constructor, raise and start_warm.
 class Controller {
  public:
   explicit Controller(const BoardLimits& board) : board_(board) {}
+
+  /// Before the control interrupt runs: the motors are as warm as that. Without it they are cold.
+  void start_warm(const Warmth& warmth) {
+    heat_.heat = warmth.heat;
+    heat_.housing = warmth.housing;
+    heat_.too_hot = warmth.too_hot != 0;
+  }
 
   /// One control period. `clock.lap()` returns the processor cycles since the lap before as std::uint32_t;
   /// its first lap in a period counts from the interrupt's entry.
@@ -106,7 +113,9 @@ class Controller {
   std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
   const Triple& motor_heat() const { return heat_.heat; }       ///< 1 is what the continuous current leads to
-  bool force_is_on() const { return force_is_on_; }             ///< whether the state says so
+  /// What start_warm() of the next run is to get.
+  Warmth warmth() const { return {heat_.heat, heat_.housing, heat_.too_hot ? 1u : 0u}; }
+  bool force_is_on() const { return force_is_on_; }  ///< whether the state says so
 
  private:
   enum Stage : std::uint8_t { sample, pose, contact, torque, current, report, stage_count };

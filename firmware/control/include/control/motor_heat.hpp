@@ -11,7 +11,8 @@ namespace inkwell::control {
 
 /// Temperature rise of each winding over the room, in parts of the rise that its continuous current leads to: that of
 /// the winding over its housing, quick, and that of the housing over the room, slow. Both warm with the square of the
-/// current and cool with a time constant of their own. A board that restarts takes its motors for cold.
+/// current and cool with a time constant of their own. A board whose power comes takes its motors for cold; over any
+/// other restart their Warmth is kept, and does not cool meanwhile.
 struct MotorHeat {
   /// Squares are gathered over so many readings: in a single one the heat grows by less than a float resolves.
   static constexpr std::uint32_t readings_per_update = 128;
@@ -23,6 +24,12 @@ struct MotorHeat {
   Triple housing{};  ///< part of the heat
   Triple square_sum_A2{};
   std::uint32_t readings = 0;  ///< in each sum
+};
+
+/// What of MotorHeat a restart must not forget. Without initial values, for memory that start-up does not clear.
+struct Warmth {
+  Triple heat, housing;
+  std::uint32_t too_hot;  ///< 0 or 1
 };
 
 struct HeatScale {

@@ -117,7 +117,8 @@ class ControlClient {
   /// device's link has everything that the device sent.
   void run(double for_s);
   void resume();
-  void reset();
+  void reset();      ///< by its pin
+  void cut_power();  ///< it goes and comes at once; the memory is not cleared
   void quit();
 
   void usb(bool connected);
