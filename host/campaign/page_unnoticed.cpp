@@ -143,15 +143,27 @@ std::string off_but_not_told(const Groups& groups, const std::vector<CaseFault>&
 }
 
 std::string unnoticed_without_force(const Groups& groups, const std::vector<CaseFault>& faults) {
-  std::string rows;
+  // There are many, and few reasons.
+  struct Row {
+    std::string_view reason;
+    std::string where;
+    std::vector<std::string> faults;
+  };
+  std::vector<Row> rows;
   for (const CaseFault& fault : faults) {
     const std::string where = fault.fault ? situations_with(groups, fault, was_off_untold) : "";
-    if (!where.empty())
-      rows += fmt::format("| `{}` | {} | {} |\n", fault.name(), where, reason_without_force(*fault.fault, fault.of));
+    if (where.empty()) continue;
+    const std::string_view reason = reason_without_force(*fault.fault, fault.of);
+    auto row = std::ranges::find_if(rows, [&](const Row& r) { return r.reason == reason && r.where == where; });
+    if (row == rows.end()) row = rows.insert(row, {reason, where, {}});
+    row->faults.push_back(fmt::format("`{}`", fault.name()));
   }
-  const std::string_view heading = "\n## Not noticed without force\n\nCases without force in which no fault was told";
-  if (rows.empty()) return fmt::format("{}: none.\n", heading);
-  return fmt::format("{}.\n\n| fault | situations | reason |\n| --- | --- | --- |\n{}", heading, rows);
+  std::string text = "\n## Not noticed without force\n\nCases without force in which no fault was told";
+  if (rows.empty()) return text + ": none.\n";
+  text += ".\n\n| faults | situations | reason |\n| --- | --- | --- |\n";
+  for (const Row& row : rows)
+    text += fmt::format("| {} | {} | {} |\n", fmt::join(row.faults, ", "), row.where, row.reason);
+  return text;
 }
 
 }  // namespace inkwell::campaign

@@ -498,6 +498,14 @@ TEST_CASE("what was not noticed without force is listed as well, in a table of i
   CHECK(section.find("| `encoder_slip:2=400` | unreferenced | Before there is a reference it does") !=
         std::string::npos);
   CHECK(std::ranges::count(section, '`') == 2);
+  // Those of one reason and the same situations share a row.
+  const std::string shared = section_of({seen("wire_open:button_1", "ready", 1), seen("wire_open:supply", "ready", 1),
+                                         seen("wire_open:button_2", "ready", 1), seen("wire_low:button_2", "rest", 1),
+                                         seen("wire_high:button_2", "testing", 1)});
+  CHECK(shared.find("| `wire_open:button_1`, `wire_open:button_2` | ready | A switch that is open") !=
+        std::string::npos);
+  CHECK(shared.find("| `wire_open:supply` | ready | ") != std::string::npos);
+  CHECK(shared.find("| `wire_high:button_2` | testing | A switch that is open") != std::string::npos);
   CHECK(section_of({jumped, pressed, sound}).ends_with("in which no fault was told: none.\n"));
 }
 
@@ -522,10 +530,14 @@ TEST_CASE("each fault that passes without a word has a reason on the page, in ea
     for (const Result& result : results) {
       CAPTURE(result.fault);
       CAPTURE(table.before_reason);
-      const std::string row = "| `" + result.fault + "` | " + table.before_reason;
-      const auto at = text.find(row);
-      REQUIRE(at != std::string::npos);
-      const std::string reason = text.substr(at + row.size(), text.find(" |\n", at) - at - row.size());
+      // In a row of its own, or with others of the same reason.
+      const auto fault_at = text.find("`" + result.fault + "`");
+      REQUIRE(fault_at != std::string::npos);
+      const auto row_end = text.find(" |\n", fault_at);
+      const auto at = text.find("` | " + table.before_reason, fault_at);
+      REQUIRE(at < row_end);
+      const auto reason_at = at + 4 + table.before_reason.size();
+      const std::string reason = text.substr(reason_at, row_end - reason_at);
       CHECK(reason.size() > 20);
       CHECK(reason.ends_with("."));
       // What is so with the bridges off is no reason with the force on.
