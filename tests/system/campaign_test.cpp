@@ -134,7 +134,7 @@ TEST_CASE("a motor that does not do as its voltage says is let go of before the 
                              {"shunt_frozen:2 wall 3", 4000},
                              {"motor_open:2 wall 1", 30},
                              {"leg_open:2A wall 1", 30},
-                             {"motor_shorted:2 wall 1", 1200},
+                             {"motor_shorted:2 wall 1", 2000},
                              {"wire_low:bridges[1].leg_a motion 1", 20}}) {
     CAPTURE(known.name);
     const Result result = result_of(known.name);

@@ -15,7 +15,7 @@ using namespace inkwell::tests;
 TEST_CASE("a profile holds the whole control interrupt, and tools/flame-graph draws it") {
   const TemporaryDirectory directory;
   const std::string elf = build_directory() + "/../board/inkwell.elf", profile = directory.file("profile");
-  const auto board = run_program("virtual-board", {"--elf", elf, "--seconds", "0.05", "--profile", profile});
+  const auto board = run_program("virtual-board", {"--elf", elf, "--seconds", "0.1", "--profile", profile});
   CAPTURE(board.err);
   REQUIRE(board.exit_code == 0);
   unsigned long cycles = 0, count = 0, instructions = 0;
