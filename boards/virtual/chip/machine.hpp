@@ -84,7 +84,7 @@ struct Machine {
   bool traps_zero_division = false;  ///< CCR.DIV_0_TRP
   bool clock_is_lost = false;        ///< the crystal that the core runs from has stopped, and nobody noticed
   Ticks core_stalls_until = 0;       ///< the core makes nothing of its clock until then
-  Ticks thread_stalls_until = 0;     ///< likewise, but in exceptions and while it holds them back
+  Ticks thread_stalls_until = 0;     ///< nor of thread mode, unless exceptions are held back
   bool sleep_counts_cycles = false;  ///< DBGMCU_CR.DBG_SLEEP keeps HCLK on in sleep
   /// A reset that is due at the next chance, by cause.
   bool reset_requested = false;

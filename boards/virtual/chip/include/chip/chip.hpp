@@ -141,7 +141,7 @@ class Chip {
   /// The core does nothing for this long, as when the bus keeps it waiting; all else goes on.
   void stall(Ticks duration);
   /// The program comes no further for this long, as in a loop that does not end; exceptions are handled all the same.
-  /// It goes on where it holds them back, and stands once it does not.
+  /// Where the program holds exceptions back it still goes on, to where it lets them come.
   void stall_thread(Ticks duration);
   /// A debug probe halts the core for this long; what firmware asked for in DBGMCU_APBx_FZ stands still too. Unlike the
   /// halts of debug_port(), in which all of board time stands.
