@@ -1,5 +1,7 @@
 #include <usb/device.hpp>
 
+#include <algorithm>
+
 #include "controller_report.hpp"
 #include "descriptors.hpp"
 
@@ -14,14 +16,25 @@ constexpr int events_per_poll = 8;
 
 constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3;  // places in endpoints_
 
-/// A pose goes out if its control interrupt began less than this before the next start of frame: the pose after it
-/// comes a period later, is seen when its interrupt is over, which takes less than half of one, and then the main loop,
-/// which also fills the scope's FIFO, must load the report.
-constexpr float pose_loading_s = 12e-6f;
-constexpr float pose_lead_s = 1.5f * protocol::servo_period_s + pose_loading_s;
+/// To take a report back from its endpoint and to load a newer one. Were there a control interrupt in it, or the next
+/// start of frame, the host might ask while there is neither.
+constexpr float pose_replacing_s = 8e-6f;
+
+/// A pose goes out if its control interrupt began less than this before the next start of frame, beside a period and
+/// the longest interrupt: the pose after it comes a period later, is seen when its interrupt is over, and then the main
+/// loop, which also fills the scope's FIFO, must come to it.
+constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
+
+/// So much before that one, another goes out which it replaces: should the main loop be held up just then, the host
+/// still finds a pose. What holds it up longest is a set of all parameters, for 0.3 ms, control interrupts and all.
+constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
 /// A host that left so many reports in a row did not listen, so it lost none: 0.1 s.
 constexpr std::uint32_t replaced_unheard = protocol::pose_rate_Hz / 10;
+
+constexpr std::int32_t cycles_in(float time_s, const Identity& identity) {
+  return static_cast<std::int32_t>(time_s * static_cast<float>(identity.processor_clock_Hz));
+}
 
 }  // namespace
 
@@ -29,7 +42,10 @@ Device::Device(Port& port, link::Link& link, const Identity& identity)
     : port_(port),
       link_(link),
       identity_(identity),
-      pose_lead_cycles_(static_cast<std::uint32_t>(pose_lead_s * static_cast<float>(identity.processor_clock_Hz))),
+      pose_loading_cycles_(cycles_in(pose_loading_s, identity)),
+      spare_pose_lead_cycles_(cycles_in(spare_pose_lead_s, identity)),
+      pose_replacing_cycles_(cycles_in(pose_replacing_s, identity)),
+      period_cycles_(cycles_in(protocol::servo_period_s, identity)),
       control_(port, *this),
       endpoints_{{{identity::hid_in_endpoint, EndpointType::interrupt, identity::hid_interface},
                   {identity::hid_out_endpoint, EndpointType::interrupt, identity::hid_interface},
@@ -142,24 +158,39 @@ void Device::restart(Endpoint& endpoint) {
 }
 
 // The host may ask right after each start of frame. So the report is made ready once in a frame, near its end, from the
-// first control period of which it is sure that a newer one would come too late.
+// first control period of which it is sure that a newer one would come too late; and, for fear of that, a spare before.
 void Device::send_pose() {
   const std::optional<BusFrame> frame = port_.frame();
   Endpoint& endpoint = endpoints_[hid_in];
-  if (!frame || endpoint.halted || pose_sequence_ == frame->count + 1) return;
+  if (!frame || endpoint.halted) return;
+  const std::uint32_t sequence = frame->count + 1;
+  const bool replaces_spare = pose_sequence_ == sequence;
+  if (replaces_spare && !spare_waits_) return;
   const std::optional<std::uint32_t> sampled_cycles = link_.poses.newest_cycles();
   if (!sampled_cycles) return;
-  const std::uint32_t to_frame_cycles = frame->begin_cycles + frame->length_cycles - *sampled_cycles;
-  if (static_cast<std::int32_t>(to_frame_cycles - pose_lead_cycles_) > 0) return;
+  const auto age_cycles = static_cast<std::int32_t>(frame->now_cycles - *sampled_cycles);
+  const auto to_frame_cycles =
+      static_cast<std::int32_t>(frame->begin_cycles + frame->length_cycles - frame->now_cycles);
+  const std::int32_t beyond_lead_cycles =
+      age_cycles + to_frame_cycles -
+      (period_cycles_ + static_cast<std::int32_t>(link_.poses.longest_cycles()) + pose_loading_cycles_);
+  if (beyond_lead_cycles > spare_pose_lead_cycles_) return;
+  const bool is_spare = beyond_lead_cycles > 0;
+  const std::int32_t undisturbed_cycles = std::min(period_cycles_ - age_cycles, to_frame_cycles);
+  if (replaces_spare && (is_spare || undisturbed_cycles < pose_replacing_cycles_)) return;
   if (endpoint.busy) {
-    port_.cancel(endpoint.address);
     endpoint.busy = false;
-    ++poses_replaced_;
+    if (!port_.cancel(endpoint.address))
+      note_pose_taken();
+    else if (!replaces_spare)
+      ++poses_replaced_;
+    if (replaces_spare && !spare_waits_) return;
   }
-  if (!link_.poses.take(pose_)) return;
-  pose_.sequence = pose_sequence_ = frame->count + 1;
+  if (!(is_spare ? link_.poses.read(pose_) : link_.poses.take(pose_))) return;
+  pose_.sequence = pose_sequence_ = sequence;
+  spare_waits_ = is_spare;
   send(endpoint, pose_);
-  offer_controller_report();
+  if (!is_spare) offer_controller_report();
 }
 
 // Every millisecond anew from the one before the host's turn on, so it is as fresh as the pose.
@@ -175,6 +206,7 @@ void Device::offer_controller_report() {
 void Device::note_pose_taken() {
   if (poses_replaced_ < replaced_unheard) poses_dropped_ += poses_replaced_;
   poses_replaced_ = 0;
+  spare_waits_ = false;
 }
 
 void Device::forget(Endpoint& endpoint) {

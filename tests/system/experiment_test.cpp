@@ -130,6 +130,7 @@ TEST_CASE("the experiment of the paper's section 4.3 runs end to end") {
     CHECK(missing == 0);
     CHECK(summary.at("samples") == recording.size());
     CHECK(summary.at("samples_lost") == 0);
+    CHECK(summary.at("pose_reports_lost") == 0);
   }
 
   SUBCASE("it is a table that any program reads: comments, a line of names, and a row for each period") {

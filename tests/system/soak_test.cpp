@@ -48,6 +48,7 @@ TEST_CASE("a short soak with every kind of phase finds nothing") {
   CHECK(sitting.at("faults_told").at("host_silent").get<int>() >= 1);
   CHECK(sitting.at("faults_told").at("over_speed").get<int>() >= 1);
   CHECK(sitting.at("restarts").get<int>() >= 1);
+  CHECK(sitting.at("lost").at("poses") == 0);
 }
 
 TEST_CASE("the boards of a soak share the seconds that were asked for, and do the same each time") {

@@ -64,7 +64,8 @@ std::optional<usb::BusFrame> FrameClock::newest() {
   return usb::BusFrame{.number = number_,
                        .count = count_,
                        .begin_cycles = cycles - age * cycles_per_count,
-                       .length_cycles = length_ * cycles_per_count};
+                       .length_cycles = length_ * cycles_per_count,
+                       .now_cycles = cycles};
 }
 
 }  // namespace inkwell::drivers

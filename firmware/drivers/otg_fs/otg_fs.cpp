@@ -285,7 +285,7 @@ void OtgFs::begin_receive(unsigned endpoint) {
   Control::modify(endpoint, Control::EPENA(1), Control::CNAK(1));
 }
 
-void OtgFs::cancel(std::uint8_t endpoint_address) { stop_in(number_of(endpoint_address)); }
+bool OtgFs::cancel(std::uint8_t endpoint_address) { return stop_in(number_of(endpoint_address)); }
 
 // NAK stands on every OUT endpoint. The words end transfers, and their packets are lost with them.
 void OtgFs::empty_receive_fifo() {
@@ -293,20 +293,22 @@ void OtgFs::empty_receive_fifo() {
     read_packet({}, Core::GRXSTSP::BCNT::read());
 }
 
-void OtgFs::stop_in(unsigned endpoint) {
+bool OtgFs::stop_in(unsigned endpoint) {
   using Control = Device::DIEPCTL;
   using Flags = Device::DIEPINT;
-  if (!in_[endpoint].running) return;
+  if (!in_[endpoint].running) return false;
   in_[endpoint] = {};
   if (endpoint == 0 && control_send_waits_) {
     control_send_waits_ = false;
-    return;
+    return true;
   }
+  bool was_left = false;
   if (Control::EPENA::from(Control::read(endpoint))) {
     change<Control>(endpoint, Control::SNAK(1));
     static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::INEPNE::from(Flags::read(endpoint)) != 0; }));
     // A packet that was on its way may have ended the transfer meanwhile: what is off already never says that it is.
-    if (Control::EPENA::from(Control::read(endpoint))) {
+    was_left = Control::EPENA::from(Control::read(endpoint)) != 0;
+    if (was_left) {
       Control::modify(endpoint, Control::SNAK(1), Control::EPDIS(1));
       static_cast<void>(wait_for(core_answer_cycles, [=] { return Flags::EPDISD::from(Flags::read(endpoint)) != 0; }));
     }
@@ -314,6 +316,7 @@ void OtgFs::stop_in(unsigned endpoint) {
   fifo_memory::flush_transmit(endpoint);
   // INEPNE goes when NAK is cleared again.
   Flags::write(endpoint, Flags::XFRC(1), Flags::EPDISD(1));
+  return was_left;
 }
 
 // ---- endpoints ---------------------------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <usb/port.hpp>
@@ -80,9 +81,12 @@ class FakePort final : public usb::Port {
     endpoint.offset = 0;
   }
 
-  void cancel(std::uint8_t endpoint_address) override {
+  bool cancel(std::uint8_t endpoint_address) override {
     ++at(endpoint_address).cancels;
+    if ((endpoint_address & 0x7F) == asked_in_cancel) in(std::exchange(asked_in_cancel, std::uint8_t{0}));
+    const bool was_left = at(endpoint_address).running;
     forget_transfer(endpoint_address);
+    return was_left;
   }
 
   void receive(std::uint8_t endpoint_address) override {
@@ -92,7 +96,12 @@ class FakePort final : public usb::Port {
     at(endpoint_address).armed = true;
   }
 
-  std::optional<usb::BusFrame> frame() override { return frames_run ? std::optional(frame_) : std::nullopt; }
+  std::optional<usb::BusFrame> frame() override {
+    if (!frames_run) return std::nullopt;
+    usb::BusFrame frame = frame_;
+    frame.now_cycles = frame.begin_cycles + age_cycles_;
+    return frame;
+  }
 
   // ---- the host's side ----
 
@@ -107,6 +116,8 @@ class FakePort final : public usb::Port {
     frame_.number = frame_.count % 2048;
   }
   bool frames_run = true;
+  /// The host asks this endpoint just before the device takes back what it has for it, once; 0 for none.
+  std::uint8_t asked_in_cancel = 0;
 
   void reset() {
     for (Endpoint& endpoint : endpoints_) endpoint = {};

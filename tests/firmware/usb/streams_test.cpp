@@ -131,6 +131,50 @@ TEST_CASE("a host that did not listen for a while has lost nothing") {
   CHECK(poses_dropped(bench) == 0);
 }
 
+TEST_CASE("a main loop that is held up at a frame's end costs no pose: the host finds an older one") {
+  DeviceBench bench;
+  bench.configure();
+  pass_frame(bench);
+  const std::uint32_t first = read_pose(bench)->sequence;
+  for (int i = 0; i < 13; ++i) {
+    bench.run(1);
+    bench.device.poll();
+  }
+  bench.run(7);  // and nobody looks
+  const auto pose = read_pose(bench);
+  REQUIRE(pose.has_value());
+  CHECK(pose->sequence == first + 1);
+  CHECK(bench.periods - pose->time_periods == 9);
+  pass_frame(bench);
+  const auto next = read_pose(bench);
+  REQUIRE(next.has_value());
+  CHECK(next->sequence == first + 2);
+  CHECK(next->time_periods == bench.periods - 1);
+  CHECK(poses_dropped(bench) == 0);
+}
+
+TEST_CASE("a host that asks just before a frame's end gets no report twice") {
+  DeviceBench bench;
+  bench.configure();
+  pass_frame(bench);
+  const std::uint32_t first = read_pose(bench)->sequence;
+  for (int i = 0; i < 17; ++i) {
+    bench.run(1);
+    bench.device.poll();
+  }
+  SUBCASE("before the device looks") { CHECK(bench.port.in(1).handshake == Handshake::ack); }
+  SUBCASE("as the device is about to replace it") { bench.port.asked_in_cancel = 1; }
+  for (int i = 0; i < 3; ++i) {
+    bench.run(1);
+    bench.device.poll();
+  }
+  CHECK(bench.port.asked_in_cancel == 0);
+  CHECK_FALSE(read_pose(bench).has_value());
+  pass_frame(bench);
+  CHECK(read_pose(bench)->sequence == first + 2);
+  CHECK(poses_dropped(bench) == 0);
+}
+
 TEST_CASE("nothing is sent while the bus is silent") {
   DeviceBench bench;
   bench.configure();

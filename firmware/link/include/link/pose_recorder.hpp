@@ -44,6 +44,9 @@ class PoseRecorder {
   /// The same for a report that is sent: the longest interrupt is looked for anew.
   bool take(protocol::PoseReport& report);
 
+  /// Of the control interrupt, since the last report that was taken.
+  std::uint32_t longest_cycles() const { return longest_cycles_.load(); }
+
   /// The cycle counter when the newest pose's control interrupt began; nothing before the first period.
   std::optional<std::uint32_t> newest_cycles() const;
 

@@ -109,7 +109,7 @@ class Device final : private ControlRequests {
   Port& port_;
   link::Link& link_;
   const Identity& identity_;
-  const std::uint32_t pose_lead_cycles_;
+  const std::int32_t pose_loading_cycles_, spare_pose_lead_cycles_, pose_replacing_cycles_, period_cycles_;
   ControlEndpoint control_;
   std::uint8_t configuration_ = 0;
   std::array<std::uint8_t, protocol::usb::interface_count> idle_rates_{};
@@ -121,6 +121,7 @@ class Device final : private ControlRequests {
   bool scope_frame_open_ = false;                        ///< the scope's oldest frame is being sent
   bool scope_wants_end_ = false;      ///< the frame's length is a multiple of 64: an empty packet ends it
   std::uint32_t pose_sequence_ = 0;   ///< of the newest report given to the port
+  bool spare_waits_ = false;          ///< the newest report is a spare one, and the host has not taken it
   std::uint32_t poses_replaced_ = 0;  ///< since the host took one
   std::uint32_t poses_dropped_ = 0;
   std::uint32_t controller_taken_at_ = 0;  ///< pose_sequence_ when the host took its last report

@@ -36,6 +36,7 @@ struct BusFrame {
   std::uint32_t count = 0;          ///< of frames since the port started
   std::uint32_t begin_cycles = 0;   ///< the counter at the start of frame
   std::uint32_t length_cycles = 0;  ///< from one start of frame to the next, as measured
+  std::uint32_t now_cycles = 0;     ///< the counter when this was asked for
 };
 
 /// Endpoint hardware. Endpoints go by their address, bit 7 set for IN. Every call returns at once or
@@ -68,8 +69,9 @@ class Port {
   /// endpoint 0 at most one packet.
   virtual void send(std::uint8_t endpoint_address, std::span<const std::byte> data) = 0;
 
-  /// Forgets a running IN transfer: no `sent` comes for it any more.
-  virtual void cancel(std::uint8_t endpoint_address) = 0;
+  /// Forgets a running IN transfer: no `sent` comes for it any more. False if there was none, or the host had taken it
+  /// already.
+  virtual bool cancel(std::uint8_t endpoint_address) = 0;
 
   /// Lets the endpoint take one OUT packet.
   virtual void receive(std::uint8_t endpoint_address) = 0;

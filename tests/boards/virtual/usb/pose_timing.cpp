@@ -82,10 +82,26 @@ struct Measurement {
   std::mt19937_64 random{1};
 };
 
+constexpr std::uint16_t parameters_feature = 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::parameters);
+
+/// Sets all parameters to what they are, for so long.
+void storm(FirmwareOnBus& bus, double time_s) {
+  auto answer = bus.control(0xA1, 1, parameters_feature, 0, sizeof(protocol::ParametersReport));
+  protocol::ParametersReport report{};
+  std::memcpy(&report, answer.data.data(), answer.data.size());
+  if (report.count != protocol::parameter_count) throw std::runtime_error("the board does not tell all its parameters");
+  report.operation = protocol::ParameterOperation::set;
+  const std::size_t size = protocol::parameters_report_size(report.count);
+  std::vector<std::byte> set(size);
+  std::memcpy(set.data(), &report, size);
+  for (const Ticks end = bus.chip.now() + ticks(time_s); bus.chip.now() < end;)
+    bus.control(0x21, 9, parameters_feature, 0, static_cast<std::uint16_t>(size), set);
+}
+
 }  // namespace
 
 PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_ppm, double time_s,
-                         std::uint8_t scope_signals) {
+                         std::uint8_t scope_signals, Beside beside) {
   FirmwareOnBus bus(image, host_clock_ppm);
   Measurement measurement(bus);
   bus.chip.input_pins().drive(board::omni_driver.encoders[0].a.pin.port, board::omni_driver.encoders[0].a.pin.number,
@@ -105,7 +121,10 @@ PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_p
   bus.run_for(0.1);  // the encoder's state settles
   measurement.plan_edge();
   measurement.counting = true;
-  bus.run_for(time_s);
+  if (beside == Beside::storm_of_parameters)
+    storm(bus, time_s);
+  else
+    bus.run_for(time_s);
   if (const auto broken = bus.violations(); !broken.empty()) throw std::runtime_error(broken.front());
   return measurement.timing;
 }

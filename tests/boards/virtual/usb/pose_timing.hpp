@@ -17,9 +17,11 @@ struct PoseTiming {
   std::uint64_t longest_pause_periods = 0;   ///< between the control periods of two reports
 };
 
+enum class Beside { nothing, storm_of_parameters };
+
 /// Lets the firmware run for `time_s` of board time against a host whose clock is so much faster than board time, and
-/// which also reads so many signals of the scope.
+/// which also reads so many signals of the scope; in a storm it sets all parameters, again and again.
 PoseTiming measure_poses(const std::filesystem::path& image, double host_clock_ppm, double time_s,
-                         std::uint8_t scope_signals);
+                         std::uint8_t scope_signals, Beside beside = Beside::nothing);
 
 }  // namespace inkwell::virtual_usb_test

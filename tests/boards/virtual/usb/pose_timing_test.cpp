@@ -25,6 +25,16 @@ TEST_CASE("every frame of a fast and of a slow host brings a new pose, and none 
   }
 }
 
+TEST_CASE("every frame brings a new pose while all parameters are set, again and again") {
+  for (const double host_clock_ppm : {500.0, -500.0}) {
+    CAPTURE(host_clock_ppm);
+    const PoseTiming timing = measure_poses(flashed_image(), host_clock_ppm, 3.0, 3, Beside::storm_of_parameters);
+    CHECK(timing.frames >= 2996);
+    CHECK(timing.empty_frames == 0);
+    CHECK(timing.gaps == 0);
+  }
+}
+
 TEST_CASE("the frame report tells when a frame began, and how fast the clocks run against each other") {
   constexpr double host_clock_ppm = 200.0;
   FirmwareOnBus bus(flashed_image(), host_clock_ppm);

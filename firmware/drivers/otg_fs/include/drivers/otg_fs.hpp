@@ -44,7 +44,7 @@ class OtgFs final : public usb::Port {
   void stall(std::uint8_t endpoint_address) override;
   void clear_stall(std::uint8_t endpoint_address) override;
   void send(std::uint8_t endpoint_address, std::span<const std::byte> data) override;
-  void cancel(std::uint8_t endpoint_address) override;
+  bool cancel(std::uint8_t endpoint_address) override;
   void receive(std::uint8_t endpoint_address) override;
   std::optional<usb::BusFrame> frame() override { return frame_clock_.newest(); }
 
@@ -74,7 +74,8 @@ class OtgFs final : public usb::Port {
   void begin_send(unsigned endpoint);
   void begin_receive(unsigned endpoint);
   void fill(unsigned endpoint);
-  void stop_in(unsigned endpoint);
+  /// False if nothing was under way, or the host has taken it.
+  bool stop_in(unsigned endpoint);
   void empty_receive_fifo();
 
   FrameClock frame_clock_;
