@@ -6,7 +6,7 @@
 
 namespace inkwell::application {
 
-static_assert(sizeof(VectorTable) == protocol::image_identity_offset);
+static_assert(sizeof(VectorTable) <= protocol::image_identity_offset);
 static_assert(protocol::image_identity(board::facts.name, INKWELL_VERSION_NUMBERS).board_name() == board::facts.name);
 
 /// Of whole words, as all of the image is.

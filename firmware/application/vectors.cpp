@@ -20,6 +20,6 @@ constexpr VectorTable make_vectors() {
 
 }  // namespace
 
-[[gnu::section(".vectors"), gnu::used]] constinit const VectorTable vectors = make_vectors();
+[[gnu::section(".vectors"), gnu::used]] alignas(512) constinit const VectorTable vectors = make_vectors();
 
 }  // namespace inkwell::application

@@ -8,12 +8,13 @@ namespace inkwell::application {
 
 using Handler = void (*)();
 
-struct alignas(512) VectorTable {
+struct VectorTable {
   const std::uint32_t* initial_stack;
   std::array<Handler, 15> exceptions;  ///< reset is the first
   std::array<Handler, 82> interrupts;
 };
 
+/// The processor wants it at a multiple of 512 (PM0214, VTOR).
 extern const VectorTable vectors;
 
 }  // namespace inkwell::application
