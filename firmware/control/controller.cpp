@@ -174,14 +174,15 @@ void Controller::render_force(const Settings& settings) {
   give(scaled(force, force_gain_), settings);
 }
 
-/// What the hand gets of a force: no more energy than it may have, and no faster than it may change.
+/// What the hand gets of a force: no more energy than it may have, nothing that drives it on when it is too fast, and
+/// no faster than it may change.
 void Controller::give(Force asked, const Settings& settings) {
   account(reserve_, force_.force_N, probe_.position_m, settings.energy);
   const float power_W = dot(asked.force_N, probe_.velocity_m_per_s);
-  if (const float part = gives_way(reserve_, power_W, settings.energy); part > 0.0f) [[unlikely]] {
-    asked = less_driving(asked, power_W, part);
-    limits_ |= bit(Limit::energy, true);
-  }
+  const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
+  if (power_W > 0.0f && (is_low(reserve_, settings.energy) || is_near(speed_squared_m2_per_s2, settings.speed)))
+      [[unlikely]]
+    asked = less_driving(asked, power_W, settings);
   const Vector3 change_N = asked.force_N - force_.force_N;
   const float squared_N2 = dot(change_N, change_N);
   if (squared_N2 > settings.change_squared_N2) [[unlikely]] {
@@ -193,8 +194,14 @@ void Controller::give(Force asked, const Settings& settings) {
   force_ = asked;
 }
 
-Force Controller::less_driving(const Force& asked, float power_W, float part) const {
-  return bounded(without_drive(asked.force_N, power_W, probe_.velocity_m_per_s, part), force_limit_N_);
+Force Controller::less_driving(const Force& asked, float power_W, const Settings& settings) {
+  const float for_energy = gives_way(reserve_, settings.energy);
+  const float for_speed = gives_way(dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s), settings.speed);
+  limits_ |= bit(Limit::energy, for_energy > 0.0f);
+  limits_ |= bit(Limit::speed, for_speed > 0.0f);
+  return bounded(
+      without_drive(asked.force_N, power_W, probe_.velocity_m_per_s, for_energy > for_speed ? for_energy : for_speed),
+      force_limit_N_);
 }
 
 void Controller::find_current_references(const Settings& settings) {
@@ -203,7 +210,8 @@ void Controller::find_current_references(const Settings& settings) {
   if (settings.motors.idle != 0) leave_out(settings.motors.idle, torque_Nm_, jacobian_);
   const CurrentReferences references = current_references(torque_Nm_, settings.motors, heat_.beyond);
   reference_A_ = references.reference_A;
-  limits_ |= bit(Limit::current, references.limited);
+  limits_ |= bit(Limit::current, references.held_by_current);
+  limits_ |= bit(Limit::heat, references.held_by_heat);
   if (!test_.runs() || test_.quantity != TestPulse::Quantity::current) return;
   const float limit_A = std::min(settings.motors.allowed_A(test_.motor, heat_.beyond), test_limit_A(settings));
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);

@@ -166,6 +166,12 @@ EnergyLimits energy(const ParameterSet& set) {
           1.0f / (EnergyReserve::low_part * reserve_J)};
 }
 
+SpeedLimit speed(const ParameterSet& set) {
+  const float from_squared = squared(protocol::speed_holds_back_from * set[Parameter::speed_limit_m_per_s]);
+  const float whole_squared = squared(protocol::speed_drives_no_more_from * set[Parameter::speed_limit_m_per_s]);
+  return {from_squared, 1.0f / (whole_squared - from_squared)};
+}
+
 }  // namespace
 
 Settings prepare(const ParameterSet& parameters) {
@@ -182,6 +188,7 @@ Settings prepare(const ParameterSet& parameters) {
           .landing_per_period = ramp_per_period(parameters[Parameter::soft_landing_s]),
           .change_squared_N2 = squared(parameters[Parameter::force_change_N_per_s] * protocol::servo_period_s),
           .energy = energy(parameters),
+          .speed = speed(parameters),
           .motors = motors(parameters),
           .heat = heat(parameters),
           .motor_model = motor_model(parameters),

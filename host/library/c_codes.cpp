@@ -66,7 +66,8 @@ static_assert(std::ranges::equal(sources, protocol::force_source_table, [](const
   return c.value == static_cast<int>(row.source) && is_capital_of(c.name, "", row.name);
 }));
 
-constexpr Code limits[] = {CODE(LIMIT_FORCE), CODE(LIMIT_CURRENT), CODE(LIMIT_CHANGE), CODE(LIMIT_ENERGY)};
+constexpr Code limits[] = {CODE(LIMIT_FORCE),  CODE(LIMIT_CURRENT), CODE(LIMIT_CHANGE),
+                           CODE(LIMIT_ENERGY), CODE(LIMIT_HEAT),    CODE(LIMIT_SPEED)};
 static_assert(std::ranges::equal(limits, protocol::limit_table, [](const Code& c, const auto& row) {
   return c.value == static_cast<int>(row.limit) && is_capital_of(c.name, "LIMIT_", row.name);
 }));

@@ -139,6 +139,8 @@ Answers pose(const Arguments& arguments) {
                          "limited_by_current",
                          "limited_by_change",
                          "limited_by_energy",
+                         "limited_by_heat",
+                         "limited_by_speed",
                          "button_1",
                          "button_2",
                          "in_inkwell"};
@@ -160,6 +162,8 @@ Answers pose(const Arguments& arguments) {
                        mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_CURRENT) != 0),
                        mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_CHANGE) != 0),
                        mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_ENERGY) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_HEAT) != 0),
+                       mxCreateLogicalScalar((pose.limits & INKWELL_LIMIT_SPEED) != 0),
                        mxCreateLogicalScalar(pose.button_1 != 0),
                        mxCreateLogicalScalar(pose.button_2 != 0),
                        mxCreateLogicalScalar(pose.in_inkwell != 0)};

@@ -12,6 +12,8 @@ function pose = inkwell_pose(arm)
 %   pose.limited_by_current   true while a motor gives all the current that it may; all give way together
 %   pose.limited_by_change    true while the force changes as fast as force_change_N_per_s lets it
 %   pose.limited_by_energy    true while the hand got all the energy that it may: what drives the motion gives way
+%   pose.limited_by_heat      true while a hot motor gives all the current that it still may; all give way together
+%   pose.limited_by_speed     true while the probe is nearly as fast as it may be: what drives the motion gives way
 %   pose.button_1, pose.button_2, pose.in_inkwell    true or false
   pose = inkwell_mex('pose', arm);
 end

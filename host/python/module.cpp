@@ -152,6 +152,10 @@ void define_structs(py::module_& module) {
                              "the force changes as fast as force_change_N_per_s lets it")
       .def_property_readonly("limited_by_energy", &is_limited<INKWELL_LIMIT_ENERGY>,
                              "the hand got all the energy that it may: what drives the motion gives way")
+      .def_property_readonly("limited_by_heat", &is_limited<INKWELL_LIMIT_HEAT>,
+                             "a hot motor gives all the current that it still may, and all give way together")
+      .def_property_readonly("limited_by_speed", &is_limited<INKWELL_LIMIT_SPEED>,
+                             "the probe is nearly as fast as it may be: what drives the motion gives way")
       .def_property_readonly("limited_by_current", &is_limited<INKWELL_LIMIT_CURRENT>,
                              "a motor gives all the current that it may, and all give way together")
       .def_property_readonly("button_1", flag_of(&inkwell_pose::button_1), "pressed")

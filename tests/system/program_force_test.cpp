@@ -27,15 +27,17 @@ struct ProgramRig : BoardRig {
     make_active();
     // The board's own limit, not the host's silence, ends what a program began.
     set({{Parameter::host_timeout_s, 2.0f}});
+    newest = pose();
   }
 
   /// A millisecond; what the device sent in it.
   std::vector<protocol::PoseReport> millisecond() {
     control.run(0.001);
     std::vector<protocol::PoseReport> seen;
-    while (auto pose = device->read_pose(0ms)) seen.push_back(*pose);
+    while (auto pose = device->read_pose(0ms)) seen.push_back(newest = *pose);
     return seen;
   }
+  protocol::PoseReport newest{};  ///< that millisecond() has seen
 
   /// Sends the same force each millisecond; the poses that came meanwhile.
   std::vector<protocol::PoseReport> drive(const device::ForceRequest& request, int milliseconds) {
@@ -134,9 +136,8 @@ TEST_CASE("a program that pushes along with every motion gives the hand no more 
     double before_m = free_point_m[0];
     bool told = false;
     for (int i = 0; i < 1200; ++i) {
-      const auto pose = rig.pose();
-      const double moved_m = pose.position_m[0] - before_m;
-      before_m = pose.position_m[0];
+      const double moved_m = rig.newest.position_m[0] - before_m;
+      before_m = rig.newest.position_m[0];
       const float push_N = moved_m < 0.0 ? -2.5f : 2.5f;
       rig.device->send_force({.force_N = {push_N, 0.0f, 0.0f}, .mode = ForceMode::instead_of_walls});
       for (const auto& seen : rig.millisecond()) told |= protocol::is_reached(seen.limits, protocol::Limit::energy);
@@ -147,6 +148,33 @@ TEST_CASE("a program that pushes along with every motion gives the hand no more 
   const double bounded_J = given_J(0.0f), unbounded_J = given_J(20.0f);
   MESSAGE("simulation: given to the hand in 1.2 s: ", bounded_J, " J, without the bound ", unbounded_J, " J");
   CHECK(bounded_J < 0.5 * unbounded_J);
+}
+
+TEST_CASE("a program that pushes an arm which nobody holds makes it no faster than it may be") {
+  const auto fastest_m_per_s = [](float speed_limit_m_per_s) {
+    ProgramRig rig;
+    rig.set({{Parameter::speed_limit_m_per_s, speed_limit_m_per_s}, {Parameter::power_given_W, 20.0f}});
+    rig.control.hand({false, {}, 0, 0});
+    double fastest = 0.0;
+    bool told = false;
+    for (int i = 0; i < 1500; ++i) {
+      // To and fro across the middle, which it is drawn to.
+      const double x_m = rig.newest.position_m[0] - free_point_m[0];
+      rig.device->send_force({.force_N = {x_m > 0.0 ? -3.0f : 3.0f, 0.0f, 0.5f}, .mode = ForceMode::beside_walls});
+      for (const auto& seen : rig.millisecond()) told |= protocol::is_reached(seen.limits, protocol::Limit::speed);
+      const auto truth = rig.control.truth();
+      const auto speed = [&](const char* name) { return truth.at(name).get<double>(); };
+      fastest = std::max(fastest, std::hypot(speed("true_velocity_x_m_s"), speed("true_velocity_y_m_s"),
+                                             speed("true_velocity_z_m_s")));
+    }
+    CHECK(rig.newest.fault == protocol::Fault::none);
+    CHECK(told == (speed_limit_m_per_s < 3.0f));
+    return fastest;
+  };
+  const double held_m_per_s = fastest_m_per_s(2.0f), free_m_per_s = fastest_m_per_s(10.0f);
+  MESSAGE("simulation: ", held_m_per_s, " m/s at a limit of 2 m/s, ", free_m_per_s, " m/s without");
+  CHECK(held_m_per_s < 2.0);
+  CHECK(free_m_per_s > 2.4);
 }
 
 TEST_CASE("in an orderly end the force leaves a pressing hand softly, a stop takes it at once") {

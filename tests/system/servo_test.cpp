@@ -267,7 +267,7 @@ TEST_CASE("a motor that is pushed beyond what it bears gets less, all give way t
   CHECK(heat > 0.9f);
   CHECK(hottest < 1.1f);
   CHECK(protocol::force_is_on(rig.pose().state));
-  CHECK(protocol::is_reached(rig.pose().limits, protocol::Limit::current));
+  CHECK(protocol::is_reached(rig.pose().limits, protocol::Limit::heat));
   CHECK(largest_current_A(rig.control) == doctest::Approx(0.5).epsilon(0.1));
   // The force has kept its direction. The hand has moved a little.
   const auto now_A = currents_A();

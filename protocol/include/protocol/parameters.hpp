@@ -58,7 +58,7 @@ enum class ParameterKind : std::uint8_t {
   X(400, current_limit_1_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_1_A, "limits", "Largest current asked of motor 1. Where a motor reaches its limit all give way together; one with 0 takes no part.") \
   X(401, current_limit_2_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_2_A, "limits", "Largest current asked of motor 2.") \
   X(402, current_limit_3_A, real, "A", 0.0f, 3.0f, arm_defaults::current_limit_3_A, "limits", "Largest current asked of motor 3.") \
-  X(403, speed_limit_m_per_s, real, "m/s", 0.1f, 10.0f, 3.0f, "limits", "Speed of the probe above which the force is switched off with a fault.") \
+  X(403, speed_limit_m_per_s, real, "m/s", 0.1f, 10.0f, 3.0f, "limits", "Speed of the probe above which the force is switched off with a fault. From 0.8 of it on less and less of the force drives the motion, from 0.9 on none.") \
   X(404, host_timeout_s, real, "s", 0.01f, 2.0f, 0.05f, "limits", "Silence of the host after which the force is switched off.")    \
   X(405, continuous_current_1_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_1_A, "limits", "Current that motor 1 bears for ever; its heat is told in parts of what this current leads to. From 85 % on its current limit falls, to this current at 100 % and further beyond. A change leaves the heat as it is told.") \
   X(406, continuous_current_2_A, real, "A", 0.2f, 3.0f, arm_defaults::continuous_current_2_A, "limits", "Current that motor 2 bears for ever.") \

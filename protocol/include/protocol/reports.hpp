@@ -105,9 +105,11 @@ constexpr bool is_felt(std::uint8_t force_sources, ForceSource source) {
 /// X(bit, name, meaning)
 #define INKWELL_LIMITS(X)                                          \
   X(1, force, "The force is held at force_limit_N, or on its way up to it.")               \
-  X(2, current, "A motor gives all the current that it may; a hot one may give less. All motors give way together, so the force is weaker but keeps its direction.") \
+  X(2, current, "A motor gives all the current that it may. All motors give way together, so the force is weaker but keeps its direction.") \
   X(4, change, "The force changes as fast as force_change_N_per_s lets it.") \
-  X(8, energy, "The arm would give the hand more energy than it may: what of the force drives the motion gives way.")
+  X(8, energy, "The arm would give the hand more energy than it may: what of the force drives the motion gives way.") \
+  X(16, heat, "A motor that is hot gives all the current that it still may. All motors give way together, as for current.") \
+  X(32, speed, "The probe is nearly as fast as speed_limit_m_per_s: what of the force drives the motion gives way.")
 // clang-format on
 
 /// What makes the force smaller than what the hand touches: bits of PoseReport::limits. None of them is a fault.
@@ -240,6 +242,9 @@ struct ForceReport {
 inline constexpr float motor_heat_holds_back_from = 0.85f;
 /// At this heat, which holding back should not let come, the force goes off.
 inline constexpr float motor_heat_fault = 1.25f;
+
+/// From this part of speed_limit_m_per_s on, what of the force drives the motion gives way; from the next on all of it.
+inline constexpr float speed_holds_back_from = 0.8f, speed_drives_no_more_from = 0.9f;
 
 /// Letters of a board's name, which is that of its folder in boards/.
 inline constexpr std::size_t board_name_maximum = 31;

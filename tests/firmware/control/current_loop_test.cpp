@@ -111,8 +111,9 @@ TEST_CASE("torque becomes current through gear and torque constant, with directi
   set[torque_constant_1_Nm_per_A] = 0.02f;
   set[motor_2_reversed] = 1.0f;
   const control::Motors motors = control::prepare(set).motors;
-  const auto [reference_A, limited] = control::current_references({0.2f, 0.1f, -0.1f}, motors, {});
-  CHECK(!limited);
+  const auto [reference_A, by_current, by_heat] = control::current_references({0.2f, 0.1f, -0.1f}, motors, {});
+  CHECK_FALSE(by_current);
+  CHECK_FALSE(by_heat);
   CHECK(reference_A[0] == doctest::Approx(1.0f));
   CHECK(reference_A[1] == doctest::Approx(-0.1f / (set[gear_ratio_2] * set[torque_constant_2_Nm_per_A])));
   CHECK(reference_A[2] == doctest::Approx(-0.1f / (set[gear_ratio_3] * set[torque_constant_3_Nm_per_A])));
@@ -121,31 +122,41 @@ TEST_CASE("torque becomes current through gear and torque constant, with directi
 TEST_CASE("where a motor reaches its limit all give way together") {
   control::Motors motors{{2.0f, -1.0f, 4.0f}, {1.0f, 2.0f, 0.5f}, {10.0f, 0.0f, 0.0f}};
   SUBCASE("one") {
-    const auto [reference_A, limited] = control::current_references({1.0f, 0.5f, 0.1f}, motors, {});
-    CHECK(limited);
+    const auto [reference_A, by_current, by_heat] = control::current_references({1.0f, 0.5f, 0.1f}, motors, {});
+    CHECK(by_current);
+    CHECK_FALSE(by_heat);
     CHECK(reference_A[0] == doctest::Approx(1.0f));
     CHECK(reference_A[1] == doctest::Approx(-0.25f));
     CHECK(reference_A[2] == doctest::Approx(0.2f));
   }
   SUBCASE("two: the one that is further beyond") {
-    const auto [reference_A, limited] = control::current_references({1.0f, 0.5f, -1.0f}, motors, {});
-    CHECK(limited);
+    const auto [reference_A, by_current, by_heat] = control::current_references({1.0f, 0.5f, -1.0f}, motors, {});
+    CHECK(by_current);
+    CHECK_FALSE(by_heat);
     CHECK(reference_A[0] == doctest::Approx(0.25f));
     CHECK(reference_A[1] == doctest::Approx(-0.0625f));
     CHECK(reference_A[2] == doctest::Approx(-0.5f));
   }
   SUBCASE("a hot motor: as if its limit were lower, down to nothing") {
-    const auto [reference_A, limited] = control::current_references({0.5f, 0.5f, 0.1f}, motors, {0.05f, 0.0f, 0.0f});
-    CHECK(limited);
+    const auto [reference_A, by_current, by_heat] =
+        control::current_references({0.5f, 0.5f, 0.1f}, motors, {0.05f, 0.0f, 0.0f});
+    CHECK(by_heat);
+    CHECK_FALSE(by_current);
     CHECK(reference_A[0] == doctest::Approx(0.5f));
     CHECK(reference_A[1] == doctest::Approx(-0.25f));
     CHECK(control::current_references({0.5f, 0.5f, 0.1f}, motors, {0.2f, 0.0f, 0.0f}).reference_A[1] == 0.0f);
-    CHECK(!control::current_references({}, motors, {0.2f, 0.0f, 0.0f}).limited);
+    CHECK_FALSE(control::current_references({}, motors, {0.2f, 0.0f, 0.0f}).held_by_heat);
+  }
+  SUBCASE("a hot one and one at its own limit: both are told") {
+    const auto references = control::current_references({1.0f, 0.5f, 0.5f}, motors, {0.05f, 0.0f, 0.0f});
+    CHECK(references.held_by_heat);
+    CHECK(references.held_by_current);
   }
   SUBCASE("a motor whose limit is 0 takes no part") {
     motors.current_limit_A[2] = 0.0f;
-    const auto [reference_A, limited] = control::current_references({0.5f, 0.5f, 9.0f}, motors, {});
-    CHECK(!limited);
+    const auto [reference_A, by_current, by_heat] = control::current_references({0.5f, 0.5f, 9.0f}, motors, {});
+    CHECK_FALSE(by_current);
+    CHECK_FALSE(by_heat);
     CHECK(reference_A[0] == doctest::Approx(1.0f));
     CHECK(reference_A[1] == doctest::Approx(-0.5f));
     CHECK(reference_A[2] == 0.0f);

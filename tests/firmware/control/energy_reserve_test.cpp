@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include <control/energy_reserve.hpp>
-#include <firmware/control/arms.hpp>
-#include <firmware/control/simulated_arm.hpp>
+
+#include "turning_arm.hpp"
 
 namespace {
 
@@ -16,6 +16,8 @@ using control::Vector3;
 using protocol::Limit;
 using protocol::Parameter;
 using protocol::Signal;
+using tests::along;
+using tests::TurningArm;
 
 constexpr control::EnergyLimits limits{.reserve_J = 0.04f, .given_J_per_period = 5e-5f, .low_reserves_per_J = 100.0f};
 
@@ -35,11 +37,10 @@ TEST_CASE("what the force gave on the probe's way is taken out, and what the han
 }
 
 TEST_CASE("only what drives the motion gives way, from a quarter of the reserve on, all of it at none") {
-  CHECK(gives_way({0.04f, {}}, 1.0f, limits) == 0.0f);
-  CHECK(gives_way({0.01f, {}}, 1.0f, limits) == 0.0f);
-  CHECK(gives_way({0.005f, {}}, 1.0f, limits) == doctest::Approx(0.5f));
-  CHECK(gives_way({0.0f, {}}, 1.0f, limits) == 1.0f);
-  CHECK(gives_way({0.0f, {}}, -1.0f, limits) == 0.0f);
+  CHECK(gives_way({0.04f, {}}, limits) == 0.0f);
+  CHECK(gives_way({0.01f, {}}, limits) == 0.0f);
+  CHECK(gives_way({0.005f, {}}, limits) == doctest::Approx(0.5f));
+  CHECK(gives_way({0.0f, {}}, limits) == 1.0f);
 
   const Vector3 force_N{2.0f, -1.0f, 0.5f}, velocity_m_per_s{0.4f, 0.0f, 0.3f};
   const float power_W = dot(force_N, velocity_m_per_s);
@@ -51,63 +52,6 @@ TEST_CASE("only what drives the motion gives way, from a quarter of the reserve 
   // At rest there is no direction, so there is no jump when a hand turns round.
   const Vector3 still_N = without_drive(force_N, 2e-6f, {1e-6f, 0.0f, 0.0f}, 1.0f);
   CHECK(still_N.x == doctest::Approx(force_N.x));
-}
-
-/// The waist turns to and fro by 12 degrees, once a second, with the force on; no walls, and a program that asks for
-/// what `force_N` makes of the velocity.
-struct TurningArm {
-  protocol::ParameterSet set = free_space();
-  control::Settings settings = control::prepare(set);
-  control::Controller controller = tests::active_controller(settings);
-  control::Samples samples = tests::samples_at_rest();
-  Vector3 position_m = position();
-  float given_J = 0.0f;
-  float largest_change_N = 0.0f;
-  std::uint8_t limits = 0;
-
-  static protocol::ParameterSet free_space() {
-    protocol::ParameterSet set = tests::without_motors(tests::omni_parameters());
-    set[Parameter::wall_stiffness_N_per_m] = set[Parameter::wall_damping_Ns_per_m] = 0.0f;
-    set[Parameter::program_force_change_N_per_s] = 20'000.0f;
-    set[Parameter::force_ramp_s] = 0.0f;
-    set[Parameter::voltage_limit_V] = 0.2f;  // with the back EMF still less than may be missed in a motor
-    return set;
-  }
-  Vector3 three(Signal first) const {
-    const auto signals = controller.signals();
-    const auto at = [&](std::size_t i) { return signals.values[static_cast<std::size_t>(first) + i]; };
-    return {at(0), at(1), at(2)};
-  }
-  Vector3 position() const { return three(Signal::position_x_m); }
-
-  template <class Law>
-  void turn(float duration_s, Law force_N) {
-    const auto periods = static_cast<int>(duration_s * protocol::servo_rate_Hz);
-    for (int i = 0; i < periods; ++i) {
-      const float phase_rad = 6.2832f * static_cast<float>(i) / protocol::servo_rate_Hz;
-      samples.encoder_counts[0] = static_cast<std::int32_t>(640.0f * std::sin(phase_rad));
-      controller.host_alive();
-      if (i % 20 == 0)
-        controller.drive({force_N(three(Signal::velocity_x_m_s)), protocol::ForceMode::beside_walls, 20, 0.05f},
-                         settings);
-      const Vector3 felt_N = three(Signal::force_x_N);
-      tests::run(controller, samples, settings, 1);
-      const Vector3 now_m = position();
-      given_J += dot(felt_N, now_m - position_m);
-      position_m = now_m;
-      const Vector3 change_N = three(Signal::force_x_N) - felt_N;
-      largest_change_N = std::max(largest_change_N, std::sqrt(dot(change_N, change_N)));
-      limits |= controller.limits();
-    }
-    CAPTURE(protocol::info(controller.fault()).name);
-    REQUIRE(controller.force_is_on());
-  }
-  bool reached(Limit limit) const { return protocol::is_reached(limits, limit); }
-};
-
-Vector3 along(const Vector3& velocity_m_per_s, float force_N) {
-  const float speed_m_per_s = std::sqrt(dot(velocity_m_per_s, velocity_m_per_s));
-  return speed_m_per_s > 0.01f ? (force_N / speed_m_per_s) * velocity_m_per_s : Vector3{};
 }
 
 TEST_CASE("a program that pushes along with every motion gives the reserve and the power, and no more") {

@@ -33,7 +33,7 @@ struct CurrentOffsets {
 };
 
 /// Adds one reading; the offsets, and whether they are plausible, are valid once measured() is true.
-void measure_offsets(CurrentOffsets& offsets, const Triple& current_A);
+[[gnu::cold]] void measure_offsets(CurrentOffsets& offsets, const Triple& current_A);
 
 // ---- supply --------------------------------------------------------------------------------------------
 

@@ -125,7 +125,7 @@ class Controller {
   void render_force(const Settings& settings);
   void give(Force asked, const Settings& settings);
   // What is rare is compiled to be short: the interrupts' memory is small.
-  [[gnu::cold]] Force less_driving(const Force& asked, float power_W, float part) const;
+  [[gnu::cold]] Force less_driving(const Force& asked, float power_W, const Settings& settings);
   void find_current_references(const Settings& settings);
   void watch_motors(const Settings& settings);
   void regulate_currents(const Settings& settings);

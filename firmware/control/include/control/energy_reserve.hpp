@@ -31,10 +31,17 @@ struct EnergyReserve {
 /// puts in what may be given for ever.
 void account(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m, const EnergyLimits& limits);
 
-/// The part of what `power_W` drives that has to give way, 0..1.
-inline float gives_way(const EnergyReserve& reserve, float power_W, const EnergyLimits& limits) {
-  const float left = reserve.left_J * limits.low_reserves_per_J;
-  return power_W > 0.0f && left < 1.0f ? 1.0f - left : 0.0f;
+/// Of the energy below which the force gives way.
+inline float part_left(const EnergyReserve& reserve, const EnergyLimits& limits) {
+  return reserve.left_J * limits.low_reserves_per_J;
+}
+inline bool is_low(const EnergyReserve& reserve, const EnergyLimits& limits) {
+  return part_left(reserve, limits) < 1.0f;
+}
+
+/// The part of what drives the motion that has to give way, 0..1.
+inline float gives_way(const EnergyReserve& reserve, const EnergyLimits& limits) {
+  return is_low(reserve, limits) ? 1.0f - part_left(reserve, limits) : 0.0f;
 }
 
 /// The force without so large a part of what drives the motion.

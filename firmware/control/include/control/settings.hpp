@@ -12,6 +12,7 @@
 #include <control/motor_heat.hpp>
 #include <control/motor_watch.hpp>
 #include <control/program_force.hpp>
+#include <control/speed_limit.hpp>
 #include <control/torque.hpp>
 #include <protocol/parameters.hpp>
 
@@ -50,6 +51,7 @@ struct Settings {
   float landing_per_period;  ///< its fall in an orderly end
   float change_squared_N2;   ///< square of the most by which the force changes in a period, whatever it comes from
   EnergyLimits energy;
+  SpeedLimit speed;
   Motors motors;
   HeatScale heat;
   MotorModel motor_model;

@@ -24,8 +24,14 @@ struct Motors {
 
 struct CurrentReferences {
   Triple reference_A{};
-  bool limited = false;  ///< less than was asked for
+  bool held_by_current = false;  ///< less than was asked for, by a motor's own limit
+  bool held_by_heat = false;     ///< or by that of a hot one
 };
+
+/// What a motor may carry, of what is asked of it.
+[[gnu::cold, gnu::noinline]] inline float part_of(float allowed_A, float asked_A) {
+  return allowed_A * reciprocal_square_root(asked_A * asked_A);
+}
 
 /// Currents that give the joint torques. Where one would be above what its motor may carry (`heat_beyond` makes that
 /// less) all give way together, so that the force becomes smaller but keeps its direction.
@@ -41,11 +47,10 @@ inline CurrentReferences current_references(const Triple& torque_Nm, const Motor
       references.reference_A[i] = 0.0f;
       continue;
     }
-    references.limited = true;
-    part = std::min(part, allowed_A * reciprocal_square_root(asked_A * asked_A));
+    (heat_beyond[i] > 0.0f ? references.held_by_heat : references.held_by_current) = true;
+    part = std::min(part, part_of(allowed_A, asked_A));
   }
-  if (references.limited)
-    for (float& reference_A : references.reference_A) reference_A *= part;
+  for (float& reference_A : references.reference_A) reference_A *= part;
   return references;
 }
 

@@ -177,7 +177,9 @@ enum inkwell_limit {
   INKWELL_LIMIT_FORCE = 1,   /* the force is held at force_limit_N, or on its way up to it */
   INKWELL_LIMIT_CURRENT = 2, /* a motor gives all that it may; all give way together, so the direction stays */
   INKWELL_LIMIT_CHANGE = 4,  /* the force changes as fast as force_change_N_per_s lets it */
-  INKWELL_LIMIT_ENERGY = 8   /* the hand got all the energy that it may: what drives the motion gives way */
+  INKWELL_LIMIT_ENERGY = 8,  /* the hand got all the energy that it may: what drives the motion gives way */
+  INKWELL_LIMIT_HEAT = 16,   /* a hot motor gives all that it still may; all give way together */
+  INKWELL_LIMIT_SPEED = 32   /* the probe is nearly as fast as it may be: what drives the motion gives way */
 };
 
 /* What the board reports in a millisecond of the bus. */
