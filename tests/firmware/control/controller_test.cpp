@@ -201,7 +201,9 @@ TEST_CASE("what the samples can show wrong switches the bridges off with the rig
       {Fault::bridge_fault, [](Samples& s) { s.bridge_fault = true; }, 1},
       {Fault::over_current, [](Samples& s) { s.current_A[2] = -3.8f; }, 1},
       {Fault::supply_low, [](Samples& s) { s.supply_V = 9.0f; }, 60},
-      {Fault::supply_high, [](Samples& s) { s.supply_V = 27.0f; }, 60},
+      {Fault::supply_low, [](Samples& s) { s.supply_V = 5.9f; }, 1},
+      {Fault::supply_high, [](Samples& s) { s.supply_V = 25.5f; }, 80},
+      {Fault::supply_high, [](Samples& s) { s.supply_V = 26.5f; }, 1},
       {Fault::samples_stale, [](Samples& s) { s.slow_age_periods = 21; }, 1},
       {Fault::samples_stale, [](Samples& s) { s.currents_measured = false; }, 1},
       {Fault::not_finite, [](Samples& s) { s.current_A[0] = std::numeric_limits<float>::quiet_NaN(); }, 1},
@@ -227,6 +229,19 @@ TEST_CASE("what the samples can show wrong switches the bridges off with the rig
     controller.carry_out(tests::command(Command::clear_fault));
     tests::run(controller, samples, settings, 1);
     CHECK(controller.state() == (row.fault == Fault::encoder_implausible ? State::unreferenced : State::ready));
+  }
+}
+
+TEST_CASE("a supply that dips or rises for a control period, but not far, is borne") {
+  for (const float dip_V : {6.1f, 26.3f}) {
+    const Settings settings = settings_near_wall();
+    Controller controller = tests::active_controller(settings);
+    Samples samples = tests::samples_at_rest();
+    samples.supply_V = dip_V;
+    tests::run(controller, samples, settings, 1);
+    tests::run(controller, tests::samples_at_rest(), settings, 20);
+    CHECK(controller.fault() == Fault::none);
+    CHECK(controller.force_is_on());
   }
 }
 
