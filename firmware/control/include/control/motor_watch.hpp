@@ -42,7 +42,7 @@ struct MotorWatch {
   /// it takes from any.
   static constexpr float steady_A = 0.3f;
   /// Copper that is 100 K hotter than where it was measured has 39 % more resistance; switches and shunt add 4 %.
-  static constexpr float bearable_more_resistance = 0.5f;
+  static constexpr float bearable_more_resistance = 0.43f;
   /// It has a fifth less if it was measured 60 K hotter.
   static constexpr float bearable_less_resistance = 0.25f;
   /// Its magnets have then 20 % less.
