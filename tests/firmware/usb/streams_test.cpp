@@ -175,6 +175,21 @@ TEST_CASE("a host that asks just before a frame's end gets no report twice") {
   CHECK(poses_dropped(bench) == 0);
 }
 
+TEST_CASE("a report tells the longest interrupt since the one before, whatever was made ready in between") {
+  DeviceBench bench;
+  bench.configure();
+  pass_frame(bench);
+  read_pose(bench);
+  for (int i = 0; i < 20; ++i) {
+    bench.run(1);
+    if (i == 5) bench.link.poses.note_load(6000);
+    bench.device.poll();
+  }
+  CHECK(int{read_pose(bench)->servo_load} == 255 * 6000 / 8400);
+  pass_frame(bench);
+  CHECK(int{read_pose(bench)->servo_load} == 255 * 100 / 8400);
+}
+
 TEST_CASE("nothing is sent while the bus is silent") {
   DeviceBench bench;
   bench.configure();

@@ -1,0 +1,125 @@
+// The list of cases, what a case is, and the files of their results.
+#include <campaign/cases.hpp>
+#include <campaign/result.hpp>
+#include <campaign/run.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <doctest/doctest.h>
+#include <temporary_directory.hpp>
+
+#include <device/error.hpp>
+#include <protocol/supervision.hpp>
+
+#include "seen_cases.hpp"
+
+using namespace inkwell;
+using namespace inkwell::campaign;
+using inkwell::tests::content_of;
+using inkwell::tests::seen;
+using inkwell::tests::TemporaryDirectory;
+
+TEST_CASE("the list has every fault of the table in every situation, three times or once, and is numbered through") {
+  const auto cases = all_cases();
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    CHECK(cases[i].number == i + 1);
+    CHECK(names.insert(cases[i].name()).second);
+  }
+  CHECK(cases.size() == case_faults().size() * (5 * 3 + 4));
+  CHECK_FALSE(cases[0].fault.fault);
+  for (const auto& row : protocol::injection_table) {
+    CAPTURE(row.name);
+    for (const CaseSituation situation : situations)
+      CHECK(std::ranges::count_if(cases, [&](const Case& c) {
+              return c.fault.fault && protocol::info(*c.fault.fault).name == row.name && c.situation == situation;
+            }) >= phases_of(situation));
+  }
+  // Wires by what the board's facts call them, those of one motor; none that a host or a probe hangs on.
+  CHECK(names.contains("wire_open:encoders[1].a wall 2"));
+  CHECK(names.contains("wire_high:bridge_enable rest 1"));
+  CHECK_FALSE(names.contains("wire_open:encoders[0].a wall 1"));
+  CHECK_FALSE(names.contains("wire_open:usb_plus wall 1"));
+  CHECK(names.contains("supply_spike+0.005 motion 3"));
+  CHECK(names.contains("none wall 3"));
+  for (const char* once : {"ramping", "limited", "landing", "testing"}) {
+    CHECK(names.contains("none " + std::string(once) + " 1"));
+    CHECK_FALSE(names.contains("none " + std::string(once) + " 2"));
+  }
+  // As the table has it, and more or less.
+  for (const char* amount :
+       {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag", "analog_sag=3.5"})
+    CHECK(names.contains(std::string(amount) + " rest 1"));
+  // SysTick, and positions 18 and 67 of RM0090's vector table.
+  for (const char* exception : {"15", "34", "83"})
+    CHECK(names.contains("exception_lost:" + std::string(exception) + " rest 1"));
+}
+
+TEST_CASE("every state of the board in which more than its first fault can be told is tried") {
+  const auto is_tried = [](const protocol::StateInfo& state) {
+    // While the force is on it is tried at rest, in the wall and in motion.
+    return state.name == "active" ||
+           std::ranges::any_of(situations, [&](CaseSituation situation) { return name_of(situation) == state.name; });
+  };
+  for (std::size_t i = 0; i < protocol::state_count; ++i) {
+    const auto state = static_cast<protocol::State>(i);
+    CAPTURE(protocol::info(state).name);
+    const bool is_watched = std::ranges::any_of(
+        protocol::watch_table, [&](const protocol::Watch& row) { return row.watched_in.contains(state); });
+    CHECK(is_tried(protocol::info(state)) == (is_watched && state != protocol::State::starting));
+  }
+}
+
+TEST_CASE("a case runs on a board with the brown-out level of one that was flashed") {
+  const TemporaryDirectory directory;
+  const auto program = directory / "board";
+  std::ofstream(program) << "#!/bin/sh\necho \"$@\" > '" << directory.path() << "/arguments'\nexit 1\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  CHECK_FALSE(run_case(all_cases()[0], {.program = program, .elf = program}).error.empty());
+  CHECK(content_of(directory / "arguments").find(" --brown-out 3 ") != std::string::npos);
+}
+
+TEST_CASE("a result comes back from its file as it was, and a damaged file is named") {
+  const TemporaryDirectory directory;
+  Result result = seen("bridge_fault", "wall", 2);
+  result.off_after_s = 43e-6;
+  result.detected_as = "bridge_fault";
+  result.peak_force_N = 2.5;
+  result.position_error_m = 1e-5;
+  save(result, directory.path());
+  Result other = seen("none", "rest", 1);
+  other.error = "The board did not \"start\".";
+  save(other, directory.path());
+  const auto loaded = load_all(directory.path());
+  REQUIRE(loaded.size() == 2);
+  CHECK(loaded[0] == other);
+  CHECK(loaded[1] == result);
+  CHECK(std::distance(std::filesystem::directory_iterator(directory.path()), {}) == 2);  // nothing unfinished is left
+
+  std::ofstream(file_of(directory.path(), 9)) << "{\"number\": 9}";
+  CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("case-00009.json: This is no result of a case"),
+                       device::Error);
+  CHECK_THROWS_AS(load_all(directory / "nowhere"), device::Error);
+  CHECK_THROWS_AS(save(result, directory / "nowhere"), device::Error);
+}
+
+TEST_CASE("a result whose counts are no counts is refused with their name") {
+  const std::string text = text_of({.number = 7, .phase = 2, .restarts = 1});
+  CHECK(parse_result(text).number == 7);
+  for (const auto& [sound, damaged] : {std::pair{"\"number\": 7", "\"number\": 5e29"},
+                                       {"\"number\": 7", "\"number\": 4294967296"},
+                                       {"\"phase\": 2", "\"phase\": -2"},
+                                       {"\"restarts\": 1", "\"restarts\": 1.5"},
+                                       {"\"restarts\": 1", "\"restarts\": \"\\u00ff\""}}) {
+    CAPTURE(damaged);
+    const std::string name = std::string(sound).substr(1, std::string(sound).find('"', 1) - 1);
+    std::string wrong = text;
+    wrong.replace(wrong.find(sound), std::string(sound).size(), damaged);
+    CHECK_THROWS_WITH_AS(parse_result(wrong), doctest::Contains((name + " is ").c_str()), device::Error);
+  }
+}
