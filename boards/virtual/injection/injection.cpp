@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <chip/chip.hpp>
+#include <chip/exception_numbers.hpp>
 
 namespace inkwell::virtual_board {
 namespace {

@@ -15,7 +15,4 @@ nlohmann::json carry_out(const std::string& line, Simulation& simulation);
 /// The same in the middle of a frame, in which board time waits for a program: what would change the board is refused.
 nlohmann::json carry_out_within_frame(const std::string& line, Simulation& simulation);
 
-/// One line for each command, with its keys, for --help.
-std::string explain_commands();
-
 }  // namespace inkwell::virtual_board

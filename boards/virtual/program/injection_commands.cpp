@@ -3,8 +3,7 @@
 #include <string>
 
 #include <fmt/format.h>
-
-#include "requests.hpp"
+#include <program/requests.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -32,24 +31,6 @@ json told(const Injector::Planned& planned) {
   told["at_s"] = seconds(planned.at);
   if (planned.injection.for_s) told["until_s"] = seconds(planned.at) + *planned.injection.for_s;
   return told;
-}
-
-std::string text_or_number(const json& request, const char* key, const char* what) {
-  const json& value = at(request, key, what);
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_unsigned()) return std::to_string(value.get<std::uint64_t>());
-  throw Refused(fmt::format("\"{}\" must be {}", key, what));
-}
-
-protocol::InjectionRequest injection_request(const json& request) {
-  constexpr double largest = 1e12;
-  protocol::InjectionRequest wanted;
-  wanted.fault = text_or_number(request, "fault", "the name of a fault, such as \"encoder_stuck\"");
-  if (request.contains("of")) wanted.of = text_or_number(request, "of", "a number or a name, such as 2 or \"PA0\"");
-  if (request.contains("amount")) wanted.amount = number(request, "amount", -largest, largest);
-  wanted.after_s = number_or(request, "after_s", 0.0, 0.0, protocol::latest_injection_s);
-  if (request.contains("for_s")) wanted.for_s = number(request, "for_s", 0.0, protocol::latest_injection_s);
-  return wanted;
 }
 
 }  // namespace

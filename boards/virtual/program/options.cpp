@@ -10,9 +10,8 @@
 
 #include <debugger/symbols.hpp>
 #include <installation/places.hpp>
+#include <program/requests.hpp>
 #include <protocol/image_identity.hpp>
-
-#include "commands.hpp"
 
 namespace inkwell::virtual_board {
 namespace {

@@ -1,10 +1,118 @@
-#include "requests.hpp"
+#include <program/requests.hpp>
+
+#include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace inkwell::virtual_board {
 
 using nlohmann::json;
+
+namespace {
+
+constexpr double reach_m = 2.0;  // farther away than any arm of the descriptions' ranges
+
+std::string text_or_number(const json& request, const char* key, const char* what) {
+  const json& value = at(request, key, what);
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_unsigned()) return std::to_string(value.get<std::uint64_t>());
+  throw Refused(fmt::format("\"{}\" must be {}", key, what));
+}
+
+}  // namespace
+
+std::span<const CommandInfo> command_table() {
+  static const std::vector<CommandInfo> table = {
+      {Command::status,
+       "status",
+       {},
+       "time, mode, resets, USB, whom board time waits for, faults in and to come, unmodelled registers",
+       true},
+      {Command::truth, "truth", {}, "every true quantity, the levels on the bridges' inputs included"},
+      {Command::pause, "pause", {}, "board time stands still"},
+      {Command::stand_by, "stand_by", {}, "it stands still, but passes while a USB control transfer is under way"},
+      {Command::run, "run", {"for_s"}, "it passes for a while; answered when that is over"},
+      {Command::resume, "resume", {}, "it passes freely"},
+      {Command::reset, "reset", {}, "the reset pin"},
+      {Command::cut_power,
+       "cut_power",
+       {"at_flash_operation"},
+       "the power fails and is back at once: now, or in the middle of the so many-th word or sector that the flash is "
+       "told to program or erase"},
+      {Command::quit, "quit", {}, "the end of this program", true},
+      {Command::usb, "usb", {"connected"}, "plug or pull the cable, and with it VBUS"},
+      {Command::buttons, "buttons", {"pressed"}, "of the stylus: [true,false]"},
+      {Command::supply, "supply", {"voltage_V"}, "of the bridges"},
+      {Command::pin,
+       "pin",
+       {"pin", "drive"},
+       "level at a pin, such as PA5; drives it high, low or floating from outside first"},
+      {Command::glitch,
+       "glitch",
+       {"pin", "for_s"},
+       "a pin is the opposite of what drives it, as by a spike on its wire"},
+      {Command::inject,
+       "inject",
+       {"fault", "of", "amount", "after_s", "for_s"},
+       "put a fault of the list above in, at once or later, for ever or a while"},
+      {Command::heal,
+       "heal",
+       {"fault", "of"},
+       "take it out again, all of its name without \"of\", all that are in without both"},
+      {Command::hand,
+       "hand",
+       {"holds", "target_m", "stiffness_N_per_m", "damping_Ns_per_m"},
+       "it pulls the probe, or lets go"},
+      {Command::hand_path,
+       "hand_path",
+       {"points"},
+       "minimum jerk between [{\"after_s\":0.5,\"target_m\":[x,y,z]},...]"},
+      {Command::gimbal, "gimbal", {"angles_rad"}, "turn the stylus: yaw, pitch, roll"},
+      {Command::dock, "dock", {"docked"}, "lay the stylus into the inkwell, or take it out"},
+      {Command::meter,
+       "meter",
+       {"action"},
+       "start or read: peak force on the hand, energy given to it, how far it was taken"},
+      {Command::trace,
+       "trace",
+       {"action", "maximum"},
+       "start, stop or read the true quantities at every control period"},
+  };
+  return table;
+}
+
+std::string explain_commands() {
+  std::string text;
+  for (const CommandInfo& command : command_table()) {
+    const std::string usage = fmt::format("{} {}", command.name, fmt::join(command.keys, " "));
+    constexpr std::size_t column = 26;  // of the explanations
+    text += usage.size() < column ? fmt::format("  {:<{}}{}\n", usage, column, command.help)
+                                  : fmt::format("  {}\n  {:{}}{}\n", usage, "", column, command.help);
+  }
+  return text;
+}
+
+Request read_request(std::string_view line) {
+  json values = json::parse(line, nullptr, false);
+  if (values.is_discarded() || !values.is_object())
+    throw Refused("a command is one JSON object in one line, such as {\"command\":\"status\"}");
+  const json& name = at(values, "command", "the name of a command, such as \"status\"");
+  // Only a text is quoted: writing lists in lists takes a stack as deep as they are.
+  if (!name.is_string()) throw Refused("\"command\" must be the name of a command, such as \"status\"");
+  const auto table = command_table();
+  const auto found = std::ranges::find(table, name.get_ref<const std::string&>(), &CommandInfo::name);
+  if (found == table.end()) {
+    std::vector<std::string_view> names;
+    for (const CommandInfo& each : table) names.push_back(each.name);
+    throw Refused(fmt::format("there is no command {}; known are {}", name.dump(), fmt::join(names, ", ")));
+  }
+  for (const auto& [key, value] : values.items())
+    if (key != "command" && std::ranges::find(found->keys, key) == found->keys.end())
+      throw Refused(fmt::format("\"{}\" does not know the key \"{}\"; it knows {}", found->name, key,
+                                found->keys.empty() ? "none" : fmt::format("{}", fmt::join(found->keys, ", "))));
+  return {&*found, std::move(values)};
+}
 
 const json& at(const json& request, const char* key, const char* what) {
   const auto found = request.find(key);
@@ -32,6 +140,74 @@ double number(const json& request, const char* key, double minimum, double maxim
 
 double number_or(const json& request, const char* key, double otherwise, double minimum, double maximum) {
   return request.contains(key) ? number(request, key, minimum, maximum) : otherwise;
+}
+
+Vector3 vector(const json& request, const char* key, double largest) {
+  const json& value = at(request, key, "a list of three numbers");
+  if (!value.is_array() || value.size() != 3) throw Refused(fmt::format("\"{}\" must be a list of three numbers", key));
+  Vector3 result;
+  for (int i = 0; i < 3; ++i) result[i] = checked_number(value[static_cast<std::size_t>(i)], key, -largest, largest);
+  return result;
+}
+
+HandRequest hand_request(const json& request) {
+  if (!truth_value(request, "holds")) return {};
+  const auto at_most = [&](const char* key, double maximum) {
+    return request.contains(key) ? std::optional(number(request, key, 0.0, maximum)) : std::nullopt;
+  };
+  return {.holds = true,
+          .target_m = vector(request, "target_m", reach_m),
+          .stiffness_N_per_m = at_most("stiffness_N_per_m", Hand::stiffness_maximum_N_per_m),
+          .damping_Ns_per_m = at_most("damping_Ns_per_m", Hand::damping_maximum_Ns_per_m)};
+}
+
+std::vector<Waypoint> hand_path_request(const json& request) {
+  const json& points = at(request, "points", "a list of {\"after_s\":time,\"target_m\":[x,y,z]}");
+  if (!points.is_array() || points.empty()) throw Refused("\"points\" must be a list of at least one point");
+  std::vector<Waypoint> path;
+  for (const json& point : points) {
+    if (!point.is_object()) throw Refused("each of \"points\" must be {\"after_s\":time,\"target_m\":[x,y,z]}");
+    const double earliest_s = path.empty() ? 0.0 : path.back().after_s;
+    path.push_back({number(point, "after_s", earliest_s, 1e6), vector(point, "target_m", reach_m)});
+  }
+  return path;
+}
+
+std::array<bool, 2> pressed_buttons(const json& request) {
+  const json& pressed = at(request, "pressed", "a list of two, true or false");
+  if (!pressed.is_array() || pressed.size() != 2 || !pressed[0].is_boolean() || !pressed[1].is_boolean())
+    throw Refused("\"pressed\" must be a list of two, true or false");
+  return {pressed[0].get<bool>(), pressed[1].get<bool>()};
+}
+
+PinName pin_of(const json& request) {
+  const json& name = at(request, "pin", "a pin, such as \"PA5\"");
+  if (!name.is_string()) throw Refused("\"pin\" must be a pin, such as \"PA5\"");
+  try {
+    return PinName::of(name.get<std::string>());
+  } catch (const std::invalid_argument& error) {
+    throw Refused(error.what());
+  }
+}
+
+std::optional<PinLevel> pin_drive(const json& request) {
+  const auto level = request.find("drive");
+  if (level == request.end()) return std::nullopt;
+  if (*level == "high") return PinLevel::high;
+  if (*level == "low") return PinLevel::low;
+  if (*level == "floating") return PinLevel::floating;
+  throw Refused("\"drive\" must be \"high\", \"low\" or \"floating\"");
+}
+
+protocol::InjectionRequest injection_request(const json& request) {
+  constexpr double largest = 1e12;
+  protocol::InjectionRequest wanted;
+  wanted.fault = text_or_number(request, "fault", "the name of a fault, such as \"encoder_stuck\"");
+  if (request.contains("of")) wanted.of = text_or_number(request, "of", "a number or a name, such as 2 or \"PA0\"");
+  if (request.contains("amount")) wanted.amount = number(request, "amount", -largest, largest);
+  wanted.after_s = number_or(request, "after_s", 0.0, 0.0, protocol::latest_injection_s);
+  if (request.contains("for_s")) wanted.for_s = number(request, "for_s", 0.0, protocol::latest_injection_s);
+  return wanted;
 }
 
 }  // namespace inkwell::virtual_board

@@ -3,10 +3,10 @@
 #include <string>
 #include <utility>
 
+#include <program/requests.hpp>
 #include <protocol/simulation.hpp>
 
 #include "injection_commands.hpp"
-#include "requests.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -1,0 +1,93 @@
+// What a client of the control socket asks for, as far as it can be understood and checked without a board. Each reader
+// says what it wants, in the sentence of its refusal.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <chip/interfaces.hpp>
+#include <chip/pin_name.hpp>
+#include <nlohmann/json.hpp>
+#include <plant/hand.hpp>
+#include <protocol/injection_request.hpp>
+
+namespace inkwell::virtual_board {
+
+/// A command that is refused; what() is the sentence for the client.
+class Refused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class Command : std::uint8_t {
+  status,
+  truth,
+  pause,
+  stand_by,
+  run,
+  resume,
+  reset,
+  cut_power,
+  quit,
+  usb,
+  buttons,
+  supply,
+  pin,
+  glitch,
+  inject,
+  heal,
+  hand,
+  hand_path,
+  gimbal,
+  dock,
+  meter,
+  trace,
+};
+
+/// All that is said about a command: it is known, checked and explained by this alone.
+struct CommandInfo {
+  Command command;
+  std::string_view name;
+  std::vector<std::string_view> keys;  ///< that it knows besides "command"
+  std::string_view help;
+  bool is_for_any_time = false;  ///< also in the middle of a frame
+};
+std::span<const CommandInfo> command_table();
+/// One line for each command, with its keys, for --help.
+std::string explain_commands();
+
+struct Request {
+  const CommandInfo* info;
+  nlohmann::json values;  ///< an object with keys that the command knows, and any values
+};
+/// Of a line of a client. Throws Refused, as all that follow do.
+Request read_request(std::string_view line);
+
+const nlohmann::json& at(const nlohmann::json& request, const char* key, const char* what);
+bool truth_value(const nlohmann::json& request, const char* key);
+double checked_number(const nlohmann::json& value, const char* key, double minimum, double maximum);
+double number(const nlohmann::json& request, const char* key, double minimum, double maximum);
+double number_or(const nlohmann::json& request, const char* key, double otherwise, double minimum, double maximum);
+Vector3 vector(const nlohmann::json& request, const char* key, double largest);
+
+struct HandRequest {
+  bool holds = false;
+  Vector3 target_m = Vector3::Zero();
+  std::optional<double> stiffness_N_per_m = {};  ///< none: as it was
+  std::optional<double> damping_Ns_per_m = {};   ///< none: as it was
+};
+HandRequest hand_request(const nlohmann::json& request);
+std::vector<Waypoint> hand_path_request(const nlohmann::json& request);
+std::array<bool, 2> pressed_buttons(const nlohmann::json& request);
+PinName pin_of(const nlohmann::json& request);
+/// What a pin is driven to; none if it is only looked at.
+std::optional<PinLevel> pin_drive(const nlohmann::json& request);
+protocol::InjectionRequest injection_request(const nlohmann::json& request);
+
+}  // namespace inkwell::virtual_board
