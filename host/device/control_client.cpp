@@ -3,10 +3,10 @@
 #include <array>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 
+#include "control_answers.hpp"
 #include "socket.hpp"
 
 namespace inkwell::device {
@@ -34,21 +34,6 @@ struct ControlClient::Implementation {
   }
 };
 
-namespace {
-
-PutInFault put_in_fault(const json& told, const char* time_key) {
-  PutInFault fault{.number = told.at("number").get<unsigned>(),
-                   .fault = told.at("fault").get<std::string>(),
-                   .of = told.value("of", std::string()),
-                   .at_s = told.at(time_key).get<double>(),
-                   .has_come = std::string_view(time_key) == "since_s"};
-  if (told.contains("amount")) fault.amount = told["amount"].get<double>();
-  if (told.contains("until_s")) fault.until_s = told["until_s"].get<double>();
-  return fault;
-}
-
-}  // namespace
-
 ControlClient::ControlClient(const std::string& host, std::uint16_t port)
     : implementation_(new Implementation{Socket(host, port), {}}) {}
 ControlClient::~ControlClient() = default;
@@ -58,29 +43,12 @@ ControlClient& ControlClient::operator=(ControlClient&&) noexcept = default;
 json ControlClient::call(const json& request) {
   const std::string line = request.dump() + "\n";
   implementation_->socket.send(std::as_bytes(std::span(line)));
-  json reply;
-  try {
-    reply = json::parse(implementation_->read_line());
-    if (reply.at("ok").get<bool>()) return reply;
-  } catch (const json::exception&) {
-    throw Error("What answers at the control port is not a virtual board. Give the control port that it printed.");
-  }
-  throw CommandRefused(fmt::format("The virtual board refused {}: {}", request.at("command").dump(),
-                                   reply.value("error", std::string("it gave no reason."))));
+  return parse_answer(implementation_->read_line(), request.at("command").get<std::string>());
 }
 
 void ControlClient::wait_at_most(std::chrono::milliseconds limit) { implementation_->socket.wait_at_most(limit); }
 
-BoardStatus ControlClient::status() {
-  BoardStatus status;
-  status.all = call({{"command", "status"}});
-  status.board_time_s = status.all.value("board_time_s", 0.0);
-  status.mode = status.all.value("mode", std::string());
-  status.paused = status.all.value("paused", false);
-  status.locked_up = status.all.value("locked_up", std::string());
-  status.unmodelled = status.all.value("unmodelled", std::vector<std::string>());
-  return status;
-}
+BoardStatus ControlClient::status() { return status_of(call({{"command", "status"}})); }
 
 void BoardStatus::insist_on_running() const {
   if (locked_up.empty()) return;
@@ -100,10 +68,7 @@ void ControlClient::usb(bool connected) { call({{"command", "usb"}, {"connected"
 void ControlClient::buttons(bool first, bool second) { call({{"command", "buttons"}, {"pressed", {first, second}}}); }
 void ControlClient::supply(double voltage_V) { call({{"command", "supply"}, {"voltage_V", voltage_V}}); }
 
-PinLevels ControlClient::call_pin(const json& request) {
-  const json reply = call(request);
-  return {reply.value("level", std::string()), reply.value("chip_drives", std::string())};
-}
+PinLevels ControlClient::call_pin(const json& request) { return pin_levels_of(call(request)); }
 PinLevels ControlClient::pin(const std::string& pin) { return call_pin({{"command", "pin"}, {"pin", pin}}); }
 PinLevels ControlClient::drive_pin(const std::string& pin, const std::string& level) {
   return call_pin({{"command", "pin"}, {"pin", pin}, {"drive", level}});
@@ -120,15 +85,7 @@ PutInFault ControlClient::inject(const protocol::InjectionRequest& fault) {
   if (!fault.of.empty()) request["of"] = fault.of;
   if (fault.amount) request["amount"] = *fault.amount;
   if (fault.for_s) request["for_s"] = *fault.for_s;
-  const json reply = call(request);
-  PutInFault put_in{.number = reply.value("number", 0u),
-                    .fault = fault.fault,
-                    .of = fault.of,
-                    .amount = fault.amount,
-                    .at_s = reply.value("at_s", 0.0),
-                    .has_come = fault.after_s == 0.0};
-  if (fault.for_s) put_in.until_s = put_in.at_s + *fault.for_s;
-  return put_in;
+  return put_in_fault_of(call(request), fault);
 }
 
 void ControlClient::heal(const std::string& fault, const std::string& of) {
@@ -138,21 +95,7 @@ void ControlClient::heal(const std::string& fault, const std::string& of) {
 }
 void ControlClient::heal_all() { call({{"command", "heal"}}); }
 
-Injections ControlClient::injections() {
-  const json reply = call({{"command", "status"}});
-  Injections now;
-  try {
-    const json& period = reply.at("control_period");
-    now.board_time_s = reply.at("board_time_s").get<double>();
-    now.period = period.at("number").get<std::uint64_t>();
-    now.period_at_s = period.at("board_time_s").get<double>();
-    for (const json& each : reply.at("injected")) now.faults.push_back(put_in_fault(each, "since_s"));
-    for (const json& each : reply.at("still_to_come")) now.faults.push_back(put_in_fault(each, "at_s"));
-  } catch (const json::exception&) {
-    throw Error("The virtual board does not say which faults are in. Build it again.");
-  }
-  return now;
-}
+Injections ControlClient::injections() { return injections_of(call({{"command", "status"}})); }
 
 void ControlClient::hand(const Hand& hand) {
   json request{{"command", "hand"}, {"holds", hand.holds}};
@@ -172,28 +115,13 @@ void ControlClient::hand_path(const std::vector<HandWaypoint>& path) {
 
 void ControlClient::meter_start() { call({{"command", "meter"}, {"action", "start"}}); }
 
-HandReading ControlClient::meter_read() {
-  const json reply = call({{"command", "meter"}, {"action", "read"}});
-  return {reply.value("peak_force_N", 0.0), reply.value("energy_J", 0.0), reply.value("travel_m", 0.0),
-          reply.value("lag_m", 0.0)};
-}
+HandReading ControlClient::meter_read() { return hand_reading_of(call({{"command", "meter"}, {"action", "read"}})); }
 
 void ControlClient::trace_start() { call({{"command", "trace"}, {"action", "start"}}); }
 void ControlClient::trace_stop() { call({{"command", "trace"}, {"action", "stop"}}); }
 
 Trace ControlClient::trace_read(std::size_t rows_maximum) {
-  const json reply = call({{"command", "trace"}, {"action", "read"}, {"maximum", rows_maximum}});
-  Trace trace;
-  try {
-    trace.columns = reply.at("columns").get<std::vector<std::string>>();
-    for (const auto& row : reply.at("rows")) {
-      if (row.size() != trace.columns.size()) throw Error("The virtual board sent a damaged trace. Build it again.");
-      for (const auto& value : row) trace.values.push_back(value.get<double>());
-    }
-  } catch (const json::exception&) {
-    throw Error("The virtual board sent a damaged trace. Build it again.");
-  }
-  return trace;
+  return trace_of(call({{"command", "trace"}, {"action", "read"}, {"maximum", rows_maximum}}));
 }
 
 }  // namespace inkwell::device

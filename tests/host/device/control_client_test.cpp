@@ -85,6 +85,31 @@ TEST_CASE("what answers but is no virtual board is told so") {
     CHECK(contains(failure_at(line), "is not a virtual board"));
 }
 
+TEST_CASE("an answer whose values are of another kind, or fit no number, is an error like others") {
+  std::string line;
+  FakeControlServer server([&](const json&) { return line + "\n"; });
+  auto client = client_of(server);
+  const auto failure = [&](auto call) { return message_of<device::Error>([&] { call(); }); };
+  for (const auto damaged : {R"({"ok": true, "board_time_s": "soon"})", R"({"ok": true, "mode": 1})",
+                             R"({"ok": true, "paused": 0})", R"({"ok": true, "unmodelled": [1]})"}) {
+    line = damaged;
+    CHECK(contains(failure([&] { client.status(); }), "damaged answer"));
+  }
+  line = R"({"ok": true, "level": 1})";
+  CHECK(contains(failure([&] { client.pin("PA0"); }), "damaged answer"));
+  line = R"({"ok": true, "peak_force_N": []})";
+  CHECK(contains(failure([&] { client.meter_read(); }), "damaged answer"));
+  for (const auto number : {"-1", "1e300", "4294967296", "\"1\""}) {
+    line = std::string(R"({"ok": true, "number": )") + number + "}";
+    CHECK(contains(failure([&] { client.inject({.fault = "motor_open"}); }), "damaged answer"));
+    line = R"({"ok": true, "board_time_s": 1, "control_period": {"number": 1, "board_time_s": 1}, "injected": [)"
+           R"({"fault": "motor_open", "since_s": 1, "number": )" +
+           std::string(number) + R"(}], "still_to_come": []})";
+    CHECK(contains(failure([&] { client.injections(); }), "which faults are in"));
+  }
+  CHECK(contains(failure_at(R"({"ok": false, "error": 7})"), "is not a virtual board"));
+}
+
 TEST_CASE("a trace is read row by row, however long; a damaged one is refused") {
   json rows = json::array();
   for (int i = 0; i < 20'000; ++i) rows.push_back({i, 0.5});

@@ -1,0 +1,122 @@
+#include "control_answers.hpp"
+
+#include <cstdint>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace inkwell::device {
+namespace {
+
+using nlohmann::json;
+
+/// What `read` gives; a value of another kind than it wants is an Error with this sentence.
+template <class Read>
+auto read_or_fail(const char* sentence, Read read) {
+  try {
+    return read();
+  } catch (const json::exception&) {
+    throw Error(sentence);
+  }
+}
+
+constexpr char damaged_answer[] = "The virtual board sent a damaged answer. Build it again.";
+
+/// The library turns any number into an unsigned one, which is undefined for one that does not fit.
+template <class Whole>
+Whole whole_number(const json& value, const char* sentence) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<Whole>::max())
+    throw Error(sentence);
+  return value.get<Whole>();
+}
+
+PutInFault put_in_fault(const json& told, const char* time_key, const char* sentence) {
+  PutInFault fault{.number = whole_number<unsigned>(told.at("number"), sentence),
+                   .fault = told.at("fault").get<std::string>(),
+                   .of = told.value("of", std::string()),
+                   .at_s = told.at(time_key).get<double>(),
+                   .has_come = std::string_view(time_key) == "since_s"};
+  if (told.contains("amount")) fault.amount = told["amount"].get<double>();
+  if (told.contains("until_s")) fault.until_s = told["until_s"].get<double>();
+  return fault;
+}
+
+}  // namespace
+
+json parse_answer(std::string_view line, std::string_view command) {
+  return read_or_fail("What answers at the control port is not a virtual board. Give the control port that it printed.",
+                      [&] {
+                        json answer = json::parse(line);
+                        if (answer.at("ok").get<bool>()) return answer;
+                        throw CommandRefused(fmt::format("The virtual board refused \"{}\": {}", command,
+                                                         answer.value("error", std::string("it gave no reason."))));
+                      });
+}
+
+BoardStatus status_of(json answer) {
+  return read_or_fail(damaged_answer, [&] {
+    BoardStatus status;
+    status.board_time_s = answer.value("board_time_s", 0.0);
+    status.mode = answer.value("mode", std::string());
+    status.paused = answer.value("paused", false);
+    status.locked_up = answer.value("locked_up", std::string());
+    status.unmodelled = answer.value("unmodelled", std::vector<std::string>());
+    status.all = std::move(answer);
+    return status;
+  });
+}
+
+PinLevels pin_levels_of(const json& answer) {
+  return read_or_fail(damaged_answer, [&] {
+    return PinLevels{answer.value("level", std::string()), answer.value("chip_drives", std::string())};
+  });
+}
+
+PutInFault put_in_fault_of(const json& answer, const protocol::InjectionRequest& asked) {
+  return read_or_fail(damaged_answer, [&] {
+    PutInFault put_in{.number = whole_number<unsigned>(answer.value("number", json(0u)), damaged_answer),
+                      .fault = asked.fault,
+                      .of = asked.of,
+                      .amount = asked.amount,
+                      .at_s = answer.value("at_s", 0.0),
+                      .has_come = asked.after_s == 0.0};
+    if (asked.for_s) put_in.until_s = put_in.at_s + *asked.for_s;
+    return put_in;
+  });
+}
+
+Injections injections_of(const json& status) {
+  static constexpr char sentence[] = "The virtual board does not say which faults are in. Build it again.";
+  return read_or_fail(sentence, [&] {
+    const json& period = status.at("control_period");
+    Injections now{.board_time_s = status.at("board_time_s").get<double>(),
+                   .period = whole_number<std::uint64_t>(period.at("number"), sentence),
+                   .period_at_s = period.at("board_time_s").get<double>(),
+                   .faults = {}};
+    for (const json& each : status.at("injected")) now.faults.push_back(put_in_fault(each, "since_s", sentence));
+    for (const json& each : status.at("still_to_come")) now.faults.push_back(put_in_fault(each, "at_s", sentence));
+    return now;
+  });
+}
+
+HandReading hand_reading_of(const json& answer) {
+  return read_or_fail(damaged_answer, [&] {
+    return HandReading{answer.value("peak_force_N", 0.0), answer.value("energy_J", 0.0), answer.value("travel_m", 0.0),
+                       answer.value("lag_m", 0.0)};
+  });
+}
+
+Trace trace_of(const json& answer) {
+  static constexpr char sentence[] = "The virtual board sent a damaged trace. Build it again.";
+  return read_or_fail(sentence, [&] {
+    Trace trace;
+    trace.columns = answer.at("columns").get<std::vector<std::string>>();
+    for (const auto& row : answer.at("rows")) {
+      if (row.size() != trace.columns.size()) throw Error(sentence);
+      for (const auto& value : row) trace.values.push_back(value.get<double>());
+    }
+    return trace;
+  });
+}
+
+}  // namespace inkwell::device
