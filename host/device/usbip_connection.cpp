@@ -17,23 +17,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Before the import: what is no USB/IP server may wait for something else for ever.
 constexpr auto reply_timeout = 3s;
 
-template <class Message>
-Message receive(Socket& socket) {
-  Message message;
-  socket.receive(std::as_writable_bytes(std::span(&message, 1)));
-  return message;
-}
-
-/// A reply before the import. What is no USB/IP server may wait for something else for ever.
-usbip::OperationHeader receive_reply(Socket& socket, usbip::Operation operation) {
-  socket.wait_at_most(reply_timeout);
-  const auto reply = receive<usbip::OperationHeader>(socket);
-  if (reply.version != usbip::protocol_version || reply.operation != operation)
-    throw Error(
-        "What answers at this port does not speak USB/IP 1.1.1. Give the USB/IP port that virtual-board printed.");
-  return reply;
+ReceiveBytes from(Socket& socket) {
+  return [&socket](std::span<std::byte> bytes) { socket.receive(bytes); };
 }
 
 }  // namespace
@@ -41,30 +29,22 @@ usbip::OperationHeader receive_reply(Socket& socket, usbip::Operation operation)
 std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16_t port) {
   Socket socket(host, port);
   socket.send(usbip::bytes_of(usbip::OperationHeader{.operation = usbip::Operation::request_device_list}));
-  receive_reply(socket, usbip::Operation::reply_device_list);
-  const std::uint32_t count = receive<usbip::Big32>(socket);
-  std::vector<UsbipDevice> devices;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const auto device = receive<usbip::Device>(socket);
-    for (int j = 0; j < device.interface_count; ++j) receive<usbip::Interface>(socket);
-    devices.push_back(
-        {std::string(device.path.view()), std::string(device.bus_id.view()), device.vendor_id, device.product_id});
-  }
-  return devices;
+  socket.wait_at_most(reply_timeout);
+  return receive_device_list(from(socket));
 }
 
 UsbipConnection::UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id,
                                  std::chrono::milliseconds timeout)
     : timeout_(timeout), socket_(host, port) {
   socket_.send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));
-  const auto reply = receive_reply(socket_, usbip::Operation::reply_import);
-  if (reply.status != usbip::OperationStatus::success)
+  socket_.wait_at_most(reply_timeout);
+  const auto device = receive_import(from(socket_));
+  if (!device)
     throw Error(
         fmt::format("The device {} at {}:{} cannot be taken: another program uses it, or its cable is out. "
                     "Close the other program.",
                     bus_id, host, port));
-  const auto device = receive<usbip::Device>(socket_);
-  device_ = usbip::device_of(device.bus_number, device.device_number);
+  device_ = *device;
   socket_.wait_at_most(std::nullopt);  // from here on silence is a device with nothing to say
 }
 
@@ -97,7 +77,7 @@ std::uint32_t UsbipConnection::submit(usbip::Direction direction, std::uint8_t e
   if (closed_) throw Disconnected("The device is gone. Connect it again.");
   const std::uint32_t sequence = ++sequence_;
   message.header.sequence = sequence;
-  pending_.emplace(sequence, Pending{direction, length, std::move(on_completion)});
+  open_.add(sequence, {direction, length, std::move(on_completion)});
   const auto bytes = usbip::bytes_of(message);
   std::vector<std::byte> packet(bytes.begin(), bytes.end());
   packet.insert(packet.end(), data.begin(), data.end());
@@ -117,11 +97,10 @@ std::uint32_t UsbipConnection::submit_out(std::uint8_t endpoint, std::span<const
 
 void UsbipConnection::unlink(std::uint32_t sequence) {
   const std::lock_guard lock(mutex_);
-  if (closed_ || pending_.find(sequence) == pending_.end()) return;
-  // The server may have sent the answer already, so the transfer stays pending until the unlink is answered.
+  if (closed_ || !open_.contains(sequence)) return;
   usbip::Unlink message{.unlinked_sequence = sequence};
   message.header.sequence = ++sequence_;
-  unlinks_.emplace(sequence_, sequence);
+  open_.unlink(sequence_, sequence);
   message.header.device = device_;
   socket_.send(usbip::bytes_of(message));
 }
@@ -170,47 +149,31 @@ void UsbipConnection::receive_answers() {
   } catch (const Error& error) {
     reason = error.what();
   }
-  std::unordered_map<std::uint32_t, Pending> abandoned;
+  std::vector<UsbipTransfer> abandoned;
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;
-    abandoned.swap(pending_);
+    abandoned = open_.take_all();
   }
   on_disconnect_(reason);
-  for (auto& [sequence, pending] : abandoned) pending.on_completion({-ENODEV, 0, {}});
+  for (const auto& transfer : abandoned) transfer.on_completion({-ENODEV, 0, {}});
 }
 
 void UsbipConnection::receive_answer() {
-  const auto answer = receive<usbip::ReturnSubmit>(socket_);
-  const std::uint32_t sequence = answer.header.sequence;
-  if (answer.header.command == usbip::Command::return_unlink) {
-    OnCompletion on_completion;
-    {
-      const std::lock_guard lock(mutex_);
-      const auto unlinked = unlinks_.extract(sequence);
-      const auto taken_back = unlinked ? pending_.extract(unlinked.mapped()) : decltype(pending_)::node_type{};
-      if (taken_back) on_completion = std::move(taken_back.mapped().on_completion);
-    }
-    if (on_completion) on_completion({-ECONNRESET, 0, {}});
-    return;
-  }
-  if (answer.header.command != usbip::Command::return_submit)
-    throw Disconnected("The USB/IP server sent a message that is not of the protocol. Start the board again.");
-  Pending pending;
+  const auto answer = receive_message<usbip::ReturnSubmit>(from(socket_));
+  // The transfer stays open until all of its answer is there: one that breaks off leaves nobody waiting.
+  std::vector<std::byte> data;
   {
     const std::lock_guard lock(mutex_);
-    const auto found = pending_.find(sequence);
-    if (found == pending_.end() || answer.actual_length > found->second.length)
-      throw Disconnected("The USB/IP server answered a transfer that was not asked for. Start the board again.");
-    pending = std::move(found->second);
-    pending_.erase(found);
+    data.resize(open_.data_length_of(answer));
   }
-  Completion completion{answer.status, answer.actual_length, {}};
-  if (pending.direction == usbip::Direction::in) {
-    completion.data.resize(answer.actual_length);
-    socket_.receive(completion.data);
+  socket_.receive(data);
+  std::optional<OpenTransfers::Ended> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended = open_.take(answer, std::move(data));
   }
-  pending.on_completion(std::move(completion));
+  if (ended) ended->on_completion(std::move(ended->completion));
 }
 
 }  // namespace inkwell::device

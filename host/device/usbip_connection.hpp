@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 #include <thread>
-#include <unordered_map>
 #include <vector>
 
 #include <device/error.hpp>
@@ -16,15 +15,9 @@
 
 #include "socket.hpp"
 #include "usb_descriptors.hpp"
+#include "usbip_answers.hpp"
 
 namespace inkwell::device {
-
-struct UsbipDevice {
-  std::string path;  ///< of the device on the server
-  std::string bus_id;
-  std::uint16_t vendor_id = 0;
-  std::uint16_t product_id = 0;
-};
 
 /// What a USB/IP server exports. Throws Error if nobody or something else answers, or nothing for 3 s.
 std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16_t port);
@@ -34,12 +27,8 @@ class UsbipConnection {
   /// A request takes some milliseconds of board time, but on a busy computer a virtual board's seconds are long.
   static constexpr auto control_timeout = std::chrono::seconds(15);
 
-  struct Completion {
-    std::int32_t status = 0;      ///< 0 or a negative errno
-    std::uint32_t length = 0;     ///< bytes that were transferred
-    std::vector<std::byte> data;  ///< of an IN transfer
-  };
-  using OnCompletion = std::function<void(Completion)>;
+  using Completion = UsbipCompletion;
+  using OnCompletion = OnUsbipCompletion;
 
   /// Imports the device. Throws Error if it is in use or gone, or as list_usbip_devices does. Call `start` before the
   /// first transfer. A control transfer is taken back after `timeout`.
@@ -65,11 +54,6 @@ class UsbipConnection {
   void close();
 
  private:
-  struct Pending {
-    usbip::Direction direction;
-    std::uint32_t length;
-    OnCompletion on_completion;
-  };
   std::uint32_t submit(usbip::Direction direction, std::uint8_t endpoint, const Setup* setup, std::uint32_t length,
                        std::span<const std::byte> data, OnCompletion on_completion);
   Completion control(usbip::Direction direction, const Setup& setup, std::span<const std::byte> data);
@@ -79,10 +63,9 @@ class UsbipConnection {
   std::chrono::milliseconds timeout_;  ///< of a control transfer
   Socket socket_;
   std::uint32_t device_ = 0;
-  std::mutex mutex_;  ///< guards sending, the sequence and what is pending
+  std::mutex mutex_;  ///< guards sending, the sequence and what is open
   std::uint32_t sequence_ = 0;
-  std::unordered_map<std::uint32_t, Pending> pending_;
-  std::unordered_map<std::uint32_t, std::uint32_t> unlinks_;  ///< sequence of the unlink to that of its transfer
+  OpenTransfers open_;
   bool closed_ = false;
   std::function<void(const std::string&)> on_disconnect_;
   std::thread receiver_;

@@ -1,12 +1,17 @@
 // What the device's tests would have to wait long for.
 #include <doctest/doctest.h>
 
+#include <sys/socket.h>
+
+#include <array>
 #include <chrono>
 
 #include <failure.hpp>
+#include <usbip/messages.hpp>
 #include "device/usbip_connection.hpp"
 
 #include "fake_usbip_server.hpp"
+#include "local_server.hpp"
 
 using namespace inkwell;
 using namespace inkwell::tests;
@@ -31,4 +36,26 @@ TEST_CASE("a request that is not answered in time is taken back, and the connect
       return false;
     }
   }));
+}
+
+TEST_CASE("a request whose answer breaks off is told that the device is gone, at once") {
+  LocalServer server([](int client) {
+    const auto send_all = [&](const auto& message, std::size_t size) { send(client, &message, size, MSG_NOSIGNAL); };
+    usbip::ImportRequest import;
+    if (recv(client, &import, sizeof import, MSG_WAITALL) != sizeof import) return;
+    const usbip::OperationHeader reply{.operation = usbip::Operation::reply_import};
+    send_all(reply, sizeof reply);
+    send_all(usbip::Device{}, sizeof(usbip::Device));
+    usbip::Submit submit;
+    if (recv(client, &submit, sizeof submit, MSG_WAITALL) != sizeof submit) return;
+    usbip::ReturnSubmit answer{.actual_length = 18u};
+    answer.header.sequence = submit.header.sequence;
+    send_all(answer, sizeof answer);
+    send_all(std::array<std::byte, 4>{}, 4);
+    shutdown(client, SHUT_RDWR);
+  });
+  device::UsbipConnection connection("127.0.0.1", server.port(), "1-1");
+  connection.start([](const std::string&) {});
+  CHECK_THROWS_AS(connection.control_in(device::setup::get_descriptor(device::setup::DescriptorType::device, 0, 18)),
+                  device::Disconnected);
 }
