@@ -2,7 +2,7 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <istream>
 #include <optional>
 #include <string_view>
 
@@ -36,7 +36,7 @@ std::optional<std::uint32_t> period_at(double time_s) {
 
 class CsvReader {
  public:
-  explicit CsvReader(const std::filesystem::path& file) : name_(file.string()), stream_(file) {
+  CsvReader(std::istream& stream, const std::string& name) : name_(name), stream_(stream) {
     recording_.complete = false;
   }
 
@@ -164,7 +164,7 @@ class CsvReader {
   }
 
   std::string name_;
-  std::ifstream stream_;
+  std::istream& stream_;
   Recording recording_;
   std::vector<Holds> holds_;  ///< for each column after the time
   std::size_t line_number_ = 0;
@@ -174,6 +174,6 @@ class CsvReader {
 
 }  // namespace
 
-Recording read_csv(const std::filesystem::path& file) { return CsvReader(file).read(); }
+Recording read_csv(std::istream& stream, const std::string& name) { return CsvReader(stream, name).read(); }
 
 }  // namespace inkwell::recording

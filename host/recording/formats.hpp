@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -27,6 +28,7 @@ Recording read_hdf5(const std::filesystem::path& file);
 
 std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information,
                                    const std::string& name);
-Recording read_csv(const std::filesystem::path& file);
+/// `name`: of the file in sentences.
+Recording read_csv(std::istream& stream, const std::string& name);
 
 }  // namespace inkwell::recording

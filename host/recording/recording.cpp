@@ -115,7 +115,11 @@ Recording read_either(const std::filesystem::path& file) {
   stream.read(start.data(), start.size());
   constexpr std::array hdf5_signature{'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   if (start == hdf5_signature) return read_hdf5(file);
-  if (start[0] == '#') return read_csv(file);
+  if (start[0] == '#') {
+    stream.clear();  // of a file that is shorter
+    stream.seekg(0);
+    return read_csv(stream, file.string());
+  }
   throw device::Error(fmt::format("{} is no recording: it is neither HDF5 nor a CSV file that starts with \"# {}\".",
                                   file.string(), format_name));
 }

@@ -1,7 +1,6 @@
 // Files that the companion reads again: recordings, what the window remembers, results of the campaign.
 #include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include <campaign/result.hpp>
 #include <device/error.hpp>
@@ -11,10 +10,10 @@
 #include <recording/recording.hpp>
 #include <recording/signals.hpp>
 #include <scope/formula.hpp>
-#include <temporary_directory.hpp>
 #include <window/window_settings.hpp>
 
 #include "../host/firmware_update/made_elf.hpp"
+#include "recording/formats.hpp"
 #include "target.hpp"
 
 namespace inkwell::fuzz {
@@ -28,15 +27,22 @@ const Registered campaign_result{
           bytes_of(campaign::text_of({.number = 7, .fault = "motor_open:2", .off_after_s = 1e-3}))};
     }};
 
+/// In memory, because a file of its own takes most of the time.
 const Registered recording_csv{"recording_csv", [](Input input) {
-                                 static const tests::TemporaryDirectory directory;
-                                 const std::string file = directory.file("recording.csv");
-                                 std::ofstream(file, std::ios::binary) << text_of(input);
+                                 std::istringstream stream(text_of(input));
                                  refuse_or_take<device::Error>([&] {
-                                   const auto recording = recording::read(file);
+                                   const auto recording = recording::read_csv(stream, "recording.csv");
                                    for (const auto quantity : recording.quantities())
                                      if (recording.column(quantity).size() != recording.size())
                                        throw std::logic_error("a column is too short");
+                                   recording::log_text(recording);
+                                   recording.lost();
+                                   const std::size_t end = recording.size();
+                                   for (std::size_t begin = 0; begin < end;) {
+                                     const std::size_t next = recording.end_of_stretch(begin, end);
+                                     recording.samples(begin, next);
+                                     begin = next;
+                                   }
                                  });
                                }};
 

@@ -1,0 +1,181 @@
+// What comes over sockets: what a USB/IP server and a virtual board answer to the companion, and what clients ask of a
+// virtual board.
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include <device/error.hpp>
+#include <injection/injection.hpp>
+#include <known/boards.hpp>
+#include <program/requests.hpp>
+
+#include "device/control_answers.hpp"
+#include "device/usbip_answers.hpp"
+#include "target.hpp"
+
+namespace inkwell::fuzz {
+namespace {
+
+using nlohmann::json;
+
+/// The first byte chooses between the list, the import and transfers. These are a script: a transfer IN or OUT of a
+/// length in two bytes, one that is taken back, named by a byte, or an answer.
+const Registered usbip_answers{
+    "usbip_answers", [](Input input) {
+      const auto next = [&](std::size_t size) {
+        if (size > input.size()) throw device::Disconnected("The input is over.");
+        const Input bytes = input.first(size);
+        input = input.subspan(size);
+        return bytes;
+      };
+      const auto number = [&] { return std::to_integer<std::uint32_t>(next(1)[0]); };
+      const device::ReceiveBytes receive = [&](std::span<std::byte> bytes) {
+        std::ranges::copy(next(bytes.size()), bytes.begin());
+      };
+      refuse_or_take<device::Error>([&] {
+        const std::uint32_t kind = number() % 4;
+        if (kind == 0) {
+          const std::size_t most = input.size() / sizeof(usbip::Device);
+          if (device::receive_device_list(receive).size() > most) throw std::logic_error("devices out of nothing");
+          return;
+        }
+        if (kind == 1) {
+          device::receive_import(receive);
+          return;
+        }
+        device::OpenTransfers open;
+        std::uint32_t sequence = 0, asked = 0, ended = 0;
+        const auto ask = [&](usbip::Direction direction) {
+          const std::uint32_t low = number(), length = low | number() << 8;
+          open.add(++sequence,
+                   {direction, length, [&ended, direction, length](const device::UsbipCompletion& completion) {
+                      ++ended;
+                      const bool has_data = direction == usbip::Direction::in;
+                      if (completion.length > length || completion.data.size() != (has_data ? completion.length : 0))
+                        throw std::logic_error("an answer is longer than its transfer");
+                    }});
+          ++asked;
+        };
+        const auto end_all = [&] {
+          for (const auto& transfer : open.take_all()) transfer.on_completion({});
+          if (ended != asked) throw std::logic_error("a transfer ended not once");
+        };
+        try {
+          for (;;) switch (number() % 4) {
+              case 0: ask(usbip::Direction::in); break;
+              case 1: ask(usbip::Direction::out); break;
+              case 2: {
+                const std::uint32_t taken_back = number();
+                if (open.contains(taken_back)) open.unlink(++sequence, taken_back);
+                break;
+              }
+              default: {
+                const auto answer = device::receive_message<usbip::ReturnSubmit>(receive);
+                std::vector<std::byte> data(open.data_length_of(answer));
+                receive(data);
+                if (auto answered = open.take(answer, std::move(data)))
+                  answered->on_completion(std::move(answered->completion));
+                break;
+              }
+            }
+        } catch (const device::Error&) {
+          end_all();
+        }
+      });
+    }};
+
+/// The first byte chooses what was asked for.
+const Registered control_answers{"control_answers", [](Input input) {
+                                   if (input.empty()) return;
+                                   refuse_or_take<device::Error>([&] {
+                                     const json answer = device::parse_answer(text_of(input.subspan(1)), "any");
+                                     switch (std::to_integer<unsigned>(input[0]) % 6) {
+                                       case 0: device::status_of(answer); break;
+                                       case 1: device::pin_levels_of(answer); break;
+                                       case 2:
+                                         device::put_in_fault_of(answer, {.fault = "supply_sag", .for_s = 0.5});
+                                         break;
+                                       case 3: device::injections_of(answer); break;
+                                       case 4: device::hand_reading_of(answer); break;
+                                       default: {
+                                         const auto trace = device::trace_of(answer);
+                                         if (trace.values.size() != trace.row_count() * trace.columns.size())
+                                           throw std::logic_error("values are missing");
+                                         break;
+                                       }
+                                     }
+                                   });
+                                 }};
+
+using namespace virtual_board;
+
+void check_vector(const Vector3& vector) {
+  if (!vector.allFinite()) throw std::logic_error("a place is nowhere");
+}
+
+/// Everything that is read from a request before it reaches the board.
+void read_values(Command command, const json& values) {
+  switch (command) {
+    case Command::run: number(values, "for_s", 0.0, 1e6); break;
+    case Command::cut_power: number_or(values, "at_flash_operation", 1.0, 1.0, 1e9); break;
+    case Command::usb: truth_value(values, "connected"); break;
+    case Command::dock: truth_value(values, "docked"); break;
+    case Command::buttons: pressed_buttons(values); break;
+    case Command::supply: number(values, "voltage_V", 0.0, 36.0); break;
+    case Command::gimbal: check_vector(vector(values, "angles_rad", 20.0)); break;
+    case Command::hand: check_vector(hand_request(values).target_m); break;
+    case Command::hand_path: {
+      double earliest_s = 0.0;
+      for (const Waypoint& point : hand_path_request(values)) {
+        check_vector(point.target_m);
+        if (!(point.after_s >= earliest_s)) throw std::logic_error("a path goes back in time");
+        earliest_s = point.after_s;
+      }
+      break;
+    }
+    case Command::glitch:
+    case Command::pin: {
+      const PinName pin = pin_of(values);
+      if (pin.port < 'A' || pin.port > 'I' || pin.pin > 15) throw std::logic_error("a pin that no chip has");
+      pin_drive(values);
+      break;
+    }
+    case Command::inject:
+    case Command::heal: {
+      const auto injection = checked(injection_request(values), board::default_board);
+      const auto& info = protocol::info(injection.fault);
+      if (!(injection.amount >= info.minimum && injection.amount <= info.maximum))
+        throw std::logic_error("an amount outside of its range");
+      break;
+    }
+    case Command::meter:
+    case Command::trace:
+      at(values, "action", "what to do");
+      number_or(values, "maximum", 10'000, 0, 1e6);
+      break;
+    case Command::status:
+    case Command::truth:
+    case Command::pause:
+    case Command::stand_by:
+    case Command::resume:
+    case Command::reset:
+    case Command::quit: break;
+  }
+}
+
+const Registered control_requests{
+    "control_requests", [](Input input) {
+      refuse_or_take<Refused>([&] {
+        const auto request = read_request(text_of(input));
+        refuse_or_take<InvalidInjection>([&] { read_values(request.info->command, request.values); });
+      });
+    }};
+
+/// As on a command line and in a script of faults.
+const Registered injections{
+    "injections", [](Input input) {
+      refuse_or_take<InvalidInjection>([&] { parse_injections(text_of(input), board::default_board); });
+    }};
+
+}  // namespace
+}  // namespace inkwell::fuzz
