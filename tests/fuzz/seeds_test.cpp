@@ -23,3 +23,11 @@ TEST_CASE("every target bears its seeds, nothing, and each seed cut short anywhe
     }
   }
 }
+
+TEST_CASE("every target has its row on the page of what is fed") {
+  const std::string page = fuzz::text_of(fuzz::contents_of(INKWELL_SOURCE_DIRECTORY "/docs/fuzzing.md"));
+  for (const fuzz::Target& target : fuzz::targets()) {
+    CAPTURE(target.name);
+    CHECK(page.find("\n| `" + std::string(target.name) + "` | ") != std::string::npos);
+  }
+}
