@@ -54,7 +54,7 @@ bool PoseRecorder::read(protocol::PoseReport& report) const {
 
 bool PoseRecorder::take(protocol::PoseReport& report) {
   if (!read(report)) return false;
-  longest_was_taken_.store(true);
+  note_taken();
   return true;
 }
 

@@ -1,6 +1,7 @@
 #include <usb/device.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include "controller_report.hpp"
 #include "descriptors.hpp"
@@ -20,13 +21,14 @@ constexpr std::size_t hid_in = 0, hid_out = 1, scope_in = 2, controller_in = 3; 
 /// start of frame, the host might ask while there is neither.
 constexpr float pose_replacing_s = 8e-6f;
 
-/// A pose goes out if its control interrupt began less than this before the next start of frame, beside a period and
-/// the longest interrupt: the pose after it comes a period later, is seen when its interrupt is over, and then the main
-/// loop, which also fills the scope's FIFO, must come to it.
+/// For the main loop, which also fills the scope's FIFO, to come to a pose whose control interrupt is over, and to load
+/// it. The lead of a pose before the start of frame is a period, the longest interrupt and this: the one after it would
+/// begin a period later and come too late.
 constexpr float pose_loading_s = 12e-6f + pose_replacing_s;
 
-/// So much before that one, another goes out which it replaces: should the main loop be held up just then, the host
-/// still finds a pose. What holds it up longest is a set of all parameters, for 0.3 ms, control interrupts and all.
+/// A spare one goes out so much before the lead, and that of the lead replaces it: should the main loop be held up just
+/// then, the host still finds a pose. What holds it up longest is a set of all parameters, for 0.3 ms with the control
+/// interrupts.
 constexpr float spare_pose_lead_s = 8.0f * protocol::servo_period_s;
 
 /// A host that left so many reports in a row did not listen, so it lost none: 0.1 s.
@@ -118,6 +120,7 @@ void Device::host_gone() {
 
 void Device::start_endpoints() {
   poses_replaced_ = 0;
+  spare_waits_ = false;
   for (Endpoint& endpoint : endpoints_) {
     endpoint.busy = endpoint.halted = false;
     port_.open(endpoint.address, endpoint.type);
@@ -206,7 +209,9 @@ void Device::offer_controller_report() {
 void Device::note_pose_taken() {
   if (poses_replaced_ < replaced_unheard) poses_dropped_ += poses_replaced_;
   poses_replaced_ = 0;
-  spare_waits_ = false;
+  if (!std::exchange(spare_waits_, false)) return;
+  link_.poses.note_taken();
+  offer_controller_report();
 }
 
 void Device::forget(Endpoint& endpoint) {

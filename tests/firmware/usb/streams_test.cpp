@@ -175,6 +175,34 @@ TEST_CASE("a host that asks just before a frame's end gets no report twice") {
   CHECK(poses_dropped(bench) == 0);
 }
 
+TEST_CASE("a host that always asks just before a frame's end has the controller's reports and the load all the same") {
+  DeviceBench bench;
+  bench.configure();
+  pass_frame(bench);
+  read_pose(bench);
+  std::uint32_t controller_reports = 0, last_sequence = 0;
+  const auto pass = [&](int periods) {
+    for (int i = 0; i < periods; ++i) {
+      bench.run(1);
+      bench.device.poll();
+    }
+  };
+  for (int frame = 0; frame < 24; ++frame) {
+    if (frame == 2) bench.link.poses.note_load(6000);
+    pass(13);
+    const auto pose = read_pose(bench);
+    REQUIRE(pose.has_value());
+    if (frame > 0) CHECK(pose->sequence == last_sequence + 1);
+    last_sequence = pose->sequence;
+    if (frame == 2) CHECK(int{pose->servo_load} > 100);
+    if (frame == 4) CHECK(int{pose->servo_load} < 10);
+    if (read_controller(bench)) ++controller_reports;
+    pass(7);
+  }
+  CHECK(controller_reports > 20);
+  CHECK(poses_dropped(bench) == 0);
+}
+
 TEST_CASE("a report tells the longest interrupt since the one before, whatever was made ready in between") {
   DeviceBench bench;
   bench.configure();

@@ -44,6 +44,9 @@ class PoseRecorder {
   /// The same for a report that is sent: the longest interrupt is looked for anew.
   bool take(protocol::PoseReport& report);
 
+  /// That of read() was sent after all.
+  void note_taken() { longest_was_taken_.store(true); }
+
   /// Of the control interrupt, since the last report that was taken.
   std::uint32_t longest_cycles() const { return longest_cycles_.load(); }
 

@@ -95,7 +95,8 @@ void storm(FirmwareOnBus& bus, double time_s) {
   std::vector<std::byte> set(size);
   std::memcpy(set.data(), &report, size);
   for (const Ticks end = bus.chip.now() + ticks(time_s); bus.chip.now() < end;)
-    bus.control(0x21, 9, parameters_feature, 0, static_cast<std::uint16_t>(size), set);
+    if (bus.control(0x21, 9, parameters_feature, 0, static_cast<std::uint16_t>(size), set).status != 0)
+      throw std::runtime_error("the board refuses its own parameters");
 }
 
 }  // namespace
