@@ -7,6 +7,8 @@
 namespace inkwell::application {
 
 static_assert(sizeof(VectorTable) <= protocol::image_identity_offset);
+static_assert(protocol::image_identity_offset == 512,
+              "the linker script, boards/facts/stm32f405.ld, has the same number");
 static_assert(protocol::image_identity(board::facts.name, INKWELL_VERSION_NUMBERS).board_name() == board::facts.name);
 
 /// Of whole words, as all of the image is.

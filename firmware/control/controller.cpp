@@ -330,9 +330,10 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
       watch(Fault::current_sensor, offsets_.measured() && !offsets_.plausible) |
       watch(Fault::samples_stale,
             !samples.currents_measured || samples.slow_age_periods > SupplyFilter::stale_periods) |
-      watch(Fault::supply_low, supply_.supply_V < board_.supply_minimum_V || samples.supply_V < board_.supply_gone_V) |
+      watch(Fault::supply_low,
+            supply_.supply_V < board_.supply_minimum_V || samples.supply_V < board_.supply_far_too_low_V) |
       watch(Fault::supply_high,
-            supply_.supply_V > board_.supply_maximum_V || samples.supply_V > board_.supply_burst_V) |
+            supply_.supply_V > board_.supply_maximum_V || samples.supply_V > board_.supply_far_too_high_V) |
       watch(Fault::bridge_fault, samples.bridge_fault) |
       watch(Fault::over_current,
             over_current(current_A_, over_current_A_, samples.current_A, board_.current_measurable_A)) |

@@ -243,8 +243,10 @@ inline constexpr float motor_heat_holds_back_from = 0.85f;
 /// At this heat, which holding back should not let come, the force goes off.
 inline constexpr float motor_heat_fault = 1.25f;
 
-/// From this part of speed_limit_m_per_s on, what of the force drives the motion gives way; from the next on all of it.
-inline constexpr float speed_holds_back_from = 0.8f, speed_drives_no_more_from = 0.9f;
+/// From this part of speed_limit_m_per_s on, what of the force drives the motion gives way.
+inline constexpr float speed_holds_back_from = 0.8f;
+/// From this part on all of it does.
+inline constexpr float speed_drives_no_more_from = 0.9f;
 
 /// Letters of a board's name, which is that of its folder in boards/.
 inline constexpr std::size_t board_name_maximum = 31;

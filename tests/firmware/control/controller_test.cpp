@@ -233,11 +233,12 @@ TEST_CASE("what the samples can show wrong switches the bridges off with the rig
 }
 
 TEST_CASE("a supply that dips or rises for a control period, but not far, is borne") {
-  for (const float dip_V : {6.1f, 26.3f}) {
+  for (const float reading_V : {6.1f, 26.3f}) {
+    CAPTURE(reading_V);
     const Settings settings = settings_near_wall();
     Controller controller = tests::active_controller(settings);
     Samples samples = tests::samples_at_rest();
-    samples.supply_V = dip_V;
+    samples.supply_V = reading_V;
     tests::run(controller, samples, settings, 1);
     tests::run(controller, tests::samples_at_rest(), settings, 20);
     CHECK(controller.fault() == Fault::none);

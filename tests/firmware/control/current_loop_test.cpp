@@ -147,6 +147,11 @@ TEST_CASE("where a motor reaches its limit all give way together") {
     CHECK(control::current_references({0.5f, 0.5f, 0.1f}, motors, {0.2f, 0.0f, 0.0f}).reference_A[1] == 0.0f);
     CHECK_FALSE(control::current_references({}, motors, {0.2f, 0.0f, 0.0f}).held_by_heat);
   }
+  SUBCASE("a hot one whose limit does not fall, because it bears it for ever: its own limit") {
+    const auto references = control::current_references({1.0f, 3.0f, 0.1f}, motors, {0.0f, 0.1f, 0.0f});
+    CHECK(references.held_by_current);
+    CHECK_FALSE(references.held_by_heat);
+  }
   SUBCASE("a hot one and one at its own limit: both are told") {
     const auto references = control::current_references({1.0f, 0.5f, 0.5f}, motors, {0.05f, 0.0f, 0.0f});
     CHECK(references.held_by_heat);

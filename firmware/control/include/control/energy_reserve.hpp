@@ -31,7 +31,7 @@ struct EnergyReserve {
 /// puts in what may be given for ever.
 void account(EnergyReserve& reserve, const Vector3& felt_N, const Vector3& position_m, const EnergyLimits& limits);
 
-/// Of the energy below which the force gives way.
+/// What is left, in parts of the energy below which the force gives way.
 inline float part_left(const EnergyReserve& reserve, const EnergyLimits& limits) {
   return reserve.left_J * limits.low_reserves_per_J;
 }

@@ -34,8 +34,9 @@ struct BoardLimits {
   float duty_limit;            ///< largest magnitude of a duty, 0..1
   float current_measurable_A;  ///< beyond it a sensor may show less than there is: fault over_current
   float dead_time_part;        ///< of the supply: what the bridges' dead time takes from a motor's voltage
-  /// What one reading tells: no load makes a supply dip so far, and no arm that is braked lifts it so far.
-  float supply_gone_V = 0.5f * supply_minimum_V, supply_burst_V = 1.1f * supply_maximum_V;
+  /// One reading beyond these is a fault at once, without the filter: no load makes a supply dip so far, and no arm
+  /// that is braked lifts it so far.
+  float supply_far_too_low_V = 0.5f * supply_minimum_V, supply_far_too_high_V = 1.1f * supply_maximum_V;
 };
 
 }  // namespace inkwell::control

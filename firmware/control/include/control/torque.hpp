@@ -47,7 +47,7 @@ inline CurrentReferences current_references(const Triple& torque_Nm, const Motor
       references.reference_A[i] = 0.0f;
       continue;
     }
-    (heat_beyond[i] > 0.0f ? references.held_by_heat : references.held_by_current) = true;
+    (allowed_A < motors.current_limit_A[i] ? references.held_by_heat : references.held_by_current) = true;
     part = std::min(part, part_of(allowed_A, asked_A));
   }
   for (float& reference_A : references.reference_A) reference_A *= part;

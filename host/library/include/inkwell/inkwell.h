@@ -175,7 +175,7 @@ enum inkwell_force_source {
 /* What makes the force smaller than what the hand touches: bits of inkwell_pose::limits. None of them is a fault. */
 enum inkwell_limit {
   INKWELL_LIMIT_FORCE = 1,   /* the force is held at force_limit_N, or on its way up to it */
-  INKWELL_LIMIT_CURRENT = 2, /* a motor gives all that it may; all give way together, so the direction stays */
+  INKWELL_LIMIT_CURRENT = 2, /* a motor is at its own limit; all give way together, so the direction stays */
   INKWELL_LIMIT_CHANGE = 4,  /* the force changes as fast as force_change_N_per_s lets it */
   INKWELL_LIMIT_ENERGY = 8,  /* the hand got all the energy that it may: what drives the motion gives way */
   INKWELL_LIMIT_HEAT = 16,   /* a hot motor gives all that it still may; all give way together */
