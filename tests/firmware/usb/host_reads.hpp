@@ -1,0 +1,45 @@
+// What a host reads of poses and of the controller, from a device on the bench.
+#pragma once
+
+#include <cstring>
+#include <optional>
+
+#include <doctest/doctest.h>
+
+#include "device_bench.hpp"
+
+namespace inkwell::test {
+
+inline std::optional<protocol::PoseReport> read_pose(DeviceBench& bench) {
+  const InPacket packet = bench.port.in(1);
+  if (packet.handshake != Handshake::ack) return std::nullopt;
+  REQUIRE(packet.data.size() == sizeof(protocol::PoseReport));
+  protocol::PoseReport pose;
+  std::memcpy(&pose, packet.data.data(), sizeof pose);
+  bench.device.poll();
+  return pose;
+}
+
+inline std::optional<protocol::ControllerReport> read_controller(DeviceBench& bench) {
+  const InPacket packet = bench.port.in(3);
+  if (packet.handshake != Handshake::ack) return std::nullopt;
+  REQUIRE(packet.data.size() == 14);
+  protocol::ControllerReport report;
+  std::memcpy(&report, packet.data.data(), sizeof report);
+  bench.device.poll();
+  return report;
+}
+
+/// A frame of the bus as the main loop sees it: it looks after every control period.
+inline void pass_frame(DeviceBench& bench) {
+  for (int i = 0; i < 20; ++i) {
+    bench.run(1);
+    bench.device.poll();
+  }
+}
+
+inline std::uint32_t poses_dropped(DeviceBench& bench) {
+  return bench.get_feature<protocol::InformationReport>(protocol::ReportId::information).pose_reports_dropped;
+}
+
+}  // namespace inkwell::test
