@@ -113,16 +113,20 @@ void check_vector(const Vector3& vector) {
   if (!vector.allFinite()) throw std::logic_error("a place is nowhere");
 }
 
+void check_pin(const PinName& pin) {
+  if (pin.port < 'A' || pin.port > 'I' || pin.pin > 15) throw std::logic_error("a pin that no chip has");
+}
+
 /// Everything that is read from a request before it reaches the board.
 void read_values(Command command, const json& values) {
   switch (command) {
-    case Command::run: number(values, "for_s", 0.0, 1e6); break;
-    case Command::cut_power: number_or(values, "at_flash_operation", 1.0, 1.0, 1e9); break;
+    case Command::run: run_time_s(values); break;
+    case Command::cut_power: flash_operation(values); break;
     case Command::usb: truth_value(values, "connected"); break;
     case Command::dock: truth_value(values, "docked"); break;
     case Command::buttons: pressed_buttons(values); break;
-    case Command::supply: number(values, "voltage_V", 0.0, 36.0); break;
-    case Command::gimbal: check_vector(vector(values, "angles_rad", 20.0)); break;
+    case Command::supply: supply_voltage_V(values); break;
+    case Command::gimbal: check_vector(gimbal_angles_rad(values)); break;
     case Command::hand: check_vector(hand_request(values).target_m); break;
     case Command::hand_path: {
       double earliest_s = 0.0;
@@ -134,12 +138,13 @@ void read_values(Command command, const json& values) {
       break;
     }
     case Command::glitch:
-    case Command::pin: {
-      const PinName pin = pin_of(values);
-      if (pin.port < 'A' || pin.port > 'I' || pin.pin > 15) throw std::logic_error("a pin that no chip has");
+      check_pin(pin_of(values));
+      glitch_time_s(values);
+      break;
+    case Command::pin:
+      check_pin(pin_of(values));
       pin_drive(values);
       break;
-    }
     case Command::inject:
     case Command::heal: {
       const auto injection = checked(injection_request(values), board::default_board);
@@ -148,10 +153,10 @@ void read_values(Command command, const json& values) {
         throw std::logic_error("an amount outside of its range");
       break;
     }
-    case Command::meter:
+    case Command::meter: meter_action(values); break;
     case Command::trace:
-      at(values, "action", "what to do");
-      number_or(values, "maximum", 10'000, 0, 1e6);
+      trace_action(values);
+      trace_rows(values);
       break;
     case Command::status:
     case Command::truth:

@@ -85,7 +85,7 @@ json run(const json& request, Simulation& simulation) {
   if (simulation.is_running_for()) throw Refused("another run is under way; wait for its reply or pause it");
   if (simulation.board().locked_up() && !simulation.options().seconds)
     throw Refused("the processor is locked up; reset it first");
-  simulation.run_for(number(request, "for_s", 0.0, 1e6));
+  simulation.run_for(run_time_s(request));
   return {};
 }
 
@@ -108,8 +108,8 @@ json reset(const json&, Simulation& simulation) {
 
 json cut_power(const json& request, Simulation& simulation) {
   Chip& chip = simulation.board().chip();
-  if (request.contains("at_flash_operation"))
-    chip.cut_power_at_flash_operation(static_cast<std::uint64_t>(number(request, "at_flash_operation", 1.0, 1e9)));
+  if (const auto operation = flash_operation(request))
+    chip.cut_power_at_flash_operation(*operation);
   else
     chip.reset(ResetCause::power_on);
   return {};
@@ -132,7 +132,7 @@ json buttons(const json& request, Simulation& simulation) {
 }
 
 json supply(const json& request, Simulation& simulation) {
-  simulation.board().plant().set_supply_V(number(request, "voltage_V", 0.0, 36.0));
+  simulation.board().plant().set_supply_V(supply_voltage_V(request));
   return {};
 }
 
@@ -164,12 +164,12 @@ json pin(const json& request, Simulation& simulation) {
 
 json glitch(const json& request, Simulation& simulation) {
   const PinName place = pin_of(request);
-  simulation.board().chip().glitch(place.port, place.pin, ticks(number(request, "for_s", 0.0, 1e3)));
+  simulation.board().chip().glitch(place.port, place.pin, ticks(glitch_time_s(request)));
   return {};
 }
 
 json gimbal(const json& request, Simulation& simulation) {
-  simulation.board().plant().turn_gimbal(vector(request, "angles_rad", 20.0));
+  simulation.board().plant().turn_gimbal(gimbal_angles_rad(request));
   return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <plant/truth.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -12,6 +13,36 @@ using nlohmann::json;
 namespace {
 
 constexpr double reach_m = 2.0;  // farther away than any arm of the descriptions' ranges
+
+const json& at(const json& request, const char* key, const char* what) {
+  const auto found = request.find(key);
+  if (found == request.end()) throw Refused(fmt::format("\"{}\" is missing: {}", key, what));
+  return *found;
+}
+
+double checked_number(const json& value, const char* key, double minimum, double maximum) {
+  if (!value.is_number()) throw Refused(fmt::format("\"{}\" must hold numbers only", key));
+  const double number = value.get<double>();
+  if (!(number >= minimum && number <= maximum))
+    throw Refused(fmt::format("\"{}\" holds {}, which is outside {} to {}", key, number, minimum, maximum));
+  return number;
+}
+
+double number(const json& request, const char* key, double minimum, double maximum) {
+  return checked_number(at(request, key, "a number"), key, minimum, maximum);
+}
+
+double number_or(const json& request, const char* key, double otherwise, double minimum, double maximum) {
+  return request.contains(key) ? number(request, key, minimum, maximum) : otherwise;
+}
+
+Vector3 vector(const json& request, const char* key, double largest) {
+  const json& value = at(request, key, "a list of three numbers");
+  if (!value.is_array() || value.size() != 3) throw Refused(fmt::format("\"{}\" must be a list of three numbers", key));
+  Vector3 result;
+  for (int i = 0; i < 3; ++i) result[i] = checked_number(value[static_cast<std::size_t>(i)], key, -largest, largest);
+  return result;
+}
 
 std::string text_or_number(const json& request, const char* key, const char* what) {
   const json& value = at(request, key, what);
@@ -114,40 +145,42 @@ Request read_request(std::string_view line) {
   return {&*found, std::move(values)};
 }
 
-const json& at(const json& request, const char* key, const char* what) {
-  const auto found = request.find(key);
-  if (found == request.end()) throw Refused(fmt::format("\"{}\" is missing: {}", key, what));
-  return *found;
-}
-
 bool truth_value(const json& request, const char* key) {
   const json& value = at(request, key, "true or false");
   if (!value.is_boolean()) throw Refused(fmt::format("\"{}\" must be true or false", key));
   return value.get<bool>();
 }
 
-double checked_number(const json& value, const char* key, double minimum, double maximum) {
-  if (!value.is_number()) throw Refused(fmt::format("\"{}\" must hold numbers only", key));
-  const double number = value.get<double>();
-  if (!(number >= minimum && number <= maximum))
-    throw Refused(fmt::format("\"{}\" holds {}, which is outside {} to {}", key, number, minimum, maximum));
-  return number;
+double run_time_s(const json& request) { return number(request, "for_s", 0.0, 1e6); }
+
+std::optional<std::uint64_t> flash_operation(const json& request) {
+  if (!request.contains("at_flash_operation")) return std::nullopt;
+  return static_cast<std::uint64_t>(number(request, "at_flash_operation", 1.0, 1e9));
 }
 
-double number(const json& request, const char* key, double minimum, double maximum) {
-  return checked_number(at(request, key, "a number"), key, minimum, maximum);
+double supply_voltage_V(const json& request) { return number(request, "voltage_V", 0.0, 36.0); }
+
+double glitch_time_s(const json& request) { return number(request, "for_s", 0.0, 1e3); }
+
+Vector3 gimbal_angles_rad(const json& request) { return vector(request, "angles_rad", 20.0); }
+
+MeterAction meter_action(const json& request) {
+  const json& action = at(request, "action", "\"start\" or \"read\"");
+  if (action == "start") return MeterAction::start;
+  if (action == "read") return MeterAction::read;
+  throw Refused("\"action\" must be \"start\" or \"read\"");
 }
 
-double number_or(const json& request, const char* key, double otherwise, double minimum, double maximum) {
-  return request.contains(key) ? number(request, key, minimum, maximum) : otherwise;
+TraceAction trace_action(const json& request) {
+  const json& action = at(request, "action", "\"start\", \"stop\" or \"read\"");
+  if (action == "start") return TraceAction::start;
+  if (action == "stop") return TraceAction::stop;
+  if (action == "read") return TraceAction::read;
+  throw Refused("\"action\" must be \"start\", \"stop\" or \"read\"");
 }
 
-Vector3 vector(const json& request, const char* key, double largest) {
-  const json& value = at(request, key, "a list of three numbers");
-  if (!value.is_array() || value.size() != 3) throw Refused(fmt::format("\"{}\" must be a list of three numbers", key));
-  Vector3 result;
-  for (int i = 0; i < 3; ++i) result[i] = checked_number(value[static_cast<std::size_t>(i)], key, -largest, largest);
-  return result;
+std::size_t trace_rows(const json& request) {
+  return static_cast<std::size_t>(number_or(request, "maximum", 10'000, 0, Trace::rows_maximum));
 }
 
 HandRequest hand_request(const json& request) {

@@ -42,12 +42,7 @@ json truth(const json&, Simulation& simulation) {
 
 json meter(const json& request, Simulation& simulation) {
   Plant& plant = simulation.board().plant();
-  const json& action = at(request, "action", "\"start\" or \"read\"");
-  if (action == "start") {
-    plant.start_meter();
-  } else if (action != "read") {
-    throw Refused("\"action\" must be \"start\" or \"read\"");
-  }
+  if (meter_action(request) == MeterAction::start) plant.start_meter();
   if (!plant.meter().runs()) throw Refused("the meter has not been started; {\"action\":\"start\"} does so");
   const HandMeter::Reading& reading = plant.meter().reading();
   return {{"since_s", seconds(reading.since)},
@@ -59,26 +54,20 @@ json meter(const json& request, Simulation& simulation) {
 
 json trace(const json& request, Simulation& simulation) {
   Trace& trace = simulation.board().trace();
-  const json& action = at(request, "action", "\"start\", \"stop\" or \"read\"");
-  if (action == "start") {
-    trace.start();
-  } else if (action == "stop") {
-    trace.stop();
-  } else if (action == "read") {
-    const auto maximum = static_cast<std::size_t>(number_or(request, "maximum", 10'000, 0, Trace::rows_maximum));
-    json columns{"period", "board_time_s"};
-    for (const auto& quantity : protocol::simulated_quantity_table) columns.push_back(quantity.name);
-    json rows = json::array();
-    for (const Trace::Row& row : trace.read(maximum)) {
-      json cells{row.period, seconds(row.at)};
-      for (const double value : row.values) cells.push_back(value);
-      rows.push_back(std::move(cells));
-    }
-    return {{"columns", std::move(columns)}, {"rows", std::move(rows)}, {"dropped", trace.dropped()}};
-  } else {
-    throw Refused("\"action\" must be \"start\", \"stop\" or \"read\"");
+  switch (trace_action(request)) {
+    case TraceAction::start: trace.start(); return {};
+    case TraceAction::stop: trace.stop(); return {};
+    case TraceAction::read: break;
   }
-  return {};
+  json columns{"period", "board_time_s"};
+  for (const auto& quantity : protocol::simulated_quantity_table) columns.push_back(quantity.name);
+  json rows = json::array();
+  for (const Trace::Row& row : trace.read(trace_rows(request))) {
+    json cells{row.period, seconds(row.at)};
+    for (const double value : row.values) cells.push_back(value);
+    rows.push_back(std::move(cells));
+  }
+  return {{"columns", std::move(columns)}, {"rows", std::move(rows)}, {"dropped", trace.dropped()}};
 }
 
 }  // namespace inkwell::virtual_board

@@ -83,7 +83,7 @@ class FakePort final : public usb::Port {
 
   bool cancel(std::uint8_t endpoint_address) override {
     ++at(endpoint_address).cancels;
-    if ((endpoint_address & 0x7F) == asked_in_cancel) in(std::exchange(asked_in_cancel, std::uint8_t{0}));
+    if (asked_in_cancel == (endpoint_address & 0x7F)) in(*std::exchange(asked_in_cancel, std::nullopt));
     const bool was_left = at(endpoint_address).running;
     forget_transfer(endpoint_address);
     return was_left;
@@ -116,8 +116,8 @@ class FakePort final : public usb::Port {
     frame_.number = frame_.count % 2048;
   }
   bool frames_run = true;
-  /// The host asks this endpoint just before the device takes back what it has for it, once; 0 for none.
-  std::uint8_t asked_in_cancel = 0;
+  /// The host asks this endpoint just before the device takes back what it has for it, once.
+  std::optional<std::uint8_t> asked_in_cancel;
 
   void reset() {
     for (Endpoint& endpoint : endpoints_) endpoint = {};

@@ -30,13 +30,15 @@ inline std::optional<protocol::ControllerReport> read_controller(DeviceBench& be
   return report;
 }
 
-/// A frame of the bus as the main loop sees it: it looks after every control period.
-inline void pass_frame(DeviceBench& bench) {
-  for (int i = 0; i < 20; ++i) {
+/// As the main loop sees it: it looks after every control period.
+inline void pass_periods(DeviceBench& bench, int periods) {
+  for (int i = 0; i < periods; ++i) {
     bench.run(1);
     bench.device.poll();
   }
 }
+/// A frame of the bus.
+inline void pass_frame(DeviceBench& bench) { pass_periods(bench, 20); }
 
 inline std::uint32_t poses_dropped(DeviceBench& bench) {
   return bench.get_feature<protocol::InformationReport>(protocol::ReportId::information).pose_reports_dropped;

@@ -9,6 +9,7 @@ using test::DeviceBench;
 using test::done_result;
 using test::Handshake;
 using test::pass_frame;
+using test::pass_periods;
 using test::poses_dropped;
 using test::read_controller;
 using test::read_pose;
@@ -56,10 +57,7 @@ TEST_CASE("a main loop that is held up at a frame's end costs no pose: the host 
   bench.configure();
   pass_frame(bench);
   const std::uint32_t first = read_pose(bench)->sequence;
-  for (int i = 0; i < 13; ++i) {
-    bench.run(1);
-    bench.device.poll();
-  }
+  pass_periods(bench, 13);
   bench.run(7);  // and nobody looks
   const auto pose = read_pose(bench);
   REQUIRE(pose.has_value());
@@ -78,17 +76,11 @@ TEST_CASE("a host that asks just before a frame's end gets no report twice") {
   bench.configure();
   pass_frame(bench);
   const std::uint32_t first = read_pose(bench)->sequence;
-  for (int i = 0; i < 17; ++i) {
-    bench.run(1);
-    bench.device.poll();
-  }
+  pass_periods(bench, 17);
   SUBCASE("before the device looks") { CHECK(bench.port.in(1).handshake == Handshake::ack); }
   SUBCASE("as the device is about to replace it") { bench.port.asked_in_cancel = 1; }
-  for (int i = 0; i < 3; ++i) {
-    bench.run(1);
-    bench.device.poll();
-  }
-  CHECK(bench.port.asked_in_cancel == 0);
+  pass_periods(bench, 3);
+  CHECK_FALSE(bench.port.asked_in_cancel.has_value());
   CHECK_FALSE(read_pose(bench).has_value());
   pass_frame(bench);
   CHECK(read_pose(bench)->sequence == first + 2);
@@ -101,15 +93,9 @@ TEST_CASE("a host that always asks just before a frame's end has the controller'
   pass_frame(bench);
   read_pose(bench);
   std::uint32_t controller_reports = 0, last_sequence = 0;
-  const auto pass = [&](int periods) {
-    for (int i = 0; i < periods; ++i) {
-      bench.run(1);
-      bench.device.poll();
-    }
-  };
   for (int frame = 0; frame < 24; ++frame) {
     if (frame == 2) bench.link.poses.note_load(6000);
-    pass(13);
+    pass_periods(bench, 13);
     const auto pose = read_pose(bench);
     REQUIRE(pose.has_value());
     if (frame > 0) CHECK(pose->sequence == last_sequence + 1);
@@ -117,7 +103,7 @@ TEST_CASE("a host that always asks just before a frame's end has the controller'
     if (frame == 2) CHECK(int{pose->servo_load} > 100);
     if (frame == 4) CHECK(int{pose->servo_load} < 10);
     if (read_controller(bench)) ++controller_reports;
-    pass(7);
+    pass_periods(bench, 7);
   }
   CHECK(controller_reports > 20);
   CHECK(poses_dropped(bench) == 0);

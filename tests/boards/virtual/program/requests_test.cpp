@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 #include <failure.hpp>
+#include <plant/truth.hpp>
 
 using namespace inkwell::virtual_board;
 using inkwell::tests::contains;
@@ -21,7 +22,7 @@ std::string refusal_of(const std::string& line) {
 TEST_CASE("a command is known by its name, with keys of its own") {
   const Request request = read_request(R"({"command": "run", "for_s": 0.5})");
   CHECK(request.info->command == Command::run);
-  CHECK(number(request.values, "for_s", 0.0, 1.0) == 0.5);
+  CHECK(run_time_s(request.values) == 0.5);
   CHECK(contains(refusal_of("[]"), "one JSON object in one line"));
   CHECK(contains(refusal_of("{\"command\""), "one JSON object in one line"));
   CHECK(contains(refusal_of("{}"), "\"command\" is missing"));
@@ -31,11 +32,37 @@ TEST_CASE("a command is known by its name, with keys of its own") {
 
 TEST_CASE("every command is in the table once, and in the help") {
   const std::string help = explain_commands();
+  CHECK(command_table().size() == static_cast<std::size_t>(Command::trace) + 1);
+  std::size_t row = 0;
   for (const CommandInfo& info : command_table()) {
     CAPTURE(info.name);
+    CHECK(static_cast<std::size_t>(info.command) == row++);
     CHECK(read_request("{\"command\":\"" + std::string(info.name) + "\"}").info == &info);
     CHECK(contains(help, "  " + std::string(info.name) + " "));
   }
+}
+
+TEST_CASE("what is beyond its bounds is refused, and what is missing") {
+  using nlohmann::json;
+  CHECK(message_of<Refused>([] {
+          run_time_s(json{{"for_s", -1}});
+        }) == "\"for_s\" holds -1, which is outside 0 to 1000000");
+  CHECK(message_of<Refused>([] { glitch_time_s(json::object()); }) == "\"for_s\" is missing: a number");
+  CHECK_FALSE(flash_operation(json::object()));
+  CHECK(flash_operation(json{{"at_flash_operation", 7}}) == 7);
+  CHECK(contains(message_of<Refused>([] { flash_operation(json{{"at_flash_operation", 0}}); }), "outside 1 to"));
+  CHECK(contains(message_of<Refused>([] { supply_voltage_V(json{{"voltage_V", 36.1}}); }), "outside 0 to 36"));
+  CHECK(contains(message_of<Refused>([] {
+                   gimbal_angles_rad(json{{"angles_rad", {0, 0, 21}}});
+                 }),
+                 "outside -20 to 20"));
+  CHECK(meter_action(json{{"action", "read"}}) == MeterAction::read);
+  CHECK(message_of<Refused>([] {
+          meter_action(json{{"action", "stop"}});
+        }) == "\"action\" must be \"start\" or \"read\"");
+  CHECK(trace_action(json{{"action", "stop"}}) == TraceAction::stop);
+  CHECK(trace_rows(json::object()) == 10'000);
+  CHECK(trace_rows(json{{"maximum", Trace::rows_maximum}}) == Trace::rows_maximum);
 }
 
 TEST_CASE("a name that is no text is not written out, however deep its lists are") {

@@ -9,14 +9,19 @@
 
 namespace inkwell::virtual_usb_test {
 
+namespace {
+
+constexpr unsigned own_address = 2, pose_endpoint = 1;
+constexpr std::uint32_t control_of_poses = 0x920, epena = 1u << 31;
+
+}  // namespace
+
 TEST_CASE("a pose that the host takes while the driver takes it back does not begin again") {
   for (const int token_at : {1, 2, 3}) {
     CAPTURE(token_at);
     FirmwareOnBus bus(flashed_image());
     bus.connect();
     bus.run_for(0.01);
-    constexpr std::uint32_t control_of_poses = 0x920, epena = 1u << 31;
-    constexpr unsigned address = 2, pose_endpoint = 1;
     std::array<std::byte, virtual_board::full_speed_packet_maximum> packet;
     int reads = 0;
     bool taken = false;
@@ -24,7 +29,7 @@ TEST_CASE("a pose that the host takes while the driver takes it back does not be
     bus.registers.on_read = [&](std::uint32_t offset, std::uint32_t value) {
       if (offset != control_of_poses || (value & epena) == 0) return;
       ++reads;
-      if (reads == token_at) bus.core.in(address, pose_endpoint, packet);
+      if (reads == token_at) bus.core.in(own_address, pose_endpoint, packet);
       if (reads == token_at + 1) taken = bus.core.finish_in(pose_endpoint);
     };
     bus.run_for(0.005);
@@ -49,8 +54,6 @@ TEST_CASE("a pose that the host takes while a newer one of the same frame replac
     FirmwareOnBus bus(flashed_image());
     bus.connect();
     bus.run_for(0.01);
-    constexpr std::uint32_t control_of_poses = 0x920, epena = 1u << 31;
-    constexpr unsigned address = 2, pose_endpoint = 1;
     std::array<std::byte, virtual_board::full_speed_packet_maximum> packet;
     int replacements = 0, reads = 0;
     Ticks last_read = 0;
@@ -61,7 +64,7 @@ TEST_CASE("a pose that the host takes while a newer one of the same frame replac
       last_read = bus.chip.now();
       ++reads;
       if (replacements != replacement) return;
-      if (reads == 1) bus.core.in(address, pose_endpoint, packet);
+      if (reads == 1) bus.core.in(own_address, pose_endpoint, packet);
       if (reads == 2) taken = bus.core.finish_in(pose_endpoint);
     };
     for (int i = 0; i < 500 && !taken; ++i) bus.run_for(10e-6);
@@ -72,7 +75,7 @@ TEST_CASE("a pose that the host takes while a newer one of the same frame replac
     // The port knows nothing of the packet that was taken beside it, so it is not the one that asks on.
     std::optional<protocol::PoseReport> next;
     bus.cable.on_start_of_frame = [&](std::uint16_t) {
-      if (next || bus.core.in(address, pose_endpoint, packet).handshake != virtual_board::Handshake::ack) return;
+      if (next || bus.core.in(own_address, pose_endpoint, packet).handshake != virtual_board::Handshake::ack) return;
       std::memcpy(&next.emplace(), packet.data(), sizeof *next);
       bus.core.finish_in(pose_endpoint);
     };
@@ -84,7 +87,6 @@ TEST_CASE("a pose that the host takes while a newer one of the same frame replac
 
 namespace {
 
-constexpr unsigned own_address = 2;
 constexpr std::uint32_t receive_pop = 0x020, control_in = 0x900, control_out = 0xB00, fifos = 0x1000, naksts = 1u << 17;
 constexpr std::uint8_t device_descriptor = 1, configuration_descriptor = 2;
 using Setup = std::array<std::byte, 8>;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -69,12 +70,19 @@ struct Request {
 /// Of a line of a client. Throws Refused, as all that follow do.
 Request read_request(std::string_view line);
 
-const nlohmann::json& at(const nlohmann::json& request, const char* key, const char* what);
 bool truth_value(const nlohmann::json& request, const char* key);
-double checked_number(const nlohmann::json& value, const char* key, double minimum, double maximum);
-double number(const nlohmann::json& request, const char* key, double minimum, double maximum);
-double number_or(const nlohmann::json& request, const char* key, double otherwise, double minimum, double maximum);
-Vector3 vector(const nlohmann::json& request, const char* key, double largest);
+double run_time_s(const nlohmann::json& request);
+/// In the middle of which operation of the flash the power fails; none: at once.
+std::optional<std::uint64_t> flash_operation(const nlohmann::json& request);
+double supply_voltage_V(const nlohmann::json& request);
+double glitch_time_s(const nlohmann::json& request);
+Vector3 gimbal_angles_rad(const nlohmann::json& request);
+enum class MeterAction : std::uint8_t { start, read };
+MeterAction meter_action(const nlohmann::json& request);
+enum class TraceAction : std::uint8_t { start, stop, read };
+TraceAction trace_action(const nlohmann::json& request);
+/// So many rows are read at most.
+std::size_t trace_rows(const nlohmann::json& request);
 
 struct HandRequest {
   bool holds = false;
