@@ -87,6 +87,19 @@ TEST_CASE("a host that asks just before a frame's end gets no report twice") {
   CHECK(poses_dropped(bench) == 0);
 }
 
+TEST_CASE("a device that is configured anew while a spare report waits gives that frame no second one") {
+  DeviceBench bench;
+  bench.configure();
+  pass_frame(bench);
+  const std::uint32_t first = read_pose(bench)->sequence;
+  pass_periods(bench, 13);  // the host may have taken the spare in the moment that the device was configured
+  CHECK(bench.configure() == done_result);
+  pass_periods(bench, 7);
+  CHECK_FALSE(read_pose(bench).has_value());
+  pass_frame(bench);
+  CHECK(read_pose(bench)->sequence == first + 2);
+}
+
 TEST_CASE("a host that always asks just before a frame's end has the controller's reports and the load all the same") {
   DeviceBench bench;
   bench.configure();
