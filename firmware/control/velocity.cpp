@@ -1,5 +1,7 @@
 #include <control/velocity.hpp>
 
+#include <cmath>
+
 #include <control/trigonometry.hpp>
 
 namespace inkwell::control {
@@ -19,7 +21,8 @@ struct Slope {
 bool less(const Slope& a, const Slope& b) { return a.half_counts * b.periods < b.half_counts * a.periods; }
 
 /// Slope of the longest window that is of use and whose line passes all of its edges within the tolerance.
-Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
+// Not inlined: what follows it would be there once for each of its ends.
+[[gnu::noinline]] Slope fit_line(const SpeedEstimate& estimate, const EncoderEdge& head) {
   const float speed = estimate.counts_per_period;
   const std::int32_t tolerance = speed > -0.5f && speed < 0.5f ? 1 : 2;  // half counts
   Slope line{0, 1};
@@ -67,9 +70,9 @@ void decay(SpeedEstimate& estimate, std::uint32_t silent_periods) {
   constexpr float step = 1.0f + 1.0f / 16.0f;
   const float speed = estimate.counts_per_period;
   const auto silent = static_cast<float>(silent_periods);
-  const float expected_counts = speed * silent;
-  if (expected_counts > step) estimate.counts_per_period = reciprocal(silent);
-  if (expected_counts < -step) estimate.counts_per_period = -reciprocal(silent);
+  if (!(std::fabs(speed * silent) > step)) return;
+  const float bound = reciprocal(silent);
+  estimate.counts_per_period = speed > 0.0f ? bound : -bound;
 }
 
 }  // namespace
