@@ -85,6 +85,11 @@ void Controller::carry_out(const protocol::CommandReport& command) {
   }
 }
 
+void Controller::pass_self_test(const MeasuredMotors& measured) {
+  asked_.events |= lasting_events_ = events(Event::tested);
+  measured_ = measured;
+}
+
 void Controller::drive(const ForceTarget& target, const Settings& settings) {
   if (head_for(program_, target, settings.program_force)) ++late_force_reports_;
 }
@@ -217,18 +222,44 @@ void Controller::find_current_references(const Settings& settings) {
   reference_A_[test_.motor] = clamp(test_.value(), -limit_A, limit_A);
 }
 
+/// Of the motor whose turn it is: as it was measured, and as warm as it is now.
+void Controller::know_resistance(const Settings& settings) {
+  resistances_[turn_] = Resistance::of(measured_.resistance_ohm[turn_], heat_.heat[turn_] - measured_.heat[turn_],
+                                       settings.motor_model.resistance_ohm[turn_]);
+}
+
 void Controller::watch_motors(const Settings& settings) {
+  // With the force on it changes by heat alone, as rarely as that does.
+  if (!force_is_on() || heat_.readings == 0) know_resistance(settings);
   if (!force_is_on()) {
-    motor_watch_ = {};
+    rest(motor_watch_);
     watch_idle_currents();
     return;
   }
-  if (!fits(motor_watch_, current_A_, joint_speed_rad_per_s_, settings.motor_model)) [[unlikely]]
+  if (!fits(motor_watch_, current_A_, joint_speed_rad_per_s_, resistances_, settings.motor_model.back_emf_Vs_per_rad))
+      [[unlikely]]
     raise(Fault::motor_implausible);
   off_zero_periods_ = 0;
   // What the bridges were told in the period before is what they do until the next.
   turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V,
-          {bridge_loss_part_[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
+          {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
+}
+
+/// A current reading that tells too little has its loop ask for more. The voltage of the motor whose turn it is gets
+/// room for no more than what makes the force limit, whatever the reading tells: what the force leaves of that limit
+/// may be this motor's alone.
+void Controller::bound_voltages(const Settings& settings) {
+  const float supply_bound_V = board_.duty_limit * supply_.supply_V;
+  const float bound_V = clamp(settings.current_loop.voltage_limit_V, 0.0f, supply_bound_V);
+  if (!force_is_on()) {
+    voltage_ranges_.fill({-bound_V, bound_V});
+    return;
+  }
+  const float left_N = force_limit_N_ - force_.magnitude_N;
+  const float most_A = std::fabs(reference_A_[turn_]) + left_N * settings.motors.ampere_per_N[turn_];
+  const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[turn_] * joint_speed_rad_per_s_[turn_];
+  voltage_ranges_[turn_] =
+      voltage_range(most_A, resistances_[turn_], back_emf_V, motor_watch_.loss.expected_V(), bound_V);
 }
 
 /// What the sensors show while the bridges have been off for a while is their offset, and it was measured.
@@ -242,6 +273,7 @@ void Controller::watch_idle_currents() {
 
 void Controller::regulate_currents(const Settings& settings) {
   watch_motors(settings);
+  bound_voltages(settings);
   drive_ = {};
   if (!force_is_on() && !test_.runs()) {
     loops_ = {};
@@ -249,14 +281,18 @@ void Controller::regulate_currents(const Settings& settings) {
       drive_pulses(settings);
     return;
   }
-  const float supply_bound_V = board_.duty_limit * supply_.supply_V;
-  const float bound_V = clamp(settings.current_loop.voltage_limit_V, 0.0f, supply_bound_V);
+  // A test of voltage has no loop.
+  constexpr std::size_t none = 3;
+  const bool is_voltage_test = test_.runs() && test_.quantity == TestPulse::Quantity::voltage;
+  const std::size_t without_loop = is_voltage_test ? test_.motor : none;
+#pragma GCC unroll 1
   for (std::size_t i = 0; i < 3; ++i) {
-    const CurrentLoopStep step = regulate(loops_[i], reference_A_[i], current_A_[i], settings.current_loop, bound_V);
-    const bool voltage_test = test_.runs() && test_.quantity == TestPulse::Quantity::voltage && test_.motor == i;
-    const float voltage_V = voltage_test ? clamp(test_voltage_V(settings), -bound_V, bound_V) : step.voltage_V;
-    loops_[i] = voltage_test ? CurrentLoop{} : step.loop;
-    drive_.duty[i] = clamp(voltage_V * supply_.per_V, -board_.duty_limit, board_.duty_limit);
+    CurrentLoopStep step =
+        regulate(loops_[i], reference_A_[i], current_A_[i], settings.current_loop, voltage_ranges_[i]);
+    if (i == without_loop) [[unlikely]]
+      step = {{}, clamp(test_voltage_V(settings), voltage_ranges_[i].least_V, voltage_ranges_[i].most_V)};
+    loops_[i] = step.loop;
+    drive_.duty[i] = step.voltage_V * supply_.per_V;  // the range keeps it within the duty's limit
   }
   drive_.enabled = true;
 }

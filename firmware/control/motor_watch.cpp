@@ -2,10 +2,11 @@
 
 namespace inkwell::control {
 
-bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s, const MotorModel& model) {
+bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s,
+          const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad) {
   const std::size_t motor = watch.motor;
   const Unexplained look = unexplained(watch.voltage_V, watch.loss, current_A[motor], joint_speed_rad_per_s[motor],
-                                       model.resistance_ohm[motor], model.back_emf_Vs_per_rad[motor]);
+                                       resistances[motor], back_emf_Vs_per_rad[motor]);
   const float beyond_V = watch.beyond_V[motor] + look.voltage_V - look.bearable_V;
   watch.beyond_V[motor] = beyond_V > 0.0f ? beyond_V : 0.0f;
   return !(beyond_V > MotorWatch::bearable_sum_V);

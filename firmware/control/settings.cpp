@@ -76,9 +76,11 @@ Triple joint_Nm_per_A(const ParameterSet& set) {
 Motors motors(const ParameterSet& set) {
   const Triple joint = joint_Nm_per_A(set);
   const Triple continuous_A = set.of_each(Parameter::continuous_current_1_A);
-  Motors motors{{}, set.of_each(Parameter::current_limit_1_A), {}};
+  const float longer_m = std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
+  Motors motors{{}, set.of_each(Parameter::current_limit_1_A), {}, {}};
   for (std::size_t i = 0; i < 3; ++i) {
     motors.ampere_per_Nm[i] = 1.0f / joint[i];
+    motors.ampere_per_N[i] = longer_m * std::fabs(motors.ampere_per_Nm[i]);
     const float more_A = motors.current_limit_A[i] - continuous_A[i];
     motors.ampere_per_heat[i] = more_A > 0.0f ? more_A / (1.0f - protocol::motor_heat_holds_back_from) : 0.0f;
   }

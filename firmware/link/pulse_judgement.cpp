@@ -36,10 +36,11 @@ Result failed_or_moved(const PulseRound::Motor& motor, const Expected& expected)
 
 struct OfMotor {
   Found motor, bridge;
+  float mean_ohm = 0.0f;
 };
 
 OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expected& expected) {
-  if (!motor.takes_part) return {{Result::no_part}, {Result::no_part}};
+  if (!motor.takes_part) return {{Result::no_part}, {Result::no_part}, 0.0f};
   const auto& current_A = motor.current_A;
   const float shown_ohm = PulseJudgement::resistance_shown_part * expected.resistance_ohm;
   const float forward_ohm = resistance_ohm(motor, current_A[0][own], current_A[1][own], shown_ohm);
@@ -49,11 +50,13 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
   const float worse_ohm = forward_is_worse ? forward_ohm : backward_ohm;
   const float part = worse_ohm / expected.resistance_ohm;
   if (!(part > PulseJudgement::resistance_minimum_part && part < PulseJudgement::resistance_maximum_part))
-    return {{failed_or_moved(motor, expected), worse_ohm}, {}};
+    return {{failed_or_moved(motor, expected), worse_ohm}, {}, 0.0f};
   // What is left of the voltage at no current; a back EMF adds to one sign what it takes from the other.
   const float bridge_V = motor.high_V - 0.5f * (forward_ohm * current_A[1][own] - backward_ohm * current_A[2][own]);
   const bool is_slow = bridge_V > PulseJudgement::dead_time_ratio * expected.dead_V;
-  return {{Result::passed, worse_ohm}, {is_slow ? failed_or_moved(motor, expected) : Result::passed, bridge_V}};
+  return {{Result::passed, worse_ohm},
+          {is_slow ? failed_or_moved(motor, expected) : Result::passed, bridge_V},
+          0.5f * (forward_ohm + backward_ohm)};
 }
 
 /// The pulses of one motor in the sensors of the others.
@@ -103,6 +106,7 @@ PulseJudgement judge(const control::PulseRound& round, const control::Settings& 
     const OfMotor found = judge_motor(round.motors[i], i, expected);
     judgement.motors[i] = found.motor;
     judgement.bridges[i] = found.bridge;
+    judgement.resistance_ohm[i] = found.mean_ohm;
     if (found.bridge.result == Result::passed)
       judgement.bridge_loss_part[i] = std::clamp(found.bridge.figure, 0.0f, round.dead_V) / round.supply_V;
     const Found wires = judge_wires(round.motors[i], i, expected);

@@ -48,7 +48,7 @@ void SelfTest::follow(const control::Controller& controller, const control::Sett
   } else if (phase_ == Phase::rest) {
     wait_for_rest(signals, settings.motor_model);
   } else if (phase_ == Phase::pulses && round_is_over_.load()) {
-    end_round(judge(controller.pulse_round(), settings));
+    end_round(judge(controller.pulse_round(), settings), signals);
   }
 }
 
@@ -107,12 +107,13 @@ void SelfTest::wait_for_rest(const protocol::SignalValues& signals, const contro
     phase_ = Phase::pulses;
     give(Order::pulses);
   } else if (samples_.recorded() - waits_since_ > rest_patience_periods) {
-    end_round(PulseJudgement::moved());
+    end_round(PulseJudgement::moved(), signals);
   }
 }
 
-void SelfTest::end_round(const PulseJudgement& judgement) {
+void SelfTest::end_round(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
   note_pulses(judgement);
+  keep(judgement, signals);
   if (judgement.any(Result::failed)) ++failures_;
   const bool is_told = !judgement.any(Result::failed) && !judgement.any(Result::moved);
   if (is_told || failures_ == failures_to_believe || ++rounds_ == rounds_maximum)
@@ -125,10 +126,18 @@ void SelfTest::note_pulses(const PulseJudgement& judgement) {
   for (std::size_t i = 0; i < 3; ++i) {
     note(of_axis(Item::motor_1, i), judgement.motors[i].result, judgement.motors[i].figure);
     note(of_axis(Item::bridge_1, i), judgement.bridges[i].result, judgement.bridges[i].figure);
-    // One that cannot be told anew takes what it took.
-    if (judgement.bridges[i].result == Result::passed) bridge_loss_part_[i] = judgement.bridge_loss_part[i];
   }
   note(Item::current_wires, judgement.wires.result, judgement.wires.figure);
+}
+
+/// What cannot be told anew stays as it was told.
+void SelfTest::keep(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (judgement.bridges[i].result == Result::passed) measured_.bridge_loss_part[i] = judgement.bridge_loss_part[i];
+    if (judgement.motors[i].result != Result::passed) continue;
+    measured_.resistance_ohm[i] = judgement.resistance_ohm[i];
+    measured_.heat[i] = signals[of_axis(protocol::Signal::motor_heat_1, i)];
+  }
 }
 
 void SelfTest::give_verdict() {
@@ -171,7 +180,7 @@ INKWELL_INTERRUPT void SelfTest::exchange(control::Controller& controller) {
   switch (static_cast<Order>(order % orders)) {
     case Order::none: return;
     case Order::pulses: pulses_run_ = true; return controller.start_pulses();
-    case Order::pass: return controller.pass_self_test(bridge_loss_part_);
+    case Order::pass: return controller.pass_self_test(measured_);
     case Order::fail: return controller.raise(protocol::Fault::self_test_failed);
   }
 }

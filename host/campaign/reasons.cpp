@@ -21,7 +21,7 @@ std::string_view reason_of_wire(std::string_view wire) {
   if (wire == "bridge_heartbeat") return "None is known: without it the bridges are off.";
   if (wire == "bridge_hold") return "It stands as with the bridges on.";
   if (wire.starts_with("motor_current"))
-    return "The reading stays near what is asked for, or what it leads to within what a hot motor may differ by.";
+    return "The reading stays near what is asked for, or what it leads to within what a sound motor may differ by.";
   if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
   if (wire == "supply") return "It reads a sound supply.";
   if (wire == "usb_supply") return "It stands as with the cable in.";
@@ -81,9 +81,9 @@ std::string_view reason_with_force(InjectedFault fault, std::string_view of) {
              "far beyond its stop, a jump of 16 counts, and a place that is not the inkwell while its switch is "
              "closed.";
     case InjectedFault::shunt_gain:
-      return "Voltage, reading and speed fit within what a hot motor may differ by; the next self-test tells.";
+      return "Voltage, reading and speed fit within what a sound motor may differ by; the next self-test tells.";
     case InjectedFault::shunt_offset:
-    case InjectedFault::shunt_frozen: return "Voltage, reading and speed fit within what a hot motor may differ by.";
+    case InjectedFault::shunt_frozen: return "Voltage, reading and speed fit within what a sound motor may differ by.";
     case InjectedFault::shunt_high:
     case InjectedFault::shunt_low: return "None is known: a reading at its rail is more than any sensor can show.";
     case InjectedFault::motor_open:
@@ -92,8 +92,8 @@ std::string_view reason_with_force(InjectedFault fault, std::string_view of) {
       return "With a small current its voltage stays within what a sound motor may differ by; the next self-test "
              "tells.";
     case InjectedFault::motor_hot:
-      return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by; nothing "
-             "measures the torque.";
+      return "The current loop makes up for it, and its voltage stays within what a sound motor may differ by, or its "
+             "bound keeps it there; nothing measures the torque.";
     case InjectedFault::leg_high:
     case InjectedFault::leg_low: return "The leg's other switch, at which the bridge trips, was not turned on.";
     case InjectedFault::leg_slow:

@@ -116,7 +116,9 @@ device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched,
 
 }  // namespace
 
-TEST_CASE("supervisor and motors' watch cost the longest control interrupt at most 300 instructions, the heat 100") {
+TEST_CASE(
+    "supervisor and motors' watch cost the longest control interrupt at most 300 instructions, the heat 100, voltages' "
+    "bounds 80") {
   const auto profile = std::filesystem::temp_directory_path() / fmt::format("inkwell-watches-{}", getpid());
   {
     auto options = stepped_board(device::SimulationMode::exact, device::CyclePricing::likely);
@@ -142,13 +144,16 @@ TEST_CASE("supervisor and motors' watch cost the longest control interrupt at mo
   };
   const auto watching = instructions_in({"Controller9supervise", "Controller12watch_motors"});
   const auto heat = instructions_in({"7control11update_heat"});
+  const auto bounds = instructions_in({"Controller14bound_voltages"});
   MESSAGE("simulation: of ", executed.size(), " instructions ", watching, " supervise, ", heat,
-          " are the motors' heat");
+          " are the motors' heat, ", bounds, " the bounds of the loops' voltages");
   CHECK(executed.size() > 1'000);
   CHECK(watching > 100);
   CHECK(watching <= 300);
   CHECK(heat > 10);
   CHECK(heat <= 100);
+  CHECK(bounds > 10);
+  CHECK(bounds <= 80);
 }
 
 TEST_CASE("eight planes cost at most 250 cycles while none is touched, and leave a third of the period at worst") {

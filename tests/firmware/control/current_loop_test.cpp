@@ -37,8 +37,9 @@ struct RegulatedMotor {
   /// One control period; returns the current that the controller saw.
   double step(double reference_A, double back_emf_V = 0, double bound_V = 16) {
     const double seen_A = motor.current_A;
-    const control::CurrentLoopStep result = control::regulate(
-        loop, static_cast<float>(reference_A), static_cast<float>(seen_A), gains, static_cast<float>(bound_V));
+    const control::CurrentLoopStep result =
+        control::regulate(loop, static_cast<float>(reference_A), static_cast<float>(seen_A), gains,
+                          {static_cast<float>(-bound_V), static_cast<float>(bound_V)});
     loop = result.loop;
     motor.run(next_V - back_emf_V, protocol::servo_period_s);
     next_V = static_cast<double>(result.voltage_V);
@@ -90,6 +91,35 @@ TEST_CASE("the voltage is bounded, and the integral does not wind up meanwhile")
   double lowest = 1;
   for (int period = 0; period < 100; ++period) lowest = std::min(lowest, regulated.step(0.5, 0, 4.0));
   CHECK(lowest > 0.4);
+}
+
+TEST_CASE("each side of a voltage has its own bound") {
+  const CurrentLoopGains gains = control::prepare(tests::omni_parameters()).current_loop;
+  for (const float reference_A : {10.0f, -10.0f}) {
+    CurrentLoop loop;
+    for (int period = 0; period < 200; ++period) loop = regulate(loop, reference_A, 0.0f, gains, {-1.0f, 3.0f}).loop;
+    CHECK(regulate(loop, reference_A, 0.0f, gains, {-1.0f, 3.0f}).voltage_V == (reference_A > 0.0f ? 3.0f : -1.0f));
+    CHECK(std::fabs(loop.integral_V) < 1.0f);
+  }
+}
+
+TEST_CASE(
+    "a loop's voltage has room for a current to either side, with back EMF, bridge and what the motor may differ by") {
+  const auto measured = control::Resistance::of(2.0f, 0.0f, 9.0f);
+  const auto still = control::voltage_range(1.5f, measured, 0.0f, 0.4f, 16.0f);
+  CHECK(still.most_V == doctest::Approx(1.05 * 3.0 + 0.4));
+  CHECK(still.least_V == -still.most_V);
+  const auto turning = control::voltage_range(1.5f, measured, -2.0f, 0.4f, 16.0f);
+  CHECK(turning.most_V == doctest::Approx(still.most_V - 2.0f));
+  CHECK(turning.least_V == doctest::Approx(still.least_V - 2.0f));
+  // With what the parameters say there is more.
+  CHECK(control::voltage_range(1.5f, control::Resistance::of(0.0f, 0.0f, 2.0f), 0.0f, 0.4f, 16.0f).most_V ==
+        doctest::Approx(1.1075 * 3.0 + 0.4));
+  for (const float back_emf_V : {-30.0f, 0.0f, 30.0f}) {
+    const auto [least_V, most_V] = control::voltage_range(1.5f, measured, back_emf_V, 0.4f, 3.0f);
+    CHECK(least_V == (back_emf_V > 0.0f ? 3.0f : -3.0f));
+    CHECK(most_V == (back_emf_V < 0.0f ? -3.0f : 3.0f));
+  }
 }
 
 TEST_CASE("a motor with 30 % less inductance or half more resistance stays stable") {

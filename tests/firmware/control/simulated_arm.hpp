@@ -82,17 +82,19 @@ inline void move_to(control::Controller& controller, control::Samples& samples,
 }
 
 /// Past the measurement of the offsets and a self-test that passes: state `unreferenced`.
-inline control::Controller started_controller(const control::Settings& settings) {
+inline control::Controller started_controller(const control::Settings& settings,
+                                              const control::MeasuredMotors& measured = {}) {
   control::Controller controller{board_limits};
   run(controller, samples_at_rest(), settings, control::CurrentOffsets::duration_periods);
-  controller.pass_self_test({});
+  controller.pass_self_test(measured);
   run(controller, samples_at_rest(), settings, 1);
   return controller;
 }
 
 /// Referenced at counts of zero, stylus out of the inkwell: state `ready`.
-inline control::Controller ready_controller(const control::Settings& settings) {
-  control::Controller controller = started_controller(settings);
+inline control::Controller ready_controller(const control::Settings& settings,
+                                            const control::MeasuredMotors& measured = {}) {
+  control::Controller controller = started_controller(settings, measured);
   control::Samples samples = samples_at_rest();
   samples.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
   run(controller, samples, settings,
@@ -101,8 +103,9 @@ inline control::Controller ready_controller(const control::Settings& settings) {
   return controller;
 }
 
-inline control::Controller active_controller(const control::Settings& settings) {
-  control::Controller controller = ready_controller(settings);
+inline control::Controller active_controller(const control::Settings& settings,
+                                             const control::MeasuredMotors& measured = {}) {
+  control::Controller controller = ready_controller(settings, measured);
   controller.carry_out(command(protocol::Command::enable_force));
   run(controller, samples_at_rest(), settings, 1);
   return controller;

@@ -66,6 +66,7 @@ TEST_CASE("sound motors pass, with their resistance, what the bridge takes, and 
     CHECK(judgement.motors[i].figure == doctest::Approx(2.27).epsilon(0.01));
     CHECK(judgement.bridges[i].figure == doctest::Approx(0.432).epsilon(0.02));
     CHECK(judgement.bridge_loss_part[i] == doctest::Approx(0.024).epsilon(0.02));
+    CHECK(judgement.resistance_ohm[i] == doctest::Approx(2.26).epsilon(0.01));
   }
   CHECK(judgement.wires.figure < 0.01f);
 }

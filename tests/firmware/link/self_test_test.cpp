@@ -1,13 +1,7 @@
 // The self-test as main loop and control interrupt lead it together.
 #include <doctest/doctest.h>
 
-#include <cmath>
-
-#include <firmware/control/arms.hpp>
-#include <firmware/control/simulated_arm.hpp>
-#include <firmware/control/simulated_motors.hpp>
-
-#include "fresh_link.hpp"
+#include "self_test_board.hpp"
 
 namespace {
 
@@ -18,68 +12,7 @@ using protocol::Fault;
 using protocol::SelfTestItem;
 using protocol::SelfTestResult;
 using protocol::State;
-
-/// A board: its interrupt, and its main loop once a period.
-struct Board {
-  link::Link& link = test::fresh_link();
-  control::Controller controller{tests::board_limits};
-  control::Settings settings = control::prepare(tests::omni_parameters());
-  control::Samples samples = tests::samples_at_rest();
-  float analog_supply_V = 3.3f;
-  bool analog_supply_is_right = true;
-  tests::SimulatedMotors motors;
-  control::Triple offset_A{};  ///< of the current sensors
-  tests::FakeClock clock;
-  control::Drive drive;
-  std::optional<SelfTestItem> floating;  ///< a wire that nothing drives
-  std::uint32_t follows_by_chance = 0;   ///< looks in which a sound wire follows
-  std::optional<SelfTestItem> looked_at;
-  std::uint32_t looks = 0;
-  std::uint32_t driven_periods = 0;
-
-  void interrupt() {
-    control::Triple told_V{};
-    for (std::size_t i = 0; i < 3; ++i) told_V[i] = drive.duty[i] * samples.supply_V;
-    samples.current_A = motors.step(told_V);
-    for (std::size_t i = 0; i < 3; ++i) samples.current_A[i] += offset_A[i];
-    drive = controller.step(samples, settings, clock);
-    if (controller.state() == State::testing) link.self_test.exchange(controller);
-    driven_periods += drive.enabled;
-    test::interrupt(link, controller.signals(), {.state = controller.state(), .fault = controller.fault()});
-  }
-
-  void main_loop() {
-    if (!link.self_test.goes_on()) return;
-    link.self_test.follow(controller, settings, {samples.gimbal_ratio, analog_supply_V, analog_supply_is_right});
-    if (const auto wire = link.self_test.wanted_wire()) {
-      CHECK_FALSE(drive.enabled);
-      looks = wire == looked_at ? looks + 1 : 1;
-      looked_at = wire;
-      link.self_test.note_wire(wire == floating || looks <= follows_by_chance);
-    }
-  }
-
-  void run(int periods) {
-    for (; periods > 0; --periods) {
-      interrupt();
-      main_loop();
-    }
-  }
-
-  /// The periods that it takes.
-  int run_while(State state) {
-    int periods = 0;
-    for (; controller.state() == state && periods < 10'000; ++periods) run(1);
-    return periods;
-  }
-
-  SelfTestResult result(SelfTestItem item) const {
-    return link.self_test.report().entries[static_cast<std::size_t>(item)].result;
-  }
-  float figure(SelfTestItem item) const {
-    return link.self_test.report().entries[static_cast<std::size_t>(item)].figure;
-  }
-};
+using Board = test::SelfTestBoard;
 
 TEST_CASE("a sound board tests itself once after its start, in less than 20 ms, and every item passes") {
   Board board;
@@ -129,51 +62,6 @@ TEST_CASE("on command it tests anew, from unreferenced and ready, and comes back
   board.controller.carry_out(tests::command(Command::self_test));
   board.run(2);
   CHECK(protocol::force_is_on(board.controller.state()));
-}
-
-TEST_CASE("what a bridge takes is known from the test, so half a motor's turns are missed at a usual force") {
-  for (const bool is_tested : {true, false}) {
-    CAPTURE(is_tested);
-    Board board;
-    board.run_while(State::starting);
-    board.run_while(State::testing);
-    if (is_tested) {
-      // A test in which the arm moves all the time tells no more, and what is known stays known.
-      board.controller.carry_out(tests::command(Command::self_test));
-      board.run(1);
-      for (int period = 0; board.controller.state() == State::testing && period < 10'000; ++period) {
-        board.samples.encoder_counts[0] += 12;
-        board.run(1);
-      }
-      board.samples.encoder_counts[0] = 0;
-      REQUIRE(board.result(SelfTestItem::bridge_1) == SelfTestResult::moved);
-    } else {
-      board.controller.pass_self_test({});
-    }
-    board.samples.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
-    board.run_while(State::unreferenced);
-    board.controller.carry_out(tests::command(Command::enable_force));
-    board.run(2);
-    REQUIRE(protocol::force_is_on(board.controller.state()));
-    const auto push = [&](int periods) {
-      for (; periods > 0; --periods) {
-        board.controller.host_alive();
-        board.controller.drive({{2.5f, 0.0f, 0.0f}, protocol::ForceMode::beside_walls}, board.settings);
-        board.run(1);
-      }
-    };
-    push(6'000);
-    std::size_t strongest = 0;
-    for (std::size_t i = 1; i < 3; ++i)
-      if (std::fabs(board.samples.current_A[i]) > std::fabs(board.samples.current_A[strongest])) strongest = i;
-    const float current_A = std::fabs(board.samples.current_A[strongest]);
-    REQUIRE(current_A > 0.7f);  // from 0.6 A on it is missed, without the test from 1.4 A on
-    REQUIRE(current_A < 1.2f);
-    REQUIRE(protocol::force_is_on(board.controller.state()));
-    board.motors.motors[strongest].resistance_ohm *= 0.5f;
-    push(2'000);
-    CHECK((board.controller.fault() == Fault::motor_implausible) == is_tested);
-  }
 }
 
 TEST_CASE("what fails takes the force away, is believed the second time, and goes only by a test that passes") {

@@ -86,12 +86,8 @@ class Controller {
   bool pulses_run() const { return pulses_.runs(); }
   const PulseRound& pulse_round() const { return pulses_.round(); }
   const Triple& current_offsets_A() const { return offsets_.offset_A; }
-  /// The self-test is over, and nothing has failed that takes the force away. `bridge_loss_part` of the supply is what
-  /// each bridge takes at least from its motor, 0 to the dead time's part; 0 where that was never measured.
-  void pass_self_test(const Triple& bridge_loss_part) {
-    asked_.events |= lasting_events_ = protocol::events(protocol::Event::tested);
-    bridge_loss_part_ = bridge_loss_part;
-  }
+  /// The self-test is over, and nothing has failed that takes the force away.
+  [[gnu::cold]] void pass_self_test(const MeasuredMotors& measured);
   /// It has begun so many times since the start.
   std::uint32_t self_tests() const { return self_tests_; }
 
@@ -127,7 +123,9 @@ class Controller {
   // What is rare is compiled to be short: the interrupts' memory is small.
   [[gnu::cold]] Force less_driving(const Force& asked, float power_W, const Settings& settings);
   void find_current_references(const Settings& settings);
+  [[gnu::cold]] void know_resistance(const Settings& settings);
   void watch_motors(const Settings& settings);
+  void bound_voltages(const Settings& settings);
   void regulate_currents(const Settings& settings);
   [[gnu::cold]] void watch_idle_currents();
   [[gnu::cold]] void watch_inkwell_switch(const Settings& settings);
@@ -140,7 +138,7 @@ class Controller {
   void change_state(const Supervisor& next);
 
   BoardLimits board_;
-  Triple bridge_loss_part_{};  ///< as pass_self_test() was told
+  MeasuredMotors measured_;  ///< as pass_self_test() was told
 
   // Remembered from period to period.
   std::uint32_t periods_ = 0;
@@ -152,9 +150,11 @@ class Controller {
   std::size_t turn_ = 0;  ///< of the joints, motors and gimbal angles, where one a period is enough
   std::array<CurrentLoop, 3> loops_{};
   MotorHeat heat_;
+  std::array<Resistance, 3> resistances_{};
   MotorWatch motor_watch_;
-  Triple over_current_A_{};             ///< a measured current beyond it is a fault
-  std::uint32_t off_zero_periods_ = 0;  ///< in a row, while no bridge was on
+  std::array<VoltageRange, 3> voltage_ranges_{};  ///< of the loops
+  Triple over_current_A_{};                       ///< a measured current beyond it is a fault
+  std::uint32_t off_zero_periods_ = 0;            ///< in a row, while no bridge was on
   TestPulse test_;
   std::uint32_t self_tests_ = 0;
   Supervisor supervisor_;

@@ -5,6 +5,9 @@
 // at 50 us against L/R = 109 us either rectangle would put the discrete zero well beside the pole.
 #pragma once
 
+#include <control/motor_watch.hpp>
+#include <control/vector.hpp>
+
 namespace inkwell::control {
 
 struct CurrentLoopGains {
@@ -24,9 +27,22 @@ struct CurrentLoopStep {
   float voltage_V;
 };
 
-/// One period: the voltage for the next period, within +-voltage_bound_V. While the voltage is at its bound
-/// the integral does not grow further towards it.
+/// What a loop's voltage may be.
+struct VoltageRange {
+  float least_V, most_V;
+};
+
+/// What of +-bound_V a motor needs at most for `most_A` to either side, while it turns with `back_emf_V` and its bridge
+/// takes `bridge_V`.
+inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
+                                  float bound_V) {
+  const float for_current_V = resistance.with_room_ohm() * most_A + bridge_V;
+  return {clamp(back_emf_V - for_current_V, -bound_V, bound_V), clamp(back_emf_V + for_current_V, -bound_V, bound_V)};
+}
+
+/// One period: the voltage for the next period, within `range`. While the voltage is at its bound the integral does
+/// not grow further towards it.
 CurrentLoopStep regulate(const CurrentLoop& loop, float reference_A, float current_A, const CurrentLoopGains& gains,
-                         float voltage_bound_V);
+                         const VoltageRange& range);
 
 }  // namespace inkwell::control

@@ -11,6 +11,7 @@
 // L di to it, and a large difference is noticed sooner than a small one.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -21,7 +22,7 @@ namespace inkwell::control {
 
 /// What a sound motor's voltage goes into.
 struct MotorModel {
-  Triple resistance_ohm;
+  Triple resistance_ohm;  ///< as the parameters say
   /// Of the joint's speed: gear ratio times torque constant, negative for a reversed motor.
   Triple back_emf_Vs_per_rad;
 };
@@ -31,6 +32,41 @@ struct MotorModel {
 struct BridgeLoss {
   float least_V;  ///< as the self-test has measured, so no less; 0 where it has not
   float most_V;   ///< by its dead time
+
+  constexpr float expected_V() const { return least_V > 0.0f ? least_V : most_V; }
+};
+
+/// What the self-test has measured of motors and bridges, each by the last test that could tell.
+struct MeasuredMotors {
+  Triple bridge_loss_part{};  ///< of the supply: what a bridge takes at least, 0 to its dead time's part; 0 if unknown
+  Triple resistance_ohm{};    ///< 0 if unknown
+  Triple heat{};              ///< at which the resistance was measured (MotorHeat)
+};
+
+/// What a motor's resistance is taken for.
+struct Resistance {
+  /// How much more a motor may have that was measured: a model that is 50 K wrong about the heat since then is borne.
+  static constexpr float bearable_more_if_measured = 0.2f;
+  /// One of which only the parameters tell. Copper that is 100 K hotter has 39 % more; switches and shunt add 4 %.
+  static constexpr float bearable_more_else = 0.43f;
+  /// A current loop's voltage has room for so much of that: 5 % of a motor that was measured. A sound one may well have
+  /// more, by its angle or its heat: it then gets less current at the force limit, and no fault.
+  static constexpr float room_part = 0.25f;
+  /// What the rise that the continuous current leads to, 100 K, adds to copper's.
+  static constexpr float part_per_heat = 0.39f;
+
+  float value_ohm;
+  float bearable_more;  ///< part of it
+
+  constexpr float with_room_ohm() const { return value_ohm + room_part * bearable_more * value_ohm; }
+
+  /// `warmer` is the heat that was gained since it was measured.
+  static constexpr Resistance of(float measured_ohm, float warmer, float parameter_ohm) {
+    if (!(measured_ohm > 0.0f)) return {parameter_ohm, bearable_more_else};
+    // A motor that has cooled down since was hot, or was only taken for hot as its heat was kept over a restart.
+    const float more = warmer > 0.0f ? part_per_heat * warmer : 0.0f;
+    return {measured_ohm + measured_ohm * more, bearable_more_if_measured};
+  }
 };
 
 struct MotorWatch {
@@ -41,10 +77,8 @@ struct MotorWatch {
   /// From here on a current keeps its sign all through the PWM's period, ripple and all, so that its bridge takes what
   /// it takes from any.
   static constexpr float steady_A = 0.3f;
-  /// Copper that is 100 K hotter than where it was measured has 39 % more resistance; switches and shunt add 4 %.
-  static constexpr float bearable_more_resistance = 0.43f;
-  /// It has a fifth less if it was measured 60 K hotter.
-  static constexpr float bearable_less_resistance = 0.25f;
+  /// A motor has 28 % less resistance if it was measured 100 K hotter.
+  static constexpr float bearable_less_resistance = 0.28f;
   /// Its magnets have then 20 % less.
   static constexpr float bearable_part_of_back_emf = 0.25f;
   /// A motor of 0.24 mH takes 1.2 mVs to turn its current round from one limit to the other.
@@ -64,21 +98,28 @@ struct Unexplained {
   float voltage_V, bearable_V;
 };
 inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float current_A, float joint_speed_rad_per_s,
-                               float resistance_ohm, float back_emf_Vs_per_rad) {
-  const float ohmic_V = resistance_ohm * current_A;
+                               const Resistance& resistance, float back_emf_Vs_per_rad) {
+  const float ohmic_V = resistance.value_ohm * current_A;
   const float back_emf_V = back_emf_Vs_per_rad * joint_speed_rad_per_s;
   const float left_V = voltage_V - ohmic_V - back_emf_V;
   const bool is_more = left_V * current_A > 0.0f;
-  const float part_of_resistance =
-      is_more ? MotorWatch::bearable_more_resistance : MotorWatch::bearable_less_resistance;
+  const float part_of_resistance = is_more ? resistance.bearable_more : MotorWatch::bearable_less_resistance;
   // A bridge only takes: a voltage that is too small for its current lacks that as well.
   const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V;
   return {std::fabs(left_V), bridge_V + MotorWatch::bearable_V + part_of_resistance * std::fabs(ohmic_V) +
                                  MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
 }
 
-/// One control period: whether the motor whose turn it is still fits. `joint_speed_rad_per_s` belongs to it as well.
-bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s, const MotorModel& model);
+/// One control period: whether the motor whose turn it is still fits. Speed, resistance and back EMF (MotorModel)
+/// belong to it as well.
+bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_rad_per_s,
+          const std::array<Resistance, 3>& resistances, const Triple& back_emf_Vs_per_rad);
+
+/// While the bridges do not drive by their loops: what was is forgotten.
+inline void rest(MotorWatch& watch) {
+  watch.beyond_V = {};
+  watch.voltage_V = 0.0f;
+}
 
 /// Ends the period: `motor`, 0..2, is next, and `voltage_V` is what its bridge is to have until then, of which it takes
 /// `loss`.

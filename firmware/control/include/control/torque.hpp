@@ -15,6 +15,8 @@ struct Motors {
   Triple ampere_per_Nm;    ///< 1 / (gear ratio * torque constant), negative for a reversed motor
   Triple current_limit_A;  ///< bound of each reference; a motor with 0 takes no part
   Triple ampere_per_heat;  ///< how much the limit falls for each 1 of MotorHeat::beyond
+  /// Current that makes a newton at the end of the longer link.
+  Triple ampere_per_N;
   std::uint32_t idle = 0;  ///< 1 or 2: of the motors that move the links this one alone takes no part
 
   float allowed_A(std::size_t motor, const Triple& heat_beyond) const {

@@ -32,6 +32,7 @@ struct PulseJudgement {
   std::array<Found, 3> bridges;      ///< V that the bridge takes
   Found wires;                       ///< A, the largest in a sensor that should see none
   control::Triple bridge_loss_part;  ///< of the supply: what a bridge that passes takes, as far as its dead time does
+  control::Triple resistance_ohm;    ///< of a motor that passes: the mean of both signs
 
   bool any(Result result) const;
   /// Of an arm that moved too fast for pulses.

@@ -78,8 +78,9 @@ class SelfTest {
   void break_off();
   void wait_for_rest(const protocol::SignalValues& signals, const control::MotorModel& model);
   void begin_round();
-  void end_round(const PulseJudgement& judgement);
+  void end_round(const PulseJudgement& judgement, const protocol::SignalValues& signals);
   void note_pulses(const PulseJudgement& judgement);
+  void keep(const PulseJudgement& judgement, const protocol::SignalValues& signals);
   void give(Order order);
   void give_verdict();
 
@@ -93,7 +94,7 @@ class SelfTest {
   std::uint32_t rounds_ = 0, failures_ = 0;
   std::uint32_t test_since_ = 0, waits_since_ = 0;  ///< samples recorded by then
   control::Triple offset_A_{};                      ///< of the sensors, as they were measured at the start
-  control::Triple bridge_loss_part_{};              ///< found by the rounds; the interrupt's once it is to pass
+  control::MeasuredMotors measured_{};              ///< by the rounds; the interrupt's once it is to pass
 
   /// Number of the test, and what the interrupt is to do in it; 0 once that is done.
   Shared<std::uint32_t> order_{0};
