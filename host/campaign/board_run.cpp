@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include <device/address.hpp>
+#include <device/control_channel.hpp>
+#include <firmware_update/boot_loader.hpp>
 
 namespace inkwell::campaign {
 namespace {
@@ -113,6 +118,31 @@ bool BoardRun::wait_for(protocol::State state, double limit_s) {
 void BoardRun::reset() {
   control_.reset();
   let_go_of_device();
+}
+
+void BoardRun::ask_for_boot_loader() {
+  if (const auto endpoint = board_.find()) device::detach_firmware(*endpoint);
+}
+
+std::vector<device::Endpoint> BoardRun::boot_loaders() const {
+  return device::find_boot_loaders(device::parse_server(std::to_string(board_.usbip_port())));
+}
+
+bool BoardRun::is_in_boot_loader() const { return !boot_loaders().empty(); }
+
+bool BoardRun::start_from_boot_loader() {
+  let_go_of_device();
+  try {
+    const auto loaders = boot_loaders();
+    if (loaders.empty()) return false;
+    const auto channel = device::open_boot_loader(loaders.front());
+    firmware_update::BootLoader loader(*channel);
+    loader.start();
+    loader.leave();
+    return true;
+  } catch (const device::Error&) {
+    return false;
+  }
 }
 
 device::Vector3 BoardRun::true_position_m() {

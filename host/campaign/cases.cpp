@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <campaign/run.hpp>
 #include <chip/exception_numbers.hpp>
 #include <known/boards.hpp>
 
@@ -64,8 +65,8 @@ std::vector<std::string> places(InjectedFault fault) {
 }  // namespace
 
 std::string_view name_of(CaseSituation situation) {
-  constexpr std::string_view names[] = {"unreferenced", "ready",   "rest",    "wall",   "motion",
-                                        "ramping",      "limited", "landing", "testing"};
+  constexpr std::string_view names[] = {"unreferenced", "ready",   "rest",    "wall",  "motion", "ramping",
+                                        "limited",      "landing", "testing", "fault", "update", "starting"};
   return names[static_cast<std::size_t>(situation)];
 }
 
@@ -88,6 +89,22 @@ std::string meaning_of(CaseSituation situation) {
     case CaseSituation::testing:
       return "The hand holds it in free space; the fault comes while the self-test makes the first motor's pulses. "
              "Without a fault the bridges go off as well, when the pulses are over.";
+    case CaseSituation::fault:
+      return fmt::format(
+          "The hand holds it in free space. The force was on, and the host fell silent until the board told so; that "
+          "fault is still told as the next one comes. The host clears it {} s later, with the other still in.",
+          observed_s);
+    case CaseSituation::update:
+      return "The hand holds it in free space. The host has told the board to keep its parameters and to start its "
+             "boot "
+             "loader, which it does once they are written, some 80 ms later: the fault comes in the first 50 of them "
+             "and "
+             "lasts into the loader. (With nothing to write a board leaves within 2 ms.) What is told is told by the "
+             "firmware that the loader then starts, with the fault still in.";
+    case CaseSituation::starting:
+      return "Out of the inkwell, held by the hand: the fault is there from before the power comes, and in the second "
+             "case comes while the board starts. Without a fault the self-test's pulses put the bridges on for a "
+             "while.";
   }
   return "";
 }
@@ -108,7 +125,7 @@ std::vector<CaseFault> case_faults() {
   for (std::size_t i = 0; i < protocol::injection_table.size(); ++i) {
     const auto fault = static_cast<InjectedFault>(i);
     for (std::string& of : places(fault)) {
-      CaseFault made{fault, std::move(of), {}, {}};
+      CaseFault made{.fault = fault, .of = std::move(of)};
       if (fault == InjectedFault::supply_spike) made.for_s = 0.005;
       if (fault == InjectedFault::encoder_lost_counts) made.amount = 0.1;
       if (fault == InjectedFault::encoder_slip) made.amount = 400;

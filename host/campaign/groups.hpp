@@ -25,4 +25,7 @@ inline const std::vector<Result>* find(const Groups& groups, const std::string& 
   return found == groups.end() ? nullptr : &found->second;
 }
 
+/// The self-test's pulses were under way, which are no force.
+inline bool is_testing(const Result& result) { return result.situation == name_of(CaseSituation::testing); }
+
 }  // namespace inkwell::campaign

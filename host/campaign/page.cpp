@@ -15,20 +15,13 @@
 
 #include "groups.hpp"
 #include "page_plots.hpp"
+#include "page_told.hpp"
 #include "page_unnoticed.hpp"
 
 namespace inkwell::campaign {
 namespace {
 
 constexpr double bearable_part_of_limit = 1.05;
-
-std::string told(const Result& result) {
-  std::vector<std::string_view> parts;
-  if (!result.detected_as.empty()) parts.push_back(result.detected_as);
-  if (result.restarts > 0) parts.push_back("restart");
-  if (result.locked_up) parts.push_back("locked up");
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
 
 std::string off_text(const Summary& s) {
   if (s.were_on == 0) return "were off";
@@ -217,8 +210,8 @@ void write_page(std::span<const Result> results, const std::filesystem::path& pa
 Made by `inkwell campaign`; do not edit. The firmware that is flashed runs on the virtual board, whose brown-out level
 is 3, as `inkwell flash` sets it; each fault is put in while the arm is unreferenced, ready, at rest, pressed into a
 stiff wall and in fast motion, at {} random instants, and at one while the force rises, is held back by its limit and
-falls, pressed into that wall, and while the board tests itself. The states starting, fault and update are not tried: no
-leg is at the supply in them, the first lasts a tenth of a second, and in the others no further fault is told.
+falls, pressed into that wall, while the board tests itself, after another fault and on the way to the boot loader, and
+before and while the board starts.
 {} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row `none` is what the
 hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how far the probe lags behind
 the hand) are of the {} s after the fault came, recovery and position of the end, after the use that "Not noticed" tells
@@ -231,8 +224,8 @@ at the supply any more, in control periods of {:.0f} us.
   std::string text = fmt::format(head, phases, results.size(), all_cases().size(), force_limit_N(results), observed_s,
                                  1e6 * control_period_s, stem, stem);
   text += went_on(results) + at_the_hand(groups, faults) + above_limit(groups, faults) + unnoticed(groups, faults) +
-          off_but_not_told(groups, faults) + unnoticed_without_force(groups, faults) + not_run(results) +
-          tables(groups, faults);
+          off_but_not_told(groups, faults) + unnoticed_without_force(groups, faults) + after_another(results) +
+          not_run(results) + tables(groups, faults);
   recording::write_text(page, text);
   recording::write_text(page.parent_path() / (stem + "-off.svg"), off_plot(results));
   recording::write_text(page.parent_path() / (stem + "-force.svg"), force_plot(results));

@@ -6,15 +6,14 @@
 
 #include <fmt/format.h>
 
+#include "groups.hpp"
 #include "plot.hpp"
 
 namespace inkwell::campaign {
 namespace {
 
 /// With the force on, which the self-test's pulses are not.
-bool was_driven(const Result& result) {
-  return result.error.empty() && result.bridges_were_on && result.situation != name_of(CaseSituation::testing);
-}
+bool was_driven(const Result& result) { return result.error.empty() && result.bridges_were_on && !is_testing(result); }
 
 /// What the hand feels without a fault, at most; by situation.
 std::map<std::string, double> sound_forces_N(std::span<const Result> results) {

@@ -110,7 +110,7 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
   text +=
       "\n\n| fault | situations | noticed in use | peak force in use, N | reason |\n| --- | --- | --- | --- | --- |\n";
   for (const CaseFault& fault : faults) {
-    if (!fault.fault) continue;
+    if (fault.is_none()) continue;
     const std::string where = situations_with(groups, fault, stayed_on_untold);
     if (where.empty()) continue;
     InUse in_use;
@@ -119,8 +119,7 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
         for (const Result& result : *results)
           if (stayed_on_untold(situation, result)) in_use.see(result);
     text += fmt::format("| `{}` | {} | {} | {} | {} |\n", fault.name(), where, in_use.text(),
-                        in_use.used() == 0 ? "-" : fmt::format("{:.2f}", in_use.peak_N()),
-                        reason_with_force(*fault.fault, fault.of));
+                        in_use.used() == 0 ? "-" : fmt::format("{:.2f}", in_use.peak_N()), reason_with_force(fault));
   }
   return text;
 }
@@ -128,10 +127,10 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
 std::string off_but_not_told(const Groups& groups, const std::vector<CaseFault>& faults) {
   std::string rows;
   for (const CaseFault& fault : faults) {
-    const std::string where = fault.fault ? situations_with(groups, fault, went_off_untold) : "";
+    const std::string where = fault.is_none() ? "" : situations_with(groups, fault, went_off_untold);
     if (!where.empty())
       rows += fmt::format("| `{}` | {} | {} | {} |\n", fault.name(), where, told_later(groups, fault),
-                          reason_of_silence(*fault.fault, fault.of));
+                          reason_of_silence(fault));
   }
   const std::string_view heading =
       "\n## Off, but not told\n\nWith the force on, cases in which the bridges went off, but no fault was told";
@@ -151,9 +150,9 @@ std::string unnoticed_without_force(const Groups& groups, const std::vector<Case
   };
   std::vector<Row> rows;
   for (const CaseFault& fault : faults) {
-    const std::string where = fault.fault ? situations_with(groups, fault, was_off_untold) : "";
+    const std::string where = fault.is_none() ? "" : situations_with(groups, fault, was_off_untold);
     if (where.empty()) continue;
-    const std::string_view reason = reason_without_force(*fault.fault, fault.of);
+    const std::string_view reason = reason_without_force(fault);
     auto row = std::ranges::find_if(rows, [&](const Row& r) { return r.reason == reason && r.where == where; });
     if (row == rows.end()) row = rows.insert(row, {reason, where, {}});
     row->faults.push_back(fmt::format("`{}`", fault.name()));

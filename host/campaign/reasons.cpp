@@ -33,6 +33,8 @@ constexpr std::string_view cable_is_out =
     "It is a cable that is pulled: no fault, but the force has to be switched on again; the host sees the device go.";
 constexpr std::string_view usb_is_lost =
     "USB is lost with the clock, as with a cable that is pulled, which is no fault.";
+constexpr std::string_view chip_stands = "The chip stands as long as its supply is too low, and tells nothing.";
+constexpr std::string_view not_begun = "A core that does not take its first instruction has not begun.";
 constexpr std::string_view break_of_tim8 =
     "This pin is seen by the break input of TIM8 only, while the bridges are on; the self-test's pulses put them on.";
 
@@ -58,14 +60,16 @@ std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire)
     return cable_is_out;
   if (wire == "inkwell_switch" && fault == InjectedFault::wire_low)
     return "Before there is a reference it looks like a stylus in the inkwell, and nothing else knows where that is: "
-           "the board takes the arm to be there. During a self-test the reference is given up without a fault.";
+           "the board takes the arm to be there. During a self-test, or while another fault is told, the reference is "
+           "given up without a fault.";
   return reason_of_wire(wire);
 }
 
 }  // namespace
 
-std::string_view reason_with_force(InjectedFault fault, std::string_view of) {
-  switch (fault) {
+std::string_view reason_with_force(const CaseFault& put_in) {
+  const std::string_view of = put_in.of;
+  switch (*put_in.fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
@@ -131,7 +135,9 @@ std::string_view reason_with_force(InjectedFault fault, std::string_view of) {
   return "";
 }
 
-std::string_view reason_without_force(InjectedFault fault, std::string_view of) {
+std::string_view reason_without_force(const CaseFault& put_in) {
+  const InjectedFault fault = *put_in.fault;
+  const std::string_view of = put_in.of;
   switch (fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
@@ -139,15 +145,15 @@ std::string_view reason_without_force(InjectedFault fault, std::string_view of) 
     case InjectedFault::wire_frozen: return reason_of_idle_wire(fault, of);
     case InjectedFault::wire_spikes:
       if (of == "bridge_fault_tim8") return break_of_tim8;
-      return reason_with_force(fault, of);
+      return reason_with_force(put_in);
     case InjectedFault::wires_shorted:
       return "The two agree while the bridges are off and the hand holds the joint still.";
     case InjectedFault::encoder_stuck: return "The hand holds the joint still, and no motor turns it.";
     case InjectedFault::encoder_lost_counts:
       return "The hand holds the joint still, so that no count comes that could be lost.";
     case InjectedFault::encoder_slip:
-      return "Before there is a reference it does not matter; during a self-test the reference is given up without a "
-             "fault. Either way the inkwell gives a new one.";
+      return "Before there is a reference it does not matter; during a self-test, or while another fault is told, the "
+             "reference is given up without a fault. Either way the inkwell gives a new one.";
     case InjectedFault::shunt_gain:
     case InjectedFault::shunt_frozen:
       return "No current flows, and it reads none; the next self-test tells, or the motors' watch once a current is "
@@ -161,25 +167,35 @@ std::string_view reason_without_force(InjectedFault fault, std::string_view of) 
     case InjectedFault::leg_high:
     case InjectedFault::leg_low:
       return "The bridge trips when the leg's other switch joins it: in the next self-test, or once the force is on.";
+    case InjectedFault::supply_spike:
+      return "While another fault is told, and in the boot loader, nobody looks at the supply, and it is sound again "
+             "afterwards.";
+    case InjectedFault::logic_sag: return chip_stands;
     case InjectedFault::crystal_drift: return usb_is_lost;
     case InjectedFault::usb_cut: return cable_is_out;
     case InjectedFault::host_silent: return "A host is missed while the force is on only.";
+    case InjectedFault::core_stalled:
+    case InjectedFault::main_loop_stalled: return not_begun;
+    case InjectedFault::program_astray:
+      return "The code that it came to returned to the main loop, and had changed nothing that is checked; or it came "
+             "before the watchdog runs, and hung until the reset with the bridges off.";
     case InjectedFault::core_halted:
       return "A core that stands tells nothing; it goes on as if nothing had been, because the bridges were off and "
              "nothing moved meanwhile.";
-    default: return reason_with_force(fault, of);
+    default: return reason_with_force(put_in);
   }
 }
 
-std::string_view reason_of_silence(InjectedFault fault, std::string_view of) {
-  switch (fault) {
+std::string_view reason_of_silence(const CaseFault& put_in) {
+  const std::string_view of = put_in.of;
+  switch (*put_in.fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
     case InjectedFault::wire_frozen:
       if (of == "usb_supply") return cable_is_out;
       break;
-    case InjectedFault::logic_sag: return "The chip stands as long as its supply is too low, and tells nothing.";
+    case InjectedFault::logic_sag: return chip_stands;
     case InjectedFault::crystal_drift: return usb_is_lost;
     case InjectedFault::usb_cut: return cable_is_out;
     case InjectedFault::host_silent: return "Nobody asks; it is told once the host asks again.";

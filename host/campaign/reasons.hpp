@@ -3,15 +3,15 @@
 
 #include <string_view>
 
-#include <protocol/injections.hpp>
+#include <campaign/cases.hpp>
 
 namespace inkwell::campaign {
 
-/// The force is on, and the bridges stayed on; `of` is the place, as CaseFault has it.
-std::string_view reason_with_force(protocol::InjectedFault fault, std::string_view of);
+/// The force is on, and the bridges stayed on. None of the three is asked of the control.
+std::string_view reason_with_force(const CaseFault& put_in);
 /// The force is off.
-std::string_view reason_without_force(protocol::InjectedFault fault, std::string_view of);
+std::string_view reason_without_force(const CaseFault& put_in);
 /// The force was on, and the bridges went off.
-std::string_view reason_of_silence(protocol::InjectedFault fault, std::string_view of);
+std::string_view reason_of_silence(const CaseFault& put_in);
 
 }  // namespace inkwell::campaign

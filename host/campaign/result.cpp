@@ -7,8 +7,11 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <device/error.hpp>
@@ -25,10 +28,15 @@ struct nlohmann::adl_serializer<std::optional<double>> {
 
 namespace inkwell::campaign {
 
+NLOHMANN_JSON_SERIALIZE_ENUM(FirstFault, {{FirstFault::none, "none"},
+                                          {FirstFault::told, "told"},
+                                          {FirstFault::black_box, "black_box"},
+                                          {FirstFault::lost, "lost"}})
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, error, injected_at_s, place,
                                    bridges_were_on, off_after_s, bridges_went_on, detected_as, fault_on_healing,
-                                   restarts, locked_up, force_limit_N, peak_force_N, energy_J, travel_m,
-                                   noticed_in_use_as, noticed_in_use_s, peak_force_in_use_N, recovery, position_error_m)
+                                   told_before, first_fault, told_once_cleared, restarts, locked_up, missed_boot_loader,
+                                   force_limit_N, peak_force_N, energy_J, travel_m, noticed_in_use_as, noticed_in_use_s,
+                                   peak_force_in_use_N, recovery, position_error_m)
 
 namespace {
 
@@ -44,9 +52,21 @@ void require_counts(const nlohmann::json& result) {
 
 }  // namespace
 
-bool is_detected(const Result& result) { return !result.detected_as.empty() || result.restarts > 0; }
+bool is_detected(const Result& result) {
+  return !result.detected_as.empty() || !result.told_once_cleared.empty() || result.restarts > 0;
+}
 
 bool is_unnoticed(const Result& result) { return !is_detected(result) && !result.off_after_s; }
+
+std::string told(const Result& result) {
+  std::vector<std::string_view> parts;
+  const std::string later = result.told_once_cleared + " once cleared";
+  if (!result.detected_as.empty()) parts.push_back(result.detected_as);
+  if (!result.told_once_cleared.empty()) parts.push_back(later);
+  if (result.restarts > 0) parts.push_back("restart");
+  if (result.locked_up) parts.push_back("locked up");
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
 
 std::string text_of(const Result& result) { return nlohmann::json(result).dump(2) + "\n"; }
 

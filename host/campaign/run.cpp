@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include <campaign/board_run.hpp>
 #include <campaign/handling.hpp>
@@ -25,6 +26,9 @@ constexpr double push_part_of_limit = 0.75;  // of the force limit
 constexpr double longest_case_s = 60;        // of board time
 constexpr double more_than_limit = 1.2;      // presses as far as so much of it would
 
+/// Told before another one comes.
+constexpr auto first_fault = protocol::Fault::host_silent;
+
 struct NotReached : device::Error {
   using Error::Error;
 };
@@ -42,6 +46,10 @@ bool is_unheard(const CaseFault& fault) {
   constexpr unsigned of_usb = virtual_board::exception_of(virtual_board::otg_fs_position);
   return is_about_the_host(fault) ||
          (fault.fault == InjectedFault::exception_lost && fault.of == std::to_string(of_usb));
+}
+
+bool is_before_power(const Case& the_case) {
+  return the_case.situation == CaseSituation::starting && the_case.phase == 1;
 }
 
 /// As stiff, or as slow, as it can be.
@@ -84,6 +92,33 @@ bool is_there(const BoardRun& board, CaseSituation situation) {
   }
 }
 
+/// The host falls silent with the force on: a fault without a cause in the board, so none that could be mistaken for
+/// another one's.
+void bring_a_first_fault(BoardRun& board) {
+  constexpr double silent_s = 0.1, brakes_s = 0.05;  // the arm was at rest
+  board.run(silent_s, false);
+  expect(board.is(State::fault) && board.pose()->fault == first_fault, "the board did not miss its host.");
+  board.run(brakes_s);
+}
+
+/// As long as the board writes its parameters, of which none are stored yet, it is on its way to the loader.
+void begin_update(BoardRun& board) {
+  constexpr double until_told_s = 0.002;
+  board.command(Command::store_parameters);
+  board.run(until_told_s);
+  board.ask_for_boot_loader();
+  expect(board.wait_for(State::update, 0.02), "the board did not leave for its boot loader.");
+}
+
+/// The hand has it from before the first instruction on. When the power comes the watchdog bites once.
+void begin_start(BoardRun& board, const Case& the_case) {
+  take_by_hand(board, board.true_position_m(), 0.05);
+  if (is_before_power(the_case)) return;
+  constexpr double look_s = 0.0005, longest_s = 0.1;
+  for (double waited_s = 0; board.resets() < 1 && waited_s < longest_s; waited_s += look_s) board.run_exactly(look_s);
+  expect(board.resets() == 1, "the board did not start.");
+}
+
 /// Gives the parameters that the board has then.
 ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   const CaseSituation situation = the_case.situation;
@@ -93,10 +128,15 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
     away_m[2] -= 0.04;
     take_by_hand(board, away_m, 0.05);
   }
+  if (situation == CaseSituation::starting) {
+    begin_start(board, the_case);
+    return protocol::default_parameters();
+  }
   expect(board.connect(1.0), "the device did not enumerate.");
   ParameterSet parameters = board.device().parameters();
   // Only a fault of the host shall be one: after it comes, this host says nothing in any case.
-  if (!is_about_the_host(the_case.fault)) board.set({{Parameter::host_timeout_s, 2.0f}});
+  if (!is_about_the_host(the_case.fault) && situation != CaseSituation::fault)
+    board.set({{Parameter::host_timeout_s, 2.0f}});
   if (situation == CaseSituation::unreferenced) {
     expect(board.wait_for(State::unreferenced, 1.0), "the board knew where the arm is.");
     board.run(0.3);
@@ -110,7 +150,15 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
     begin_self_test(board);
     return parameters;
   }
+  if (situation == CaseSituation::update) {
+    begin_update(board);
+    return parameters;
+  }
   switch_force_on(board, parameters, situation);
+  if (situation == CaseSituation::fault) {
+    bring_a_first_fault(board);
+    return parameters;
+  }
   const Vector3 middle_m = middle_of_box_m(parameters);
   if (is_pressed(situation)) {
     const double part_of_limit = situation == CaseSituation::limited ? more_than_limit : push_part_of_limit;
@@ -131,12 +179,35 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
   return parameters;
 }
 
+double longest_phase_of(CaseSituation situation) {
+  switch (situation) {
+    // A motor's pulses take 4 ms: those of the second, which has the faults, are still to come.
+    case CaseSituation::testing: return 0.004;
+    case CaseSituation::update: return 0.05;  // the board writes for longer than that
+    default: return 0.1;
+  }
+}
+
 /// The instant of a phase: the same for each fault, so that the control tells what would have been without.
 double phase_s(const Case& the_case) {
-  // A motor's pulses take 4 ms: those of the second, which has the faults, are still to come.
-  const double longest_phase_s = the_case.situation == CaseSituation::testing ? 0.004 : 0.1;
+  if (is_before_power(the_case)) return 0;
+  const double longest_phase_s = longest_phase_of(the_case.situation);
   std::mt19937 random(100 * static_cast<unsigned>(the_case.situation) + the_case.phase);
   return longest_phase_s * static_cast<double>(random() >> 8) / static_cast<double>(1u << 24);
+}
+
+void put_in(BoardRun& board, const CaseFault& what, Result& result) {
+  auto& control = board.control();
+  if (!what.fault) return;
+  control.inject({std::string(protocol::info(*what.fault).name), what.of, what.amount, 0.0, what.for_s});
+  const auto injected = control.truth().at("injected");
+  if (what.of.empty() && !injected.empty()) result.place = injected[0].value("of", "");
+}
+
+/// A board that starts lets its watchdog bite, and one that leaves for its boot loader resets itself.
+unsigned resets_meant(const BoardRun& board, const Case& the_case) {
+  const bool has_left = the_case.situation == CaseSituation::update && board.is_in_boot_loader();
+  return is_before_power(the_case) || has_left ? 1 : 0;
 }
 
 void observe(BoardRun& board, const Case& the_case, Result& result) {
@@ -144,12 +215,8 @@ void observe(BoardRun& board, const Case& the_case, Result& result) {
   const auto before = control.truth();
   const unsigned resets_before = board.resets();
   result.injected_at_s = before.at("board_time_s");
-  result.bridges_were_on = bridges_drive(before);
-  if (const auto& fault = the_case.fault; fault.fault) {
-    control.inject({std::string(protocol::info(*fault.fault).name), fault.of, fault.amount, 0.0, fault.for_s});
-    const auto injected = control.truth().at("injected");
-    if (fault.of.empty() && !injected.empty()) result.place = injected[0].value("of", "");
-  }
+  result.bridges_were_on = !is_before_power(the_case) && bridges_drive(before);
+  put_in(board, the_case.fault, result);
   control.meter_start();
   board.run(observed_s, false);
 
@@ -158,16 +225,43 @@ void observe(BoardRun& board, const Case& the_case, Result& result) {
   const double driven_until_s = after.at("bridges_driven_until_s");
   const bool drive = bridges_drive(after);
   if (result.bridges_were_on && !drive) result.off_after_s = std::max(0.0, driven_until_s - result.injected_at_s);
-  result.bridges_went_on = !result.bridges_were_on && driven_until_s > result.injected_at_s;
+  // A start makes pulses that are meant, and they are over by then.
+  const bool may_pulse = the_case.situation == CaseSituation::starting;
+  result.bridges_went_on = !result.bridges_were_on && (may_pulse ? drive : driven_until_s > result.injected_at_s);
   result.peak_force_N = reading.peak_force_N;
   result.energy_J = reading.energy_J;
   result.travel_m = the_case.situation == CaseSituation::motion ? reading.lag_m : reading.travel_m;
   result.locked_up = board.is_locked_up();
-  result.restarts = board.resets() - resets_before;
+  const unsigned resets = board.resets() - resets_before;
+  result.restarts = resets - std::min(resets, resets_meant(board, the_case));
+  result.missed_boot_loader = the_case.situation == CaseSituation::update && !board.is_in_boot_loader();
 }
 
-void note_fault(const BoardRun& board, std::string& name) {
-  if (name.empty() && board.is(State::fault)) name = protocol::info(board.pose()->fault).name;
+/// One that was told before is none.
+void note_fault(const BoardRun& board, const Result& result, std::string& name) {
+  if (!name.empty() || !board.is(State::fault)) return;
+  const std::string_view told = protocol::info(board.pose()->fault).name;
+  if (told != result.told_before) name = told;
+}
+
+/// None if the board does not say.
+FirstFault what_became_of_first(BoardRun& board) {
+  if (board.is(State::fault) && board.pose()->fault == first_fault) return FirstFault::told;
+  try {
+    return board.device().black_box().fault == first_fault ? FirstFault::black_box : FirstFault::lost;
+  } catch (const device::Error&) {
+    return FirstFault::none;
+  }
+}
+
+/// What the board tells once the first fault is cleared, with the cause of the second still there.
+void clear_first_fault(BoardRun& board, Result& result) {
+  const auto driven_until_s = [&] { return board.control().truth().at("bridges_driven_until_s").get<double>(); };
+  const double before_s = driven_until_s();
+  board.command(Command::clear_fault);
+  board.run(0.1);
+  note_fault(board, result, result.told_once_cleared);
+  result.bridges_went_on |= driven_until_s() > before_s;
 }
 
 /// True if that went without an error: a device that goes away meanwhile does not work either.
@@ -184,21 +278,45 @@ bool tries_to_work(BoardRun& board) {
 /// What the board tells of it; false if it cannot.
 bool notice(BoardRun& board, const Case& the_case, Result& result) {
   board.run(0.02, false);
-  note_fault(board, result.detected_as);
+  note_fault(board, result, result.detected_as);
+  if (!is_about_the_host(the_case.fault) && board.is_in_boot_loader()) board.start_from_boot_loader();
   // A board that has started anew tells why, if its USB lives.
   if ((result.restarts > 0 || !board.connected()) && !is_about_the_host(the_case.fault) &&
       board.connect_after_restart())
-    note_fault(board, result.detected_as);
-  return board.connected();
+    note_fault(board, result, result.detected_as);
+  if (!board.connected()) return false;
+  if (the_case.situation == CaseSituation::fault && !is_about_the_host(the_case.fault)) {
+    result.first_fault = what_became_of_first(board);
+    if (result.first_fault == FirstFault::told) clear_first_fault(board, result);
+  }
+  return true;
+}
+
+/// Waits for what a board shows that was asked for its boot loader; the loader has to start the firmware.
+void leave_boot_loader(BoardRun& board, Result& result) {
+  constexpr double look_s = 0.005, longest_s = 0.5;
+  for (double waited_s = 0; waited_s < longest_s; waited_s += look_s) {
+    board.run(look_s);
+    if (board.is_in_boot_loader()) {
+      if (std::exchange(result.missed_boot_loader, false)) result.restarts -= std::min(result.restarts, 1u);
+      board.start_from_boot_loader();
+      return;
+    }
+    if (!board.connected()) board.connect(0);
+    if (board.pose() && !board.is(State::update)) return;
+  }
 }
 
 /// What was noticed before the cause was gone counts; a device that could not tell does so afterwards.
 void recover(BoardRun& board, const Case& the_case, bool could_tell, Result& result) {
   board.control().heal_all();
+  if (the_case.situation == CaseSituation::update) leave_boot_loader(board, result);
   if (!board.connected()) board.connect(0.5);
   board.run(0.05);
-  if (result.detected_as.empty() && result.noticed_in_use_as.empty())
-    note_fault(board, could_tell ? result.fault_on_healing : result.detected_as);
+  if (the_case.situation == CaseSituation::fault && result.first_fault == FirstFault::none && board.connected())
+    result.first_fault = what_became_of_first(board);
+  if (result.detected_as.empty() && result.told_once_cleared.empty() && result.noticed_in_use_as.empty())
+    note_fault(board, result, could_tell ? result.fault_on_healing : result.detected_as);
   const bool stayed = is_active(the_case.situation) ? board.force_is_on() : result.restarts == 0;
   const bool was_fault = board.is(State::fault);
   if (tries_to_work(board)) {
@@ -239,6 +357,8 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
     const double slices_s = std::floor(until_fault_s / whole_slices_s) * whole_slices_s;
     board.run(slices_s);
     board.run_exactly(until_fault_s - slices_s);
+    expect(the_case.situation != CaseSituation::update || board.is(State::update), "the board left too soon.");
+    if (the_case.situation == CaseSituation::fault) result.told_before = protocol::info(first_fault).name;
     observe(board, the_case, result);
     const bool could_tell = notice(board, the_case, result);
     const bool lasts = is_active(the_case.situation) && the_case.situation != CaseSituation::landing;

@@ -80,11 +80,11 @@ int run_cases(const DeviceOptions& options, const CampaignOptions& command, cons
                                     : std::string(result.bridges_were_on ? "bridges stayed on" : "bridges were off");
         // By the place it is found out why a case went as it did.
         const std::string place = result.place.empty() ? "" : " at " + result.place;
+        const std::string told = campaign::told(result);
         fmt::print("{:5} {}{}: {}\n", cases[i].number, cases[i].name(), place,
-                   result.error.empty()
-                       ? fmt::format("{}, {}, {:.2f} N, {}", result.detected_as.empty() ? "-" : result.detected_as, off,
-                                     result.peak_force_N, result.recovery)
-                       : result.error);
+                   result.error.empty() ? fmt::format("{}, {}, {:.2f} N, {}", told.empty() ? "-" : told, off,
+                                                      result.peak_force_N, result.recovery)
+                                        : result.error);
         std::fflush(stdout);
       } catch (const std::exception& error) {  // of a thread it would end the program
         const std::lock_guard lock(telling);

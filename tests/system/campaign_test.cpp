@@ -191,6 +191,67 @@ TEST_CASE("without force nothing goes on, and the arm finds its place in the ink
   CHECK(result.position_error_m.value() < 0.0005);
 }
 
+TEST_CASE("a fault that is told stays told, and the next one is told once it is cleared; the black box keeps it else") {
+  const Result tripped = result_of("bridge_fault fault 1");
+  CHECK(tripped.told_before == "host_silent");
+  CHECK(tripped.first_fault == campaign::FirstFault::told);
+  CHECK(tripped.detected_as.empty());
+  CHECK(tripped.told_once_cleared == "bridge_fault");
+  CHECK_FALSE(tripped.bridges_were_on);
+  CHECK_FALSE(tripped.bridges_went_on);
+  CHECK(tripped.fault_on_healing.empty());
+  CHECK(tripped.recovery == "clear_fault");
+  const Result sound = result_of("none fault 1");
+  CHECK(sound.first_fault == campaign::FirstFault::told);
+  CHECK_FALSE(campaign::is_detected(sound));
+  CHECK(sound.recovery == "none needed");
+  const Result restarted = result_of("core_stalled fault 1");
+  CHECK(restarted.first_fault == campaign::FirstFault::black_box);
+  CHECK(restarted.detected_as == "watchdog");
+  CHECK(restarted.restarts == 1);
+  const Result unheard = result_of("usb_cut fault 1");
+  CHECK(unheard.first_fault == campaign::FirstFault::told);
+  CHECK(unheard.told_once_cleared.empty());
+}
+
+TEST_CASE("a board on the way to its boot loader gets there, and its firmware tells afterwards what broke meanwhile") {
+  const Result sound = result_of("none update 1");
+  CHECK_FALSE(sound.missed_boot_loader);
+  CHECK_FALSE(campaign::is_detected(sound));
+  CHECK_FALSE(sound.bridges_went_on);
+  CHECK(sound.recovery == "none needed");
+  const Result broken = result_of("wire_high:bridge_enable update 1");
+  CHECK_FALSE(broken.missed_boot_loader);
+  CHECK(broken.detected_as == "bridge_wire");
+  CHECK_FALSE(broken.bridges_went_on);
+  CHECK(broken.recovery == "clear_fault");
+  const Result stalled = result_of("core_stalled update 1");
+  CHECK(stalled.missed_boot_loader);
+  CHECK(stalled.restarts == 1);
+  CHECK(stalled.detected_as == "watchdog");
+  const Result unplugged = result_of("usb_cut update 1");  // the loader shows itself once the cable is in again
+  CHECK_FALSE(unplugged.missed_boot_loader);
+  CHECK_FALSE(campaign::is_detected(unplugged));
+  CHECK(unplugged.recovery == "none needed");
+}
+
+TEST_CASE("what is broken before the power comes, or breaks while the board starts, is told by it") {
+  for (const char* name : {"none starting 1", "none starting 2"}) {
+    const Result sound = result_of(name);
+    CHECK_FALSE(sound.bridges_were_on);
+    CHECK_FALSE(sound.bridges_went_on);  // but for the self-test's pulses
+    CHECK_FALSE(campaign::is_detected(sound));
+    CHECK(sound.peak_force_N < 1);
+    CHECK(sound.recovery == "none needed");
+  }
+  CHECK(result_of("none starting 1").injected_at_s == 0);
+  CHECK(result_of("motor_open:2 starting 1").detected_as == "self_test_failed");
+  const Result late = result_of("wire_high:bridge_enable starting 2");
+  CHECK(late.injected_at_s > 0.01);
+  CHECK(late.detected_as == "bridge_wire");
+  CHECK(late.recovery == "clear_fault");
+}
+
 TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   const TemporaryDirectory directory;
   const auto c = the_case("encoder_lost_counts:2=0.1 motion 2");

@@ -275,6 +275,14 @@ TEST_CASE("what a fault does without force, or silently, has reasons of its own"
                          {"motor_hot:2", "ready", "A motor that is 100 K hotter passes the self-test, and"},
                          {"leg_open:2A", "ready", "The bridges are off and no current flows"},
                          {"leg_high:2A", "ready", "The bridge trips when"},
+                         {"supply_spike+0.005", "fault", "While another fault is told, and in the boot loader"},
+                         {"logic_sag", "starting", "The chip stands"},
+                         {"core_stalled", "starting", "A core that does not take its first instruction"},
+                         {"main_loop_stalled", "starting", "A core that does not take its first instruction"},
+                         {"program_astray", "starting",
+                          "The code that it came to returned to the main loop, and had "
+                          "changed nothing that is checked; or it came before"},
+                         {"wire_low:inkwell_switch", "fault", "Before there is a reference it looks like"},
                          {"bridge_fault", "rest", "None is known: what takes the bridges off is told."}}) {
     CAPTURE(row.fault);
     CAPTURE(row.situation);

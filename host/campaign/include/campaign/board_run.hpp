@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <device/control_client.hpp>
 #include <device/device.hpp>
@@ -48,6 +49,11 @@ class BoardRun {
   /// How often the chip was reset since the power came, also by its watchdog.
   unsigned resets();
   void reset();
+  /// Asks the firmware to start the chip's boot loader.
+  void ask_for_boot_loader();
+  bool is_in_boot_loader() const;
+  /// Has the boot loader start the firmware; false if it does not do so.
+  bool start_from_boot_loader();
   device::ControlClient& control() { return control_; }
   device::Vector3 true_position_m();
 
@@ -55,6 +61,7 @@ class BoardRun {
   void pass(double time_s);
   void read_poses();
   void let_go_of_device();
+  std::vector<device::Endpoint> boot_loaders() const;
 
   device::VirtualBoard board_;
   device::ControlClient control_;

@@ -21,17 +21,20 @@ enum class CaseSituation : std::uint8_t {
   limited,       ///< pressed into it so far that the force limit holds back
   landing,       ///< pressed into it while the force falls
   testing,       ///< ready, while the self-test makes its pulses
+  fault,         ///< another fault took the force away and is still told
+  update,        ///< on its way to the boot loader, and in it
+  starting,      ///< out of the inkwell, from before the power comes and while the board starts
 };
 inline constexpr CaseSituation situations[] = {
-    CaseSituation::unreferenced, CaseSituation::ready,   CaseSituation::rest,
-    CaseSituation::wall,         CaseSituation::motion,  CaseSituation::ramping,
-    CaseSituation::limited,      CaseSituation::landing, CaseSituation::testing};
+    CaseSituation::unreferenced, CaseSituation::ready,   CaseSituation::rest,    CaseSituation::wall,
+    CaseSituation::motion,       CaseSituation::ramping, CaseSituation::limited, CaseSituation::landing,
+    CaseSituation::testing,      CaseSituation::fault,   CaseSituation::update,  CaseSituation::starting};
 std::string_view name_of(CaseSituation situation);
 /// A sentence with its figures.
 std::string meaning_of(CaseSituation situation);
 /// The hand feels a force. The self-test's pulses are none.
 constexpr bool is_active(CaseSituation situation) {
-  return situation >= CaseSituation::rest && situation != CaseSituation::testing;
+  return situation >= CaseSituation::rest && situation <= CaseSituation::landing;
 }
 constexpr bool is_pressed(CaseSituation situation) {
   return is_active(situation) && situation != CaseSituation::rest && situation != CaseSituation::motion;
@@ -40,9 +43,12 @@ constexpr bool is_pressed(CaseSituation situation) {
 /// The swing of `motion`: to either side, along all axes; from one side to the other.
 inline constexpr double swing_m = 0.03, swing_s = 0.10;
 
-/// How many instants; where little else goes on, one has to do.
-inline constexpr unsigned phases = 3;
-constexpr unsigned phases_of(CaseSituation situation) { return situation <= CaseSituation::motion ? phases : 1; }
+/// How many instants; where little else goes on, one has to do. Of `starting` the first is before the power comes.
+inline constexpr unsigned phases = 3, phases_of_start = 2;
+constexpr unsigned phases_of(CaseSituation situation) {
+  if (situation == CaseSituation::starting) return phases_of_start;
+  return situation <= CaseSituation::motion ? phases : 1;
+}
 
 /// A fault at a place; none is the control, in which nothing is put in.
 struct CaseFault {
@@ -51,11 +57,12 @@ struct CaseFault {
   std::optional<double> amount;
   std::optional<double> for_s;
 
-  std::string name() const;  ///< as --inject writes it
+  bool is_none() const { return !fault; }
+  std::string name() const;  ///< as --inject writes it, or `none`
 };
 
 struct Case {
-  unsigned number;  ///< from 1 on; the same as long as the table of faults is
+  unsigned number;  ///< from 1 on; the same as long as situations and the table of faults are
   CaseFault fault;
   CaseSituation situation;
   unsigned phase;  ///< 1 to phases_of(situation)
@@ -63,7 +70,8 @@ struct Case {
   std::string name() const;
 };
 
-/// The control first. Of three motors that are wired alike the second stands for all: it bears the load at the wall.
+/// The control first. Of three motors that are wired alike the second stands for all: it bears the
+/// load at the wall.
 std::vector<CaseFault> case_faults();
 std::vector<Case> all_cases();
 

@@ -1,6 +1,7 @@
 // What came of one case, and its file.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,6 +10,14 @@
 #include <campaign/cases.hpp>
 
 namespace inkwell::campaign {
+
+/// What became of a fault that was told before.
+enum class FirstFault : std::uint8_t {
+  none,       ///< there was none
+  told,       ///< it is still the one that is told
+  black_box,  ///< another one is told, and the black box has it
+  lost,
+};
 
 struct Result {
   unsigned number = 0;
@@ -24,8 +33,12 @@ struct Result {
   bool bridges_went_on = false;       ///< though they were off
   std::string detected_as;            ///< name of the firmware's fault; empty: none
   std::string fault_on_healing;       ///< that came only when the cause had gone
-  unsigned restarts = 0;
+  std::string told_before;            ///< the fault that was told when this one came; empty: none
+  FirstFault first_fault = FirstFault::none;
+  std::string told_once_cleared;  ///< that came when the one before had been cleared, with the cause still there
+  unsigned restarts = 0;          ///< beside those that the situation brings
   bool locked_up = false;
+  bool missed_boot_loader = false;  ///< was not in it in the end, though it had been asked for
 
   double force_limit_N = 0;
   double peak_force_N = 0, energy_J = 0, travel_m = 0;  ///< at the hand, after the fault came
@@ -43,6 +56,9 @@ struct Result {
 bool is_detected(const Result& result);
 /// Neither that, nor did the bridges go off.
 bool is_unnoticed(const Result& result);
+
+/// Faults, restarts and a lock-up; empty: none of them.
+std::string told(const Result& result);
 
 /// A JSON object with a member for each field, and a line feed.
 std::string text_of(const Result& result);

@@ -1,0 +1,78 @@
+// What the page says of a fault after another, and of the way to the boot loader.
+#include <campaign/cases.hpp>
+#include <campaign/page.hpp>
+#include <campaign/result.hpp>
+
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <temporary_directory.hpp>
+
+#include "seen_cases.hpp"
+
+using namespace inkwell;
+using namespace inkwell::campaign;
+using inkwell::tests::content_of;
+using inkwell::tests::seen;
+using inkwell::tests::TemporaryDirectory;
+
+namespace {
+
+constexpr const char* after_another = "After another fault, and on the way to the boot loader";
+
+std::string page_of(const std::vector<Result>& results) {
+  const TemporaryDirectory directory;
+  write_page(results, directory / "campaign.md");
+  return content_of(directory / "campaign.md");
+}
+
+std::string section_of(const std::string& page, const std::string& heading) {
+  const auto begin = page.find("\n## " + heading + "\n");
+  REQUIRE(begin != std::string::npos);
+  return page.substr(begin, page.find("\n## ", begin + 1) - begin);
+}
+
+/// With another fault told before.
+Result after_first(const std::string& fault, FirstFault first_fault) {
+  Result result = seen(fault, "fault", 1);
+  result.told_before = "host_silent";
+  result.first_fault = first_fault;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("what became of the fault that was told before is counted, and one that was lost has a row") {
+  Result tripped = after_first("bridge_fault", FirstFault::told), quiet = after_first("dma_stopped", FirstFault::told),
+         restarted = after_first("core_stalled", FirstFault::black_box),
+         lost = after_first("logic_sag", FirstFault::lost), mute = after_first("usb_cut", FirstFault::none),
+         failed = after_first("ram_bit", FirstFault::lost);
+  tripped.told_once_cleared = "bridge_fault";
+  restarted.detected_as = "watchdog";
+  failed.error = "The board did not start.";
+  CHECK(is_detected(tripped));
+  CHECK_FALSE(is_detected(quiet));
+  const std::string page = page_of({tripped, quiet, restarted, lost, mute, failed});
+  const std::string section = section_of(page, after_another);
+  CHECK(section.find("In 5 cases host_silent had been told before: it still was in 2 of them, and in 1 the board "
+                     "started anew and had it in its black box. Once it was cleared, the other one was told in 1.\n") !=
+        std::string::npos);
+  for (const Result* each : {&lost, &mute})
+    CHECK(section.find("| " + std::to_string(each->number) + " | `" + each->fault +
+                       "` fault 1 | neither told nor in the black box: host_silent |") != std::string::npos);
+  for (const Result* each : {&tripped, &quiet, &restarted, &failed})
+    CHECK(section.find("`" + each->fault + "`") == std::string::npos);
+  CHECK(page.find("| `bridge_fault` | bridge_fault once cleared | were off |") != std::string::npos);
+  CHECK(section_of(page_of({seen("none", "rest", 1)}), after_another).find("No case was run in which") !=
+        std::string::npos);
+}
+
+TEST_CASE("a board that did not get to its boot loader has a row") {
+  Result there = seen("bridge_fault", "update", 1), astray = seen("core_stalled", "update", 1);
+  astray.missed_boot_loader = true;
+  const std::string section = section_of(page_of({there, astray}), after_another);
+  CHECK(section.find("| " + std::to_string(astray.number) + " | `core_stalled` update 1 | not in its boot loader,") !=
+        std::string::npos);
+  CHECK(section.find("`bridge_fault`") == std::string::npos);
+}
