@@ -110,6 +110,7 @@ std::string meaning_of(CaseSituation situation) {
 }
 
 std::string CaseFault::name() const {
+  if (is_fast_hand) return "fast_hand";
   if (!fault) return "none";
   std::string name(protocol::info(*fault).name);
   if (!of.empty()) name += ":" + of;
@@ -137,6 +138,7 @@ std::vector<CaseFault> case_faults() {
         }
     }
   }
+  faults.push_back({.is_fast_hand = true});
   return faults;
 }
 

@@ -25,6 +25,8 @@ inline const std::vector<Result>* find(const Groups& groups, const std::string& 
   return found == groups.end() ? nullptr : &found->second;
 }
 
+/// By the hand, and by no fault.
+inline bool is_flung(const Result& result) { return result.fault == CaseFault{.is_fast_hand = true}.name(); }
 /// The self-test's pulses were under way, which are no force.
 inline bool is_testing(const Result& result) { return result.situation == name_of(CaseSituation::testing); }
 

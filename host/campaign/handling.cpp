@@ -53,6 +53,18 @@ std::vector<device::HandWaypoint> swings(const Vector3& middle_m, int count) {
   return path;
 }
 
+std::vector<device::HandWaypoint> fling(const Vector3& middle_m) {
+  constexpr double draws_back_s = 0.12, rests_s = 0.02, returns_s = 0.1;
+  Vector3 back_m = middle_m, forth_m = middle_m;
+  back_m[0] -= fling_m / 2;
+  forth_m[0] += fling_m / 2;
+  const double flung_s = draws_back_s + fling_s;
+  return {{draws_back_s, back_m},
+          {flung_s, forth_m},
+          {flung_s + rests_s, forth_m},
+          {flung_s + rests_s + returns_s, middle_m}};
+}
+
 std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters) {
   const Vector3 middle_m = middle_of_box_m(parameters);
   const Vector3 pressed_m = beyond_forward_wall_m(parameters, 1.0);

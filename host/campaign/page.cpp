@@ -80,7 +80,7 @@ std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faul
   for (const CaseSituation situation : situations) {
     if (!is_active(situation)) continue;
     for (const CaseFault& fault : faults) {
-      const auto* results = find(groups, fault.name(), situation);
+      const auto* results = fault.is_fast_hand ? nullptr : find(groups, fault.name(), situation);
       if (results == nullptr) continue;
       for (const Result& r : *results) {
         if (!r.error.empty()) continue;
@@ -119,7 +119,7 @@ std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faul
   for (const CaseFault& fault : faults)
     for (const CaseSituation situation : situations) {
       const auto* results = find(groups, fault.name(), situation);
-      if (results == nullptr || !is_active(situation)) continue;
+      if (results == nullptr || fault.is_fast_hand || !is_active(situation)) continue;
       const Summary s = summarise(*results);
       const double bearable_N = bearable_part_of_limit * force_limit_N(*results);
       for (const Result& r : *results)
@@ -223,9 +223,9 @@ at the supply any more, in control periods of {:.0f} us.
 )";
   std::string text = fmt::format(head, phases, results.size(), all_cases().size(), force_limit_N(results), observed_s,
                                  1e6 * control_period_s, stem, stem);
-  text += went_on(results) + at_the_hand(groups, faults) + above_limit(groups, faults) + unnoticed(groups, faults) +
-          off_but_not_told(groups, faults) + unnoticed_without_force(groups, faults) + after_another(results) +
-          not_run(results) + tables(groups, faults);
+  text += went_on(results) + at_the_hand(groups, faults) + above_limit(groups, faults) + fast_hand(results) +
+          unnoticed(groups, faults) + off_but_not_told(groups, faults) + unnoticed_without_force(groups, faults) +
+          after_another(results) + not_run(results) + tables(groups, faults);
   recording::write_text(page, text);
   recording::write_text(page.parent_path() / (stem + "-off.svg"), off_plot(results));
   recording::write_text(page.parent_path() / (stem + "-force.svg"), force_plot(results));

@@ -12,8 +12,10 @@
 namespace inkwell::campaign {
 namespace {
 
-/// With the force on, which the self-test's pulses are not.
-bool was_driven(const Result& result) { return result.error.empty() && result.bridges_were_on && !is_testing(result); }
+/// With the force on, which the self-test's pulses are not. What a hand feels that flings the arm is the arm.
+bool was_driven(const Result& result) {
+  return result.error.empty() && result.bridges_were_on && !is_testing(result) && !is_flung(result);
+}
 
 /// What the hand feels without a fault, at most; by situation.
 std::map<std::string, double> sound_forces_N(std::span<const Result> results) {

@@ -1,8 +1,11 @@
 #include "page_told.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
+
+#include <protocol/supervision.hpp>
 
 namespace inkwell::campaign {
 namespace {
@@ -41,6 +44,32 @@ std::string after_another(std::span<const Result> results) {
         cases, before, told, kept, once_cleared);
   if (rows.empty()) return text;
   return text + "\n| case | what | what was missed |\n| --- | --- | --- |\n" + rows;
+}
+
+std::string fast_hand(std::span<const Result> results) {
+  double with_N = 0, without_N = 0;
+  unsigned with = 0, without = 0, told = 0;
+  for (const Result& result : results) {
+    if (!result.error.empty() || !is_flung(result)) continue;
+    if (!result.bridges_were_on || is_testing(result)) {
+      ++without;
+      without_N = std::max(without_N, result.peak_force_N);
+    } else {
+      ++with;
+      with_N = std::max(with_N, result.peak_force_N);
+      told += result.detected_as == protocol::info(protocol::Fault::over_speed).name;
+    }
+  }
+  std::string text = fmt::format(
+      "\n## A fast hand\n\nIn `fast_hand` nothing fails: the hand flings the arm {:.0f} mm along x within {} s, which "
+      "is "
+      "faster than it may be under a force.",
+      1e3 * fling_m, fling_s);
+  if (without > 0) text += fmt::format(" That takes up to {:.2f} N without a force.", without_N);
+  if (with > 0)
+    text += fmt::format(" With the force on the hand felt up to {:.2f} N, and {} was told in {} of {} cases.", with_N,
+                        protocol::info(protocol::Fault::over_speed).name, told, with);
+  return text + (with + without == 0 ? " No such case was run.\n" : "\n");
 }
 
 }  // namespace inkwell::campaign

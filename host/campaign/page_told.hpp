@@ -1,4 +1,4 @@
-// Parts of the page: what is told after another fault, and on the way to the boot loader.
+// Parts of the page: what is told after another fault, of a fast hand.
 #pragma once
 
 #include <span>
@@ -10,5 +10,7 @@ namespace inkwell::campaign {
 
 /// What became of the fault that was told before, and of the way to the boot loader.
 std::string after_another(std::span<const Result> results);
+/// What the hand felt that flung the arm, with the force and without.
+std::string fast_hand(std::span<const Result> results);
 
 }  // namespace inkwell::campaign

@@ -68,6 +68,7 @@ std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire)
 }  // namespace
 
 std::string_view reason_with_force(const CaseFault& put_in) {
+  if (put_in.is_fast_hand) return "None is known: the speed of each period is watched.";
   const std::string_view of = put_in.of;
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
@@ -136,6 +137,7 @@ std::string_view reason_with_force(const CaseFault& put_in) {
 }
 
 std::string_view reason_without_force(const CaseFault& put_in) {
+  if (put_in.is_fast_hand) return "A hand may be as fast as it likes while there is no force.";
   const InjectedFault fault = *put_in.fault;
   const std::string_view of = put_in.of;
   switch (fault) {
@@ -187,6 +189,8 @@ std::string_view reason_without_force(const CaseFault& put_in) {
 }
 
 std::string_view reason_of_silence(const CaseFault& put_in) {
+  constexpr std::string_view unknown = "None is known: what takes the bridges off is told.";
+  if (put_in.is_fast_hand) return unknown;
   const std::string_view of = put_in.of;
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
@@ -203,7 +207,7 @@ std::string_view reason_of_silence(const CaseFault& put_in) {
       return "A core that stands tells nothing; when it goes on it tells that the bridges were let go.";
     default: break;
   }
-  return "None is known: what takes the bridges off is told.";
+  return unknown;
 }
 
 }  // namespace inkwell::campaign

@@ -1,4 +1,4 @@
-// Why a fault may pass without a word, as far as its row of the table tells.
+// Why a fault, or a fast hand, may pass without a word, as far as its row of the table tells.
 #pragma once
 
 #include <string_view>

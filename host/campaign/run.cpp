@@ -196,8 +196,9 @@ double phase_s(const Case& the_case) {
   return longest_phase_s * static_cast<double>(random() >> 8) / static_cast<double>(1u << 24);
 }
 
-void put_in(BoardRun& board, const CaseFault& what, Result& result) {
+void put_in(BoardRun& board, const CaseFault& what, const ParameterSet& parameters, Result& result) {
   auto& control = board.control();
+  if (what.is_fast_hand) control.hand_path(fling(middle_of_box_m(parameters)));
   if (!what.fault) return;
   control.inject({std::string(protocol::info(*what.fault).name), what.of, what.amount, 0.0, what.for_s});
   const auto injected = control.truth().at("injected");
@@ -210,13 +211,13 @@ unsigned resets_meant(const BoardRun& board, const Case& the_case) {
   return is_before_power(the_case) || has_left ? 1 : 0;
 }
 
-void observe(BoardRun& board, const Case& the_case, Result& result) {
+void observe(BoardRun& board, const Case& the_case, const ParameterSet& parameters, Result& result) {
   auto& control = board.control();
   const auto before = control.truth();
   const unsigned resets_before = board.resets();
   result.injected_at_s = before.at("board_time_s");
   result.bridges_were_on = !is_before_power(the_case) && bridges_drive(before);
-  put_in(board, the_case.fault, result);
+  put_in(board, the_case.fault, parameters, result);
   control.meter_start();
   board.run(observed_s, false);
 
@@ -359,7 +360,7 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
     board.run_exactly(until_fault_s - slices_s);
     expect(the_case.situation != CaseSituation::update || board.is(State::update), "the board left too soon.");
     if (the_case.situation == CaseSituation::fault) result.told_before = protocol::info(first_fault).name;
-    observe(board, the_case, result);
+    observe(board, the_case, parameters, result);
     const bool could_tell = notice(board, the_case, result);
     const bool lasts = is_active(the_case.situation) && the_case.situation != CaseSituation::landing;
     if (lasts && is_unnoticed(result) && could_tell && !is_unheard(the_case.fault)) use_on(board, parameters, result);

@@ -177,8 +177,12 @@ std::string be_too_fast(Bench& bench) {
 }
 
 std::string put_fault_in(Bench& bench) {
-  static const auto faults = campaign::case_faults();
-  const auto& put_in = faults[1 + bench.random.below(faults.size() - 1)];  // the first is none
+  static const auto faults = [] {
+    auto all = campaign::case_faults();
+    std::erase_if(all, [](const campaign::CaseFault& each) { return !each.fault; });
+    return all;
+  }();
+  const auto& put_in = faults[bench.random.below(faults.size())];
   const bool with_force = bench.random.chance(0.8);
   be_in_use(bench, with_force);
   const Disturbance disturbance = disturbance_by(*put_in.fault);

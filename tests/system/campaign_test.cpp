@@ -252,6 +252,19 @@ TEST_CASE("what is broken before the power comes, or breaks while the board star
   CHECK(late.recovery == "clear_fault");
 }
 
+TEST_CASE("a hand that flings the arm is told it was too fast, feels no more than without a force, and may go on") {
+  const Result free = result_of("fast_hand ready 1");
+  CHECK_FALSE(campaign::is_detected(free));
+  for (const char* name : {"fast_hand rest 1", "fast_hand wall 1", "fast_hand motion 1"}) {
+    const Result flung = result_of(name);
+    CHECK(flung.off_after_s.has_value());
+    CHECK(flung.detected_as == "over_speed");
+    CHECK(flung.recovery == "clear_fault");
+    CHECK(flung.peak_force_N < free.peak_force_N);
+    CHECK(flung.position_error_m.value() < 0.0005);
+  }
+}
+
 TEST_CASE("a case is the same wherever it runs: two runs give one result") {
   const TemporaryDirectory directory;
   const auto c = the_case("encoder_lost_counts:2=0.1 motion 2");

@@ -33,6 +33,7 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   }
   CHECK(cases.size() == case_faults().size() * (5 * 3 + 6 + 2));
   CHECK(cases[0].fault.is_none());
+  CHECK(case_faults().back().is_fast_hand);
   for (const auto& row : protocol::injection_table) {
     CAPTURE(row.name);
     for (const CaseSituation situation : situations)
@@ -53,6 +54,7 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   }
   CHECK(names.contains("none starting 2"));
   CHECK_FALSE(names.contains("none starting 3"));
+  CHECK(names.contains("fast_hand rest 3"));
   // As the table has it, and more or less.
   for (const char* amount :
        {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag", "analog_sag=3.5"})

@@ -1,4 +1,4 @@
-// What the page says of a fault after another, and of the way to the boot loader.
+// What the page says of a fault after another, of the way to the boot loader and of a fast hand.
 #include <campaign/cases.hpp>
 #include <campaign/page.hpp>
 #include <campaign/result.hpp>
@@ -75,4 +75,32 @@ TEST_CASE("a board that did not get to its boot loader has a row") {
   CHECK(section.find("| " + std::to_string(astray.number) + " | `core_stalled` update 1 | not in its boot loader,") !=
         std::string::npos);
   CHECK(section.find("`bridge_fault`") == std::string::npos);
+}
+
+TEST_CASE("what a hand feels that flings the arm stands beside what it takes without a force, and with no fault's") {
+  Result free = seen("fast_hand", "ready", 1), tested = seen("fast_hand", "testing", 1),
+         flung = seen("fast_hand", "rest", 1), missed = seen("fast_hand", "wall", 1),
+         failed = seen("fast_hand", "wall", 2), sound = seen("none", "rest", 1);
+  free.peak_force_N = 8.9;
+  tested.bridges_were_on = true;
+  tested.peak_force_N = 9.1;
+  flung.peak_force_N = 7.65;
+  flung.detected_as = "over_speed";
+  flung.off_after_s = 0.15;
+  missed.peak_force_N = 7.5;
+  failed.error = "The board did not start.";
+  sound.peak_force_N = 2.0;
+  const std::string page = page_of({free, tested, flung, missed, failed, sound});
+  const std::string section = section_of(page, "A fast hand");
+  CHECK(section.find("flings the arm 140 mm along x within 0.085 s") != std::string::npos);
+  CHECK(section.find("That takes up to 9.10 N without a force. With the force on the hand felt up to 7.65 N, and "
+                     "over_speed was told in 1 of 2 cases.\n") != std::string::npos);
+  CHECK(page.find("felt at most 2.00 N in that time (`none` in rest)") != std::string::npos);
+  CHECK(page.find("a twentieth of it: none.") != std::string::npos);
+  CHECK(section_of(page, "Not noticed").find("| `fast_hand` | wall | ") != std::string::npos);
+  CHECK(section_of(page_of({sound}), "A fast hand").find("No such case was run.") != std::string::npos);
+  const TemporaryDirectory directory;
+  write_page(std::array{flung, sound}, directory / "campaign.md");
+  CHECK(content_of(directory / "campaign-off.svg").find("#3b6ea5\"") ==
+        content_of(directory / "campaign-off.svg").rfind("#3b6ea5\""));  // what the colour means, and no bar
 }

@@ -283,6 +283,7 @@ TEST_CASE("what a fault does without force, or silently, has reasons of its own"
                           "The code that it came to returned to the main loop, and had "
                           "changed nothing that is checked; or it came before"},
                          {"wire_low:inkwell_switch", "fault", "Before there is a reference it looks like"},
+                         {"fast_hand", "ready", "A hand may be as fast as it likes"},
                          {"bridge_fault", "rest", "None is known: what takes the bridges off is told."}}) {
     CAPTURE(row.fault);
     CAPTURE(row.situation);

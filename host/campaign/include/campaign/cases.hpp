@@ -43,6 +43,9 @@ constexpr bool is_pressed(CaseSituation situation) {
 /// The swing of `motion`: to either side, along all axes; from one side to the other.
 inline constexpr double swing_m = 0.03, swing_s = 0.10;
 
+/// The fling of `fast_hand`: so far along x, within this time.
+inline constexpr double fling_m = 0.14, fling_s = 0.085;
+
 /// How many instants; where little else goes on, one has to do. Of `starting` the first is before the power comes.
 inline constexpr unsigned phases = 3, phases_of_start = 2;
 constexpr unsigned phases_of(CaseSituation situation) {
@@ -50,15 +53,16 @@ constexpr unsigned phases_of(CaseSituation situation) {
   return situation <= CaseSituation::motion ? phases : 1;
 }
 
-/// A fault at a place; none is the control, in which nothing is put in.
+/// A fault at a place, or what the hand does; neither is the control, in which nothing is put in.
 struct CaseFault {
   std::optional<protocol::InjectedFault> fault;
   std::string of;
   std::optional<double> amount;
   std::optional<double> for_s;
+  bool is_fast_hand = false;  ///< no fault of board and arm: the hand itself flings the arm
 
-  bool is_none() const { return !fault; }
-  std::string name() const;  ///< as --inject writes it, or `none`
+  bool is_none() const { return !fault && !is_fast_hand; }
+  std::string name() const;  ///< as --inject writes it, `none` or `fast_hand`
 };
 
 struct Case {
@@ -70,7 +74,7 @@ struct Case {
   std::string name() const;
 };
 
-/// The control first. Of three motors that are wired alike the second stands for all: it bears the
+/// The control first, the fast hand last. Of three motors that are wired alike the second stands for all: it bears the
 /// load at the wall.
 std::vector<CaseFault> case_faults();
 std::vector<Case> all_cases();

@@ -21,6 +21,8 @@ device::Vector3 beyond_forward_wall_m(const protocol::ParameterSet& parameters, 
 std::vector<device::HandWaypoint> swings(const device::Vector3& middle_m, int count);
 /// To the middle, then `use_presses` times into the wall in front and back, then `use_swings` (campaign/run.hpp).
 std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters);
+/// Back, along x, and then from there to the other side of this point faster than any force is given at.
+std::vector<device::HandWaypoint> fling(const device::Vector3& middle_m);
 /// Takes the stylus where it is, out of the inkwell if it is there, and brings it to the target.
 void take_by_hand(BoardRun& board, device::Vector3 target_m, double duration_s);
 
