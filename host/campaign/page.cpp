@@ -225,7 +225,7 @@ at the supply any more, in control periods of {:.0f} us.
                                  1e6 * control_period_s, stem, stem);
   text += went_on(results) + at_the_hand(groups, faults) + above_limit(groups, faults) + fast_hand(results) +
           unnoticed(groups, faults) + off_but_not_told(groups, faults) + unnoticed_without_force(groups, faults) +
-          after_another(results) + not_run(results) + tables(groups, faults);
+          after_another(results) + told_by_none(results) + not_run(results) + tables(groups, faults);
   recording::write_text(page, text);
   recording::write_text(page.parent_path() / (stem + "-off.svg"), off_plot(results));
   recording::write_text(page.parent_path() / (stem + "-force.svg"), force_plot(results));

@@ -1,6 +1,7 @@
 #include "page_told.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -9,6 +10,23 @@
 
 namespace inkwell::campaign {
 namespace {
+
+/// Why none of the campaign's cases can bring it about.
+std::string_view reason_untold(protocol::Fault fault) {
+  switch (fault) {
+    case protocol::Fault::not_finite:
+      return "What converters, encoders and hosts give is always a number; only a bit of the RAM that flips might make "
+             "one that is none. The tests of the control path give it such numbers.";
+    case protocol::Fault::force_law:
+      return "The law of this image gives a number for all that it may be given; an image whose law divides by zero "
+             "has "
+             "a test of its own, `tests/system/force_law_fault_test.cpp`.";
+    case protocol::Fault::motor_hot:
+      return "A motor gets less long before it is too hot, and a case is too short to heat one; the tests of the "
+             "control path do.";
+    default: return "None is known.";
+  }
+}
 
 std::string name_of_case(const Result& result) {
   return fmt::format("`{}` {} {}", result.fault, result.situation, result.phase);
@@ -70,6 +88,23 @@ std::string fast_hand(std::span<const Result> results) {
     text += fmt::format(" With the force on the hand felt up to {:.2f} N, and {} was told in {} of {} cases.", with_N,
                         protocol::info(protocol::Fault::over_speed).name, told, with);
   return text + (with + without == 0 ? " No such case was run.\n" : "\n");
+}
+
+std::string told_by_none(std::span<const Result> results) {
+  std::set<std::string_view> told;
+  for (const Result& result : results)
+    if (result.error.empty())
+      for (const std::string* name : {&result.detected_as, &result.fault_on_healing, &result.told_before,
+                                      &result.told_once_cleared, &result.noticed_in_use_as})
+        told.insert(*name);
+  std::string rows;
+  for (const protocol::Watch& row : protocol::watch_table)
+    if (const std::string_view name = protocol::info(row.fault).name; !told.contains(name))
+      rows += fmt::format("| `{}` | {} |\n", name, reason_untold(row.fault));
+  const std::string_view heading =
+      "\n## Told by none\n\nFaults that the board watches for, and no case that was run told";
+  if (rows.empty()) return fmt::format("{}: none.\n", heading);
+  return fmt::format("{}.\n\n| fault | reason |\n| --- | --- |\n{}", heading, rows);
 }
 
 }  // namespace inkwell::campaign

@@ -1,4 +1,5 @@
-// What the page says of a fault after another, of the way to the boot loader and of a fast hand.
+// What the page says of a fault after another, of the way to the boot loader, of a fast hand, and of what is never
+// told.
 #include <campaign/cases.hpp>
 #include <campaign/page.hpp>
 #include <campaign/result.hpp>
@@ -8,6 +9,8 @@
 
 #include <doctest/doctest.h>
 #include <temporary_directory.hpp>
+
+#include <protocol/supervision.hpp>
 
 #include "seen_cases.hpp"
 
@@ -103,4 +106,28 @@ TEST_CASE("what a hand feels that flings the arm stands beside what it takes wit
   write_page(std::array{flung, sound}, directory / "campaign.md");
   CHECK(content_of(directory / "campaign-off.svg").find("#3b6ea5\"") ==
         content_of(directory / "campaign-off.svg").rfind("#3b6ea5\""));  // what the colour means, and no bar
+}
+
+TEST_CASE("faults that were told by no case are named with the reason, whenever the others were told") {
+  std::vector<Result> results;
+  const auto told_in = [&](std::string Result::*when, protocol::Fault fault) {
+    results.push_back(seen("bridge_fault", "rest", 1));
+    results.back().*when = protocol::info(fault).name;
+  };
+  told_in(&Result::detected_as, protocol::Fault::watchdog);
+  told_in(&Result::fault_on_healing, protocol::Fault::heartbeat_missed);
+  told_in(&Result::told_before, protocol::Fault::host_silent);
+  told_in(&Result::told_once_cleared, protocol::Fault::bridge_wire);
+  told_in(&Result::noticed_in_use_as, protocol::Fault::encoder_wire);
+  const std::string some = section_of(page_of(results), "Told by none");
+  for (const char* name : {"watchdog", "heartbeat_missed", "host_silent", "bridge_wire", "encoder_wire"})
+    CHECK(some.find("`" + std::string(name) + "`") == std::string::npos);
+  CHECK(some.find("| `over_speed` | None is known. |") != std::string::npos);
+  CHECK(some.find("| `force_law` | The law of this image gives a number for all") != std::string::npos);
+  CHECK(some.find("| `not_finite` | What converters") != std::string::npos);
+  CHECK(some.find("| `motor_hot` | A motor gets less") != std::string::npos);
+  results.back().error = "The board did not start.";
+  CHECK(section_of(page_of(results), "Told by none").find("`encoder_wire`") != std::string::npos);
+  for (const protocol::Watch& row : protocol::watch_table) told_in(&Result::detected_as, row.fault);
+  CHECK(section_of(page_of(results), "Told by none").ends_with("no case that was run told: none.\n"));
 }
