@@ -68,7 +68,6 @@ void note_callers(CrashFacts& crash) {
 /// unless the stack has overflowed. No interrupt comes between: none is before a fault. A second fault in here begins
 /// anew as a hard fault, and one in that locks the processor up until the watchdog resets it.
 extern "C" [[gnu::naked]] void fault_handler() {
-  using namespace drivers;
   asm volatile(
       "ldr r2, =%c[enable_address] \n"
       "ldr r3, =%c[enable_low] \n"
@@ -84,9 +83,9 @@ extern "C" [[gnu::naked]] void fault_handler() {
       "push {r4-r11, lr} \n"
       "mov r1, sp \n"
       "b record_fault \n"
-      ".ltorg \n" ::[enable_address] "i"(bridge_enable_low.address),
-      [enable_low] "i"(bridge_enable_low.value), [legs_a_address] "i"(legs_a_off.address),
-      [legs_b_address] "i"(legs_b_off.address), [off] "i"(outputs_off));
+      ".ltorg \n" ::[enable_address] "i"(drivers::bridge_enable_low.address),
+      [enable_low] "i"(drivers::bridge_enable_low.value), [legs_a_address] "i"(drivers::legs_a_off.address),
+      [legs_b_address] "i"(drivers::legs_b_off.address), [off] "i"(drivers::outputs_off));
 }
 
 extern "C" [[noreturn, gnu::used]] void record_fault(const ExceptionFrame* frame, const SavedRegisters* saved) {

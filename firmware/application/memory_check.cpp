@@ -17,15 +17,14 @@ constexpr std::ptrdiff_t words_per_step = 4;
 struct Copy {
   const std::uint32_t* begin;
   const std::uint32_t* end;
-  const std::uint32_t* image;
+  const void* image;
 };
 
 const std::array<Copy, 3>& copies() {
   static constinit const std::array<Copy, 3> all{
       {{interrupt_text_begin, interrupt_text_end, interrupt_text_image},
        {interrupt_tables_begin, interrupt_tables_end, interrupt_tables_image},
-       {interrupt_vectors, interrupt_vectors + sizeof vectors / sizeof(std::uint32_t),
-        reinterpret_cast<const std::uint32_t*>(&vectors)}}};
+       {interrupt_vectors, interrupt_vectors + sizeof vectors / sizeof(std::uint32_t), &vectors}}};
   return all;
 }
 
@@ -70,8 +69,9 @@ void MemoryCheck::check_flash() {
 
 void MemoryCheck::check_copy() {
   const Copy& copy = copies()[part_ - 1];
+  const auto* const image = static_cast<const std::uint32_t*>(copy.image);
   const std::uint32_t* const end = next_ + std::min(words_per_step, copy.end - next_);
-  for (; next_ != end; ++next_) sound_ &= *next_ == copy.image[next_ - copy.begin];
+  for (; next_ != end; ++next_) sound_ &= *next_ == image[next_ - copy.begin];
   if (next_ != copy.end) return;
   if (part_ < copies().size()) next_ = copies()[part_].begin;
   ++part_;

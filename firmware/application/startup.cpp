@@ -22,7 +22,6 @@ void copy(const std::uint32_t* image, std::uint32_t* begin, const std::uint32_t*
 /// The stack lies in the core-coupled memory, whose clock runs after a reset, but not when the boot loader in the chip
 /// starts the program (AN2606: it leaves RCC_AHB1ENR at 0). Loader and reset both load the stack pointer.
 extern "C" [[gnu::naked]] void reset_handler() {
-  using registers::RCC;
   asm volatile(
       "ldr r0, =%c[clocks] \n"
       "ldr r1, [r0] \n"
@@ -30,8 +29,8 @@ extern "C" [[gnu::naked]] void reset_handler() {
       "str r1, [r0] \n"
       "ldr r1, [r0] \n"  // erratum "Delay after an RCC peripheral clock enabling"
       "b start \n"
-      ".ltorg \n" ::[clocks] "i"(RCC::AHB1ENR::address),
-      [core_coupled] "i"(RCC::AHB1ENR::CCMDATARAMEN::mask));
+      ".ltorg \n" ::[clocks] "i"(registers::RCC::AHB1ENR::address),
+      [core_coupled] "i"(registers::RCC::AHB1ENR::CCMDATARAMEN::mask));
 }
 
 extern "C" [[noreturn, gnu::used]] void start() {
