@@ -245,9 +245,9 @@ void Controller::watch_motors(const Settings& settings) {
           {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
 }
 
-/// A current reading that tells too little has its loop ask for more. The voltage of the motor whose turn it is gets
+/// A current reading that tells too little has its loop ask for more. The voltage of the motor whose turn it is has
 /// room for no more than what makes the force limit, whatever the reading tells: what the force leaves of that limit
-/// may be this motor's alone.
+/// may be this motor's alone, at the end of the longer link.
 void Controller::bound_voltages(const Settings& settings) {
   const float supply_bound_V = board_.duty_limit * supply_.supply_V;
   const float bound_V = clamp(settings.current_loop.voltage_limit_V, 0.0f, supply_bound_V);
@@ -292,7 +292,7 @@ void Controller::regulate_currents(const Settings& settings) {
     if (i == without_loop) [[unlikely]]
       step = {{}, clamp(test_voltage_V(settings), voltage_ranges_[i].least_V, voltage_ranges_[i].most_V)};
     loops_[i] = step.loop;
-    drive_.duty[i] = step.voltage_V * supply_.per_V;  // the range keeps it within the duty's limit
+    drive_.duty[i] = step.voltage_V * supply_.per_V;  // the range keeps it within the limit, and so do the bridges
   }
   drive_.enabled = true;
 }

@@ -29,14 +29,17 @@ float resistance_ohm(const PulseRound::Motor& motor, float low_A, float high_A, 
 /// How many times one is the other, whichever is larger.
 float apart(float a, float b) { return a > b ? a / b : b / a; }
 
+float mean_back_emf_V(const PulseRound::Motor& motor, const Expected& expected) {
+  return std::fabs(static_cast<float>(motor.moved_counts) * expected.back_emf_Vs_per_count / levels_s);
+}
+
 Result failed_or_moved(const PulseRound::Motor& motor, const Expected& expected) {
-  const float back_emf_V = static_cast<float>(motor.moved_counts) * expected.back_emf_Vs_per_count / levels_s;
-  return std::fabs(back_emf_V) > PulseJudgement::moves_V ? Result::moved : Result::failed;
+  return mean_back_emf_V(motor, expected) > PulseJudgement::moves_V ? Result::moved : Result::failed;
 }
 
 struct OfMotor {
   Found motor, bridge;
-  float mean_ohm = 0.0f;
+  float kept_ohm = 0.0f;
 };
 
 OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expected& expected) {
@@ -54,9 +57,11 @@ OfMotor judge_motor(const PulseRound::Motor& motor, std::size_t own, const Expec
   // What is left of the voltage at no current; a back EMF adds to one sign what it takes from the other.
   const float bridge_V = motor.high_V - 0.5f * (forward_ohm * current_A[1][own] - backward_ohm * current_A[2][own]);
   const bool is_slow = bridge_V > PulseJudgement::dead_time_ratio * expected.dead_V;
+  const bool is_kept = apart(forward_ohm, backward_ohm) < PulseJudgement::kept_apart &&
+                       mean_back_emf_V(motor, expected) < PulseJudgement::rests_V;
   return {{Result::passed, worse_ohm},
           {is_slow ? failed_or_moved(motor, expected) : Result::passed, bridge_V},
-          0.5f * (forward_ohm + backward_ohm)};
+          is_kept ? 0.5f * (forward_ohm + backward_ohm) : 0.0f};
 }
 
 /// The pulses of one motor in the sensors of the others.
@@ -106,9 +111,9 @@ PulseJudgement judge(const control::PulseRound& round, const control::Settings& 
     const OfMotor found = judge_motor(round.motors[i], i, expected);
     judgement.motors[i] = found.motor;
     judgement.bridges[i] = found.bridge;
-    judgement.resistance_ohm[i] = found.mean_ohm;
+    judgement.resistance_ohm[i] = found.kept_ohm;
     if (found.bridge.result == Result::passed)
-      judgement.bridge_loss_part[i] = std::clamp(found.bridge.figure, 0.0f, round.dead_V) / round.supply_V;
+      judgement.bridge_loss_part[i] = std::max(found.bridge.figure, 0.0f) / round.supply_V;
     const Found wires = judge_wires(round.motors[i], i, expected);
     judgement.wires = i == 0 ? wires : worse(judgement.wires, wires);
   }

@@ -134,7 +134,7 @@ void SelfTest::note_pulses(const PulseJudgement& judgement) {
 void SelfTest::keep(const PulseJudgement& judgement, const protocol::SignalValues& signals) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (judgement.bridges[i].result == Result::passed) measured_.bridge_loss_part[i] = judgement.bridge_loss_part[i];
-    if (judgement.motors[i].result != Result::passed) continue;
+    if (judgement.resistance_ohm[i] == 0.0f) continue;
     measured_.resistance_ohm[i] = judgement.resistance_ohm[i];
     measured_.heat[i] = signals[of_axis(protocol::Signal::motor_heat_1, i)];
   }

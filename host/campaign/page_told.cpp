@@ -49,8 +49,10 @@ std::string after_another(std::span<const Result> results) {
     told += result.first_fault == FirstFault::told;
     kept += result.first_fault == FirstFault::black_box;
     once_cleared += !result.told_once_cleared.empty();
-    if (result.first_fault == FirstFault::lost || result.first_fault == FirstFault::none)
+    if (result.first_fault == FirstFault::lost)
       row(result, fmt::format("neither told nor in the black box: {}", result.told_before));
+    if (result.first_fault == FirstFault::none)
+      row(result, fmt::format("the board could not be asked for it: {}", result.told_before));
   }
   std::string text = "\n## After another fault, and on the way to the boot loader\n\n";
   if (cases == 0)

@@ -246,10 +246,11 @@ void note_fault(const BoardRun& board, const Result& result, std::string& name) 
 }
 
 /// None if the board does not say.
-FirstFault what_became_of_first(BoardRun& board) {
+FirstFault what_became_of_first(BoardRun& board, bool restarted) {
   if (board.is(State::fault) && board.pose()->fault == first_fault) return FirstFault::told;
   try {
-    return board.device().black_box().fault == first_fault ? FirstFault::black_box : FirstFault::lost;
+    // Without a restart it would have to be told still.
+    return restarted && board.device().black_box().fault == first_fault ? FirstFault::black_box : FirstFault::lost;
   } catch (const device::Error&) {
     return FirstFault::none;
   }
@@ -287,7 +288,7 @@ bool notice(BoardRun& board, const Case& the_case, Result& result) {
     note_fault(board, result, result.detected_as);
   if (!board.connected()) return false;
   if (the_case.situation == CaseSituation::fault && !is_about_the_host(the_case.fault)) {
-    result.first_fault = what_became_of_first(board);
+    result.first_fault = what_became_of_first(board, result.restarts > 0);
     if (result.first_fault == FirstFault::told) clear_first_fault(board, result);
   }
   return true;
@@ -315,7 +316,7 @@ void recover(BoardRun& board, const Case& the_case, bool could_tell, Result& res
   if (!board.connected()) board.connect(0.5);
   board.run(0.05);
   if (the_case.situation == CaseSituation::fault && result.first_fault == FirstFault::none && board.connected())
-    result.first_fault = what_became_of_first(board);
+    result.first_fault = what_became_of_first(board, result.restarts > 0);
   if (result.detected_as.empty() && result.told_once_cleared.empty() && result.noticed_in_use_as.empty())
     note_fault(board, result, could_tell ? result.fault_on_healing : result.detected_as);
   const bool stayed = is_active(the_case.situation) ? board.force_is_on() : result.restarts == 0;

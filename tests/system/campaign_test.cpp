@@ -131,7 +131,7 @@ TEST_CASE("a motor that does not do as its voltage says is let go of before the 
   };
   for (const Known& known : {Known{"wires_shorted:motor_current[1]+motor_current[2] wall 2", 40},
                              {"wires_shorted:motor_current[1]+motor_current[2] limited 1", 40},
-                             {"wire_frozen:motor_current[1] limited 1", 4000},
+                             {"shunt_gain:2 limited 1", 200},
                              {"wire_open:motor_current[1] rest 1", 50},
                              {"shunt_frozen:2 wall 3", 4000},
                              {"motor_open:2 wall 1", 30},
@@ -144,6 +144,18 @@ TEST_CASE("a motor that does not do as its voltage says is let go of before the 
     CHECK(*result.off_after_s < known.periods * control_period_s);
     CHECK(result.detected_as == "motor_implausible");
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
+    CHECK(result.recovery == "clear_fault");
+  }
+}
+
+TEST_CASE(
+    "a reading that freezes while the limit holds the force makes no more of it, and is noticed by the next press") {
+  for (const char* name : {"wire_frozen:motor_current[1] limited 1", "shunt_frozen:2 limited 1"}) {
+    CAPTURE(name);
+    const Result result = result_of(name);
+    CHECK(result.peak_force_N < 1.02 * result.force_limit_N);
+    CHECK((result.detected_as == "motor_implausible" || result.noticed_in_use_as == "motor_implausible"));
+    CHECK(result.peak_force_in_use_N.value_or(0.0) < 1.02 * result.force_limit_N);
     CHECK(result.recovery == "clear_fault");
   }
 }

@@ -75,6 +75,9 @@ TEST_CASE("what a bridge takes at least is missed in a voltage that is too small
     const float most_V = 2.0f + 0.5f + MotorWatch::bearable_V + 0.86f;
     CHECK(looks(0, sign * (most_V - 0.02f), sign * 1.0f, 0.0f, loss) == never);
     CHECK(looks(0, sign * (most_V + 0.02f), sign * 1.0f, 0.0f, loss) < never);
+    // Brushes take as well, but not for sure: what is missed is no more than what dead time takes.
+    CHECK(looks(0, sign * (2.0f + 0.5f - MotorWatch::bearable_V - 0.56f + 0.02f), sign * 1.0f, 0.0f, {0.9f, 0.5f}) ==
+          never);
     // A small current may turn round in each period of the PWM, and the bridge then gives as much as it takes.
     const float steady_A = MotorWatch::steady_A;
     const float small_V = -0.5f - MotorWatch::bearable_V + 0.72f * 2.0f * steady_A + 0.02f;
@@ -293,8 +296,8 @@ TEST_CASE("below the force limit it may make what the limit leaves, as if the mo
     float most_A = 0.0f;
     for (int period = 0; period < 2'000 && arm.run(1, motor) == 1; ++period)
       most_A = std::max(most_A, std::fabs(settled_A(arm, motor)));
-    CHECK(most_A == doctest::Approx(std::min(1.05f * (asked_A + more_A), most_A)).epsilon(0.01));
-    CHECK(most_A > 1.06f * asked_A);
+    CHECK(most_A < 1.01f * 1.05f * (asked_A + more_A));
+    CHECK(most_A > asked_A + 0.6f * more_A);
   }
 }
 

@@ -5,6 +5,9 @@
 // at 50 us against L/R = 109 us either rectangle would put the discrete zero well beside the pole.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include <control/motor_watch.hpp>
 #include <control/vector.hpp>
 
@@ -32,12 +35,14 @@ struct VoltageRange {
   float least_V, most_V;
 };
 
-/// What of +-bound_V a motor needs at most for `most_A` to either side, while it turns with `back_emf_V` and its bridge
-/// takes `bridge_V`.
+/// What of +-bound_V a motor needs at most for `most_A` to either side, while it turns with about `back_emf_V` and its
+/// bridge takes `bridge_V`. No voltage is always within, so that a speed that is wrong drives nothing.
 inline VoltageRange voltage_range(float most_A, const Resistance& resistance, float back_emf_V, float bridge_V,
                                   float bound_V) {
-  const float for_current_V = resistance.with_room_ohm() * most_A + bridge_V;
-  return {clamp(back_emf_V - for_current_V, -bound_V, bound_V), clamp(back_emf_V + for_current_V, -bound_V, bound_V)};
+  const float half_V =
+      resistance.with_room_ohm() * most_A + bridge_V + MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V);
+  return {std::max(std::min(back_emf_V - half_V, 0.0f), -bound_V),
+          std::min(std::max(back_emf_V + half_V, 0.0f), bound_V)};
 }
 
 /// One period: the voltage for the next period, within `range`. While the voltage is at its bound the integral does

@@ -30,15 +30,16 @@ struct MotorModel {
 /// What a bridge takes from its motor's voltage, always against the current. With little or no current it may give as
 /// much.
 struct BridgeLoss {
-  float least_V;  ///< as the self-test has measured, so no less; 0 where it has not
-  float most_V;   ///< by its dead time
+  float measured_V;  ///< by the self-test, brushes included; 0 where it could not tell
+  float most_V;      ///< by its dead time
 
-  constexpr float expected_V() const { return least_V > 0.0f ? least_V : most_V; }
+  constexpr float least_V() const { return measured_V < most_V ? measured_V : most_V; }
+  constexpr float expected_V() const { return measured_V > 0.0f ? measured_V : most_V; }
 };
 
 /// What the self-test has measured of motors and bridges, each by the last test that could tell.
 struct MeasuredMotors {
-  Triple bridge_loss_part{};  ///< of the supply: what a bridge takes at least, 0 to its dead time's part; 0 if unknown
+  Triple bridge_loss_part{};  ///< of the supply: what a bridge takes, and brushes with it; 0 if unknown
   Triple resistance_ohm{};    ///< 0 if unknown
   Triple heat{};              ///< at which the resistance was measured (MotorHeat)
 };
@@ -105,7 +106,7 @@ inline Unexplained unexplained(float voltage_V, const BridgeLoss& loss, float cu
   const bool is_more = left_V * current_A > 0.0f;
   const float part_of_resistance = is_more ? resistance.bearable_more : MotorWatch::bearable_less_resistance;
   // A bridge only takes: a voltage that is too small for its current lacks that as well.
-  const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V;
+  const float bridge_V = is_more || !(std::fabs(current_A) > MotorWatch::steady_A) ? loss.most_V : -loss.least_V();
   return {std::fabs(left_V), bridge_V + MotorWatch::bearable_V + part_of_resistance * std::fabs(ohmic_V) +
                                  MotorWatch::bearable_part_of_back_emf * std::fabs(back_emf_V)};
 }

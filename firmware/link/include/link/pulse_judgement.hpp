@@ -22,6 +22,10 @@ struct PulseJudgement {
   static constexpr float foreign_part = 0.25f;
   /// A mean back EMF from which on it need not be steady, and a resistance that is out of its bounds is no failure yet.
   static constexpr float moves_V = 0.15f;
+  /// What is kept of a resistance has to be better than what passes: both signs agree within so many parts, and the
+  /// mean back EMF is less. A motor that its own pulses make quicker, as one of an arm that nobody holds, seems to have
+  /// 5 % more.
+  static constexpr float kept_apart = 1.06f, rests_V = 0.08f;
 
   using Result = protocol::SelfTestResult;
   struct Found {
@@ -31,8 +35,8 @@ struct PulseJudgement {
   std::array<Found, 3> motors;       ///< ohm: the sign with the larger error
   std::array<Found, 3> bridges;      ///< V that the bridge takes
   Found wires;                       ///< A, the largest in a sensor that should see none
-  control::Triple bridge_loss_part;  ///< of the supply: what a bridge that passes takes, as far as its dead time does
-  control::Triple resistance_ohm;    ///< of a motor that passes: the mean of both signs
+  control::Triple bridge_loss_part;  ///< of the supply: what a bridge that passes takes; 0 if it seems to give
+  control::Triple resistance_ohm;    ///< of a motor that passes and rests: the mean of both signs; else 0
 
   bool any(Result result) const;
   /// Of an arm that moved too fast for pulses.

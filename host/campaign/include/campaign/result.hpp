@@ -13,9 +13,9 @@ namespace inkwell::campaign {
 
 /// What became of a fault that was told before.
 enum class FirstFault : std::uint8_t {
-  none,       ///< there was none
+  none,       ///< there was none, or nobody could ask the board
   told,       ///< it is still the one that is told
-  black_box,  ///< another one is told, and the black box has it
+  black_box,  ///< the board started anew, and its black box has it
   lost,
 };
 
