@@ -1,6 +1,7 @@
 #include "page_unnoticed.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string_view>
 
@@ -55,21 +56,30 @@ InUse sound_in_use(const Groups& groups) {
   return sound;
 }
 
-/// The situations in which a case that could be run is such; each with how many of its cases are, unless all.
+/// The situation's name if a case that could be run is such there, with how many of its cases are, unless all; else
+/// nothing.
+std::string situation_with(const Groups& groups, const CaseFault& fault, CaseSituation situation,
+                           bool (*counts)(CaseSituation, const Result&)) {
+  const auto* results = find(groups, fault.name(), situation);
+  if (results == nullptr) return "";
+  const auto run = std::ranges::count_if(*results, [](const Result& r) { return r.error.empty(); });
+  const auto such =
+      std::ranges::count_if(*results, [&](const Result& r) { return r.error.empty() && counts(situation, r); });
+  if (such == 0) return "";
+  return such == run ? std::string(name_of(situation)) : fmt::format("{} ({} of {})", name_of(situation), such, run);
+}
+
+void add(std::string& where, const std::string& situation) {
+  if (!where.empty() && !situation.empty()) where += ", ";
+  where += situation;
+}
+
+/// The situations in which a case is such.
 std::string situations_with(const Groups& groups, const CaseFault& fault,
                             bool (*counts)(CaseSituation, const Result&)) {
-  std::vector<std::string> where;
-  for (const CaseSituation situation : situations) {
-    const auto* results = find(groups, fault.name(), situation);
-    if (results == nullptr) continue;
-    const auto run = std::ranges::count_if(*results, [](const Result& r) { return r.error.empty(); });
-    const auto such =
-        std::ranges::count_if(*results, [&](const Result& r) { return r.error.empty() && counts(situation, r); });
-    if (such > 0)
-      where.push_back(such == run ? std::string(name_of(situation))
-                                  : fmt::format("{} ({} of {})", name_of(situation), such, run));
-  }
-  return fmt::format("{}", fmt::join(where, ", "));
+  std::string where;
+  for (const CaseSituation situation : situations) add(where, situation_with(groups, fault, situation, counts));
+  return where;
 }
 
 bool stayed_on_untold(CaseSituation situation, const Result& result) {
@@ -150,12 +160,16 @@ std::string unnoticed_without_force(const Groups& groups, const std::vector<Case
   };
   std::vector<Row> rows;
   for (const CaseFault& fault : faults) {
-    const std::string where = fault.is_none() ? "" : situations_with(groups, fault, was_off_untold);
-    if (where.empty()) continue;
-    const std::string_view reason = reason_without_force(fault);
-    auto row = std::ranges::find_if(rows, [&](const Row& r) { return r.reason == reason && r.where == where; });
-    if (row == rows.end()) row = rows.insert(row, {reason, where, {}});
-    row->faults.push_back(fmt::format("`{}`", fault.name()));
+    if (fault.is_none()) continue;
+    std::map<std::string_view, std::string> where_by_reason;
+    for (const CaseSituation situation : situations)
+      if (const std::string where = situation_with(groups, fault, situation, was_off_untold); !where.empty())
+        add(where_by_reason[reason_without_force(fault, situation)], where);
+    for (const auto& [reason, where] : where_by_reason) {
+      auto row = std::ranges::find_if(rows, [&](const Row& r) { return r.reason == reason && r.where == where; });
+      if (row == rows.end()) row = rows.insert(row, {reason, where, {}});
+      row->faults.push_back(fmt::format("`{}`", fault.name()));
+    }
   }
   std::string text = "\n## Not noticed without force\n\nCases without force in which no fault was told";
   if (rows.empty()) return text + ": none.\n";

@@ -136,10 +136,11 @@ std::string_view reason_with_force(const CaseFault& put_in) {
   return "";
 }
 
-std::string_view reason_without_force(const CaseFault& put_in) {
+std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation) {
   if (put_in.is_fast_hand) return "A hand may be as fast as it likes while there is no force.";
   const InjectedFault fault = *put_in.fault;
   const std::string_view of = put_in.of;
+  const bool is_starting = situation == CaseSituation::starting;
   switch (fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
@@ -170,15 +171,19 @@ std::string_view reason_without_force(const CaseFault& put_in) {
     case InjectedFault::leg_low:
       return "The bridge trips when the leg's other switch joins it: in the next self-test, or once the force is on.";
     case InjectedFault::supply_spike:
+      if (situation != CaseSituation::fault && situation != CaseSituation::update) return reason_with_force(put_in);
       return "While another fault is told, and in the boot loader, nobody looks at the supply, and it is sound again "
              "afterwards.";
-    case InjectedFault::logic_sag: return chip_stands;
+    case InjectedFault::logic_sag:
+      if (!is_starting && situation != CaseSituation::update) return reason_with_force(put_in);
+      return chip_stands;
     case InjectedFault::crystal_drift: return usb_is_lost;
     case InjectedFault::usb_cut: return cable_is_out;
     case InjectedFault::host_silent: return "A host is missed while the force is on only.";
     case InjectedFault::core_stalled:
-    case InjectedFault::main_loop_stalled: return not_begun;
+    case InjectedFault::main_loop_stalled: return is_starting ? not_begun : reason_with_force(put_in);
     case InjectedFault::program_astray:
+      if (!is_starting) return reason_with_force(put_in);
       return "The code that it came to returned to the main loop, and had changed nothing that is checked; or it came "
              "before the watchdog runs, and hung until the reset with the bridges off.";
     case InjectedFault::core_halted:

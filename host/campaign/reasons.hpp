@@ -9,8 +9,8 @@ namespace inkwell::campaign {
 
 /// The force is on, and the bridges stayed on. None of the three is asked of the control.
 std::string_view reason_with_force(const CaseFault& put_in);
-/// The force is off.
-std::string_view reason_without_force(const CaseFault& put_in);
+/// The force is off, in that situation.
+std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation);
 /// The force was on, and the bridges went off.
 std::string_view reason_of_silence(const CaseFault& put_in);
 

@@ -278,6 +278,13 @@ TEST_CASE("what a fault does without force, or silently, has reasons of its own"
                          {"supply_spike+0.005", "fault", "While another fault is told, and in the boot loader"},
                          {"logic_sag", "starting", "The chip stands"},
                          {"core_stalled", "starting", "A core that does not take its first instruction"},
+                         {"core_stalled", "ready", "None is known: the heartbeat stops with the core"},
+                         {"main_loop_stalled", "fault", "None is known: the control interrupt misses it."},
+                         {"logic_sag", "ready", "The voltage is above 2.9 V"},
+                         {"supply_spike+0.005", "ready", "The capacitors bear it"},
+                         {"program_astray", "ready",
+                          "The code that it came to returned to the main loop, and had changed nothing that is "
+                          "checked. |"},
                          {"main_loop_stalled", "starting", "A core that does not take its first instruction"},
                          {"program_astray", "starting",
                           "The code that it came to returned to the main loop, and had "
