@@ -281,6 +281,24 @@ TEST_CASE("at the force limit a reading that tells too little makes no more curr
     }
 }
 
+TEST_CASE("what a test has measured is known at once, also where the force comes on with the next period") {
+  for (const int idle_periods : {0, 100, 200, 300}) {  // the model of the heat goes on each 384 periods
+    CAPTURE(idle_periods);
+    PressedArm arm;
+    arm.parameters[protocol::Parameter::force_limit_N] = 4.0f;
+    arm.settings = control::prepare(arm.parameters);
+    arm.controller = tests::ready_controller(arm.settings);
+    tests::run(arm.controller, arm.samples, arm.settings, static_cast<std::uint32_t>(idle_periods));
+    arm.controller.pass_self_test(measured);
+    tests::run(arm.controller, arm.samples, arm.settings, 3);  // motors take turns
+    arm.controller.carry_out(tests::command(protocol::Command::enable_force));
+    REQUIRE(arm.run(60) == 60);
+    arm.samples.current_A[0] *= 0.9f;
+    arm.run(60, 0);
+    CHECK(settled_A(arm, 0) / reference_A(arm, 0) == doctest::Approx(1.05).epsilon(0.01));
+  }
+}
+
 TEST_CASE("below the force limit it may make what the limit leaves, as if the motor pressed alone") {
   for (std::size_t motor = 0; motor < 3; ++motor) {
     CAPTURE(motor);
