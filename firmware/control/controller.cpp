@@ -285,7 +285,7 @@ void Controller::regulate_currents(const Settings& settings) {
   constexpr std::size_t none = 3;
   const bool is_voltage_test = test_.runs() && test_.quantity == TestPulse::Quantity::voltage;
   const std::size_t without_loop = is_voltage_test ? test_.motor : none;
-#pragma GCC unroll 1
+#pragma GCC unroll 1  // thrice the code is more than the interrupts' memory has left
   for (std::size_t i = 0; i < 3; ++i) {
     CurrentLoopStep step =
         regulate(loops_[i], reference_A_[i], current_A_[i], settings.current_loop, voltage_ranges_[i]);

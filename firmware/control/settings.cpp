@@ -73,14 +73,15 @@ Triple joint_Nm_per_A(const ParameterSet& set) {
   return joint;
 }
 
+float longer_link_m(const ParameterSet& set) { return std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]); }
+
 Motors motors(const ParameterSet& set) {
   const Triple joint = joint_Nm_per_A(set);
   const Triple continuous_A = set.of_each(Parameter::continuous_current_1_A);
-  const float longer_m = std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
   Motors motors{{}, set.of_each(Parameter::current_limit_1_A), {}, {}};
   for (std::size_t i = 0; i < 3; ++i) {
     motors.ampere_per_Nm[i] = 1.0f / joint[i];
-    motors.ampere_per_N[i] = longer_m * std::fabs(motors.ampere_per_Nm[i]);
+    motors.ampere_per_N[i] = longer_link_m(set) * std::fabs(motors.ampere_per_Nm[i]);
     const float more_A = motors.current_limit_A[i] - continuous_A[i];
     motors.ampere_per_heat[i] = more_A > 0.0f ? more_A / (1.0f - protocol::motor_heat_holds_back_from) : 0.0f;
   }
@@ -107,23 +108,19 @@ HeatScale heat(const ParameterSet& set) {
   return scale;
 }
 
-Limits limits(const ParameterSet& set) {
+Limits limits(const ParameterSet& set, const Triple& ampere_per_N) {
   // Above the limit, but never so low that the sensors' noise reaches it. Where this is more than the board can
   // measure, the board's bound comes first (BoardLimits).
   constexpr float over_current_minimum_A = 0.5f;
   // Counts may be lost or the stops yield a little before the angles are called impossible.
   constexpr float joint_margin_rad = 0.35f;
-  const Triple joint = joint_Nm_per_A(set);
-  const float longer_m = std::max(set[Parameter::link_2_m], set[Parameter::link_3_m]);
-  const float moving_Nm = StuckEncoder::moving_force_N * longer_m;
-  const float brake_Nm = set[Parameter::force_limit_N] * longer_m;
 
   Limits limits{set.of_each(protocol::lower_stops),
                 set.of_each(protocol::upper_stops),
                 set.of_each(Parameter::current_limit_1_A),
                 {},
                 {},
-                InkwellReference::play_m / longer_m,
+                InkwellReference::play_m / longer_link_m(set),
                 0.0f,
                 periods_in(set[Parameter::host_timeout_s])};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -131,8 +128,8 @@ Limits limits(const ParameterSet& set) {
     limits.joint_maximum_rad[i] += joint_margin_rad;
     const float over_A = protocol::over_current_ratio * limits.over_current_A[i];
     limits.over_current_A[i] = over_A > over_current_minimum_A ? over_A : over_current_minimum_A;
-    limits.moving_A[i] = moving_Nm / std::fabs(joint[i]);
-    limits.brake_A[i] = brake_Nm / std::fabs(joint[i]);
+    limits.moving_A[i] = StuckEncoder::moving_force_N * ampere_per_N[i];
+    limits.brake_A[i] = set[Parameter::force_limit_N] * ampere_per_N[i];
   }
   const float speed_m_per_s = set[Parameter::speed_limit_m_per_s];
   limits.speed_limit_squared_m2_per_s2 = speed_m_per_s * speed_m_per_s;
@@ -177,6 +174,7 @@ SpeedLimit speed(const ParameterSet& set) {
 }  // namespace
 
 Settings prepare(const ParameterSet& parameters) {
+  const Motors all_motors = motors(parameters);
   return {.arm = arm(parameters),
           .encoders = encoders(parameters),
           .gimbal = gimbal(parameters),
@@ -191,13 +189,13 @@ Settings prepare(const ParameterSet& parameters) {
           .change_squared_N2 = squared(parameters[Parameter::force_change_N_per_s] * protocol::servo_period_s),
           .energy = energy(parameters),
           .speed = speed(parameters),
-          .motors = motors(parameters),
+          .motors = all_motors,
           .heat = heat(parameters),
           .motor_model = motor_model(parameters),
           .current_loop = {parameters[Parameter::current_proportional_gain_V_per_A],
                            parameters[Parameter::current_integral_gain_V_per_As] * protocol::servo_period_s * 0.5f,
                            parameters[Parameter::voltage_limit_V]},
-          .limits = limits(parameters)};
+          .limits = limits(parameters, all_motors.ampere_per_N)};
 }
 
 }  // namespace inkwell::control

@@ -96,10 +96,9 @@ std::string meaning_of(CaseSituation situation) {
           observed_s);
     case CaseSituation::update:
       return "The hand holds it in free space. The host has told the board to keep its parameters and to start its "
-             "boot "
-             "loader, which it does once they are written, some 80 ms later: the fault comes in the first 50 of them "
-             "and "
-             "lasts into the loader. (With nothing to write a board leaves within 2 ms.) What is told is told by the "
+             "boot loader, which it does once they are written, some 80 ms later: the fault comes in the first 50 of "
+             "them and lasts into the loader. (With nothing to write a board leaves within 2 ms.) What is told is told "
+             "by the "
              "firmware that the loader then starts, with the fault still in.";
     case CaseSituation::starting:
       return "Out of the inkwell, held by the hand: the fault is there from before the power comes, and in the second "

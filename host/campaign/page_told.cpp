@@ -19,8 +19,7 @@ std::string_view reason_untold(protocol::Fault fault) {
              "one that is none. The tests of the control path give it such numbers.";
     case protocol::Fault::force_law:
       return "The law of this image gives a number for all that it may be given; an image whose law divides by zero "
-             "has "
-             "a test of its own, `tests/system/force_law_fault_test.cpp`.";
+             "has a test of its own, `tests/system/force_law_fault_test.cpp`.";
     case protocol::Fault::motor_hot:
       return "A motor gets less long before it is too hot, and a case is too short to heat one; the tests of the "
              "control path do.";
@@ -82,8 +81,7 @@ std::string fast_hand(std::span<const Result> results) {
   }
   std::string text = fmt::format(
       "\n## A fast hand\n\nIn `fast_hand` nothing fails: the hand flings the arm {:.0f} mm along x within {} s, which "
-      "is "
-      "faster than it may be under a force.",
+      "is faster than it may be under a force.",
       1e3 * fling_m, fling_s);
   if (without > 0) text += fmt::format(" That takes up to {:.2f} N without a force.", without_N);
   if (with > 0)

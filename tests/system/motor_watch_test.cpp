@@ -131,7 +131,7 @@ class WatchedRig : public BoardRig {
   }
 
   control::Settings settings_ = control::prepare(protocol::default_parameters());
-  control::MeasuredMotors measured_;  ///< by the self-test, as the motors are cold then
+  control::MeasuredMotors measured_;  ///< by the self-test; the firmware takes the motors for cold then
   MotorWatch watch_;
   std::deque<control::Triple> told_V_;
   std::size_t period_ = 0;
