@@ -166,7 +166,8 @@ std::string unnoticed_without_force(const Groups& groups, const std::vector<Case
       if (const std::string where = situation_with(groups, fault, situation, was_off_untold); !where.empty())
         add(where_by_reason[reason_without_force(fault, situation)], where);
     for (const auto& [reason, where] : where_by_reason) {
-      auto row = std::ranges::find_if(rows, [&](const Row& r) { return r.reason == reason && r.where == where; });
+      auto row = std::ranges::find_if(
+          rows, [&, &reason = reason, &where = where](const Row& r) { return r.reason == reason && r.where == where; });
       if (row == rows.end()) row = rows.insert(row, {reason, where, {}});
       row->faults.push_back(fmt::format("`{}`", fault.name()));
     }
