@@ -20,7 +20,6 @@ using protocol::Limit;
 using protocol::Signal;
 using protocol::State;
 using protocol::watch;
-using protocol::when;
 
 std::uint8_t bit(ForceSource source, bool is_felt) {
   return is_felt ? static_cast<std::uint8_t>(source) : std::uint8_t{0};
@@ -29,10 +28,9 @@ std::uint8_t bit(Limit limit, bool is_reached) {
   return is_reached ? static_cast<std::uint8_t>(limit) : std::uint8_t{0};
 }
 
-/// Beyond its limit, or so near to a rail of its sensor that the true current may be any.
-bool over_current(const Triple& current_A, const Triple& limit_A, const Triple& reading_A, float measurable_A) {
+bool over_current(const Triple& current_A, const Triple& limit_A) {
   for (std::size_t i = 0; i < 3; ++i)
-    if (std::fabs(current_A[i]) > limit_A[i] || std::fabs(reading_A[i]) > measurable_A) return true;
+    if (std::fabs(current_A[i]) > limit_A[i]) return true;
   return false;
 }
 
@@ -239,7 +237,6 @@ void Controller::watch_motors(const Settings& settings) {
   if (!fits(motor_watch_, current_A_, joint_speed_rad_per_s_, resistances_, settings.motor_model.back_emf_Vs_per_rad))
       [[unlikely]]
     raise(Fault::motor_implausible);
-  off_zero_periods_ = 0;
   // What the bridges were told in the period before is what they do until the next.
   turn_to(motor_watch_, turn_, drive_.duty[turn_] * supply_.supply_V,
           {measured_.bridge_loss_part[turn_] * supply_.supply_V, board_.dead_time_part * supply_.supply_V});
@@ -323,8 +320,8 @@ void Controller::watch_inkwell_switch(const Settings& settings) {
 // A current limit that is lowered holds for the references at once, but a current takes time to follow: the loop's, and
 // the winding's where the voltage is bounded.
 void Controller::follow_over_current(const Settings& settings) {
-  over_current_A_[turn_] =
-      std::max(settings.limits.over_current_A[turn_], over_current_A_[turn_] - over_current_fall_A);
+  over_current_A_[turn_] = std::min(
+      std::max(settings.limits.over_current_A[turn_], over_current_A_[turn_] - over_current_fall_A), known_A(turn_));
 }
 
 float Controller::test_limit_A(const Settings& settings) const {
@@ -346,7 +343,7 @@ void Controller::drive_pulses(const Settings& settings) {
   for (std::size_t i = 0; i < 3; ++i) {
     drive_.duty[i] = clamp(voltage_V[i] * supply_.per_V, -board_.duty_limit, board_.duty_limit);
     // At least that, whatever their own limits are.
-    over_current_A_[i] = std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A);
+    over_current_A_[i] = std::min(std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A), known_A(i));
   }
   over_current_A_[turn_] += over_current_fall_A;  // follow_over_current() takes it away in this period
   drive_.enabled = true;
@@ -357,30 +354,39 @@ void Controller::supervise(const Samples& samples, const Settings& settings) {
   follow_over_current(settings);
   if (protocol::is_closed(switches_.closed, protocol::Switch::inkwell)) [[unlikely]]
     watch_inkwell_switch(settings);
-  // Force and torques are in the references, as far as a motor takes part.
-  const float sum_of_all = sum(probe_.position_m) + sum(probe_.velocity_m_per_s) + sum(reference_A_) + sum(current_A_) +
-                           sum(drive_.duty) + supply_.supply_V;
   const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);
-  const protocol::Watches found =
-      asked_.found | watch(Fault::not_finite, !is_finite(sum_of_all)) |
-      watch(Fault::current_sensor, offsets_.measured() && !offsets_.plausible) |
-      watch(Fault::samples_stale,
-            !samples.currents_measured || samples.slow_age_periods > SupplyFilter::stale_periods) |
-      watch(Fault::supply_low,
-            supply_.supply_V < board_.supply_minimum_V || samples.supply_V < board_.supply_far_too_low_V) |
-      watch(Fault::supply_high,
-            supply_.supply_V > board_.supply_maximum_V || samples.supply_V > board_.supply_far_too_high_V) |
-      watch(Fault::bridge_fault, samples.bridge_fault) |
-      watch(Fault::over_current,
-            over_current(current_A_, over_current_A_, samples.current_A, board_.current_measurable_A)) |
-      watch(Fault::motor_hot, heat_.too_hot) |
-      watch(Fault::encoder_implausible,
-            jump_bits_ != 0 || joint_implausible(turn_, probe_.joint_rad, settings.arm.transmission, settings.limits)) |
-      watch(Fault::over_speed, speed_squared_m2_per_s2 > settings.limits.speed_limit_squared_m2_per_s2) |
-      watch(Fault::host_silent, host_silence_periods_ > settings.limits.host_timeout_periods);
-  const protocol::Events now = asked_.events | when(Event::measured, offsets_.measured()) |
-                               when(Event::referenced, reference_.valid) | when(Event::risen, force_gain_ == 1.0f) |
-                               when(Event::landed, force_gain_ == 0.0f) | when(Event::held_back, limits_ != 0);
+  // Force and torques are in the references, as far as a motor takes part.
+  const float sum_of_all = sum(probe_.position_m) + speed_squared_m2_per_s2 + sum(reference_A_) + sum(current_A_) +
+                           sum(drive_.duty) + supply_.supply_V;
+  protocol::Watches found =
+      asked_.found | watch(Fault::bridge_fault, samples.bridge_fault) | watch(Fault::motor_hot, heat_.too_hot);
+  protocol::Events now = asked_.events;
+  // By branches: a bit that is made whether or not there is a fault costs as much again as the look.
+  const auto find = [&found](Fault fault, bool is_there) {
+    if (is_there) [[unlikely]]
+      found |= watch(fault);
+  };
+  const auto note = [&now](Event event, bool is_so) {
+    if (is_so) now |= events(event);
+  };
+  find(Fault::not_finite, !is_finite(sum_of_all));
+  if (offsets_.measured()) [[likely]] {
+    now |= events(Event::measured);
+    find(Fault::current_sensor, !offsets_.plausible);
+  }
+  find(Fault::samples_stale, !samples.currents_measured || samples.slow_age_periods > SupplyFilter::stale_periods);
+  find(Fault::supply_low, supply_.supply_V < board_.supply_minimum_V || samples.supply_V < board_.supply_far_too_low_V);
+  find(Fault::supply_high,
+       supply_.supply_V > board_.supply_maximum_V || samples.supply_V > board_.supply_far_too_high_V);
+  find(Fault::over_current, over_current(current_A_, over_current_A_));
+  find(Fault::encoder_implausible,
+       jump_bits_ != 0 || joint_implausible(turn_, probe_.joint_rad, settings.arm.transmission, settings.limits));
+  find(Fault::over_speed, speed_squared_m2_per_s2 > settings.limits.speed_limit_squared_m2_per_s2);
+  find(Fault::host_silent, host_silence_periods_ > settings.limits.host_timeout_periods);
+  note(Event::referenced, reference_.valid);
+  note(Event::risen, force_gain_ == 1.0f);
+  note(Event::landed, force_gain_ == 0.0f);
+  note(Event::held_back, limits_ != 0);
   // Also where another fault is told, or was: what was lost is not back when that one is cleared.
   if ((found & protocol::voiding_watches) != 0 && reference_.valid) [[unlikely]]
     forget(reference_, (found & watch(Fault::inkwell_implausible)) != 0);
@@ -399,6 +405,7 @@ void Controller::change_state(const Supervisor& next) {
   const Supervisor before = std::exchange(supervisor_, next);
   if (next == before) return;
   const bool force_was_on = std::exchange(force_is_on_, protocol::force_is_on(next.state));
+  if (force_is_on_) off_zero_periods_ = 0;
   // A change of state switches off in the period in which it is decided, not one later.
   if (!(force_was_on && force_is_on_)) drive_ = {};
   if (next.state != State::ready) test_.end();

@@ -8,8 +8,11 @@ bool fits(MotorWatch& watch, const Triple& current_A, const Triple& joint_speed_
   const Unexplained look = unexplained(watch.voltage_V, watch.loss, current_A[motor], joint_speed_rad_per_s[motor],
                                        resistances[motor], back_emf_Vs_per_rad[motor]);
   const float beyond_V = watch.beyond_V[motor] + look.voltage_V - look.bearable_V;
-  watch.beyond_V[motor] = beyond_V > 0.0f ? beyond_V : 0.0f;
-  return !(beyond_V > MotorWatch::bearable_sum_V);
+  watch.beyond_V[motor] = 0.0f;
+  if (!(beyond_V > 0.0f)) [[likely]]
+    return true;
+  watch.beyond_V[motor] = beyond_V;
+  return beyond_V <= MotorWatch::bearable_sum_V;
 }
 
 }  // namespace inkwell::control

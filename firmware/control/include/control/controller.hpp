@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include <control/brake.hpp>
@@ -129,6 +130,8 @@ class Controller {
   void regulate_currents(const Settings& settings);
   [[gnu::cold]] void watch_idle_currents();
   [[gnu::cold]] void watch_inkwell_switch(const Settings& settings);
+  /// The largest current, of either sign, that its sensor surely shows.
+  float known_A(std::size_t motor) const { return board_.current_measurable_A - std::fabs(offsets_.offset_A[motor]); }
   void follow_over_current(const Settings& settings);
   [[gnu::cold]] float test_limit_A(const Settings& settings) const;
   [[gnu::cold]] float test_voltage_V(const Settings& settings) const;
