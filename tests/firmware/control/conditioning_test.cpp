@@ -17,8 +17,8 @@ TEST_CASE("the offsets are the mean of a tenth of a second") {
   }
   CHECK(offsets.measured());
   CHECK(CurrentOffsets::duration_periods == 2'000);
-  CHECK(offsets.offset_A[0] == doctest::Approx(0.05f).epsilon(1e-4));
-  CHECK(offsets.offset_A[1] == doctest::Approx(-0.02f).epsilon(1e-4));
+  CHECK(offsets.offset_A[0] == doctest::Approx(0.05f).scale(0).epsilon(1e-4));
+  CHECK(offsets.offset_A[1] == doctest::Approx(-0.02f).scale(0).epsilon(1e-4));
   CHECK(offsets.offset_A[2] == doctest::Approx(0.0f).scale(1).epsilon(1e-5));
   CHECK(offsets.plausible);
 }
@@ -39,7 +39,7 @@ TEST_CASE("the supply is filtered, and its reciprocal is ready and finite even w
   SupplyFilter filter;
   filter_supply(filter, 18.0f);
   CHECK(filter.supply_V == 18.0f);
-  CHECK(filter.per_V == doctest::Approx(1.0 / 18.0).epsilon(1e-6));
+  CHECK(filter.per_V == doctest::Approx(1.0 / 18.0).scale(0).epsilon(1e-6));
   filter_supply(filter, 12.0f);
   CHECK(filter.supply_V == doctest::Approx(18.0 - 6.0 / 32));
   for (int i = 0; i < 320; ++i) filter_supply(filter, 0.0f);

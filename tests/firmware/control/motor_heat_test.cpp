@@ -55,7 +55,7 @@ TEST_CASE("heat goes with the square of the current, and away without one") {
 TEST_CASE("a slow winding still warms by the little that one update adds") {
   MotorHeat motors;
   run(motors, {continuous_A, 0.0f, 0.0f}, scale(1000.0f), 1.0f);
-  CHECK(motors.heat[0] == doctest::Approx(0.001f).epsilon(0.01));
+  CHECK(motors.heat[0] == doctest::Approx(0.001f).scale(0).epsilon(0.01));
   motors.heat[0] = 0.99f;
   run(motors, {continuous_A, 0.0f, 0.0f}, scale(1000.0f), 5.0f);
   CHECK(motors.heat[0] == doctest::Approx(0.99f + 0.01f * 0.005f).epsilon(5e-6));
@@ -70,9 +70,9 @@ TEST_CASE("the winding warms quickly over its housing, the housing slowly over t
   run(motors, {2.0f * continuous_A, 0.0f, 0.0f}, both, 0.5f);
   // 4 times the heat: 0.2 of it at once, 0.8 of it with the housing.
   const float housing = 4.0f * 0.8f * (1.0f - std::exp(-0.5f / 2.0f));
-  CHECK(motors.heat[0] == doctest::Approx(4.0f * 0.2f + housing).epsilon(0.02));
+  CHECK(motors.heat[0] == doctest::Approx(4.0f * 0.2f + housing).scale(0).epsilon(0.02));
   run(motors, {}, both, 0.5f);
-  CHECK(motors.heat[0] == doctest::Approx(housing * std::exp(-0.5f / 2.0f)).epsilon(0.02));
+  CHECK(motors.heat[0] == doctest::Approx(housing * std::exp(-0.5f / 2.0f)).scale(0).epsilon(0.02));
 }
 
 TEST_CASE("a hot motor may carry less: its limit when cool, its continuous current at a heat of one") {
@@ -85,7 +85,7 @@ TEST_CASE("a hot motor may carry less: its limit when cool, its continuous curre
   CHECK(motors.heat[0] == doctest::Approx(0.81f).epsilon(0.001));
   CHECK(limits.allowed_A(0, motors.beyond) == limit_A);
   run(motors, {continuous_A, 0.0f, 0.0f}, quick, 1.0f);
-  CHECK(limits.allowed_A(0, motors.beyond) == doctest::Approx(continuous_A).epsilon(0.01));
+  CHECK(limits.allowed_A(0, motors.beyond) == doctest::Approx(continuous_A).scale(0).epsilon(0.01));
   CHECK(limits.allowed_A(0, {0.5f, 0.0f, 0.0f}) == 0.0f);
   set[Parameter::current_limit_1_A] = 0.9f * continuous_A;
   CHECK(control::prepare(set).motors.allowed_A(0, motors.beyond) == 0.9f * continuous_A);

@@ -248,13 +248,13 @@ TEST_CASE("the offsets of the current sensors are those of now, not of the start
   board.controller.carry_out(tests::command(Command::self_test));
   board.run(1);
   board.run_while(State::testing);
-  CHECK(board.figure(SelfTestItem::current_offsets) == doctest::Approx(-0.2).epsilon(0.01));
+  CHECK(board.figure(SelfTestItem::current_offsets) == doctest::Approx(-0.2).scale(0).epsilon(0.01));
   CHECK(board.result(SelfTestItem::current_offsets) == SelfTestResult::passed);
   board.offset_A[2] = -0.3f;  // not yet for so long that it were a fault by itself
   board.controller.carry_out(tests::command(Command::self_test));
   board.run(1);
   board.run_while(State::testing);
-  CHECK(board.figure(SelfTestItem::current_offsets) == doctest::Approx(-0.3).epsilon(0.01));
+  CHECK(board.figure(SelfTestItem::current_offsets) == doctest::Approx(-0.3).scale(0).epsilon(0.01));
   CHECK(board.result(SelfTestItem::current_offsets) == SelfTestResult::failed);
   CHECK(board.controller.state() == State::fault);
 }

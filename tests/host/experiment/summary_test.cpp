@@ -67,11 +67,11 @@ TEST_CASE("the force law holds for a recording that was made by it") {
 
 TEST_CASE("a force that is off the law is found") {
   const auto small = force_law_error(push(0.004), omni());
-  CHECK(small.maximum_N == doctest::Approx(0.004).epsilon(1e-3));
+  CHECK(small.maximum_N == doctest::Approx(0.004).scale(0).epsilon(1e-3));
   CHECK(small.samples_outside == 0);
   const auto large = force_law_error(push(0.02), omni());
   CHECK(large.samples_outside == 12'000);
-  CHECK(large.maximum_relative == doctest::Approx(0.02 / 0.6).epsilon(1e-3));
+  CHECK(large.maximum_relative == doctest::Approx(0.02 / 0.6).scale(0).epsilon(1e-3));
 }
 
 TEST_CASE("the law's force is limited as the firmware limits it, and never pulls") {
@@ -92,9 +92,9 @@ TEST_CASE("the evaluation reads contact, largest values and the steady hold off 
   REQUIRE(result.contact);
   CHECK(result.contact->from_s == doctest::Approx(0.25));
   CHECK(result.contact->to_s == doctest::Approx(0.84995));
-  CHECK(result.penetration_maximum_m == doctest::Approx(0.0005));
+  CHECK(result.penetration_maximum_m == doctest::Approx(0.0005).scale(0));
   CHECK(result.force_maximum_N == doctest::Approx(0.6));
-  CHECK(result.torque_1_maximum_Nm == doctest::Approx(0.001));
+  CHECK(result.torque_1_maximum_Nm == doctest::Approx(0.001).scale(0));
   CHECK(result.other_torques_maximum_Nm == doctest::Approx(0.08));
   REQUIRE(result.steady_hold);
   CHECK(result.steady_hold->encoder_spread_counts[1] == doctest::Approx(1));

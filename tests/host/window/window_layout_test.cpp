@@ -59,9 +59,9 @@ TEST_CASE("a higher window gives scene and scope more in proportion") {
     const auto layout = layout_of({1280, height}, {46, 0, 0, 0}, settings, 1.0f);
     return layout.scope.size.y / (height - 46);
   };
-  CHECK(scope_part(800) == doctest::Approx(settings.scope_part).epsilon(0.02));
-  CHECK(scope_part(1440) == doctest::Approx(settings.scope_part).epsilon(0.02));
-  CHECK(scope_part(2160) == doctest::Approx(settings.scope_part).epsilon(0.02));
+  CHECK(scope_part(800) == doctest::Approx(settings.scope_part).scale(0).epsilon(0.02));
+  CHECK(scope_part(1440) == doctest::Approx(settings.scope_part).scale(0).epsilon(0.02));
+  CHECK(scope_part(2160) == doctest::Approx(settings.scope_part).scale(0).epsilon(0.02));
 }
 
 TEST_CASE("a drag moves the splitter under the mouse, from what is shown") {

@@ -66,7 +66,7 @@ TEST_CASE("the Jacobian is the position's derivative, so virtual work agrees") {
     // tau . dq = F . dx
     const Vector3 force(1.3, -0.7, 2.1);
     const Vector3 torque = terms.jacobian_m.transpose() * force;
-    CHECK(torque.dot(2 * change) == doctest::Approx(force.dot(moved)).epsilon(1e-4));
+    CHECK(torque.dot(2 * change) == doctest::Approx(force.dot(moved)).scale(0).epsilon(1e-4));
   });
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("gravity pulls down, along each workspace's own axis") {
     const double rise_m = dynamics.position_m(high)[up] - dynamics.position_m(low)[up];
     CHECK(rise_m > 0.01);
     CHECK(dynamics.potential_energy_J(high) - dynamics.potential_energy_J(low) ==
-          doctest::Approx(0.015 * 9.81 * rise_m).epsilon(1e-9));
+          doctest::Approx(0.015 * 9.81 * rise_m).scale(0).epsilon(1e-9));
   }
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("the mass matrix is symmetric, positive, and holds a point mass's ener
     const Vector3 q(0.3, 0.8, -0.9), speed(1.0, -2.0, 3.0);
     const double probe_speed_m_s = (with.terms(q, speed).jacobian_m * speed).norm();
     CHECK(with.kinetic_energy_J(q, speed) - without.kinetic_energy_J(q, speed) ==
-          doctest::Approx(0.5 * 0.015 * probe_speed_m_s * probe_speed_m_s).epsilon(1e-6));
+          doctest::Approx(0.5 * 0.015 * probe_speed_m_s * probe_speed_m_s).scale(0).epsilon(1e-6));
   }
 }
 

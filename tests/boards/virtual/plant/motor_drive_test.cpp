@@ -78,7 +78,7 @@ TEST_CASE("a voltage step drives the current along R and L") {
   }
   // Charge is the current's integral: V t / R minus what the inductance keeps.
   const auto charges = motor.take_charges();
-  CHECK(charges.motor_As == doctest::Approx(bus_V / resistance_ohm * (2e-3 - time_constant_s)).epsilon(1e-6));
+  CHECK(charges.motor_As == doctest::Approx(bus_V / resistance_ohm * (2e-3 - time_constant_s)).scale(0).epsilon(1e-6));
   CHECK(charges.supply_As == doctest::Approx(charges.motor_As));
 }
 
@@ -96,10 +96,12 @@ TEST_CASE("the ripple is that of unipolar switching, and its mean stands at the 
   auto motor = drive();
   Ticks now = 0;
   const auto ripple = switch_bridge(motor, 0.5, 1000, now);
-  CHECK(ripple.mean_A == doctest::Approx(0.5 * bus_V / resistance_ohm).epsilon(1e-3));
+  CHECK(ripple.mean_A == doctest::Approx(0.5 * bus_V / resistance_ohm).scale(0).epsilon(1e-3));
   CHECK(ripple.highest_A - ripple.lowest_A ==
-        doctest::Approx(static_cast<double>(board::current_ripple_A(arm_defaults::motor::inductance_H))).epsilon(0.01));
-  CHECK(ripple.at_turning_point_A == doctest::Approx(ripple.mean_A).epsilon(1e-3));
+        doctest::Approx(static_cast<double>(board::current_ripple_A(arm_defaults::motor::inductance_H)))
+            .scale(0)
+            .epsilon(0.01));
+  CHECK(ripple.at_turning_point_A == doctest::Approx(ripple.mean_A).scale(0).epsilon(1e-3));
   const auto none = switch_bridge(motor, 0.0, 1000, now);
   CHECK(none.highest_A - none.lowest_A < 1e-6);
 }
@@ -117,7 +119,8 @@ TEST_CASE("the supply gives the power that the motor takes") {
   motor.advance(now + period);
   const auto charges = motor.take_charges();
   const double period_s = virtual_board::seconds(period);
-  CHECK(charges.supply_As * bus_V == doctest::Approx(resistance_ohm * mean_A * mean_A * period_s).epsilon(2e-3));
+  CHECK(charges.supply_As * bus_V ==
+        doctest::Approx(resistance_ohm * mean_A * mean_A * period_s).scale(0).epsilon(2e-3));
 }
 
 TEST_CASE("a floating bridge kills the current through its diodes and leaves it at zero") {
@@ -157,7 +160,7 @@ TEST_CASE("the dead time costs a voltage against the current's direction") {
   const double lost_V =
       2.0 * static_cast<double>(board::omni_driver.bridge_dead_time_s) * board::pwm_Hz * (bus_V + 2.0 * 0.8);
   CHECK(lost_V > 0.4);
-  CHECK(ripple.mean_A == doctest::Approx((0.3 * bus_V - lost_V) / resistance_ohm).epsilon(0.005));
+  CHECK(ripple.mean_A == doctest::Approx((0.3 * bus_V - lost_V) / resistance_ohm).scale(0).epsilon(0.005));
 }
 
 TEST_CASE("the shunt amplifier follows as a first-order low pass") {
