@@ -98,8 +98,7 @@ std::string meaning_of(CaseSituation situation) {
       return "The hand holds it in free space. The host has told the board to keep its parameters and to start its "
              "boot loader, which it does once they are written, some 80 ms later: the fault comes in the first 50 of "
              "them and lasts into the loader. (With nothing to write a board leaves within 2 ms.) What is told is told "
-             "by the "
-             "firmware that the loader then starts, with the fault still in.";
+             "by the firmware that the loader then starts, with the fault still in.";
     case CaseSituation::starting:
       return "Out of the inkwell, held by the hand: the fault is there from before the power comes, and in the second "
              "case comes while the board starts. Without a fault the self-test's pulses put the bridges on for a "

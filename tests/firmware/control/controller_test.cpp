@@ -129,44 +129,6 @@ TEST_CASE("in the wall: F = k d, torque by virtual work, current from torque, an
   CHECK(signals[Signal::duty_1] == doctest::Approx(0.0f));
 }
 
-TEST_CASE(
-    "while the self-test's pulses run a reading near a rail is an over-current at once, whichever motor's it is") {
-  Settings settings = settings_near_wall();
-  settings.limits.over_current_A.fill(100.0f);
-  for (std::size_t motor = 0; motor < 3; ++motor) {
-    CAPTURE(motor);
-    Controller controller = tests::ready_controller(settings);
-    Samples samples = tests::samples_at_rest();
-    tests::run(controller, samples, settings, 300);
-    controller.start_pulses();
-    tests::run(controller, samples, settings, 3);
-    REQUIRE(controller.pulses_run());
-    REQUIRE(controller.fault() == Fault::none);
-    samples.current_A[motor] = tests::board_limits.current_measurable_A + 0.01f;
-    tests::run(controller, samples, settings, 1);
-    CHECK(controller.fault() == Fault::over_current);
-  }
-}
-
-TEST_CASE("a current limit that is lowered while the self-test's pulses run holds at once") {
-  for (std::size_t motor = 0; motor < 3; ++motor) {
-    CAPTURE(motor);
-    Settings settings = settings_near_wall();
-    settings.limits.over_current_A.fill(3.0f);
-    Controller controller = tests::ready_controller(settings);
-    Samples samples = tests::samples_at_rest();
-    tests::run(controller, samples, settings, 300);
-    controller.start_pulses();
-    samples.current_A[motor] = 1.2f * control::SelfTestPulses::bearable_A;
-    tests::run(controller, samples, settings, 3);
-    REQUIRE(controller.pulses_run());
-    REQUIRE(controller.fault() == Fault::none);
-    settings.limits.over_current_A.fill(0.5f);
-    tests::run(controller, samples, settings, 1);
-    CHECK(controller.fault() == Fault::over_current);
-  }
-}
-
 TEST_CASE("every signal of the table is written") {
   constexpr float unwritten = -12345.0f;
   protocol::SignalValues signals;
@@ -553,22 +515,6 @@ TEST_CASE("a current limit that is lowered gives the current time to follow, and
   settings.limits.over_current_A[1] = lowered_A;
   run_with_host(controller, samples, settings, 200);
   CHECK(controller.fault() == Fault::over_current);
-}
-
-TEST_CASE("while the self-test's pulses run their current is borne by any motor, a larger one is not") {
-  Settings settings = settings_near_wall();
-  settings.limits.over_current_A[1] = 0.5f;
-  for (const float current_A : {1.0f, 1.1f}) {
-    CAPTURE(current_A);
-    Controller controller = tests::ready_controller(settings);
-    Samples samples = tests::samples_at_rest();
-    tests::run(controller, samples, settings, 300);
-    controller.start_pulses();
-    tests::run(controller, samples, settings, 2);
-    samples.current_A[1] = current_A;
-    tests::run(controller, samples, settings, 2);
-    CHECK(controller.fault() == (current_A < control::SelfTestPulses::bearable_A ? Fault::none : Fault::over_current));
-  }
 }
 
 TEST_CASE("every signal of the table is written, stage times of this period and of the one before") {

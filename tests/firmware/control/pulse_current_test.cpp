@@ -1,0 +1,71 @@
+// What current is borne while the self-test's pulses run.
+#include <doctest/doctest.h>
+
+#include <firmware/control/arms.hpp>
+#include <firmware/control/simulated_arm.hpp>
+
+namespace {
+
+using namespace inkwell;
+using control::Controller;
+using control::Samples;
+using control::Settings;
+using protocol::Fault;
+
+Settings plain_settings() { return control::prepare(tests::paper_parameters()); }
+
+/// A few control periods after they have begun.
+Controller controller_in_pulses(const Settings& settings) {
+  Controller controller = tests::ready_controller(settings);
+  tests::run(controller, tests::samples_at_rest(), settings, 300);
+  controller.start_pulses();
+  tests::run(controller, tests::samples_at_rest(), settings, 3);
+  REQUIRE(controller.pulses_run());
+  return controller;
+}
+
+TEST_CASE("while the self-test's pulses run their current is borne by any motor, a larger one is not") {
+  Settings settings = plain_settings();
+  settings.limits.over_current_A[1] = 0.5f;
+  for (const float current_A : {1.0f, 1.1f}) {
+    CAPTURE(current_A);
+    Controller controller = controller_in_pulses(settings);
+    Samples samples = tests::samples_at_rest();
+    samples.current_A[1] = current_A;
+    tests::run(controller, samples, settings, 2);
+    CHECK(controller.fault() == (current_A < control::SelfTestPulses::bearable_A ? Fault::none : Fault::over_current));
+  }
+}
+
+TEST_CASE(
+    "while the self-test's pulses run a reading near a rail is an over-current at once, whichever motor's it is") {
+  Settings settings = plain_settings();
+  settings.limits.over_current_A.fill(100.0f);
+  for (std::size_t motor = 0; motor < 3; ++motor) {
+    CAPTURE(motor);
+    Controller controller = controller_in_pulses(settings);
+    Samples samples = tests::samples_at_rest();
+    REQUIRE(controller.fault() == Fault::none);
+    samples.current_A[motor] = tests::board_limits.current_measurable_A + 0.01f;
+    tests::run(controller, samples, settings, 1);
+    CHECK(controller.fault() == Fault::over_current);
+  }
+}
+
+TEST_CASE("a current limit that is lowered while the self-test's pulses run holds at once") {
+  for (std::size_t motor = 0; motor < 3; ++motor) {
+    CAPTURE(motor);
+    Settings settings = plain_settings();
+    settings.limits.over_current_A.fill(3.0f);
+    Controller controller = controller_in_pulses(settings);
+    Samples samples = tests::samples_at_rest();
+    samples.current_A[motor] = 1.2f * control::SelfTestPulses::bearable_A;
+    tests::run(controller, samples, settings, 3);
+    REQUIRE(controller.fault() == Fault::none);
+    settings.limits.over_current_A.fill(0.5f);
+    tests::run(controller, samples, settings, 1);
+    CHECK(controller.fault() == Fault::over_current);
+  }
+}
+
+}  // namespace
