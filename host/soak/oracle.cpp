@@ -43,7 +43,7 @@ void Oracle::take_back_permission(double grace_s) {
 
 void Oracle::see(const protocol::PoseReport& pose) {
   ++poses_;
-  if (sequence_) poses_lost_ += pose.sequence - *sequence_ - 1;
+  if (sequence_) miss(pose.sequence - *sequence_ - 1);
   sequence_ = pose.sequence;
 
   if (disturbance_ == Disturbance::none)
@@ -65,6 +65,16 @@ void Oracle::see(const protocol::PoseReport& pose) {
     complain(Complaint::lost_force,
              fmt::format("from {} to {}", protocol::info(before).name, protocol::info(pose.state).name));
   }
+}
+
+void Oracle::miss(std::uint32_t poses) {
+  if (poses == 0) return;
+  if (disturbance_ != Disturbance::none) {
+    poses_kept_back_ += poses;
+    return;
+  }
+  poses_lost_ += poses;
+  complain(Complaint::lost_packets, fmt::format("{} poses", poses));
 }
 
 void Oracle::follow_self_test(bool may_test_itself) {

@@ -10,7 +10,8 @@ namespace inkwell::soak {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, phase, kind, board_time_s, complaint, text)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PhaseResult, number, kind, begin_s, duration_s, what)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Losses, poses, scope_samples, wide_scope_samples, program_forces, recorded_samples)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Losses, poses, poses_kept_back, scope_samples, wide_scope_samples, program_forces,
+                                   recorded_samples)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sitting, number, board_time_s, phases, findings, faults_put_in, faults_told,
                                    restarts, peak_motor_force_N, peak_part_of_limit, longest_interrupt_part,
                                    transactions, refused_transactions, poses, lost)
@@ -119,6 +120,7 @@ std::string table_of(const Soak& soak) {
   };
   text += row("poses read", std::to_string(sum<unsigned long>(soak, [](const auto& s) { return s.poses; })));
   text += row("  lost", lost(&Losses::poses));
+  text += row("  kept back by what was put in", lost(&Losses::poses_kept_back));
   text += row("samples of the scope lost", lost(&Losses::scope_samples));
   text += row("  of selections beyond the bus", lost(&Losses::wide_scope_samples));
   text += row("samples of recordings lost", lost(&Losses::recorded_samples));

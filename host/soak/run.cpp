@@ -110,6 +110,7 @@ class Run {
     sitting.longest_interrupt_part = oracle.longest_interrupt_part();
     sitting.poses = oracle.poses();
     sitting.lost.poses = oracle.poses_lost();
+    sitting.lost.poses_kept_back = oracle.poses_kept_back();
     return sitting;
   }
 

@@ -230,15 +230,28 @@ TEST_CASE("a rule that the firmware breaks is a finding even with broken hardwar
   board.check_only(Complaint::broken_rule);
 }
 
-TEST_CASE("poses that are missing within a connection are counted, those between two connections are not") {
+TEST_CASE("poses that are missing within a connection are a finding, those between two connections are not") {
   Watched board;
-  board.sequence += 3;
-  board.step(State::ready);
-  CHECK(board.oracle.poses_lost() == 3);
   board.oracle.connected();
   board.sequence += 1000;
   board.step(State::ready);
+  CHECK(board.oracle.poses_lost() == 0);
+  board.check_nothing();
+  board.sequence += 3;
+  board.step(State::ready);
   CHECK(board.oracle.poses_lost() == 3);
+  board.check_only(Complaint::lost_packets);
+}
+
+TEST_CASE("poses that are missing while something was put in are counted by themselves") {
+  Watched board(Kind::fault);
+  board.oracle.disturb(Disturbance::hardware);
+  board.sequence += 70;
+  board.step(State::ready);
+  board.oracle.disturb(Disturbance::none);
+  board.step(State::ready);
+  CHECK(board.oracle.poses_kept_back() == 70);
+  CHECK(board.oracle.poses_lost() == 0);
   board.check_nothing();
 }
 

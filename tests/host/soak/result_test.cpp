@@ -19,6 +19,7 @@ Soak some_soak() {
   first.faults_told = {{"supply_low", 1}};
   first.peak_motor_force_N = 3.4;
   first.lost.poses = 2;
+  first.lost.poses_kept_back = 71;
   Sitting second{.number = 2, .board_time_s = 300.0};
   second.phases = {{1, "walls", 0.2, 4.0, ""}};
   second.peak_motor_force_N = 3.1;
@@ -38,6 +39,7 @@ TEST_CASE("the table sums what the boards did, and names each finding with the w
   CHECK(has(table, "2 (6 s)"));
   CHECK(has(table, "supply_low"));
   CHECK(has(table, "3.40 N"));
+  CHECK(has(table, "kept back by what was put in                      71\n"));
   CHECK(has(table, "false_trip in phase 1 (walls) at 3.250 s: over_current"));
   CHECK(has(table, "inkwell soak --seed 42 --sitting 2 --sitting-seconds 300 --use-seconds 4"));
   CHECK(false_trip_count(some_soak()) == 1);
@@ -51,6 +53,7 @@ TEST_CASE("the JSON has each phase and finding, and the sums that a script asks 
   CHECK(json.at("false_trips") == 1);
   CHECK(json.at("sittings").at(0).at("phases").at(1).at("kind") == "fault");
   CHECK(json.at("sittings").at(0).at("lost").at("poses") == 2);
+  CHECK(json.at("sittings").at(0).at("lost").at("poses_kept_back") == 71);
   CHECK(json.at("sittings").at(1).at("findings").at(0).at("text") == "over_current");
 }
 

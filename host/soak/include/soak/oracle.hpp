@@ -27,7 +27,7 @@ namespace inkwell::soak {
   X(wrong_parameters, "The parameters that the board holds are not those that it accepted last.")              \
   X(wrong_answer, "A transaction was accepted that is illegal, or refused that is legal, or for another reason.") \
   X(wrong_pose, "The board believes the probe to be elsewhere than it is.")                                    \
-  X(lost_packets, "Samples of a scope that the bus carries, forces of a program or parts of a recording were lost.") \
+  X(lost_packets, "Poses, samples of a scope that the bus carries, forces of a program or parts of a recording were lost.") \
   X(no_answer, "The board did not answer, or did not do what it was asked for.")                               \
   X(no_way_back, "A fault was healed, but the user's way back did not lead to force, or only by a reset.")
 // clang-format on
@@ -103,13 +103,16 @@ class Oracle {
   double peak_part_of_limit() const { return peak_part_; }           ///< the same in parts of the limit of its time
   double longest_interrupt_part() const { return longest_interrupt_part_; }  ///< of its period, likewise
   unsigned long poses() const { return poses_; }
-  /// Within connections. No finding: a frame without a pose has a newer one behind it a millisecond later.
+  /// Frames without a pose within connections, while nothing was put in.
   unsigned long poses_lost() const { return poses_lost_; }
+  /// The same while something was: a core that is halted makes none, a host that is silent asks for none.
+  unsigned long poses_kept_back() const { return poses_kept_back_; }
   unsigned restarts() const { return restarts_; }
   const std::map<std::string, unsigned>& faults_told() const { return faults_told_; }
 
  private:
   void tell(protocol::Fault fault);
+  void miss(std::uint32_t poses);
   void take_back_permission(double grace_s);
   void follow_self_test(bool may_test_itself);
 
@@ -134,7 +137,7 @@ class Oracle {
 
   std::vector<Finding> findings_;
   double peak_motor_force_N_ = 0, peak_part_ = 0, longest_interrupt_part_ = 0;
-  unsigned long poses_ = 0, poses_lost_ = 0;
+  unsigned long poses_ = 0, poses_lost_ = 0, poses_kept_back_ = 0;
   std::map<std::string, unsigned> faults_told_;
 };
 

@@ -20,7 +20,8 @@ struct PhaseResult {
 
 /// What was missing in a sitting.
 struct Losses {
-  unsigned long poses = 0;               ///< within a connection: no finding
+  unsigned long poses = 0;               ///< within a connection
+  unsigned long poses_kept_back = 0;     ///< by what was put in: no finding
   unsigned long scope_samples = 0;       ///< of selections that the bus carries for sure
   unsigned long wide_scope_samples = 0;  ///< of longer ones, which the bus may be too slow for: no finding
   unsigned long program_forces = 0;
