@@ -3,6 +3,7 @@
 
 #include <chip/chip.hpp>
 #include <debugger/gdb_packets.hpp>
+#include <debugger/gdb_requests.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,16 +33,24 @@ class GdbSession {
     WatchPoint place;
     char kind;  ///< of the packet: 2 write, 3 read, 4 both
   };
-  std::string answer(std::string_view packet);
-  std::string answer_query(std::string_view packet);
-  std::string answer_monitor(std::string_view command);
-  std::string resume(char action);
+  // Each returns what GDB is answered; nothing is said while the processor runs.
+  static std::string carry_out(const gdb::Answered& asked);
+  std::string carry_out(gdb::WhyStopped asked);
+  std::string carry_out(gdb::ReadRegisters asked);
+  std::string carry_out(const gdb::WriteRegisters& asked);
+  std::string carry_out(gdb::ReadRegister asked);
+  std::string carry_out(const gdb::WriteRegister& asked);
+  std::string carry_out(gdb::ReadMemory asked);
+  std::string carry_out(const gdb::WriteMemory& asked);
+  std::string carry_out(gdb::ChangeBreakpoint asked);
+  std::string carry_out(gdb::ChangeWatchPoint asked);
+  std::string carry_out(gdb::Resume asked);
+  std::string carry_out(gdb::LetGo asked);
+  std::string carry_out(gdb::StopAcknowledging asked);
+  std::string carry_out(const gdb::Monitor& asked);
   std::string stop_reply(unsigned signal) const;
-  std::string change_point(std::string_view packet);
-  std::string read_memory(std::string_view packet);
-  std::string write_memory(std::string_view packet, bool binary);
   std::vector<std::uint8_t> all_registers() const;
-  bool set_all_registers(const std::vector<std::uint8_t>& bytes);
+  void set_all_registers(const std::vector<std::uint8_t>& bytes);
 
   Chip& chip_;
   GdbPackets packets_;
