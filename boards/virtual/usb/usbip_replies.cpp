@@ -1,12 +1,10 @@
-#include "usbip_transfers.hpp"
+#include "usbip_replies.hpp"
 
-#include <stdexcept>
+#include <virtual_usb/usbip_requests.hpp>
 
 namespace inkwell::virtual_board {
 
 namespace {
-
-constexpr std::uint32_t bus_number = 1, device_number = 2;
 
 template <class Message>
 void append(std::vector<std::byte>& out, const Message& message) {
@@ -19,8 +17,8 @@ usbip::Device describe(const DeviceDescription& device) {
   return {
       .path = {"/sys/devices/platform/inkwell_virtual_board/usb1/1-1"},
       .bus_id = {exported_bus_id},
-      .bus_number = bus_number,
-      .device_number = device_number,
+      .bus_number = exported_bus_number,
+      .device_number = exported_device_number,
       .speed = usbip::Speed::full,
       .vendor_id = device.vendor(),
       .product_id = device.product(),
@@ -34,40 +32,6 @@ usbip::Device describe(const DeviceDescription& device) {
 }
 
 }  // namespace
-
-void check_transfer(const usbip::TransferHeader& header) {
-  if (header.command != usbip::Command::submit && header.command != usbip::Command::unlink)
-    throw std::runtime_error("the command is unknown");
-  if (header.device != usbip::device_of(bus_number, device_number))
-    throw std::runtime_error("the command is for another device");
-  if (header.direction != usbip::Direction::out && header.direction != usbip::Direction::in)
-    throw std::runtime_error("the direction of a transfer is neither OUT nor IN");
-  if (header.endpoint > 15) throw std::runtime_error("an endpoint number is above 15");
-}
-
-std::size_t packet_count_of(const usbip::Submit& submit) {
-  constexpr std::uint32_t packets_maximum = 1024;
-  if (submit.packet_count == usbip::not_isochronous) return 0;
-  if (submit.packet_count > packets_maximum)
-    throw std::runtime_error("an isochronous transfer has more than 1024 packets");
-  return submit.packet_count;
-}
-
-Urb transfer_of(const usbip::Submit& submit) {
-  Urb urb;
-  urb.sequence = submit.header.sequence;
-  urb.endpoint = static_cast<std::uint8_t>(submit.header.endpoint);
-  urb.in = submit.header.direction == usbip::Direction::in;
-  urb.flags = submit.transfer_flags;
-  urb.length = submit.length;
-  urb.setup = submit.setup;
-  if (urb.length > transfer_maximum) throw std::runtime_error("a transfer is longer than 16 MiB");
-  // The direction of a control transfer is what its request says; the two must not differ.
-  const bool request_in = (urb.setup[0] & std::byte{0x80}) != std::byte{0};
-  if (urb.endpoint == 0 && urb.length > 0 && request_in != urb.in)
-    throw std::runtime_error("the direction of a control transfer differs from its request");
-  return urb;
-}
 
 void append_device_list(std::vector<std::byte>& out, const DeviceDescription* device) {
   append(out, usbip::DeviceListReply{.device_count = device == nullptr ? 0u : 1u});

@@ -18,7 +18,7 @@
 #include <string>
 #include <utility>
 
-#include "usbip_transfers.hpp"
+#include "usbip_replies.hpp"
 
 namespace inkwell::virtual_board {
 
@@ -220,7 +220,7 @@ void UsbIpServer::receive(Connection& connection) {
     return;
   }
   if (count < 0 || connection.closing) return;
-  connection.received.insert(connection.received.end(), buffer.begin(), buffer.begin() + count);
+  connection.requests.feed(std::span(buffer).first(static_cast<std::size_t>(count)));
   try {
     handle_received(connection);
   } catch (const std::exception& error) {
@@ -250,49 +250,37 @@ void UsbIpServer::send(Connection& connection) {
 }
 
 void UsbIpServer::handle_received(Connection& connection) {
-  bool complete = true;
-  while (complete && !connection.closing) {
-    const std::span<const std::byte> rest = std::span(connection.received).subspan(connection.consumed);
-    complete = connection.import ? handle_command(connection, rest) : handle_operation(connection, rest);
-  }
-  // Shift rarely: only when most of the buffer is used up.
-  if (connection.consumed * 2 >= connection.received.size()) {
-    connection.received.erase(connection.received.begin(),
-                              connection.received.begin() + static_cast<std::ptrdiff_t>(connection.consumed));
-    connection.consumed = 0;
-  }
+  bool goes_on = true;
+  while (goes_on && !connection.closing)
+    goes_on = connection.import ? handle_transfer(connection) : handle_operation(connection);
 }
 
-bool UsbIpServer::handle_operation(Connection& connection, std::span<const std::byte> bytes) {
-  if (bytes.size() < sizeof(usbip::OperationHeader)) return false;
-  const auto header = usbip::read<usbip::OperationHeader>(bytes);
-  if (header.version != usbip::protocol_version)
-    throw std::runtime_error("it speaks another version of USB/IP than 1.1.1");
-  const std::optional<DeviceDescription> device = offered();
-  if (header.operation == usbip::Operation::request_device_list) {
-    connection.consumed += sizeof header;
+bool UsbIpServer::handle_operation(Connection& connection) {
+  const auto operation = connection.requests.take_operation();
+  if (!operation) return false;
+  if (const auto* const wanted = std::get_if<UsbIpRequests::Import>(&*operation)) {
+    import(connection, wanted->bus_id);
+  } else {
+    const std::optional<DeviceDescription> device = offered();
     append_device_list(connection.to_send, device ? &*device : nullptr);
-    return true;
   }
-  if (header.operation != usbip::Operation::request_import)
-    throw std::runtime_error("it asks for an unknown operation");
-  if (bytes.size() < sizeof(usbip::ImportRequest)) return false;
-  const auto request = usbip::read<usbip::ImportRequest>(bytes);
-  connection.consumed += sizeof request;
+  return true;
+}
 
-  const bool known = device && request.bus_id.view() == exported_bus_id;
+void UsbIpServer::import(Connection& connection, std::string_view bus_id) {
+  const std::optional<DeviceDescription> device = offered();
+  const bool known = device && bus_id == exported_bus_id;
   const auto importers = std::count_if(connections_.begin(), connections_.end(),
                                        [](const Connection& other) { return other.import.has_value(); });
   const bool busy = static_cast<std::size_t>(importers) >= importers_maximum;
   if (!known || busy) {
     append_import_refused(connection.to_send, known ? usbip::OperationStatus::busy : usbip::OperationStatus::no_device);
     connection.closing = true;
-    return true;
+    return;
   }
   append_imported(connection.to_send, *device);
   connection.import.emplace(++sessions_);
   give({.kind = Order::Kind::import, .session = sessions_, .urb = {}, .client_port = port_of(connection)});
-  return true;
 }
 
 std::uint16_t UsbIpServer::port_of(const Connection& connection) {
@@ -302,34 +290,18 @@ std::uint16_t UsbIpServer::port_of(const Connection& connection) {
   return ntohs(address.sin_port);
 }
 
-bool UsbIpServer::handle_command(Connection& connection, std::span<const std::byte> bytes) {
-  static_assert(sizeof(usbip::Submit) == sizeof(usbip::Unlink));
-  if (bytes.size() < sizeof(usbip::Submit)) return false;
-  const auto header = usbip::read<usbip::TransferHeader>(bytes);
-  check_transfer(header);
+bool UsbIpServer::handle_transfer(Connection& connection) {
+  auto transfer = connection.requests.take_transfer();
+  if (!transfer) return false;
   const std::uint32_t session = connection.import->session();
-  if (header.command == usbip::Command::unlink) {
-    const auto unlink = usbip::read<usbip::Unlink>(bytes);
-    connection.consumed += sizeof unlink;
+  if (const auto* const unlink = std::get_if<UsbIpRequests::Unlink>(&*transfer)) {
     Urb urb;
-    urb.sequence = header.sequence;
-    give({Order::Kind::unlink, session, std::move(urb), unlink.unlinked_sequence});
+    urb.sequence = unlink->sequence;
+    give({Order::Kind::unlink, session, std::move(urb), unlink->unlinked_sequence});
     return true;
   }
-  const auto submit = usbip::read<usbip::Submit>(bytes);
-  Urb urb = transfer_of(submit);
-  const auto rest = bytes.subspan(sizeof(usbip::Submit));
-  const std::size_t length = urb.in ? 0 : urb.length;
-  const std::size_t packets = packet_count_of(submit);
-  if (rest.size() < length + packets * sizeof(usbip::IsochronousPacket)) return false;
-  connection.consumed += sizeof submit + length + packets * sizeof(usbip::IsochronousPacket);
+  auto& urb = std::get<Urb>(*transfer);
   connection.import->add(urb);
-  for (std::size_t i = 0; i < packets; ++i) {
-    const auto packet =
-        usbip::read<usbip::IsochronousPacket>(rest.subspan(length + i * sizeof(usbip::IsochronousPacket)));
-    urb.packets.push_back({packet.offset, packet.length});
-  }
-  urb.data.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(length));
   give({Order::Kind::submit, session, std::move(urb)});
   return true;
 }

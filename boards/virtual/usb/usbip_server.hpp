@@ -12,12 +12,13 @@
 #include <list>
 #include <mutex>
 #include <optional>
-#include <span>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include <virtual_usb/descriptors.hpp>
 #include <virtual_usb/urb.hpp>
+#include <virtual_usb/usbip_requests.hpp>
 
 #include "usbip_import.hpp"
 
@@ -80,8 +81,7 @@ class UsbIpServer {
   };
   struct Connection {
     Descriptor socket;
-    std::vector<std::byte> received;
-    std::size_t consumed = 0;
+    UsbIpRequests requests;
     std::vector<std::byte> to_send;
     std::size_t sent = 0;
     std::optional<UsbIpImport> import;  ///< of the device, by this client
@@ -96,8 +96,9 @@ class UsbIpServer {
   void receive(Connection& connection);
   void send(Connection& connection);
   void handle_received(Connection& connection);
-  bool handle_operation(Connection& connection, std::span<const std::byte> bytes);
-  bool handle_command(Connection& connection, std::span<const std::byte> bytes);
+  bool handle_operation(Connection& connection);
+  bool handle_transfer(Connection& connection);
+  void import(Connection& connection, std::string_view bus_id);
   static std::uint16_t port_of(const Connection& connection);
   void deliver_results();
   std::optional<DeviceDescription> offered();
