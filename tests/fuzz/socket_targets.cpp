@@ -1,13 +1,8 @@
-// What comes over sockets: what a USB/IP server and a virtual board answer to the companion, and what clients ask of a
-// virtual board.
-#include <cmath>
+// What comes over sockets to the companion: answers of a USB/IP server and of a virtual board.
 #include <cstring>
 #include <stdexcept>
 
 #include <device/error.hpp>
-#include <injection/injection.hpp>
-#include <known/boards.hpp>
-#include <program/requests.hpp>
 
 #include "device/control_answers.hpp"
 #include "device/usbip_answers.hpp"
@@ -106,81 +101,6 @@ const Registered control_answers{"control_answers", [](Input input) {
                                      }
                                    });
                                  }};
-
-using namespace virtual_board;
-
-void check_vector(const Vector3& vector) {
-  if (!vector.allFinite()) throw std::logic_error("a place is nowhere");
-}
-
-void check_pin(const PinName& pin) {
-  if (pin.port < 'A' || pin.port > 'I' || pin.pin > 15) throw std::logic_error("a pin that no chip has");
-}
-
-/// Everything that is read from a request before it reaches the board.
-void read_values(Command command, const json& values) {
-  switch (command) {
-    case Command::run: run_time_s(values); break;
-    case Command::cut_power: flash_operation(values); break;
-    case Command::usb: truth_value(values, "connected"); break;
-    case Command::dock: truth_value(values, "docked"); break;
-    case Command::buttons: pressed_buttons(values); break;
-    case Command::supply: supply_voltage_V(values); break;
-    case Command::gimbal: check_vector(gimbal_angles_rad(values)); break;
-    case Command::hand: check_vector(hand_request(values).target_m); break;
-    case Command::hand_path: {
-      double earliest_s = 0.0;
-      for (const Waypoint& point : hand_path_request(values)) {
-        check_vector(point.target_m);
-        if (!(point.after_s >= earliest_s)) throw std::logic_error("a path goes back in time");
-        earliest_s = point.after_s;
-      }
-      break;
-    }
-    case Command::glitch:
-      check_pin(pin_of(values));
-      glitch_time_s(values);
-      break;
-    case Command::pin:
-      check_pin(pin_of(values));
-      pin_drive(values);
-      break;
-    case Command::inject:
-    case Command::heal: {
-      const auto injection = checked(injection_request(values), board::default_board);
-      const auto& info = protocol::info(injection.fault);
-      if (!(injection.amount >= info.minimum && injection.amount <= info.maximum))
-        throw std::logic_error("an amount outside of its range");
-      break;
-    }
-    case Command::meter: meter_action(values); break;
-    case Command::trace:
-      trace_action(values);
-      trace_rows(values);
-      break;
-    case Command::status:
-    case Command::truth:
-    case Command::pause:
-    case Command::stand_by:
-    case Command::resume:
-    case Command::reset:
-    case Command::quit: break;
-  }
-}
-
-const Registered control_requests{
-    "control_requests", [](Input input) {
-      refuse_or_take<Refused>([&] {
-        const auto request = read_request(text_of(input));
-        refuse_or_take<InvalidInjection>([&] { read_values(request.info->command, request.values); });
-      });
-    }};
-
-/// As on a command line and in a script of faults.
-const Registered injections{
-    "injections", [](Input input) {
-      refuse_or_take<InvalidInjection>([&] { parse_injections(text_of(input), board::default_board); });
-    }};
 
 }  // namespace
 }  // namespace inkwell::fuzz

@@ -1,0 +1,264 @@
+// What clients send to a virtual board: to its control socket, to its USB/IP server, and to its debug port as GDB does.
+#include <algorithm>
+#include <stdexcept>
+
+#include <debugger/gdb_packets.hpp>
+#include <debugger/gdb_requests.hpp>
+#include <injection/injection.hpp>
+#include <known/boards.hpp>
+#include <program/requests.hpp>
+#include <virtual_usb/usbip_requests.hpp>
+
+#include "target.hpp"
+
+namespace inkwell::fuzz {
+namespace {
+
+using nlohmann::json;
+using namespace virtual_board;
+
+void check_vector(const Vector3& vector) {
+  if (!vector.allFinite()) throw std::logic_error("a place is nowhere");
+}
+
+void check_pin(const PinName& pin) {
+  if (pin.port < 'A' || pin.port > 'I' || pin.pin > 15) throw std::logic_error("a pin that no chip has");
+}
+
+/// Everything that is read from a request before it reaches the board.
+void read_values(Command command, const json& values) {
+  switch (command) {
+    case Command::run: run_time_s(values); break;
+    case Command::cut_power: flash_operation(values); break;
+    case Command::usb: truth_value(values, "connected"); break;
+    case Command::dock: truth_value(values, "docked"); break;
+    case Command::buttons: pressed_buttons(values); break;
+    case Command::supply: supply_voltage_V(values); break;
+    case Command::gimbal: check_vector(gimbal_angles_rad(values)); break;
+    case Command::hand: check_vector(hand_request(values).target_m); break;
+    case Command::hand_path: {
+      double earliest_s = 0.0;
+      for (const Waypoint& point : hand_path_request(values)) {
+        check_vector(point.target_m);
+        if (!(point.after_s >= earliest_s)) throw std::logic_error("a path goes back in time");
+        earliest_s = point.after_s;
+      }
+      break;
+    }
+    case Command::glitch:
+      check_pin(pin_of(values));
+      glitch_time_s(values);
+      break;
+    case Command::pin:
+      check_pin(pin_of(values));
+      pin_drive(values);
+      break;
+    case Command::inject:
+    case Command::heal: {
+      const auto injection = checked(injection_request(values), board::default_board);
+      const auto& info = protocol::info(injection.fault);
+      if (!(injection.amount >= info.minimum && injection.amount <= info.maximum))
+        throw std::logic_error("an amount outside of its range");
+      break;
+    }
+    case Command::meter: meter_action(values); break;
+    case Command::trace:
+      trace_action(values);
+      trace_rows(values);
+      break;
+    case Command::status:
+    case Command::truth:
+    case Command::pause:
+    case Command::stand_by:
+    case Command::resume:
+    case Command::reset:
+    case Command::quit: break;
+  }
+}
+
+const Registered control_requests{
+    "control_requests", [](Input input) {
+      refuse_or_take<Refused>([&] {
+        const auto request = read_request(text_of(input));
+        refuse_or_take<InvalidInjection>([&] { read_values(request.info->command, request.values); });
+      });
+    }};
+
+/// As on a command line and in a script of faults.
+const Registered injections{
+    "injections", [](Input input) {
+      refuse_or_take<InvalidInjection>([&] { parse_injections(text_of(input), board::default_board); });
+    }};
+
+/// Gives `take` the bytes as a socket might: so many at a time.
+template <class Take>
+void in_pieces(std::string_view bytes, std::size_t most, Take take) {
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(most, bytes.size()))) take(bytes.substr(0, most));
+}
+
+// ---- USB/IP ----
+
+/// What came of a client's bytes.
+struct Conversation {
+  std::size_t requests = 0;
+  std::size_t body_bytes = 0;  ///< of data and isochronous packets
+  std::string refusal;
+  bool operator==(const Conversation&) const = default;
+};
+
+/// As the server has it: lists until there is an import, transfers from then on.
+Conversation served(std::string_view bytes, std::size_t piece) {
+  Conversation conversation;
+  UsbIpRequests requests;
+  bool has_imported = false;
+  const auto take_one = [&] {
+    if (!has_imported) {
+      const auto operation = requests.take_operation();
+      if (!operation) return false;
+      if (const auto* const import = std::get_if<UsbIpRequests::Import>(&*operation)) {
+        if (import->bus_id.size() > sizeof(usbip::BusId)) throw std::logic_error("a name that was never sent");
+        has_imported = true;
+      }
+      return true;
+    }
+    const auto transfer = requests.take_transfer();
+    if (!transfer) return false;
+    if (const auto* const urb = std::get_if<Urb>(&*transfer)) {
+      if (urb->length > transfer_maximum || urb->endpoint > 15 || urb->data.size() != (urb->in ? 0 : urb->length))
+        throw std::logic_error("a transfer that cannot be");
+      conversation.body_bytes += urb->data.size() + urb->packets.size() * sizeof(usbip::IsochronousPacket);
+    }
+    return true;
+  };
+  try {
+    in_pieces(bytes, piece, [&](std::string_view part) {
+      requests.feed(std::as_bytes(std::span(part)));
+      while (take_one()) ++conversation.requests;
+    });
+  } catch (const std::runtime_error& refused) {
+    conversation.refusal = refused.what();
+  }
+  if (conversation.body_bytes > bytes.size()) throw std::logic_error("data out of nothing");
+  return conversation;
+}
+
+template <class... Messages>
+Bytes joined(const Messages&... messages) {
+  Bytes bytes(1);
+  const auto append = [&](const auto& part) { bytes.insert(bytes.end(), part.begin(), part.end()); };
+  (append(usbip::bytes_of(messages)), ...);
+  return bytes;
+}
+
+std::vector<Bytes> usbip_examples() {
+  usbip::Submit submit{.length = 18};
+  submit.header.device = usbip::device_of(exported_bus_number, exported_device_number);
+  submit.header.direction = usbip::Direction::in;
+  submit.setup = {std::byte{0x80}, std::byte{6}, std::byte{0}, std::byte{1}};
+  usbip::Submit out = submit;
+  out.header.direction = usbip::Direction::out;
+  out.header.endpoint = 1;
+  out.length = sizeof(usbip::IsochronousPacket);
+  out.packet_count = 1;
+  usbip::Unlink unlink{.unlinked_sequence = 1};
+  unlink.header.device = submit.header.device;
+  const usbip::OperationHeader list{.operation = usbip::Operation::request_device_list};
+  const usbip::ImportRequest import{.bus_id = {exported_bus_id}};
+  return {joined(list, import), joined(import, submit, unlink),
+          joined(import, out, usbip::IsochronousPacket{}, usbip::IsochronousPacket{}, submit)};
+}
+
+/// The first byte says how many arrive at a time; it must not matter.
+const Registered usbip_requests{"usbip_requests",
+                                [](Input input) {
+                                  if (input.empty()) return;
+                                  const std::size_t piece = 1 + std::to_integer<std::size_t>(input[0]);
+                                  const std::string bytes = text_of(input.subspan(1));
+                                  if (served(bytes, piece) != served(bytes, bytes.size()))
+                                    throw std::logic_error("it matters how the bytes arrive");
+                                },
+                                usbip_examples};
+
+// ---- GDB ----
+
+struct Checked {
+  std::size_t packet_size;
+  void operator()(const gdb::Answered& answered) const {
+    GdbPackets packets;
+    packets.feed(gdb_packet(answered.reply));
+    const auto received = packets.take();
+    if (!received || received->payload != answered.reply) throw std::logic_error("an answer that GDB cannot read");
+  }
+  void operator()(const gdb::WriteRegisters& asked) const {
+    if (asked.bytes.size() != gdb::size_of_all_registers) throw std::logic_error("registers are missing");
+  }
+  void operator()(const gdb::ReadRegister& asked) const {
+    if (asked.number >= gdb::register_count) throw std::logic_error("a register that is not there");
+  }
+  void operator()(const gdb::WriteRegister& asked) const {
+    if (asked.number >= gdb::register_count || asked.bytes.size() != gdb::size_of_register(asked.number))
+      throw std::logic_error("a register that is not there, or not all of it");
+  }
+  void operator()(const gdb::ReadMemory& asked) const {
+    if (asked.range.bytes > gdb::memory_maximum) throw std::logic_error("more than a packet holds");
+  }
+  void operator()(const gdb::WriteMemory& asked) const {
+    if (asked.bytes.empty() || asked.bytes.size() > packet_size) throw std::logic_error("bytes out of nothing");
+  }
+  void operator()(const gdb::ChangeWatchPoint& asked) const {
+    if (asked.kind < '2' || asked.kind > '4') throw std::logic_error("a watch point of no kind");
+  }
+  void operator()(const auto&) const {}
+};
+
+void check_packet(std::string_view packet) { std::visit(Checked{packet.size()}, gdb::request_of(packet)); }
+
+/// The payloads of what is found, a line each.
+std::string packets_in(std::string_view bytes, std::size_t piece) {
+  std::string found;
+  GdbPackets packets;
+  in_pieces(bytes, piece, [&](std::string_view part) {
+    packets.feed(part);
+    while (const auto received = packets.take()) {
+      check_packet(received->payload);
+      found += static_cast<char>('0' + static_cast<int>(received->kind)) + received->payload + '\n';
+    }
+  });
+  return found;
+}
+
+std::vector<Bytes> gdb_examples() {
+  std::vector<Bytes> all;
+  for (const std::string_view packet :
+       {"?", "g", "p10", "P0=2a000000", "m20000000,4", "M20000000,2:2a00", "X20000000,2:ab", "Z0,8000000,2",
+        "z2,20000000,4", "c", "vCont;s:1", "D", "qSupported:xmlRegisters=arm", "qXfer:features:read:target.xml:0,40",
+        "QStartNoAckMode", "qRcmd,7265736574"}) {
+    all.push_back(bytes_of(std::string(1, '\0') += packet));
+    all.push_back(bytes_of("\x05+" + gdb_packet(packet) + "\x03" + gdb_packet(packet)));
+  }
+  return all;
+}
+
+/// With a first byte of 0 one packet without its frame, or what arrives on the wire, so many bytes at a time.
+const Registered gdb_requests{
+    "gdb_requests",
+    [](Input input) {
+      if (input.empty()) return;
+      const auto piece = std::to_integer<std::size_t>(input[0]);
+      const std::string bytes = text_of(input.subspan(1));
+      if (piece > 0) {
+        if (packets_in(bytes, piece) != packets_in(bytes, bytes.size()))
+          throw std::logic_error("it matters how the bytes arrive");
+        return;
+      }
+      check_packet(bytes);
+      GdbPackets packets;
+      packets.feed(gdb_packet(bytes));
+      const auto received = packets.take();
+      if (!received || received->kind != GdbPackets::Received::Kind::packet || received->payload != bytes)
+        throw std::logic_error("a packet is not what was put into it");
+    },
+    gdb_examples};
+
+}  // namespace
+}  // namespace inkwell::fuzz
