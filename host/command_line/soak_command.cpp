@@ -24,9 +24,11 @@
 namespace inkwell::command_line {
 namespace {
 
+constexpr double default_board_time_s = 60;
+
 struct SoakOptions {
   soak::Choices choices;
-  double board_time_s = 60;
+  std::optional<double> board_time_s;  ///< of all sittings; default_board_time_s if it is not given
   unsigned jobs = 1;
   std::optional<unsigned> sitting;  ///< this one alone
   std::string file;
@@ -39,11 +41,17 @@ struct Plan {
 
 /// All sittings are as long as each other, so that their sum is the time that was asked for, whatever the jobs are.
 Plan plan_of(const SoakOptions& command) {
-  if (command.sitting) return {command.choices, {*command.sitting}};
-  const unsigned count = soak::sittings_in(command.board_time_s, command.choices);
+  if (command.sitting && !command.board_time_s) return {command.choices, {*command.sitting}};
+  const double board_time_s = command.board_time_s.value_or(default_board_time_s);
+  const unsigned count = soak::sittings_in(board_time_s, command.choices);
   Plan plan{command.choices, std::vector<unsigned>(count)};
-  plan.choices.sitting_s = command.board_time_s / count;
+  plan.choices.sitting_s = board_time_s / count;
   std::iota(plan.numbers.begin(), plan.numbers.end(), 1u);
+  if (!command.sitting) return plan;
+  if (*command.sitting > count)
+    throw UsageError(fmt::format("There is no sitting {} in {} s of board time; they are 1 to {}.", *command.sitting,
+                                 board_time_s, count));
+  plan.numbers = {*command.sitting};
   return plan;
 }
 
@@ -118,7 +126,7 @@ void add_soak_command(const Place& place) {
   command->add_option("--seconds", options->board_time_s, "Board time of all boards together, shared alike")
       ->check(positive)
       ->type_name("SECONDS")
-      ->capture_default_str();
+      ->default_str(fmt::format("{:.0f}", default_board_time_s));
   command->add_option("--jobs", options->jobs, "So many boards at once")
       ->check(whole_number_within(1, 256))
       ->type_name("NUMBER")
@@ -126,7 +134,9 @@ void add_soak_command(const Place& place) {
   command->add_option("--seed", options->choices.seed, "Of all that is random")
       ->type_name("NUMBER")
       ->capture_default_str();
-  command->add_option("--sitting", options->sitting, "Only this board of the seed, from its start, as it went before")
+  command
+      ->add_option("--sitting", options->sitting,
+                   "Only this board of the seed, from its start, as it went before in a soak of the same --seconds")
       ->check(whole_number_within(1, 1000000))
       ->type_name("NUMBER");
   command->add_option("--sitting-seconds", options->choices.sitting_s, "Board time of one board, at most")

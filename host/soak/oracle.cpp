@@ -94,9 +94,9 @@ void Oracle::see(const Look& look) {
   // Of an arm that is braked, the speed decides how much its motors press.
   if (!protocol::force_is_on(state_)) return;
   peak_motor_force_N_ = std::max(peak_motor_force_N_, look.motor_force_N);
-  if (force_limit_N_ > 0) peak_part_ = std::max(peak_part_, look.motor_force_N / force_limit_N_);
   // The ripple of the bridges and the noise of the current sensors, which is all that a limit of next to nothing shows.
-  constexpr double ripple_N = 0.1;
+  constexpr double ripple_N = 0.1, telling_limit_N = 5 * ripple_N;
+  if (force_limit_N_ >= telling_limit_N) peak_part_ = std::max(peak_part_, look.motor_force_N / force_limit_N_);
   if (look.motor_force_N > force_tolerance * force_limit_N_ + ripple_N)
     complain(Complaint::too_much_force,
              fmt::format("the motors press with {:.2f} N, the limit is {:.2f} N", look.motor_force_N, force_limit_N_));

@@ -66,6 +66,15 @@ TEST_CASE("the boards of a soak share the seconds that were asked for, and do th
     CHECK(std::fabs(sitting.at("board_time_s").get<double>() - 1.5) < 0.05);
   CHECK(json.at("stopped") == false);
   CHECK(soak("again.json", "2") == json);
+  const auto alone = [&](const std::string& number) {
+    return run_program("inkwell", {"soak", "--seconds", "3", "--sitting-seconds", "2", "--seed", "7", "--sitting",
+                                   number, "--out", directory.file("alone.json")});
+  };
+  CHECK(alone("2").exit_code == 0);
+  CHECK(json_in(directory.file("alone.json")).at("sittings").at(0) == json.at("sittings").at(1));
+  const auto beyond = alone("3");
+  CHECK(beyond.exit_code == 2);
+  CHECK(beyond.err.find("There is no sitting 3 in 3 s of board time; they are 1 to 2.") != std::string::npos);
 }
 
 TEST_CASE("a soak takes no time and no length that is no number") {

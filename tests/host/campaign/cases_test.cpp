@@ -106,6 +106,9 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
   std::ofstream(file_of(directory.path(), 9)) << "{\"number\": 9}";
   CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("case-00009.json: This is no result of a case"),
                        device::Error);
+  std::ofstream(file_of(directory.path(), 9)) << "{\"number\": ";
+  CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("it breaks off after byte 11."), device::Error);
+  CHECK_THROWS_WITH_AS(parse_result("[1, x"), doctest::Contains("it is no JSON from byte 5."), device::Error);
   CHECK_THROWS_AS(load_all(directory / "nowhere"), device::Error);
   CHECK_THROWS_AS(save(result, directory / "nowhere"), device::Error);
 }

@@ -194,6 +194,15 @@ TEST_CASE("motors may press with the limit and 5 %, and with more where somethin
   board.step(State::active);
   board.check_only(Complaint::too_much_force);
 
+  // Of a limit of next to nothing the ripple is a multiple, which tells nothing.
+  Watched weak;
+  weak.switch_on();
+  weak.oracle.limit_force(0.01);
+  weak.motor_force_N = 0.09;
+  weak.step(State::active);
+  weak.check_nothing();
+  CHECK(weak.oracle.peak_part_of_limit() == 0.0);
+
   Watched braked(Kind::too_fast);
   braked.switch_on();
   braked.motor_force_N = 5.0;

@@ -100,7 +100,9 @@ class Oracle {
 
   const std::vector<Finding>& findings() const { return findings_; }
   double peak_motor_force_N() const { return peak_motor_force_N_; }  ///< with the force on, while nothing was put in
-  double peak_part_of_limit() const { return peak_part_; }           ///< the same in parts of the limit of its time
+  double peak_part_of_limit() const {
+    return peak_part_;
+  }  ///< the same in parts of the limit of its time, from 0.5 N on
   double longest_interrupt_part() const { return longest_interrupt_part_; }  ///< of its period, likewise
   unsigned long poses() const { return poses_; }
   /// Frames without a pose within connections, while nothing was put in.
