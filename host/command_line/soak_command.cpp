@@ -122,6 +122,8 @@ void add_soak_command(const Place& place) {
       "soak",
       "Random use, faults, pulled cables and storms of parameters on virtual boards, judged all along.\n"
       "Ctrl-C ends it and tells what is known so far. Exit code 1: something was found.");
+  // A script has options of its own, which those of its user come after.
+  command->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   const auto positive = number_within(0.1, 1e6);
   command->add_option("--seconds", options->board_time_s, "Board time of all boards together, shared alike")
       ->check(positive)
