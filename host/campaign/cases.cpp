@@ -140,6 +140,19 @@ std::vector<CaseFault> case_faults() {
   return faults;
 }
 
+CaseFault at_motor(CaseFault fault, unsigned motor) {
+  if (!fault.fault) return fault;
+  const auto place = protocol::info(*fault.fault).place;
+  if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + motor);
+  if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
+  // Of two wires of neighbours the second motor's and the third's are in the list; behind the third comes the first.
+  for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
+    const unsigned place_from_second = static_cast<unsigned>(fault.of[at + 1] - '1');
+    fault.of[at + 1] = static_cast<char>('0' + (motor - 1 + place_from_second) % 3);
+  }
+  return fault;
+}
+
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   unsigned number = 0;

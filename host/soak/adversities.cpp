@@ -182,7 +182,8 @@ std::string put_fault_in(Bench& bench) {
     std::erase_if(all, [](const campaign::CaseFault& each) { return !each.fault; });
     return all;
   }();
-  const auto& put_in = faults[bench.random.below(faults.size())];
+  const auto& listed = faults[bench.random.below(faults.size())];
+  const auto put_in = campaign::at_motor(listed, 1 + static_cast<unsigned>(bench.random.below(3)));
   const bool with_force = bench.random.chance(0.8);
   be_in_use(bench, with_force);
   const Disturbance disturbance = disturbance_by(*put_in.fault);

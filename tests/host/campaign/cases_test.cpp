@@ -14,6 +14,7 @@
 #include <temporary_directory.hpp>
 
 #include <device/error.hpp>
+#include <known/boards.hpp>
 #include <protocol/supervision.hpp>
 
 #include "seen_cases.hpp"
@@ -111,6 +112,32 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
   CHECK_THROWS_WITH_AS(parse_result("[1, x"), doctest::Contains("it is no JSON from byte 5."), device::Error);
   CHECK_THROWS_AS(load_all(directory / "nowhere"), device::Error);
   CHECK_THROWS_AS(save(result, directory / "nowhere"), device::Error);
+}
+
+TEST_CASE("a fault of the second motor is had at each of them, one that is of no motor stays where it is") {
+  const auto listed = case_faults();
+  const auto moved = [&](const std::string& name, unsigned motor) {
+    const auto found = std::ranges::find_if(listed, [&](const CaseFault& fault) { return fault.name() == name; });
+    REQUIRE(found != listed.end());
+    return at_motor(*found, motor).name();
+  };
+  CHECK(moved("motor_open:2", 1) == "motor_open:1");
+  CHECK(moved("leg_high:2A", 3) == "leg_high:3A");
+  CHECK(moved("encoder_slip:2=400", 1) == "encoder_slip:1=400");
+  CHECK(moved("wire_open:encoders[1].a", 1) == "wire_open:encoders[0].a");
+  CHECK(moved("wires_shorted:bridges[1].leg_a+bridges[1].leg_b", 3) ==
+        "wires_shorted:bridges[2].leg_a+bridges[2].leg_b");
+  CHECK(moved("wires_shorted:motor_current[1]+motor_current[2]", 3) ==
+        "wires_shorted:motor_current[2]+motor_current[0]");
+  for (const char* of_none : {"none", "fast_hand", "supply_cut", "wire_high:bridge_enable", "ram_bit"})
+    CHECK(moved(of_none, 3) == of_none);
+  std::set<std::string> wires;
+  for (const auto& use : board::default_board.pin_uses()) wires.emplace(use.name);
+  for (const CaseFault& fault : listed) {
+    CHECK(at_motor(fault, 2).name() == fault.name());
+    if (!fault.fault || protocol::info(*fault.fault).place != protocol::InjectionPlace::wire) continue;
+    for (const unsigned motor : {1, 3}) CHECK_MESSAGE(wires.contains(at_motor(fault, motor).of), fault.name());
+  }
 }
 
 TEST_CASE("a result whose counts are no counts is refused with their name") {
