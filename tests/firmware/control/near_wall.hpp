@@ -1,0 +1,35 @@
+// An arm whose inkwell is close to a wall, and a host that is there.
+#pragma once
+
+#include <firmware/control/arms.hpp>
+#include <firmware/control/simulated_arm.hpp>
+
+namespace inkwell::tests {
+
+/// The paper's arm with a box in which the inkwell's pose is 2 mm inside the upper x wall, without damping.
+inline control::Settings settings_near_wall() {
+  using enum protocol::Parameter;
+  protocol::ParameterSet set = without_motors(paper_parameters());
+  const control::Settings plain = control::prepare(set);
+  const control::Vector3 inkwell_m = control::forward_kinematics(plain.encoders.inkwell_rad, plain.arm).position_m;
+  set[sphere_radius_m] = 0.0f;
+  set[box_minimum_x_m] = 0.05f;
+  set[box_maximum_x_m] = inkwell_m.x + 0.002f;
+  set[box_minimum_y_m] = -0.2f;
+  set[box_maximum_y_m] = 0.2f;
+  set[box_minimum_z_m] = -0.2f;
+  set[box_maximum_z_m] = 0.2f;
+  set[wall_stiffness_N_per_m] = 800.0f;
+  set[force_ramp_s] = 0.1f;
+  return control::prepare(set);
+}
+
+inline void run_with_host(control::Controller& controller, const control::Samples& samples,
+                          const control::Settings& settings, int periods) {
+  for (int i = 0; i < periods; ++i) {
+    controller.host_alive();
+    run(controller, samples, settings, 1);
+  }
+}
+
+}  // namespace inkwell::tests
