@@ -88,6 +88,20 @@ TEST_CASE("a force that is falling is switched on again before it counts as rega
   CHECK_FALSE(board.is(protocol::State::landing));
 }
 
+TEST_CASE("a fault whose cause takes a while to go is cleared again, as a user does") {
+  campaign::BoardRun board({.real_time = false, .paused = true});
+  REQUIRE(board.connect(1.0));
+  board.set({{protocol::Parameter::host_timeout_s, 2.0f}});
+  REQUIRE(board.wait_for(protocol::State::ready, 1.0));
+  board.control().inject({.fault = "supply_spike", .for_s = 0.005});
+  REQUIRE(board.wait_for(protocol::State::fault, 0.1));
+  CHECK(board.pose()->fault == protocol::Fault::supply_high);
+  board.run(0.02);
+  board.command(protocol::Command::clear_fault);
+  CHECK_FALSE(board.wait_for(protocol::State::ready, 0.05));  // the bulk capacitor is still above
+  CHECK(campaign::regains_force(board));
+}
+
 TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound arm bears it") {
   const Result stuck = result_of("encoder_stuck:2 rest 1");
   CHECK(stuck.detected_as.empty());
