@@ -140,15 +140,15 @@ std::vector<CaseFault> case_faults() {
   return faults;
 }
 
-CaseFault at_motor(CaseFault fault, unsigned motor) {
+CaseFault at_another(CaseFault fault, unsigned number) {
   if (!fault.fault) return fault;
   const auto place = protocol::info(*fault.fault).place;
-  if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + motor);
+  if (place == InjectionPlace::motor || place == InjectionPlace::leg) fault.of[0] = static_cast<char>('0' + number);
   if (place != InjectionPlace::wire && place != InjectionPlace::wires) return fault;
-  // Of two wires of neighbours the second motor's and the third's are in the list; behind the third comes the first.
+  // The list has wires of the second, [1]. Of two neighbours that touch it has the third's, too; the first is its next.
   for (std::size_t at = 0; (at = fault.of.find('[', at)) != std::string::npos; ++at) {
-    const unsigned place_from_second = static_cast<unsigned>(fault.of[at + 1] - '1');
-    fault.of[at + 1] = static_cast<char>('0' + (motor - 1 + place_from_second) % 3);
+    char& index = fault.of[at + 1];
+    index = static_cast<char>('0' + (static_cast<unsigned>(index - '0') + number + 1) % 3);
   }
   return fault;
 }

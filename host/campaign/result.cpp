@@ -75,15 +75,11 @@ Result parse_result(const std::string& text) {
     const auto result = nlohmann::json::parse(text);
     require_counts(result);
     return result.get<Result>();
-  } catch (const nlohmann::json::parse_error& error) {
-    throw device::Error(fmt::format("This is no result of a case: it {} byte {}. Remove it, and run the case again.",
-                                    error.byte > text.size() ? "breaks off after" : "is no JSON from",
-                                    std::min(error.byte, text.size())));
-  } catch (const nlohmann::json::exception&) {
+  } catch (const nlohmann::json::exception& error) {
+    const std::string_view reason = error.what();  // behind a number of the library's in brackets
     throw device::Error(
-        "This is no result of a case by this version: a value is missing or of another kind. Remove it, and run the "
-        "case "
-        "again.");
+        fmt::format("This is no result of a case by this version: {}. Remove it, and run the case again.",
+                    reason.substr(std::min(reason.size(), reason.find("] ") + 2))));
   }
 }
 

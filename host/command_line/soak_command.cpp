@@ -28,7 +28,8 @@ constexpr double default_board_time_s = 60;
 
 struct SoakOptions {
   soak::Choices choices;
-  std::optional<double> board_time_s;  ///< of all sittings; default_board_time_s if it is not given
+  /// Of all sittings. If it is not given, default_board_time_s, or a whole sitting of `choices` where one is named.
+  std::optional<double> board_time_s;
   unsigned jobs = 1;
   std::optional<unsigned> sitting;  ///< this one alone
   std::string file;
@@ -49,8 +50,10 @@ Plan plan_of(const SoakOptions& command) {
   std::iota(plan.numbers.begin(), plan.numbers.end(), 1u);
   if (!command.sitting) return plan;
   if (*command.sitting > count)
-    throw UsageError(fmt::format("There is no sitting {} in {} s of board time; they are 1 to {}.", *command.sitting,
-                                 board_time_s, count));
+    throw UsageError(
+        fmt::format("A soak of --seconds {} has {} sittings, so there is no sitting {}. Give a smaller number, or more "
+                    "--seconds.",
+                    board_time_s, count, *command.sitting));
   plan.numbers = {*command.sitting};
   return plan;
 }
@@ -122,7 +125,7 @@ void add_soak_command(const Place& place) {
       "soak",
       "Random use, faults, pulled cables and storms of parameters on virtual boards, judged all along.\n"
       "Ctrl-C ends it and tells what is known so far. Exit code 1: something was found.");
-  // A script has options of its own, which those of its user come after.
+  // tools/soak has options of its own; those of its user come behind them and count.
   command->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   const auto positive = number_within(0.1, 1e6);
   command->add_option("--seconds", options->board_time_s, "Board time of all boards together, shared alike")
@@ -138,7 +141,7 @@ void add_soak_command(const Place& place) {
       ->capture_default_str();
   command
       ->add_option("--sitting", options->sitting,
-                   "Only this board of the seed, from its start, as it went before in a soak of the same --seconds")
+                   "Only this board of the seed, from its start; with --seconds as in a soak of that time")
       ->check(whole_number_within(1, 1000000))
       ->type_name("NUMBER");
   command->add_option("--sitting-seconds", options->choices.sitting_s, "Board time of one board, at most")

@@ -183,7 +183,7 @@ std::string put_fault_in(Bench& bench) {
     return all;
   }();
   const auto& listed = faults[bench.random.below(faults.size())];
-  const auto put_in = campaign::at_motor(listed, 1 + static_cast<unsigned>(bench.random.below(3)));
+  const auto put_in = campaign::at_another(listed, 1 + static_cast<unsigned>(bench.random.below(3)));
   const bool with_force = bench.random.chance(0.8);
   be_in_use(bench, with_force);
   const Disturbance disturbance = disturbance_by(*put_in.fault);

@@ -74,7 +74,7 @@ void Oracle::miss(std::uint32_t poses) {
     return;
   }
   poses_lost_ += poses;
-  complain(Complaint::lost_packets, fmt::format("{} poses", poses));
+  complain(Complaint::lost_packets, fmt::format("poses missing: {}", poses));
 }
 
 void Oracle::follow_self_test(bool may_test_itself) {
@@ -95,7 +95,7 @@ void Oracle::see(const Look& look) {
   if (!protocol::force_is_on(state_)) return;
   peak_motor_force_N_ = std::max(peak_motor_force_N_, look.motor_force_N);
   // The ripple of the bridges and the noise of the current sensors, which is all that a limit of next to nothing shows.
-  constexpr double ripple_N = 0.1, telling_limit_N = 5 * ripple_N;
+  constexpr double ripple_N = 0.1;
   if (force_limit_N_ >= telling_limit_N) peak_part_ = std::max(peak_part_, look.motor_force_N / force_limit_N_);
   if (look.motor_force_N > force_tolerance * force_limit_N_ + ripple_N)
     complain(Complaint::too_much_force,

@@ -111,7 +111,7 @@ std::string table_of(const Soak& soak) {
               std::to_string(sum<unsigned long>(soak, [](const auto& s) { return s.refused_transactions; })));
   text += row("peak force of the motors",
               fmt::format("{:.2f} N", largest(soak, [](const auto& s) { return s.peak_motor_force_N; })));
-  text += row("  in parts of a limit of 0.5 N or more",
+  text += row(fmt::format("  as a part of a limit of {} N or more", Oracle::telling_limit_N),
               fmt::format("{:.3f}", largest(soak, [](const auto& s) { return s.peak_part_of_limit; })));
   text += row("longest control interrupt, of its period",
               fmt::format("{:.0f} %", 100 * largest(soak, [](const auto& s) { return s.longest_interrupt_part; })));

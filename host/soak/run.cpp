@@ -133,7 +133,8 @@ Sitting run_sitting(unsigned number, const Choices& choices, device::VirtualBoar
 }
 
 unsigned sittings_in(double board_time_s, const Choices& choices) {
-  return static_cast<unsigned>(std::max(1.0, std::ceil(board_time_s / choices.sitting_s)));
+  constexpr double rounding = 1e-9;  // of a length that was such a part of the time
+  return static_cast<unsigned>(std::max(1.0, std::ceil(board_time_s / choices.sitting_s - rounding)));
 }
 
 }  // namespace inkwell::soak

@@ -1,6 +1,11 @@
 // What clients send to a virtual board: to its control socket, to its USB/IP server, and to its debug port as GDB does.
 #include <algorithm>
+#include <initializer_list>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
 
 #include <debugger/gdb_packets.hpp>
 #include <debugger/gdb_requests.hpp>
@@ -98,53 +103,66 @@ void in_pieces(std::string_view bytes, std::size_t most, Take take) {
 
 // ---- USB/IP ----
 
-/// What came of a client's bytes.
-struct Conversation {
-  std::size_t requests = 0;
-  std::size_t body_bytes = 0;  ///< of data and isochronous packets
-  std::string refusal;
-  bool operator==(const Conversation&) const = default;
-};
+void note(std::string& seen, std::span<const std::byte> bytes) {
+  seen.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
 
-/// As the server has it: lists until there is an import, transfers from then on.
-Conversation served(std::string_view bytes, std::size_t piece) {
-  Conversation conversation;
+void note(std::string& seen, std::initializer_list<std::uint32_t> values) {
+  note(seen, std::as_bytes(std::span(values.begin(), values.size())));
+}
+
+void note(std::string& seen, const Urb& urb) {
+  if (urb.length > transfer_maximum || urb.endpoint > 15 || urb.packets.size() > 1024 ||
+      urb.data.size() != (urb.in ? 0 : urb.length))
+    throw std::logic_error("a transfer that cannot be");
+  note(seen, {urb.sequence, urb.endpoint, urb.in, urb.flags, urb.length});
+  note(seen, urb.setup);
+  note(seen, urb.data);
+  for (const auto& packet : urb.packets) note(seen, {packet.offset, packet.length});
+}
+
+/// All that is found in a client's bytes, as the server has it: lists until there is an import, transfers from then on.
+std::string found_in(std::string_view bytes, std::size_t piece) {
+  std::string seen;
   UsbIpRequests requests;
   bool has_imported = false;
-  const auto take_one = [&] {
-    if (!has_imported) {
-      const auto operation = requests.take_operation();
-      if (!operation) return false;
-      if (const auto* const import = std::get_if<UsbIpRequests::Import>(&*operation)) {
-        if (import->bus_id.size() > sizeof(usbip::BusId)) throw std::logic_error("a name that was never sent");
-        has_imported = true;
-      }
-      return true;
+  const auto take_operation = [&] {
+    const auto operation = requests.take_operation();
+    if (!operation) return false;
+    if (const auto* const import = std::get_if<UsbIpRequests::Import>(&*operation)) {
+      if (bytes.find(import->bus_id) == std::string_view::npos) throw std::logic_error("a name that was never sent");
+      seen += "import " + import->bus_id;
+      has_imported = true;
+    } else {
+      seen += "list";
     }
+    return true;
+  };
+  const auto take_transfer = [&] {
     const auto transfer = requests.take_transfer();
     if (!transfer) return false;
-    if (const auto* const urb = std::get_if<Urb>(&*transfer)) {
-      if (urb->length > transfer_maximum || urb->endpoint > 15 || urb->data.size() != (urb->in ? 0 : urb->length))
-        throw std::logic_error("a transfer that cannot be");
-      conversation.body_bytes += urb->data.size() + urb->packets.size() * sizeof(usbip::IsochronousPacket);
-    }
+    if (const auto* const unlink = std::get_if<UsbIpRequests::Unlink>(&*transfer))
+      note(seen, {unlink->sequence, unlink->unlinked_sequence});
+    else
+      note(seen, std::get<Urb>(*transfer));
     return true;
   };
   try {
     in_pieces(bytes, piece, [&](std::string_view part) {
       requests.feed(std::as_bytes(std::span(part)));
-      while (take_one()) ++conversation.requests;
+      while (has_imported ? take_transfer() : take_operation()) {
+      }
     });
   } catch (const std::runtime_error& refused) {
-    conversation.refusal = refused.what();
+    seen += refused.what();
   }
-  if (conversation.body_bytes > bytes.size()) throw std::logic_error("data out of nothing");
-  return conversation;
+  return seen;
 }
 
+/// Messages that arrive byte by byte.
 template <class... Messages>
 Bytes joined(const Messages&... messages) {
-  Bytes bytes(1);
+  Bytes bytes{std::byte{0}};
   const auto append = [&](const auto& part) { bytes.insert(bytes.end(), part.begin(), part.end()); };
   (append(usbip::bytes_of(messages)), ...);
   return bytes;
@@ -158,14 +176,15 @@ std::vector<Bytes> usbip_examples() {
   usbip::Submit out = submit;
   out.header.direction = usbip::Direction::out;
   out.header.endpoint = 1;
-  out.length = sizeof(usbip::IsochronousPacket);
   out.packet_count = 1;
+  // Any data: a message has some.
+  const usbip::IsochronousPacket data{.offset = 1, .length = 2}, packet{.offset = 3, .length = 4};
+  out.length = sizeof data;
   usbip::Unlink unlink{.unlinked_sequence = 1};
   unlink.header.device = submit.header.device;
   const usbip::OperationHeader list{.operation = usbip::Operation::request_device_list};
   const usbip::ImportRequest import{.bus_id = {exported_bus_id}};
-  return {joined(list, import), joined(import, submit, unlink),
-          joined(import, out, usbip::IsochronousPacket{}, usbip::IsochronousPacket{}, submit)};
+  return {joined(list, import), joined(import, submit, unlink), joined(import, out, data, packet, submit)};
 }
 
 /// The first byte says how many arrive at a time; it must not matter.
@@ -174,7 +193,7 @@ const Registered usbip_requests{"usbip_requests",
                                   if (input.empty()) return;
                                   const std::size_t piece = 1 + std::to_integer<std::size_t>(input[0]);
                                   const std::string bytes = text_of(input.subspan(1));
-                                  if (served(bytes, piece) != served(bytes, bytes.size()))
+                                  if (found_in(bytes, piece) != found_in(bytes, bytes.size()))
                                     throw std::logic_error("it matters how the bytes arrive");
                                 },
                                 usbip_examples};
@@ -187,7 +206,8 @@ struct Checked {
     GdbPackets packets;
     packets.feed(gdb_packet(answered.reply));
     const auto received = packets.take();
-    if (!received || received->payload != answered.reply) throw std::logic_error("an answer that GDB cannot read");
+    if (!received || received->kind != GdbPackets::Received::Kind::packet || received->payload != answered.reply)
+      throw std::logic_error("an answer that GDB cannot read");
   }
   void operator()(const gdb::WriteRegisters& asked) const {
     if (asked.bytes.size() != gdb::size_of_all_registers) throw std::logic_error("registers are missing");
@@ -229,17 +249,36 @@ std::string packets_in(std::string_view bytes, std::size_t piece) {
 
 std::vector<Bytes> gdb_examples() {
   std::vector<Bytes> all;
-  for (const std::string_view packet :
-       {"?", "g", "p10", "P0=2a000000", "m20000000,4", "M20000000,2:2a00", "X20000000,2:ab", "Z0,8000000,2",
-        "z2,20000000,4", "c", "vCont;s:1", "D", "qSupported:xmlRegisters=arm", "qXfer:features:read:target.xml:0,40",
-        "QStartNoAckMode", "qRcmd,7265736574"}) {
+  const std::string all_registers = "G" + std::string(2 * gdb::size_of_all_registers, '7');
+  for (const std::string_view packet : std::initializer_list<std::string_view>{"?",
+                                                                               "g",
+                                                                               "p10",
+                                                                               "P0=2a000000",
+                                                                               "m20000000,4",
+                                                                               "M20000000,2:2a00",
+                                                                               "X20000000,2:ab",
+                                                                               "Z0,8000000,2",
+                                                                               "z2,20000000,4",
+                                                                               "c",
+                                                                               "vCont;s:1",
+                                                                               "D;1",
+                                                                               "k",
+                                                                               "p21",
+                                                                               "z1,8000000,2",
+                                                                               "vCont;C05",
+                                                                               "qSupported:xmlRegisters=arm",
+                                                                               "qXfer:features:read:target.xml:0,40",
+                                                                               "QStartNoAckMode",
+                                                                               "qRcmd,7265736574",
+                                                                               "P11=0123456789abcdef",
+                                                                               all_registers}) {
     all.push_back(bytes_of(std::string(1, '\0') += packet));
     all.push_back(bytes_of("\x05+" + gdb_packet(packet) + "\x03" + gdb_packet(packet)));
   }
   return all;
 }
 
-/// With a first byte of 0 one packet without its frame, or what arrives on the wire, so many bytes at a time.
+/// A first byte of 0: one packet without its frame. Otherwise what comes over the wire, so many bytes at a time.
 const Registered gdb_requests{
     "gdb_requests",
     [](Input input) {

@@ -17,7 +17,7 @@ void check_transfer(const usbip::TransferHeader& header) {
 
 /// Packets that an isochronous transfer announces; they follow its data.
 std::size_t packet_count_of(const usbip::Submit& submit) {
-  constexpr std::uint32_t packets_maximum = 1024;  // of Linux
+  constexpr std::uint32_t packets_maximum = 1024;  // Linux sends no more
   if (submit.packet_count == usbip::not_isochronous) return 0;
   if (submit.packet_count > packets_maximum)
     throw std::runtime_error("an isochronous transfer has more than 1024 packets");
@@ -44,7 +44,7 @@ Urb transfer_of(const usbip::Submit& submit) {
 }  // namespace
 
 void UsbIpRequests::feed(std::span<const std::byte> bytes) {
-  // Shifted rarely: only when most of the buffer is used up.
+  // Shifted rarely: only when half of the buffer is used up.
   if (consumed_ * 2 >= received_.size()) {
     received_.erase(received_.begin(), received_.begin() + static_cast<std::ptrdiff_t>(consumed_));
     consumed_ = 0;

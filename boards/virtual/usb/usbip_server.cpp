@@ -259,7 +259,7 @@ bool UsbIpServer::handle_operation(Connection& connection) {
   const auto operation = connection.requests.take_operation();
   if (!operation) return false;
   if (const auto* const wanted = std::get_if<UsbIpRequests::Import>(&*operation)) {
-    import(connection, wanted->bus_id);
+    handle_import(connection, wanted->bus_id);
   } else {
     const std::optional<DeviceDescription> device = offered();
     append_device_list(connection.to_send, device ? &*device : nullptr);
@@ -267,7 +267,7 @@ bool UsbIpServer::handle_operation(Connection& connection) {
   return true;
 }
 
-void UsbIpServer::import(Connection& connection, std::string_view bus_id) {
+void UsbIpServer::handle_import(Connection& connection, std::string_view bus_id) {
   const std::optional<DeviceDescription> device = offered();
   const bool known = device && bus_id == exported_bus_id;
   const auto importers = std::count_if(connections_.begin(), connections_.end(),

@@ -98,7 +98,7 @@ class UsbIpServer {
   void handle_received(Connection& connection);
   bool handle_operation(Connection& connection);
   bool handle_transfer(Connection& connection);
-  void import(Connection& connection, std::string_view bus_id);
+  void handle_import(Connection& connection, std::string_view bus_id);
   static std::uint16_t port_of(const Connection& connection);
   void deliver_results();
   std::optional<DeviceDescription> offered();

@@ -197,11 +197,16 @@ TEST_CASE("motors may press with the limit and 5 %, and with more where somethin
   // Of a limit of next to nothing the ripple is a multiple, which tells nothing.
   Watched weak;
   weak.switch_on();
-  weak.oracle.limit_force(0.01);
-  weak.motor_force_N = 0.09;
+  weak.motor_force_N = 0.1;
+  for (const double limit_N : {0.01, 0.4}) {
+    weak.oracle.limit_force(limit_N);
+    weak.step(State::active);
+    CHECK(weak.oracle.peak_part_of_limit() == 0.0);
+  }
+  weak.oracle.limit_force(0.5);
   weak.step(State::active);
+  CHECK(weak.oracle.peak_part_of_limit() == doctest::Approx(0.2));
   weak.check_nothing();
-  CHECK(weak.oracle.peak_part_of_limit() == 0.0);
 
   Watched braked(Kind::too_fast);
   braked.switch_on();

@@ -77,9 +77,9 @@ struct Case {
 /// The control first, the fast hand last. Of three motors that are wired alike the second stands for all: it bears the
 /// load at the wall.
 std::vector<CaseFault> case_faults();
-/// One of these faults as it is at another of the three motors (1 to 3), its encoder, sensor or potentiometer; what has
-/// no place at one of them stays as it is.
-CaseFault at_motor(CaseFault fault, unsigned motor);
+/// One of these faults as it is at another of three that are alike (1 to 3): motor, leg, encoder, current sensor,
+/// potentiometer of the gimbal. What there is only one of stays as it is.
+CaseFault at_another(CaseFault fault, unsigned number);
 std::vector<Case> all_cases();
 
 }  // namespace inkwell::campaign

@@ -65,6 +65,8 @@ enum class Disturbance : std::uint8_t {
 class Oracle {
  public:
   static constexpr double force_tolerance = 1.05;
+  /// Of a lower force limit the ripple of the bridges is a large part, which tells nothing.
+  static constexpr double telling_limit_N = 0.5;
 
   void begin(unsigned phase, Kind kind);
   /// The cause is gone: nothing may be told any more in this phase.
@@ -99,13 +101,14 @@ class Oracle {
   double board_time_s() const { return now_s_; }
 
   const std::vector<Finding>& findings() const { return findings_; }
-  double peak_motor_force_N() const { return peak_motor_force_N_; }  ///< with the force on, while nothing was put in
-  double peak_part_of_limit() const {
-    return peak_part_;
-  }  ///< the same in parts of the limit of its time, from 0.5 N on
-  double longest_interrupt_part() const { return longest_interrupt_part_; }  ///< of its period, likewise
+  /// With the force on, while nothing was put in.
+  double peak_motor_force_N() const { return peak_motor_force_N_; }
+  /// The same as a part of the limit of its time, where that was telling_limit_N or more.
+  double peak_part_of_limit() const { return peak_part_; }
+  /// Of its period, while nothing was put in.
+  double longest_interrupt_part() const { return longest_interrupt_part_; }
   unsigned long poses() const { return poses_; }
-  /// Frames without a pose within connections, while nothing was put in.
+  /// Poses missing within connections, while nothing was put in: frames without one.
   unsigned long poses_lost() const { return poses_lost_; }
   /// The same while something was: a core that is halted makes none, a host that is silent asks for none.
   unsigned long poses_kept_back() const { return poses_kept_back_; }

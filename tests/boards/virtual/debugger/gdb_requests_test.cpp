@@ -1,12 +1,15 @@
 #include <doctest/doctest.h>
 
+#include <cstdio>
+#include <string>
+
 #include <debugger/gdb_requests.hpp>
 
 using namespace inkwell::virtual_board::gdb;
 
 namespace {
 
-/// What a packet is answered that no chip is asked about; a text that GDB never gets for the others.
+/// The answer to a packet that needs no chip; for any other, a text that GDB never gets.
 std::string answer_to(std::string_view packet) {
   const Request request = request_of(packet);
   const auto* const answered = std::get_if<Answered>(&request);
@@ -59,7 +62,15 @@ TEST_SUITE("virtual board: debugger") {
     }
   }
 
-  TEST_CASE("the longest read that is announced is allowed, and all of what is asked is understood") {
+  TEST_CASE("what is asked is understood up to its bounds") {
+    CHECK(asked_by<ReadRegister>("p21").number == 33);
+    const auto set = asked_by<WriteRegister>("P11=0123456789abcdef");
+    CHECK(set.number == first_double);
+    CHECK(set.bytes == std::vector<std::uint8_t>{0x01, 0x23, 0x45, 0x67, 0x89, 0xAB, 0xCD, 0xEF});
+    CHECK(asked_by<WriteRegisters>("G" + std::string(2 * (17 * 4 + 16 * 8 + 4), '7')).bytes.size() ==
+          size_of_all_registers);
+    CHECK(std::holds_alternative<StopAcknowledging>(request_of("QStartNoAckMode")));
+    CHECK(asked_by<WriteMemory>("M2001e000,2:2a01").bytes == std::vector<std::uint8_t>{0x2A, 1});
     CHECK(asked_by<ReadMemory>("m20000000,2000").range == Range{0x2000'0000, 0x2000});
     const auto written = asked_by<WriteMemory>("X2000e000,2:#\x01");
     CHECK(written.address == 0x2000'E000);
@@ -69,9 +80,14 @@ TEST_SUITE("virtual board: debugger") {
     CHECK(watched.sets);
     CHECK(watched.kind == '3');
     CHECK(watched.range == Range{0x2001'F000, 4});
+    CHECK(asked_by<ChangeWatchPoint>("Z2,2001f000,4").kind == '2');
+    CHECK(asked_by<ChangeWatchPoint>("Z4,2001f000,4").kind == '4');
     CHECK_FALSE(asked_by<ChangeBreakpoint>("z1,8000000,2").sets);
     CHECK(asked_by<Resume>("vCont;s:1").steps);
     CHECK_FALSE(asked_by<Resume>("C0b").steps);
+    CHECK(asked_by<Resume>("S05").steps);
+    CHECK_FALSE(asked_by<Resume>("vCont;C05:1").steps);
+    CHECK(asked_by<Resume>("vCont;S05:1").steps);
     CHECK(asked_by<LetGo>("D;1").wants_answer);
     CHECK_FALSE(asked_by<LetGo>("k").wants_answer);
     CHECK(asked_by<Monitor>("qRcmd,7265736574").command == "reset");

@@ -19,7 +19,7 @@ inline constexpr unsigned xpsr_number = 16, first_double = 17, fpscr_number = 33
 constexpr std::size_t size_of_register(unsigned number) {
   return number >= first_double && number < fpscr_number ? 8 : 4;
 }
-/// Of a register among the bytes of all of them, as the packets g and G have them.
+/// Where a register begins among the bytes of all of them, in the packets g and G.
 constexpr std::size_t place_of_register(unsigned number) {
   std::size_t place = 0;
   for (unsigned i = 0; i < number; ++i) place += size_of_register(i);
@@ -53,7 +53,7 @@ struct ReadMemory {
 };
 struct WriteMemory {
   std::uint32_t address;
-  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> bytes;  ///< one at least
 };
 struct ChangeBreakpoint {
   bool sets;  ///< or removes

@@ -50,6 +50,7 @@ class GdbSession {
   std::string carry_out(const gdb::Monitor& asked);
   std::string stop_reply(unsigned signal) const;
   std::vector<std::uint8_t> all_registers() const;
+  /// `bytes` are gdb::size_of_all_registers.
   void set_all_registers(const std::vector<std::uint8_t>& bytes);
 
   Chip& chip_;
