@@ -51,9 +51,8 @@ Plan plan_of(const SoakOptions& command) {
   if (!command.sitting) return plan;
   if (*command.sitting > count)
     throw UsageError(
-        fmt::format("A soak of --seconds {} has {} sittings, so there is no sitting {}. Give a smaller number, or more "
-                    "--seconds.",
-                    board_time_s, count, *command.sitting));
+        fmt::format("The last sitting of a soak of --seconds {} is {}. Give that or less, or more --seconds.",
+                    board_time_s, count));
   plan.numbers = {*command.sitting};
   return plan;
 }
