@@ -49,9 +49,11 @@ void check_refused(ParameterStore& store, std::span<const std::byte> report, Ref
 
 TEST_CASE("a store starts with the defaults and reads them in the table's order") {
   ParameterStore store;
-  protocol::ParametersReport report;
+  protocol::ParametersReport report = test::spoiled_report();
   CHECK(store.read(report) == protocol::parameters_report_size(protocol::parameter_count));
   CHECK(report.report_id == protocol::ReportId::parameters);
+  CHECK(report.operation == protocol::ParameterOperation::set);
+  CHECK(report.reserved == 0);
   CHECK(report.version == protocol::protocol_version);
   REQUIRE(report.count == protocol::parameter_count);
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {

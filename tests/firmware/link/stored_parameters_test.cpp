@@ -445,12 +445,13 @@ TEST_CASE("stored parameters: the report of what is stored is one to restore it 
   store_in(flash, force_limit, 1.25f);
   Board board(flash);
   board.set(force_limit, 2.0f);
-  protocol::ParametersReport report;
+  protocol::ParametersReport report = test::spoiled_report();
   CHECK(board.stored.read(report) == protocol::parameters_report_size(link::image_parameter_count()));
   CHECK(report.report_id == protocol::ReportId::stored);
   CHECK(report.operation == protocol::ParameterOperation::restore_stored);
   CHECK(report.version == protocol::protocol_version);
   CHECK(report.count == link::image_parameter_count());
+  CHECK(report.reserved == 0);
   bool found = false;
   for (std::size_t i = 0; i < report.count; ++i)
     if (report.entries[i].id == id_of(force_limit)) found = report.entries[i].value == 1.25f;

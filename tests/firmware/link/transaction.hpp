@@ -1,6 +1,7 @@
 // Builds ParametersReports as a host sends them, and damages what became of them.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,13 @@ class Transaction {
 
 inline protocol::ParameterEntry entry(protocol::Parameter parameter, float value) {
   return {protocol::info(parameter).id, 0, value};
+}
+
+/// As the memory that the board puts reports into: full of what was there before.
+inline protocol::ParametersReport spoiled_report() {
+  std::array<std::byte, sizeof(protocol::ParametersReport)> bytes;
+  bytes.fill(std::byte{0xFF});
+  return std::bit_cast<protocol::ParametersReport>(bytes);
 }
 
 /// By itself, as radiation does.
