@@ -43,13 +43,17 @@ class FakePort final : public usb::Port {
   void set_address(std::uint8_t address) override { address_ = address; }
 
   void open(std::uint8_t endpoint_address, usb::EndpointType type) override {
+    forget_transfer(endpoint_address);
     Endpoint& endpoint = at(endpoint_address);
     endpoint = {};
     endpoint.open = true;
     endpoint.type = type;
   }
 
-  void close(std::uint8_t endpoint_address) override { at(endpoint_address) = {}; }
+  void close(std::uint8_t endpoint_address) override {
+    forget_transfer(endpoint_address);
+    at(endpoint_address) = {};
+  }
 
   void stall(std::uint8_t endpoint_address) override {
     if (is_stale(endpoint_address)) return;

@@ -52,10 +52,10 @@ class Port {
   /// its hardware wants it.
   virtual void set_address(std::uint8_t address) = 0;
 
-  /// Opens an endpoint with data toggle 0, not halted, without a transfer.
+  /// Opens an endpoint with data toggle 0, not halted, without a transfer: no `sent` comes for one that was running.
   virtual void open(std::uint8_t endpoint_address, EndpointType type) = 0;
 
-  /// Closes an endpoint; a running transfer is forgotten.
+  /// Closes an endpoint; a running transfer is forgotten, and no `sent` comes for it.
   virtual void close(std::uint8_t endpoint_address) = 0;
 
   /// Answers STALL from now on. On endpoint 0 in both directions, until the next SETUP.
