@@ -12,6 +12,7 @@
 #include <injection/injection.hpp>
 #include <known/boards.hpp>
 #include <program/requests.hpp>
+#include <usbip_bytes.hpp>
 #include <virtual_usb/usbip_requests.hpp>
 
 #include "target.hpp"
@@ -112,7 +113,7 @@ void note(std::string& seen, std::initializer_list<std::uint32_t> values) {
 }
 
 void note(std::string& seen, const Urb& urb) {
-  if (urb.length > transfer_maximum || urb.endpoint > 15 || urb.packets.size() > 1024 ||
+  if (urb.length > transfer_maximum || urb.endpoint > 15 || urb.packets.size() > packets_maximum ||
       urb.data.size() != (urb.in ? 0 : urb.length))
     throw std::logic_error("a transfer that cannot be");
   note(seen, {urb.sequence, urb.endpoint, urb.in, urb.flags, urb.length});
@@ -161,10 +162,9 @@ std::string found_in(std::string_view bytes, std::size_t piece) {
 
 /// Messages that arrive byte by byte.
 template <class... Messages>
-Bytes joined(const Messages&... messages) {
-  Bytes bytes{std::byte{0}};
-  const auto append = [&](const auto& part) { bytes.insert(bytes.end(), part.begin(), part.end()); };
-  (append(usbip::bytes_of(messages)), ...);
+Bytes one_by_one(const Messages&... messages) {
+  Bytes bytes = tests::joined(messages...);
+  bytes.insert(bytes.begin(), std::byte{0});
   return bytes;
 }
 
@@ -184,7 +184,7 @@ std::vector<Bytes> usbip_examples() {
   unlink.header.device = submit.header.device;
   const usbip::OperationHeader list{.operation = usbip::Operation::request_device_list};
   const usbip::ImportRequest import{.bus_id = {exported_bus_id}};
-  return {joined(list, import), joined(import, submit, unlink), joined(import, out, data, packet, submit)};
+  return {one_by_one(list, import), one_by_one(import, submit, unlink), one_by_one(import, out, data, packet, submit)};
 }
 
 /// The first byte says how many arrive at a time; it must not matter.
@@ -250,28 +250,29 @@ std::string packets_in(std::string_view bytes, std::size_t piece) {
 std::vector<Bytes> gdb_examples() {
   std::vector<Bytes> all;
   const std::string all_registers = "G" + std::string(2 * gdb::size_of_all_registers, '7');
-  for (const std::string_view packet : std::initializer_list<std::string_view>{"?",
-                                                                               "g",
-                                                                               "p10",
-                                                                               "P0=2a000000",
-                                                                               "m20000000,4",
-                                                                               "M20000000,2:2a00",
-                                                                               "X20000000,2:ab",
-                                                                               "Z0,8000000,2",
-                                                                               "z2,20000000,4",
-                                                                               "c",
-                                                                               "vCont;s:1",
-                                                                               "D;1",
-                                                                               "k",
-                                                                               "p21",
-                                                                               "z1,8000000,2",
-                                                                               "vCont;C05",
-                                                                               "qSupported:xmlRegisters=arm",
-                                                                               "qXfer:features:read:target.xml:0,40",
-                                                                               "QStartNoAckMode",
-                                                                               "qRcmd,7265736574",
-                                                                               "P11=0123456789abcdef",
-                                                                               all_registers}) {
+  const std::string_view packets[] = {"?",
+                                      "g",
+                                      "p10",
+                                      "P0=2a000000",
+                                      "m20000000,4",
+                                      "M20000000,2:2a00",
+                                      "X20000000,2:ab",
+                                      "Z0,8000000,2",
+                                      "z2,20000000,4",
+                                      "c",
+                                      "vCont;s:1",
+                                      "D;1",
+                                      "k",
+                                      "p21",
+                                      "z1,8000000,2",
+                                      "vCont;C05",
+                                      "qSupported:xmlRegisters=arm",
+                                      "qXfer:features:read:target.xml:0,40",
+                                      "QStartNoAckMode",
+                                      "qRcmd,7265736574",
+                                      "P11=0123456789abcdef",
+                                      all_registers};
+  for (const std::string_view packet : packets) {
     all.push_back(bytes_of(std::string(1, '\0') += packet));
     all.push_back(bytes_of("\x05+" + gdb_packet(packet) + "\x03" + gdb_packet(packet)));
   }

@@ -17,7 +17,6 @@ void check_transfer(const usbip::TransferHeader& header) {
 
 /// Packets that an isochronous transfer announces; they follow its data.
 std::size_t packet_count_of(const usbip::Submit& submit) {
-  constexpr std::uint32_t packets_maximum = 1024;  // Linux sends no more
   if (submit.packet_count == usbip::not_isochronous) return 0;
   if (submit.packet_count > packets_maximum)
     throw std::runtime_error("an isochronous transfer has more than 1024 packets");

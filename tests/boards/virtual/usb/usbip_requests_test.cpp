@@ -1,21 +1,16 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <vector>
 
+#include <usbip_bytes.hpp>
 #include <virtual_usb/usbip_requests.hpp>
 
 using namespace inkwell;
 using namespace inkwell::virtual_board;
+using inkwell::tests::joined;
 
 namespace {
-
-template <class... Messages>
-std::vector<std::byte> joined(const Messages&... messages) {
-  std::vector<std::byte> bytes;
-  const auto append = [&](const auto& part) { bytes.insert(bytes.end(), part.begin(), part.end()); };
-  (append(usbip::bytes_of(messages)), ...);
-  return bytes;
-}
 
 usbip::Submit submit_out(std::uint32_t sequence) {
   usbip::Submit submit{.transfer_flags = 0x40, .length = sizeof(usbip::IsochronousPacket), .packet_count = 2};

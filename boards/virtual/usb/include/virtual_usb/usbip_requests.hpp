@@ -19,6 +19,8 @@ inline constexpr char exported_bus_id[] = "1-1";
 inline constexpr std::uint32_t exported_bus_number = 1, exported_device_number = 2;
 /// Longest transfer that is accepted, that of Linux' usbfs.
 inline constexpr std::uint32_t transfer_maximum = 16u << 20;
+/// Most packets of an isochronous transfer; Linux sends no more.
+inline constexpr std::uint32_t packets_maximum = 1024;
 
 /// The requests of one client. Each is taken once it is there whole. What makes no sense throws std::runtime_error with
 /// what is wrong with the client, "because ..."; nothing more can be found in its bytes then.

@@ -1,0 +1,19 @@
+// Messages of USB/IP as a client sends them, one behind the other.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <usbip/messages.hpp>
+
+namespace inkwell::tests {
+
+template <class... Messages>
+std::vector<std::byte> joined(const Messages&... messages) {
+  std::vector<std::byte> bytes;
+  const auto append = [&](const auto& part) { bytes.insert(bytes.end(), part.begin(), part.end()); };
+  (append(usbip::bytes_of(messages)), ...);
+  return bytes;
+}
+
+}  // namespace inkwell::tests
