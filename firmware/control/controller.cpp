@@ -101,12 +101,18 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   if (periods_ == 0)
     for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
   // The bridges are off until the offsets are known, so what the sensors read is their offset.
-  if (!offsets_.measured()) measure_offsets(offsets_, samples.current_A);
+  if (!offsets_.measured()) {
+    measure_offsets(offsets_, samples.current_A);
+    over_current_for_A_ = {};
+  }
   debounce(switches_, samples.switches, turn_);
   filter_supply(supply_, samples.supply_V);
   jump_bits_ = jumps(encoder_counts_, samples.encoder_counts, settings.encoders.jump_counts);
   encoder_counts_ = samples.encoder_counts;
-  for (std::size_t i = 0; i < 3; ++i) current_A_[i] = samples.current_A[i] - offsets_.offset_A[i];
+  const auto take = [&](std::size_t i) { return replace(current_A_[i], samples.current_A[i] - offsets_.offset_A[i]); };
+  const float first_A = take(0), second_A = take(1), third_A = take(2);
+  if (is_large(first_A, second_A, third_A)) [[unlikely]]
+    look_for_jump({first_A, second_A, third_A}, settings);
   const float ratio = samples.gimbal_ratio[turn_];
   const GimbalCurve& curve = settings.gimbal[turn_];
   probe_.gimbal_rad[turn_] = (curve.square_rad * ratio + curve.slope_rad) * ratio + curve.offset_rad;
@@ -114,6 +120,14 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
   // While walls push, a new reference would move the probe under the hand.
   if (!force_is_on())
     update_reference(reference_, encoder_counts_, protocol::is_closed(switches_.closed, protocol::Switch::inkwell));
+}
+
+/// Before this period's pose and errors: a change is judged by the speed and the errors that were there before it.
+void Controller::look_for_jump(const Triple& change_A, const Settings& settings) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[i] * joint_speed_rad_per_s_[i];
+    if (is_jump(change_A[i], loops_[i].error_A, back_emf_V, resistances_[i])) raise(Fault::current_jump);
+  }
 }
 
 void Controller::find_pose(const Settings& settings) {
@@ -320,8 +334,9 @@ void Controller::watch_inkwell_switch(const Settings& settings) {
 // A current limit that is lowered holds for the references at once, but a current takes time to follow: the loop's, and
 // the winding's where the voltage is bounded.
 void Controller::follow_over_current(const Settings& settings) {
-  over_current_A_[turn_] = std::min(
-      std::max(settings.limits.over_current_A[turn_], over_current_A_[turn_] - over_current_fall_A), known_A(turn_));
+  const float limit_A = settings.limits.over_current_A[turn_];
+  over_current_A_[turn_] = std::min(std::max(limit_A, over_current_A_[turn_] - over_current_fall_A), known_A(turn_));
+  if (over_current_A_[turn_] <= limit_A) over_current_for_A_[turn_] = limit_A;
 }
 
 float Controller::test_limit_A(const Settings& settings) const {
@@ -345,13 +360,15 @@ void Controller::drive_pulses(const Settings& settings) {
     // At least that, whatever their own limits are.
     over_current_A_[i] = std::min(std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A), known_A(i));
   }
+  over_current_for_A_ = {};
   over_current_A_[turn_] += over_current_fall_A;  // follow_over_current() takes it away in this period
   drive_.enabled = true;
 }
 
 void Controller::supervise(const Samples& samples, const Settings& settings) {
   ++host_silence_periods_;
-  follow_over_current(settings);
+  if (over_current_for_A_[turn_] != settings.limits.over_current_A[turn_]) [[unlikely]]
+    follow_over_current(settings);
   if (protocol::is_closed(switches_.closed, protocol::Switch::inkwell)) [[unlikely]]
     watch_inkwell_switch(settings);
   const float speed_squared_m2_per_s2 = dot(probe_.velocity_m_per_s, probe_.velocity_m_per_s);

@@ -7,8 +7,11 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
+#include <span>
 #include <string>
+#include <vector>
 
+#include <control/current_jump.hpp>
 #include <control/motor_watch.hpp>
 #include <control/settings.hpp>
 #include <omni_driver/facts.hpp>
@@ -43,10 +46,11 @@ class WatchedRig : public BoardRig {
       measured_.resistance_ohm[i] = entry(protocol::SelfTestItem::motor_1);
     }
     make_active();
-    device->select_signals(std::array{Signal::duty_1, Signal::duty_2, Signal::duty_3, Signal::current_1_A,
-                                      Signal::current_2_A, Signal::current_3_A, Signal::joint_speed_1_rad_s,
-                                      Signal::joint_speed_2_rad_s, Signal::joint_speed_3_rad_s, Signal::supply_V,
-                                      Signal::motor_heat_1, Signal::motor_heat_2, Signal::motor_heat_3});
+    device->select_signals(std::array{
+        Signal::duty_1, Signal::duty_2, Signal::duty_3, Signal::current_1_A, Signal::current_2_A, Signal::current_3_A,
+        Signal::joint_speed_1_rad_s, Signal::joint_speed_2_rad_s, Signal::joint_speed_3_rad_s, Signal::supply_V,
+        Signal::motor_heat_1, Signal::motor_heat_2, Signal::motor_heat_3, Signal::current_reference_1_A,
+        Signal::current_reference_2_A, Signal::current_reference_3_A});
     watch(0.05);
     start_anew();
   }
@@ -61,6 +65,8 @@ class WatchedRig : public BoardRig {
     watch_ = {};
     told_V_.clear();
     nearest_V = largest_left_V = largest_beyond_V = fastest_rad_per_s = strongest_N = 0.0f;
+    before_.clear();
+    largest_change_A = largest_sudden_A = 0.0f;
   }
 
   void change(std::initializer_list<device::ParameterChange> changes) {
@@ -90,6 +96,9 @@ class WatchedRig : public BoardRig {
   float largest_left_V = 0.0f, largest_beyond_V = 0.0f;
   float fastest_rad_per_s = 0.0f, strongest_N = 0.0f;
   bool force_is_on = false;
+  /// Of a current in a control period, and what neither its loop nor its speed explains; CurrentJump::bearable_A is
+  /// told.
+  float largest_change_A = 0.0f, largest_sudden_A = 0.0f;
 
  private:
   void pass(double time_s) {
@@ -107,6 +116,7 @@ class WatchedRig : public BoardRig {
     const std::size_t width = samples.signals.size();
     for (std::size_t row = 0; row < samples.count; ++row, ++period_) {
       const float* value = &samples.values[row * width];
+      look_for_jumps({value, width});
       told_V_.push_back({value[0] * value[9], value[1] * value[9], value[2] * value[9]});
       if (told_V_.size() < 3) continue;
       const std::size_t motor = period_ % 3;
@@ -130,7 +140,19 @@ class WatchedRig : public BoardRig {
     }
   }
 
+  void look_for_jumps(std::span<const float> values) {
+    for (std::size_t motor = 0; motor < 3 && !before_.empty(); ++motor) {
+      const float change_A = std::fabs(values[3 + motor] - before_[3 + motor]);
+      const float error_A = std::fabs(before_[13 + motor] - before_[3 + motor]);
+      const float back_emf_V = std::fabs(settings_.motor_model.back_emf_Vs_per_rad[motor] * before_[6 + motor]);
+      largest_change_A = std::max(largest_change_A, change_A);
+      largest_sudden_A = std::max(largest_sudden_A, change_A - error_A - back_emf_V / measured_.resistance_ohm[motor]);
+    }
+    before_.assign(values.begin(), values.end());
+  }
+
   control::Settings settings_ = control::prepare(protocol::default_parameters());
+  std::vector<float> before_;         ///< the values of the period before
   control::MeasuredMotors measured_;  ///< by the self-test; the firmware takes the motors for cold then
   MotorWatch watch_;
   std::deque<control::Triple> told_V_;
@@ -140,9 +162,12 @@ class WatchedRig : public BoardRig {
 void check(WatchedRig& rig, const std::string& what) {
   MESSAGE("simulation, ", what, ": at ", rig.fastest_rad_per_s, " rad/s of a joint and ", rig.strongest_N,
           " N a motor came to ", rig.nearest_V, " of ", MotorWatch::bearable_sum_V, " V; a look left ",
-          rig.largest_left_V, " V, at most ", rig.largest_beyond_V, " V more than is bearable");
+          rig.largest_left_V, " V, at most ", rig.largest_beyond_V, " V more than is bearable; a current changed by ",
+          rig.largest_change_A, " A in a period, by ", rig.largest_sudden_A, " A without a reason");
   CHECK(rig.force_is_on);
   CHECK(rig.largest_left_V > 0.1f);  // it was looked at
+  CHECK(rig.largest_change_A > 0.01f);
+  CHECK(rig.largest_sudden_A < 0.6f * control::CurrentJump::bearable_A);
   CHECK(rig.nearest_V < 0.2f * MotorWatch::bearable_sum_V);
   rig.start_anew();
 }

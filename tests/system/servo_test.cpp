@@ -151,19 +151,30 @@ TEST_CASE(
   // The motors' watch goes by it as well; every 128th look of a motor.
   const auto resistance = instructions_in({"Controller15know_resistance"});
   const crash::FirmwareImage image(build_directory() + "/../board/inkwell.elf");
-  const auto jumps = std::ranges::count_if(executed, [&](std::uint32_t address) {
-    const std::string place = image.place(address);
-    return place.find("condition_samples") != place.npos && place.find("(encoders.hpp:") != place.npos;
-  });
+  const auto conditioning_by = [&](std::string_view header) {
+    return std::ranges::count_if(executed, [&](std::uint32_t address) {
+      const std::string place = image.place(address);
+      return place.find("condition_samples") != place.npos && place.find(fmt::format("({}:", header)) != place.npos;
+    });
+  };
+  const auto jumps = conditioning_by("encoders.hpp");
+  // The debugging information has the comparison and its branch, four instructions, in the line that asks. Three stores
+  // are there without it.
+  const auto current_jumps = conditioning_by("current_jump.hpp") + 4 - 3;
+  const auto change_of_state = instructions_in({"Controller12change_state", "7control7advanceERKNS0_10Supervisor"});
   MESSAGE("simulation: of ", executed.size(), " instructions ", watching, " supervise, ", heartbeat,
-          " are the heartbeat's, ", jumps, " look for jumps, ", heat, " are the motors' heat, ", bounds,
-          " the bounds of the loops' voltages, ", resistance, " the motors' resistance");
+          " are the heartbeat's, ", jumps, " look for jumps of encoders, ", current_jumps, " of currents, ", heat,
+          " are the motors' heat, ", bounds, " the bounds of the loops' voltages, ", resistance,
+          " the motors' resistance, ", change_of_state, " a change of state");
   CHECK(executed.size() > 1'000);
   CHECK(watching > 100);
   CHECK(heartbeat > 10);
   CHECK(jumps > 10);
+  CHECK(current_jumps > 10);
   CHECK(heat > 10);
-  CHECK(watching + heartbeat + jumps + heat <= 300);
+  CHECK(watching + heartbeat + jumps + current_jumps + heat <= 300);
+  // The longest may be one in which a limit is reached or left.
+  CHECK(change_of_state <= 120);
   CHECK(bounds > 10);
   CHECK(bounds + resistance <= 100);
 }

@@ -242,6 +242,7 @@ inline constexpr auto watch_table = []() {
       {Fault::bridge_fault, started, when_gone, coast},
       {Fault::over_current, started, when_gone, coast},
       {Fault::self_test_failed, State::testing, when_gone, coast},
+      {Fault::current_jump, with_force, at_once, coast},
       {Fault::motor_implausible, with_force, at_once, coast, true},
       {Fault::motor_hot, started, when_gone, coast},
       {Fault::encoder_wire, moving, at_once, coast, true},

@@ -139,6 +139,7 @@ std::vector<FaultCase> fault_cases() {
           {Fault::supply_high, started, false},
           {Fault::bridge_fault, started, false},
           {Fault::over_current, started, false},
+          {Fault::current_jump, force, true},
           {Fault::motor_implausible, force, true},
           {Fault::motor_hot, started, false},
           {Fault::encoder_implausible, moving, true},

@@ -73,7 +73,7 @@ TEST_CASE(
   constexpr std::uint32_t patience_periods = control::CurrentOffsets::patience_periods;
   Controller controller = tests::ready_controller(settings);
   Samples samples = tests::samples_at_rest();
-  samples.current_A[0] = 0.5f;
+  samples.current_A[0] = 0.28f;
   tests::run(controller, samples, settings, patience_periods - 20);
   controller.carry_out(tests::command(Command::enable_force));
   run_with_host(controller, samples, settings, 1);
@@ -81,7 +81,7 @@ TEST_CASE(
   samples.current_A[0] = 0.0f;
   run_with_host(controller, samples, settings, 100);
   controller.carry_out(tests::command(Command::stop));
-  samples.current_A[0] = 0.5f;  // in a winding that was just switched off
+  samples.current_A[0] = 0.28f;  // in a winding that was just switched off
   tests::run(controller, samples, settings, 30);
   samples.current_A[0] = 0.0f;
   tests::run(controller, samples, settings, 10);

@@ -7,6 +7,7 @@
 
 #include <control/brake.hpp>
 #include <control/conditioning.hpp>
+#include <control/current_jump.hpp>
 #include <control/energy_reserve.hpp>
 #include <control/felt_force_law.hpp>
 #include <control/program_force.hpp>
@@ -118,6 +119,7 @@ class Controller {
   enum Stage : std::uint8_t { sample, pose, contact, torque, current, report, stage_count };
 
   void condition_samples(const Samples& samples, const Settings& settings);
+  [[gnu::cold]] void look_for_jump(const Triple& change_A, const Settings& settings);
   void find_pose(const Settings& settings);
   void render_force(const Settings& settings);
   void give(Force asked, const Settings& settings);
@@ -132,7 +134,7 @@ class Controller {
   [[gnu::cold]] void watch_inkwell_switch(const Settings& settings);
   /// The largest current, of either sign, that its sensor surely shows.
   float known_A(std::size_t motor) const { return board_.current_measurable_A - std::fabs(offsets_.offset_A[motor]); }
-  void follow_over_current(const Settings& settings);
+  [[gnu::cold]] void follow_over_current(const Settings& settings);
   [[gnu::cold]] float test_limit_A(const Settings& settings) const;
   [[gnu::cold]] float test_voltage_V(const Settings& settings) const;
   void follow_test(protocol::Watches found, const Settings& settings);
@@ -157,6 +159,7 @@ class Controller {
   MotorWatch motor_watch_;
   std::array<VoltageRange, 3> voltage_ranges_{};  ///< of the loops
   Triple over_current_A_{};                       ///< a measured current beyond it is a fault
+  Triple over_current_for_A_{};                   ///< the limits of the settings for which it is settled, else 0
   std::uint32_t off_zero_periods_ = 0;            ///< in a row, while no bridge was on
   TestPulse test_;
   std::uint32_t self_tests_ = 0;
