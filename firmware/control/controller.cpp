@@ -124,6 +124,8 @@ void Controller::condition_samples(const Samples& samples, const Settings& setti
 
 /// Before this period's pose and errors: a change is judged by the speed and the errors that were there before it.
 void Controller::look_for_jump(const Triple& change_A, const Settings& settings) {
+  // A brake's currents come and go, and so does one whose bridges were just switched off.
+  if (!drive_.enabled) return;
   for (std::size_t i = 0; i < 3; ++i) {
     const float back_emf_V = settings.motor_model.back_emf_Vs_per_rad[i] * joint_speed_rad_per_s_[i];
     if (is_jump(change_A[i], loops_[i].error_A, back_emf_V, resistances_[i])) raise(Fault::current_jump);
@@ -336,7 +338,7 @@ void Controller::watch_inkwell_switch(const Settings& settings) {
 void Controller::follow_over_current(const Settings& settings) {
   const float limit_A = settings.limits.over_current_A[turn_];
   over_current_A_[turn_] = std::min(std::max(limit_A, over_current_A_[turn_] - over_current_fall_A), known_A(turn_));
-  if (over_current_A_[turn_] <= limit_A) over_current_for_A_[turn_] = limit_A;
+  over_current_for_A_[turn_] = over_current_A_[turn_] <= limit_A ? limit_A : 0.0f;
 }
 
 float Controller::test_limit_A(const Settings& settings) const {
@@ -360,7 +362,7 @@ void Controller::drive_pulses(const Settings& settings) {
     // At least that, whatever their own limits are.
     over_current_A_[i] = std::min(std::max(settings.limits.over_current_A[i], SelfTestPulses::bearable_A), known_A(i));
   }
-  over_current_for_A_ = {};
+  over_current_for_A_ = {};                       // so that they are followed again
   over_current_A_[turn_] += over_current_fall_A;  // follow_over_current() takes it away in this period
   drive_.enabled = true;
 }

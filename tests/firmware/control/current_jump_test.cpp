@@ -1,8 +1,8 @@
 // What a winding's current may change by in a control period, and what is told at once.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <control/current_jump.hpp>
 
@@ -170,6 +170,37 @@ TEST_CASE("sound motors follow whatever is asked of them: limits that jump, and 
     REQUIRE(arm.run(60) == 60);
   }
   CHECK(arm.largest_change_A > 0.5f * CurrentJump::bearable_A);  // it was tried
+}
+
+TEST_CASE("a brake goes on whatever currents come and go, and so does a force that is asked for while a pulse runs") {
+  HeldArm arm;
+  arm.press(0, 1.0f);
+  // Faster than the speed limit, and braked then: another current in each reading.
+  int braked = 0;
+  for (int i = 0; i < 200; ++i) {
+    arm.samples.encoder_counts[1] += 8;
+    if (arm.controller.state() == protocol::State::fault)
+      arm.samples.current_A = {i % 2 == 0 ? 1.0f : 0.2f, 0.0f, 0.0f};
+    arm.controller.host_alive();
+    braked += tests::run(arm.controller, arm.samples, arm.settings, 1).brake;
+  }
+  CHECK(arm.controller.fault() == Fault::over_speed);
+  CHECK(braked > 100);
+
+  HeldArm tested;
+  tested.controller = tests::ready_controller(tested.settings);
+  auto pulse = tests::command(protocol::Command::test_current);
+  pulse.test = {1, 1.0f, 0.05f};
+  tested.controller.carry_out(pulse);
+  tested.run(100);
+  REQUIRE(std::fabs(tested.samples.current_A[0]) > 0.5f);
+  tested.controller.carry_out(tests::command(protocol::Command::enable_force));
+  tests::run(tested.controller, tested.samples, tested.settings, 1);
+  tested.samples.current_A = {};
+  for (auto& each : tested.motors.motors) each.current_A = 0.0f;
+  tests::run(tested.controller, tested.samples, tested.settings, 2);
+  CHECK(tested.controller.fault() == Fault::none);
+  CHECK(tested.controller.force_is_on());
 }
 
 TEST_CASE("a motor that turns as the force comes on has a current of its back EMF at once") {

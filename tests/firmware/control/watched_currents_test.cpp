@@ -138,6 +138,21 @@ TEST_CASE("a reading near a rail of its sensor is an over-current whatever offse
     }
 }
 
+TEST_CASE("a current limit that is restored before the bound has come down holds again at once") {
+  Settings settings = settings_near_wall();
+  settings.limits.over_current_A.fill(2.0f);
+  const Settings before = settings;
+  Controller controller = tests::ready_controller(settings);
+  Samples samples = tests::samples_at_rest();
+  tests::run(controller, samples, settings, 10);
+  settings.limits.over_current_A.fill(0.5f);
+  tests::run(controller, samples, settings, 15);
+  tests::run(controller, samples, before, 3);
+  samples.current_A[1] = before.limits.over_current_A[1] - 0.01f;
+  tests::run(controller, samples, before, 1);
+  CHECK(controller.fault() == Fault::none);
+}
+
 TEST_CASE("a current limit that is lowered gives the current time to follow, and then holds for it") {
   Settings settings = settings_near_wall();
   settings.motor_model.resistance_ohm = {};  // or it would be told that no voltage explains the current

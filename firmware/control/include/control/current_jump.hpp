@@ -25,14 +25,14 @@ inline float replace(float& current_A, float now_A) {
   return change_A;
 }
 
-/// Whether one of the three motors' changes in a control period deserves a closer look.
+/// Whether one of the three motors' changes in a control period may be a jump: they deserve a closer look.
 inline bool is_large(float first_A, float second_A, float third_A) {
   return first_A * first_A + second_A * second_A + third_A * third_A >
          CurrentJump::bearable_A * CurrentJump::bearable_A;
 }
 
-/// Whether neither the loop nor the speed explains a change: a loop moves its current by no more than what it was short
-/// of, `error_A`, and a back EMF drives no more through a resistance than it would in the end.
+/// Whether neither the loop nor the speed explains a change: a loop moves its current by about what it was short of,
+/// `error_A`, and a back EMF drives no more through a resistance than it would in the end.
 inline bool is_jump(float change_A, float error_A, float back_emf_V, const Resistance& resistance) {
   const float beyond_A = std::fabs(change_A) - CurrentJump::bearable_A - std::fabs(error_A);
   return beyond_A * resistance.value_ohm > std::fabs(back_emf_V);
