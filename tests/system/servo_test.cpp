@@ -120,8 +120,7 @@ device::Shapes eight_planes(const device::Vector3& point_m, std::size_t touched,
 
 TEST_CASE(
     "what watches costs the longest control interrupt at most 300 instructions, 420 where the state changes, the "
-    "bounds "
-    "of the loops' voltages 100") {
+    "bounds of the loops' voltages 100") {
   const auto profile = std::filesystem::temp_directory_path() / fmt::format("inkwell-watches-{}", getpid());
   {
     auto options = stepped_board(device::SimulationMode::exact, device::CyclePricing::likely);

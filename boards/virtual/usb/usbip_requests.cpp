@@ -1,6 +1,7 @@
 #include <virtual_usb/usbip_requests.hpp>
 
 #include <stdexcept>
+#include <string>
 
 namespace inkwell::virtual_board {
 namespace {
@@ -19,7 +20,7 @@ void check_transfer(const usbip::TransferHeader& header) {
 std::size_t packet_count_of(const usbip::Submit& submit) {
   if (submit.packet_count == usbip::not_isochronous) return 0;
   if (submit.packet_count > packets_maximum)
-    throw std::runtime_error("an isochronous transfer has more than 1024 packets");
+    throw std::runtime_error("an isochronous transfer has more than " + std::to_string(packets_maximum) + " packets");
   return submit.packet_count;
 }
 

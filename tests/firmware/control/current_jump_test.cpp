@@ -6,7 +6,7 @@
 
 #include <control/current_jump.hpp>
 
-#include <firmware/control/arms.hpp>
+#include <firmware/control/near_wall.hpp>
 #include <firmware/control/simulated_arm.hpp>
 #include <firmware/control/simulated_motors.hpp>
 
@@ -20,20 +20,7 @@ using protocol::Parameter;
 
 /// Held still in the inkwell, pressed into three walls; its motors behind bridges and shunts.
 struct HeldArm {
-  protocol::ParameterSet parameters = [] {
-    using enum Parameter;
-    protocol::ParameterSet set = tests::omni_parameters();
-    const auto plain = control::prepare(set);
-    const auto inkwell_m = control::forward_kinematics(plain.encoders.inkwell_rad, plain.arm).position_m;
-    set[sphere_radius_m] = 0.0f;
-    set[box_minimum_x_m] = set[box_minimum_y_m] = set[box_minimum_z_m] = -0.5f;
-    set[box_maximum_x_m] = inkwell_m.x - 0.002f;
-    set[box_maximum_y_m] = inkwell_m.y - 0.001f;
-    set[box_maximum_z_m] = inkwell_m.z - 0.002f;
-    set[wall_stiffness_N_per_m] = 2000.0f;
-    set[force_limit_N] = 8.0f;
-    return set;
-  }();
+  protocol::ParameterSet parameters = tests::pressed_into_three_walls({0.002f, 0.001f, 0.002f}, 2000.0f);
   control::Settings settings = control::prepare(parameters);
   control::Controller controller = tests::active_controller(settings);
   control::Samples samples = tests::samples_at_rest();

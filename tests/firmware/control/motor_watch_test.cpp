@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <firmware/control/arms.hpp>
+#include <firmware/control/near_wall.hpp>
 #include <firmware/control/simulated_arm.hpp>
 
 namespace {
@@ -177,17 +178,7 @@ TEST_CASE("the model of each arm: its resistances, and the torque constants with
 struct PressedArm {
   protocol::ParameterSet parameters = [] {
     using enum protocol::Parameter;
-    protocol::ParameterSet set = tests::omni_parameters();
-    const auto plain = control::prepare(set);
-    const auto inkwell_m = control::forward_kinematics(plain.encoders.inkwell_rad, plain.arm).position_m;
-    set[sphere_radius_m] = 0.0f;
-    set[box_maximum_x_m] = inkwell_m.x - 0.001f;
-    set[box_minimum_x_m] = set[box_minimum_y_m] = -0.5f;
-    set[box_maximum_y_m] = inkwell_m.y - 0.001f;
-    set[box_maximum_z_m] = inkwell_m.z - 0.002f;
-    set[box_minimum_z_m] = -0.5f;
-    set[wall_stiffness_N_per_m] = 3000.0f;
-    set[force_limit_N] = 8.0f;
+    protocol::ParameterSet set = tests::pressed_into_three_walls({0.001f, 0.001f, 0.002f}, 3000.0f);
     set[force_ramp_s] = 0.0f;
     set[speed_limit_m_per_s] = 10.0f;
     return set;

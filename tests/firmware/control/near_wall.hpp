@@ -24,6 +24,23 @@ inline control::Settings settings_near_wall() {
   return control::prepare(set);
 }
 
+/// An Omni whose inkwell is beyond three walls by `depth_m`, at a force limit of 8 N.
+inline protocol::ParameterSet pressed_into_three_walls(const control::Vector3& depth_m, float stiffness_N_per_m) {
+  using enum protocol::Parameter;
+  protocol::ParameterSet set = omni_parameters();
+  const control::Settings plain = control::prepare(set);
+  const control::Vector3 wall_m =
+      control::forward_kinematics(plain.encoders.inkwell_rad, plain.arm).position_m - depth_m;
+  set[sphere_radius_m] = 0.0f;
+  set[box_minimum_x_m] = set[box_minimum_y_m] = set[box_minimum_z_m] = -0.5f;
+  set[box_maximum_x_m] = wall_m.x;
+  set[box_maximum_y_m] = wall_m.y;
+  set[box_maximum_z_m] = wall_m.z;
+  set[wall_stiffness_N_per_m] = stiffness_N_per_m;
+  set[force_limit_N] = 8.0f;
+  return set;
+}
+
 inline void run_with_host(control::Controller& controller, const control::Samples& samples,
                           const control::Settings& settings, int periods) {
   for (int i = 0; i < periods; ++i) {
