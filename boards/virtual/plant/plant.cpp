@@ -216,12 +216,13 @@ double Plant::analog_V(char port, unsigned pin, Ticks now) {
 AnalogSource Plant::analog_source(char port, unsigned pin) const {
   const board::Pin wanted{port, static_cast<std::uint8_t>(pin)};
   for (unsigned i = 0; i < 3; ++i) {
-    if (board_.motor_current[i].pin == wanted) return {board_.current_filter_ohm, board_.current_filter_F};
+    if (board_.motor_current[i].pin == wanted)
+      return {board_.current_filter_ohm, board_.current_filter_F, board_.current_pull_down_ohm};
     // A wiper in the middle has the most behind it.
     if (board_.gimbal[i].pin == wanted) return {board_.gimbal_track_ohm / 4, board_.gimbal_filter_F};
   }
   if (board_.supply.pin != wanted) return {};
-  return {divider_ohm(board_), board_.supply_filter_F};
+  return {divider_ohm(board_), board_.supply_filter_F, board_.supply_lower_ohm};
 }
 
 double Plant::gimbal_V(unsigned axis) {

@@ -83,7 +83,11 @@ void Wires::drive(char port, unsigned pin, PinLevel level, Ticks since) {
 double Wires::volts(PinName wire, Ticks now) {
   const State& s = state(wire);
   switch (s.fault) {
-    case WireFault::open: return s.frozen_V * std::exp(-seconds(now - s.since) / open_input_s);
+    case WireFault::open: {
+      const AnalogSource source = circuit_.analog_source(wire.port, wire.pin);
+      const double falls_s = source.pull_down_ohm > 0.0 ? source.pull_down_ohm * source.capacitance_F : open_input_s;
+      return s.frozen_V * std::exp(-seconds(now - s.since) / falls_s);
+    }
     case WireFault::low: return 0.0;
     case WireFault::high: return logic_supply_V;
     case WireFault::frozen: return s.frozen_V;

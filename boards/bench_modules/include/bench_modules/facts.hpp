@@ -51,6 +51,7 @@ inline constexpr Facts bench_modules{
     .gimbal_track_ohm = 10e3f,
     .gimbal_filter_F = 100e-9f,
     .supply_filter_F = 100e-9f,
+    .current_pull_down_ohm = 100e3f,
 };
 template struct Checks<bench_modules>;
 

@@ -48,6 +48,7 @@ inline constexpr Facts omni_driver{
     .gimbal_track_ohm = 10e3f,
     .gimbal_filter_F = 100e-9f,
     .supply_filter_F = 100e-9f,
+    .current_pull_down_ohm = 100e3f,
 };
 template struct Checks<omni_driver>;
 

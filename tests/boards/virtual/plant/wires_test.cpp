@@ -14,7 +14,7 @@ class TwoEnds final : public Circuit, public InputPins {
  public:
   void output_changed(char port, unsigned pin, PinLevel level, Ticks) override { heard[{port, pin}] = level; }
   double analog_V(char port, unsigned pin, Ticks) override { return volts[{port, pin}]; }
-  AnalogSource analog_source(char, unsigned) const override { return {10e3, 100e-9}; }
+  AnalogSource analog_source(char, unsigned) const override { return {10e3, 100e-9, pull_down_ohm}; }
   void advance(Ticks) override {}
   void drive(char port, unsigned pin, PinLevel level, Ticks since) override {
     seen[{port, pin}] = level;
@@ -23,6 +23,7 @@ class TwoEnds final : public Circuit, public InputPins {
   void hold(char port, unsigned pin, PinLevel level) override { held[{port, pin}] = level; }
   std::map<std::pair<char, unsigned>, PinLevel> heard, seen, held;
   std::map<std::pair<char, unsigned>, double> volts;
+  double pull_down_ohm = 0.0;
   Ticks newest = 0;
 };
 
@@ -103,6 +104,9 @@ TEST_CASE("an analogue wire that is broken, shorted or frozen") {
   w.wires.set(c3, WireFault::open);  // the converter's capacitor leaks
   CHECK(w.wires.analog_V('C', 3, ticks(0.5)) == doctest::Approx(1.0));
   CHECK(w.wires.analog_V('C', 3, ticks(0.51)) == doctest::Approx(std::exp(-1.0)));
+  w.ends.pull_down_ohm = 20e3;  // a resistor takes it down sooner
+  CHECK(w.wires.analog_V('C', 3, ticks(0.502)) == doctest::Approx(std::exp(-1.0)));
+  CHECK(w.wires.analog_V('C', 3, ticks(0.504)) == doctest::Approx(std::exp(-2.0)));
 }
 
 TEST_CASE("of two wires that touch low wins, and voltages meet half-way") {

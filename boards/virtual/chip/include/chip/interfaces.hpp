@@ -80,6 +80,7 @@ enum class PinLevel : std::uint8_t { low, high, floating };
 struct AnalogSource {
   double resistance_ohm = 0.0;
   double capacitance_F = 0.0;  ///< from the pin to ground
+  double pull_down_ohm = 0.0;  ///< at the pin, the chip's side of what may break; 0 where there is none
 };
 
 /// What is soldered to the chip. Times of calls never run backward.

@@ -12,7 +12,7 @@ namespace inkwell::virtual_board {
 
 enum class WireFault : std::uint8_t {
   sound,
-  open,    ///< what it drives floats; an analogue input sinks to ground as its capacitor leaks
+  open,    ///< what it drives floats; an analogue input sinks to ground, by its resistor or as its capacitor leaks
   low,     ///< touches ground
   high,    ///< touches the chip's 3.3 V
   frozen,  ///< stays as it is
@@ -21,7 +21,7 @@ enum class WireFault : std::uint8_t {
 /// Stands between a chip, for which it is the circuit, and a circuit, for which it is the chip's inputs.
 class Wires final : public Circuit, public InputPins {
  public:
-  static constexpr double open_input_s = 0.01;  ///< time constant of an analogue input that nothing drives
+  static constexpr double open_input_s = 0.01;  ///< time constant of an analogue input without a resistor to ground
 
   explicit Wires(Circuit& circuit) : circuit_(circuit) {}
   /// Solders the chip in.
