@@ -46,6 +46,7 @@ protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::opti
                                bool started_late) {
   if (started_late || (crash && crystal_stopped(*crash))) return protocol::Fault::crystal_failed;
   if (crash) return protocol::Fault::processor_fault;
+  if (cause.brown_out()) return protocol::Fault::logic_supply_low;
   return cause.watchdog() ? protocol::Fault::watchdog : protocol::Fault::none;
 }
 

@@ -7,6 +7,7 @@
 #include <crash/crash_text.hpp>
 #include <device/error.hpp>
 #include <omni_driver/facts.hpp>
+#include <stepped_board.hpp>
 
 #include "firmware_image.hpp"
 #include "hazards.hpp"
@@ -144,6 +145,26 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
   const auto saved = run_program("inkwell", {"fault", "--usbip", address, "--out", directory.file("crash.h5")});
   INFO(saved.err);
   CHECK(saved.exit_code == 0);
+}
+
+TEST_CASE(
+    "a supply of the chip that fades below its brown-out level is told after the restart, with the rows before it") {
+  auto options = stepped_board(device::SimulationMode::exact, device::CyclePricing::likely);
+  options.brown_out_level = 3;
+  BoardRig rig(options);
+  press_into_wall(rig);
+  rig.control.inject({.fault = "logic_sag", .amount = 2.5, .for_s = 0.02});
+  rig.control.run(0.05);
+  REQUIRE(restarts(rig.control) > 0);
+  reconnect(rig);
+  rig.run(0.3);
+  CHECK(rig.pose().fault == Fault::logic_supply_low);
+  const auto box = rig.device->black_box();
+  CHECK(box.fault == Fault::logic_supply_low);
+  CHECK(box.crash.exception == 0);
+  check_rows_until_crash(box, rig.device->black_box_rows(box));
+  rig.command(protocol::Command::clear_fault);
+  rig.run_until([](const auto& pose) { return pose.state == State::unreferenced; });
 }
 
 TEST_CASE("a crash while the black box of another fault is kept is told beside it, the newest of two") {

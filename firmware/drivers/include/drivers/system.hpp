@@ -13,6 +13,8 @@ namespace inkwell::drivers {
 struct ResetCause {
   std::uint32_t flags;
   bool power_on() const { return registers::RCC::CSR::PORRSTF::from(flags) != 0; }
+  /// The supply fell below its brown-out level and rose again. Power that comes sets that flag too.
+  bool brown_out() const { return registers::RCC::CSR::BORRSTF::from(flags) != 0 && !power_on(); }
   bool watchdog() const { return registers::RCC::CSR::IWDGRSTF::from(flags) != 0; }
 };
 

@@ -59,6 +59,7 @@ struct ResetAndClockControl {
   };
   struct CSR : Register<base + 0x74> {
     using RMVF = Field<CSR, 24, 1>;
+    using BORRSTF = Field<CSR, 25, 1>;
     using PORRSTF = Field<CSR, 27, 1>;
     using IWDGRSTF = Field<CSR, 29, 1>;
   };
