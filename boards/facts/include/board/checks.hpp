@@ -68,6 +68,9 @@ struct Checks {
                 "the bridges would be let go between two heartbeats, or held for longer than two control periods");
   static_assert(facts.current_measurable_A() < facts.current_linear_A() &&
                 facts.current_linear_A() < facts.current_range_A());
+  static_assert(facts.current_pull_down_ohm > 1000 * facts.current_filter_ohm &&
+                    facts.current_pull_down_ohm * facts.current_filter_F < 3.0f / servo_rate_Hz,
+                "the resistor at a current's pin would change the reading, or leave it standing once its wire breaks");
   static_assert(facts.supply_divider() * adc_reference_V > supply_maximum_V + 6.0f, "over-voltage must be measurable");
 };
 

@@ -180,7 +180,8 @@ struct Facts {
   float supply_upper_ohm, supply_lower_ohm;  ///< the divider of the bridges' supply
   /// In front of the pins: what a channel leaves in the converter's sampling capacitor, the next one's must bear.
   float current_filter_ohm, current_filter_F, gimbal_track_ohm, gimbal_filter_F, supply_filter_F;
-  /// From each current's pin to ground, so that a reading whose wire breaks is gone within two control periods.
+  /// From each current's pin to ground: a reading whose wire breaks changes by more than a current can in a control
+  /// period.
   float current_pull_down_ohm;
 
   /// By the tolerances of the monostable and its two parts, a sixth together.
