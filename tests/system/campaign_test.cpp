@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include <fmt/format.h>
 #include <campaign/board_run.hpp>
 #include <campaign/cases.hpp>
 #include <campaign/handling.hpp>
@@ -33,6 +34,12 @@ Result result_of(const std::string& name) {
   INFO("error: ", result.error);
   REQUIRE(result.error.empty());
   return result;
+}
+
+/// An arm that a hand swings gets and gives some all the time.
+double energy_without_fault_J(const Result& result) {
+  if (result.situation != "motion") return 0.0;
+  return result_of(fmt::format("none motion {}", result.phase)).energy_J;
 }
 
 }  // namespace
@@ -132,6 +139,7 @@ TEST_CASE("electrical faults that the firmware knows take the bridges off within
                              {"wire_low:bridges[1].leg_a motion 1", "current_jump"},
                              {"wire_open:motor_current[1] rest 1", "current_jump"},
                              {"wire_open:motor_current[1] limited 1", "current_jump"},
+                             {"wire_open:motor_current[1] motion 2", "current_jump"},
                              {"shunt_gain:2 wall 3", "current_jump"},
                              {"shunt_gain:2=2 wall 1", "current_jump"},
                              {"shunt_offset:2 limited 1", "current_jump"},
@@ -143,6 +151,8 @@ TEST_CASE("electrical faults that the firmware knows take the bridges off within
     REQUIRE(result.off_after_s);
     CHECK(*result.off_after_s < 2 * control_period_s);
     CHECK(result.detected_as == known.detected_as);
+    CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
+    CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);
     CHECK(result.recovery == "clear_fault");
     CHECK(result.position_error_m.value() < 0.0015);  // the newest pose may be a millisecond old
   }
@@ -170,6 +180,7 @@ TEST_CASE("a motor that does not do as its voltage says is let go of before the 
     CHECK(*result.off_after_s < known.periods * control_period_s);
     CHECK(result.detected_as == "motor_implausible");
     CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
+    CHECK(result.energy_J < energy_without_fault_J(result) + 0.01);
     CHECK(result.recovery == "clear_fault");
   }
 }

@@ -155,7 +155,7 @@ TEST_CASE("a current limit that is restored before the bound has come down holds
 
 TEST_CASE("a current limit that is lowered gives the current time to follow, and then holds for it") {
   Settings settings = settings_near_wall();
-  settings.motor_model.resistance_ohm = {};  // or it would be told that no voltage explains the current
+  settings.motor_model.resistance_ohm = {};  // or the current that nothing drives would be told, and its jumps
   Controller controller = tests::active_controller(settings);
   Samples samples = tests::samples_at_rest();
   constexpr float current_A = 2.0f;
