@@ -22,7 +22,9 @@ std::string_view reason_of_wire(std::string_view wire) {
   if (wire == "bridge_hold") return "It stands as with the bridges on.";
   if (wire.starts_with("motor_current"))
     return "The reading stays near what is asked for, or what it leads to within what a sound motor may differ by.";
-  if (wire.starts_with("gimbal")) return "The stylus's angles move no motor; only their being measured is watched.";
+  if (wire.starts_with("gimbal"))
+    return "Only a force law of one's own can go by the stylus's angles, and at an end of its track a sound "
+           "potentiometer reads the same. That they are measured is watched; the next self-test tells of an end.";
   if (wire == "supply") return "It reads a sound supply.";
   if (wire == "usb_supply") return "It stands as with the cable in.";
   return "A switch that is open or closed looks like one that is let go of or pressed; the inkwell's is told where it "
