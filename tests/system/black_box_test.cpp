@@ -39,6 +39,7 @@ void check_rows_until_crash(const protocol::BlackBoxReport& box, const std::vect
   CHECK(box.is_restart == 1);
   CHECK(box.rows_before == protocol::black_box_rows_before);
   check_times(box, rows);
+  REQUIRE_FALSE(rows.empty());
   CHECK(rows.back().time_periods == box.fault_periods);
   for (const auto& row : rows) CHECK(value(row, Signal::force_z_N) > 0.1f);
 }
