@@ -65,7 +65,10 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   if (host_link.parameters.take(period)) controller.settings_changed();
   const control::Settings& settings = host_link.parameters.settings();
   if (host_link.commands.take_sign_of_life()) controller.host_alive();
-  if (const auto* command = host_link.commands.take()) controller.carry_out(*command);
+  if (const auto* command = host_link.commands.take()) {
+    controller.carry_out(*command);
+    if (host_link.commands.is_of_gone_host(*command)) controller.raise(Fault::usb_gone);
+  }
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
   if (host_link.update_asked.load()) controller.leave_for_update();

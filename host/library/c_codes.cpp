@@ -57,7 +57,8 @@ constexpr Code faults[] = {CODE(FAULT_NONE),
                            CODE(FAULT_INKWELL_IMPLAUSIBLE),
                            CODE(FAULT_MAIN_LOOP_STALLED),
                            CODE(FAULT_HEARTBEAT_MISSED),
-                           CODE(FAULT_CURRENT_JUMP)};
+                           CODE(FAULT_CURRENT_JUMP),
+                           CODE(FAULT_USB_GONE)};
 static_assert(std::ranges::equal(faults, protocol::fault_table, [](const Code& c, const protocol::CodeInfo& row) {
   return c.value == row.code && is_capital_of(c.name, "FAULT_", row.name);
 }));

@@ -111,7 +111,9 @@ std::string pull_cable(Bench& bench) {
   bench.board.control().usb(true);
   bench.connect();
   bench.device_may_go = false;
-  if (!with_force && bench.oracle.has_told())
+  if (with_force)
+    bench.oracle.must_have_told(host_gone);
+  else if (bench.oracle.has_told())
     bench.oracle.complain(Complaint::false_trip, "there was no force to take");
   bench.go_on();
   return fmt::format("out for {:.3f} s, with the force {}", out_s, with_force ? "on" : "off");
@@ -127,7 +129,7 @@ std::string be_silent(Bench& bench) {
     bench.oracle.complain(Complaint::false_trip, fmt::format("after {:.0f} ms of silence", 1e3 * short_s));
   const double long_s = host_timeout_s(bench) + bench.random.from(0.02, 0.4);
   bench.pass(long_s, false);
-  bench.oracle.must_have_told(Fault::host_silent);
+  bench.oracle.must_have_told(protocol::watch(Fault::host_silent));
   bench.go_on();
   return fmt::format("for {:.0f} and {:.0f} ms", 1e3 * short_s, 1e3 * long_s);
 }
@@ -142,6 +144,7 @@ std::string kill_program(Bench& bench) {
   bench.pass(gone_s);
   bench.connect();
   bench.device_may_go = false;
+  bench.oracle.must_have_told(host_gone);
   bench.go_on();
   return fmt::format("another one came after {:.3f} s", gone_s);
 }
@@ -169,7 +172,7 @@ std::string be_too_fast(Bench& bench) {
   // 0.1 m in a tenth of a second: 1.9 m/s at most.
   bench.board.control().hand_path({{0.3, there_m}, {0.4, back_m}, {0.5, there_m}});
   bench.pass(0.6);
-  bench.oracle.must_have_told(Fault::over_speed);
+  bench.oracle.must_have_told(protocol::watch(Fault::over_speed));
   bench.set({Parameter::speed_limit_m_per_s, bench.defaults[Parameter::speed_limit_m_per_s]});
   bench.pass(0.2);
   bench.go_on();

@@ -1,9 +1,12 @@
 #include <soak/oracle.hpp>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace inkwell::soak {
 namespace {
@@ -117,9 +120,12 @@ bool Oracle::see_counts(unsigned restarts, unsigned long broken_rules, const std
   return restarted;
 }
 
-void Oracle::must_have_told(Fault fault) {
-  if (std::ranges::find(told_, fault) == told_.end())
-    complain(Complaint::missed_fault, fmt::format("{} was not told", protocol::info(fault).name));
+void Oracle::must_have_told(protocol::Watches faults) {
+  if (std::ranges::any_of(told_, [&](Fault fault) { return (faults & protocol::watch(fault)) != 0; })) return;
+  std::vector<std::string_view> names;
+  for (const protocol::Watch& row : protocol::watch_table)
+    if ((faults & protocol::watch(row.fault)) != 0) names.push_back(protocol::info(row.fault).name);
+  complain(Complaint::missed_fault, fmt::format("{} was not told", fmt::join(names, " or ")));
 }
 
 void Oracle::tell(Fault fault) {

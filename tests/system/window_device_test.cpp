@@ -18,9 +18,9 @@ void unplug(WindowRig& rig) {
   rig.look_until("the window notices", [](const Sight& now) { return !now.connected(); });
 }
 
-void plug_in(WindowRig& rig) {
+void plug_in(WindowRig& rig, const std::string& state = "ready") {
   rig.control.usb(true);
-  rig.look_until("the window is connected again", [](const Sight& now) { return now.state() == "ready"; });
+  rig.look_until("the window is connected again", [&](const Sight& now) { return now.state() == state; });
 }
 
 }  // namespace
@@ -31,7 +31,11 @@ TEST_CASE("an unplugged device is told, and it is connected again by itself") {
   unplug(rig);
   rig.look_until("it says so", [](const Sight& now) { return now.says("No arm was found. Plug one in"); });
   CHECK_FALSE(rig.look().can_click("status/Switch force on"));
-  plug_in(rig);  // the arm still knows where it is, and the force is off
+  plug_in(rig, "fault");
+  CHECK(rig.look().says("USB went away while the force was on"));
+  rig.click("banner/Clear fault");
+  // The arm still knows where it is, and the force is off.
+  rig.look_until("the fault is cleared", [](const Sight& now) { return now.state() == "ready"; });
   CHECK(rig.look().can_click("status/Switch force on"));
   CHECK_FALSE(rig.look().says("No arm was found"));
 }

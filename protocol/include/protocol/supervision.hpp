@@ -100,7 +100,7 @@ constexpr bool force_is_on(State state) { return with_force.contains(state); }
   X(64, risen, "the force has risen to its full strength")                            \
   X(128, held_back, "a limit holds the force back")                                   \
   X(256, update, "the host has asked for the boot loader, and not reset the bus since") \
-  X(512, stop, "the command stop came, or the host is gone")                          \
+  X(512, stop, "the command stop came, or USB went away")                          \
   X(1024, landed, "the force has fallen to nothing") \
   X(2048, tested, "the self-test has come to its end, and nothing that takes the force away has failed") \
   X(4096, self_test, "the command self_test came") \
@@ -249,6 +249,7 @@ inline constexpr auto watch_table = []() {
       {Fault::encoder_implausible, moving, at_once, coast, true},
       {Fault::inkwell_implausible, moving, at_once, coast, true},
       {Fault::over_speed, with_force, at_once, brake},
+      {Fault::usb_gone, driven, at_once, brake_gently},
       {Fault::host_silent, driven, at_once, brake_gently},
   });
 }();

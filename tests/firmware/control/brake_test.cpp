@@ -59,8 +59,8 @@ TEST_CASE("half a second is the longest") {
 
 TEST_CASE("a motor that resists with more than the force limit lets all go, of a gentle brake with a part of it") {
   constexpr control::Triple limit_A{1.0f, 2.0f, 3.0f};
-  for (const Fault fault : {Fault::over_speed, Fault::force_law, Fault::host_silent}) {
-    const float part = fault == Fault::host_silent ? Brake::gentle_part : 1.0f;
+  for (const Fault fault : {Fault::over_speed, Fault::force_law, Fault::host_silent, Fault::usb_gone}) {
+    const float part = fault == Fault::host_silent || fault == Fault::usb_gone ? Brake::gentle_part : 1.0f;
     const Brake brake = begun(watch(fault));
     CHECK(shorts(brake, {part * 0.999f, part * -1.999f, part * 2.999f}, limit_A));
     CHECK_FALSE(shorts(brake, {part * -1.001f, 0.0f, 0.0f}, limit_A));
@@ -103,7 +103,7 @@ TEST_CASE("the limit is that of the force at the end of the longer link, by each
 }
 
 TEST_CASE("only after the faults that leave bridges, currents and speeds to be trusted, alone or beside others") {
-  const std::array braked{Fault::over_speed, Fault::host_silent, Fault::force_law};
+  const std::array braked{Fault::over_speed, Fault::usb_gone, Fault::host_silent, Fault::force_law};
   for (const Fault fault : braked) CHECK(begun(watch(fault)).is_on());
   for (const auto& row : protocol::fault_table) {
     const auto fault = static_cast<Fault>(row.code);

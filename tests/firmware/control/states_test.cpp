@@ -174,6 +174,40 @@ TEST_CASE("an arm whose host fell silent is braked gently: not in a period in wh
   }
 }
 
+TEST_CASE(
+    "an arm whose USB goes away under a force tells so and is braked; without one, or as it falls, it only stops") {
+  protocol::ParameterSet set = parameters();
+  set[wall_stiffness_N_per_m] = set[wall_damping_Ns_per_m] = 0.0f;
+  set[soft_landing_s] = 0.1f;
+  const Settings settings = control::prepare(set);
+  Samples samples = tests::samples_at_rest();
+  Controller controller = tests::active_controller(settings);
+  for (int i = 0; i < 20; ++i) {
+    samples.encoder_counts[0] += i % 2;  // some 0.3 m/s, below its limit
+    tests::run(controller, samples, settings, 1);
+  }
+  const auto usb_goes = [&](Controller& of) {
+    of.carry_out(tests::command(Command::stop));
+    of.raise(Fault::usb_gone);
+    return tests::run(of, samples, settings, 1);
+  };
+  Controller falling = controller;
+  const control::Drive drive = usb_goes(controller);
+  CHECK(controller.fault() == Fault::usb_gone);
+  CHECK_FALSE(drive.enabled);
+  CHECK(drive.brake);
+  controller.carry_out(tests::command(Command::clear_fault));
+  tests::run(controller, samples, settings, 1);
+  CHECK(controller.state() == State::ready);
+  CHECK_FALSE(usb_goes(controller).brake);
+  CHECK(controller.state() == State::ready);
+  falling.carry_out(tests::command(Command::disable_force));
+  tests::run(falling, samples, settings, 1);
+  REQUIRE(falling.state() == State::landing);
+  CHECK_FALSE(usb_goes(falling).enabled);
+  CHECK(falling.state() == State::ready);
+}
+
 TEST_CASE("an arm whose force a user stops is not braked, however fast it is") {
   const Settings settings = free_space();
   Samples samples = tests::samples_at_rest();

@@ -145,6 +145,7 @@ std::vector<FaultCase> fault_cases() {
           {Fault::encoder_implausible, moving, true},
           {Fault::over_speed, force, true},
           {Fault::host_silent, driven, true},
+          {Fault::usb_gone, driven, true},
           {Fault::logic_supply_low, all, false},
           {Fault::supply_ripple, started, false},
           {Fault::encoder_wire, moving, true},

@@ -151,12 +151,18 @@ TEST_CASE("when the host is gone, the next thing that happens is that the force 
   const CommandReport* command = queue.take();
   REQUIRE(command != nullptr);
   CHECK(command->command == Command::stop);
+  CHECK(queue.is_of_gone_host(*command));
   CHECK(command->token == 5);  // the command that was thrown away is not acknowledged
   CHECK(queue.last_token() == 5);
   command = queue.take();
   REQUIRE(command != nullptr);
   CHECK(command->token == 7);
+  CHECK_FALSE(queue.is_of_gone_host(*command));
   CHECK(queue.take() == nullptr);
+  CHECK(queue.push(make(Command::stop, 8)));
+  command = queue.take();
+  REQUIRE(command != nullptr);
+  CHECK_FALSE(queue.is_of_gone_host(*command));
 }
 
 }  // namespace inkwell

@@ -50,6 +50,9 @@ class CommandQueue {
   /// The next command, to be carried out in this period; null if there is none. Valid until the interrupt returns.
   const protocol::CommandReport* take();
 
+  /// Whether that is the stop of a host that is gone, and no command of one.
+  bool is_of_gone_host(const protocol::CommandReport& command) const { return &command == &stop_; }
+
   /// Token of the last command taken, for PoseReport::command_token.
   std::uint8_t last_token() const { return last_token_; }
 

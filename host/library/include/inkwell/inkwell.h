@@ -163,7 +163,8 @@ typedef enum inkwell_fault INKWELL_AS_INT {
   INKWELL_FAULT_INKWELL_IMPLAUSIBLE = 25,
   INKWELL_FAULT_MAIN_LOOP_STALLED = 26,
   INKWELL_FAULT_HEARTBEAT_MISSED = 27,
-  INKWELL_FAULT_CURRENT_JUMP = 28
+  INKWELL_FAULT_CURRENT_JUMP = 28,
+  INKWELL_FAULT_USB_GONE = 29
 } inkwell_fault;
 
 /* Whose force the hand feels: bits of inkwell_pose::force_sources. */

@@ -91,7 +91,8 @@ class Oracle {
   void see(const Look& look);
   /// Counts since the board's start. True if the chip started anew since the last call.
   bool see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule);
-  void must_have_told(protocol::Fault fault);
+  /// One of them.
+  void must_have_told(protocol::Watches faults);
   void complain(Complaint complaint, std::string text);
 
   bool has_told() const { return !told_.empty(); }

@@ -21,6 +21,10 @@ namespace inkwell::soak {
 inline constexpr protocol::Watches lost_counts =
     protocol::watch(protocol::Fault::encoder_implausible) | protocol::watch(protocol::Fault::inkwell_implausible);
 
+/// Of a host that goes; the one that is told is the one that is seen first.
+inline constexpr protocol::Watches host_gone =
+    protocol::watch(protocol::Fault::usb_gone) | protocol::watch(protocol::Fault::host_silent);
+
 // clang-format off
 /// X(name, cards in a deck, faults that may be told, what is done)
 #define INKWELL_SOAK_KINDS(X)                                                                                          \
@@ -35,9 +39,9 @@ inline constexpr protocol::Watches lost_counts =
   X(wide_storm, 1, lost_counts, \
     "Any legal values of all parameters, and illegal ones, with the force off; stops and scales of the joints among them.") \
   X(store, 1, 0, "Parameters are stored, restored and forgotten; the board starts anew with them, and while it stores.") \
-  X(cable, 1, protocol::watch(protocol::Fault::host_silent), "The cable is pulled and put back.")                      \
+  X(cable, 1, host_gone, "The cable is pulled and put back.")                      \
   X(silence, 1, protocol::watch(protocol::Fault::host_silent), "The host is silent, shorter and longer than it may.")  \
-  X(killed, 1, protocol::watch(protocol::Fault::host_silent), "The program is killed while the force is on.")          \
+  X(killed, 1, host_gone, "The program is killed while the force is on.")          \
   X(reset, 1, 0, "The board is reset at any time.")                                                                    \
   X(too_fast, 1, protocol::watch(protocol::Fault::over_speed), "The hand is faster than a speed limit that was lowered.") \
   X(fault, 4, ~protocol::Watches{0}, "A fault of the table is put in and healed.")
