@@ -100,15 +100,19 @@ std::string meaning_of(CaseSituation situation) {
              "them and lasts into the loader. (With nothing to write a board leaves within 2 ms.) What is told is told "
              "by the firmware that the loader then starts, with the fault still in.";
     case CaseSituation::starting:
-      return "Out of the inkwell, held by the hand: the fault is there from before the power comes, and in the second "
-             "case comes while the board starts. Without a fault the self-test's pulses put the bridges on for a "
+      return "Out of the inkwell, held by the hand: the fault is there from before the power comes, and in the other "
+             "cases comes while the board starts. Without a fault the self-test's pulses put the bridges on for a "
              "while.";
   }
   return "";
 }
 
 std::string CaseFault::name() const {
-  if (is_fast_hand) return "fast_hand";
+  switch (deed) {
+    case Deed::nothing: break;
+    case Deed::fast_hand: return "fast_hand";
+    case Deed::host_killed: return "host_killed";
+  }
   if (!fault) return "none";
   std::string name(protocol::info(*fault).name);
   if (!of.empty()) name += ":" + of;
@@ -136,7 +140,8 @@ std::vector<CaseFault> case_faults() {
         }
     }
   }
-  faults.push_back({.is_fast_hand = true});
+  faults.push_back({.deed = Deed::host_killed});
+  faults.push_back({.deed = Deed::fast_hand});
   return faults;
 }
 
@@ -158,8 +163,7 @@ std::vector<Case> all_cases() {
   unsigned number = 0;
   for (const CaseFault& fault : case_faults())
     for (const CaseSituation situation : situations)
-      for (unsigned phase = 1; phase <= phases_of(situation); ++phase)
-        cases.push_back({++number, fault, situation, phase});
+      for (unsigned phase = 1; phase <= phases; ++phase) cases.push_back({++number, fault, situation, phase});
   return cases;
 }
 

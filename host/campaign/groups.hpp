@@ -25,8 +25,16 @@ inline const std::vector<Result>* find(const Groups& groups, const std::string& 
   return found == groups.end() ? nullptr : &found->second;
 }
 
+/// The case without a fault that began alike; null if it was not run.
+inline const Result* sound_of(const Groups& groups, CaseSituation situation, unsigned phase) {
+  if (const auto* results = find(groups, "none", situation))
+    for (const Result& result : *results)
+      if (result.error.empty() && result.phase == phase) return &result;
+  return nullptr;
+}
+
 /// By the hand, and by no fault.
-inline bool is_flung(const Result& result) { return result.fault == CaseFault{.is_fast_hand = true}.name(); }
+inline bool is_flung(const Result& result) { return result.fault == CaseFault{.deed = Deed::fast_hand}.name(); }
 /// The self-test's pulses were under way, which are no force.
 inline bool is_testing(const Result& result) { return result.situation == name_of(CaseSituation::testing); }
 

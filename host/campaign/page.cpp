@@ -58,14 +58,6 @@ std::string tables(const Groups& groups, const std::vector<CaseFault>& faults) {
   return text;
 }
 
-/// The case without a fault that began alike.
-const Result* sound_of(const Groups& groups, CaseSituation situation, unsigned phase) {
-  if (const auto* results = find(groups, "none", situation))
-    for (const Result& result : *results)
-      if (result.error.empty() && result.phase == phase) return &result;
-  return nullptr;
-}
-
 /// At worst, of all cases with the force on. How much more energy than without a fault it was is told of the instants
 /// only at which a sound case was run.
 std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faults) {
@@ -80,12 +72,12 @@ std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faul
   for (const CaseSituation situation : situations) {
     if (!is_active(situation)) continue;
     for (const CaseFault& fault : faults) {
-      const auto* results = fault.is_fast_hand ? nullptr : find(groups, fault.name(), situation);
+      const auto* results = fault.deed == Deed::fast_hand ? nullptr : find(groups, fault.name(), situation);
       if (results == nullptr) continue;
       for (const Result& r : *results) {
         if (!r.error.empty()) continue;
         force_N.see(r.peak_force_N, fault, situation);
-        if (!fault.fault) continue;
+        if (fault.is_none()) continue;
         if (const Result* const sound = sound_of(groups, situation, r.phase))
           more_J.see(r.energy_J - sound->energy_J, fault, situation);
         else if (not_compared.empty() || not_compared.back() != name_of(situation))
@@ -119,7 +111,7 @@ std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faul
   for (const CaseFault& fault : faults)
     for (const CaseSituation situation : situations) {
       const auto* results = find(groups, fault.name(), situation);
-      if (results == nullptr || fault.is_fast_hand || !is_active(situation)) continue;
+      if (results == nullptr || fault.deed == Deed::fast_hand || !is_active(situation)) continue;
       const Summary s = summarise(*results);
       const double bearable_N = bearable_part_of_limit * force_limit_N(*results);
       for (const Result& r : *results)
@@ -208,10 +200,10 @@ void write_page(std::span<const Result> results, const std::filesystem::path& pa
   constexpr const char* head = R"(# What faults do: simulation
 
 Made by `inkwell campaign`; do not edit. The firmware that is flashed runs on the virtual board, whose brown-out level
-is 3, as `inkwell flash` sets it; each fault is put in while the arm is unreferenced, ready, at rest, pressed into a
-stiff wall and in fast motion, at {} random instants, and at one while the force rises, is held back by its limit and
-falls, pressed into that wall, while the board tests itself, after another fault and on the way to the boot loader, and
-before and while the board starts.
+is 3, as `inkwell flash` sets it. Each fault is put in at {} random instants while the arm is unreferenced, ready, at
+rest, pressed into a stiff wall and in fast motion, while the force rises, is held back by its limit and falls, pressed
+into that wall, while the board tests itself, after another fault, on the way to the boot loader, and, once before and
+twice after the power has come, while the board starts.
 {} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row `none` is what the
 hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how far the probe lags behind
 the hand) are of the {} s after the fault came, recovery and position of the end, after the use that "Not noticed" tells

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -18,7 +19,8 @@ namespace {
 /// What was noticed while the arm was used on, of the cases in which it was.
 class InUse {
  public:
-  void see(const Result& result) {
+  /// Beside the sound case that began alike, if it was run.
+  void see(const Result& result, const Result* sound) {
     if (!result.error.empty()) return;
     if (!result.peak_force_in_use_N) {
       ++not_used_;
@@ -26,6 +28,10 @@ class InUse {
     }
     ++used_;
     peak_N_ = std::max(peak_N_, *result.peak_force_in_use_N);
+    if (result.energy_in_use_J && sound != nullptr && sound->energy_in_use_J) {
+      const double more_J = *result.energy_in_use_J - *sound->energy_in_use_J;
+      more_J_ = std::max(more_J_.value_or(more_J), more_J);
+    }
     if (!result.noticed_in_use_s) return;
     ++noticed_;
     names_.insert(result.noticed_in_use_as);
@@ -33,7 +39,12 @@ class InUse {
   }
   unsigned used() const { return used_; }
   unsigned noticed() const { return noticed_; }
-  double peak_N() const { return peak_N_; }
+  std::string peak_text() const { return used_ == 0 ? "-" : fmt::format("{:.2f}", peak_N_); }
+  /// One that was noticed soon was used for less long.
+  std::string energy_text() const {
+    if (!more_J_) return "-";
+    return *more_J_ <= 0 ? "no more" : fmt::format("{:.1f}", 1e3 * *more_J_);
+  }
   std::string text() const {
     if (used_ == 0) return "not used";
     const std::string left_out = not_used_ == 0 ? "" : fmt::format("; {} not used", not_used_);
@@ -45,6 +56,7 @@ class InUse {
  private:
   unsigned used_ = 0, not_used_ = 0, noticed_ = 0;
   double peak_N_ = 0, after_s_ = 0;
+  std::optional<double> more_J_;
   std::set<std::string> names_;
 };
 
@@ -52,7 +64,7 @@ InUse sound_in_use(const Groups& groups) {
   InUse sound;
   for (const CaseSituation situation : situations)
     if (const auto* results = find(groups, "none", situation))
-      for (const Result& result : *results) sound.see(result);
+      for (const Result& result : *results) sound.see(result, &result);
   return sound;
 }
 
@@ -112,13 +124,16 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
       "\n## Not noticed\n\nWith the force on, in at least one of the cases that were run, the bridges stayed on and no "
       "fault was told. The hand then went on: for {} s as before, then it pressed {} times into the wall in front with "
       "the force limit and swung {} times. What was told meanwhile stands in the third column, with the longest time "
-      "since it went on; the fourth is what the hand felt at most.",
+      "since it went on; the fourth is what the hand felt at most, the fifth how much more energy it got than from a "
+      "sound arm that was used alike from the same instant on.",
       goes_on_s, use_presses, use_swings);
   if (const InUse sound = sound_in_use(groups); sound.used() > 0)
-    text += fmt::format(" Without a fault it felt {:.2f} N at most, and a fault was told in {} of {} cases.",
-                        sound.peak_N(), sound.noticed(), sound.used());
+    text += fmt::format(" Without a fault it felt {} N at most, and a fault was told in {} of {} cases.",
+                        sound.peak_text(), sound.noticed(), sound.used());
   text +=
-      "\n\n| fault | situations | noticed in use | peak force in use, N | reason |\n| --- | --- | --- | --- | --- |\n";
+      "\n\n| fault | situations | noticed in use | peak force in use, N | more energy in use, mJ | reason |\n| --- | "
+      "--- "
+      "| --- | --- | --- | --- |\n";
   for (const CaseFault& fault : faults) {
     if (fault.is_none()) continue;
     const std::string where = situations_with(groups, fault, stayed_on_untold);
@@ -127,9 +142,9 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
     for (const CaseSituation situation : situations)
       if (const auto* results = find(groups, fault.name(), situation))
         for (const Result& result : *results)
-          if (stayed_on_untold(situation, result)) in_use.see(result);
-    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", fault.name(), where, in_use.text(),
-                        in_use.used() == 0 ? "-" : fmt::format("{:.2f}", in_use.peak_N()), reason_with_force(fault));
+          if (stayed_on_untold(situation, result)) in_use.see(result, sound_of(groups, situation, result.phase));
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", fault.name(), where, in_use.text(), in_use.peak_text(),
+                        in_use.energy_text(), reason_with_force(fault));
   }
   return text;
 }

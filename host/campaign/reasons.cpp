@@ -31,10 +31,10 @@ std::string_view reason_of_wire(std::string_view wire) {
          "is closed elsewhere.";
 }
 
-constexpr std::string_view cable_is_out =
-    "It is a cable that is pulled: no fault, but the force has to be switched on again; the host sees the device go.";
-constexpr std::string_view usb_is_lost =
-    "USB is lost with the clock, as with a cable that is pulled, which is no fault.";
+constexpr std::string_view host_is_missed = "None is known: a host that is not heard is missed.";
+constexpr std::string_view no_force_to_lose = "USB is missed while the force is on only; the host sees the device go.";
+constexpr std::string_view falls_anyway =
+    "The force was switched off already and was falling; it ends at once, which is told by nothing but the state.";
 constexpr std::string_view chip_stands = "The chip stands as long as its supply is too low, and tells nothing.";
 constexpr std::string_view not_begun = "A core that does not take its first instruction has not begun.";
 constexpr std::string_view break_of_tim8 =
@@ -59,7 +59,7 @@ std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire)
     return "No current flows, and it reads none; the next self-test tells, or the motors' watch once a current is "
            "asked for.";
   if (wire == "usb_supply" && (fault == InjectedFault::wire_open || fault == InjectedFault::wire_low))
-    return cable_is_out;
+    return no_force_to_lose;
   if (wire == "inkwell_switch" && fault == InjectedFault::wire_low)
     return "Before there is a reference it looks like a stylus in the inkwell, and nothing else knows where that is: "
            "the board takes the arm to be there. During a self-test, or while another fault is told, the reference is "
@@ -70,7 +70,8 @@ std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire)
 }  // namespace
 
 std::string_view reason_with_force(const CaseFault& put_in) {
-  if (put_in.is_fast_hand) return "None is known: the speed of each period is watched.";
+  if (put_in.deed == Deed::fast_hand) return "None is known: the speed of each period is watched.";
+  if (put_in.deed == Deed::host_killed) return host_is_missed;
   const std::string_view of = put_in.of;
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
@@ -115,7 +116,7 @@ std::string_view reason_with_force(const CaseFault& put_in) {
     case InjectedFault::analog_sag: return "Within what a sound regulator and the reference may be off.";
     case InjectedFault::crystal_stop: return "None is known: the clock's own guard sees it.";
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";
-    case InjectedFault::usb_cut: return "None is known: a host that is not heard is missed.";
+    case InjectedFault::usb_cut: return host_is_missed;
     case InjectedFault::host_silent: return "A force that falls by itself needs no host.";
     case InjectedFault::core_stalled:
       return "None is known: the heartbeat stops with the core, and the watchdog is not fed.";
@@ -139,7 +140,8 @@ std::string_view reason_with_force(const CaseFault& put_in) {
 }
 
 std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation) {
-  if (put_in.is_fast_hand) return "A hand may be as fast as it likes while there is no force.";
+  if (put_in.deed == Deed::fast_hand) return "A hand may be as fast as it likes while there is no force.";
+  if (put_in.deed == Deed::host_killed) return no_force_to_lose;
   const InjectedFault fault = *put_in.fault;
   const std::string_view of = put_in.of;
   const bool is_starting = situation == CaseSituation::starting;
@@ -179,8 +181,8 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
     case InjectedFault::logic_sag:
       if (!is_starting && situation != CaseSituation::update) return reason_with_force(put_in);
       return chip_stands;
-    case InjectedFault::crystal_drift: return usb_is_lost;
-    case InjectedFault::usb_cut: return cable_is_out;
+    case InjectedFault::crystal_drift:
+    case InjectedFault::usb_cut: return no_force_to_lose;
     case InjectedFault::host_silent: return "A host is missed while the force is on only.";
     case InjectedFault::core_stalled:
     case InjectedFault::main_loop_stalled: return is_starting ? not_begun : reason_with_force(put_in);
@@ -197,18 +199,19 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
 
 std::string_view reason_of_silence(const CaseFault& put_in) {
   constexpr std::string_view unknown = "None is known: what takes the bridges off is told.";
-  if (put_in.is_fast_hand) return unknown;
+  if (put_in.deed == Deed::fast_hand) return unknown;
+  if (put_in.deed == Deed::host_killed) return falls_anyway;
   const std::string_view of = put_in.of;
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
     case InjectedFault::wire_frozen:
-      if (of == "usb_supply") return cable_is_out;
+      if (of == "usb_supply") return falls_anyway;
       break;
     case InjectedFault::logic_sag: return chip_stands;
-    case InjectedFault::crystal_drift: return usb_is_lost;
-    case InjectedFault::usb_cut: return cable_is_out;
+    case InjectedFault::crystal_drift:
+    case InjectedFault::usb_cut: return falls_anyway;
     case InjectedFault::host_silent: return "Nobody asks; it is told once the host asks again.";
     case InjectedFault::core_halted:
       return "A core that stands tells nothing; when it goes on it tells that the bridges were let go.";

@@ -36,7 +36,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Result, number, fault, situation, phase, erro
                                    bridges_were_on, off_after_s, bridges_went_on, detected_as, fault_on_healing,
                                    told_before, first_fault, told_once_cleared, restarts, locked_up, missed_boot_loader,
                                    force_limit_N, peak_force_N, energy_J, travel_m, noticed_in_use_as, noticed_in_use_s,
-                                   peak_force_in_use_N, recovery, position_error_m)
+                                   peak_force_in_use_N, energy_in_use_J, recovery, position_error_m)
 
 namespace {
 

@@ -38,7 +38,8 @@ void expect(bool reached, const char* what) {
 }
 
 bool is_about_the_host(const CaseFault& fault) {
-  return fault.fault == InjectedFault::usb_cut || fault.fault == InjectedFault::host_silent;
+  return fault.fault == InjectedFault::usb_cut || fault.fault == InjectedFault::host_silent ||
+         fault.deed == Deed::host_killed;
 }
 
 /// Without the interrupt of the USB the board hears nothing.
@@ -198,7 +199,8 @@ double phase_s(const Case& the_case) {
 
 void put_in(BoardRun& board, const CaseFault& what, const ParameterSet& parameters, Result& result) {
   auto& control = board.control();
-  if (what.is_fast_hand) control.hand_path(fling(middle_of_box_m(parameters)));
+  if (what.deed == Deed::fast_hand) control.hand_path(fling(middle_of_box_m(parameters)));
+  if (what.deed == Deed::host_killed) board.drop_device();
   if (!what.fault) return;
   control.inject({std::string(protocol::info(*what.fault).name), what.of, what.amount, 0.0, what.for_s});
   const auto injected = control.truth().at("injected");

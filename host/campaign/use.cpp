@@ -8,6 +8,11 @@ namespace inkwell::campaign {
 void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& result) {
   auto& control = board.control();
   const unsigned resets_before = board.resets();
+  const auto read_meter = [&] {
+    const auto reading = control.meter_read();
+    result.peak_force_in_use_N = reading.peak_force_N;
+    result.energy_in_use_J = reading.energy_J;
+  };
   control.meter_start();
   double used_s = 0;
   const auto use_for = [&](double time_s) {
@@ -26,12 +31,12 @@ void use_on(BoardRun& board, const protocol::ParameterSet& parameters, Result& r
   const bool restarted = board.resets() > resets_before;
   if (!board.connected() && !restarted) return;  // a device that cannot be used
   if (!restarted && board.force_is_on()) {
-    result.peak_force_in_use_N = control.meter_read().peak_force_N;
+    read_meter();
     return;
   }
   result.noticed_in_use_s = used_s;
   board.run(observed_s, false);  // what the hand feels then counts as well
-  result.peak_force_in_use_N = control.meter_read().peak_force_N;
+  read_meter();
   if (restarted && !board.connected()) board.connect_after_restart();
   result.noticed_in_use_as = board.is(protocol::State::fault) ? protocol::info(board.pose()->fault).name
                              : restarted                      ? "restart"

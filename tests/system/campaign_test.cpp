@@ -206,6 +206,19 @@ TEST_CASE("a core, or a control interrupt, that stops lets go of the bridges wit
   }
 }
 
+TEST_CASE("a cable that is pulled and a program that is killed take the force away at once, and the board tells so") {
+  for (const char* name : {"usb_cut wall 1", "host_killed motion 2"}) {
+    CAPTURE(name);
+    const Result result = result_of(name);
+    REQUIRE(result.off_after_s);
+    CHECK(*result.off_after_s < 0.005);  // a bus that rests is a bus that is gone after 3 ms
+    CHECK(result.detected_as == "usb_gone");
+    CHECK(result.recovery == "clear_fault");
+    CHECK(result.peak_force_N < 1.05 * result.force_limit_N);
+  }
+  CHECK_FALSE(campaign::is_detected(result_of("host_killed ready 1")));
+}
+
 TEST_CASE("a hand that swings the arm while the host falls silent or the core is halted feels no more than it may") {
   for (const char* name : {"host_silent motion 1", "core_halted motion 1", "core_halted motion 3"}) {
     const Result result = result_of(name);

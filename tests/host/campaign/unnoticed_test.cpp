@@ -89,6 +89,11 @@ TEST_CASE("what was not noticed is told with what became of it in use, and with 
   stuck_later.peak_force_in_use_N = 3.4;
   stuck_later.noticed_in_use_as = "motor_implausible";
   stuck_later.noticed_in_use_s = 1.75;
+  // Beside the sound arm of the same situation and instant, which is there for one of the two.
+  sound.energy_in_use_J = 0.04;
+  hot.energy_in_use_J = 0.04;
+  stuck.energy_in_use_J = 0.0425;
+  stuck_later.energy_in_use_J = 0.09;
   const auto text_with = [&](const std::vector<Result>& results) {
     write_page(results, directory / "campaign.md");
     return content_of(directory / "campaign.md");
@@ -100,9 +105,10 @@ TEST_CASE("what was not noticed is told with what became of it in use, and with 
   CHECK(text.find("Without a fault it felt 3.25 N at most, and a fault was told in 0 of 1 cases.") !=
         std::string::npos);
   CHECK(text.find("none needed of the encoder_implausible in use") != std::string::npos);
-  CHECK(text.find("| `encoder_stuck:2` | rest, wall | encoder_implausible; motor_implausible, 1.75 s | 3.40 | ") !=
-        std::string::npos);
-  CHECK(text.find("| `motor_hot:2` | rest | - | 3.25 | ") != std::string::npos);
+  CHECK(
+      text.find("| `encoder_stuck:2` | rest, wall | encoder_implausible; motor_implausible, 1.75 s | 3.40 | 2.5 | ") !=
+      std::string::npos);
+  CHECK(text.find("| `motor_hot:2` | rest | - | 3.25 | no more | ") != std::string::npos);
   stuck.noticed_in_use_s = std::nullopt;
   sound.noticed_in_use_s = 0.1;
   const std::string other = text_with({stuck, stuck_later, hot, sound});
@@ -233,8 +239,9 @@ TEST_CASE("each fault that passes without a word has a reason on the page, in ea
         CHECK(reason.find("as it has to be while the bridges are off") == std::string::npos);
     }
   }
-  CHECK(text.find("`shunt_frozen:2` | rest | not used | - | Voltage, reading and speed fit") != std::string::npos);
-  CHECK(text.find("`program_astray` | rest | not used | - | The code that it came to returned") != std::string::npos);
+  CHECK(text.find("`shunt_frozen:2` | rest | not used | - | - | Voltage, reading and speed fit") != std::string::npos);
+  CHECK(text.find("`program_astray` | rest | not used | - | - | The code that it came to returned") !=
+        std::string::npos);
 }
 
 TEST_CASE("what a fault does without force, or silently, has reasons of its own") {
@@ -253,17 +260,21 @@ TEST_CASE("what a fault does without force, or silently, has reasons of its own"
                          {"wire_open:bridge_heartbeat", "ready", "It is low, as it has to be"},
                          {"wire_frozen:motor_current[1]", "ready", "No current flows"},
                          {"wire_open:encoders[1].a", "ready", "The hand holds the joint still"},
-                         {"wire_open:usb_supply", "ready", "It is a cable that is pulled"},
-                         {"wire_low:usb_supply", "rest", "It is a cable that is pulled"},
+                         {"wire_open:usb_supply", "ready", "USB is missed while the force is on only;"},
+                         {"wire_low:usb_supply", "rest", "The force was switched off already"},
                          {"wire_high:usb_supply", "ready", "It stands as with the cable in."},
                          {"wire_low:bridge_hold", "ready", "It is low, as it has to be"},
                          {"wire_high:bridge_hold", "wall", "It stands as with the bridges on."},
                          {"wire_low:bridge_heartbeat", "rest", "None is known"},
                          {"wire_open:supply", "rest", "None is known"},
-                         {"crystal_drift", "ready", "USB is lost with the clock"},
-                         {"crystal_drift", "rest", "USB is lost with the clock"},
-                         {"usb_cut", "ready", "It is a cable that is pulled"},
-                         {"usb_cut", "rest", "It is a cable that is pulled"},
+                         {"crystal_drift", "ready", "USB is missed"},
+                         {"crystal_drift", "rest", "The force was switched off already"},
+                         {"usb_cut", "ready", "USB is missed"},
+                         {"usb_cut", "rest", "The force was switched off already"},
+                         {"usb_cut", "landing", "None is known: a host that is not heard"},
+                         {"host_killed", "ready", "USB is missed"},
+                         {"host_killed", "rest", "The force was switched off already"},
+                         {"host_killed", "landing", "None is known: a host that is not heard"},
                          {"host_silent", "ready", "A host is missed while the force is on only."},
                          {"host_silent", "rest", "Nobody asks"},
                          {"core_halted", "ready", "A core that stands tells nothing; it goes on"},

@@ -46,35 +46,38 @@ inline constexpr double swing_m = 0.03, swing_s = 0.10;
 /// The fling of `fast_hand`: so far along x, within this time.
 inline constexpr double fling_m = 0.14, fling_s = 0.085;
 
-/// How many instants; where little else goes on, one has to do. Of `starting` the first is before the power comes.
-inline constexpr unsigned phases = 3, phases_of_start = 2;
-constexpr unsigned phases_of(CaseSituation situation) {
-  if (situation == CaseSituation::starting) return phases_of_start;
-  return situation <= CaseSituation::motion ? phases : 1;
-}
+/// How many instants. Of `starting` the first is before the power comes.
+inline constexpr unsigned phases = 3;
 
-/// A fault at a place, or what the hand does; neither is the control, in which nothing is put in.
+/// What is done to a board and an arm that are sound.
+enum class Deed : std::uint8_t {
+  nothing,
+  fast_hand,    ///< the hand flings the arm
+  host_killed,  ///< the program on the PC ends without a word, as a killed one does
+};
+
+/// A fault at a place, or a deed; neither is the control, in which nothing is put in.
 struct CaseFault {
   std::optional<protocol::InjectedFault> fault;
   std::string of;
   std::optional<double> amount;
   std::optional<double> for_s;
-  bool is_fast_hand = false;  ///< no fault of board and arm: the hand itself flings the arm
+  Deed deed = Deed::nothing;
 
-  bool is_none() const { return !fault && !is_fast_hand; }
-  std::string name() const;  ///< as --inject writes it, `none` or `fast_hand`
+  bool is_none() const { return !fault && deed == Deed::nothing; }
+  std::string name() const;  ///< as --inject writes it, `none`, `host_killed` or `fast_hand`
 };
 
 struct Case {
   unsigned number;  ///< from 1 on; the same as long as situations and the table of faults are
   CaseFault fault;
   CaseSituation situation;
-  unsigned phase;  ///< 1 to phases_of(situation)
+  unsigned phase;  ///< 1 to phases
 
   std::string name() const;
 };
 
-/// The control first, the fast hand last. Of three motors that are wired alike the second stands for all: it bears the
+/// The control first, the deeds last. Of three motors that are wired alike the second stands for all: it bears the
 /// load at the wall.
 std::vector<CaseFault> case_faults();
 /// One of these faults as it is at another of three that are alike (1 to 3): motor, leg, encoder, current sensor,

@@ -46,6 +46,7 @@ struct Result {
   std::string noticed_in_use_as;
   std::optional<double> noticed_in_use_s;     ///< since then
   std::optional<double> peak_force_in_use_N;  ///< at the hand; none: it was not used on
+  std::optional<double> energy_in_use_J;      ///< given to the hand
   std::string recovery;                       ///< what gave the force back; the page shows it as it is
   std::optional<double> position_error_m;     ///< in the end, of what the device believes
 
