@@ -111,7 +111,7 @@ std::string CaseFault::name() const {
   switch (deed) {
     case Deed::nothing: break;
     case Deed::fast_hand: return "fast_hand";
-    case Deed::host_killed: return "host_killed";
+    case Deed::bus_suspended: return "bus_suspended";
   }
   if (!fault) return "none";
   std::string name(protocol::info(*fault).name);
@@ -140,7 +140,7 @@ std::vector<CaseFault> case_faults() {
         }
     }
   }
-  faults.push_back({.deed = Deed::host_killed});
+  faults.push_back({.deed = Deed::bus_suspended});
   faults.push_back({.deed = Deed::fast_hand});
   return faults;
 }

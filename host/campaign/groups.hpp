@@ -35,7 +35,9 @@ inline const Result* sound_of(const Groups& groups, CaseSituation situation, uns
 
 /// By the hand, and by no fault.
 inline bool is_flung(const Result& result) { return result.fault == CaseFault{.deed = Deed::fast_hand}.name(); }
-/// The self-test's pulses were under way, which are no force.
-inline bool is_testing(const Result& result) { return result.situation == name_of(CaseSituation::testing); }
+/// What drove the bridges were the self-test's pulses, which are no force.
+inline bool is_testing(const Result& result) {
+  return result.situation == name_of(CaseSituation::testing) || result.situation == name_of(CaseSituation::starting);
+}
 
 }  // namespace inkwell::campaign

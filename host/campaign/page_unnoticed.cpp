@@ -28,11 +28,10 @@ class InUse {
     }
     ++used_;
     peak_N_ = std::max(peak_N_, *result.peak_force_in_use_N);
-    if (result.energy_in_use_J && sound != nullptr && sound->energy_in_use_J) {
-      const double more_J = *result.energy_in_use_J - *sound->energy_in_use_J;
-      more_J_ = std::max(more_J_.value_or(more_J), more_J);
+    if (!result.noticed_in_use_s) {
+      compare(result, sound);
+      return;
     }
-    if (!result.noticed_in_use_s) return;
     ++noticed_;
     names_.insert(result.noticed_in_use_as);
     after_s_ = std::max(after_s_, *result.noticed_in_use_s);
@@ -40,7 +39,6 @@ class InUse {
   unsigned used() const { return used_; }
   unsigned noticed() const { return noticed_; }
   std::string peak_text() const { return used_ == 0 ? "-" : fmt::format("{:.2f}", peak_N_); }
-  /// One that was noticed soon was used for less long.
   std::string energy_text() const {
     if (!more_J_) return "-";
     return *more_J_ <= 0 ? "no more" : fmt::format("{:.1f}", 1e3 * *more_J_);
@@ -54,6 +52,13 @@ class InUse {
   }
 
  private:
+  /// Only what was used to the end got as much time for it.
+  void compare(const Result& result, const Result* sound) {
+    if (sound == nullptr || sound->noticed_in_use_s || !result.energy_in_use_J || !sound->energy_in_use_J) return;
+    const double more_J = *result.energy_in_use_J - *sound->energy_in_use_J;
+    more_J_ = std::max(more_J_.value_or(more_J), more_J);
+  }
+
   unsigned used_ = 0, not_used_ = 0, noticed_ = 0;
   double peak_N_ = 0, after_s_ = 0;
   std::optional<double> more_J_;
@@ -124,16 +129,15 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
       "\n## Not noticed\n\nWith the force on, in at least one of the cases that were run, the bridges stayed on and no "
       "fault was told. The hand then went on: for {} s as before, then it pressed {} times into the wall in front with "
       "the force limit and swung {} times. What was told meanwhile stands in the third column, with the longest time "
-      "since it went on; the fourth is what the hand felt at most, the fifth how much more energy it got than from a "
-      "sound arm that was used alike from the same instant on.",
+      "since it went on; the fourth is what the hand felt at most, the fifth, of those that were not noticed in use "
+      "either, how much more energy it got than from a sound arm that was used alike from the same instant on.",
       goes_on_s, use_presses, use_swings);
   if (const InUse sound = sound_in_use(groups); sound.used() > 0)
     text += fmt::format(" Without a fault it felt {} N at most, and a fault was told in {} of {} cases.",
                         sound.peak_text(), sound.noticed(), sound.used());
   text +=
-      "\n\n| fault | situations | noticed in use | peak force in use, N | more energy in use, mJ | reason |\n| --- | "
-      "--- "
-      "| --- | --- | --- | --- |\n";
+      "\n\n| fault | situations | noticed in use | peak force in use, N | more energy in use, mJ | reason |\n"
+      "| --- | --- | --- | --- | --- | --- |\n";
   for (const CaseFault& fault : faults) {
     if (fault.is_none()) continue;
     const std::string where = situations_with(groups, fault, stayed_on_untold);
@@ -152,10 +156,13 @@ std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults
 std::string off_but_not_told(const Groups& groups, const std::vector<CaseFault>& faults) {
   std::string rows;
   for (const CaseFault& fault : faults) {
-    const std::string where = fault.is_none() ? "" : situations_with(groups, fault, went_off_untold);
-    if (!where.empty())
-      rows += fmt::format("| `{}` | {} | {} | {} |\n", fault.name(), where, told_later(groups, fault),
-                          reason_of_silence(fault));
+    if (fault.is_none()) continue;
+    std::map<std::string_view, std::string> where_by_reason;
+    for (const CaseSituation situation : situations)
+      if (const std::string where = situation_with(groups, fault, situation, went_off_untold); !where.empty())
+        add(where_by_reason[reason_of_silence(fault, situation)], where);
+    for (const auto& [reason, where] : where_by_reason)
+      rows += fmt::format("| `{}` | {} | {} | {} |\n", fault.name(), where, told_later(groups, fault), reason);
   }
   const std::string_view heading =
       "\n## Off, but not told\n\nWith the force on, cases in which the bridges went off, but no fault was told";

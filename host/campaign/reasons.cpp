@@ -32,7 +32,7 @@ std::string_view reason_of_wire(std::string_view wire) {
 }
 
 constexpr std::string_view host_is_missed = "None is known: a host that is not heard is missed.";
-constexpr std::string_view no_force_to_lose = "USB is missed while the force is on only; the host sees the device go.";
+constexpr std::string_view no_force_to_lose = "That USB is gone is told while the force is on only.";
 constexpr std::string_view falls_anyway =
     "The force was switched off already and was falling; it ends at once, which is told by nothing but the state.";
 constexpr std::string_view chip_stands = "The chip stands as long as its supply is too low, and tells nothing.";
@@ -71,7 +71,7 @@ std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire)
 
 std::string_view reason_with_force(const CaseFault& put_in) {
   if (put_in.deed == Deed::fast_hand) return "None is known: the speed of each period is watched.";
-  if (put_in.deed == Deed::host_killed) return host_is_missed;
+  if (put_in.deed == Deed::bus_suspended) return host_is_missed;
   const std::string_view of = put_in.of;
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
@@ -141,7 +141,7 @@ std::string_view reason_with_force(const CaseFault& put_in) {
 
 std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation) {
   if (put_in.deed == Deed::fast_hand) return "A hand may be as fast as it likes while there is no force.";
-  if (put_in.deed == Deed::host_killed) return no_force_to_lose;
+  if (put_in.deed == Deed::bus_suspended) return no_force_to_lose;
   const InjectedFault fault = *put_in.fault;
   const std::string_view of = put_in.of;
   const bool is_starting = situation == CaseSituation::starting;
@@ -197,21 +197,22 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
   }
 }
 
-std::string_view reason_of_silence(const CaseFault& put_in) {
+std::string_view reason_of_silence(const CaseFault& put_in, CaseSituation situation) {
   constexpr std::string_view unknown = "None is known: what takes the bridges off is told.";
   if (put_in.deed == Deed::fast_hand) return unknown;
-  if (put_in.deed == Deed::host_killed) return falls_anyway;
+  const std::string_view usb_gone = situation == CaseSituation::landing ? falls_anyway : unknown;
+  if (put_in.deed == Deed::bus_suspended) return usb_gone;
   const std::string_view of = put_in.of;
   switch (*put_in.fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:
     case InjectedFault::wire_high:
     case InjectedFault::wire_frozen:
-      if (of == "usb_supply") return falls_anyway;
+      if (of == "usb_supply") return usb_gone;
       break;
     case InjectedFault::logic_sag: return chip_stands;
     case InjectedFault::crystal_drift:
-    case InjectedFault::usb_cut: return falls_anyway;
+    case InjectedFault::usb_cut: return usb_gone;
     case InjectedFault::host_silent: return "Nobody asks; it is told once the host asks again.";
     case InjectedFault::core_halted:
       return "A core that stands tells nothing; when it goes on it tells that the bridges were let go.";

@@ -11,7 +11,7 @@ namespace inkwell::campaign {
 std::string_view reason_with_force(const CaseFault& put_in);
 /// The force is off, in that situation.
 std::string_view reason_without_force(const CaseFault& put_in, CaseSituation situation);
-/// The force was on, and the bridges went off.
-std::string_view reason_of_silence(const CaseFault& put_in);
+/// The force was on, in that situation, and the bridges went off.
+std::string_view reason_of_silence(const CaseFault& put_in, CaseSituation situation);
 
 }  // namespace inkwell::campaign

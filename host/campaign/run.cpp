@@ -39,7 +39,7 @@ void expect(bool reached, const char* what) {
 
 bool is_about_the_host(const CaseFault& fault) {
   return fault.fault == InjectedFault::usb_cut || fault.fault == InjectedFault::host_silent ||
-         fault.deed == Deed::host_killed;
+         fault.deed == Deed::bus_suspended;
 }
 
 /// Without the interrupt of the USB the board hears nothing.
@@ -185,6 +185,8 @@ double longest_phase_of(CaseSituation situation) {
     // A motor's pulses take 4 ms: those of the second, which has the faults, are still to come.
     case CaseSituation::testing: return 0.004;
     case CaseSituation::update: return 0.05;  // the board writes for longer than that
+    case CaseSituation::ramping: return 1.0;
+    case CaseSituation::starting: return 0.43;  // one of its two is while the motors are tested
     default: return 0.1;
   }
 }
@@ -200,7 +202,7 @@ double phase_s(const Case& the_case) {
 void put_in(BoardRun& board, const CaseFault& what, const ParameterSet& parameters, Result& result) {
   auto& control = board.control();
   if (what.deed == Deed::fast_hand) control.hand_path(fling(middle_of_box_m(parameters)));
-  if (what.deed == Deed::host_killed) board.drop_device();
+  if (what.deed == Deed::bus_suspended) board.drop_device();
   if (!what.fault) return;
   control.inject({std::string(protocol::info(*what.fault).name), what.of, what.amount, 0.0, what.for_s});
   const auto injected = control.truth().at("injected");

@@ -51,7 +51,7 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   CHECK(names.contains("none wall 3"));
   CHECK(names.contains("none starting 3"));
   CHECK_FALSE(names.contains("none starting 4"));
-  CHECK(names.contains("host_killed limited 2"));
+  CHECK(names.contains("bus_suspended limited 2"));
   CHECK(names.contains("fast_hand rest 3"));
   // As the table has it, and more or less.
   for (const char* amount :
@@ -130,7 +130,7 @@ TEST_CASE("a fault of the second of three is had at each of them, one of what th
   CHECK(moved("wire_low:gimbal[1]", 1) == "wire_low:gimbal[0]");
   CHECK(moved("wires_shorted:motor_current[1]+motor_current[2]", 3) ==
         "wires_shorted:motor_current[2]+motor_current[0]");
-  for (const char* of_none : {"none", "host_killed", "fast_hand", "supply_cut", "wire_high:bridge_enable", "ram_bit"})
+  for (const char* of_none : {"none", "bus_suspended", "fast_hand", "supply_cut", "wire_high:bridge_enable", "ram_bit"})
     CHECK(moved(of_none, 3) == of_none);
   std::set<std::string> wires;
   for (const auto& use : board::default_board.pin_uses()) wires.emplace(use.name);

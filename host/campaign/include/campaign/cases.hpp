@@ -52,8 +52,8 @@ inline constexpr unsigned phases = 3;
 /// What is done to a board and an arm that are sound.
 enum class Deed : std::uint8_t {
   nothing,
-  fast_hand,    ///< the hand flings the arm
-  host_killed,  ///< the program on the PC ends without a word, as a killed one does
+  fast_hand,      ///< the hand flings the arm
+  bus_suspended,  ///< the PC goes to sleep, or over USB/IP the last program that uses the board is killed
 };
 
 /// A fault at a place, or a deed; neither is the control, in which nothing is put in.
@@ -65,7 +65,7 @@ struct CaseFault {
   Deed deed = Deed::nothing;
 
   bool is_none() const { return !fault && deed == Deed::nothing; }
-  std::string name() const;  ///< as --inject writes it, `none`, `host_killed` or `fast_hand`
+  std::string name() const;  ///< as --inject writes it, `none`, `bus_suspended` or `fast_hand`
 };
 
 struct Case {
