@@ -22,9 +22,7 @@ constexpr double angular_smoothing = 0.125;
 constexpr double rest_m_per_s = 0.1;
 
 // Faults of the board that HDAPI takes for a passing thing: the force comes back by itself once the probe is at rest.
-bool passes(int fault) {
-  return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT || fault == INKWELL_FAULT_USB_GONE;
-}
+bool passes(int fault) { return fault == INKWELL_FAULT_OVER_SPEED || fault == INKWELL_FAULT_HOST_SILENT; }
 
 double speed_m_per_s(const inkwell_pose& pose) {
   return std::hypot(pose.velocity_m_s[0], pose.velocity_m_s[1], pose.velocity_m_s[2]);

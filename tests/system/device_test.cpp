@@ -285,6 +285,8 @@ TEST_CASE("pulling the USB cable ends the connection, plugging it in brings the 
   rig.run(0.01);
   const auto pose = rig.pose();
   // The cable took the force with it; the arm still knows where it is.
-  CHECK(!protocol::force_is_on(pose.state));
-  CHECK(pose.state != protocol::State::unreferenced);
+  CHECK(pose.state == protocol::State::fault);
+  CHECK(pose.fault == protocol::Fault::usb_gone);
+  rig.command(protocol::Command::clear_fault);
+  rig.run_until([](const auto& now) { return now.state == protocol::State::ready; });
 }

@@ -35,7 +35,8 @@ class CommandQueue {
   /// Whether such a command waits for the interrupt.
   bool waiting(protocol::Command command) const;
 
-  /// The host is gone: what is queued is forgotten, and the interrupt's next command is stop.
+  /// The host is gone: what is queued is forgotten, and the interrupt's next command is a stop that is told apart from
+  /// a user's.
   void host_gone();
 
   // ---- control interrupt ----
@@ -50,7 +51,7 @@ class CommandQueue {
   /// The next command, to be carried out in this period; null if there is none. Valid until the interrupt returns.
   const protocol::CommandReport* take();
 
-  /// Whether that is the stop of a host that is gone, and no command of one.
+  /// Whether that is the stop of host_gone(), and not a host's own.
   bool is_of_gone_host(const protocol::CommandReport& command) const { return &command == &stop_; }
 
   /// Token of the last command taken, for PoseReport::command_token.

@@ -5,6 +5,7 @@
 //   if (link.parameters.take(periods)) controller.settings_changed()
 //   if (link.commands.take_sign_of_life()) controller.host_alive()
 //   if (command = link.commands.take()) controller.carry_out(*command)
+//   if (link.commands.is_of_gone_host(*command)) controller.raise(usb_gone)
 //   if (target = link.program.take_force()) controller.drive(*target, link.parameters.settings())
 //   if (shapes = link.program.take_shapes()) controller.replace_shapes(*shapes)
 //   if (link.update_asked) controller.leave_for_update()
