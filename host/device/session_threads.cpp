@@ -19,6 +19,12 @@ constexpr auto search_interval = 200ms;
 constexpr std::uint32_t refresh_periods = protocol::servo_rate_Hz;
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
+constexpr auto farewell = 500ms;
+
+/// A host that goes away then is missed.
+bool would_be_missed_in(protocol::State state) {
+  return protocol::watch_table[protocol::place_of(protocol::Fault::usb_gone)].watched_in.contains(state);
+}
 
 }  // namespace
 
@@ -85,6 +91,7 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
                                    information.serial_number, information.firmware_version),
                        std::nullopt));
   requests.select = !signals.empty();
+  has_switched_force_on = false;
   // A command for the device that went away must not reach the one that came; parameter changes may.
   requests.commands.clear();
   requests.store.reset();
@@ -134,6 +141,14 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
     }
   }
   send_requests(*served);  // what was asked for last, such as to put parameters back
+  if (has_switched_force_on) let_force_fall(*served);
+}
+
+void Session::Implementation::let_force_fall(Device& of) {
+  of.send(protocol::Command::disable_force);
+  const auto give_up_at = Clock::now() + farewell;
+  while (Clock::now() < give_up_at)
+    if (const auto pose = of.read_pose(10ms); pose && !would_be_missed_in(pose->state)) return;
 }
 
 void Session::Implementation::take_pose(const protocol::PoseReport& pose, std::optional<std::uint32_t>& sequence) {
@@ -219,6 +234,9 @@ void Session::Implementation::send_requests(Device& to) {
   bool is_at_parameters = false;
   try {
     for (const auto& queued : taken.commands) {
+      if (queued.command == protocol::Command::enable_force) has_switched_force_on = true;
+      if (queued.command == protocol::Command::stop || queued.command == protocol::Command::disable_force)
+        has_switched_force_on = false;
       if (queued.pulse)
         to.send(queued.command, *queued.pulse);
       else

@@ -46,6 +46,8 @@ struct Session::Implementation {
   static std::uint32_t noticed_at_periods(Device& by, const protocol::PoseReport& pose,
                                           std::optional<std::uint32_t> before_periods);
   void send_requests(Device& to);
+  /// Who switched the force on lets it fall; left alone, the board would miss its host, and tell a fault.
+  void let_force_fall(Device& of);
   /// For the next connection. What was asked for since comes after it.
   void put_back(ParameterRequests unsent);
   /// What the board refuses is told to the user, and no reason to give the connection up.
@@ -94,7 +96,8 @@ struct Session::Implementation {
   std::optional<protocol::PoseReport> newest;
   std::optional<protocol::ParameterSet> parameter_set;
   std::uint64_t revision = 0;
-  std::string served_serial_number;  ///< of the device that is connected, or was last
+  bool has_switched_force_on = false;  ///< with nothing that switches it off behind it
+  std::string served_serial_number;    ///< of the device that is connected, or was last
   std::optional<Reconnection> newest_reconnection;
   std::uint64_t reconnections = 0;
   std::optional<std::string> newest_refusal;

@@ -20,8 +20,8 @@ using protocol::Command;
 
 /// Until a device that was asked for its force is asked again.
 constexpr auto ask_again = 100ms;
-/// Until the fading of this program's last force has begun.
-constexpr auto farewell = 5ms;
+/// For a force that falls, softly as the board is told to; by then it falls at least.
+constexpr auto farewell = 500ms;
 
 /// A board from which no pose comes for so long is reset, or paused.
 constexpr double silence_s = 2.0;
@@ -51,16 +51,19 @@ Arm::Arm(const std::string& address)
 Arm::~Arm() {
   servo_.ask_to_end();
   force_.stop();  // what a servo that is still being called returns is sent no more
-  if (drives_ && !poses_.end_reason()) bid_farewell();
+  if ((drives_ || may_have_switched_on_) && !poses_.end_reason()) bid_farewell();
 }
 
 void Arm::bid_farewell() {
   auto& device = connection_.device();
   try {
-    device.send_force({.mode = protocol::ForceMode::none});
-    device.place_shapes({});
+    if (drives_) {
+      device.send_force({.mode = protocol::ForceMode::none});
+      device.place_shapes({});
+    }
     device.send(Command::disable_force);
-    std::this_thread::sleep_for(farewell);
+    // A force that is on when USB goes away, as over USB/IP with the last program, would end as a fault.
+    poses_.wait([](const auto& newest) { return newest.state != INKWELL_ACTIVE; }, Clock::now() + farewell);
   } catch (const Error&) {  // it is gone already, and its force with it
   }
 }
@@ -90,6 +93,7 @@ control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
 void Arm::enable_force(double timeout_s) {
   const auto give_up_at = in(timeout_s);
   refuse_in_fault(pose());
+  may_have_switched_on_ = true;
   for (;;) {
     // A device that does not know yet where it is forgets that it was asked.
     device().send(Command::enable_force);

@@ -78,7 +78,8 @@ class Arm {
   std::mutex claim_mutex_;
   std::optional<device::DriverClaim> claim_;  ///< from the first force on
   std::atomic<bool> drives_ = false;          ///< there is a claim
-  std::mutex parameters_mutex_;               ///< one transaction at a time, with what follows from it
+  std::atomic<bool> may_have_switched_on_ = false;
+  std::mutex parameters_mutex_;  ///< one transaction at a time, with what follows from it
 
   Servo servo_;  ///< the last one: its function uses all the others
 };

@@ -35,6 +35,23 @@ TEST_CASE("a servo can not close its arm, and says so") {
   CHECK(inkwell_stop_servo(virtual_arm.arm) == INKWELL_OK);
 }
 
+TEST_CASE("a program that only switched the force on takes it along, and the next one finds no fault") {
+  Board board;
+  {
+    VirtualArm first(board.address);
+    first.be_patient();
+    first.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
+    board.hold();
+    first.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
+    REQUIRE(inkwell_enable_force(first.arm, 60) == INKWELL_OK);
+  }
+  VirtualArm next(board.address);
+  inkwell_pose pose{};
+  REQUIRE(inkwell_get_pose(next.arm, &pose) == INKWELL_OK);
+  CHECK(pose.state == INKWELL_READY);
+  CHECK(pose.fault == INKWELL_FAULT_NONE);
+}
+
 TEST_CASE("closing takes the force away, and waits for a servo that does not return") {
   Board board;
   VirtualArm looks_on(board.address);

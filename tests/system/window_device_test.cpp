@@ -1,6 +1,7 @@
 // The window and a device that comes and goes; recordings and guides as the user runs them.
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -38,6 +39,17 @@ TEST_CASE("an unplugged device is told, and it is connected again by itself") {
   rig.look_until("the fault is cleared", [](const Sight& now) { return now.state() == "ready"; });
   CHECK(rig.look().can_click("status/Switch force on"));
   CHECK_FALSE(rig.look().says("No arm was found"));
+}
+
+TEST_CASE("a window that is closed with the force on lets it fall, and the board tells no fault") {
+  WindowRig rig;
+  rig.switch_force_on();
+  rig.close_and_read_parameters();
+  const auto arm = device::Device::open(*rig.board.find());
+  const auto pose = arm->read_pose(std::chrono::seconds(60));
+  REQUIRE(pose.has_value());
+  CHECK(pose->state == protocol::State::ready);
+  CHECK(pose->fault == protocol::Fault::none);
 }
 
 TEST_CASE("a recording is started, marked, stopped and replayed") {

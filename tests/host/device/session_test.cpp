@@ -195,6 +195,25 @@ TEST_CASE("what was asked for last still reaches the device when the session end
   CHECK(server.parameters[Parameter::force_limit_N] == 1.5f);
 }
 
+TEST_CASE("a session that ends with a force that it switched on lets it fall, and touches no other") {
+  struct Row {
+    std::vector<protocol::Command> commands;
+    std::size_t let_fall;
+  };
+  using enum protocol::Command;
+  for (const Row& row : {Row{{enable_force}, 1}, Row{{enable_force, stop}, 0}, Row{{enable_force, disable_force}, 1},
+                         Row{{stop, enable_force}, 1}, Row{{heartbeat}, 0}}) {
+    CAPTURE(row.commands.size());
+    FakeUsbipServer server;
+    {
+      device::Session session([&] { return std::optional(server.endpoint()); });
+      REQUIRE(eventually([&] { return is_connected(session); }));
+      for (const auto command : row.commands) session.send(command);
+    }
+    CHECK(count_of(server, disable_force) == row.let_fall);
+  }
+}
+
 TEST_CASE("changes on their way when the connection breaks reach the device after all") {
   FakeUsbipServer server;
   server.parameters[Parameter::sphere_radius_m] = 0.004f;
