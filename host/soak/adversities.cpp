@@ -112,7 +112,7 @@ std::string pull_cable(Bench& bench) {
   bench.connect();
   bench.device_may_go = false;
   if (with_force)
-    bench.oracle.must_have_told(host_gone);
+    bench.oracle.must_have_told(protocol::watch(Fault::usb_gone));
   else if (bench.oracle.has_told())
     bench.oracle.complain(Complaint::false_trip, "there was no force to take");
   bench.go_on();

@@ -246,6 +246,12 @@ TEST_CASE("a supply of the chip that fades holds it in reset, as on a flashed bo
   CHECK(result.recovery == "clear_fault");
 }
 
+TEST_CASE("what an unnoticed fault gives the hand in use is measured, and for a sound arm, too") {
+  const Result sound = result_of("none rest 1");
+  CHECK(sound.energy_in_use_J.value_or(0.0) > 0.01);
+  CHECK(sound.energy_in_use_J.value_or(0.0) > sound.energy_J);
+}
+
 TEST_CASE("without force nothing goes on, and the arm finds its place in the inkwell afterwards") {
   const Result result = result_of("encoder_slip:2=400 unreferenced 1");
   CHECK_FALSE(result.bridges_were_on);

@@ -46,6 +46,7 @@ TEST_CASE("a short soak with every kind of phase finds nothing") {
   CHECK(sitting.at("peak_part_of_limit").get<double>() > 0.5);
   CHECK(sitting.at("transactions").get<int>() > 10);
   CHECK(sitting.at("faults_told").at("host_silent").get<int>() >= 1);
+  CHECK(sitting.at("faults_told").at("usb_gone").get<int>() >= 1);
   CHECK(sitting.at("faults_told").at("over_speed").get<int>() >= 1);
   CHECK(sitting.at("restarts").get<int>() >= 1);
   CHECK(sitting.at("lost").at("poses") == 0);
