@@ -1,6 +1,7 @@
 #include "plot.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -54,6 +55,19 @@ class Layout {
   int gap_;
 };
 
+/// As wide as those of a wide sans-serif font.
+constexpr std::size_t title_letter = 8, letter = 7;
+
+/// Above a bar; beside the limit's line where that would touch it.
+std::string number_of(const Histogram& histogram, const Layout& layout, std::size_t bar, int y) {
+  const std::string digits = std::to_string(histogram.bars[bar].count);
+  const int half_width = static_cast<int>(letter * digits.size()) / 2 + 4;
+  const int middle = layout.middle_of(bar);
+  const int line = histogram.limit ? layout.edge(histogram.limit->bars) : middle + bar_width;
+  const int aside = std::abs(line - middle) >= half_width ? 0 : line - middle + (line < middle ? 1 : -1) * half_width;
+  return text({middle + aside, y, "middle", "paint-order=\"stroke\" stroke=\"white\" stroke-width=\"4\""}, digits);
+}
+
 std::string bars_of(const Histogram& histogram, const Layout& layout) {
   unsigned highest = 1;
   for (const Bar& bar : histogram.bars) highest = std::max(highest, bar.count);
@@ -67,11 +81,7 @@ std::string bars_of(const Histogram& histogram, const Layout& layout) {
     const int whole = tall(bar.count), foot = std::min(whole, tall(bar.quiet));
     svg += box(layout.left_of(i), base - whole, bar_width, whole - foot, strong);
     svg += box(layout.left_of(i), base - foot, bar_width, foot, quiet);
-    // A line behind the number does not make it hard to read.
-    if (bar.count > 0)
-      svg += text({layout.middle_of(i), base - whole - 5, "middle",
-                   "paint-order=\"stroke\" stroke=\"white\" stroke-width=\"4\""},
-                  std::to_string(bar.count));
+    if (bar.count > 0) svg += number_of(histogram, layout, i, base - whole - 5);
     if (!bar.label.empty()) svg += text({layout.middle_of(i), base + 17}, bar.label);
   }
   return svg;
@@ -91,9 +101,6 @@ std::string axis_of(const Histogram& histogram, const Layout& layout) {
 }
 
 constexpr int key_indent = 18, key_line = 18;
-
-/// As wide as those of a wide sans-serif font.
-constexpr std::size_t title_letter = 8, letter = 7;
 
 /// So that no text is cut off beside few bars.
 int end_of_texts(const Histogram& histogram) {

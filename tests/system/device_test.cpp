@@ -87,7 +87,10 @@ TEST_CASE("boards that are started by hand have serial numbers of their own, whi
     const std::string ready = board.read_line();
     port = ready.substr(ready.find("usbip=") + 6);
     port.resize(port.find(' '));
-    const auto listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
+    // On a busy machine its arm is there later than the list waits for it.
+    auto listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
+    for (int again = 0; listed.exit_code != 0 && again < 30; ++again)
+      listed = run_program("inkwell", {"devices", "--json", "--usbip", port});
     CAPTURE(listed.err);
     REQUIRE(listed.exit_code == 0);
     kill(board.process(), SIGTERM);
