@@ -36,7 +36,8 @@ constexpr struct {
   double amount;
 } more_amounts[] = {{InjectedFault::shunt_gain, 2},
                     {InjectedFault::logic_sag, 2.86},  // below 2.9 V, above the brown-out
-                    {InjectedFault::analog_sag, 3.5}};
+                    {InjectedFault::analog_sag, 3.5},
+                    {InjectedFault::main_loop_stalled, 0.012}};  // missed, and over before the watchdog bites
 
 std::vector<std::string> places(InjectedFault fault) {
   std::vector<std::string> places;

@@ -37,6 +37,9 @@ constexpr std::string_view falls_anyway =
     "The force was switched off already and was falling; it ends at once, which is told by nothing but the state.";
 constexpr std::string_view chip_stands = "The chip stands as long as its supply is too low, and tells nothing.";
 constexpr std::string_view not_begun = "A core that does not take its first instruction has not begun.";
+constexpr std::string_view stalled_unwatched =
+    "Before the main loop runs, while another fault is told and on the way to the boot loader nobody looks, and it "
+    "went on before the watchdog bit.";
 constexpr std::string_view break_of_tim8 =
     "This pin is seen by the break input of TIM8 only, while the bridges are on; the self-test's pulses put them on.";
 
@@ -184,8 +187,10 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
     case InjectedFault::crystal_drift:
     case InjectedFault::usb_cut: return no_force_to_lose;
     case InjectedFault::host_silent: return "A host is missed while the force is on only.";
-    case InjectedFault::core_stalled:
-    case InjectedFault::main_loop_stalled: return is_starting ? not_begun : reason_with_force(put_in);
+    case InjectedFault::core_stalled: return is_starting ? not_begun : reason_with_force(put_in);
+    case InjectedFault::main_loop_stalled:
+      if (put_in.amount) return stalled_unwatched;
+      return is_starting ? not_begun : reason_with_force(put_in);
     case InjectedFault::program_astray:
       if (!is_starting) return reason_with_force(put_in);
       return "The code that it came to returned to the main loop, and had changed nothing that is checked; or it came "

@@ -227,6 +227,15 @@ TEST_CASE("a hand that swings the arm while the host falls silent or the core is
   }
 }
 
+TEST_CASE("a main loop that stands for a while takes the force away and is told, and goes on without a restart") {
+  const Result result = result_of("main_loop_stalled=0.012 wall 1");
+  REQUIRE(result.off_after_s);
+  CHECK(*result.off_after_s < 0.0105);
+  CHECK(result.detected_as == "main_loop_stalled");
+  CHECK(result.restarts == 0);
+  CHECK(result.recovery == "clear_fault");
+}
+
 TEST_CASE("a chip that no longer hears its converters is restarted by the watchdog, and tells so") {
   const Result result = result_of("adc_stopped:1 wall 2");
   REQUIRE(result.off_after_s);

@@ -54,8 +54,8 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   CHECK(names.contains("bus_suspended limited 2"));
   CHECK(names.contains("fast_hand rest 3"));
   // As the table has it, and more or less.
-  for (const char* amount :
-       {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag", "analog_sag=3.5"})
+  for (const char* amount : {"shunt_gain:2", "shunt_gain:2=2", "logic_sag", "logic_sag=2.86", "analog_sag",
+                             "analog_sag=3.5", "main_loop_stalled", "main_loop_stalled=0.012"})
     CHECK(names.contains(std::string(amount) + " rest 1"));
   // SysTick, and positions 18 and 67 of RM0090's vector table.
   for (const char* exception : {"15", "34", "83"})

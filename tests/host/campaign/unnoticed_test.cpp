@@ -297,6 +297,7 @@ TEST_CASE("what a fault does without force, or silently, has reasons of its own"
                          {"program_astray", "ready",
                           "The code that it came to returned to the main loop, and had changed nothing that is "
                           "checked. |"},
+                         {"main_loop_stalled=0.012", "fault", "Before the main loop runs, while another fault"},
                          {"main_loop_stalled", "starting", "A core that does not take its first instruction"},
                          {"program_astray", "starting",
                           "The code that it came to returned to the main loop, and had "
