@@ -15,6 +15,14 @@
 namespace inkwell::tests {
 namespace {
 
+/// The hand takes the stylus out of the inkwell, so that there may be a force.
+void take_out(Board& board, VirtualArm& arm) {
+  arm.be_patient();
+  arm.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
+  board.hold();
+  arm.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
+}
+
 TEST_CASE("a servo can not close its arm, and says so") {
   VirtualArm virtual_arm;
   struct State {
@@ -39,10 +47,7 @@ TEST_CASE("a program that only switched the force on takes it along, and the nex
   Board board;
   {
     VirtualArm first(board.address);
-    first.be_patient();
-    first.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
-    board.hold();
-    first.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
+    take_out(board, first);
     REQUIRE(inkwell_enable_force(first.arm, 60) == INKWELL_OK);
   }
   VirtualArm next(board.address);
@@ -55,10 +60,7 @@ TEST_CASE("a program that only switched the force on takes it along, and the nex
 TEST_CASE("closing takes the force away, and waits for a servo that does not return") {
   Board board;
   VirtualArm looks_on(board.address);
-  looks_on.be_patient();
-  looks_on.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
-  board.hold();
-  looks_on.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
+  take_out(board, looks_on);
   struct Gate {
     std::atomic<bool> is_in = false, may_go = false;
     void open() {
