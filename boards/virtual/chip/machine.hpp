@@ -23,6 +23,7 @@ class Dma;
 class Exti;
 class FlashController;
 class Pins;
+class PowerControl;
 class Processor;
 class Rcc;
 class Timers;
@@ -74,6 +75,7 @@ struct Machine {
   Exti* exti = nullptr;
   FlashController* flash = nullptr;
   Pins* pins = nullptr;
+  PowerControl* power = nullptr;
   Processor* processor = nullptr;
   Rcc* rcc = nullptr;
   Timers* timers = nullptr;

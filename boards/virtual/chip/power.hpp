@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bus.hpp"
+#include "exti.hpp"
 #include "rcc.hpp"
 
 namespace inkwell::virtual_board {
@@ -19,21 +20,31 @@ inline constexpr PowerRegisters pwr;
 
 class PowerControl final : public RegisterBlock {
  public:
-  explicit PowerControl(Machine& machine) : machine_(machine) {}
+  explicit PowerControl(Machine& machine) : machine_(machine) { machine.power = this; }
   void reset() override {
     control_ = pwr.cr.reset_value;
     status_ = 0;
-    was_low_ = false;
+    look_at_supply();
+  }
+  /// The voltage detector's output, which is line 16 of EXTI too. Typical thresholds of the data sheet (V_PVD),
+  /// falling; the supply must rise by a tenth of a volt more.
+  void look_at_supply() {
+    constexpr double falling_V[] = {2.04, 2.19, 2.35, 2.51, 2.66, 2.82, 2.92, 3.03}, hysteresis_V = 0.1;
+    constexpr unsigned exti_line = 16;
+    const double threshold_V = falling_V[pwr.cr.pls.of(control_)] + (supply_is_low_ ? hysteresis_V : 0.0);
+    supply_is_low_ = pwr.cr.pvde.in(control_) && machine_.supply_V < threshold_V;
+    machine_.exti->internal_line(exti_line, supply_is_low_);
   }
 
  protected:
   std::uint32_t read_word(std::uint32_t offset) override {
-    if (offset == pwr.csr) return status_ | pwr.csr.vosrdy.mask() | pwr.csr.pvdo.with(supply_is_low());
+    if (offset == pwr.csr) return status_ | pwr.csr.vosrdy.mask() | pwr.csr.pvdo.with(supply_is_low_);
     return stored(offset);
   }
   void write_word(std::uint32_t offset, std::uint32_t value) override {
     if (offset == pwr.cr) {
       control_ = value & writable(pwr.cr);
+      look_at_supply();
       machine_.rcc->set_voltage_scale(pwr.cr.vos.in(control_));
       if (pwr.cr.pdds.in(value)) machine_.log.say_once("PWR_CR.PDDS: standby is not modelled, the chip only sleeps");
     }
@@ -45,15 +56,7 @@ class PowerControl final : public RegisterBlock {
   std::span<const MapEntry> registers() const override { return shown<pwr>(); }
 
  private:
-  /// Typical thresholds of the data sheet (V_PVD), falling; the supply must rise by a tenth of a volt more.
-  bool supply_is_low() {
-    constexpr double falling_V[] = {2.04, 2.19, 2.35, 2.51, 2.66, 2.82, 2.92, 3.03}, hysteresis_V = 0.1;
-    const double threshold_V = falling_V[pwr.cr.pls.of(control_)] + (was_low_ ? hysteresis_V : 0.0);
-    was_low_ = pwr.cr.pvde.in(control_) && machine_.supply_V < threshold_V;
-    return was_low_;
-  }
-
-  bool was_low_ = false;
+  bool supply_is_low_ = false;
   Machine& machine_;
   std::uint32_t control_ = pwr.cr.reset_value, status_ = 0;
 };

@@ -103,7 +103,8 @@ void Injector::put_in(unsigned number, Injection injection) {
   if (!is_momentary(injection.fault))
     std::erase_if(active_, [&](const Active& active) {
       if (kind(active.injection.fault) != kind(injection.fault) || active.injection.of != injection.of) return false;
-      put(active.injection, false);
+      // Of the same fault another amount takes its place, without a sound moment in between.
+      if (active.injection.fault != injection.fault) put(active.injection, false);
       return true;
     });
   const Ticks now = victims_.chip.now();
