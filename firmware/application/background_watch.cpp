@@ -1,7 +1,5 @@
 #include "background_watch.hpp"
 
-#include <drivers/logic_supply.hpp>
-
 #include "parts.hpp"
 
 namespace inkwell::application {
@@ -31,7 +29,7 @@ void BackgroundWatch::tell(protocol::Watches found) { host_link.found_in_main_lo
 
 protocol::Watches BackgroundWatch::found_of_supplies() {
   const bool swings = ripples(supply_ripple_, analog_inputs.supply_counts(), completed_periods.load());
-  return watch(Fault::logic_supply_low, drivers::logic_supply_is_low()) |
+  return watch(Fault::logic_supply_low, logic_supply.is_low()) |
          watch(Fault::analog_supply, is_off(analog_supply_, analog_inputs.reference_counts())) |
          watch(Fault::supply_ripple, swings);
 }

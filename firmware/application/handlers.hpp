@@ -13,3 +13,5 @@ void control_interrupt();
 }
 
 }  // namespace inkwell::application
+/// The chip's supply has fallen too low.
+void logic_supply_interrupt();

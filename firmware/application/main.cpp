@@ -5,7 +5,6 @@
 #include <drivers/boot_loader.hpp>
 #include <drivers/clocks.hpp>
 #include <drivers/cycle_counter.hpp>
-#include <drivers/logic_supply.hpp>
 #include <drivers/system.hpp>
 #include <usb/device.hpp>
 
@@ -65,7 +64,7 @@ int main() {
   status_led.start();
   const bool started_late = !start_clocks();
   report_start(reset_cause, crash);
-  drivers::start_logic_supply_watch();
+  logic_supply.start();
   if (reset_cause.power_on()) host_link.self_test.note(protocol::SelfTestItem::ram, ram_keeps_pattern());
 
   // Before anything uses a parameter, and before anything would be held up by an erase: the watchdog does not run yet,

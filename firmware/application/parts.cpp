@@ -39,6 +39,7 @@ Part<drivers::AnalogInputs> analog_inputs;
 link::ScopeFrames scope_frames;
 INKWELL_KEPT_OVER_RESET BlackBoxMemory black_box_memory;
 
+Part<drivers::LogicSupply> logic_supply;
 Part<drivers::StatusLed> status_led;
 Part<drivers::Console> console;
 Part<drivers::IndependentWatchdog> watchdog;

@@ -13,6 +13,7 @@
 #include <drivers/console.hpp>
 #include <drivers/encoders.hpp>
 #include <drivers/independent_watchdog.hpp>
+#include <drivers/logic_supply.hpp>
 #include <drivers/otg_fs.hpp>
 #include <drivers/parameter_flash.hpp>
 #include <drivers/status_led.hpp>
@@ -23,8 +24,8 @@ namespace inkwell::application {
 
 /// Every driver; it does not compile if two of them claim the same (drivers/claims.hpp).
 using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::AnalogInputs, drivers::Switches,
-                                 drivers::StatusLed, drivers::Console, drivers::IndependentWatchdog, drivers::Checksum,
-                                 drivers::OtgFs, drivers::ParameterFlash>;
+                                 drivers::StatusLed, drivers::Console, drivers::IndependentWatchdog,
+                                 drivers::LogicSupply, drivers::Checksum, drivers::OtgFs, drivers::ParameterFlash>;
 
 /// A driver of the list.
 template <class Driver>
@@ -35,6 +36,7 @@ extern Part<drivers::Bridges> bridges;
 extern Part<drivers::Encoders> encoders;
 extern Part<drivers::AnalogInputs> analog_inputs;
 extern Part<drivers::Switches> switches;
+extern Part<drivers::LogicSupply> logic_supply;
 extern control::Controller controller;
 
 /// The main loop's own.

@@ -17,6 +17,7 @@ constexpr VectorTable make_vectors() {
   table.interrupts[static_cast<std::size_t>(drivers::Interrupt::analog_converters)] = control_interrupt;
   return table;
 }
+  table.interrupts[static_cast<std::size_t>(drivers::Interrupt::voltage_detector)] = logic_supply_interrupt;
 
 }  // namespace
 

@@ -232,6 +232,18 @@ TEST_CASE("a reference that is 4.5 % off is borne, one that is 5.5 % off is noti
   }
 }
 
+TEST_CASE("a supply of the chip that falls switches the bridges off within two control periods, when it comes") {
+  BoardRig rig;
+  for (int i = 0; i < 5; ++i) {
+    press_into_wall(rig);
+    rig.control.run(0.37 * i * control_period_s);
+    rig.control.inject({.fault = "logic_sag", .amount = 2.9});
+    CHECK(off_after_s(rig, 1e-4) <= 2.0 * control_period_s + 1e-9);
+    check_told(rig, Fault::logic_supply_low);
+    check_clears_when_gone(rig, State::ready);
+  }
+}
+
 TEST_CASE(
     "a supply of the chip that falls is a fault before the brown-out, with its name, and clears when it has risen") {
   BoardRig rig;

@@ -18,7 +18,7 @@
 namespace inkwell::drivers {
 
 /// Position in the vector table (RM0090, "Vector table for STM32F405xx").
-enum class Interrupt : std::uint8_t { analog_converters = 18 };
+enum class Interrupt : std::uint8_t { voltage_detector = 1, analog_converters = 18 };
 
 struct Claim {
   enum class Kind : std::uint8_t { peripheral, pin, stream, interrupt };

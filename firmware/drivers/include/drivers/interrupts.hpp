@@ -15,7 +15,17 @@ class InterruptsHeld {
   InterruptsHeld& operator=(const InterruptsHeld&) = delete;
 };
 
-/// A line as its driver has it. There is one, and faults interrupt it.
+/// A handler that comes when every interrupt has been served, before the program goes on, and that each of them
+/// interrupts (PendSV: ARMv7-M, B1.5.6).
+struct CallBehindInterrupts {
+  static void start() {
+    constexpr std::uint32_t behind_all = 0xF0;
+    registers::SCB::SHPR3::modify(registers::SCB::SHPR3::PRI_14(behind_all));
+  }
+  static void ask() { registers::SCB::ICSR::write(registers::SCB::ICSR::PENDSVSET(1)); }
+};
+
+/// A line as its driver has it. None interrupts another, and faults interrupt each.
 template <class Driver, Interrupt line>
 struct InterruptLine {
   static void enable() {

@@ -1,5 +1,5 @@
-// Reset and clock control, supply of the core, boot mode, flash interface (RM0090, chapters RCC, PWR, SYSCFG, Embedded
-// flash).
+// Reset and clock control, supply of the core, boot mode, lines that interrupt, flash interface (RM0090, chapters RCC,
+// PWR, SYSCFG, EXTI, Embedded flash).
 #pragma once
 
 #include <registers/register.hpp>
@@ -82,6 +82,13 @@ struct SystemConfiguration {
   struct MEMRMP : Register<base + 0x00> {
     using MEM_MODE = Field<MEMRMP, 0, 2>;
   };
+};
+
+template <std::uint32_t base>
+struct InterruptLines {
+  struct IMR : Register<base + 0x00> {};
+  struct RTSR : Register<base + 0x08> {};
+  struct PR : Register<base + 0x14> {};
 };
 
 template <std::uint32_t base>

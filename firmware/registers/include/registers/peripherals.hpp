@@ -28,6 +28,7 @@
   X(ADC2, AnalogConverter, 0x40012100)               \
   X(ADC3, AnalogConverter, 0x40012200)               \
   X(ADC_COMMON, AnalogConverterCommon, 0x40012300)   \
+  X(EXTI, InterruptLines, 0x40013C00)                \
   X(CRC, ChecksumUnit, 0x40023000)                   \
   X(FLASH_PROGRAMMING, FlashProgramming, 0x40023C00) \
   X(DMA2, DirectMemoryAccess, 0x40026400)            \

@@ -8,10 +8,16 @@ namespace inkwell::registers {
 
 template <std::uint32_t base>
 struct SystemControlBlock {
+  struct ICSR : Register<base + 0x04> {
+    using PENDSVSET = Field<ICSR, 28, 1>;
+  };
   struct VTOR : Register<base + 0x08> {};
   struct AIRCR : Register<base + 0x0C> {
     using SYSRESETREQ = Field<AIRCR, 2, 1>;
     using VECTKEY = Field<AIRCR, 16, 16>;
+  };
+  struct SHPR3 : Register<base + 0x20> {
+    using PRI_14 = Field<SHPR3, 16, 8>;
   };
   struct SHCSR : Register<base + 0x24> {
     using MEMFAULTENA = Field<SHCSR, 16, 1>;
