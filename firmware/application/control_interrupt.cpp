@@ -1,9 +1,11 @@
 // The control interrupt: 20 000 times a second, from the sensors to the bridges.
 #include <control/encoders.hpp>
 #include <drivers/cycle_counter.hpp>
+#include <drivers/interrupts.hpp>
 #include <placement/interrupt.hpp>
 
 #include "handlers.hpp"
+#include "main_loop.hpp"
 #include "memory.hpp"
 #include "parts.hpp"
 
@@ -15,8 +17,6 @@ using protocol::watch;
 
 INKWELL_CORE_COUPLED drivers::CycleCounter clock;
 INKWELL_CORE_COUPLED std::array<std::int32_t, 3> encoder_counts;
-
-constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(protocol::main_loop_stalled_s);
 
 INKWELL_INTERRUPT std::uint8_t switch_bits(const drivers::SwitchContacts& contacts) {
   const auto bit = [](bool closed, protocol::Switch which) { return closed ? static_cast<unsigned>(which) : 0u; };
@@ -72,7 +72,10 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
   if (host_link.update_asked.load()) controller.leave_for_update();
-  const bool main_loop_stalls = period - main_loop_periods.load() > main_loop_stalled_periods;
+  const std::uint32_t missed_periods = period - main_loop_periods.load();
+  const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
+  if (missed_periods == main_loop_stalled_periods + 1) [[unlikely]]
+    drivers::CallBehindInterrupts::ask();  // hang_handler(), once
   controller.raise(host_link.found_in_main_loop.load() | watch(Fault::main_loop_stalled, main_loop_stalls) |
                    watch(Fault::heartbeat_missed, bridges_were_let_go));
 
@@ -103,7 +106,6 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   bridges.end_period();
 }
 
-}  // namespace inkwell::application
 // Neither of the two interrupts the other. The next control period switches the bridges off; the main loop, which looks
 // as well, knows how long it lasts.
 extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
@@ -111,3 +113,4 @@ extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
   controller.raise(Fault::logic_supply_low);
 }
 
+}  // namespace inkwell::application

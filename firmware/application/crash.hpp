@@ -9,6 +9,11 @@ namespace inkwell::application {
 extern drivers::KeptOverReset<protocol::CrashFacts> crash_record;
 
 /// Nothing else raises the non-maskable interrupt (RM0090, "Clock security system").
-constexpr bool crystal_stopped(const protocol::CrashFacts& crash) { return crash.exception == 2; }
+constexpr bool crystal_stopped(const protocol::CrashFacts& crash) {
+  return crash.exception == protocol::crystal_exception;
+}
+
+/// Left by a main loop that hung, and overtaken if that came back or if something else than the watchdog ended it.
+constexpr bool is_hang(const protocol::CrashFacts& crash) { return crash.exception == protocol::hang_exception; }
 
 }  // namespace inkwell::application

@@ -1,4 +1,5 @@
-// What happens when the processor cannot go on: bridges off, a record, a restart.
+// What happens when the processor cannot go on: bridges off, a record, a restart; and a record of where the main loop
+// hangs.
 #include <algorithm>
 #include <iterator>
 
@@ -18,7 +19,8 @@ namespace {
 
 using protocol::CrashFacts;
 
-/// What fault_handler() has saved: r4 to r11, and the value that a return from the exception would take (EXC_RETURN).
+/// What the handlers here have saved: r4 to r11, and the value that a return from the exception would take
+/// (EXC_RETURN).
 struct SavedRegisters {
   std::uint32_t r4_to_r11[8];
   std::uint32_t exception_return;
@@ -61,6 +63,30 @@ void note_callers(CrashFacts& crash) {
   for (; word < stack_top && count < std::size(crash.callers); ++word) consider(*word);
 }
 
+/// Of the exception that is being handled.
+CrashFacts facts_of(const ExceptionFrame* frame, const SavedRegisters* saved) {
+  using registers::SCB;
+  CrashFacts crash{};
+  asm volatile("mrs %0, ipsr" : "=r"(crash.exception));
+  crash.configurable_fault_status = SCB::CFSR::read();
+  crash.hard_fault_status = SCB::HFSR::read();
+  crash.fault_address =
+      SCB::CFSR::MMARVALID::from(crash.configurable_fault_status) != 0 ? SCB::MMFAR::read() : SCB::BFAR::read();
+  crash.image_check = *image_check;
+  std::copy_n(saved->r4_to_r11, 8, crash.registers + 4);
+  const std::uint32_t address = address_of(frame);
+  if (address % 4 == 0 && address >= address_of(stack_bottom) && address + sizeof *frame <= address_of(stack_top)) {
+    std::copy_n(frame->r0_to_r3, 4, crash.registers);
+    crash.registers[12] = frame->r12;
+    crash.link_register = frame->link_register;
+    crash.program_counter = frame->program_counter;
+    crash.program_status = frame->program_status;
+    crash.stack_pointer = stack_before(frame, saved->exception_return);
+    note_callers(crash);
+  }
+  return crash;
+}
+
 }  // namespace
 
 /// Switches the motors off with three stores before it trusts anything else, the stack included: that may be what is
@@ -89,27 +115,25 @@ extern "C" [[gnu::naked]] void fault_handler() {
 }
 
 extern "C" [[noreturn, gnu::used]] void record_fault(const ExceptionFrame* frame, const SavedRegisters* saved) {
-  using registers::SCB;
-  CrashFacts crash{};
-  asm volatile("mrs %0, ipsr" : "=r"(crash.exception));
-  crash.configurable_fault_status = SCB::CFSR::read();
-  crash.hard_fault_status = SCB::HFSR::read();
-  crash.fault_address =
-      SCB::CFSR::MMARVALID::from(crash.configurable_fault_status) != 0 ? SCB::MMFAR::read() : SCB::BFAR::read();
-  crash.image_check = *image_check;
-  std::copy_n(saved->r4_to_r11, 8, crash.registers + 4);
-  const std::uint32_t address = address_of(frame);
-  if (address % 4 == 0 && address >= address_of(stack_bottom) && address + sizeof *frame <= address_of(stack_top)) {
-    std::copy_n(frame->r0_to_r3, 4, crash.registers);
-    crash.registers[12] = frame->r12;
-    crash.link_register = frame->link_register;
-    crash.program_counter = frame->program_counter;
-    crash.program_status = frame->program_status;
-    crash.stack_pointer = stack_before(frame, saved->exception_return);
-    note_callers(crash);
-  }
-  crash_record.leave(crash);
+  crash_record.leave(facts_of(frame, saved));
   drivers::reset_chip();
+}
+
+/// The control interrupt asks for it, and interrupts it: what it finds on the stack is the main loop, which goes on
+/// afterwards if it can.
+extern "C" [[gnu::naked]] void hang_handler() {
+  asm volatile(
+      "mov r0, sp \n"
+      "push {r4-r11, lr} \n"
+      "mov r1, sp \n"
+      "sub sp, #4 \n"  // a call wants the stack at a multiple of eight
+      "bl record_hang \n"
+      "add sp, #4 \n"
+      "pop {r4-r11, pc} \n");
+}
+
+extern "C" [[gnu::used]] void record_hang(const ExceptionFrame* frame, const SavedRegisters* saved) {
+  crash_record.leave(facts_of(frame, saved));
 }
 
 }  // namespace inkwell::application

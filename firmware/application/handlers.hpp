@@ -8,10 +8,13 @@ extern "C" {
 [[noreturn]] void reset_handler();
 /// Every fault, the non-maskable interrupt and every interrupt that nobody asked for.
 [[noreturn]] void fault_handler();
+/// Behind every interrupt, once drivers::CallBehindInterrupts asked for it (PendSV): notes where the main
+/// loop is.
+void hang_handler();
 /// End of the injected conversions: once every control period.
 void control_interrupt();
+/// The chip's supply has fallen too low.
+void logic_supply_interrupt();
 }
 
 }  // namespace inkwell::application
-/// The chip's supply has fallen too low.
-void logic_supply_interrupt();

@@ -40,11 +40,18 @@ bool start_clocks() {
   return false;
 }
 
+/// What the run before noted, if it ended by that.
+std::optional<protocol::CrashFacts> take_crash(const drivers::ResetCause& cause) {
+  const auto crash = crash_record.take();
+  if (crash && is_hang(*crash) && !cause.watchdog()) return std::nullopt;
+  return crash;
+}
+
 /// What is to be said of how the run before this one ended.
 protocol::Fault fault_of_start(const drivers::ResetCause& cause, const std::optional<protocol::CrashFacts>& crash,
                                bool started_late) {
   if (started_late || (crash && crystal_stopped(*crash))) return protocol::Fault::crystal_failed;
-  if (crash) return protocol::Fault::processor_fault;
+  if (crash && !is_hang(*crash)) return protocol::Fault::processor_fault;
   if (cause.brown_out()) return protocol::Fault::logic_supply_low;
   return cause.watchdog() ? protocol::Fault::watchdog : protocol::Fault::none;
 }
@@ -58,7 +65,7 @@ int main() {
   drivers::CycleCounter::start();
   const WatchdogTrial watchdog_trial = try_watchdog(drivers::take_reset_cause());
   const drivers::ResetCause reset_cause = watchdog_trial.cause;
-  const auto crash = crash_record.take();
+  const auto crash = take_crash(reset_cause);
 
   drivers::start_pins();
   status_led.start();
@@ -74,6 +81,7 @@ int main() {
 
   // The converters' clocks before TIM1 triggers them (erratum "TRGO trigger output failure").
   analog_inputs.start_clocks();
+  drivers::CallBehindInterrupts::start();
   bridges.start();
   encoders.start();
   switches.start();

@@ -2,6 +2,7 @@
 
 #include <link/motor_heat_keeper.hpp>
 
+#include "crash.hpp"
 #include "parts.hpp"
 
 namespace inkwell::application {
@@ -62,6 +63,8 @@ void prove_that_it_runs() {
   static_assert(protocol::main_loop_stalled_s < 0.8f * drivers::IndependentWatchdog::shortest_timeout_s);
   static std::uint32_t fed_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();
+  // It was noted where this round hung, but it came round. Half, so that none is kept that was noted just now.
+  if (periods - main_loop_periods.load() > main_loop_stalled_periods / 2) crash_record.forget();
   main_loop_periods.store(periods);
   if (periods != fed_at_periods) watchdog.feed();
   fed_at_periods = periods;

@@ -5,6 +5,9 @@
 
 namespace inkwell::application {
 
+/// The control interrupt misses a main loop that did not come round for longer.
+inline constexpr std::uint32_t main_loop_stalled_periods = control::periods_in(protocol::main_loop_stalled_s);
+
 /// Once a round. The watchdog is fed only if the control interrupt ran too, so it bites when either hangs; the control
 /// interrupt misses the rounds sooner.
 void prove_that_it_runs();

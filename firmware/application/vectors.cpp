@@ -1,6 +1,7 @@
 #include "vectors.hpp"
 
 #include <drivers/claims.hpp>
+#include <protocol/black_box.hpp>
 
 #include "handlers.hpp"
 #include "memory.hpp"
@@ -13,11 +14,12 @@ constexpr VectorTable make_vectors() {
   table.initial_stack = stack_top;
   table.exceptions.fill(fault_handler);
   table.exceptions[0] = reset_handler;
+  table.exceptions[protocol::hang_exception - 1] = hang_handler;
   table.interrupts.fill(fault_handler);
   table.interrupts[static_cast<std::size_t>(drivers::Interrupt::analog_converters)] = control_interrupt;
+  table.interrupts[static_cast<std::size_t>(drivers::Interrupt::voltage_detector)] = logic_supply_interrupt;
   return table;
 }
-  table.interrupts[static_cast<std::size_t>(drivers::Interrupt::voltage_detector)] = logic_supply_interrupt;
 
 }  // namespace
 

@@ -42,7 +42,8 @@ bool has(std::uint32_t status, unsigned bit) { return (status >> bit & 1) != 0; 
 
 std::string cause(const protocol::CrashFacts& crash) {
   const std::uint32_t status = crash.configurable_fault_status;
-  if (crash.exception == 2) return "The crystal stopped.";
+  if (crash.exception == protocol::crystal_exception) return "The crystal stopped.";
+  if (crash.exception == protocol::hang_exception) return "The main loop did not come round, and the watchdog bit.";
   if (crash.exception >= 16) return fmt::format("Interrupt {} came, which nobody has asked for.", crash.exception - 16);
   if (has(crash.hard_fault_status, 1)) return "A handler's address could not be read from the vector table.";
   const auto* found = std::find_if(std::begin(fault_bits), std::end(fault_bits),

@@ -205,16 +205,59 @@ TEST_CASE("a crash while the black box of another fault is kept is told beside i
   }
 }
 
-TEST_CASE("firmware that hung leaves the rows before, and its black box says that the watchdog bit") {
+TEST_CASE("a main loop that hangs leaves the rows before, and where it is") {
   BoardRig rig;
   press_into_wall(rig);
-  rig.control.inject({"program_astray", std::to_string(endless_loop_address())});
+  const std::uint32_t loop = endless_loop_address();
+  rig.control.inject({"program_astray", std::to_string(loop)});
   rig.control.run(0.04);
   CHECK(watchdog_bites(rig.control) == 1);
   reconnect(rig);
   rig.run(0.3);
+  CHECK(rig.pose().fault == Fault::watchdog);
   const auto box = rig.device->black_box();
   CHECK(box.fault == Fault::watchdog);
-  CHECK(box.crash.exception == 0);
+  CHECK(box.crash.exception == protocol::hang_exception);
+  CHECK(box.crash.program_counter - loop <= 4);
+  CHECK(box.crash.stack_pointer != 0);
   check_rows_until_crash(box, rig.device->black_box_rows(box));
+
+  rig.device.reset();
+  rig.control.resume();
+  const auto image = (std::filesystem::path(build_directory()) / ".." / "board" / "inkwell.elf").string();
+  const auto shown = run_program(
+      "inkwell", {"fault", "--usbip", "127.0.0.1:" + std::to_string(rig.board.usbip_port()), "--elf", image});
+  INFO(shown.out, shown.err);
+  CHECK(shown.exit_code == 0);
+  CHECK(shown.out.find("The main loop did not come round, and the watchdog bit.\n  at   0x") != std::string::npos);
+  CHECK(shown.out.find(" main (main.cpp:") != std::string::npos);
+}
+
+TEST_CASE("where a main loop hung is kept for the watchdog alone, and not if it came back") {
+  constexpr double longer_s = 1.2 * static_cast<double>(protocol::main_loop_stalled_s);
+  BoardRig rig;
+  press_into_wall(rig);
+  rig.control.inject({"main_loop_stalled", "", longer_s});
+  rig.run(0.2);
+  REQUIRE(rig.device->black_box().fault == Fault::main_loop_stalled);
+  const auto expect_no_place = [&] {
+    reconnect(rig);
+    rig.run(0.3);
+    const auto box = rig.device->black_box();
+    CHECK(box.fault == Fault::main_loop_stalled);
+    CHECK(box.later_crashes == 0);
+    CHECK(box.crash.exception == 0);
+  };
+  // The watchdog bites, but the core did not run.
+  rig.control.inject({"core_stalled", "", 0.04});
+  rig.control.run(0.05);
+  REQUIRE(watchdog_bites(rig.control) == 1);
+  expect_no_place();
+  // The main loop hangs, but somebody resets the chip.
+  rig.control.inject({"main_loop_stalled", "", 10.0});
+  rig.control.run(longer_s);
+  REQUIRE(watchdog_bites(rig.control) == 1);
+  rig.control.heal_all();
+  rig.control.reset();
+  expect_no_place();
 }

@@ -15,6 +15,7 @@ constexpr std::uint32_t address_of_protection = 1u << 7, address_of_bus = 1u << 
 
 TEST_CASE("the cause of a crash is a sentence, with the address where the processor tells it") {
   CHECK(cause({.exception = 2}) == "The crystal stopped.");
+  CHECK(cause({.exception = 14}) == "The main loop did not come round, and the watchdog bit.");
   CHECK(cause({.exception = 83}) == "Interrupt 67 came, which nobody has asked for.");
   CHECK(cause({.exception = 3, .hard_fault_status = 2}) ==
         "A handler's address could not be read from the vector table.");

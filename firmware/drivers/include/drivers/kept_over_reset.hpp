@@ -19,10 +19,12 @@ class KeptOverReset {
     check_ = check_of(facts_);
   }
 
+  void forget() { check_ = ~check_of(facts_); }
+
   /// What the run before left, once.
   std::optional<Facts> take() {
     const bool is_sound = check_ == check_of(facts_);
-    check_ = ~check_of(facts_);
+    forget();
     if (!is_sound) return std::nullopt;
     return facts_;
   }

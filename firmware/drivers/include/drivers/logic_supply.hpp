@@ -1,6 +1,11 @@
 // The chip's own supply of 3.3 V, by its voltage detector (RM0090, "Programmable voltage detector").
 #pragma once
 
+#include <array>
+
+#include <drivers/claims.hpp>
+#include <drivers/interrupts.hpp>
+#include <placement/interrupt.hpp>
 #include <registers/peripherals.hpp>
 
 namespace inkwell::drivers {
