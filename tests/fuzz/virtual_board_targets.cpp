@@ -7,6 +7,8 @@
 #include <string_view>
 #include <variant>
 
+#include <chip/chip_error.hpp>
+#include <chip/memory.hpp>
 #include <debugger/gdb_packets.hpp>
 #include <debugger/gdb_requests.hpp>
 #include <injection/injection.hpp>
@@ -15,6 +17,7 @@
 #include <usbip_bytes.hpp>
 #include <virtual_usb/usbip_requests.hpp>
 
+#include "../host/firmware_update/made_elf.hpp"
 #include "target.hpp"
 
 namespace inkwell::fuzz {
@@ -89,6 +92,20 @@ const Registered control_requests{
         refuse_or_take<InvalidInjection>([&] { read_values(request.info->command, request.values); });
       });
     }};
+
+/// The image that a board is started with. Its memories are as the images before have left them.
+const Registered board_image{"board_image",
+                             [](Input input) {
+                               static Memory memory;
+                               const std::string file = text_of(input);
+                               refuse_or_take<ChipError>([&] {
+                                 program_elf(file, "any.elf", memory);
+                                 const std::uint32_t first_instruction = memory.word(flash_base + 4);
+                                 if ((first_instruction & 1) == 0 || memory.at(first_instruction & ~1u, 2) == nullptr)
+                                   throw std::logic_error("an image was taken that cannot start");
+                               });
+                             },
+                             [] { return std::vector<Bytes>{tests::made_elf(tests::made_segments({}))}; }};
 
 /// As on a command line and in a script of faults.
 const Registered injections{

@@ -1,5 +1,6 @@
 #include <chip/chip.hpp>
-#include <cstdio>
+#include <fstream>
+#include <iterator>
 
 #include "boot_loader.hpp"
 #include "execution.hpp"
@@ -7,6 +8,19 @@
 #include "power.hpp"
 
 namespace inkwell::virtual_board {
+namespace {
+
+std::vector<char> contents_of(const std::filesystem::path& image) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(image, ignored))
+    throw ChipError(image.string() + " is a folder. Give the ELF file of the firmware.");
+  std::ifstream stream(image, std::ios::binary);
+  if (!stream)
+    throw ChipError("There is no readable file " + image.string() + ". Build the firmware first, or correct the path.");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
 
 struct Chip::Parts : ChipParts {
   using ChipParts::ChipParts;
@@ -44,7 +58,8 @@ Chip::Chip(Circuit& circuit, const ChipOptions& options) : parts_(std::make_uniq
 Chip::~Chip() = default;
 
 void Chip::load_elf(const std::filesystem::path& path) {
-  if (const std::string oddity = program_elf(path, parts_->machine.memory); !oddity.empty())
+  const std::vector<char> file = contents_of(path);
+  if (const std::string oddity = program_elf(file, path.string(), parts_->machine.memory); !oddity.empty())
     parts_->machine.log.say(oddity);
   parts_->machine.request_reset(ResetCause::power_on);
 }

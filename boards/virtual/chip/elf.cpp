@@ -2,17 +2,14 @@
 #include <elf.h>
 
 #include <algorithm>
-#include <chip/chip.hpp>
-#include <fstream>
-#include <iterator>
-
-#include "memory.hpp"
+#include <chip/chip_error.hpp>
+#include <chip/memory.hpp>
 
 namespace inkwell::virtual_board {
 namespace {
 
 template <class T>
-T record_at(const std::vector<char>& file, std::size_t offset, const std::string& name) {
+T record_at(std::span<const char> file, std::size_t offset, const std::string& name) {
   if (offset > file.size() || sizeof(T) > file.size() - offset)
     throw ChipError(name + " is truncated: it ends before its own headers do. Build or copy it again.");
   T record;
@@ -47,15 +44,20 @@ void check_header(const Elf32_Ehdr& header, const std::string& name) {
 
 /// The firmware as it lies in the file: its load segments.
 struct Image {
-  const std::vector<char>& file;
+  std::span<const char> file;
   std::vector<Elf32_Phdr> segments;
-  /// The word that the image puts at `address`; of erased flash where it puts nothing.
-  std::uint32_t word(std::uint32_t address) const {
-    std::uint32_t value = 0xFFFF'FFFF;
+  /// The byte that the image puts at `address`, of segments that overlap the last one; of erased flash where it puts
+  /// nothing.
+  std::uint8_t byte(std::uint32_t address) const {
+    std::uint8_t value = 0xFF;
     for (const auto& segment : segments)
-      if (address >= segment.p_paddr && address - segment.p_paddr <= segment.p_filesz - sizeof value &&
-          segment.p_filesz >= sizeof value)
-        std::memcpy(&value, file.data() + segment.p_offset + (address - segment.p_paddr), sizeof value);
+      if (address >= segment.p_paddr && address - segment.p_paddr < segment.p_filesz)
+        value = static_cast<std::uint8_t>(file[segment.p_offset + (address - segment.p_paddr)]);
+    return value;
+  }
+  std::uint32_t word(std::uint32_t address) const {
+    std::uint32_t value = 0;
+    for (std::uint32_t i = 4; i-- > 0;) value = value << 8 | byte(address + i);
     return value;
   }
 };
@@ -67,10 +69,9 @@ std::string range_of(std::uint32_t base, std::uint32_t bytes) {
 /// The processor takes its first stack pointer and its first instruction's address from where the flash begins
 /// (ARMv7-M, B1.5.5). Returns what is odd about the stack pointer, or nothing.
 std::string check_vectors(const Image& image, const std::string& name, Memory& memory) {
-  const bool is_at_alias = image.segments.front().p_paddr < flash_bytes;
-  const std::uint32_t base = is_at_alias ? 0 : flash_base;
-  const std::uint32_t stack = image.word(base), reset = image.word(base + 4);
-  const std::string table = "at " + hexadecimal(base) + ", where the processor looks for its first stack pointer and " +
+  const std::uint32_t stack = image.word(flash_base), reset = image.word(flash_base + 4);
+  const std::string table = "at " + hexadecimal(flash_base) +
+                            ", where the processor looks for its first stack pointer and " +
                             "the address of its first instruction";
   if (stack == 0xFFFF'FFFF && reset == 0xFFFF'FFFF) {
     std::uint32_t lowest = 0xFFFF'FFFF;
@@ -92,7 +93,7 @@ std::string check_vectors(const Image& image, const std::string& name, Memory& m
 
 /// As a programmer does; the other sectors stay as they are.
 void erase_sectors_of(const Elf32_Phdr& segment, Memory& memory) {
-  const std::uint32_t first = segment.p_paddr < flash_bytes ? segment.p_paddr : segment.p_paddr - flash_base;
+  const std::uint32_t first = segment.p_paddr - flash_base;
   for (unsigned i = 0; i < flash_sectors; ++i) {
     const auto [offset, bytes] = flash_sector(i);
     if (first < offset + bytes && offset < first + segment.p_filesz) std::memset(memory.flash() + offset, 0xFF, bytes);
@@ -101,15 +102,7 @@ void erase_sectors_of(const Elf32_Phdr& segment, Memory& memory) {
 
 }  // namespace
 
-std::string program_elf(const std::filesystem::path& path, Memory& memory) {
-  const std::string name = path.string();
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    throw ChipError(name + " is a folder. Give the ELF file of the firmware.");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    throw ChipError("There is no readable file " + name + ". Build the firmware first, or correct the path.");
-  const std::vector<char> file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+std::string program_elf(std::span<const char> file, const std::string& name, Memory& memory) {
   if (file.size() < SELFMAG || std::memcmp(file.data(), ELFMAG, SELFMAG) != 0)
     throw ChipError(name + " is not an ELF file. Give the .elf that the linker writes, not a .bin or .hex.");
 
@@ -118,7 +111,7 @@ std::string program_elf(const std::filesystem::path& path, Memory& memory) {
 
   std::vector<Elf32_Phdr> segments;
   for (unsigned i = 0; i < header.e_phnum; ++i) {
-    const auto segment = record_at<Elf32_Phdr>(file, std::size_t{header.e_phoff} + i * sizeof(Elf32_Phdr), name);
+    auto segment = record_at<Elf32_Phdr>(file, std::size_t{header.e_phoff} + i * sizeof(Elf32_Phdr), name);
     if (segment.p_type != PT_LOAD || segment.p_filesz == 0) continue;
     if (segment.p_offset > file.size() || segment.p_filesz > file.size() - segment.p_offset)
       throw ChipError(name + " is truncated: its segment at " + hexadecimal(segment.p_paddr) +
@@ -126,6 +119,7 @@ std::string program_elf(const std::filesystem::path& path, Memory& memory) {
     if (memory.at(segment.p_paddr, segment.p_filesz) == nullptr)
       throw ChipError(name + " does not fit the STM32F405: " + std::to_string(segment.p_filesz) + " bytes at " +
                       hexadecimal(segment.p_paddr) + " lie outside of its memories. Correct the linker script.");
+    if (segment.p_paddr < flash_bytes) segment.p_paddr += flash_base;  // the flash is at 0 too
     segments.push_back(segment);
   }
   if (segments.empty()) throw ChipError(name + " has nothing to load. Link it with a linker script for the STM32F405.");

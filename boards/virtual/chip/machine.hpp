@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <vector>
 
+#include <chip/memory.hpp>
 #include "clock.hpp"
 #include "debug_halt.hpp"
 #include "debugging.hpp"
 #include "log.hpp"
-#include "memory.hpp"
 #include "memory_protection.hpp"
 #include "nvic.hpp"
 #include "timeline.hpp"

@@ -1,4 +1,4 @@
-#include "memory.hpp"
+#include <chip/memory.hpp>
 
 #include <cstdio>
 

@@ -4,8 +4,8 @@
 #include <bitset>
 #include <cstdint>
 
+#include <chip/memory.hpp>
 #include "engine_calls.hpp"
-#include "memory.hpp"
 
 namespace inkwell::virtual_board {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "memory.hpp"
+#include <chip/memory.hpp>
 
 namespace inkwell::virtual_board {
 

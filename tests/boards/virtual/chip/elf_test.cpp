@@ -79,6 +79,14 @@ TEST_SUITE("virtual chip: ELF") {
     CHECK(contains(complaint(with_word(vectors + 4, 0x0900'0001)), "0x09000001"));
     CHECK(contains(complaint(with_word(18, 243)), "RISC-V"));
 
+    // A second segment that lies over the first one's vectors: what comes last is what the flash holds.
+    std::string covered = good;
+    const std::uint32_t segment_bytes = 32, places[] = {vectors, 0x0800'0004, 0x0800'0004, 1, 1};
+    std::memcpy(covered.data() + headers + segment_bytes, good.data() + headers, segment_bytes);
+    std::memcpy(covered.data() + headers + segment_bytes + 4, places, sizeof places);
+    covered[vectors] = '\x3A';
+    CHECK(contains(complaint(covered), "no vector table"));
+
     // A stack for more RAM is said, but firmware may set its stack by itself.
     const inkwell::tests::TemporaryDirectory directory;
     const auto path = directory / "other_chip.elf";

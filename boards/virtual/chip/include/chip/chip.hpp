@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <chip/chip_error.hpp>
 #include <chip/debug_port.hpp>
 #include <chip/exception_numbers.hpp>
 #include <chip/interfaces.hpp>
@@ -19,18 +20,11 @@
 #include <numeric>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <timing/costs.hpp>
 #include <vector>
 
 namespace inkwell::virtual_board {
-
-/// An ELF that can not be loaded, or a processor that can not be set up: a sentence that says what to do.
-class ChipError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 enum class Mode : std::uint8_t {
   exact,  ///< an interrupt can fall at any instruction

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,7 +46,7 @@ class Memory {
 };
 
 /// Writes the load segments of an ELF file by physical address, and erases the sectors of the flash that they touch.
-/// Throws ChipError. Returns a sentence about what will hardly work, or nothing.
-std::string program_elf(const std::filesystem::path& path, Memory& memory);
+/// Throws ChipError, whose sentence has the file's name. Returns a sentence about what will hardly work, or nothing.
+std::string program_elf(std::span<const char> file, const std::string& name, Memory& memory);
 
 }  // namespace inkwell::virtual_board
