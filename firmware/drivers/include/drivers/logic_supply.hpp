@@ -19,10 +19,11 @@ class LogicSupply {
   static void start() {
     using registers::PWR;
     constexpr std::uint32_t falls_at_2_92_V = 0b110;  // data sheet, V_PVD; and rises at 3.03 V
-    Lines::RTSR::write(detector);                     // its output is high while the supply is low
-    Lines::IMR::write(detector);
-    InterruptLine<LogicSupply, Interrupt::voltage_detector>::enable();
     PWR::CR::modify(PWR::CR::PLS(falls_at_2_92_V), PWR::CR::PVDE(1));
+    Lines::RTSR::write(detector);  // its output is high while the supply is low
+    Lines::IMR::write(detector);
+    acknowledge();  // an edge that only switching it on has made; a supply that is low already, is_low() tells
+    InterruptLine<LogicSupply, Interrupt::voltage_detector>::enable();
   }
 
   /// It has fallen below 2.9 V: a tenth of a volt before the brown-out reset, and the sensors' references fall with it.
