@@ -33,6 +33,7 @@ class Image:
     virtual_tables: list[list[str]]  # functions of each class's table, in the order of its slots
     constructors: list[str]  # run by the start-up code
     interrupts: list[str]  # handlers in the vector table, without those of reset and of faults
+    pended: str  # the one of them that is PendSV's and no other's, or nothing
     symbols: dict[str, int]
 
     def targets(self, function: Function) -> tuple[set[str], set[str]]:
@@ -161,13 +162,17 @@ def read_words(elf: str, address: int, count: int) -> list[int]:
     raise Unreadable(f"0x{address:08x} is not in the image")
 
 
-def read_interrupts(elf: str, by_address: dict[int, str]) -> list[str]:
+PENDSV = 14  # its word of the vector table
+
+
+def read_interrupts(elf: str, by_address: dict[int, str]) -> tuple[list[str], str]:
     section = re.search(r"^\.vectors\s+(\d+)\s+(\d+)$", run("arm-none-eabi-size", "-A", elf), re.MULTILINE)
     if section is None:
         raise Unreadable("the image has no section .vectors")
     words = read_words(elf, int(section[2]), int(section[1]) // 4)
-    handlers = {by_address[word & ~1] for word in words if word & ~1 in by_address}
-    return sorted(handlers - {"reset_handler", "fault_handler"})
+    handlers = [by_address.get(word & ~1, "") for word in words]
+    pended = handlers[PENDSV] if len(handlers) > PENDSV and handlers.count(handlers[PENDSV]) == 1 else ""
+    return sorted(set(handlers) - {"", "reset_handler", "fault_handler"}), pended
 
 
 def read_image(elf: str) -> Image:
@@ -183,4 +188,4 @@ def read_image(elf: str) -> Image:
             tables.append([by_address.get(word & ~1, "") for word in words])
     begin, end = symbols["constructors_begin"], symbols["constructors_end"]
     constructors = [by_address[word & ~1] for word in read_words(elf, begin, (end - begin) // 4)] if end > begin else []
-    return Image(functions, tables, constructors, read_interrupts(elf, by_address), symbols)
+    return Image(functions, tables, constructors, *read_interrupts(elf, by_address), symbols)

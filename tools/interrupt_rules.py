@@ -3,7 +3,8 @@
 Everything that a handler can reach lies in the section .interrupt_text, and nothing else does, so that the image itself
 tells what runs in interrupts. Nothing of it waits, divides, calls through a pointer, or reads the flash: the section is
 copied to RAM, so that an erase of the flash, for which every access to it waits, holds no interrupt up. The user's force
-law alone may divide, since tools/force_law_cost.py counts what that costs.
+law alone may divide, since tools/force_law_cost.py counts what that costs. PendSV's handler, which every interrupt
+interrupts, counts as a part of the main loop.
 """
 
 import re
@@ -155,12 +156,8 @@ def reads_flash(function: Function) -> bool:
     return any(address in FLASH for address in (*function.words, *(half << 16 for half in upper_halves)))
 
 
-# Interrupted by every interrupt, so it may take its time and read the flash as the main loop does.
-BEHIND_INTERRUPTS = {"hang_handler"}
-
-
 def broken_interrupt_rules(image: Image, section: range) -> list[str]:
-    interrupts = [name for name in image.interrupts if name not in BEHIND_INTERRUPTS]
+    interrupts = [name for name in image.interrupts if name != image.pended]
     reached = set().union(*map(image.reachable, interrupts))
     problems = [
         f"{name} lies in the flash, which interrupts must not need"

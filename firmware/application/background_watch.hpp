@@ -1,5 +1,6 @@
 // What the main loop watches, beside the control interrupt: memory, supplies and wires. None of it is so quick that a
-// control period or two would matter, and the interrupt has no cycles to give.
+// control period or two would matter, and the interrupt has no cycles to give. (The chip's own supply is: it
+// interrupts, and is looked at here for as long as it is low.)
 #pragma once
 
 #include <array>

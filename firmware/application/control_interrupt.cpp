@@ -109,8 +109,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
 // Neither of the two interrupts the other. The next control period switches the bridges off; the main loop, which looks
 // as well, knows how long it lasts.
 extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
-  logic_supply.acknowledge();
-  controller.raise(Fault::logic_supply_low);
+  if (logic_supply.has_fallen()) controller.raise(Fault::logic_supply_low);
 }
 
 }  // namespace inkwell::application

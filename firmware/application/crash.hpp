@@ -13,7 +13,7 @@ constexpr bool crystal_stopped(const protocol::CrashFacts& crash) {
   return crash.exception == protocol::crystal_exception;
 }
 
-/// Left by a main loop that hung, and overtaken if that came back or if something else than the watchdog ended it.
+/// Left by a main loop that hung; void if that came back, or if something else than the watchdog ended it.
 constexpr bool is_hang(const protocol::CrashFacts& crash) { return crash.exception == protocol::hang_exception; }
 
 }  // namespace inkwell::application

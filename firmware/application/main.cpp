@@ -96,6 +96,7 @@ int main() {
   // Just after an update there is nearly a whole period in which to arm all three converters.
   if (!bridges.wait_for_update()) give_up();
   analog_inputs.arm();
+  logic_supply.arm();
 
   const usb::Identity identity{.serial_number = drivers::unique_identifier(),
                                .firmware_version = {INKWELL_VERSION_NUMBERS},
@@ -107,6 +108,9 @@ int main() {
   host_link.self_test.note(protocol::SelfTestItem::watchdog, watchdog.start() && watchdog_trial.is_passed,
                            watchdog_trial.bitten_after_ms);
 
+  // The control interrupt has run for longer than it bears a main loop that does not come round: the first round is
+  // none that is late.
+  prove_that_it_runs();
   for (;;) {
     const std::uint32_t periods = completed_periods.load();
     usb_device.poll();

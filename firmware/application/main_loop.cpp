@@ -63,9 +63,10 @@ void prove_that_it_runs() {
   static_assert(protocol::main_loop_stalled_s < 0.8f * drivers::IndependentWatchdog::shortest_timeout_s);
   static std::uint32_t fed_at_periods = 0;
   const std::uint32_t periods = completed_periods.load();
-  // It was noted where this round hung, but it came round. Half, so that none is kept that was noted just now.
-  if (periods - main_loop_periods.load() > main_loop_stalled_periods / 2) crash_record.forget();
+  // Half of what is missed, because the count was read before: the control interrupt may be further.
+  const bool may_be_noted = periods - main_loop_periods.load() > main_loop_stalled_periods / 2;
   main_loop_periods.store(periods);
+  if (may_be_noted) crash_record.forget();  // it came round; and from the store on nothing is noted
   if (periods != fed_at_periods) watchdog.feed();
   fed_at_periods = periods;
 }

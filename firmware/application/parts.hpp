@@ -31,7 +31,7 @@ using Parts = drivers::PartsList<drivers::Bridges, drivers::Encoders, drivers::A
 template <class Driver>
 requires(Parts::has<Driver>) using Part = Driver;
 
-/// Set up by main(), then the control interrupt's own.
+/// Set up by main(), then the interrupts' own; of the supply the main loop asks too.
 extern Part<drivers::Bridges> bridges;
 extern Part<drivers::Encoders> encoders;
 extern Part<drivers::AnalogInputs> analog_inputs;

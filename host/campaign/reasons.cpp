@@ -115,7 +115,7 @@ std::string_view reason_with_force(const CaseFault& put_in) {
     case InjectedFault::supply_cut: return "The capacitors bear it for that long.";
     case InjectedFault::supply_ripple:
       return "It swings by less than a volt, which sound motors may bring about, or has not swung often enough.";
-    case InjectedFault::logic_sag: return "The voltage is above 2.9 V, or it was over before the main loop looked.";
+    case InjectedFault::logic_sag: return "The voltage is above 2.9 V.";
     case InjectedFault::analog_sag: return "Within what a sound regulator and the reference may be off.";
     case InjectedFault::crystal_stop: return "None is known: the clock's own guard sees it.";
     case InjectedFault::crystal_drift: return "Within what the clock and USB bear; no second clock is compared.";

@@ -94,6 +94,17 @@ class ImageChecks(unittest.TestCase):
                                     "[[gnu::section(\".vectors\"), gnu::used]] void (*const more)() = more_interrupt;")
         self.assert_refused(check_image, "handles an interrupt but lies outside .interrupt_text")
 
+    def test_the_handler_behind_every_interrupt_is_part_of_the_main_loop(self):
+        source = ("void behind() { value = 1.0f / value; }\nvoid work() { sink = 2; }\n"
+                  "[[gnu::section(\".vectors\"), gnu::used]] void (*const more[])() = {%s};")
+        words_before = ["control_interrupt"] * 14  # the compiler puts the newest table first
+        check_image, stack_bound = self.check(source % ", ".join([*words_before, "behind"]))
+        self.assertEqual(check_image.returncode, 0, check_image.stderr)
+        self.assertIn("behind", stack_bound.stdout)
+        for elsewhere in ([*words_before, "behind", "behind"], [*words_before, "control_interrupt", "behind"]):
+            check_image, _ = self.check(source % ", ".join(elsewhere))
+            self.assert_refused(check_image, "handles an interrupt but lies outside .interrupt_text")
+
     def test_a_mark_that_lies_is_found(self):
         check_image, _ = self.check("INKWELL_INTERRUPT [[gnu::used]] void other() { sink = 1; }\nvoid work() { sink = 2; }")
         self.assert_refused(check_image, "lies in .interrupt_text but no interrupt calls it: take its mark away")

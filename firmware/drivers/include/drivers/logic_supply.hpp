@@ -14,23 +14,28 @@ class LogicSupply {
  public:
   static constexpr std::array claims{peripheral<registers::EXTI>(), interrupt(Interrupt::voltage_detector)};
 
-  /// From then on its interrupt comes when the supply falls too low. After start_clocks(), which gives the detector its
-  /// clock.
+  /// After start_clocks(), which gives the detector its clock.
   static void start() {
     using registers::PWR;
     constexpr std::uint32_t falls_at_2_92_V = 0b110;  // data sheet, V_PVD; and rises at 3.03 V
     PWR::CR::modify(PWR::CR::PLS(falls_at_2_92_V), PWR::CR::PVDE(1));
+  }
+
+  /// From now on its interrupt comes when the supply falls too low.
+  static void arm() {
     Lines::RTSR::write(detector);  // its output is high while the supply is low
     Lines::IMR::write(detector);
-    acknowledge();  // an edge that only switching it on has made; a supply that is low already, is_low() tells
     InterruptLine<LogicSupply, Interrupt::voltage_detector>::enable();
   }
 
-  /// It has fallen below 2.9 V: a tenth of a volt before the brown-out reset, and the sensors' references fall with it.
+  /// It is below 2.9 V: a tenth of a volt before the brown-out reset, and the sensors' references fall with it.
   static bool is_low() { return registers::PWR::CSR::PVDO::is_set(); }
 
-  /// Of the interrupt; at its beginning, so that the processor has seen it at the end.
-  INKWELL_INTERRUPT static void acknowledge() { Lines::PR::write(detector); }
+  /// In the interrupt. False if it is not low any more, as after an edge of a detector that was just switched on.
+  INKWELL_INTERRUPT static bool has_fallen() {
+    Lines::PR::write(detector);
+    return is_low();
+  }
 
  private:
   using Lines = RegistersOf<LogicSupply, registers::EXTI>;

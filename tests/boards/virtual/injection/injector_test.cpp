@@ -339,6 +339,15 @@ TEST_CASE("supplies") {
   CHECK(rig.instructions_in(0.0002) == 0);
   rig.run(0.0005);
   CHECK(rig.instructions_in(0.0005) > 0);
+
+  // Another amount of the same fault takes its place without a sound moment: one that is low stays so.
+  const auto brown_outs = [&] { return rig.chip.counters().resets[static_cast<std::size_t>(ResetCause::brown_out)]; };
+  const auto before = brown_outs();
+  for (const char* fault : {"logic_sag=2", "logic_sag=1.9"}) {
+    rig.inject(fault);
+    rig.run(0.0005);
+    CHECK(brown_outs() == before + 1);
+  }
 }
 
 TEST_CASE("crystal, cable and host") {
