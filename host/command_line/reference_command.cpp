@@ -48,7 +48,7 @@ constexpr ReportRow reports[] = {
     {ReportId::force_law, "ForceLawReport", "feature, get", protocol::force_law_report_maximum,
      "the parameters and signals that the image's own force law adds to the tables; its size is in its head"},
     {ReportId::black_box, "BlackBoxReport", "feature, get", sizeof(protocol::BlackBoxReport),
-     "whether a black box is kept, of which fault, and where the processor crashed"},
+     "whether a black box is kept, of which fault, and where the firmware crashed or hung"},
     {ReportId::black_box_rows, "BlackBoxRowsReport", "feature, get", sizeof(protocol::BlackBoxRowsReport),
      "some rows of the black box: every signal of a control period each"},
     {ReportId::self_test, "SelfTestReport", "feature, get", sizeof(protocol::SelfTestReport),

@@ -20,12 +20,12 @@ inline constexpr std::uint32_t black_box_step_periods = servo_rate_Hz / 1000;
 inline constexpr std::size_t black_box_rows_before = 100, black_box_rows_from_fault = 101;
 inline constexpr std::size_t black_box_rows_maximum = black_box_rows_before + black_box_rows_from_fault;
 
-/// By which exception it tells of a crystal that stopped (NMI) and of a main loop that hung (PendSV).
+/// The exceptions by which a crash record tells of a crystal that stopped (NMI) and of a main loop that hung (PendSV).
 inline constexpr std::uint32_t crystal_exception = 2, hang_exception = 14;
 
-/// What the processor noted as it crashed (ARMv7-M, "Fault handling"); all 0 if it did not.
+/// What was noted as the processor crashed (ARMv7-M, "Fault handling") or the main loop hung; all 0 if neither.
 struct CrashFacts {
-  std::uint32_t exception;        ///< its number; 3 hard fault, from 16 on an unexpected interrupt
+  std::uint32_t exception;        ///< its number: one of those two, 3 to 6 a fault, from 16 on an unexpected interrupt
   std::uint32_t program_counter;  ///< of what follows, only r4 to r11 hold if the stack could not be read
   std::uint32_t link_register;
   std::uint32_t program_status;             ///< xPSR

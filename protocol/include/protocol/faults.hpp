@@ -32,8 +32,8 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(7, encoder_implausible, "A joint angle lies far beyond its stop, an encoder jumped, or stands still although its motor presses otherwise again and again: counts were lost, or the arm description is wrong.", "Check the encoder plugs and the arm's description, put the stylus into the inkwell, then clear the fault.") \
   X(8, host_silent, "The host was silent for longer than host_timeout_s while the force was on.", "Reconnect the companion, clear the fault, then switch the force on again.") \
   X(9, servo_overrun, "The control interrupt did not finish within its period.", "Report this with the firmware version: it is a defect of the firmware. Then clear the fault.") \
-  X(10, watchdog, "The board was restarted by its watchdog.", "Report this with the firmware version, then clear the fault.")    \
-  X(11, processor_fault, "The processor met a fault; it switched the bridges off and restarted.", "Report this with the firmware version, then clear the fault.") \
+  X(10, watchdog, "The board was restarted by its watchdog.", "Report this with the firmware version and what `inkwell fault` says, then clear the fault.") \
+  X(11, processor_fault, "The processor met a fault; it switched the bridges off and restarted.", "Report this with the firmware version and what `inkwell fault` says, then clear the fault.") \
   X(12, not_finite, "A value in the control path was not a finite number.", "Check the parameters of the arm, load the defaults, then clear the fault.") \
   X(13, samples_stale, "A motor's current was not measured in a control period, or supply and gimbal for {samples_stale_ms} ms.", "Clear the fault. If it comes back, reset the board and report this with the firmware version.") \
   X(14, crystal_failed, "The board's crystal stopped, or swung late; the motors were off until the board had started anew.", "Check the crystal, its two capacitors and their joints, then clear the fault. If it comes back, replace the crystal.") \
