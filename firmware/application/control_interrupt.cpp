@@ -72,10 +72,12 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   if (const auto* target = host_link.program.take_force()) controller.drive(*target, settings);
   if (const auto* shapes = host_link.program.take_shapes()) controller.replace_shapes(*shapes);
   if (host_link.update_asked.load()) controller.leave_for_update();
-  const std::uint32_t missed_periods = period - main_loop_periods.load();
+  const std::uint32_t came_round_at_periods = main_loop_periods.load();
+  const std::uint32_t missed_periods = period - came_round_at_periods;
   const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
-  if (missed_periods == main_loop_stalled_periods + 1) [[unlikely]]
-    drivers::CallBehindInterrupts::ask();  // hang_handler(), once
+  // Once, and not while the start takes its time.
+  if (missed_periods == main_loop_stalled_periods + 1 && came_round_at_periods != 0) [[unlikely]]
+    drivers::CallBehindInterrupts::ask();  // hang_handler()
   controller.raise(host_link.found_in_main_loop.load() | watch(Fault::main_loop_stalled, main_loop_stalls) |
                    watch(Fault::heartbeat_missed, bridges_were_let_go));
 

@@ -194,9 +194,8 @@ void add_fault_command(const Place& place) {
                    ->type_name("FILE");
   command->add_flag("--overwrite", fault_options->overwrite, "Replace a file of that name")->needs(file);
   auto* elf = command
-                  ->add_option(
-                      "--elf", fault_options->elf,
-                      "Name the functions and lines of a crash or a hang with the ELF of the firmware that was flashed")
+                  ->add_option("--elf", fault_options->elf,
+                               "Name the functions and lines of a crash or a hang with the ELF of the flashed firmware")
                   ->type_name("FILE")
                   ->check(CLI::ExistingFile);
   add_examples(
