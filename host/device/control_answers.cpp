@@ -99,10 +99,11 @@ Injections injections_of(const json& status) {
   });
 }
 
-HandReading hand_reading_of(const json& answer) {
+MeterReading meter_reading_of(const json& answer) {
   return read_or_fail(damaged_answer, [&] {
-    return HandReading{answer.value("peak_force_N", 0.0), answer.value("energy_J", 0.0), answer.value("travel_m", 0.0),
-                       answer.value("lag_m", 0.0)};
+    return MeterReading{answer.value("peak_force_N", 0.0),       answer.value("energy_J", 0.0),
+                        answer.value("travel_m", 0.0),           answer.value("lag_m", 0.0),
+                        answer.value("peak_motor_force_N", 0.0), answer.value("peak_motor_force_over_ms_N", 0.0)};
   });
 }
 

@@ -17,7 +17,7 @@ BoardStatus status_of(nlohmann::json answer);
 PinLevels pin_levels_of(const nlohmann::json& answer);
 PutInFault put_in_fault_of(const nlohmann::json& answer, const protocol::InjectionRequest& asked);
 Injections injections_of(const nlohmann::json& status);
-HandReading hand_reading_of(const nlohmann::json& answer);
+MeterReading meter_reading_of(const nlohmann::json& answer);
 Trace trace_of(const nlohmann::json& answer);
 
 }  // namespace inkwell::device

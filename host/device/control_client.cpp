@@ -115,7 +115,7 @@ void ControlClient::hand_path(const std::vector<HandWaypoint>& path) {
 
 void ControlClient::meter_start() { call({{"command", "meter"}, {"action", "start"}}); }
 
-HandReading ControlClient::meter_read() { return hand_reading_of(call({{"command", "meter"}, {"action", "read"}})); }
+MeterReading ControlClient::meter_read() { return meter_reading_of(call({{"command", "meter"}, {"action", "read"}})); }
 
 void ControlClient::trace_start() { call({{"command", "trace"}, {"action", "start"}}); }
 void ControlClient::trace_stop() { call({{"command", "trace"}, {"action", "stop"}}); }

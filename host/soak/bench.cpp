@@ -19,12 +19,6 @@ using protocol::State;
 constexpr double look_s = 0.005;
 constexpr double close_look_s = 0.1;
 
-float at(const nlohmann::json& truth, const char* name, std::size_t axis) {
-  std::string member = name;
-  member.replace(member.find('#'), 1, std::to_string(axis + 1));
-  return truth.at(member).get<float>();
-}
-
 /// Status and truth both count them from the power on, with the trial of the watchdog as the first.
 unsigned restarts_of(const nlohmann::json& answer) { return std::max(answer.at("resets").get<unsigned>(), 1u) - 1; }
 
@@ -36,9 +30,9 @@ Bench::Bench(unsigned number, const Choices& choices_, const device::VirtualBoar
     : random(choices_.seed, number), board(options), choices(choices_) {
   sitting.number = number;
   board.watch_poses([this](const auto& pose) { oracle.see(pose); });
+  board.control().meter_start();
   connect();
   defaults = accepted = stored = board.device().parameters();
-  arm_ = control::prepare(defaults).arm;
   oracle.limit_force(static_cast<double>(defaults[Parameter::force_limit_N]));
 }
 
@@ -48,24 +42,6 @@ void Bench::fail(Complaint complaint, const std::string& text) {
 }
 
 // ---- time ----------------------------------------------------------------------------------------------------
-
-/// What the motors' true torques put on the probe: J^T F = tau, solved for F.
-double Bench::motor_force_N(const nlohmann::json& truth) const {
-  control::Triple joint_rad{}, torque_Nm{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    joint_rad[i] = at(truth, "true_joint_#_rad", i);
-    torque_Nm[i] = at(truth, "true_torque_#_Nm", i);
-  }
-  const auto& column = control::forward_kinematics(joint_rad, arm_).jacobian.column;
-  const control::Vector3 normals[] = {cross(column[1], column[2]), cross(column[2], column[0]),
-                                      cross(column[0], column[1])};
-  const float determinant = dot(column[0], normals[0]);
-  constexpr float singular_m3 = 1e-5f;  // the middle of an Omni's reach has 2e-3
-  if (std::fabs(determinant) < singular_m3) return 0.0;
-  control::Vector3 force_N{};
-  for (std::size_t i = 0; i < 3; ++i) force_N = force_N + (torque_Nm[i] / determinant) * normals[i];
-  return std::sqrt(static_cast<double>(dot(force_N, force_N)));
-}
 
 void Bench::pass(double time_s, bool gives_sign_of_life) {
   double left_s = time_s;
@@ -85,8 +61,10 @@ void Bench::pass(double time_s, bool gives_sign_of_life) {
 
 void Bench::look() {
   const auto truth = board.control().truth();
-  oracle.see(
-      Look{truth.at("board_time_s"), truth.at("bridges_driven_until_s"), restarts_of(truth), motor_force_N(truth)});
+  const auto reading = board.control().meter_read();
+  board.control().meter_start();
+  oracle.see(Look{truth.at("board_time_s"), truth.at("bridges_driven_until_s"), restarts_of(truth),
+                  reading.peak_motor_force_N, reading.peak_motor_force_over_ms_N});
 }
 
 void Bench::look_closely() {
@@ -139,7 +117,10 @@ void Bench::check_all() {
 void Bench::limit_changes(float force_limit_N) {
   const auto limit_N = static_cast<double>(force_limit_N);
   if (limit_N == oracle.force_limit_N()) return;
-  if (limit_N < oracle.force_limit_N()) board.run(look_s);
+  if (limit_N < oracle.force_limit_N()) {
+    board.run(look_s);
+    look();
+  }
   oracle.limit_force(limit_N);
 }
 

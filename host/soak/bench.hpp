@@ -8,7 +8,6 @@
 
 #include <campaign/board_run.hpp>
 #include <campaign/cases.hpp>
-#include <control/settings.hpp>
 #include <soak/oracle.hpp>
 #include <soak/result.hpp>
 #include <soak/run.hpp>
@@ -85,11 +84,9 @@ class Bench {
   void disturb(Disturbance disturbance);
 
  private:
-  double motor_force_N(const nlohmann::json& truth) const;
   void limit_changes(float force_limit_N);
   void check_pose();
 
-  control::Arm arm_{};
   Disturbance disturbance_ = Disturbance::none;
   double until_close_look_s_ = 0;
 };

@@ -52,6 +52,7 @@ void Oracle::see(const protocol::PoseReport& pose) {
   if (disturbance_ == Disturbance::none)
     longest_interrupt_part_ = std::max(longest_interrupt_part_, pose.servo_load / 255.0);
   const State before = std::exchange(state_, pose.state);
+  force_may_be_on_ |= protocol::force_is_on(state_);
   const Fault fault_before = std::exchange(fault_, pose.fault);
   if (pose.state == State::fault && (before != State::fault || fault_before != pose.fault)) {
     tell(pose.fault);
@@ -88,21 +89,38 @@ void Oracle::follow_self_test(bool may_test_itself) {
 void Oracle::see(const Look& look) {
   now_s_ = look.board_time_s;
   if (std::exchange(restarts_looked_at_, look.restarts) != look.restarts) follow_self_test(true);
+  // The pulses of a self-test are not bound by the force limit.
+  const bool tested_itself = may_test_itself_ || test_is_over_;
   if (std::exchange(test_is_over_, false)) may_drive_until_s_ = std::max(may_drive_until_s_, now_s_);
+  if (std::exchange(force_may_be_on_, protocol::force_is_on(state_)) && !tested_itself) judge_force(look);
   if (disturbance_ != Disturbance::none) return;
   if (!asked_ && !may_test_itself_ && look.driven_until_s > may_drive_until_s_ + behind_s)
     complain(Complaint::unasked_force,
              fmt::format("a leg was at the supply at {:.4f} s; it may have been until {:.4f} s", look.driven_until_s,
                          may_drive_until_s_));
-  // Of an arm that is braked, the speed decides how much its motors press.
-  if (!protocol::force_is_on(state_)) return;
-  peak_motor_force_N_ = std::max(peak_motor_force_N_, look.motor_force_N);
-  // The ripple of the bridges and the noise of the current sensors, which is all that a limit of next to nothing shows.
-  constexpr double ripple_N = 0.1;
-  if (force_limit_N_ >= telling_limit_N) peak_part_ = std::max(peak_part_, look.motor_force_N / force_limit_N_);
-  if (look.motor_force_N > force_tolerance * force_limit_N_ + ripple_N)
-    complain(Complaint::too_much_force,
-             fmt::format("the motors press with {:.2f} N, the limit is {:.2f} N", look.motor_force_N, force_limit_N_));
+}
+
+void Oracle::note(Press& hardest, double force_N) const {
+  if (force_limit_N_ < telling_limit_N || force_N / force_limit_N_ <= hardest.part_of_limit()) return;
+  hardest = {force_N, force_limit_N_, phase_, std::string(info(kind_).name), now_s_};
+}
+
+void Oracle::judge_force(const Look& look) {
+  const bool is_sound = disturbance_ == Disturbance::none;
+  note(is_sound ? hardest_press_ : hardest_press_with_fault_, look.peak_motor_force_N);
+  if (is_sound)
+    peak_motor_force_N_ = std::max(peak_motor_force_N_, look.peak_motor_force_N);
+  else
+    note(hardest_press_with_fault_over_ms_, look.peak_motor_force_over_ms_N);
+  if (disturbance_ == Disturbance::program) return;
+  // Until the bridges are off a fault may make a motor press harder for some periods, too short a time for the arm
+  // to pass on.
+  const double judged_N = is_sound ? look.peak_motor_force_N : look.peak_motor_force_over_ms_N;
+  // The noise of the current sensors, which is all that a limit of next to nothing shows.
+  constexpr double noise_N = 0.1;
+  if (judged_N > force_tolerance * force_limit_N_ + noise_N)
+    complain(Complaint::too_much_force, fmt::format("the motors press with {:.2f} N{}, the limit is {:.2f} N", judged_N,
+                                                    is_sound ? "" : " over a millisecond", force_limit_N_));
 }
 
 bool Oracle::see_counts(unsigned restarts, unsigned long broken_rules, const std::string& newest_rule) {

@@ -9,12 +9,14 @@
 namespace inkwell::soak {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, phase, kind, board_time_s, complaint, text)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Press, force_N, limit_N, phase, kind, board_time_s)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PhaseResult, number, kind, begin_s, duration_s, what)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Losses, poses, poses_kept_back, scope_samples, wide_scope_samples, program_forces,
                                    recorded_samples)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sitting, number, board_time_s, phases, findings, faults_put_in, faults_told,
-                                   restarts, peak_motor_force_N, peak_part_of_limit, longest_interrupt_part,
-                                   transactions, refused_transactions, poses, lost)
+                                   restarts, peak_motor_force_N, hardest_press, hardest_press_with_fault,
+                                   hardest_press_with_fault_over_ms, longest_interrupt_part, transactions,
+                                   refused_transactions, poses, lost)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Soak, seed, sitting_s, use_s, stopped, sittings)
 
 namespace {
@@ -34,6 +36,17 @@ double largest(const Soak& soak, Of of) {
 
 std::string row(std::string_view what, const std::string& figure) {
   return fmt::format("  {:<42}{:>12}\n", what, figure);
+}
+
+/// How much of the limit, and where that was.
+std::string rows_of_press(const Soak& soak, Press Sitting::*which, std::string_view what) {
+  const auto part_of_limit = [&](const Sitting& sitting) { return (sitting.*which).part_of_limit(); };
+  const auto hardest = std::ranges::max_element(soak.sittings, {}, part_of_limit);
+  if (hardest == soak.sittings.end() || part_of_limit(*hardest) == 0) return row(what, "-");
+  const Press& press = (*hardest).*which;
+  return row(what, fmt::format("{:.3f}", press.part_of_limit())) +
+         fmt::format("    {:.2f} of {:.2f} N in {}.{} ({}) at {:.3f} s\n", press.force_N, press.limit_N,
+                     hardest->number, press.phase, press.kind, press.board_time_s);
 }
 
 template <class Which>
@@ -111,8 +124,10 @@ std::string table_of(const Soak& soak) {
               std::to_string(sum<unsigned long>(soak, [](const auto& s) { return s.refused_transactions; })));
   text += row("peak force of the motors",
               fmt::format("{:.2f} N", largest(soak, [](const auto& s) { return s.peak_motor_force_N; })));
-  text += row(fmt::format("  as a part of a limit of {} N or more", Oracle::telling_limit_N),
-              fmt::format("{:.3f}", largest(soak, [](const auto& s) { return s.peak_part_of_limit; })));
+  text += rows_of_press(soak, &Sitting::hardest_press,
+                        fmt::format("  as a part of a limit of {} N or more", Oracle::telling_limit_N));
+  text += rows_of_press(soak, &Sitting::hardest_press_with_fault, "  the same with a fault put in");
+  text += rows_of_press(soak, &Sitting::hardest_press_with_fault_over_ms, "  that in the mean over a millisecond");
   text += row("longest control interrupt, of its period",
               fmt::format("{:.0f} %", 100 * largest(soak, [](const auto& s) { return s.longest_interrupt_part; })));
   const auto lost = [&](auto which) {

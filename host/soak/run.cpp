@@ -106,7 +106,9 @@ class Run {
     sitting.faults_told = oracle.faults_told();
     sitting.restarts = oracle.restarts();
     sitting.peak_motor_force_N = oracle.peak_motor_force_N();
-    sitting.peak_part_of_limit = oracle.peak_part_of_limit();
+    sitting.hardest_press = oracle.hardest_press();
+    sitting.hardest_press_with_fault_over_ms = oracle.hardest_press_with_fault_over_ms();
+    sitting.hardest_press_with_fault = oracle.hardest_press_with_fault();
     sitting.longest_interrupt_part = oracle.longest_interrupt_part();
     sitting.poses = oracle.poses();
     sitting.lost.poses = oracle.poses_lost();

@@ -91,7 +91,7 @@ const Registered control_answers{"control_answers", [](Input input) {
                                          device::put_in_fault_of(answer, {.fault = "supply_sag", .for_s = 0.5});
                                          break;
                                        case 3: device::injections_of(answer); break;
-                                       case 4: device::hand_reading_of(answer); break;
+                                       case 4: device::meter_reading_of(answer); break;
                                        default: {
                                          const auto trace = device::trace_of(answer);
                                          if (trace.values.size() != trace.row_count() * trace.columns.size())

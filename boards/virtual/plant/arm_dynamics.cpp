@@ -47,6 +47,23 @@ Vector3 ArmDynamics::workspace_m(const Links& l) const {
 
 Vector3 ArmDynamics::position_m(const Vector3& joints_rad) const { return workspace_m(links(joints_rad)); }
 
+Matrix3 ArmDynamics::jacobian_m(const Links& l) const {
+  const double reach = link_2_m_ * l.cos_a + link_3_m_ * l.cos_b;
+  const auto turn = [&](double along, double up) {  // from the arm's plane into the workspace
+    return omni_frame_ ? Vector3(-along * l.sin_1, up, along * l.cos_1) : Vector3(along * l.cos_1, along * l.sin_1, up);
+  };
+  const Vector3 by_1 =
+      omni_frame_ ? Vector3(-reach * l.cos_1, 0.0, -reach * l.sin_1) : Vector3(-reach * l.sin_1, reach * l.cos_1, 0.0);
+  const Vector3 by_a = turn(-link_2_m_ * l.sin_a, link_2_m_ * l.cos_a);
+  const Vector3 by_b = turn(-link_3_m_ * l.sin_b, link_3_m_ * l.cos_b);
+  Matrix3 jacobian_m;
+  if (parallelogram_)
+    jacobian_m << by_1, by_a, by_b;
+  else
+    jacobian_m << by_1, by_a + by_b, by_b;  // b = q2 + q3
+  return jacobian_m;
+}
+
 ArmDynamics::Terms ArmDynamics::terms(const Vector3& q, const Vector3& speed) const {
   const Links l = links(q);
   const double w = speed[0];
@@ -68,29 +85,19 @@ ArmDynamics::Terms ArmDynamics::terms(const Vector3& q, const Vector3& speed) co
   const double gravity_a = weight_2_Nm_ * l.cos_a;
   const double gravity_b = weight_3_Nm_ * l.cos_b;
 
-  const double reach = link_2_m_ * l.cos_a + link_3_m_ * l.cos_b;
-  const auto turn = [&](double along, double up) {  // from the arm's plane into the workspace
-    return omni_frame_ ? Vector3(-along * l.sin_1, up, along * l.cos_1) : Vector3(along * l.cos_1, along * l.sin_1, up);
-  };
-  const Vector3 by_1 =
-      omni_frame_ ? Vector3(-reach * l.cos_1, 0.0, -reach * l.sin_1) : Vector3(-reach * l.sin_1, reach * l.cos_1, 0.0);
-  const Vector3 by_a = turn(-link_2_m_ * l.sin_a, link_2_m_ * l.cos_a);
-  const Vector3 by_b = turn(-link_3_m_ * l.sin_b, link_3_m_ * l.cos_b);
-
   Terms t;
   t.position_m = workspace_m(l);
+  t.jacobian_m = jacobian_m(l);
   if (parallelogram_) {  // u = q
     t.mass_matrix << waist, 0, 0, 0, link_2_kg_m2_, elbow, 0, elbow, link_3_kg_m2_;
     t.coriolis_Nm = {coriolis_1, coriolis_a, coriolis_b};
     t.gravity_Nm = {0.0, gravity_a, gravity_b};
-    t.jacobian_m << by_1, by_a, by_b;
   } else {  // b = q2 + q3, so every torque on b acts on q2 and q3
     const double both = link_2_kg_m2_ + link_3_kg_m2_ + 2.0 * elbow;
     const double half = link_3_kg_m2_ + elbow;
     t.mass_matrix << waist, 0, 0, 0, both, half, 0, half, link_3_kg_m2_;
     t.coriolis_Nm = {coriolis_1, coriolis_a + coriolis_b, coriolis_b};
     t.gravity_Nm = {0.0, gravity_a + gravity_b, gravity_b};
-    t.jacobian_m << by_1, by_a + by_b, by_b;
   }
   t.mass_matrix.diagonal() += rotors_kg_m2_;
   return t;

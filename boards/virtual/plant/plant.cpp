@@ -268,8 +268,15 @@ void Plant::step() {
   arm_.step(duration_s, torque_Nm_, couplings);
   const Vector3 before_m = probe_m_;
   probe_m_ = arm_.dynamics().position_m(arm_.joints_rad());
-  if (meter_.runs() && hand_.holds())
-    meter_.step(probe_m_, couplings[0].target_m, -couplings[0].force_N(probe_m_, (probe_m_ - before_m) / duration_s));
+  static_assert(MotorForceMeter::steps_per_period * step_ticks == ticks_per_s / board::servo_rate_Hz);
+  static_assert(MotorForceMeter::steps_per_ms * step_ticks == ticks_per_s / 1000);
+  if (hand_meter_.runs()) {
+    const bool is_driven = driving_ || next_step_ < driven_until_ + MotorForceMeter::steps_per_period * step_ticks;
+    motor_force_meter_.step(torque_Nm_, arm_.dynamics().jacobian_m(arm_.joints_rad()), is_driven);
+    if (hand_.holds())
+      hand_meter_.step(probe_m_, couplings[0].target_m,
+                       -couplings[0].force_N(probe_m_, (probe_m_ - before_m) / duration_s));
+  }
   inputs_stale_ = true;
   inkwell_.advance(duration_s, probe_m_);
   if (carrier_.holds()) finish_docking();

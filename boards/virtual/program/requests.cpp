@@ -104,7 +104,7 @@ std::span<const CommandInfo> command_table() {
       {Command::meter,
        "meter",
        {"action"},
-       "start or read: peak force on the hand, energy given to it, how far it was taken"},
+       "start or read: peak force on the hand, energy given to it, how far it was taken; peak force of the motors"},
       {Command::trace,
        "trace",
        {"action", "maximum"},

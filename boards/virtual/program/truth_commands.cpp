@@ -42,14 +42,16 @@ json truth(const json&, Simulation& simulation) {
 
 json meter(const json& request, Simulation& simulation) {
   Plant& plant = simulation.board().plant();
-  if (meter_action(request) == MeterAction::start) plant.start_meter();
-  if (!plant.meter().runs()) throw Refused("the meter has not been started; {\"action\":\"start\"} does so");
-  const HandMeter::Reading& reading = plant.meter().reading();
+  if (meter_action(request) == MeterAction::start) plant.start_meters();
+  if (!plant.hand_meter().runs()) throw Refused("the meter has not been started; {\"action\":\"start\"} does so");
+  const HandMeter::Reading& reading = plant.hand_meter().reading();
   return {{"since_s", seconds(reading.since)},
           {"peak_force_N", reading.peak_force_N},
           {"energy_J", reading.energy_J},
           {"travel_m", reading.travel_m},
-          {"lag_m", reading.lag_m}};
+          {"lag_m", reading.lag_m},
+          {"peak_motor_force_N", plant.motor_force_meter().peak_N()},
+          {"peak_motor_force_over_ms_N", plant.motor_force_meter().peak_over_ms_N()}};
 }
 
 json trace(const json& request, Simulation& simulation) {

@@ -33,7 +33,7 @@ struct Watched {
     oracle.see(pose);
     now_s += 0.005;
     if (protocol::force_is_on(state)) driven_until_s = now_s;
-    oracle.see(Look{now_s, driven_until_s, restarts, motor_force_N});
+    oracle.see(Look{now_s, driven_until_s, restarts, motor_force_N, 0.5 * motor_force_N});
   }
   void steps(int count, State state, Fault fault = Fault::none) {
     for (int i = 0; i < count; ++i) step(state, fault);
@@ -185,12 +185,14 @@ TEST_CASE("force that goes off by itself is a finding, in a phase without anythi
   board.check_only(Complaint::lost_force);
 }
 
-TEST_CASE("motors may press with the limit and 5 %, and with more where something is put in or an arm is braked") {
+TEST_CASE(
+    "motors may press with the limit and 5 %, over a millisecond where something is put in, and anyhow without "
+    "force") {
   Watched board;
   board.switch_on();
   board.motor_force_N = 3.3 * 1.05;
   board.step(State::active);
-  CHECK(board.oracle.peak_part_of_limit() == doctest::Approx(1.05));
+  CHECK(board.oracle.hardest_press().part_of_limit() == doctest::Approx(1.05));
   board.motor_force_N = 5.0;
   board.oracle.disturb(Disturbance::hardware);
   board.step(State::active);
@@ -198,29 +200,74 @@ TEST_CASE("motors may press with the limit and 5 %, and with more where somethin
   board.oracle.limit_force(6.0);
   board.step(State::active);
   board.check_nothing();
+  CHECK(board.oracle.hardest_press().part_of_limit() == doctest::Approx(1.05));
+  CHECK(board.oracle.hardest_press_with_fault().part_of_limit() == doctest::Approx(5.0 / 3.3));
+  CHECK(board.oracle.hardest_press_with_fault_over_ms().part_of_limit() == doctest::Approx(2.5 / 3.3));
+  CHECK(board.oracle.hardest_press_with_fault().kind == "free_space");
   board.oracle.limit_force(3.3);
-  board.step(State::active);
-  board.check_only(Complaint::too_much_force);
+  SUBCASE("for a period") {
+    board.step(State::active);
+    board.check_only(Complaint::too_much_force);
+  }
+  SUBCASE("for a millisecond with something put in") {
+    board.oracle.disturb(Disturbance::hardware);
+    board.motor_force_N = 2 * 3.3 * 1.05 + 0.1;
+    board.step(State::active);
+    board.check_nothing();
+    board.motor_force_N += 0.2;
+    board.step(State::active);
+    board.check_only(Complaint::too_much_force);
+  }
+  SUBCASE("for a millisecond with a program that is not the one that was flashed") {
+    board.oracle.disturb(Disturbance::program);
+    board.motor_force_N = 10;
+    board.step(State::active);
+    board.check_nothing();
+    CHECK(board.oracle.hardest_press_with_fault_over_ms().part_of_limit() == doctest::Approx(5.0 / 3.3));
+  }
 
-  // Of a limit of next to nothing the ripple is a multiple, which tells nothing.
+  // Of a limit of next to nothing the noise is a multiple, which tells nothing.
   Watched weak;
   weak.switch_on();
   weak.motor_force_N = 0.1;
   for (const double limit_N : {0.01, 0.4}) {
     weak.oracle.limit_force(limit_N);
     weak.step(State::active);
-    CHECK(weak.oracle.peak_part_of_limit() == 0.0);
+    CHECK(weak.oracle.hardest_press().part_of_limit() == 0.0);
   }
   weak.oracle.limit_force(0.5);
   weak.step(State::active);
-  CHECK(weak.oracle.peak_part_of_limit() == doctest::Approx(0.2));
+  CHECK(weak.oracle.hardest_press().part_of_limit() == doctest::Approx(0.2));
   weak.check_nothing();
 
-  Watched braked(Kind::too_fast);
-  braked.switch_on();
-  braked.motor_force_N = 5.0;
-  braked.step(State::fault, Fault::over_speed);
-  braked.check_nothing();
+  // Also what was there before a fault was told, within the same look; but not what is there without force.
+  Watched tripped(Kind::too_fast);
+  tripped.switch_on();
+  tripped.motor_force_N = 5.0;
+  SUBCASE("as the force goes off") {
+    tripped.step(State::fault, Fault::over_speed);
+    tripped.check_only(Complaint::too_much_force);
+  }
+  SUBCASE("once it is off") {
+    tripped.motor_force_N = 0.0;
+    tripped.step(State::fault, Fault::over_speed);
+    tripped.motor_force_N = 5.0;
+    tripped.step(State::fault, Fault::over_speed);
+    tripped.check_nothing();
+  }
+  SUBCASE("in the test of a board that starts anew") {
+    ++tripped.restarts;
+    tripped.oracle.disturb(Disturbance::hardware);
+    for (int look = 0; look < 4; ++look)
+      tripped.oracle.see(
+          Look{tripped.now_s, tripped.driven_until_s, tripped.restarts, tripped.motor_force_N, tripped.motor_force_N});
+    tripped.step(State::testing);
+    tripped.step(State::ready);
+    CHECK(tripped.oracle.hardest_press_with_fault().part_of_limit() == 0.0);
+    tripped.motor_force_N = 1.0;
+    tripped.steps(2, State::active);
+    CHECK(tripped.oracle.hardest_press_with_fault().part_of_limit() == doctest::Approx(1.0 / 3.3));
+  }
 }
 
 TEST_CASE(

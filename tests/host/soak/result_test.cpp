@@ -18,11 +18,13 @@ Soak some_soak() {
   first.faults_put_in = {{"supply_cut", 1}};
   first.faults_told = {{"supply_low", 1}};
   first.peak_motor_force_N = 3.4;
+  first.hardest_press = {.force_N = 3.0, .limit_N = 3.3, .phase = 1, .kind = "walls", .board_time_s = 1.5};
   first.lost.poses = 2;
   first.lost.poses_kept_back = 71;
   Sitting second{.number = 2, .board_time_s = 300.0};
   second.phases = {{1, "walls", 0.2, 4.0, ""}};
   second.peak_motor_force_N = 3.1;
+  second.hardest_press = {.force_N = 1.02, .limit_N = 1.0, .phase = 1, .kind = "walls", .board_time_s = 2.25};
   second.findings = {{1, "walls", 3.25, "false_trip", "over_current"}, {1, "walls", 3.5, "no_answer", "gone"}};
   soak.sittings = {first, second};
   return soak;
@@ -39,6 +41,8 @@ TEST_CASE("the table sums what the boards did, and names each finding with the w
   CHECK(has(table, "2 (6 s)"));
   CHECK(has(table, "supply_low"));
   CHECK(has(table, "3.40 N"));
+  CHECK(has(table, "1.020\n    1.02 of 1.00 N in 2.1 (walls) at 2.250 s\n"));
+  CHECK(has(table, "the same with a fault put in                       -\n"));
   CHECK(has(table, "kept back by what was put in                      71\n"));
   CHECK(has(table, "false_trip in phase 1 (walls) at 3.250 s: over_current"));
   CHECK(has(table, "inkwell soak --seed 42 --sitting 2 --sitting-seconds 300 --use-seconds 4"));
@@ -53,6 +57,7 @@ TEST_CASE("the JSON has each phase and finding, and the sums that a script asks 
   CHECK(json.at("false_trips") == 1);
   CHECK(json.at("sittings").at(0).at("phases").at(1).at("kind") == "fault");
   CHECK(json.at("sittings").at(0).at("lost").at("poses") == 2);
+  CHECK(json.at("sittings").at(1).at("hardest_press").at("limit_N") == 1.0);
   CHECK(json.at("sittings").at(0).at("lost").at("poses_kept_back") == 71);
   CHECK(json.at("sittings").at(1).at("findings").at(0).at("text") == "over_current");
 }

@@ -63,12 +63,16 @@ struct PinLevels {
   std::string chip_drives;  ///< what the chip itself puts out
 };
 
-/// What the hand got from the arm since the meter was started.
-struct HandReading {
+/// What the hand got from the arm, and how hard the motors pressed, since the meter was started.
+struct MeterReading {
   double peak_force_N = 0;
   double energy_J = 0;  ///< given to the hand; what it gave back is not taken off
   double travel_m = 0;  ///< the farthest from where it began
   double lag_m = 0;     ///< the farthest from where the hand pulls to
+  /// That the torques of all motors together put on the probe, in the mean over a control period, while a bridge drove;
+  /// not where the arm is singular.
+  double peak_motor_force_N = 0;
+  double peak_motor_force_over_ms_N = 0;  ///< the same in the mean over a millisecond
 };
 
 struct BoardStatus {
@@ -139,7 +143,7 @@ class ControlClient {
   void dock(bool docked);                                 ///< presses the stylus into the inkwell, or takes it out
 
   void meter_start();  ///< measures what the hand gets from the arm, from now on
-  HandReading meter_read();
+  MeterReading meter_read();
 
   void trace_start();
   void trace_stop();

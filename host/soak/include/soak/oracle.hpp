@@ -21,7 +21,7 @@ namespace inkwell::soak {
   X(missed_fault, "A fault was not told although its cause was there.")                                        \
   X(unasked_force, "The force was on although nobody had asked for it since it was off.")                      \
   X(lost_force, "The force went off although nobody had asked for that and no fault was told.")                \
-  X(too_much_force, "With the force on the motors pressed with more than the force limit and 5 %.")       \
+  X(too_much_force, "The motors pressed with more than the force limit and 5 % in a control period, or, with a fault put in, in the mean over a millisecond.") \
   X(restart, "The chip started anew although nothing had caused it.")                                          \
   X(broken_rule, "The firmware did what silicon would not bear.")                                              \
   X(wrong_parameters, "The parameters that the board holds are not those that it accepted last.")              \
@@ -47,25 +47,37 @@ struct Finding {
   std::string text;
 };
 
+/// How hard the motors pressed, where that was the most of the force limit of its time.
+struct Press {
+  double force_N = 0, limit_N = 0;
+  unsigned phase = 0;  ///< from 1 on
+  std::string kind;    ///< of the phase
+  double board_time_s = 0;
+
+  double part_of_limit() const { return limit_N > 0 ? force_N / limit_N : 0.0; }
+};
+
 /// What a simulation tells at an instant.
 struct Look {
   double board_time_s = 0;
   double driven_until_s = 0;  ///< the last time that a leg was at the supply
   unsigned restarts = 0;      ///< since the simulation's start
-  double motor_force_N = 0;   ///< that the true torques of the motors put on the probe
+  /// That the torques of the motors put on the probe since the last look, while a bridge drove, in the mean over a
+  /// control period and over a millisecond.
+  double peak_motor_force_N = 0, peak_motor_force_over_ms_N = 0;
 };
 
 /// What was put in and not healed yet.
 enum class Disturbance : std::uint8_t {
   none,
-  hardware,  ///< forces, restarts and whether the bridges drive are not judged
-  program,   ///< nor is anything that the firmware says: it does not run as it was written
+  hardware,  ///< restarts and whether the bridges drive are not judged, and forces over a millisecond only
+  program,   ///< nor is any force, nor what the firmware says: it does not run as it was written
 };
 
 class Oracle {
  public:
   static constexpr double force_tolerance = 1.05;
-  /// Of a lower force limit the ripple of the bridges is a large part, which tells nothing.
+  /// Of a lower force limit the noise of the current sensors is a large part, which tells nothing.
   static constexpr double telling_limit_N = 0.5;
 
   void begin(unsigned phase, Kind kind);
@@ -104,8 +116,11 @@ class Oracle {
   const std::vector<Finding>& findings() const { return findings_; }
   /// With the force on, while nothing was put in.
   double peak_motor_force_N() const { return peak_motor_force_N_; }
-  /// The same as a part of the limit of its time, where that was telling_limit_N or more.
-  double peak_part_of_limit() const { return peak_part_; }
+  /// With the force on and a limit of telling_limit_N or more: while nothing was put in; while something was, a program
+  /// that is not the flashed one included; and then in the mean over a millisecond.
+  const Press& hardest_press() const { return hardest_press_; }
+  const Press& hardest_press_with_fault() const { return hardest_press_with_fault_; }
+  const Press& hardest_press_with_fault_over_ms() const { return hardest_press_with_fault_over_ms_; }
   /// Of its period, while nothing was put in.
   double longest_interrupt_part() const { return longest_interrupt_part_; }
   unsigned long poses() const { return poses_; }
@@ -121,6 +136,8 @@ class Oracle {
   void miss(std::uint32_t poses);
   void take_back_permission(double grace_s);
   void follow_self_test(bool may_test_itself);
+  void note(Press& hardest, double force_N) const;
+  void judge_force(const Look& look);
 
   unsigned phase_ = 0;
   Kind kind_ = Kind::docking;
@@ -137,12 +154,14 @@ class Oracle {
   bool restart_expected_ = false;
   std::optional<std::uint32_t> sequence_;
   protocol::State state_ = protocol::State::starting;
+  bool force_may_be_on_ = false;  ///< in the newest pose before the last look, or in one since
   protocol::Fault fault_ = protocol::Fault::none;
   unsigned restarts_ = 0;
   unsigned long rules_ = 0;
 
   std::vector<Finding> findings_;
-  double peak_motor_force_N_ = 0, peak_part_ = 0, longest_interrupt_part_ = 0;
+  double peak_motor_force_N_ = 0, longest_interrupt_part_ = 0;
+  Press hardest_press_, hardest_press_with_fault_, hardest_press_with_fault_over_ms_;
   unsigned long poses_ = 0, poses_lost_ = 0, poses_kept_back_ = 0;
   std::map<std::string, unsigned> faults_told_;
 };

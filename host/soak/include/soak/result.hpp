@@ -37,7 +37,8 @@ struct Sitting {
   std::map<std::string, unsigned> faults_put_in,
       faults_told;        ///< by name; told ones of the hand's and host's doing too
   unsigned restarts = 0;  ///< wanted ones and those of faults included
-  double peak_motor_force_N = 0, peak_part_of_limit = 0;
+  double peak_motor_force_N = 0;
+  Press hardest_press, hardest_press_with_fault, hardest_press_with_fault_over_ms;
   double longest_interrupt_part = 0;  ///< of its period
   unsigned long transactions = 0, refused_transactions = 0, poses = 0;
   Losses lost;

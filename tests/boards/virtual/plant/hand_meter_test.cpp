@@ -32,11 +32,11 @@ TEST_CASE("the plant's meter tells the force and the work of motors on a hand th
   const Vector3 held_m = driven.plant.truth(0).position_m;
   driven.plant.hold(held_m, 2000.0, 20.0);
   driven.idle(0.05);
-  driven.plant.start_meter();
+  driven.plant.start_meters();
   driven.enable(true);
   driven.run(0.1, {0.1, 0.0, 0.0});
   const Truth t = driven.plant.truth(driven.now);
-  const auto& reading = driven.plant.meter().reading();
+  const auto& reading = driven.plant.hand_meter().reading();
   const double stretched_m = (t.position_m - held_m).norm();
   CHECK(stretched_m > 0.0001);
   CHECK(reading.peak_force_N >= 0.99 * t.hand_force_N.norm());

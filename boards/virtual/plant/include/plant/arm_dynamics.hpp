@@ -30,11 +30,13 @@ class ArmDynamics {
     Vector3 coriolis_Nm;  ///< centrifugal and Coriolis torques
     Vector3 gravity_Nm;
     Vector3 position_m;  ///< of the probe in the workspace
-    Matrix3 jacobian_m;  ///< d position / d joints
+    Matrix3 jacobian_m;  ///< as of jacobian_m()
   };
   Terms terms(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
 
   Vector3 position_m(const Vector3& joints_rad) const;
+  /// d position / d joints
+  Matrix3 jacobian_m(const Vector3& joints_rad) const { return jacobian_m(links(joints_rad)); }
   double kinetic_energy_J(const Vector3& joints_rad, const Vector3& joint_speeds_rad_s) const;
   double potential_energy_J(const Vector3& joints_rad) const;
   /// Joint 3 of a serial arm, joint 3 minus joint 2 of a parallelogram: what the elbow's stops act on.
@@ -50,6 +52,7 @@ class ArmDynamics {
   };
   Links links(const Vector3& joints_rad) const;
   Vector3 workspace_m(const Links& links) const;
+  Matrix3 jacobian_m(const Links& links) const;
 
   bool parallelogram_;
   bool omni_frame_;

@@ -21,6 +21,7 @@
 #include <plant/monostable.hpp>
 #include <plant/motor_drive.hpp>
 #include <plant/motor_fault.hpp>
+#include <plant/motor_force_meter.hpp>
 #include <plant/quadrature_encoder.hpp>
 #include <plant/shunt_fault.hpp>
 #include <plant/supply.hpp>
@@ -84,9 +85,13 @@ class Plant final : public Circuit {
   /// What amplifiers and potentiometers are fed with, 3.3 V to begin with.
   void set_analog_supply_V(double volts) { analog_supply_V_ = volts; }
 
-  /// Measures what the hand gets, from now on.
-  void start_meter() { meter_.start(probe_m_, now_); }
-  const HandMeter& meter() const { return meter_; }
+  /// Measures what the hand gets and how hard the motors press, from now on.
+  void start_meters() {
+    hand_meter_.start(probe_m_, now_);
+    motor_force_meter_.start();
+  }
+  const HandMeter& hand_meter() const { return hand_meter_; }
+  const MotorForceMeter& motor_force_meter() const { return motor_force_meter_; }
 
   Truth truth(Ticks now);
   const ArmMotion& arm() const { return arm_; }
@@ -145,7 +150,8 @@ class Plant final : public Circuit {
   Hand hand_;
   Hand carrier_;  ///< holds while it carries the stylus to the inkwell
   Inkwell inkwell_;
-  HandMeter meter_;
+  HandMeter hand_meter_;  ///< runs with the other one
+  MotorForceMeter motor_force_meter_;
   Vector3 torque_Nm_ = Vector3::Zero();
 
   // Inputs of the chip
