@@ -248,6 +248,17 @@ TEST_CASE(
     tripped.step(State::fault, Fault::over_speed);
     tripped.check_only(Complaint::too_much_force);
   }
+  SUBCASE("as it goes on and off between two looks") {
+    Watched brief(Kind::too_fast);
+    brief.motor_force_N = 5.0;
+    brief.oracle.ask_for_force();
+    protocol::PoseReport pose{};
+    pose.state = State::active;
+    pose.sequence = ++brief.sequence;
+    brief.oracle.see(pose);
+    brief.step(State::fault, Fault::over_speed);
+    brief.check_only(Complaint::too_much_force);
+  }
   SUBCASE("once it is off") {
     tripped.motor_force_N = 0.0;
     tripped.step(State::fault, Fault::over_speed);
