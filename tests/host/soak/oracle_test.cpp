@@ -185,9 +185,7 @@ TEST_CASE("force that goes off by itself is a finding, in a phase without anythi
   board.check_only(Complaint::lost_force);
 }
 
-TEST_CASE(
-    "motors may press with the limit and 5 %, over a millisecond where something is put in, and anyhow without "
-    "force") {
+TEST_CASE("motors may press with the limit and 5 % in a control period, in a millisecond where something is put in") {
   Watched board;
   board.switch_on();
   board.motor_force_N = 3.3 * 1.05;
@@ -225,8 +223,9 @@ TEST_CASE(
     board.check_nothing();
     CHECK(board.oracle.hardest_press_with_fault_over_ms().part_of_limit() == doctest::Approx(5.0 / 3.3));
   }
+}
 
-  // Of a limit of next to nothing the noise is a multiple, which tells nothing.
+TEST_CASE("of a limit of next to nothing the noise is a multiple, which tells nothing") {
   Watched weak;
   weak.switch_on();
   weak.motor_force_N = 0.1;
@@ -239,25 +238,27 @@ TEST_CASE(
   weak.step(State::active);
   CHECK(weak.oracle.hardest_press().part_of_limit() == doctest::Approx(0.2));
   weak.check_nothing();
+}
 
-  // Also what was there before a fault was told, within the same look; but not what is there without force.
+TEST_CASE("a force that goes on and off between two looks is judged") {
+  Watched board(Kind::too_fast);
+  board.motor_force_N = 5.0;
+  board.oracle.ask_for_force();
+  protocol::PoseReport pose{};
+  pose.state = State::active;
+  pose.sequence = ++board.sequence;
+  board.oracle.see(pose);
+  board.step(State::fault, Fault::over_speed);
+  board.check_only(Complaint::too_much_force);
+}
+
+TEST_CASE("the motors' force is judged as the force goes off, and not where there is none") {
   Watched tripped(Kind::too_fast);
   tripped.switch_on();
   tripped.motor_force_N = 5.0;
   SUBCASE("as the force goes off") {
     tripped.step(State::fault, Fault::over_speed);
     tripped.check_only(Complaint::too_much_force);
-  }
-  SUBCASE("as it goes on and off between two looks") {
-    Watched brief(Kind::too_fast);
-    brief.motor_force_N = 5.0;
-    brief.oracle.ask_for_force();
-    protocol::PoseReport pose{};
-    pose.state = State::active;
-    pose.sequence = ++brief.sequence;
-    brief.oracle.see(pose);
-    brief.step(State::fault, Fault::over_speed);
-    brief.check_only(Complaint::too_much_force);
   }
   SUBCASE("once it is off") {
     tripped.motor_force_N = 0.0;
