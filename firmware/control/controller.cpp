@@ -34,6 +34,10 @@ bool over_current(const Triple& current_A, const Triple& limit_A) {
   return false;
 }
 
+/// A program's force was cut to the limit before it came here, and rounded then: at the limit is what misses it by
+/// less.
+constexpr float at_limit_part = 1.0f - 1e-4f;
+
 /// Of a limit, each third period: from the largest limit to the smallest in 10 ms.
 constexpr float over_current_fall_A = 0.06f;
 
@@ -189,7 +193,7 @@ void Controller::render_force(const Settings& settings) {
   // A limit that is lowered holds at once.
   force_limit_N_ = std::min(force_limit_N_ + settings.recovery_N_per_period, settings.force_limit_N);
   const Force force = bounded(touched_N_ + program_.force_N, force_limit_N_);
-  limits_ = bit(Limit::force, force.magnitude_N >= force_limit_N_ && force.magnitude_N > 0.0f);
+  limits_ = bit(Limit::force, force.magnitude_N >= at_limit_part * force_limit_N_ && force.magnitude_N > 0.0f);
   give(scaled(force, force_gain_), settings);
 }
 

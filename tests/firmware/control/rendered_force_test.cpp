@@ -228,6 +228,23 @@ TEST_CASE("what holds the force back is told") {
   CHECK(free.controller.limits() == 0);
 }
 
+TEST_CASE("a program that asks for more than the force limit is told so, whatever the direction and the rhythm") {
+  StillArm arm;
+  int told = 0;
+  const std::uint32_t rhythms[] = {17, 20, 23};
+  constexpr int directions = 40;
+  for (const std::uint32_t between_reports : rhythms)
+    for (int direction = 0; direction < directions; ++direction) {
+      const float angle_rad = 0.157f * static_cast<float>(direction);
+      for (int report = 0; report < 10; ++report) {
+        arm.drive({100.0f * std::cos(angle_rad), 30.0f, 100.0f * std::sin(angle_rad)}, ForceMode::instead_of_walls);
+        arm.run(between_reports);
+      }
+      told += protocol::is_reached(arm.controller.limits(), protocol::Limit::force) ? 1 : 0;
+    }
+  CHECK(told == 3 * directions);
+}
+
 TEST_CASE("without a motor the others make the nearest force that they can") {
   StillArm arm;
   arm.change(Parameter::current_limit_2_A, 0.0f);
