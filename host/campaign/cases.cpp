@@ -1,5 +1,6 @@
 #include <campaign/cases.hpp>
 
+#include <map>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -25,10 +26,11 @@ constexpr std::string_view wires_that_touch[] = {"encoders[1].a+encoders[1].b", 
                                                  "motor_current[1]+motor_current[2]"};
 constexpr std::string_view wires_with_spikes[] = {"encoders[1].a", "encoders[1].b", "bridge_fault_tim1",
                                                   "bridge_fault_tim8", "inkwell_switch"};
-/// SysTick, the control interrupt (the converters') and that of USB.
-constexpr unsigned exceptions[] = {virtual_board::exception_systick,
-                                   virtual_board::exception_of(virtual_board::converters_position),
-                                   virtual_board::exception_of(virtual_board::otg_fs_position)};
+/// What the firmware has handlers of, but of crashes: what is called behind the interrupts, the interrupt of the
+/// supply's detector, and that of the converters, which is the control's. (USB it asks in the main loop.)
+constexpr unsigned exceptions[] = {virtual_board::exception_pendsv,
+                                   virtual_board::exception_of(virtual_board::voltage_detector_position),
+                                   virtual_board::exception_of(virtual_board::converters_position)};
 
 /// Tried besides that of the table, or that of case_faults().
 constexpr struct {
@@ -159,13 +161,34 @@ CaseFault at_another(CaseFault fault, unsigned number) {
   return fault;
 }
 
+bool is_of_three(const CaseFault& fault) { return at_another(fault, 1).name() != fault.name(); }
+
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   unsigned number = 0;
   for (const CaseFault& fault : case_faults())
-    for (const CaseSituation situation : situations)
+    for (const CaseSituation situation : situations) {
       for (unsigned phase = 1; phase <= phases; ++phase) cases.push_back({++number, fault, situation, phase});
+      if (!is_of_three(fault)) continue;
+      // At random instants both, also in `starting`.
+      for (const unsigned other : {1u, 3u}) {
+        const unsigned phase = other == 1 ? 2 : 3;
+        cases.push_back({++number, at_another(fault, other), situation, phase});
+      }
+    }
   return cases;
+}
+
+std::string listed_name(const std::string& name) {
+  static const auto listed = [] {
+    std::map<std::string, std::string> names;
+    for (const CaseFault& fault : case_faults())
+      for (const unsigned other : {1u, 3u})
+        if (is_of_three(fault)) names[at_another(fault, other).name()] = fault.name();
+    return names;
+  }();
+  const auto found = listed.find(name);
+  return found == listed.end() ? name : found->second;
 }
 
 }  // namespace inkwell::campaign

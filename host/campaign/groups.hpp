@@ -12,11 +12,12 @@
 
 namespace inkwell::campaign {
 
-using Groups = std::map<std::pair<std::string, std::string>, std::vector<Result>>;  // by fault, situation
+/// By fault as it is listed, and situation.
+using Groups = std::map<std::pair<std::string, std::string>, std::vector<Result>>;
 
 inline Groups group(std::span<const Result> results) {
   Groups groups;
-  for (const Result& result : results) groups[{result.fault, result.situation}].push_back(result);
+  for (const Result& result : results) groups[{listed_name(result.fault), result.situation}].push_back(result);
   return groups;
 }
 

@@ -64,8 +64,8 @@ std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faul
   struct Worst {
     double value = 0.0;
     std::string where;
-    void see(double other, const CaseFault& fault, CaseSituation situation) {
-      if (where.empty() || other > value) *this = {other, fmt::format("`{}` in {}", fault.name(), name_of(situation))};
+    void see(double other, const Result& result) {
+      if (where.empty() || other > value) *this = {other, fmt::format("`{}` in {}", result.fault, result.situation)};
     }
   } force_N, more_J;
   std::vector<std::string_view> not_compared;
@@ -76,10 +76,10 @@ std::string at_the_hand(const Groups& groups, const std::vector<CaseFault>& faul
       if (results == nullptr) continue;
       for (const Result& r : *results) {
         if (!r.error.empty()) continue;
-        force_N.see(r.peak_force_N, fault, situation);
+        force_N.see(r.peak_force_N, r);
         if (fault.is_none()) continue;
         if (const Result* const sound = sound_of(groups, situation, r.phase))
-          more_J.see(r.energy_J - sound->energy_J, fault, situation);
+          more_J.see(r.energy_J - sound->energy_J, r);
         else if (not_compared.empty() || not_compared.back() != name_of(situation))
           not_compared.push_back(name_of(situation));
       }
@@ -116,7 +116,7 @@ std::string above_limit(const Groups& groups, const std::vector<CaseFault>& faul
       const double bearable_N = bearable_part_of_limit * force_limit_N(*results);
       for (const Result& r : *results)
         if (r.peak_force_in_use_N.value_or(0.0) > bearable_N)
-          rows += fmt::format("| `{}` | {}, used on | {:.1f} | - | - | {} | - |\n", fault.name(), name_of(situation),
+          rows += fmt::format("| `{}` | {}, used on | {:.1f} | - | - | {} | - |\n", r.fault, name_of(situation),
                               *r.peak_force_in_use_N, r.noticed_in_use_as.empty() ? "-" : r.noticed_in_use_as);
       if (s.peak_force_N <= bearable_N) continue;
       rows += fmt::format("| `{}` | {} | {:.1f} | {:.0f} | {:.0f} | {} | {} |\n", fault.name(), name_of(situation),
@@ -207,8 +207,9 @@ twice after the power has come, while the board starts.
 {} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row `none` is what the
 hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how far the probe lags behind
 the hand) are of the {} s after the fault came, recovery and position of the end, after the use that "Not noticed" tells
-of. Of three motors that are wired alike the second stands for all. "bridges off" is when no bridge that is on had a leg
-at the supply any more, in control periods of {:.0f} us.
+of. What there are three of is named as at the second motor, which bears the load at the wall; once each it is tried at
+the first and at the third as well, in the same row. "bridges off" is when no bridge that is on had a leg at the supply
+any more, in control periods of {:.0f} us.
 
 ![until the bridges were off]({}-off.svg)
 ![peak force]({}-force.svg)

@@ -1,5 +1,9 @@
 #include "reasons.hpp"
 
+#include <string>
+
+#include <chip/exception_numbers.hpp>
+
 namespace inkwell::campaign {
 
 using protocol::InjectedFault;
@@ -29,6 +33,20 @@ std::string_view reason_of_wire(std::string_view wire) {
   if (wire == "usb_supply") return "It stands as with the cable in.";
   return "A switch that is open or closed looks like one that is let go of or pressed; the inkwell's is told where it "
          "is closed elsewhere.";
+}
+
+const std::string of_hung_main_loop = std::to_string(virtual_board::exception_pendsv);
+const std::string of_voltage_detector =
+    std::to_string(virtual_board::exception_of(virtual_board::voltage_detector_position));
+
+/// What an interrupt is for that comes with another fault only; of the control interrupt nothing.
+std::string_view second_fault(std::string_view exception) {
+  if (exception == of_hung_main_loop)
+    return "It is asked for when the main loop hangs only, to note its place; that would be a second fault.";
+  if (exception == of_voltage_detector)
+    return "It comes when the chip's supply falls only, which would be a second fault; the brown-out reset stands "
+           "behind it.";
+  return "";
 }
 
 constexpr std::string_view host_is_missed = "None is known: a host that is not heard is missed.";
@@ -128,9 +146,10 @@ std::string_view reason_with_force(const CaseFault& put_in) {
     case InjectedFault::program_astray:
       return "The code that it came to returned to the main loop, and had changed nothing that is checked.";
     case InjectedFault::exception_lost:
-      return "The force does not need it; a host that it keeps from being heard is missed after host_timeout_s, 2 s in "
-             "these cases.";
-    case InjectedFault::exception_late: return "Late by less than what the firmware watches for.";
+      return second_fault(of).empty() ? "None is known: the heartbeat and the watchdog miss the control interrupt."
+                                      : second_fault(of);
+    case InjectedFault::exception_late:
+      return second_fault(of).empty() ? "Late by less than what the firmware watches for." : second_fault(of);
     case InjectedFault::adc_stopped: return "None is known: each conversion of a current has to be a new one.";
     case InjectedFault::dma_stopped: return "None is known: the age of supply and gimbal is watched.";
     case InjectedFault::ram_bit:

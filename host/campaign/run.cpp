@@ -42,13 +42,6 @@ bool is_about_the_host(const CaseFault& fault) {
          fault.deed == Deed::bus_suspended;
 }
 
-/// Without the interrupt of the USB the board hears nothing.
-bool is_unheard(const CaseFault& fault) {
-  constexpr unsigned of_usb = virtual_board::exception_of(virtual_board::otg_fs_position);
-  return is_about_the_host(fault) ||
-         (fault.fault == InjectedFault::exception_lost && fault.of == std::to_string(of_usb));
-}
-
 bool is_before_power(const Case& the_case) {
   return the_case.situation == CaseSituation::starting && the_case.phase == 1;
 }
@@ -368,7 +361,8 @@ Result run_case(const Case& the_case, device::VirtualBoardOptions options) {
     observe(board, the_case, parameters, result);
     const bool could_tell = notice(board, the_case, result);
     const bool lasts = is_active(the_case.situation) && the_case.situation != CaseSituation::landing;
-    if (lasts && is_unnoticed(result) && could_tell && !is_unheard(the_case.fault)) use_on(board, parameters, result);
+    if (lasts && is_unnoticed(result) && could_tell && !is_about_the_host(the_case.fault))
+      use_on(board, parameters, result);
     recover(board, the_case, could_tell, result);
   } catch (const device::Error& error) {
     result.error = error.what();

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -10,6 +12,8 @@
 #include <campaign/handling.hpp>
 #include <campaign/result.hpp>
 #include <campaign/run.hpp>
+#include <chip/exception_numbers.hpp>
+#include <firmware_update/image.hpp>
 #include <temporary_directory.hpp>
 
 #include "hazards.hpp"
@@ -116,12 +120,28 @@ TEST_CASE("what is not noticed is used on: a stuck encoder is told then, a sound
   CHECK(stuck.noticed_in_use_s.value() < 1.5);
   CHECK(stuck.recovery == "clear_fault");
   CHECK(stuck.fault_on_healing.empty());
-  const Result unheard = result_of("exception_lost:83 rest 1");
-  CHECK_FALSE(unheard.peak_force_in_use_N);
   const Result sound = result_of("none motion 3");
   CHECK(sound.noticed_in_use_as.empty());
   CHECK_FALSE(sound.noticed_in_use_s);
   CHECK(sound.peak_force_in_use_N.value() == doctest::Approx(sound.force_limit_N).epsilon(0.1));
+}
+
+TEST_CASE("the interrupts that are lost and late in the campaign are those that the firmware has a handler of") {
+  const auto image = firmware_update::read_image(build_directory() + "/../board/inkwell.elf");
+  const auto vector = [&](unsigned exception) {
+    std::uint32_t address = 0;
+    for (unsigned byte = 0; byte < 4; ++byte)
+      address |= std::to_integer<std::uint32_t>(image.at(0x0800'0000 + 4 * exception + byte).value()) << 8 * byte;
+    return address;
+  };
+  constexpr unsigned hard_fault = 3;
+  std::set<std::string> handled, tried;
+  for (unsigned exception = hard_fault; exception < virtual_board::exception_numbers; ++exception)
+    if (vector(exception) != vector(hard_fault)) handled.insert(std::to_string(exception));
+  for (const auto& fault : campaign::case_faults())
+    if (fault.fault == protocol::InjectedFault::exception_lost) tried.insert(fault.of);
+  CHECK(handled.contains("34"));
+  CHECK(tried == handled);
 }
 
 TEST_CASE("electrical faults that the firmware knows take the bridges off within two control periods") {

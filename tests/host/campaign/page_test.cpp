@@ -45,6 +45,26 @@ TEST_CASE("of three instants the worst is told") {
   CHECK(summarise(std::array{a, b, c}).cases == 2);
 }
 
+TEST_CASE(
+    "what failed at the first or third of three stands in the row of the second, and is named where it is worst") {
+  const TemporaryDirectory directory;
+  Result first = seen("leg_high:1A", "wall", 2), second = seen("leg_high:2A", "wall", 2),
+         third = seen("leg_high:3A", "wall", 3);
+  for (Result* each : {&first, &second, &third}) {
+    each->detected_as = "bridge_fault";
+    each->off_after_s = 50e-6;
+    each->recovery = "clear_fault";
+  }
+  third.off_after_s = 90e-6;
+  first.peak_force_N = 2.5;
+  second.peak_force_N = 2.25;
+  write_page(std::array{first, second, third}, directory / "campaign.md");
+  const std::string text = content_of(directory / "campaign.md");
+  CHECK(text.find("| `leg_high:2A` | bridge_fault | 1.8 | 2.50 |") != std::string::npos);
+  CHECK(text.find("| `leg_high:1A` |") == std::string::npos);
+  CHECK(text.find("at most 2.50 N in that time (`leg_high:1A` in wall)") != std::string::npos);
+}
+
 TEST_CASE("the page has the figures, and leaves nothing out that passed unnoticed or could not be run") {
   const TemporaryDirectory directory;
   Result quick = seen("bridge_fault", "wall", 1);
@@ -68,7 +88,7 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(text.find("while the board starts.\n4 of ") != std::string::npos);
   CHECK(text.find("Each fault is put in at 3 random instants while the arm is unreferenced") != std::string::npos);
   CHECK(text.find("are of the 0.3 s after") != std::string::npos);
-  CHECK(text.find("at the supply any more, in control periods of 50 us.") != std::string::npos);
+  CHECK(text.find("any more, in control periods of 50 us.") != std::string::npos);
   CHECK(text.find("free space, 60 mm in 0.1 s, with all joints.") != std::string::npos);
   CHECK(text.find("| `bridge_fault` | bridge_fault | 1.5 | 2.49 | 1.3 | 4.4 | clear_fault |") != std::string::npos);
   CHECK(text.find("| `motor_hot:2` | - | stayed on | 9.50 | 0.0 | 0.0 | none needed; position 12 mm off |") !=

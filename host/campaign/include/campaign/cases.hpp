@@ -77,12 +77,16 @@ struct Case {
   std::string name() const;
 };
 
-/// The control first, the deeds last. Of three motors that are wired alike the second stands for all: it bears the
-/// load at the wall.
+/// The control first, the deeds last. What there are three of is listed at the second motor, which bears the load at
+/// the wall.
 std::vector<CaseFault> case_faults();
 /// One of these faults as it is at another of three that are alike (1 to 3): motor, leg, encoder, current sensor,
 /// potentiometer of the gimbal. What there is only one of stays as it is.
 CaseFault at_another(CaseFault fault, unsigned number);
+bool is_of_three(const CaseFault& fault);
+/// Each listed fault at each instant; after these, of what there are three of, once at the first and at the third.
 std::vector<Case> all_cases();
+/// Under which name the list has a fault that is at another of three; else the name as it is.
+std::string listed_name(const std::string& name);
 
 }  // namespace inkwell::campaign

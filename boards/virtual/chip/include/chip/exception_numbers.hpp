@@ -22,7 +22,7 @@ enum Exception : unsigned {
 inline constexpr unsigned interrupt_positions = 82;
 inline constexpr unsigned exception_numbers = exception_interrupt_0 + interrupt_positions;
 
-inline constexpr unsigned converters_position = 18, otg_fs_position = 67;
+inline constexpr unsigned voltage_detector_position = 1, converters_position = 18, otg_fs_position = 67;
 constexpr unsigned exception_of(unsigned position) { return exception_interrupt_0 + position; }
 
 }  // namespace inkwell::virtual_board
