@@ -4,7 +4,7 @@ Everything that a handler can reach lies in the section .interrupt_text, and not
 tells what runs in interrupts. Nothing of it waits, divides, calls through a pointer, or reads the flash: the section is
 copied to RAM, so that an erase of the flash, for which every access to it waits, holds no interrupt up. The user's force
 law alone may divide, since tools/force_law_cost.py counts what that costs. PendSV's handler, which every interrupt
-interrupts, counts as a part of the main loop.
+interrupts, counts as a part of the main loop. No handler returns with a store under way (erratum 838869 of the core).
 """
 
 import re
@@ -122,6 +122,28 @@ def waits(function: Function) -> list[str]:
     return [f"{address:x}" for address in asleep + [min(loop) for loop in endless_loops(function, paths_of(function))]]
 
 
+# ---- stores that are under way -----------------------------------------------------------------------------------
+
+STORES = re.compile(r"v?st|v?push|blx?\t")  # or calls what may
+
+
+def returns_before_stores_end(function: Function) -> bool:
+    """Whether a way leads from a store to the function's end without DSB between them, or one into another function."""
+    texts, paths = dict(function.instructions), paths_of(function)
+    if any((jump := JUMP.match(text)) and int(jump[3], 16) not in texts for text in texts.values()):
+        return True
+    waiting = [address for address, text in texts.items() if STORES.match(text)]
+    seen = set(waiting)
+    while waiting:
+        address = waiting.pop()
+        if LEAVES.match(texts[address]) and not texts[address].startswith("udf"):
+            return True
+        further = {other for other in paths[address] if not texts[other].startswith("dsb")} - seen
+        seen |= further
+        waiting.extend(further)
+    return False
+
+
 # ---- the rules -------------------------------------------------------------------------------------------------
 
 
@@ -172,6 +194,11 @@ def broken_interrupt_rules(image: Image, section: range) -> list[str]:
         f"{name} lies in .interrupt_text but no interrupt calls it: take its mark away"
         for name, function in sorted(image.functions.items())
         if function.address in section and name not in reached
+    ]
+    problems += [
+        f"{name} handles an interrupt and may return with a store under way: end it by drivers::finish_stores()"
+        for name in image.interrupts
+        if returns_before_stores_end(image.functions[name])
     ]
     laws = [name for name in image.functions if "step_force_law" in name]
     priced = set().union(*map(image.reachable, laws))

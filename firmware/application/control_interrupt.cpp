@@ -106,12 +106,14 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
                           controller.late_force_reports(), overrun);
   completed_periods.store(controller.periods());
   bridges.end_period();
+  drivers::finish_stores();
 }
 
 // Neither of the two interrupts the other. The next control period switches the bridges off; the main loop, which looks
 // as well, knows how long it lasts.
 extern "C" INKWELL_INTERRUPT void logic_supply_interrupt() {
   if (logic_supply.has_fallen()) controller.raise(Fault::logic_supply_low);
+  drivers::finish_stores();
 }
 
 }  // namespace inkwell::application

@@ -129,6 +129,7 @@ extern "C" [[gnu::naked]] void hang_handler() {
       "sub sp, #4 \n"  // a call wants the stack at a multiple of eight
       "bl record_hang \n"
       "add sp, #4 \n"
+      "dsb \n"  // as drivers::finish_stores()
       "pop {r4-r11, pc} \n");
 }
 

@@ -18,7 +18,7 @@ extern "C" {
 volatile float value = 1.0f;
 volatile int sink;
 INKWELL_INTERRUPT [[gnu::noinline]] void work();
-INKWELL_INTERRUPT void control_interrupt() { work(); }
+INKWELL_INTERRUPT void control_interrupt() { work(); asm volatile("dsb" ::: "memory"); }
 void reset_handler() { for (;;) work(); }
 [[gnu::section(".vectors"), gnu::used]] void (*const vectors[])() = {reset_handler, control_interrupt};
 }
@@ -95,7 +95,7 @@ class ImageChecks(unittest.TestCase):
         self.assert_refused(check_image, "handles an interrupt but lies outside .interrupt_text")
 
     def test_the_handler_behind_every_interrupt_is_part_of_the_main_loop(self):
-        source = ("void behind() { value = 1.0f / value; }\nvoid work() { sink = 2; }\n"
+        source = ("void behind() { value = 1.0f / value; asm volatile(\"dsb\"); }\nvoid work() { sink = 2; }\n"
                   "[[gnu::section(\".vectors\"), gnu::used]] void (*const more[])() = {%s};")
         words_before = ["control_interrupt"] * 14  # the compiler puts the newest table first
         check_image, stack_bound = self.check(source % ", ".join([*words_before, "behind"]))
@@ -104,6 +104,25 @@ class ImageChecks(unittest.TestCase):
         for elsewhere in ([*words_before, "behind", "behind"], [*words_before, "control_interrupt", "behind"]):
             check_image, _ = self.check(source % ", ".join(elsewhere))
             self.assert_refused(check_image, "handles an interrupt but lies outside .interrupt_text")
+
+    def test_a_handler_that_returns_with_a_store_under_way_is_found(self):
+        under_way = "handles an interrupt and may return with a store under way"
+        handler = ("INKWELL_INTERRUPT void more_interrupt() { %s }\nvoid work() { sink = 2; }\n"
+                   "[[gnu::section(\".vectors\"), gnu::used]] void (*const more)() = more_interrupt;")
+        for body in ("sink = 1;",
+                     "work();",
+                     "work(); sink = sink + 1; work();",
+                     'asm volatile("dsb" ::: "memory"); sink = 1;',
+                     'if (sink == 4) return; work(); if (sink == 3) return; asm volatile("dsb" ::: "memory");'):
+            with self.subTest(body):
+                check_image, _ = self.check(handler % body)
+                self.assert_refused(check_image, under_way)
+        for body in ('sink = 1; asm volatile("dsb" ::: "memory");',
+                     'if (sink == 3) work(); asm volatile("dsb" ::: "memory");',
+                     'if (sink == 3) return; sink = 1; asm volatile("dsb" ::: "memory");'):
+            with self.subTest(body):
+                check_image, _ = self.check(handler % body)
+                self.assertEqual(check_image.returncode, 0, check_image.stderr)
 
     def test_a_mark_that_lies_is_found(self):
         check_image, _ = self.check("INKWELL_INTERRUPT [[gnu::used]] void other() { sink = 1; }\nvoid work() { sink = 2; }")

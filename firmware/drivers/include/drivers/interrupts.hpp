@@ -15,6 +15,10 @@ class InterruptsHeld {
   InterruptsHeld& operator=(const InterruptsHeld&) = delete;
 };
 
+/// Last of every handler. While one returns with a store under way, the processor may clear an interrupt that comes
+/// then and run another in its place (erratum 838869 of the Cortex-M4; RM0090's chip has that core).
+inline void finish_stores() { asm volatile("dsb" ::: "memory"); }
+
 /// A handler that comes when every interrupt has been served, before the program goes on, and that each of them
 /// interrupts (PendSV: ARMv7-M, B1.5.6).
 struct CallBehindInterrupts {
