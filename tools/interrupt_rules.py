@@ -62,7 +62,9 @@ def counts(loop: list[str], own: list[str]) -> bool:
 
 JUMP = re.compile(r"(?:b([a-z]{2})?(?:\.[nw])?\t|(cbn?z)\t\w+, )([0-9a-f]+) <")
 TABLE = re.compile(r"tb[bh]\t")
-LEAVES = re.compile(r"bx\t|(?:pop|ldm\w*(?:\.w)?\t\w+!,).*pc\}|(?:ldr|mov)(?:\.w)?\tpc,|udf")
+CONDITION = "eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le"
+LEAVES = re.compile(rf"bx(?:{CONDITION})?\t|(?:pop|ldm\w*(?:\.w)?\t\w+!,).*pc\}}|(?:ldr|mov)(?:\.w)?\tpc,|udf")
+MAY_LEAVE = re.compile(rf"(?:bx|pop|ldm\w*|ldr|mov)(?:{CONDITION})(?:\.w)?\t")
 
 Paths = dict[int, set[int]]  # from an instruction's address to those of the instructions that may follow it
 
@@ -76,7 +78,7 @@ def paths_of(function: Function) -> Paths:
             conditional = jump[1] or jump[2]
             paths[address] = {int(jump[3], 16)} & set(addresses) | (following if conditional else set())
         else:
-            paths[address] = later if TABLE.match(text) else set() if LEAVES.match(text) else following
+            paths[address] = later if TABLE.match(text) else set() if LEAVES.match(text) and not MAY_LEAVE.match(text) else following
     return paths
 
 

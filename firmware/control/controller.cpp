@@ -34,8 +34,8 @@ bool over_current(const Triple& current_A, const Triple& limit_A) {
   return false;
 }
 
-/// A program's force was cut to the limit before it came here, and rounded then: at the limit is what misses it by
-/// less.
+/// From this part of the force limit on a force counts as held by it: a program's is cut to the limit before it is
+/// added up, and both may round it off by some millionths.
 constexpr float at_limit_part = 1.0f - 1e-4f;
 
 /// Of a limit, each third period: from the largest limit to the smallest in 10 ms.

@@ -204,12 +204,12 @@ is 3, as `inkwell flash` sets it. Each fault is put in at {} random instants whi
 rest, pressed into a stiff wall and in fast motion, while the force rises, is held back by its limit and falls, pressed
 into that wall, while the board tests itself, after another fault, on the way to the boot loader, and, once before and
 twice after the power has come, while the board starts.
-{} of {} cases were run. A row tells the worst of its instants. The force limit is {:.1f} N; the row `none` is what the
+{} of {} cases were run. A row tells the worst of its cases. The force limit is {:.1f} N; the row `none` is what the
 hand feels without a fault. Peak force, energy given to the hand and travel (in motion: how far the probe lags behind
 the hand) are of the {} s after the fault came, recovery and position of the end, after the use that "Not noticed" tells
-of. What there are three of is named as at the second motor, which bears the load at the wall; once each it is tried at
-the first and at the third as well, in the same row. "bridges off" is when no bridge that is on had a leg at the supply
-any more, in control periods of {:.0f} us.
+of. Of what there are three of, the tables name the second, whose motor bears the load at the wall; the first and the
+third were tried at one instant in each situation, in the same row. "bridges off" is when no bridge that is on had a leg
+at the supply any more, in control periods of {:.0f} us.
 
 ![until the bridges were off]({}-off.svg)
 ![peak force]({}-force.svg)

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -73,8 +74,8 @@ InUse sound_in_use(const Groups& groups) {
   return sound;
 }
 
-/// The situation's name if a case that could be run is such there, with how many of its cases are, unless all; else
-/// nothing.
+/// The situation's name if a case that could be run is such there, with how many of its cases are, unless all, and at
+/// which of three, unless at each; else nothing.
 std::string situation_with(const Groups& groups, const CaseFault& fault, CaseSituation situation,
                            bool (*counts)(CaseSituation, const Result&)) {
   const auto* results = find(groups, fault.name(), situation);
@@ -83,7 +84,18 @@ std::string situation_with(const Groups& groups, const CaseFault& fault, CaseSit
   const auto such =
       std::ranges::count_if(*results, [&](const Result& r) { return r.error.empty() && counts(situation, r); });
   if (such == 0) return "";
-  return such == run ? std::string(name_of(situation)) : fmt::format("{} ({} of {})", name_of(situation), such, run);
+  if (such == run) return std::string(name_of(situation));
+  std::string at;
+  if (is_of_three(fault)) {
+    std::vector<unsigned> numbers;
+    for (const unsigned number : {1u, 2u, 3u})
+      if (std::ranges::any_of(*results, [&](const Result& r) {
+            return r.error.empty() && r.fault == at_another(fault, number).name() && counts(situation, r);
+          }))
+        numbers.push_back(number);
+    if (numbers.size() < 3) at = fmt::format(", at {}", fmt::join(numbers, " and "));
+  }
+  return fmt::format("{} ({} of {}{})", name_of(situation), such, run, at);
 }
 
 void add(std::string& where, const std::string& situation) {

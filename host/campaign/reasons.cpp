@@ -39,14 +39,14 @@ const std::string of_hung_main_loop = std::to_string(virtual_board::exception_pe
 const std::string of_voltage_detector =
     std::to_string(virtual_board::exception_of(virtual_board::voltage_detector_position));
 
-/// What an interrupt is for that comes with another fault only; of the control interrupt nothing.
-std::string_view second_fault(std::string_view exception) {
+/// Of those that come with another fault only it does not go by how long they are late.
+std::string_view reason_of_exception(std::string_view exception, std::string_view of_control_interrupt) {
   if (exception == of_hung_main_loop)
-    return "It is asked for when the main loop hangs only, to note its place; that would be a second fault.";
+    return "It is asked for as the main loop hangs only, to note its place; that would be a second fault.";
   if (exception == of_voltage_detector)
-    return "It comes when the chip's supply falls only, which would be a second fault; the brown-out reset stands "
-           "behind it.";
-  return "";
+    return "It comes when the chip's supply falls only, which would be a second fault; the main loop looks as "
+           "well, and the brown-out reset stands behind it.";
+  return of_control_interrupt;
 }
 
 constexpr std::string_view host_is_missed = "None is known: a host that is not heard is missed.";
@@ -58,8 +58,29 @@ constexpr std::string_view not_begun = "A core that does not take its first inst
 constexpr std::string_view stalled_unwatched =
     "Before the main loop runs, while another fault is told and on the way to the boot loader nobody looks, and it "
     "went on before the watchdog bit.";
+constexpr std::string_view pulses_were_over =
+    "It came when this motor's pulses were over, or nearly so; the next self-test tells.";
 constexpr std::string_view break_of_tim8 =
     "This pin is seen by the break input of TIM8 only, while the bridges are on; the self-test's pulses put them on.";
+
+/// The self-test's pulses show it, so that it is not noticed there only if it comes behind them.
+bool is_tested_by_pulses(const CaseFault& put_in) {
+  switch (*put_in.fault) {
+    case InjectedFault::wire_open:
+    case InjectedFault::wire_low:
+    case InjectedFault::wire_high:
+    case InjectedFault::wire_frozen:
+    case InjectedFault::wires_shorted:
+      return put_in.of.starts_with("bridges") || put_in.of.starts_with("motor_current");
+    case InjectedFault::shunt_gain:
+    case InjectedFault::shunt_frozen:
+    case InjectedFault::motor_open:
+    case InjectedFault::motor_shorted:
+    case InjectedFault::leg_open:
+    case InjectedFault::leg_slow: return true;
+    default: return false;
+  }
+}
 
 /// The same while the bridges are off.
 std::string_view reason_of_idle_wire(InjectedFault fault, std::string_view wire) {
@@ -146,10 +167,9 @@ std::string_view reason_with_force(const CaseFault& put_in) {
     case InjectedFault::program_astray:
       return "The code that it came to returned to the main loop, and had changed nothing that is checked.";
     case InjectedFault::exception_lost:
-      return second_fault(of).empty() ? "None is known: the heartbeat and the watchdog miss the control interrupt."
-                                      : second_fault(of);
+      return reason_of_exception(of, "None is known: the heartbeat and the watchdog miss the control interrupt.");
     case InjectedFault::exception_late:
-      return second_fault(of).empty() ? "Late by less than what the firmware watches for." : second_fault(of);
+      return reason_of_exception(of, "Late by less than what the firmware watches for.");
     case InjectedFault::adc_stopped: return "None is known: each conversion of a current has to be a new one.";
     case InjectedFault::dma_stopped: return "None is known: the age of supply and gimbal is watched.";
     case InjectedFault::ram_bit:
@@ -167,6 +187,7 @@ std::string_view reason_without_force(const CaseFault& put_in, CaseSituation sit
   const InjectedFault fault = *put_in.fault;
   const std::string_view of = put_in.of;
   const bool is_starting = situation == CaseSituation::starting;
+  if (is_tested_by_pulses(put_in) && (is_starting || situation == CaseSituation::testing)) return pulses_were_over;
   switch (fault) {
     case InjectedFault::wire_open:
     case InjectedFault::wire_low:

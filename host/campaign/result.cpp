@@ -100,6 +100,7 @@ void save(const Result& result, const std::filesystem::path& directory) {
 
 std::vector<Result> load_all(const std::filesystem::path& directory) {
   std::error_code code;
+  const auto cases = all_cases();
   std::vector<Result> results;
   for (const auto& entry : std::filesystem::directory_iterator(directory, code)) {
     if (entry.path().extension() != ".json") continue;
@@ -107,6 +108,13 @@ std::vector<Result> load_all(const std::filesystem::path& directory) {
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     try {
       results.push_back(parse_result(text));
+      const Result& result = results.back();
+      const std::string name = fmt::format("{} {} {}", result.fault, result.situation, result.phase);
+      if (result.number == 0 || result.number > cases.size() || cases[result.number - 1].name() != name)
+        throw device::Error(
+            fmt::format("This is the result of `{}`, which is no case of that number in this version. Remove it, and "
+                        "run the missing cases.",
+                        name));
     } catch (const device::Error& error) {
       throw device::Error(fmt::format("{}: {}", entry.path().string(), error.what()));
     }

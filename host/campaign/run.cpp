@@ -7,7 +7,6 @@
 
 #include <campaign/board_run.hpp>
 #include <campaign/handling.hpp>
-#include <chip/exception_numbers.hpp>
 #include <protocol/reports.hpp>
 
 #include "use.hpp"
@@ -175,7 +174,7 @@ ParameterSet bring_into(BoardRun& board, const Case& the_case) {
 
 double longest_phase_of(CaseSituation situation) {
   switch (situation) {
-    // A motor's pulses take 4 ms: those of the second, which has the faults, are still to come.
+    // A motor's pulses take 4 ms: the first's have begun, those of the second and third are still to come.
     case CaseSituation::testing: return 0.004;
     case CaseSituation::update: return 0.05;  // the board writes for longer than that
     case CaseSituation::ramping: return 1.0;

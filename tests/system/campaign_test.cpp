@@ -153,6 +153,8 @@ TEST_CASE("electrical faults that the firmware knows take the bridges off within
                              {"shunt_high:2 wall 1", "over_current"},
                              {"wire_low:motor_current[1] motion 3", "over_current"},
                              {"leg_low:2A motion 1", "bridge_fault"},
+                             {"leg_high:1B limited 3", "bridge_fault"},
+                             {"shunt_high:3 wall 2", "over_current"},
                              {"motor_open:2 wall 1", "current_jump"},
                              {"leg_open:2A wall 1", "current_jump"},
                              {"wire_open:bridges[1].leg_a wall 2", "current_jump"},

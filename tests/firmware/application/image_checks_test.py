@@ -111,7 +111,8 @@ class ImageChecks(unittest.TestCase):
                    "[[gnu::section(\".vectors\"), gnu::used]] void (*const more)() = more_interrupt;")
         for body in ("sink = 1;",
                      "work();",
-                     "work(); sink = sink + 1; work();",
+                     'work(); asm volatile("");',
+                     'sink = 1; asm volatile("it eq\\n bxeq lr\\n dsb" ::: "memory");',
                      'asm volatile("dsb" ::: "memory"); sink = 1;',
                      'if (sink == 4) return; work(); if (sink == 3) return; asm volatile("dsb" ::: "memory");'):
             with self.subTest(body):

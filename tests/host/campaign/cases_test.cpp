@@ -48,8 +48,8 @@ TEST_CASE("the list has every fault of the table in every situation, so often as
   CHECK(names.contains("wire_open:encoders[1].a wall 2"));
   CHECK(names.contains("wire_high:bridge_enable rest 1"));
   // Of three the second has each instant, the others one that is random in each situation.
-  for (const char* others : {"wire_open:encoders[0].a wall 2", "wire_open:encoders[2].a starting 3",
-                             "motor_hot:1 rest 2", "leg_high:3B limited 3", "encoder_slip:3=400 motion 3"})
+  for (const char* others : {"wire_open:encoders[0].a wall 3", "wire_open:encoders[2].a starting 2",
+                             "motor_hot:1 rest 3", "leg_high:3B limited 2", "encoder_slip:3=400 motion 2"})
     CHECK(names.contains(others));
   CHECK_FALSE(names.contains("wire_open:encoders[0].a wall 1"));
   CHECK_FALSE(names.contains("wire_open:encoders[2].a wall 1"));
@@ -117,6 +117,17 @@ TEST_CASE("a result comes back from its file as it was, and a damaged file is na
                        doctest::Contains("by this version: parse error at line 1, column 12"), device::Error);
   CHECK_THROWS_WITH_AS(parse_result("{}"), doctest::Contains("by this version: key 'number' not found. Remove it"),
                        device::Error);
+  Result of_another_list = result;
+  of_another_list.fault = "exception_lost:15";
+  std::ofstream(file_of(directory.path(), 9)) << text_of(of_another_list);
+  CHECK_THROWS_WITH_AS(
+      load_all(directory.path()),
+      doctest::Contains("case-00009.json: This is the result of `exception_lost:15 wall 2`, which is no case"),
+      device::Error);
+  of_another_list = result;
+  of_another_list.number = static_cast<unsigned>(all_cases().size()) + 1;
+  std::ofstream(file_of(directory.path(), 9)) << text_of(of_another_list);
+  CHECK_THROWS_WITH_AS(load_all(directory.path()), doctest::Contains("no case of that number"), device::Error);
   CHECK_THROWS_AS(load_all(directory / "nowhere"), device::Error);
   CHECK_THROWS_AS(save(result, directory / "nowhere"), device::Error);
 }

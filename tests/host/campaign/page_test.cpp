@@ -48,8 +48,8 @@ TEST_CASE("of three instants the worst is told") {
 TEST_CASE(
     "what failed at the first or third of three stands in the row of the second, and is named where it is worst") {
   const TemporaryDirectory directory;
-  Result first = seen("leg_high:1A", "wall", 2), second = seen("leg_high:2A", "wall", 2),
-         third = seen("leg_high:3A", "wall", 3);
+  Result first = seen("leg_high:1A", "wall", 3), second = seen("leg_high:2A", "wall", 2),
+         third = seen("leg_high:3A", "wall", 2);
   for (Result* each : {&first, &second, &third}) {
     each->detected_as = "bridge_fault";
     each->off_after_s = 50e-6;
@@ -88,7 +88,7 @@ TEST_CASE("the page has the figures, and leaves nothing out that passed unnotice
   CHECK(text.find("while the board starts.\n4 of ") != std::string::npos);
   CHECK(text.find("Each fault is put in at 3 random instants while the arm is unreferenced") != std::string::npos);
   CHECK(text.find("are of the 0.3 s after") != std::string::npos);
-  CHECK(text.find("any more, in control periods of 50 us.") != std::string::npos);
+  CHECK(text.find("at the supply any more, in control periods of 50 us.") != std::string::npos);
   CHECK(text.find("free space, 60 mm in 0.1 s, with all joints.") != std::string::npos);
   CHECK(text.find("| `bridge_fault` | bridge_fault | 1.5 | 2.49 | 1.3 | 4.4 | clear_fault |") != std::string::npos);
   CHECK(text.find("| `motor_hot:2` | - | stayed on | 9.50 | 0.0 | 0.0 | none needed; position 12 mm off |") !=

@@ -202,6 +202,46 @@ TEST_CASE("what was not noticed without force is listed as well, in a table of i
   CHECK(section_of({jumped, pressed, sound}).ends_with("in which no fault was told: none.\n"));
 }
 
+TEST_CASE("where of three not each passes unnoticed, the page tells which") {
+  const TemporaryDirectory directory;
+  std::vector<Result> results{seen("motor_open:2", "wall", 1),    seen("motor_open:1", "wall", 3),
+                              seen("motor_open:3", "wall", 2),    seen("encoder_stuck:2", "wall", 1),
+                              seen("encoder_stuck:1", "wall", 3), seen("encoder_stuck:3", "wall", 2)};
+  results[0].detected_as = results[3].detected_as = results[4].detected_as = "motor_implausible";
+  write_page(results, directory / "campaign.md");
+  const std::string text = content_of(directory / "campaign.md");
+  CHECK(text.find("| `motor_open:2` | wall (2 of 3, at 1 and 3) | not used |") != std::string::npos);
+  CHECK(text.find("| `encoder_stuck:2` | wall (1 of 3, at 3) | not used |") != std::string::npos);
+}
+
+TEST_CASE(
+    "an interrupt that is lost or late has the reason of what it is for, a motor in the self-test that of its pulses") {
+  const TemporaryDirectory directory;
+  const auto row_of = [&](const std::string& fault, const std::string& situation) {
+    write_page(std::array{seen(fault, situation, 1)}, directory / "campaign.md");
+    std::istringstream lines(content_of(directory / "campaign.md"));
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("| `" + fault + "` | " + situation + " | ")) return line;
+    return std::string();
+  };
+  for (const char* exception : {"exception_lost:14", "exception_late:14"})
+    CHECK(row_of(exception, "rest").find("as the main loop hangs only") != std::string::npos);
+  for (const char* exception : {"exception_lost:17", "exception_late:17"})
+    CHECK(row_of(exception, "rest").find("the brown-out reset stands behind it") != std::string::npos);
+  CHECK(row_of("exception_lost:34", "rest").find("None is known") != std::string::npos);
+  CHECK(row_of("exception_late:34", "rest").find("Late by less") != std::string::npos);
+  for (const char* fault : {"leg_slow:2A", "motor_open:2", "shunt_frozen:2", "wire_open:motor_current[1]",
+                            "wires_shorted:bridges[1].leg_a+bridges[1].leg_b"}) {
+    CAPTURE(fault);
+    for (const char* situation : {"testing", "starting"})
+      CHECK(row_of(fault, situation).find("this motor's pulses were over") != std::string::npos);
+    CHECK(row_of(fault, "ready").size() > 40);
+    CHECK(row_of(fault, "ready").find("pulses were over") == std::string::npos);
+  }
+  CHECK(row_of("motor_hot:2", "testing").find("passes the self-test") != std::string::npos);
+  CHECK(row_of("encoder_stuck:2", "testing").find("The hand holds the joint still") != std::string::npos);
+}
+
 TEST_CASE("each fault that passes without a word has a reason on the page, in each of its three tables") {
   const TemporaryDirectory directory;
   struct Table {

@@ -69,7 +69,7 @@ struct CaseFault {
 };
 
 struct Case {
-  unsigned number;  ///< from 1 on; the same as long as situations and the table of faults are
+  unsigned number;  ///< from 1 on; the same as long as situations, the table of faults and their places are
   CaseFault fault;
   CaseSituation situation;
   unsigned phase;  ///< 1 to phases
@@ -84,7 +84,8 @@ std::vector<CaseFault> case_faults();
 /// potentiometer of the gimbal. What there is only one of stays as it is.
 CaseFault at_another(CaseFault fault, unsigned number);
 bool is_of_three(const CaseFault& fault);
-/// Each listed fault at each instant; after these, of what there are three of, once at the first and at the third.
+/// In each situation each listed fault at each instant; after these, of what there are three of, the first and the
+/// third at one.
 std::vector<Case> all_cases();
 /// Under which name the list has a fault that is at another of three; else the name as it is.
 std::string listed_name(const std::string& name);

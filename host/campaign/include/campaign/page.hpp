@@ -9,7 +9,7 @@
 
 namespace inkwell::campaign {
 
-/// What is told of the phases of a fault in a situation: the worst of them.
+/// What is told of the cases of a fault in a situation: the worst of them.
 struct Summary {
   unsigned cases = 0;       ///< that could be run
   unsigned detected = 0;    ///< a fault was told, or the board restarted; bridges that went off alone are none

@@ -70,7 +70,7 @@ Result parse_result(const std::string& text);
 std::filesystem::path file_of(const std::filesystem::path& directory, unsigned number);
 /// Whole or not at all, so that a job that is killed leaves no half of a result. Throws device::Error.
 void save(const Result& result, const std::filesystem::path& directory);
-/// By number. A file that is damaged is an error that names it.
+/// By number. A file that is damaged, or of another list of cases, is an error that names it.
 std::vector<Result> load_all(const std::filesystem::path& directory);
 
 }  // namespace inkwell::campaign
