@@ -67,12 +67,14 @@ std::vector<device::HandWaypoint> fling(const Vector3& middle_m) {
 
 std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters) {
   const Vector3 middle_m = middle_of_box_m(parameters);
-  const Vector3 pressed_m = beyond_forward_wall_m(parameters, 1.0);
+  const double force_N = static_cast<double>(parameters[Parameter::force_limit_N]);
+  const Vector3 forward_m = into_wall_m(parameters, experiment::forward_wall(parameters), force_N);
+  const Vector3 aside_m = into_wall_m(parameters, experiment::side_wall(parameters), force_N);
   std::vector<device::HandWaypoint> path;
   double at_s = 0.1;
   path.push_back({at_s, middle_m});
   for (int press = 0; press < use_presses; ++press)
-    for (const auto& target_m : {pressed_m, middle_m}) {
+    for (const auto& target_m : {forward_m, middle_m, aside_m, middle_m}) {
       path.push_back({at_s += 0.15, target_m});
       path.push_back({at_s += 0.1, target_m});
     }

@@ -139,8 +139,9 @@ std::string told_later(const Groups& groups, const CaseFault& fault) {
 std::string unnoticed(const Groups& groups, const std::vector<CaseFault>& faults) {
   std::string text = fmt::format(
       "\n## Not noticed\n\nWith the force on, in at least one of the cases that were run, the bridges stayed on and no "
-      "fault was told. The hand then went on: for {} s as before, then it pressed {} times into the wall in front with "
-      "the force limit and swung {} times. What was told meanwhile stands in the third column, with the longest time "
+      "fault was told. The hand then went on: for {} s as before, then it pressed with the force limit {} times in "
+      "turn into the wall in front and the one to the side, and swung {} times. What was told meanwhile stands in the "
+      "third column, with the longest time "
       "since it went on; the fourth is what the hand felt at most, the fifth, of those that were not noticed in use "
       "either, how much more energy it got than from a sound arm that was used alike from the same instant on.",
       goes_on_s, use_presses, use_swings);

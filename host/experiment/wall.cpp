@@ -16,6 +16,8 @@ constexpr Parameter wall_parameters[3][2] = {
     {Parameter::box_minimum_z_m, Parameter::box_maximum_z_m},
 };
 
+bool has_frame_of_omni(const ParameterSet& parameters) { return parameters[Parameter::frame] == 1.0f; }
+
 }  // namespace
 
 char axis_letter(int axis) { return static_cast<char>('x' + axis); }
@@ -28,10 +30,9 @@ BoxWall parse_wall(const std::string& name) {
 
 std::string wall_name(BoxWall wall) { return {axis_letter(wall.axis), wall.side > 0 ? '+' : '-'}; }
 
-BoxWall forward_wall(const ParameterSet& parameters) {
-  const bool frame_of_omni = parameters[Parameter::frame] == 1.0f;
-  return {frame_of_omni ? 2 : 0, 1};
-}
+BoxWall forward_wall(const ParameterSet& parameters) { return {has_frame_of_omni(parameters) ? 2 : 0, 1}; }
+
+BoxWall side_wall(const ParameterSet& parameters) { return {has_frame_of_omni(parameters) ? 0 : 1, 1}; }
 
 double wall_position_m(const ParameterSet& parameters, BoxWall wall) {
   return static_cast<double>(parameters[wall_parameters[wall.axis][wall.side > 0 ? 1 : 0]]);

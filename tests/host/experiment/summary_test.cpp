@@ -128,8 +128,10 @@ TEST_CASE("walls have names; the forward one lies in the arm's plane") {
   auto parameters = omni();
   parameters[Parameter::frame] = 1;
   CHECK(forward_wall(parameters) == BoxWall{2, 1});
+  CHECK(side_wall(parameters) == BoxWall{0, 1});
   parameters[Parameter::frame] = 0;
   CHECK(forward_wall(parameters) == BoxWall{0, 1});
+  CHECK(side_wall(parameters) == BoxWall{1, 1});
   CHECK(wall_position_m(parameters, {0, -1}) == static_cast<double>(parameters[Parameter::box_minimum_x_m]));
 }
 

@@ -19,7 +19,8 @@ device::Vector3 into_wall_m(const protocol::ParameterSet& parameters, experiment
 device::Vector3 beyond_forward_wall_m(const protocol::ParameterSet& parameters, double part_of_limit);
 /// From one side of this point to the other and back, as in CaseSituation::motion.
 std::vector<device::HandWaypoint> swings(const device::Vector3& middle_m, int count);
-/// To the middle, then `use_presses` times into the wall in front and back, then `use_swings` (campaign/run.hpp).
+/// To the middle, then `use_presses` times into the wall in front and the one to the side, then `use_swings`
+/// (campaign/run.hpp).
 std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters);
 /// Back, along x, and then from there to the other side of this point faster than any force is given at.
 std::vector<device::HandWaypoint> fling(const device::Vector3& middle_m);

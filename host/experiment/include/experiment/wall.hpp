@@ -20,6 +20,8 @@ BoxWall parse_wall(const std::string& name);
 std::string wall_name(BoxWall wall);
 /// The wall in the arm's plane, away from its base: pushing into it takes no torque about the waist.
 BoxWall forward_wall(const protocol::ParameterSet& parameters);
+/// A wall that stands upright across that plane: the waist's motor bears it.
+BoxWall side_wall(const protocol::ParameterSet& parameters);
 /// Where the wall stands along its axis, in metres.
 double wall_position_m(const protocol::ParameterSet& parameters, BoxWall wall);
 char axis_letter(int axis);
