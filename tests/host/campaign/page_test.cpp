@@ -58,7 +58,7 @@ TEST_CASE(
   third.off_after_s = 90e-6;
   first.peak_force_N = 2.5;
   second.peak_force_N = 2.25;
-  write_page(std::array{first, second, third}, directory / "campaign.md");
+  write_page(std::array{second, first, third}, directory / "campaign.md");
   const std::string text = content_of(directory / "campaign.md");
   CHECK(text.find("| `leg_high:2A` | bridge_fault | 1.8 | 2.50 |") != std::string::npos);
   CHECK(text.find("| `leg_high:1A` |") == std::string::npos);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -215,11 +216,16 @@ TEST_CASE("where of three not each passes unnoticed, the page tells which") {
   std::vector<Result> results{seen("motor_open:2", "wall", 1),    seen("motor_open:1", "wall", 3),
                               seen("motor_open:3", "wall", 2),    seen("encoder_stuck:2", "wall", 1),
                               seen("encoder_stuck:1", "wall", 3), seen("encoder_stuck:3", "wall", 2)};
+  for (const auto& [fault, phase] :
+       {std::pair{"leg_slow:2A", 1u}, {"leg_slow:2A", 2u}, {"leg_slow:1A", 3u}, {"leg_slow:3A", 2u}})
+    results.push_back(seen(fault, "wall", phase));
+  results[6].detected_as = "motor_implausible";
   results[0].detected_as = results[3].detected_as = results[4].detected_as = "motor_implausible";
   write_page(results, directory / "campaign.md");
   const std::string text = content_of(directory / "campaign.md");
   CHECK(text.find("| `motor_open:2` | wall (2 of 3, at 1 and 3) | not used |") != std::string::npos);
   CHECK(text.find("| `encoder_stuck:2` | wall (1 of 3, at 3) | not used |") != std::string::npos);
+  CHECK(text.find("| `leg_slow:2A` | wall (3 of 4) | not used |") != std::string::npos);
 }
 
 TEST_CASE(
