@@ -77,8 +77,10 @@ def paths_of(function: Function) -> Paths:
         if jump := JUMP.match(text):
             conditional = jump[1] or jump[2]
             paths[address] = {int(jump[3], 16)} & set(addresses) | (following if conditional else set())
+        elif LEAVES.match(text) and not MAY_LEAVE.match(text):
+            paths[address] = set()
         else:
-            paths[address] = later if TABLE.match(text) else set() if LEAVES.match(text) and not MAY_LEAVE.match(text) else following
+            paths[address] = later if TABLE.match(text) else following
     return paths
 
 

@@ -68,7 +68,7 @@ std::vector<device::HandWaypoint> fling(const Vector3& middle_m) {
 std::vector<device::HandWaypoint> pressing_and_swinging(const protocol::ParameterSet& parameters) {
   const Vector3 middle_m = middle_of_box_m(parameters);
   const double force_N = static_cast<double>(parameters[Parameter::force_limit_N]);
-  const Vector3 forward_m = into_wall_m(parameters, experiment::forward_wall(parameters), force_N);
+  const Vector3 forward_m = beyond_forward_wall_m(parameters, 1.0);
   const Vector3 aside_m = into_wall_m(parameters, experiment::side_wall(parameters), force_N);
   std::vector<device::HandWaypoint> path;
   double at_s = 0.1;
