@@ -63,7 +63,8 @@ void TouchedShapes::list_alive() {
       touched_ &= ~(1u << shape);
       return false;
     }
-    if (next_end_periods_ == 0 || end_periods < next_end_periods_) next_end_periods_ = end_periods;
+    const bool ends_next = next_end_periods_ == 0 || end_periods < next_end_periods_;
+    if (end_periods != Shapes::lasting && ends_next) next_end_periods_ = end_periods;
     return true;
   };
   sphere_lives_ = lives(0);

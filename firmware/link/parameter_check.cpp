@@ -1,5 +1,6 @@
 #include <link/parameter_check.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -157,20 +158,19 @@ void StoredSet::make_consistent() {
   }
 }
 
+TransactionHeader header_of(std::span<const std::byte> report) {
+  TransactionHeader header{};
+  static_assert(sizeof header == protocol::parameters_report_size(0));
+  std::memcpy(&header, report.data(), std::min(report.size(), sizeof header));
+  return header;
+}
+
 ParameterCheck check_transaction(std::span<const std::byte> report, const ParameterSet& current, bool force_is_on,
                                  const ParameterSet* stored) {
   constexpr std::size_t header_size = protocol::parameters_report_size(0);
   if (report.size() < header_size || report.size() > sizeof(protocol::ParametersReport))
     return refuse(Refusal::wrong_length);
-  struct Header {
-    protocol::ReportId report_id;
-    protocol::ParameterOperation operation;
-    std::uint16_t version;
-    std::uint16_t count;
-    std::uint16_t reserved;
-  } header;
-  static_assert(sizeof header == header_size);
-  std::memcpy(&header, report.data(), sizeof header);
+  const TransactionHeader header = header_of(report);
 
   if (header.version != protocol::protocol_version) return refuse(Refusal::wrong_version);
   if (header.count > protocol::parameter_entries_maximum) return refuse(Refusal::wrong_length);

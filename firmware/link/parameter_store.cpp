@@ -35,6 +35,7 @@ bool ParameterStore::restore_defaults() {
 protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool force_is_on,
                                          const Guarded<protocol::ParameterSet>* stored) {
   ++transactions_;
+  ticket_ = header_of(report).ticket;
   ParameterCheck check;
   control::Settings* next = place_of_next();
   if (next == nullptr || (stored != nullptr && !stored->is_intact()))
@@ -49,13 +50,22 @@ protocol::Refusal ParameterStore::accept(std::span<const std::byte> report, bool
   return refusal_;
 }
 
+void ParameterStore::refuse(std::span<const std::byte> report) {
+  ++transactions_;
+  ticket_ = header_of(report).ticket;
+  refusal_ = protocol::Refusal::not_the_driver;
+  refused_id_ = 0;
+  refused_value_ = 0.0f;
+}
+
 std::size_t read_set(const protocol::ParameterSet& set, protocol::ReportId id, protocol::ParameterOperation operation,
                      protocol::ParametersReport& report) {
   report.report_id = id;
   report.operation = operation;
   report.version = protocol::protocol_version;
   report.count = static_cast<std::uint16_t>(image_parameter_count());
-  report.reserved = 0;
+  report.ticket = 0;
+  report.claim = 0;
   for (std::size_t i = 0; i < report.count; ++i) report.entries[i] = {image_parameter_id(i), 0, set.values[i]};
   return protocol::parameters_report_size(report.count);
 }
@@ -72,6 +82,8 @@ protocol::TransactionReport ParameterStore::result() const {
   report.value = refused_value_;
   report.transactions = transactions_;
   report.applied_at_periods = applied_at_periods_.load();
+  report.ticket = ticket_;
+  report.reserved = 0;
   return report;
 }
 

@@ -44,7 +44,8 @@ bool PoseRecorder::read(protocol::PoseReport& report) const {
   copy_three(report.joint_rad, Signal::joint_1_rad);
   report.limits = summary.limits & limits_in_report;
   report.is_referenced = summary.is_referenced;
-  report.switches = summary.switches & 15u;
+  report.switches = summary.switches & 7u;
+  report.driver_parity = 0;
   report.force_sources = summary.force_sources & 15u;
   report.servo_load = saturate_to_byte(static_cast<float>(longest_cycles_.load()) * load_per_cycle_);
   report.command_token = summary.command_token;
@@ -56,6 +57,11 @@ bool PoseRecorder::take(protocol::PoseReport& report) {
   if (!read(report)) return false;
   note_taken();
   return true;
+}
+
+std::uint32_t PoseRecorder::newest_periods() const {
+  const Sample* const sample = newest();
+  return sample == nullptr ? 0 : sample->summary.periods;
 }
 
 std::optional<std::uint32_t> PoseRecorder::newest_cycles() const {

@@ -34,16 +34,18 @@ Vector3 shortened(const Vector3& force_N) {
 bool decode_surface(const protocol::SurfaceEntry& entry, control::Surface& surface, std::uint32_t& life_periods) {
   life_periods = 0;
   if (entry.life_s == 0.0f) return true;  // not there, whatever else it says
+  const bool lasts = std::isinf(entry.life_s) && entry.life_s > 0.0f;
   const bool is_sound = entry.stiffness_N_per_m > 0.0f &&
                         entry.stiffness_N_per_m <= info(Parameter::wall_stiffness_N_per_m).maximum &&
                         within(entry.damping_Ns_per_m, 0.0f, info(Parameter::wall_damping_Ns_per_m).maximum) &&
                         within(entry.static_friction, 0.0f, protocol::friction_maximum) &&
                         within(entry.dynamic_friction, 0.0f, entry.static_friction) &&
-                        within(entry.life_s, 0.0f, protocol::shape_life_maximum_s);
+                        (within(entry.life_s, 0.0f, protocol::shape_life_maximum_s) || lasts);
   if (!is_sound) return false;
   surface = {entry.stiffness_N_per_m, 1.0f / entry.stiffness_N_per_m, entry.damping_Ns_per_m, entry.static_friction,
              entry.dynamic_friction};
-  life_periods = 1 + static_cast<std::uint32_t>(entry.life_s * static_cast<float>(protocol::servo_rate_Hz));
+  life_periods = lasts ? control::Shapes::lasting
+                       : 1 + static_cast<std::uint32_t>(entry.life_s * static_cast<float>(protocol::servo_rate_Hz));
   return true;
 }
 
@@ -64,6 +66,12 @@ bool decode_sphere(const protocol::SphereEntry& entry, control::Sphere& sphere) 
   if (!sound(entry.centre_m, limit) || !(entry.radius_m > 0.0f && entry.radius_m <= limit)) return false;
   sphere = {vector_of(entry.centre_m), entry.radius_m, entry.radius_m * entry.radius_m};
   return true;
+}
+
+std::uint32_t word_at(std::span<const std::byte> report, std::size_t offset) {
+  std::uint32_t word = 0;
+  if (report.size() >= offset + sizeof word) std::memcpy(&word, &report[offset], sizeof word);
+  return word;
 }
 
 }  // namespace
@@ -99,15 +107,23 @@ bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes) {
   return true;
 }
 
-bool ProgramRequests::accept_force(std::span<const std::byte> report) {
+std::uint32_t claim_of_force(std::span<const std::byte> report) {
+  return word_at(report, offsetof(protocol::ForceReport, claim));
+}
+
+std::uint32_t claim_of_shapes(std::span<const std::byte> report) {
+  return word_at(report, offsetof(protocol::ShapesReport, claim));
+}
+
+bool ProgramRequests::accept_force(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence) {
   ++forces_received_;
   const auto target = decode_force(report);
-  if (!target) {
+  const std::uint32_t answered = word_at(report, offsetof(protocol::ForceReport, pose_sequence));
+  if (!target || !is_of_driver || pose_sequence - answered > protocol::force_pose_age_maximum_ms) {
     ++forces_refused_;
     return false;
   }
-  std::uint32_t sequence = 0;
-  std::memcpy(&sequence, &report[offsetof(protocol::ForceReport, sequence)], sizeof sequence);
+  const std::uint32_t sequence = word_at(report, offsetof(protocol::ForceReport, sequence));
   // Another program starts with a sequence of its own: only what goes on counts.
   constexpr std::uint32_t longest_gap = 1000;
   if (newest_sequence_ && sequence - *newest_sequence_ - 1 < longest_gap)
@@ -130,8 +146,12 @@ bool ProgramRequests::accept_shapes(std::span<const std::byte> report) {
   return true;
 }
 
-void ProgramRequests::host_gone() {
+void ProgramRequests::driver_gone() {
   newest_sequence_.reset();
+  if (control::ForceTarget* next = forces_.next()) {
+    *next = {};
+    forces_.offer();
+  }
   if (control::Shapes* next = shapes_.next()) {
     *next = {};
     shapes_.offer();

@@ -5,6 +5,7 @@
 
 #include <control/installed_force_law.hpp>
 #include <protocol/black_box.hpp>
+#include <protocol/driver.hpp>
 #include <protocol/usb_identity.hpp>
 #include <usb/device.hpp>
 
@@ -60,7 +61,8 @@ Answer Device::hid_request(const SetupPacket& setup) {
                          setup.value == report_value(output_report_type, ReportId::force) ||
                          setup.value == report_value(feature_report, ReportId::parameters) ||
                          setup.value == report_value(feature_report, ReportId::shapes) ||
-                         setup.value == report_value(feature_report, ReportId::black_box_rows);
+                         setup.value == report_value(feature_report, ReportId::black_box_rows) ||
+                         setup.value == report_value(feature_report, ReportId::driver);
       return known && setup.length != 0 ? Answer::receive() : Answer::stall();
     }
     if (setup.request == set_idle_request && setup.length == 0) {
@@ -83,6 +85,7 @@ Answer Device::get_report(const SetupPacket& setup) {
       protocol::PoseReport pose;
       if (!link_.poses.read(pose)) return Answer::stall();
       pose.sequence = pose_sequence_;
+      pose.driver_parity = driver_parity();
       return send(pose);
     }
     case report_value(feature_report, ReportId::information): return send(information());
@@ -103,6 +106,9 @@ Answer Device::get_report(const SetupPacket& setup) {
       auto* report = new (buffer.data()) protocol::ParametersReport;
       return Answer::send(buffer.first(link_.stored.read(*report)));
     }
+    case report_value(feature_report, ReportId::driver): return send(link_.driver.report(link_.poses.newest_periods()));
+    case report_value(feature_report, ReportId::command_results):
+      return send(link_.command_results.report(link_.status.state(), link_.poses.newest_periods()));
     case report_value(feature_report, ReportId::black_box): return send(link_.black_box.report());
     case report_value(feature_report, ReportId::black_box_rows): return send(link_.black_box.rows());
     default: return Answer::stall();
@@ -126,10 +132,20 @@ bool Device::data_received(const SetupPacket& setup, std::span<const std::byte> 
     take_force(data);
     return true;
   }
-  if (setup.value == report_value(feature_report, ReportId::shapes)) return link_.program.accept_shapes(data);
+  if (setup.value == report_value(feature_report, ReportId::shapes)) {
+    const std::uint32_t claim = link::claim_of_shapes(data);
+    return is_permitted(claim) && link_.driver.is_held_by(claim) && link_.program.accept_shapes(data);
+  }
+  if (setup.value == report_value(feature_report, ReportId::driver)) {
+    if (link_.driver.accept(data, link_.poses.newest_periods())) driver_gone();
+    return true;
+  }
   if (setup.value == report_value(feature_report, ReportId::black_box_rows)) return link_.black_box.select_rows(data);
-  // What is wrong with a transaction is told by the TransactionReport, not by a stall.
-  link_.parameters.accept(data, force_is_on(), link_.stored.restorable());
+  // The TransactionReport says what is wrong with a transaction; a stall would not.
+  if (is_permitted(link::header_of(data).claim))
+    link_.parameters.accept(data, force_is_on(), link_.stored.restorable());
+  else
+    link_.parameters.refuse(data);
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <protocol/black_box.hpp>
+#include <protocol/driver.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/self_test.hpp>
 #include <protocol/store.hpp>
@@ -87,6 +88,8 @@ constexpr auto report_descriptor =
          report(ReportId::self_test, 13, feature_item, sizeof(protocol::SelfTestReport)),
          report(ReportId::store, 14, feature_item, sizeof(protocol::StoreReport)),
          report(ReportId::stored, 15, feature_item, sizeof(protocol::ParametersReport)),
+         report(ReportId::driver, 16, feature_item, sizeof(protocol::DriverReport)),
+         report(ReportId::command_results, 17, feature_item, sizeof(protocol::CommandResultsReport)),
          bytes(0xC0));  // end of the collection
 
 // ---- and that of the controller (HID usage tables 1.12, section 4) ------------------------------------

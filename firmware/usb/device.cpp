@@ -57,6 +57,11 @@ Device::Device(Port& port, link::Link& link, const Identity& identity)
 void Device::poll() {
   Event event;
   for (int i = 0; i < events_per_poll && port_.next_event(event); ++i) handle(event);
+  if (link_.driver.has_expired(link_.poses.newest_periods())) {
+    link_.driver.end();
+    driver_gone();
+  }
+  if (force_must_fall_) let_force_fall();
   if (held_command_) pass_on_held_command();
   if (configured() && !suspended_) {
     send_pose();
@@ -110,12 +115,35 @@ void Device::bus_reset() {
 
 void Device::host_gone() {
   link_.commands.host_gone();
-  link_.program.host_gone();
+  link_.command_results.forget();
+  link_.driver.end();
+  link_.program.driver_gone();
   if (held_command_) {
     held_command_.reset();
     if (configured()) port_.receive(identity::hid_out_endpoint);
   }
   link_.scope.select({}, 0);
+}
+
+bool Device::is_permitted(std::uint32_t claim) {
+  const bool may = note_heard(claim);
+  if (!may) link_.driver.count_refusal();
+  return may;
+}
+
+bool Device::note_heard(std::uint32_t claim) {
+  if (link_.driver.is_held_by(claim)) link_.driver.renew(link_.poses.newest_periods());
+  return link_.driver.permits(claim);
+}
+
+void Device::driver_gone() {
+  link_.program.driver_gone();
+  force_must_fall_ = !link_.driver.is_held() && force_is_on();
+}
+
+void Device::let_force_fall() {
+  force_must_fall_ =
+      !link_.commands.push({.command = protocol::Command::disable_force, .token = link_.commands.last_token()});
 }
 
 void Device::start_endpoints() {
@@ -191,6 +219,7 @@ void Device::send_pose() {
   }
   if (!(is_spare ? link_.poses.read(pose_) : link_.poses.take(pose_))) return;
   pose_.sequence = pose_sequence_ = sequence;
+  pose_.driver_parity = driver_parity();
   spare_waits_ = is_spare;
   send(endpoint, pose_);
   if (!is_spare) offer_controller_report();
@@ -252,18 +281,28 @@ void Device::take_report(std::span<const std::byte> report) {
 }
 
 void Device::take_force(std::span<const std::byte> report) {
-  if (link_.program.accept_force(report)) link_.commands.note_sign_of_life();
+  const std::uint32_t claim = link::claim_of_force(report);
+  const bool is_of_driver = is_permitted(claim) && link_.driver.is_held_by(claim);
+  if (link_.program.accept_force(report, is_of_driver, pose_sequence_)) link_.commands.note_sign_of_life();
 }
 
 bool Device::pass_on(const std::optional<protocol::CommandReport>& command) {
   if (!command) return true;
+  if (protocol::needs_claim(command->command) && !is_permitted(command->claim)) {
+    link_.command_results.note_refused(*command);
+    return true;
+  }
+  // While a program drives, its sign of life alone keeps the force on.
+  if (command->command == protocol::Command::heartbeat && !note_heard(command->claim)) return true;
   if (!link_.commands.has_room()) return false;
   // Selected before the command is queued, so that its acknowledgement never comes too early.
   if (command->command == protocol::Command::select_signals) link_.scope.select(command->selection, command->token);
   // Likewise, so that who has the acknowledgement finds the command counted.
   if (command->command == protocol::Command::store_parameters || command->command == protocol::Command::factory_reset)
     link_.stored.ask(command->command, may_store());
-  return link_.commands.push(*command);
+  const bool was_pushed = link_.commands.push(*command);
+  if (was_pushed) link_.command_results.note_queued(*command);
+  return was_pushed;
 }
 
 void Device::pass_on_held_command() {

@@ -1,5 +1,6 @@
 #include "force_switch.hpp"
 
+#include <chrono>
 #include <string>
 
 #include <device/fault_text.hpp>
@@ -21,13 +22,13 @@ constexpr std::uint32_t ask_again_periods = protocol::servo_rate_Hz / 10,
 /// Sends the command again and again until the state is the one that is wanted, or a fault, or time is over.
 template <class Wanted>
 PoseReport ask(device::Device& device, Command command, Wanted wanted) {
-  device.send(command);
+  device.carry_out(command);
   PoseReport pose = next_pose(device);
   const std::uint32_t begin_periods = pose.time_periods;
   std::uint32_t asked_periods = begin_periods;
   while (!wanted(pose.state) && pose.state != State::fault && pose.time_periods - begin_periods < patience_periods) {
     if (pose.time_periods - asked_periods >= ask_again_periods) {
-      device.send(command);
+      device.carry_out(command);
       asked_periods = pose.time_periods;
     }
     device.keep_alive();
@@ -45,13 +46,14 @@ std::string what_keeps_it_off(const PoseReport& pose) {
 }  // namespace
 
 PoseReport switch_force_off(device::Device& device) {
-  const auto pose = ask(device, Command::disable_force, [](State state) { return !protocol::force_is_on(state); });
-  if (protocol::force_is_on(pose.state))
-    throw device::Error("The force is still on: another program switches it on again. End that first.");
+  device.switch_force_off();
+  PoseReport pose = next_pose(device);
+  while (const auto newer = device.read_pose(std::chrono::milliseconds(0))) pose = *newer;
   return pose;
 }
 
 ForceSwitch::ForceSwitch(device::Device& device) : device_(device) {
+  device.claim();
   const auto pose = ask(device, Command::enable_force, [](State state) { return protocol::force_is_on(state); });
   if (protocol::force_is_on(pose.state)) return;
   if (pose.state == State::ready) throw device::Error("The device did not switch the force on in time. Try again.");

@@ -20,7 +20,7 @@ bool is_carried_out(StoreResult result) { return result == StoreResult::done || 
 /// The count tells the result of this command from that of the one before.
 StoreReport carry_out(Device& device, Command command, std::string_view failure) {
   const std::uint32_t commands_before = device.store_report().commands;
-  device.send(command);
+  device.carry_out(command);
   const std::uint32_t begin_periods = device.frame().time_periods;
   for (;;) {
     const bool is_late = device.frame().time_periods - begin_periods > patience_periods;

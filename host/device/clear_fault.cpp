@@ -22,7 +22,7 @@ std::string fault_line(protocol::Fault fault, Device& device) {
 
 // The board clears a fault whose cause is gone, and latches it again if it is not.
 void clear_fault(Device& device, const ShownFault& now, const std::function<ShownFault()>& next) {
-  device.send(protocol::Command::clear_fault);
+  device.carry_out(protocol::Command::clear_fault);
   if (now.state != State::fault) return;
   ShownFault seen = now;
   const auto passed_periods = [&] { return seen.time_periods - now.time_periods; };  // beyond the counter's wrap too

@@ -1,9 +1,15 @@
 #include <device/device.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstring>
+#include <fstream>
+#include <map>
 #include <mutex>
+#include <random>
+
+#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -20,7 +26,55 @@ using protocol::ReportId;
 constexpr auto heartbeat_interval = 10ms;
 constexpr std::uint32_t heartbeat_periods = protocol::servo_rate_Hz / 100;
 constexpr auto busy_timeout = 2s;
+/// Until the board has carried out a command, and until a force that falls is off.
+constexpr std::uint32_t command_patience_periods = protocol::servo_rate_Hz / 2;
+constexpr std::uint32_t landing_patience_periods = 2 * protocol::servo_rate_Hz;
 constexpr std::uint32_t self_test_patience_periods = protocol::servo_rate_Hz / 2;
+
+/// The claims of this process, so that a program that opens an arm twice learns which of its objects drives the arm.
+class OwnClaims {
+ public:
+  void add(std::uint32_t digest, int object) {
+    const std::lock_guard lock(mutex_);
+    objects_[digest] = object;
+  }
+  void remove(std::uint32_t digest) {
+    const std::lock_guard lock(mutex_);
+    objects_.erase(digest);
+  }
+  std::optional<int> find(std::uint32_t digest) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = objects_.find(digest);
+    return found == objects_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::uint32_t, int> objects_;
+};
+
+/// Never destroyed: programs close their arms in their last destructors.
+OwnClaims& own_claims() {
+  static auto& claims = *new OwnClaims;
+  return claims;
+}
+
+int next_object() {
+  static std::atomic<int> opened = 0;
+  return ++opened;
+}
+
+std::uint32_t random_number() {
+  std::random_device source;
+  for (;;)
+    if (const std::uint32_t number = source()) return number;
+}
+
+std::string own_program_name() {
+  std::string name;
+  std::getline(std::ifstream("/proc/self/comm"), name);
+  return name;
+}
 
 std::string refusal_sentence(const protocol::TransactionReport& report) {
   const auto& refusal = protocol::info(report.refusal);
@@ -38,13 +92,20 @@ Refused::Refused(const protocol::TransactionReport& refusal) : Error(refusal_sen
 struct Device::Implementation {
   std::unique_ptr<Transport> transport;
   std::shared_ptr<const ForceLaw> force_law;  ///< set before the device is used
-  std::mutex feature_mutex;                   ///< a transaction and the report on it belong together
-  std::mutex output_mutex;                    ///< guards the next four
+  const int object = next_object();
+  const std::uint32_t own_claim = random_number();
+  std::atomic<bool> drives = false;
+  std::atomic<std::uint32_t> driver_changes = 0;  ///< DriverReport::changes when this object became the driver
+  std::atomic<std::uint32_t> newest_sequence = 0;
+  std::mutex feature_mutex;  ///< a transaction and the report on it belong together
+  std::mutex output_mutex;   ///< guards the next five
+  std::uint32_t ticket = random_number();
   std::uint8_t token = 0;
   std::uint32_t force_sequence = 0;
   Clock::time_point last_output_at{};
   std::uint32_t last_output_period = 0;
   std::atomic<std::uint32_t> newest_period = 0;
+  std::uint16_t transaction_ticket = static_cast<std::uint16_t>(random_number());  ///< guarded by feature_mutex
   mutable std::mutex scope_mutex;  ///< the selection comes from one thread, the frames are read by another
   ScopeDecoder decoder;
 
@@ -82,6 +143,7 @@ struct Device::Implementation {
     command.report_id = ReportId::command;
     command.version = protocol::protocol_version;
     command.token = token;
+    command.claim = claim();
     before();
     write(command);
     return token;
@@ -96,6 +158,107 @@ struct Device::Implementation {
     transport->write_report(std::as_bytes(std::span(&report, 1)));
     last_output_at = Clock::now();
     last_output_period = newest_period;
+  }
+
+  /// For what this object sends: its claim while it drives, else none.
+  std::uint32_t claim() const { return drives ? own_claim : 0; }
+
+  protocol::DriverReport driver_report() {
+    const std::lock_guard lock(feature_mutex);
+    protocol::DriverReport report{};
+    get(report, "driver");
+    return report;
+  }
+
+  void request(protocol::ClaimOperation operation) {
+    protocol::ClaimReport report{};
+    report.operation = operation;
+    report.claim = own_claim;
+    report.process_id = static_cast<std::uint32_t>(getpid());
+    own_program_name().copy(report.program, protocol::program_name_maximum);
+    const std::lock_guard lock(feature_mutex);
+    transport->set_feature(std::as_bytes(std::span(&report, 1)));
+  }
+
+  bool is_own(const protocol::DriverReport& report) const {
+    return report.is_driven != 0 && report.claim_digest == protocol::digest_of(own_claim);
+  }
+
+  Driver driver_in(const protocol::DriverReport& report) const {
+    char name[protocol::program_name_maximum + 1];
+    const std::size_t length = protocol::copy_program_name(report.program, name);
+    return {.program = std::string(name, length),
+            .process_id = report.process_id,
+            .driven_s = static_cast<double>(report.time_periods - report.since_periods) / protocol::servo_rate_Hz,
+            .object = own_claims().find(report.claim_digest),
+            .is_this_device = is_own(report)};
+  }
+
+  InUse driven_by_another() {
+    const auto report = driver_report();
+    if (report.is_driven == 0 || is_own(report))
+      return InUse("This program does not drive the arm any more. Try again.");
+    const Driver driver = driver_in(report);
+    return InUse(fmt::format("The arm is driven by {}. {}", driver_text(driver),
+                             driver.object ? "Use that object, or close it first."
+                                           : "End that program, or take the arm over from it."));
+  }
+
+  void become_driver(protocol::ClaimOperation operation) {
+    request(operation);
+    const auto report = driver_report();
+    if (!is_own(report)) {
+      lose_claim();
+      throw driven_by_another();
+    }
+    own_claims().add(report.claim_digest, object);
+    driver_changes = report.changes;
+    drives = true;
+  }
+
+  void lose_claim() {
+    drives = false;
+    own_claims().remove(protocol::digest_of(own_claim));
+  }
+
+  /// By a pose: the driver's parity differs, or did when the pose was sent.
+  void check_claim(const protocol::PoseReport& pose) {
+    if (!drives || pose.driver_parity == (driver_changes & 1u)) return;
+    const auto report = driver_report();
+    if (is_own(report))
+      driver_changes = report.changes;
+    else
+      lose_claim();
+  }
+
+  protocol::CommandResultsReport command_results() {
+    protocol::CommandResultsReport report{};
+    {
+      const std::lock_guard lock(feature_mutex);
+      get(report, "command results");
+    }
+    newest_period = report.time_periods;
+    return report;
+  }
+
+  /// Sends the command and asks for its result until it is there.
+  void carry_out(protocol::CommandReport& command) {
+    send(command, [&] {
+      ticket = ticket == 0xFFFFFFFFu ? 1 : ticket + 1;
+      command.ticket = ticket;
+    });
+    std::optional<std::uint32_t> begin_periods;
+    for (;;) {
+      const auto report = command_results();
+      if (!begin_periods) begin_periods = report.time_periods;
+      const auto* entry = std::ranges::find(report.entries, command.ticket, &protocol::CommandResultEntry::ticket);
+      if (entry != std::end(report.entries)) {
+        if (entry->result == protocol::CommandResult::carried_out) return;
+        if (entry->result == protocol::CommandResult::not_the_driver) throw driven_by_another();
+      }
+      if (report.time_periods - *begin_periods > command_patience_periods)
+        throw Error("The board has not carried out a command. Reset it and try again.");
+    }
   }
 
   protocol::TransactionReport transaction_report() {
@@ -134,11 +297,13 @@ struct Device::Implementation {
 
   /// The device judges a transaction before it acknowledges its data, so the report read next speaks of this one.
   /// Nothing is read before: that would cost a frame on the way from a slider to the interrupt.
-  protocol::TransactionReport transact(const protocol::ParametersReport& report) {
+  protocol::TransactionReport transact(protocol::ParametersReport& report) {
+    report.claim = claim();
     const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::parameters_report_size(report.count));
-    const std::lock_guard lock(feature_mutex);
+    std::unique_lock lock(feature_mutex);
     const auto give_up_at = Clock::now() + busy_timeout;
     for (;;) {
+      report.ticket = ++transaction_ticket;
       std::optional<Stalled> stalled;
       try {
         transport->set_feature(bytes);
@@ -146,6 +311,15 @@ struct Device::Implementation {
         stalled = error;  // a device may refuse by a stall; the report below says why
       }
       const auto result = transaction_report();
+      if (result.ticket != report.ticket) {
+        // Another program's transaction came between. Whether this one was accepted is not known, so it is sent again.
+        if (Clock::now() > give_up_at) throw InUse("Other programs change parameters all the time. Close them.");
+        continue;
+      }
+      if (result.refusal == protocol::Refusal::not_the_driver) {
+        lock.unlock();
+        throw driven_by_another();
+      }
       if (result.refusal == protocol::Refusal::accepted) {
         if (stalled) throw *stalled;
         return result;
@@ -188,7 +362,77 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
 Device::Device(std::unique_ptr<Transport> transport) : implementation_(std::make_unique<Implementation>()) {
   implementation_->transport = std::move(transport);
 }
-Device::~Device() = default;
+
+Device::~Device() {
+  try {
+    release();
+  } catch (const Error&) {  // the device is gone, and the claim with it
+  }
+}
+
+std::string driver_text(const Driver& driver) {
+  const auto program = driver.object ? fmt::format("this program itself, through the arm that it opened as number {},",
+                                                   *driver.object)
+                                     : fmt::format("{} (process {}),", driver.program, driver.process_id);
+  return fmt::format("{} since {:.0f} s ago", program, driver.driven_s);
+}
+
+std::optional<Driver> Device::driver() {
+  const auto report = implementation_->driver_report();
+  if (report.is_driven == 0) return std::nullopt;
+  return implementation_->driver_in(report);
+}
+
+void Device::claim() { implementation_->become_driver(protocol::ClaimOperation::claim); }
+
+void Device::take_over() { implementation_->become_driver(protocol::ClaimOperation::take_over); }
+
+void Device::release() {
+  if (!implementation_->drives) return;
+  implementation_->lose_claim();
+  implementation_->request(protocol::ClaimOperation::release);
+}
+
+bool Device::drives() const { return implementation_->drives; }
+
+void Device::carry_out(Command command) {
+  protocol::CommandReport report{};
+  report.command = command;
+  implementation_->carry_out(report);
+}
+
+void Device::carry_out(Command command, const protocol::TestPulse& pulse) {
+  protocol::CommandReport report{};
+  report.command = command;
+  report.test = pulse;
+  implementation_->carry_out(report);
+}
+
+void Device::stop() {
+  carry_out(Command::stop);
+  if (protocol::force_is_on(implementation_->command_results().state))
+    throw Error("The force is on again: another program has switched it on. End that program.");
+}
+
+void Device::disable_force() {
+  carry_out(Command::disable_force);
+  auto report = implementation_->command_results();
+  const std::uint32_t begin_periods = report.time_periods;
+  while (protocol::force_is_on(report.state)) {
+    if (report.time_periods - begin_periods > landing_patience_periods)
+      throw Error("The force is still on: another program switches it on again. End that program.");
+    keep_alive();
+    report = implementation_->command_results();
+  }
+}
+
+void Device::switch_force_off() {
+  try {
+    disable_force();
+  } catch (const InUse&) {
+    stop();
+  }
+}
 
 protocol::FrameReport Device::frame() {
   const std::lock_guard lock(implementation_->feature_mutex);
@@ -220,6 +464,8 @@ std::optional<protocol::PoseReport> Device::read_pose(std::chrono::milliseconds 
     if (length == 0) return std::nullopt;
     if (length != sizeof pose || pose.report_id != ReportId::pose) continue;
     implementation_->newest_period = pose.time_periods;
+    implementation_->newest_sequence = pose.sequence;
+    implementation_->check_claim(pose);
     return pose;
   }
 }
@@ -268,20 +514,29 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
 void Device::send_force(const ForceRequest& request) {
   protocol::ForceReport report = force_report(request);
   const std::lock_guard lock(implementation_->output_mutex);
+  report.claim = implementation_->claim();
   report.sequence = implementation_->force_sequence++;
+  report.pose_sequence = request.pose_sequence.value_or(implementation_->newest_sequence);
   implementation_->write(report);
 }
 
 void Device::place_shapes(const Shapes& shapes) {
-  const protocol::ShapesReport report = shapes_report(shapes);
+  protocol::ShapesReport report = shapes_report(shapes);
+  report.claim = implementation_->claim();
   const auto bytes = std::as_bytes(std::span(&report, 1)).first(protocol::shapes_report_size(report.plane_count));
-  const std::lock_guard lock(implementation_->feature_mutex);
+  std::unique_lock lock(implementation_->feature_mutex);
   const auto give_up_at = Clock::now() + busy_timeout;
   for (;;) {
     try {
       return implementation_->transport->set_feature(bytes);
-    } catch (const Stalled&) {  // the interrupt has not taken the shapes before
+    } catch (const Stalled&) {  // the interrupt has not taken the shapes before, or another program drives
+      lock.unlock();
+      if (!implementation_->is_own(implementation_->driver_report())) {
+        implementation_->lose_claim();
+        throw implementation_->driven_by_another();
+      }
       if (Clock::now() > give_up_at) throw;
+      lock.lock();
     }
   }
 }
@@ -359,7 +614,7 @@ protocol::SelfTestReport Device::self_test() {
   const auto it_runs = [&] { return report.is_running != 0; };
   wait_while(it_runs);  // the one after the start
   const std::uint32_t begun_before = report.tests_begun;
-  send(Command::self_test);
+  carry_out(Command::self_test);
   if (!wait_while([&] { return report.tests_begun == begun_before; }))
     throw NotTested(
         "The board does not test itself now. Switch the force off; if a fault is shown, see to that first: `inkwell "

@@ -36,8 +36,9 @@ protocol::SurfaceEntry surface_entry(const std::string& shape, const Surface& su
   if (!(surface.dynamic_friction >= 0.0f && surface.dynamic_friction <= surface.static_friction))
     throw Error(fmt::format("The dynamic friction of {} is {}. Give a number from 0 to its static friction, {}.", shape,
                             surface.dynamic_friction, surface.static_friction));
-  require_in_range("The life of " + shape, surface.life_s, protocol::servo_period_s, protocol::shape_life_maximum_s,
-                   " s");
+  if (!(std::isinf(surface.life_s) && surface.life_s > 0.0f))
+    require_in_range("The life of " + shape, surface.life_s, protocol::servo_period_s, protocol::shape_life_maximum_s,
+                     " s, or infinity");
   return {surface.stiffness_N_per_m, surface.damping_Ns_per_m, surface.static_friction, surface.dynamic_friction,
           surface.life_s};
 }

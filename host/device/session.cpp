@@ -30,6 +30,11 @@ void Session::send(protocol::Command command, const protocol::TestPulse& pulse) 
   implementation_->requests.commands.push_back({command, pulse});
 }
 
+void Session::take_over() {
+  const std::lock_guard lock(implementation_->mutex);
+  implementation_->requests.take_over = true;
+}
+
 std::optional<protocol::ParameterSet> Session::parameters() const {
   const std::lock_guard lock(implementation_->mutex);
   return implementation_->parameter_set;

@@ -19,11 +19,14 @@ constexpr auto search_interval = 200ms;
 constexpr std::uint32_t refresh_periods = protocol::servo_rate_Hz;
 constexpr auto rate_window = 500ms;
 constexpr auto silence_limit = 2s;
-constexpr auto farewell = 500ms;
 
-/// A host that goes away then is missed.
-bool would_be_missed_in(protocol::State state) {
-  return protocol::watch_table[protocol::place_of(protocol::Fault::usb_gone)].watched_in.contains(state);
+/// Between two of a guide's test pulses the arm stays claimed.
+constexpr std::uint32_t idle_claim_periods = 2 * protocol::servo_rate_Hz;
+
+bool may_move_arm(protocol::Command command) {
+  using protocol::Command;
+  return command == Command::enable_force || command == Command::self_test || command == Command::test_current ||
+         command == Command::test_voltage;
 }
 
 }  // namespace
@@ -91,9 +94,9 @@ std::shared_ptr<Device> Session::Implementation::connect(const Endpoint& endpoin
                                    information.serial_number, information.firmware_version),
                        std::nullopt));
   requests.select = !signals.empty();
-  has_switched_force_on = false;
   // A command for the device that went away must not reach the one that came; parameter changes may.
   requests.commands.clear();
+  requests.take_over = false;
   requests.store.reset();
   device = opened;
   changed.notify_all();
@@ -107,6 +110,7 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
   std::uint64_t poses_in_window = 0;
   std::uint32_t newest_periods = 0;
   std::optional<protocol::PoseReport> before;
+  std::uint8_t parity = 0;
   while (!stopping) {
     if (const auto pose = served->read_pose(1ms)) {
       last_pose = Clock::now();
@@ -115,6 +119,9 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
       follow_fault(*served, *pose, refreshed_at_periods ? std::optional(newest_periods) : std::nullopt);
       newest_periods = pose->time_periods;
       note_events(std::exchange(before, pose), *pose);
+      if (!refreshed_at_periods || before->driver_parity != parity) refresh_driver(*served);
+      parity = before->driver_parity;
+      release_idle(*served, *before);
       if (!refreshed_at_periods) refreshed_at_periods = newest_periods;
     }
     if (lost) throw Disconnected("The device was unplugged. Connect it again.");
@@ -135,20 +142,29 @@ void Session::Implementation::serve(const std::shared_ptr<Device>& served) {
       refresh_parameters(*served);
       refresh_information(*served);
       refresh_store(*served);
+      refresh_driver(*served);
       refreshed_at_periods = newest_periods;
       const std::lock_guard lock(mutex);
       if (scope_denied) requests.select = true;  // the other program may be done
     }
   }
   send_requests(*served);  // what was asked for last, such as to put parameters back
-  if (has_switched_force_on) let_force_fall(*served);
+  if (served->drives() && Clock::now() - last_pose < silence_limit) let_force_fall(*served);
 }
 
 void Session::Implementation::let_force_fall(Device& of) {
-  of.send(protocol::Command::disable_force);
-  const auto give_up_at = Clock::now() + farewell;
-  while (Clock::now() < give_up_at)
-    if (const auto pose = of.read_pose(10ms); pose && !would_be_missed_in(pose->state)) return;
+  try {
+    of.disable_force();
+  } catch (const InUse&) {  // another program has taken the arm over
+  }
+}
+
+void Session::Implementation::release_idle(Device& of, const protocol::PoseReport& pose) {
+  using protocol::State;
+  if (!of.drives()) return;
+  const bool is_needed = protocol::force_is_on(pose.state) || pose.state == State::testing;
+  if (is_needed) claimed_at_periods = pose.time_periods;
+  if (pose.time_periods - claimed_at_periods > idle_claim_periods) of.release();
 }
 
 void Session::Implementation::take_pose(const protocol::PoseReport& pose, std::optional<std::uint32_t>& sequence) {
@@ -233,15 +249,8 @@ void Session::Implementation::send_requests(Device& to) {
   auto& [restore_defaults, changes] = taken.parameters;
   bool is_at_parameters = false;
   try {
-    for (const auto& queued : taken.commands) {
-      if (queued.command == protocol::Command::enable_force) has_switched_force_on = true;
-      if (queued.command == protocol::Command::stop || queued.command == protocol::Command::disable_force)
-        has_switched_force_on = false;
-      if (queued.pulse)
-        to.send(queued.command, *queued.pulse);
-      else
-        to.send(queued.command);
-    }
+    if (taken.take_over) take_over(to);
+    for (const auto& queued : taken.commands) carry_out(to, queued);
     if (taken.select) select(to, selection);
     is_at_parameters = true;
     if (restore_defaults) transact(to, [&] { return to.restore_default_parameters(); });
@@ -262,6 +271,54 @@ void Session::Implementation::send_requests(Device& to) {
 void Session::Implementation::put_back(ParameterRequests unsent) {
   const std::lock_guard lock(mutex);
   requests.parameters.put_before(std::move(unsent));
+}
+
+void Session::Implementation::carry_out(Device& by, const QueuedCommand& queued) {
+  using protocol::Command;
+  try {
+    if (may_move_arm(queued.command)) {
+      if (!by.drives()) by.claim();
+      const std::lock_guard lock(mutex);
+      if (newest) claimed_at_periods = newest->time_periods;
+    }
+    if (queued.pulse) {
+      by.carry_out(queued.command, *queued.pulse);
+    } else {
+      try {
+        by.carry_out(queued.command);
+      } catch (const InUse&) {
+        if (queued.command != Command::disable_force) throw;
+        by.carry_out(Command::stop);
+      }
+    }
+    const std::lock_guard lock(mutex);
+    state.command_problem.reset();
+  } catch (const InUse& error) {
+    show_problem(error);
+  }
+}
+
+void Session::Implementation::take_over(Device& from) {
+  try {
+    from.take_over();
+    const std::lock_guard lock(mutex);
+    state.command_problem.reset();
+    if (newest) claimed_at_periods = newest->time_periods;
+  } catch (const InUse& error) {
+    show_problem(error);
+  }
+}
+
+void Session::Implementation::show_problem(const InUse& error) {
+  const std::lock_guard lock(mutex);
+  state.command_problem = error.what();
+  events.add(event_now(EventKind::connection, error.what(), std::nullopt));
+}
+
+void Session::Implementation::refresh_driver(Device& from) {
+  const auto driver = from.driver();
+  const std::lock_guard lock(mutex);
+  state.driver = driver;
 }
 
 void Session::Implementation::carry_out(Device& by, StoreTask task) {

@@ -25,6 +25,7 @@ struct Requests {
   ParameterRequests parameters;
   std::optional<StoreTask> store;
   bool select = false;
+  bool take_over = false;
 };
 
 struct Session::Implementation {
@@ -46,8 +47,14 @@ struct Session::Implementation {
   static std::uint32_t noticed_at_periods(Device& by, const protocol::PoseReport& pose,
                                           std::optional<std::uint32_t> before_periods);
   void send_requests(Device& to);
-  /// Who switched the force on lets it fall; left alone, the board would miss its host, and tell a fault.
+  /// What the board refuses is shown to the user, and no reason to give the connection up.
+  void carry_out(Device& by, const QueuedCommand& queued);
+  void take_over(Device& from);
+  void show_problem(const InUse& error);
+  /// A session that drives the arm and leaves switches the force off; otherwise the board would raise a fault.
   void let_force_fall(Device& of);
+  /// Releases the arm some time after this session has needed it.
+  void release_idle(Device& of, const protocol::PoseReport& pose);
   /// For the next connection. What was asked for since comes after it.
   void put_back(ParameterRequests unsent);
   /// What the board refuses is told to the user, and no reason to give the connection up.
@@ -60,6 +67,8 @@ struct Session::Implementation {
     try {
       applied_at_periods = transaction().applied_at_periods;
     } catch (const Refused& error) {
+      refused = error.what();
+    } catch (const InUse& error) {
       refused = error.what();
     }
     const auto held = with.parameters();
@@ -74,6 +83,7 @@ struct Session::Implementation {
   void refresh_parameters(Device& from);
   /// Counters and the motors' heat change; the rest of it stays.
   void refresh_information(Device& from);
+  void refresh_driver(Device& from);
   /// The stored values change with the count of records only.
   void refresh_store(Device& from);
   std::string connected_message() const { return "Connected to " + state.information->serial_number + "."; }
@@ -96,7 +106,7 @@ struct Session::Implementation {
   std::optional<protocol::PoseReport> newest;
   std::optional<protocol::ParameterSet> parameter_set;
   std::uint64_t revision = 0;
-  bool has_switched_force_on = false;  ///< with nothing that switches it off behind it
+  std::uint32_t claimed_at_periods = 0;  ///< when this session last needed the arm
   std::string served_serial_number;    ///< of the device that is connected, or was last
   std::optional<Reconnection> newest_reconnection;
   std::uint64_t reconnections = 0;

@@ -20,8 +20,6 @@ using protocol::Command;
 
 /// Until a device that was asked for its force is asked again.
 constexpr auto ask_again = 100ms;
-/// For a force that falls, softly as the board is told to; by then it falls at least.
-constexpr auto farewell = 500ms;
 
 /// A board from which no pose comes for so long is reset, or paused.
 constexpr double silence_s = 2.0;
@@ -51,19 +49,17 @@ Arm::Arm(const std::string& address)
 Arm::~Arm() {
   servo_.ask_to_end();
   force_.stop();  // what a servo that is still being called returns is sent no more
-  if ((drives_ || may_have_switched_on_) && !poses_.end_reason()) bid_farewell();
+  if (connection_.device().drives() && !poses_.end_reason()) bid_farewell();
 }
 
 void Arm::bid_farewell() {
   auto& device = connection_.device();
   try {
-    if (drives_) {
-      device.send_force({.mode = protocol::ForceMode::none});
-      device.place_shapes({});
-    }
-    device.send(Command::disable_force);
+    device.send_force({.mode = protocol::ForceMode::none});
+    device.place_shapes({});
     // A force that is on when USB goes away, as over USB/IP with the last program, would end as a fault.
-    poses_.wait([](const auto& newest) { return newest.state != INKWELL_ACTIVE; }, Clock::now() + farewell);
+    device.disable_force();
+    device.release();
   } catch (const Error&) {  // it is gone already, and its force with it
   }
 }
@@ -93,10 +89,10 @@ control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
 void Arm::enable_force(double timeout_s) {
   const auto give_up_at = in(timeout_s);
   refuse_in_fault(pose());
-  may_have_switched_on_ = true;
+  claim();
   for (;;) {
     // A device that does not know yet where it is forgets that it was asked.
-    device().send(Command::enable_force);
+    device().carry_out(Command::enable_force);
     const auto now =
         poses_.wait([](const auto& newest) { return newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT; },
                     std::min(give_up_at, Clock::now() + ask_again));
@@ -109,7 +105,9 @@ void Arm::enable_force(double timeout_s) {
   }
 }
 
-void Arm::disable_force() { device().send(Command::disable_force); }
+void Arm::disable_force() { device().disable_force(); }
+
+void Arm::stop() { device().stop(); }
 
 void Arm::clear_fault() {
   inkwell_pose seen = pose();
@@ -120,14 +118,14 @@ void Arm::clear_fault() {
 }
 
 void Arm::claim() {
-  if (drives_) return;
+  if (connection_.device().drives()) return;
   const std::lock_guard lock(claim_mutex_);
-  if (drives_) return;
-  // Virtual boards that started with the same seed have the same number.
-  const bool own_server = endpoint().kind == device::Endpoint::Kind::usbip;
-  claim_.emplace(own_server ? fmt::format("{}-{}", endpoint().serial_number, endpoint().port)
-                            : endpoint().serial_number);
-  drives_ = true;
+  if (!connection_.device().drives()) device().claim();
+}
+
+void Arm::take_over() {
+  const std::lock_guard lock(claim_mutex_);
+  device().take_over();
 }
 
 void Arm::set_force(const double (&force_N)[3]) {

@@ -16,8 +16,6 @@
 #include <string>
 #include <vector>
 
-#include <device/driver_claim.hpp>
-
 #include "connection.hpp"
 #include "force_output.hpp"
 #include "pose_feed.hpp"
@@ -45,8 +43,13 @@ class Arm {
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
+  /// Drives the arm from now on, as set_force(), place_shapes() and start_servo() do. Throws InUse, naming the driver, if
+  /// another program or another arm object of this one drives it.
   void enable_force(double timeout_s);
+  /// Takes the arm over from whoever drives it.
+  void take_over();
   void disable_force();
+  void stop();
   /// Throws FaultStays if its cause is still there.
   void clear_fault();
   void set_force_mode(protocol::ForceMode mode) { force_.set_mode(mode); }
@@ -66,7 +69,6 @@ class Arm {
   }
 
  private:
-  /// This program drives the arm from now on. Throws InUse if another does.
   void claim();
   void bid_farewell();
 
@@ -75,10 +77,7 @@ class Arm {
   ForceOutput force_;
   ScopeStream scope_;
 
-  std::mutex claim_mutex_;
-  std::optional<device::DriverClaim> claim_;  ///< from the first force on
-  std::atomic<bool> drives_ = false;          ///< there is a claim
-  std::atomic<bool> may_have_switched_on_ = false;
+  std::mutex claim_mutex_;  ///< one thread at a time claims the arm
   std::mutex parameters_mutex_;  ///< one transaction at a time, with what follows from it
 
   Servo servo_;  ///< the last one: its function uses all the others

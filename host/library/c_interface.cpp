@@ -163,7 +163,24 @@ inkwell_result inkwell_disable_force(inkwell_arm* arm) {
 }
 
 inkwell_result inkwell_stop(inkwell_arm* arm) {
-  return guarded([&] { arm_of(arm).device().send(protocol::Command::stop); });
+  return guarded([&] { arm_of(arm).stop(); });
+}
+
+inkwell_result inkwell_take_over(inkwell_arm* arm) {
+  return guarded([&] { arm_of(arm).take_over(); });
+}
+
+inkwell_result inkwell_get_driver(inkwell_arm* arm, inkwell_driver* driver) {
+  return guarded([&] {
+    *required(driver, "The place for the answer") = {};
+    const auto found = arm_of(arm).device().driver();
+    if (!found) return;
+    driver->is_driven = 1;
+    driver->is_this_arm = found->is_this_device ? 1 : 0;
+    driver->process_id = found->process_id;
+    driver->driven_s = found->driven_s;
+    copy_text(found->program, driver->program);
+  });
 }
 
 inkwell_result inkwell_clear_fault(inkwell_arm* arm) {

@@ -178,6 +178,29 @@ Answers enable(const Arguments& arguments) {
   return {};
 }
 
+Answers stop(const Arguments& arguments) {
+  require(inkwell_stop(find(arguments)->second));
+  return {};
+}
+
+Answers take_over(const Arguments& arguments) {
+  require(inkwell_take_over(find(arguments)->second));
+  return {};
+}
+
+Answers driver(const Arguments& arguments) {
+  inkwell_driver driver;
+  require(inkwell_get_driver(find(arguments)->second, &driver));
+  const char* names[] = {"is_driven", "is_this_arm", "program", "process_id", "driven_s"};
+  mxArray* answer = mxCreateStructMatrix(1, 1, static_cast<int>(std::size(names)), names);
+  mxSetField(answer, 0, names[0], mxCreateLogicalScalar(driver.is_driven != 0));
+  mxSetField(answer, 0, names[1], mxCreateLogicalScalar(driver.is_this_arm != 0));
+  mxSetField(answer, 0, names[2], mxCreateString(driver.program));
+  mxSetField(answer, 0, names[3], mxCreateDoubleScalar(driver.process_id));
+  mxSetField(answer, 0, names[4], mxCreateDoubleScalar(driver.driven_s));
+  return {answer};
+}
+
 Answers force(const Arguments& arguments) {
   require(inkwell_set_force(find(arguments)->second, vector(argument(arguments, 1)).data()));
   return {};
@@ -321,6 +344,9 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"close", close},
     {"pose", pose},
     {"enable", enable},
+    {"stop", stop},
+    {"take_over", take_over},
+    {"driver", driver},
     {"force", force},
     {"get", get},
     {"set", set},

@@ -146,6 +146,18 @@ void Arm::stop() {
   call([&] { return inkwell_stop(arm); });
 }
 
+void Arm::take_over() {
+  const Use arm(*this);
+  call([&] { return inkwell_take_over(arm); });
+}
+
+inkwell_driver Arm::driver() {
+  const Use arm(*this);
+  inkwell_driver driver;
+  call([&] { return inkwell_get_driver(arm, &driver); });
+  return driver;
+}
+
 void Arm::clear_fault() {
   const Use arm(*this);
   call([&] { return inkwell_clear_fault(arm); });

@@ -35,6 +35,8 @@ class Arm {
   void enable_force(double timeout_s);
   void disable_force();
   void stop();
+  void take_over();
+  inkwell_driver driver();
   void clear_fault();
   void set_force_mode(inkwell_force_mode mode);
   void set_force(const std::array<double, 3>& force_N);

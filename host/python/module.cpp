@@ -230,6 +230,21 @@ void define_self_test(py::module_& module) {
       });
 }
 
+void define_driver(py::module_& module) {
+  using Driver = inkwell_driver;
+  py::class_<Driver>(module, "Driver", "The program that drives an arm.")
+      .def_property_readonly("is_driven", flag_of(&Driver::is_driven), "False: no program drives the arm")
+      .def_property_readonly("is_this_arm", flag_of(&Driver::is_this_arm), "it is driven through this arm object")
+      .def_property_readonly("program", text_of(&Driver::program), "its name")
+      .def_readonly("process_id", &Driver::process_id, "on the driver's computer")
+      .def_readonly("driven_s", &Driver::driven_s, "board time since it claimed the arm, s")
+      .def("__repr__", [](const Driver& driver) {
+        return driver.is_driven != 0 ? "<Driver " + std::string(driver.program) + " (process " +
+                                           std::to_string(driver.process_id) + ")>"
+                                     : std::string("<Driver none>");
+      });
+}
+
 void define_arm(py::module_& module) {
   py::class_<Arm>(module, "Arm")
       .def(py::init<const std::string&>())
@@ -243,6 +258,8 @@ void define_arm(py::module_& module) {
       .def("enable_force", &Arm::enable_force)
       .def("disable_force", &Arm::disable_force)
       .def("stop", &Arm::stop)
+      .def("take_over", &Arm::take_over)
+      .def("driver", &Arm::driver)
       .def("clear_fault", &Arm::clear_fault)
       .def("set_force_mode", &Arm::set_force_mode)
       .def("set_force", &Arm::set_force)
@@ -276,6 +293,7 @@ PYBIND11_MODULE(_native, module) {
   inkwell::python::define_structs(module);
   inkwell::python::define_store(module);
   inkwell::python::define_self_test(module);
+  inkwell::python::define_driver(module);
   inkwell::python::define_arm(module);
   module.def("version", &inkwell_version);
   module.def("devices", &inkwell::python::list_devices,

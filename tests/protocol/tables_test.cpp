@@ -60,7 +60,7 @@ TEST_CASE("parameters: names and ids are unique and found, names end in their un
 
 TEST_CASE("the whole parameter set fits one report") {
   CHECK(parameter_count <= parameter_entries_maximum);
-  CHECK(parameters_report_size(0) == 8);
+  CHECK(parameters_report_size(0) == 12);
   CHECK(parameters_report_size(parameter_entries_maximum) == sizeof(ParametersReport));
 }
 
@@ -284,8 +284,8 @@ TEST_CASE("what is on the wire lies where it should") {
   CHECK(offsetof(PoseReport, position_m) == 12);
   CHECK(offsetof(PoseReport, joint_rad) == 48);
   CHECK(offsetof(PoseReport, supply_dV) == 63);
-  CHECK(offsetof(CommandReport, test) == 4);
-  CHECK(offsetof(ParametersReport, entries) == 8);
+  CHECK(offsetof(CommandReport, test) == 12);
+  CHECK(offsetof(ParametersReport, entries) == 12);
   CHECK(offsetof(InformationReport, version) == 2);
   CHECK(offsetof(InformationReport, firmware_version) == 4);
   CHECK(offsetof(InformationReport, board) == 8);

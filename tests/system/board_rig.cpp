@@ -106,6 +106,7 @@ void BoardRig::take_to(device::Vector3 target_m, double duration_s) {
 
 void BoardRig::make_active() {
   run_until([](const auto& pose) { return pose.state == protocol::State::ready; });
+  device->claim();
   command(protocol::Command::enable_force);
   run_until([](const auto& pose) { return protocol::force_is_on(pose.state); });
 }

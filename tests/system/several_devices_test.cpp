@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <device/driver_claim.hpp>
 #include <known/boards.hpp>
 #include <stepped_board.hpp>
 
@@ -81,9 +80,10 @@ TEST_CASE("two arms: force, parameters, scope and fault of one are not those of 
 
 TEST_CASE("two arms: each may have a program that drives it") {
   TwoArms arms;
-  const device::DriverClaim first(arms.first_number);
-  CHECK_NOTHROW(device::DriverClaim(arms.second_number));
-  CHECK_THROWS_AS(device::DriverClaim(arms.first_number), device::InUse);
+  arms.first.device->claim();
+  CHECK_NOTHROW(arms.second.device->claim());
+  const auto other = device::Device::open(*arms.first.board.find());
+  CHECK_THROWS_AS(other->claim(), device::InUse);
 }
 
 TEST_CASE("two arms: commands list, record and switch the force of the one that they name, at the same time") {

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include <device/driver_claim.hpp>
+#include <unistd.h>
 
 #include "board_rig.hpp"
 #include "program.hpp"
@@ -28,7 +28,7 @@ std::vector<protocol::PoseReport> read_poses(device::Device& device) {
   return poses;
 }
 
-TEST_CASE("a program drives while another has the scope, the poses and the parameters") {
+TEST_CASE("a program drives while another has the scope and the poses") {
   BoardRig rig;
   rig.take_to(free_point_m);
   rig.make_active();
@@ -63,8 +63,7 @@ TEST_CASE("a program drives while another has the scope, the poses and the param
   CHECK(largest_N == doctest::Approx(0.5).epsilon(1e-3));
   CHECK(rig.device->information().report.force_reports_lost == 0);
 
-  onlooker->set_parameters(std::array<device::ParameterChange, 1>{{{Parameter::wall_stiffness_N_per_m, 444.0f}}});
-  CHECK(rig.device->parameters()[Parameter::wall_stiffness_N_per_m] == 444.0f);
+  CHECK(onlooker->parameters() == rig.device->parameters());
 }
 
 TEST_CASE(
@@ -101,19 +100,50 @@ TEST_CASE("a recording that may not have the scope leaves no file in the way of 
   CHECK_FALSE(std::filesystem::exists(file));
 }
 
-TEST_CASE("two programs that both want to drive: the second is told who the first is") {
-  std::optional<device::DriverClaim> first(std::in_place, "sharing-test");
-  try {
-    const device::DriverClaim second("sharing-test");
-    FAIL("both drive");
-  } catch (const device::InUse& error) {
-    const std::string sentence = error.what();
-    CHECK(sentence.find("tests-system (process ") != std::string::npos);
-    CHECK(sentence.find("drives this arm already") != std::string::npos);
+TEST_CASE("of two programs one drives: the second is refused with its name, and may stop the force or take the arm over") {
+  BoardRig rig;
+  rig.take_to(free_point_m);
+  rig.make_active();
+  const auto endpoint = rig.board.find();
+  REQUIRE(endpoint.has_value());
+  const auto second = device::Device::open(*endpoint);
+  const auto driver = second->driver();
+  REQUIRE(driver.has_value());
+  CHECK(driver->program == "tests-system");
+  CHECK(driver->process_id == static_cast<std::uint32_t>(getpid()));
+  CHECK(driver->object.has_value());
+  CHECK_FALSE(driver->is_this_device);
+  const auto is_refused = [&](auto request) {
+    try {
+      request();
+      return false;
+    } catch (const device::InUse& error) {
+      return std::string(error.what()).find("through the arm that it opened as number") != std::string::npos;
+    }
+  };
+  CHECK(is_refused([&] { second->claim(); }));
+  CHECK(is_refused([&] { second->disable_force(); }));
+  CHECK(is_refused([&] { second->carry_out(protocol::Command::self_test); }));
+  CHECK(is_refused([&] { second->place_shapes({}); }));
+  constexpr std::array<device::ParameterChange, 1> change{{{Parameter::wall_stiffness_N_per_m, 444.0f}}};
+  CHECK(is_refused([&] { second->set_parameters(change); }));
+  rig.run(0.01);
+  CHECK(protocol::force_is_on(rig.pose().state));
+  SUBCASE("stop") {
+    second->stop();
+    rig.run(0.01);
+    CHECK_FALSE(protocol::force_is_on(rig.pose().state));
+    CHECK(rig.device->drives());
   }
-  const device::DriverClaim other_arm("sharing-test-2");
-  first.reset();
-  CHECK_NOTHROW(device::DriverClaim("sharing-test"));
+  SUBCASE("takeover") {
+    second->take_over();
+    CHECK(second->drives());
+    second->set_parameters(change);
+    rig.run(0.01);
+    CHECK_FALSE(rig.device->drives());
+    second->disable_force();
+    CHECK(second->parameters()[Parameter::wall_stiffness_N_per_m] == 444.0f);
+  }
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 Lengths are in metres, forces in newtons, angles in radians, times in seconds. What goes wrong is an inkwell.Error.
 """
 
-from ._native import Device, ForceMode, Information, Pose, State, Store, Stored, Test, TestItem, devices
+from ._native import Device, Driver, ForceMode, Information, Pose, State, Store, Stored, Test, TestItem, devices
 from ._native import version as _version
 from .arm import Arm, Recording, VirtualHand, open
 from .errors import (BadArgument, Disconnected, Error, Failed, Incompatible, InUse, NoDevice, NoPermission, Refused,
@@ -28,7 +28,7 @@ from .shapes import Plane, Sphere, Surface
 
 __version__ = _version()
 __all__ = [
-    "Arm", "BadArgument", "Device", "Disconnected", "Error", "Failed", "Fault", "ForceMode", "InUse",
+    "Arm", "BadArgument", "Device", "Disconnected", "Driver", "Error", "Failed", "Fault", "ForceMode", "InUse",
     "Incompatible", "Information", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording",
     "Refused", "Samples", "Signal", "Sphere", "State", "Store", "Stored", "Surface", "Test", "TestItem", "TimedOut",
     "VirtualHand", "devices", "open", "parameters_table", "signals",

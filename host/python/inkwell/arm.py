@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native, errors
-from ._native import ForceMode, Information, Pose, TestItem
+from ._native import Driver, ForceMode, Information, Pose, TestItem
 from .parameters import Parameters
 from .scope import Samples
 from .shapes import Plane, Sphere
@@ -162,16 +162,26 @@ class Arm:
 
     def enable_force(self, timeout_s: float = 5.0) -> None:
         """Switches the force on: here the program says that a hand may feel it. Waits for the device, which has to know
-        where it is. Raises Refused with the remedy."""
+        where it is. Raises Refused with the remedy, and InUse while another program drives the arm."""
         _call(self._native.enable_force, timeout_s, wants=_SECONDS)
 
     def disable_force(self) -> None:
-        """Lets the force fall to nothing within soft_landing_s."""
+        """Lets the force fall to nothing within soft_landing_s, and returns once it is off. Raises InUse while another
+        program drives the arm."""
         self._native.disable_force()
 
     def stop(self) -> None:
-        """Takes the force away at once."""
+        """Takes the force away at once, whichever program drives the arm, and returns once it is off."""
         self._native.stop()
+
+    def take_over(self) -> None:
+        """Takes the arm over from the program that drives it. That program's force fades and its shapes end."""
+        self._native.take_over()
+
+    @property
+    def driver(self) -> Driver:
+        """The program that drives the arm."""
+        return self._native.driver()
 
     def clear_fault(self) -> None:
         """Clears a fault whose cause is gone, and waits for a fifth of a second whether it stays away. Raises Refused with

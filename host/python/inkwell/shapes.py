@@ -1,6 +1,7 @@
 """Shapes that the board renders at its full rate."""
 
 import dataclasses
+import math
 from collections.abc import Sequence
 
 
@@ -16,8 +17,9 @@ class Surface:
     """Bound of the tangential force while it sticks, as a part of the normal force."""
     dynamic_friction: float = 0.0
     """The same while it slides; at most the static one."""
-    life_s: float = 10.0
-    """Then the board forgets the shape, unless it is placed anew, s; more than 0, at most 10."""
+    life_s: float = math.inf
+    """The board forgets the shape after this time, s, at most 10, unless it is placed again. By default the shape lasts as
+    long as the program drives the arm."""
 
 
 @dataclasses.dataclass(frozen=True)

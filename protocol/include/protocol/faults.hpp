@@ -67,7 +67,8 @@ inline constexpr float analog_supply_bearable = 0.05f;
   X(9, unknown_operation, "The device does not know this operation.", "Use the companion that belongs to this firmware.")         \
   X(10, busy, "The transaction before this one has not taken effect yet.", "Try again.")                                          \
   X(11, force_is_on, "The arm's geometry cannot change while the force is on.", "Switch the force off first.") \
-  X(12, nothing_stored, "The board has stored nothing that could be restored.", "Store the parameters with `inkwell parameters store`, or load the defaults.")
+  X(12, nothing_stored, "The board has stored nothing that could be restored.", "Store the parameters with `inkwell parameters store`, or load the defaults.") \
+  X(13, not_the_driver, "Another program drives the arm.", "End that program, or take the arm over from it.")
 // clang-format on
 
 enum class Fault : std::uint8_t {

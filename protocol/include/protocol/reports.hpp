@@ -10,6 +10,8 @@
 //   both             feature report  those of the black box: protocol/black_box.hpp
 //   host <- device   feature report  that of the self-test: protocol/self_test.hpp; that of the parameter store:
 //                                    protocol/store.hpp, and the ParametersReport of what the next start would give
+//   both             feature report  the claim of the program that drives the arm, and the results of commands:
+//                                    protocol/driver.hpp
 //
 // And, over an interface of its own, ControllerReport: what any program reads that knows joysticks.
 #pragma once
@@ -37,7 +39,7 @@ static_assert(std::endian::native == std::endian::little, "the structures go ove
 #endif
 
 /// Rises whenever a structure below, or the meaning of an id, changes.
-inline constexpr std::uint16_t protocol_version = 14 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
+inline constexpr std::uint16_t protocol_version = 15 + INKWELL_PROTOCOL_VERSIONS_AHEAD;
 
 /// Rate of the control interrupt, of the scope, and of `time_periods` everywhere.
 inline constexpr std::uint32_t servo_rate_Hz = 20'000;
@@ -60,6 +62,8 @@ enum class ReportId : std::uint8_t {
   self_test = 0x18,       ///< feature, get: protocol/self_test.hpp
   store = 0x19,           ///< feature, get: protocol/store.hpp
   stored = 0x1A,          ///< feature, get: a ParametersReport
+  driver = 0x1B,          ///< feature, get and set: protocol/driver.hpp
+  command_results = 0x1C, ///< feature, get: protocol/driver.hpp
 };
 
 /// Bits of PoseReport::switches.
@@ -155,7 +159,8 @@ struct PoseReport {
   float gimbal_rad[3];
   float force_N[3];
   float joint_rad[3];
-  std::uint8_t switches : 4;       ///< bits of Switch, 1 is pressed
+  std::uint8_t switches : 3;       ///< bits of Switch, 1 is pressed
+  std::uint8_t driver_parity : 1;  ///< lowest bit of DriverReport::changes: it flips when another program drives
   std::uint8_t force_sources : 4;  ///< bits of ForceSource
   std::uint8_t servo_load;         ///< longest control interrupt since the last report, 255 is the whole period
   std::uint8_t command_token;      ///< token of the last command carried out
@@ -208,12 +213,15 @@ struct TestPulse {
 };
 
 /// Output report. A report of another version, length or with an unknown command is ignored and not
-/// acknowledged; `token` comes back in PoseReport::command_token when the command was carried out.
+/// acknowledged; `token` comes back in PoseReport::command_token when the command was carried out. While a program
+/// drives the arm, `stop` is the only command that is accepted from other programs.
 struct CommandReport {
   ReportId report_id = ReportId::command;
   Command command;
   std::uint8_t version = protocol_version;
   std::uint8_t token;
+  std::uint32_t claim;   ///< of the program that sends it; 0 if it has none
+  std::uint32_t ticket;  ///< chosen by the program; CommandResultsReport names the result by it. 0 asks for no result
   union {
     SignalSelection selection;  ///< select_signals
     TestPulse test;             ///< test_current, test_voltage
@@ -228,15 +236,21 @@ inline constexpr std::uint8_t force_interval_maximum_ms = 50;
 /// Output report, up to one in a millisecond: the force that a program wants at the probe. The board moves to it in a
 /// straight line over the program's own interval, keeps it below the force limit and its change below
 /// program_force_change_N_per_s, and lets it fade program_force_expiry_s after the last report. A force that is not
-/// finite, an unknown mode or an interval out of range is refused and counted.
+/// finite, an unknown mode, an interval out of range, a claim that does not drive the arm or an old pose is refused and
+/// counted.
 struct ForceReport {
   ReportId report_id = ReportId::force;
   ForceMode mode;
   std::uint8_t version = protocol_version;
-  std::uint8_t interval_ms;  ///< 1..force_interval_maximum_ms
-  std::uint32_t sequence;    ///< one more each time; a gap is counted as lost
-  float force_N[3];          ///< on the hand, workspace axes
+  std::uint8_t interval_ms;     ///< 1..force_interval_maximum_ms
+  std::uint32_t claim;          ///< of the program that drives the arm
+  std::uint32_t sequence;       ///< one more each time; a gap is counted as lost
+  std::uint32_t pose_sequence;  ///< PoseReport::sequence of the newest pose that the program has received
+  float force_N[3];             ///< on the hand, workspace axes
 };
+
+/// A force that answers an older pose is refused: the program no longer knows the position of the hand.
+inline constexpr std::uint32_t force_pose_age_maximum_ms = 100;
 
 /// From this heat on a motor's current limit falls, to its continuous current where the heat is 1.
 inline constexpr float motor_heat_holds_back_from = 0.85f;
@@ -309,7 +323,8 @@ struct ParametersReport {
   ParameterOperation operation;
   std::uint16_t version = protocol_version;
   std::uint16_t count;
-  std::uint16_t reserved = 0;
+  std::uint16_t ticket = 0;  ///< chosen by the program; comes back in the TransactionReport
+  std::uint32_t claim = 0;   ///< of the program that sends it; 0 if it has none, and in answers
   ParameterEntry entries[parameter_entries_maximum];
 };
 
@@ -321,6 +336,8 @@ struct TransactionReport {
   float value;                       ///< the value that was refused, else 0
   std::uint32_t transactions;        ///< received since the start, refused ones included
   std::uint32_t applied_at_periods;  ///< control period at which the last accepted one took effect
+  std::uint16_t ticket;              ///< ParametersReport::ticket of that transaction
+  std::uint16_t reserved;
 };
 
 /// Feature report: when the newest frame of the bus began, by the board's clock. Two of them tell how fast the host's
@@ -340,7 +357,8 @@ struct SurfaceEntry {
   float damping_Ns_per_m;   ///< 0 to the maximum of wall_damping_Ns_per_m
   float static_friction;    ///< 0..friction_maximum, a part of the normal force
   float dynamic_friction;   ///< 0..static_friction
-  float life_s;             ///< 0..shape_life_maximum_s from when it takes effect; 0 for a shape that is not there
+  /// 0..shape_life_maximum_s from when it takes effect; infinite until the claim ends; 0 for a shape that is not there.
+  float life_s;
 };
 
 struct PlaneEntry {
@@ -362,12 +380,14 @@ inline constexpr float friction_maximum = 3.0f;
 
 /// Feature report, set: the shapes from now on, each in a place of its own. They take the place of all that were there
 /// at the start of one control period, without a jump of the force. Only the used part is sent:
-/// shapes_report_size(plane_count) bytes. One that is not sound is refused whole, by a stall.
+/// shapes_report_size(plane_count) bytes. One that is not sound, or of a program that does not drive the arm, is refused
+/// whole, by a stall. All shapes end with the claim.
 struct ShapesReport {
   ReportId report_id = ReportId::shapes;
   std::uint8_t version = protocol_version;
   std::uint8_t plane_count;  ///< 0..shape_planes_maximum
   std::uint8_t reserved = 0;
+  std::uint32_t claim;       ///< of the program that drives the arm
   SphereEntry sphere;
   PlaneEntry planes[shape_planes_maximum];
 };
@@ -397,12 +417,12 @@ constexpr std::size_t parameters_report_size(std::size_t count) {
 static_assert(sizeof(PoseReport) == 64);
 static_assert(sizeof(ControllerReport) == 14);
 static_assert(sizeof(SignalSelection) == 33 && sizeof(TestPulse) == 9);
-static_assert(sizeof(CommandReport) == 37);
-static_assert(sizeof(ForceReport) == 20);
+static_assert(sizeof(CommandReport) == 45);
+static_assert(sizeof(ForceReport) == 28);
 static_assert(sizeof(InformationReport) == 104);
 static_assert(sizeof(ParameterEntry) == 8);
-static_assert(sizeof(ParametersReport) == 8 + 8 * parameter_entries_maximum);
-static_assert(sizeof(TransactionReport) == 16);
+static_assert(sizeof(ParametersReport) == 12 + 8 * parameter_entries_maximum);
+static_assert(sizeof(TransactionReport) == 20);
 static_assert(sizeof(FrameReport) == 16);
 static_assert(sizeof(ForceLawReport) == 6);
 static_assert(sizeof(SurfaceEntry) == 20 && sizeof(PlaneEntry) == 44 && sizeof(SphereEntry) == 36);

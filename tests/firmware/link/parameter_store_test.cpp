@@ -53,7 +53,8 @@ TEST_CASE("a store starts with the defaults and reads them in the table's order"
   CHECK(store.read(report) == protocol::parameters_report_size(protocol::parameter_count));
   CHECK(report.report_id == protocol::ReportId::parameters);
   CHECK(report.operation == protocol::ParameterOperation::set);
-  CHECK(report.reserved == 0);
+  CHECK(report.ticket == 0);
+  CHECK(report.claim == 0);
   CHECK(report.version == protocol::protocol_version);
   REQUIRE(report.count == protocol::parameter_count);
   for (std::size_t i = 0; i < protocol::parameter_count; ++i) {

@@ -48,7 +48,7 @@ TEST_CASE("a sound force is ready for the interrupt once") {
   ForceReport report = force(7, -2.5f);
   report.interval_ms = 4;
   report.mode = ForceMode::instead_of_walls;
-  requests.accept_force(bytes(report));
+  requests.accept_force(bytes(report), true, 0);
   const control::ForceTarget* target = requests.take_force();
   REQUIRE(target != nullptr);
   CHECK(target->force_N == control::Vector3{-2.5f, 0.0f, 0.0f});
@@ -79,11 +79,11 @@ TEST_CASE("what is no force is refused, counted and reaches nobody") {
   std::uint32_t refused = 0;
   for (const ForceReport& report : reports) {
     CAPTURE(refused);
-    requests.accept_force(bytes(report));
+    requests.accept_force(bytes(report), true, 0);
     CHECK(requests.take_force() == nullptr);
     CHECK(requests.forces_refused() == ++refused);
   }
-  for (const std::size_t size : {1u, 19u}) requests.accept_force(bytes(force(1)).first(size));
+  for (const std::size_t size : {1u, 27u}) requests.accept_force(bytes(force(1)).first(size), true, 0);
   CHECK(requests.forces_refused() == refused + 2);
   CHECK(requests.forces_received() == refused + 2);
 }
@@ -100,7 +100,7 @@ TEST_CASE("a huge force stays finite in its square and keeps its direction") {
 TEST_CASE("gaps in the sequence are counted as lost, another program's start is none") {
   link::ProgramRequests requests;
   const auto accept = [&](std::uint32_t sequence) {
-    requests.accept_force(bytes(force(sequence)));
+    requests.accept_force(bytes(force(sequence)), true, 0);
     requests.take_force();
   };
   accept(0xFFFFFFFEu);
@@ -113,12 +113,12 @@ TEST_CASE("gaps in the sequence are counted as lost, another program's start is 
   CHECK(requests.forces_lost() == 2);
   ForceReport end = force(1'000'001);
   end.mode = ForceMode::none;
-  requests.accept_force(bytes(end));
+  requests.accept_force(bytes(end), true, 0);
   requests.take_force();
   accept(1'000'005);  // after an end anything is a start
   CHECK(requests.forces_lost() == 2);
-  requests.accept_force(bytes(force(1'000'006)));
-  requests.accept_force(bytes(force(1'000'007)));  // the interrupt did not take the one before
+  requests.accept_force(bytes(force(1'000'006)), true, 0);
+  requests.accept_force(bytes(force(1'000'007)), true, 0);  // the interrupt did not take the one before
   CHECK(requests.forces_lost() == 3);
   CHECK(requests.take_force() != nullptr);
 }
@@ -189,14 +189,41 @@ TEST_CASE("a place without life may hold anything") {
   CHECK(shapes.life_periods[1] == 0);
 }
 
-TEST_CASE("the shapes go with the host") {
+TEST_CASE("shapes and force end with the driver") {
   link::ProgramRequests requests;
   requests.accept_shapes(bytes(one_plane()));
   REQUIRE(requests.take_shapes() != nullptr);
-  requests.host_gone();
+  requests.driver_gone();
   const control::Shapes* shapes = requests.take_shapes();
   REQUIRE(shapes != nullptr);
   for (const std::uint32_t periods : shapes->life_periods) CHECK(periods == 0);
+  const control::ForceTarget* force = requests.take_force();
+  REQUIRE(force != nullptr);
+  CHECK(force->mode == ForceMode::none);
+}
+
+TEST_CASE("a force of a program that does not drive, or that answers an old pose, is refused") {
+  link::ProgramRequests requests;
+  ForceReport report = force(1);
+  report.pose_sequence = 0xFFFFFFF0u;  // the sequence wraps in between
+  const std::uint32_t oldest = report.pose_sequence + protocol::force_pose_age_maximum_ms;
+  CHECK(requests.accept_force(bytes(report), true, oldest));
+  requests.take_force();
+  CHECK_FALSE(requests.accept_force(bytes(report), true, oldest + 1));
+  CHECK_FALSE(requests.accept_force(bytes(report), true, report.pose_sequence - 1));  // of another board
+  CHECK_FALSE(requests.accept_force(bytes(report), false, oldest));
+  CHECK(requests.take_force() == nullptr);
+  CHECK(requests.forces_refused() == 3);
+}
+
+TEST_CASE("a shape with an infinite life lasts") {
+  ShapesReport report = one_plane();
+  report.planes[0].surface.life_s = infinite;
+  control::Shapes shapes;
+  REQUIRE(link::decode_shapes(bytes(report), shapes));
+  CHECK(shapes.life_periods[1] == control::Shapes::lasting);
+  report.planes[0].surface.life_s = -infinite;
+  CHECK_FALSE(link::decode_shapes(bytes(report), shapes));
 }
 
 }  // namespace

@@ -451,7 +451,8 @@ TEST_CASE("stored parameters: the report of what is stored is one to restore it 
   CHECK(report.operation == protocol::ParameterOperation::restore_stored);
   CHECK(report.version == protocol::protocol_version);
   CHECK(report.count == link::image_parameter_count());
-  CHECK(report.reserved == 0);
+  CHECK(report.ticket == 0);
+  CHECK(report.claim == 0);
   bool found = false;
   for (std::size_t i = 0; i < report.count; ++i)
     if (report.entries[i].id == id_of(force_limit)) found = report.entries[i].value == 1.25f;

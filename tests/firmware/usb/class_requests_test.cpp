@@ -16,6 +16,7 @@ namespace inkwell {
 using test::answer;
 using test::Bytes;
 using test::bytes_of;
+using test::claim_report;
 using test::command;
 using test::DeviceBench;
 using test::done_result;
@@ -151,7 +152,7 @@ TEST_CASE("HID: parameters are read, set as a transaction and its result is told
   bench.configure();
   const test::Transaction transaction{test::entry(protocol::Parameter::wall_stiffness_N_per_m, 321.0f),
                                       test::entry(protocol::Parameter::wall_damping_Ns_per_m, 4.0f)};
-  CHECK(bench.control(request(0x21, 9, 0x0311, 0, 24), transaction.bytes()) == done_result);
+  CHECK(bench.control(request(0x21, 9, 0x0311, 0, 28), transaction.bytes()) == done_result);
   bench.run(3);
   auto result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
   CHECK(result.refusal == protocol::Refusal::accepted);
@@ -168,7 +169,7 @@ TEST_CASE("HID: parameters are read, set as a transaction and its result is told
 
   // A refusal is no stall: the transaction report tells it.
   const test::Transaction bad{{9999, 0, 1.0f}};
-  CHECK(bench.control(request(0x21, 9, 0x0311, 0, 16), bad.bytes()) == done_result);
+  CHECK(bench.control(request(0x21, 9, 0x0311, 0, 20), bad.bytes()) == done_result);
   result = bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction);
   CHECK(result.refusal == protocol::Refusal::unknown_parameter);
   CHECK(result.parameter_id == 9999);
@@ -180,7 +181,7 @@ TEST_CASE("HID: the arm does not change while the force is on or about to be") {
   bench.configure();
   const test::Transaction transaction{test::entry(protocol::Parameter::link_2_m, 0.2f)};
   const auto refusal = [&] {
-    bench.control(request(0x21, 9, 0x0311, 0, 16), transaction.bytes());
+    bench.control(request(0x21, 9, 0x0311, 0, 20), transaction.bytes());
     bench.run(1);
     return bench.get_feature<protocol::TransactionReport>(protocol::ReportId::transaction).refusal;
   };
@@ -217,6 +218,9 @@ TEST_CASE("HID: a program's forces come by the interrupt endpoint and by SET_REP
   force.mode = protocol::ForceMode::beside_walls;
   force.interval_ms = 1;
   force.force_N[1] = 0.5f;
+  force.claim = 7;
+  REQUIRE(bench.set_report(3, claim_report(protocol::ClaimOperation::claim, 7)) == done_result);
+  bench.link.program.take_force();  // none, from the reset
   for (std::uint32_t sequence = 0; sequence < 20; ++sequence) {
     force.sequence = sequence;
     REQUIRE(bench.port.out(1, bytes_of(force)) == Handshake::ack);
@@ -250,6 +254,10 @@ TEST_CASE("HID: shapes come whole or are refused by a stall, and go with the hos
   bench.link.program.take_shapes();  // none, from the reset
   protocol::ShapesReport shapes{};
   shapes.plane_count = protocol::shape_planes_maximum;
+  shapes.claim = 7;
+  CHECK(bench.set_report(3, shapes) == stall_result);  // of no driver
+  REQUIRE(bench.set_report(3, claim_report(protocol::ClaimOperation::claim, 7)) == done_result);
+  bench.link.program.take_force();  // none, from the reset
   for (auto& plane : shapes.planes) plane = {{0, 0, 0}, {0, 0, 1}, {800.0f, 1.0f, 0.0f, 0.0f, 1.0f}};
   CHECK(bench.set_report(3, shapes) == done_result);
   const control::Shapes* taken = bench.link.program.take_shapes();
@@ -342,17 +350,19 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
   for (unsigned type = 0; type < 5; ++type)
     for (unsigned id = 0; id < 256; ++id) {
       const auto value = static_cast<std::uint16_t>(type << 8 | id);
-      if (value == 0x0202 || value == 0x0203 || value == 0x0311 || value == 0x0314 || value == 0x0317) continue;
-      bench.setup(request(0x21, 9, value, 0, 37));
+      if (value == 0x0202 || value == 0x0203 || value == 0x0311 || value == 0x0314 || value == 0x0317 ||
+          value == 0x031B)
+        continue;
+      bench.setup(request(0x21, 9, value, 0, sizeof good));
       CHECK(bench.port.out(0, bytes_of(good)) == Handshake::stall);
     }
   // The id in the data is another one than in the request.
-  CHECK(bench.control(request(0x21, 9, 0x0311, 0, 37), bytes_of(good)) == stall_result);
+  CHECK(bench.control(request(0x21, 9, 0x0311, 0, sizeof good), bytes_of(good)) == stall_result);
   // Short and long.
-  for (const std::size_t size : {1u, 36u}) CHECK(bench.set_report(2, good, size) == done_result);
+  for (const std::size_t size : {1u, 44u}) CHECK(bench.set_report(2, good, size) == done_result);
   const std::array<std::byte, 64> longer{std::byte{2}};
   CHECK(bench.set_report(2, longer) == done_result);
-  for (const std::size_t size : {0u, 1u, 36u, 38u, 64u}) {
+  for (const std::size_t size : {0u, 1u, 44u, 46u, 64u}) {
     std::array<std::byte, 64> packet{};
     std::memcpy(packet.data(), &good, sizeof good);
     CHECK(bench.port.out(1, std::span(packet).first(size)) == Handshake::ack);
@@ -367,7 +377,7 @@ TEST_CASE("HID: reports with a wrong id, type or length are refused or ignored, 
       const unsigned value = type << 8 | id;
       if (value == 0x0101 || value == 0x0310 || value == 0x0311 || value == 0x0312 || value == 0x0313 ||
           value == 0x0315 || value == 0x0316 || value == 0x0317 || value == 0x0318 || value == 0x0319 ||
-          value == 0x031A)
+          value == 0x031A || value == 0x031B || value == 0x031C)
         continue;
       CHECK(bench.get_report(static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(id), 64) == stall_result);
     }

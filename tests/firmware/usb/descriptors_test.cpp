@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <protocol/driver.hpp>
 #include <protocol/store.hpp>
 
 #include "device_bench.hpp"
@@ -44,7 +45,7 @@ TEST_CASE("device and configuration, byte for byte") {
   CHECK(bench.get_descriptor(0x0200, 512).data ==
         bytes({9, 2,    100,  0,    4,  1,    0,    0xC0, 0,  // takes nothing from the bus
                9, 4,    0,    0,    2,  0x03, 0,    0,    4,  // HID
-               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 141,  0,  //
+               9, 0x21, 0x11, 0x01, 0,  1,    0x22, 159,  0,  //
                7, 5,    0x81, 3,    64, 0,    1,              //
                7, 5,    0x01, 3,    64, 0,    1,              //
                9, 4,    1,    0,    1,  0xFF, 0,    0,    5,  // scope
@@ -54,7 +55,7 @@ TEST_CASE("device and configuration, byte for byte") {
                7, 5,    0x83, 3,    64, 0,    8,              //
                9, 4,    3,    0,    0,  0xFE, 1,    1,    7,  // firmware update
                9, 0x21, 0x0B, 0xFF, 0,  0,    0x08, 0x1A, 0x01}));
-  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 141, 0}));
+  CHECK(bench.get_descriptor(0x2100, 64, 1).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 159, 0}));
   CHECK(bench.get_descriptor(0x2100, 64, 1, 2).data == bytes({9, 0x21, 0x11, 0x01, 0, 1, 0x22, 79, 0}));
 }
 
@@ -67,7 +68,8 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
                     parameters = sizeof(ParametersReport), transaction = sizeof(TransactionReport),
                     frame = sizeof(FrameReport), force = sizeof(ForceReport), shapes = sizeof(ShapesReport),
                     law = force_law_report_maximum, box = sizeof(BlackBoxReport), rows = sizeof(BlackBoxRowsReport),
-                    self_test = sizeof(SelfTestReport), store = sizeof(StoreReport);
+                    self_test = sizeof(SelfTestReport), store = sizeof(StoreReport), driver = sizeof(DriverReport),
+                    results = sizeof(CommandResultsReport);
   CHECK(bench.get_descriptor(0x2200, 4096, 1).data == bytes({0x06,
                                                              0x00,
                                                              0xFF,
@@ -206,6 +208,24 @@ TEST_CASE("the HID report descriptor, byte for byte but for the reports' sizes")
                                                              0x96,
                                                              low(parameters),
                                                              high(parameters),
+                                                             0xB1,
+                                                             0x02,  //
+                                                             0x85,
+                                                             0x1B,
+                                                             0x09,
+                                                             16,
+                                                             0x96,
+                                                             low(driver),
+                                                             high(driver),
+                                                             0xB1,
+                                                             0x02,  //
+                                                             0x85,
+                                                             0x1C,
+                                                             0x09,
+                                                             17,
+                                                             0x96,
+                                                             low(results),
+                                                             high(results),
                                                              0xB1,
                                                              0x02,  //
                                                              0xC0}));

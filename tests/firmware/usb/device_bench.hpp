@@ -4,6 +4,7 @@
 #include <cstring>
 #include <initializer_list>
 
+#include <protocol/driver.hpp>
 #include <usb/device.hpp>
 
 #include "../link/fresh_link.hpp"
@@ -155,10 +156,22 @@ struct DeviceBench {
   std::optional<protocol::CommandReport> last_command;
 };
 
-inline protocol::CommandReport command(protocol::Command kind, std::uint8_t token) {
+inline protocol::CommandReport command(protocol::Command kind, std::uint8_t token, std::uint32_t claim = 0,
+                                       std::uint32_t ticket = 0) {
   protocol::CommandReport report{};
   report.command = kind;
   report.token = token;
+  report.claim = claim;
+  report.ticket = ticket;
+  return report;
+}
+
+inline protocol::ClaimReport claim_report(protocol::ClaimOperation operation, std::uint32_t claim) {
+  protocol::ClaimReport report{};
+  report.operation = operation;
+  report.claim = claim;
+  report.process_id = 1000 + claim;
+  std::memcpy(report.program, "trial", 5);
   return report;
 }
 

@@ -10,6 +10,8 @@
 
 #include <device/transport.hpp>
 
+#include "answered_commands.hpp"
+
 using namespace inkwell;
 using device::ShownFault;
 using protocol::Fault;
@@ -22,8 +24,11 @@ class CountingTransport final : public device::Transport {
  public:
   explicit CountingTransport(unsigned& written) : written_(written) {}
   std::size_t read_report(std::span<std::byte>, std::chrono::milliseconds) override { return 0; }
-  void write_report(std::span<const std::byte>) override { ++written_; }
-  std::size_t get_feature(std::span<std::byte>) override { return 0; }
+  void write_report(std::span<const std::byte> report) override {
+    ++written_;
+    commands_.note(report);
+  }
+  std::size_t get_feature(std::span<std::byte> report) override { return commands_.answer(report); }
   void set_feature(std::span<const std::byte>) override {}
   void claim_scope() override {}
   void release_scope() override {}
@@ -32,6 +37,7 @@ class CountingTransport final : public device::Transport {
 
  private:
   unsigned& written_;
+  tests::AnsweredCommands commands_;
   device::Endpoint endpoint_;
 };
 

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include <control/installed_force_law.hpp>
+#include <protocol/driver.hpp>
 #include <protocol/parameters.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/store.hpp>
@@ -375,6 +376,9 @@ void answer_as_inkwell(FakeUsbDevice& arm) {
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::parameters)] = bytes_of(parameters);
   parameters.report_id = protocol::ReportId::stored;
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::stored)] = bytes_of(parameters);
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::driver)] = bytes_of(protocol::DriverReport{});
+  arm.features[static_cast<std::uint8_t>(protocol::ReportId::command_results)] =
+      bytes_of(protocol::CommandResultsReport{});
   const protocol::StoreReport store{};
   arm.features[static_cast<std::uint8_t>(protocol::ReportId::store)] = bytes_of(store);
 }

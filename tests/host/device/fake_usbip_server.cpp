@@ -208,6 +208,10 @@ void FakeUsbipServer::take_output(const Bytes& data) {
   if (data[0] == std::byte{static_cast<std::uint8_t>(protocol::ReportId::force)})
     return take(protocol::ForceReport{}, forces_);
   take(protocol::CommandReport{}, commands_);
+  if (!driver.permits(commands_.back().claim) && protocol::needs_claim(commands_.back().command))
+    command_results.refuse(data);
+  else
+    command_results.note(data);
   const auto command = commands_.back().command;
   const bool is_for_store =
       command == protocol::Command::store_parameters || command == protocol::Command::factory_reset;
@@ -287,9 +291,14 @@ std::optional<Bytes> FakeUsbipServer::answer_report_request(const std::uint8_t (
     shapes_placed_.push_back(data);
     return Bytes{};
   }
+  if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x1B) {
+    driver.accept(data, frame.time_periods);
+    return Bytes{};
+  }
   if (setup[0] == 0x21 && setup[1] == 9 && setup[2] == 0x11) {
     protocol::ParametersReport report{};
     std::memcpy(&report, data.data(), std::min(data.size(), sizeof report));
+    transaction_.ticket = report.ticket;
     transaction_.refusal = judge(report);
     transaction_.parameter_id =
         transaction_.refusal == protocol::Refusal::accepted ? std::uint16_t{0} : report.entries[0].id;
@@ -319,6 +328,8 @@ std::optional<Bytes> FakeUsbipServer::feature_report(protocol::ReportId id) {
       return Bytes(control::installed_force_law.report,
                    control::installed_force_law.report + control::installed_force_law.report_size);
     case protocol::ReportId::store: return bytes_of(store);
+    case protocol::ReportId::driver: return bytes_of(driver.report(frame.time_periods));
+    case protocol::ReportId::command_results: return bytes_of(command_results.report);
     case protocol::ReportId::parameters: return parameters_report(id, parameters);
     case protocol::ReportId::stored: return parameters_report(id, at_next_start);
     default: return std::nullopt;

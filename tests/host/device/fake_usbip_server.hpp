@@ -17,6 +17,9 @@
 #include <protocol/reports.hpp>
 #include <protocol/store.hpp>
 
+#include <link/driver_claim.hpp>
+
+#include "answered_commands.hpp"
 #include "local_server.hpp"
 
 namespace inkwell::tests {
@@ -51,6 +54,8 @@ class FakeUsbipServer {
   std::optional<protocol::BlackBoxReport> black_box;  ///< none: the request is stalled
   protocol::ParameterSet parameters = protocol::default_parameters();
   protocol::StoreReport store{};
+  link::DriverClaim driver;
+  AnsweredCommands command_results;
   protocol::ParameterSet at_next_start = protocol::default_parameters();
   /// What becomes of a command to store or to forget. While it is `under_way`, nothing is written.
   std::function<protocol::StoreResult(protocol::Command)> judge_store = [](protocol::Command) {

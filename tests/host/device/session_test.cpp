@@ -195,13 +195,13 @@ TEST_CASE("what was asked for last still reaches the device when the session end
   CHECK(server.parameters[Parameter::force_limit_N] == 1.5f);
 }
 
-TEST_CASE("a session that ends with a force that it switched on lets it fall, and touches no other") {
+TEST_CASE("a session that ends while it drives the arm lets the force fall, and touches no other") {
   struct Row {
     std::vector<protocol::Command> commands;
     std::size_t let_fall;
   };
   using enum protocol::Command;
-  for (const Row& row : {Row{{enable_force}, 1}, Row{{enable_force, stop}, 0}, Row{{enable_force, disable_force}, 1},
+  for (const Row& row : {Row{{enable_force}, 1}, Row{{enable_force, stop}, 1}, Row{{enable_force, disable_force}, 2},
                          Row{{stop, enable_force}, 1}, Row{{heartbeat}, 0}}) {
     CAPTURE(row.commands.size());
     FakeUsbipServer server;
@@ -211,7 +211,27 @@ TEST_CASE("a session that ends with a force that it switched on lets it fall, an
       for (const auto command : row.commands) session.send(command);
     }
     CHECK(count_of(server, disable_force) == row.let_fall);
+    CHECK_FALSE(server.driver.is_held());
   }
+}
+
+TEST_CASE("a session is refused while another program drives: it says so, stops the force all the same, and may take over") {
+  FakeUsbipServer server;
+  protocol::ClaimReport other{.operation = protocol::ClaimOperation::claim, .claim = 77, .process_id = 4711};
+  std::strcpy(other.program, "a\x1b[31mprogram");
+  REQUIRE_FALSE(server.driver.accept(std::as_bytes(std::span(&other, 1)), 0));
+  device::Session session([&] { return std::optional(server.endpoint()); });
+  REQUIRE(eventually([&] { return is_connected(session); }));
+  session.send(protocol::Command::enable_force);
+  const auto problem = [&] { return session.status().command_problem.value_or(""); };
+  REQUIRE(eventually([&] { return problem().find("driven by a?[31mprogram (process 4711)") != std::string::npos; }));
+  CHECK_FALSE(was_sent(server, protocol::Command::enable_force));
+  session.send(protocol::Command::disable_force);
+  CHECK(eventually([&] { return was_sent(server, protocol::Command::stop); }));
+  session.take_over();
+  session.send(protocol::Command::enable_force);
+  CHECK(eventually([&] { return was_sent(server, protocol::Command::enable_force); }));
+  CHECK(problem().empty());
 }
 
 TEST_CASE("changes on their way when the connection breaks reach the device after all") {

@@ -121,7 +121,7 @@ TEST_CASE("a feature report that is too short is refused with both lengths") {
     server.spoil[protocol::ReportId::transaction] = cut;
     const auto arm = device::Device::open(server.endpoint());
     message = message_of<device::Incompatible>([&] { arm->restore_default_parameters(); });
-    CHECK(contains(message, "transaction report has 15 bytes instead of 16"));
+    CHECK(contains(message, "transaction report has 19 bytes instead of 20"));
   }
   SUBCASE("frame") {
     server.spoil[protocol::ReportId::frame] = cut;
@@ -153,15 +153,19 @@ TEST_CASE("shapes reach the device as one report, as long as its planes are many
   FakeUsbipServer server;
   server.shapes_stalls = 2;  // as long as the interrupt has not taken those before
   const auto arm = device::Device::open(server.endpoint());
+  arm->claim();
   device::Shapes shapes;
   shapes.planes[1] = device::Plane{.point_m = {0.01f, 0.02f, 0.03f}};
   shapes.sphere = device::Sphere{.centre_m = {0, 0, -0.05f}};
   arm->place_shapes(shapes);
   arm->place_shapes({});
-  auto expected = bytes_of(device::shapes_report(shapes));
-  expected.resize(protocol::shapes_report_size(2));
+  auto report = device::shapes_report(shapes);
   const auto placed = server.shapes_placed();
   REQUIRE(placed.size() == 2);
+  std::memcpy(&report.claim, &placed[0][offsetof(protocol::ShapesReport, claim)], sizeof report.claim);
+  CHECK(server.driver.is_held_by(report.claim));
+  auto expected = bytes_of(report);
+  expected.resize(protocol::shapes_report_size(2));
   CHECK(placed[0] == expected);
   CHECK(placed[1].size() == protocol::shapes_report_size(0));
   CHECK(server.shapes_stalls == 0);
@@ -171,6 +175,7 @@ TEST_CASE("shapes that the device goes on to stall are given up with a sentence"
   FakeUsbipServer server;
   server.shapes_stalls = std::numeric_limits<int>::max();
   const auto arm = device::Device::open(server.endpoint());
+  arm->claim();
   CHECK(contains(message_of<device::Stalled>([&] { arm->place_shapes({}); }), "refused a USB request"));
   CHECK(server.shapes_placed().empty());
   CHECK_NOTHROW(arm->information());

@@ -36,6 +36,8 @@ struct Sphere {
 /// A set of shapes, prepared outside of the interrupt. Shape 0 is the sphere, 1 to 8 are the planes.
 struct Shapes {
   static constexpr std::size_t maximum = 1 + protocol::shape_planes_maximum;
+  /// The life of a shape that has no end of its own.
+  static constexpr std::uint32_t lasting = 0xFFFFFFFFu;
 
   Sphere sphere{};
   std::array<Plane, protocol::shape_planes_maximum> planes{};

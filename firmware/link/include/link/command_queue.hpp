@@ -32,6 +32,11 @@ class CommandQueue {
   /// The host was heard, without a command.
   void note_sign_of_life() { sign_of_life_.store(true); }
 
+  /// Commands that were pushed since the start.
+  std::uint32_t pushed() const { return pushed_.load(); }
+  /// Whether the interrupt has taken the command that was the last one when pushed() returned this.
+  bool was_taken(std::uint32_t pushed) const { return static_cast<std::int32_t>(taken_.load() - pushed) >= 0; }
+
   /// Whether such a command waits for the interrupt.
   bool waiting(protocol::Command command) const;
 

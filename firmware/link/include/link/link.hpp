@@ -24,6 +24,8 @@
 
 #include <link/black_box.hpp>
 #include <link/command_queue.hpp>
+#include <link/command_results.hpp>
+#include <link/driver_claim.hpp>
 #include <link/parameter_store.hpp>
 #include <link/pose_recorder.hpp>
 #include <link/program_requests.hpp>
@@ -45,6 +47,8 @@ struct Link {
   ParameterStore parameters;
   StoredParameters stored;
   CommandQueue commands;
+  CommandResults command_results{commands};
+  DriverClaim driver;
   ProgramRequests program;
   SampleRing samples;
   PoseRecorder poses;

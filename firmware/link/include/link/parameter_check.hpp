@@ -34,6 +34,19 @@ class StoredSet {
   std::uint16_t refused_ = 0;
 };
 
+/// What precedes the entries of a ParametersReport.
+struct TransactionHeader {
+  protocol::ReportId report_id;
+  protocol::ParameterOperation operation;
+  std::uint16_t version;
+  std::uint16_t count;
+  std::uint16_t ticket;
+  std::uint32_t claim;
+};
+
+/// The header of a ParametersReport; zeros for what is missing of it.
+TransactionHeader header_of(std::span<const std::byte> report);
+
 /// What became of a transaction: `set` is valid if `refusal` is accepted.
 struct ParameterCheck {
   protocol::Refusal refusal = protocol::Refusal::accepted;

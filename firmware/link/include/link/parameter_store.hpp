@@ -36,6 +36,9 @@ class ParameterStore {
   protocol::Refusal accept(std::span<const std::byte> report, bool force_is_on,
                            const Guarded<protocol::ParameterSet>* stored = nullptr);
 
+  /// Refuses a ParametersReport of a program that does not drive the arm.
+  void refuse(std::span<const std::byte> report);
+
   /// Without a transaction, while the force is off. False, and nothing done, where accept() would be busy.
   [[nodiscard]] bool restore_defaults();
 
@@ -76,6 +79,7 @@ class ParameterStore {
   std::uint16_t refused_id_ = 0;
   float refused_value_ = 0.0f;
   std::uint32_t transactions_ = 0;
+  std::uint16_t ticket_ = 0;  ///< of the last transaction
 };
 
 }  // namespace inkwell::link

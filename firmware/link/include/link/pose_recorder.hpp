@@ -38,7 +38,7 @@ class PoseRecorder {
 
   // ---- main loop ----
 
-  /// The newest pose, without a sequence; false before the first period.
+  /// The newest pose, without a sequence and driver parity; false before the first period.
   bool read(protocol::PoseReport& report) const;
 
   /// The same for a report that is sent: the longest interrupt is looked for anew.
@@ -49,6 +49,9 @@ class PoseRecorder {
 
   /// Of the control interrupt, since the last report that was taken.
   std::uint32_t longest_cycles() const { return longest_cycles_.load(); }
+
+  /// Number of the newest control period; 0 before the first.
+  std::uint32_t newest_periods() const;
 
   /// The cycle counter when the newest pose's control interrupt began; nothing before the first period.
   std::optional<std::uint32_t> newest_cycles() const;

@@ -20,19 +20,24 @@ std::optional<control::ForceTarget> decode_force(std::span<const std::byte> repo
 /// The same for a ShapesReport; false if anything in it is not sound, and then `shapes` is undefined.
 bool decode_shapes(std::span<const std::byte> report, control::Shapes& shapes);
 
+/// The claim in a ForceReport or a ShapesReport; 0 if the report is too short to hold one.
+std::uint32_t claim_of_force(std::span<const std::byte> report);
+std::uint32_t claim_of_shapes(std::span<const std::byte> report);
+
 /// Each newer request takes the place of the older one.
 class ProgramRequests {
  public:
   // ---- main loop ----
 
-  /// Takes a ForceReport; false if it is not sound, which is counted.
-  bool accept_force(std::span<const std::byte> report);
+  /// Accepts a ForceReport. False, and counted as refused, if it is not valid, if its program does not drive the arm, or
+  /// if it answers a pose that is older than force_pose_age_maximum_ms. `pose_sequence`: of the newest pose report.
+  bool accept_force(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence);
 
   /// Takes a ShapesReport; false if it is not sound, or if the interrupt has not taken the one before.
   bool accept_shapes(std::span<const std::byte> report);
 
-  /// The host is gone, and with it every shape. A force expires by itself.
-  void host_gone();
+  /// The driver is gone, and with it every shape. Its force fades.
+  void driver_gone();
 
   std::uint32_t forces_received() const { return forces_received_; }
   std::uint32_t forces_lost() const { return forces_lost_; }

@@ -65,6 +65,15 @@ class Device final : private ControlRequests {
   bool force_is_on() const;
   /// Likewise: there is no force, and no command waits that could bring one.
   bool may_store() const;
+  /// Whether a request with this claim may be carried out: no program drives the arm, or this one does, and then its
+  /// claim is renewed. Counts refusals.
+  bool is_permitted(std::uint32_t claim);
+  /// The same, without counting.
+  bool note_heard(std::uint32_t claim);
+  bool driver_parity() const { return (link_.driver.changes() & 1u) != 0; }
+  /// The claim of a program has ended: its force and shapes fade, and a force that is on falls.
+  void driver_gone();
+  void let_force_fall();
   void handle(const Event& event);
   void bus_reset();
   void host_gone();
@@ -114,6 +123,7 @@ class Device final : private ControlRequests {
   std::uint8_t configuration_ = 0;
   std::array<std::uint8_t, protocol::usb::interface_count> idle_rates_{};
   bool suspended_ = false;
+  bool force_must_fall_ = false;  ///< the driver has gone, and the command queue was full
   bool detach_asked_ = false;
   bool leaves_for_update_ = false;
   std::array<Endpoint, 4> endpoints_;

@@ -16,6 +16,7 @@
 #include <device/scope_decoder.hpp>
 #include <device/transport.hpp>
 #include <protocol/black_box.hpp>
+#include <protocol/driver.hpp>
 #include <protocol/reports.hpp>
 #include <protocol/self_test.hpp>
 #include <protocol/store.hpp>
@@ -52,6 +53,19 @@ class NotTested : public Error {
   using Error::Error;
 };
 
+/// The program that drives an arm.
+struct Driver {
+  std::string program;       ///< its name, printable ASCII
+  std::uint32_t process_id;  ///< on its computer
+  double driven_s;           ///< board time since it claimed the arm
+  /// The object of this process that holds the claim, counted from 1 in the order of opening; none for another process.
+  std::optional<int> object;
+  bool is_this_device;  ///< that object is this one
+};
+
+/// "python3 (process 123), which has driven this arm for 12 s" or "this program itself, ...".
+std::string driver_text(const Driver& driver);
+
 using ParameterChange = std::pair<protocol::Parameter, float>;
 
 /// May be used by several threads, but poses are read by one of them and the scope by one.
@@ -71,7 +85,32 @@ class Device {
   /// Waits for the next pose report; none on time-out.
   std::optional<protocol::PoseReport> read_pose(std::chrono::milliseconds timeout);
 
-  /// Sends a command and returns its token, which comes back in PoseReport::command_token.
+  /// The program that drives the arm; none if no program does.
+  std::optional<Driver> driver();
+  /// This object drives the arm from now on, until release() or its end, or until the board has heard nothing from it for
+  /// protocol::claim_expiry_s. Throws InUse, naming the driver, if another object or program drives the arm.
+  void claim();
+  /// The same, from whoever drives the arm now. The force of that program fades.
+  void take_over();
+  /// Ends the claim, and with it shapes and force. Without effect if this object does not drive.
+  void release();
+  /// Whether this object drives the arm. read_pose() notices when the claim has been lost.
+  bool drives() const;
+
+  /// Sends a command, and returns once the control interrupt has carried it out. That says nothing of its effect: a
+  /// command that does not fit the state has none. Throws InUse if another program drives the arm, and Error if the board
+  /// does not carry it out in time.
+  void carry_out(protocol::Command command);
+  void carry_out(protocol::Command command, const protocol::TestPulse& pulse);
+  /// Switches the force off, and returns once it is off. stop() does so at once, whichever program drives the arm;
+  /// disable_force() lets it fall softly, and throws InUse if another program drives the arm.
+  void stop();
+  void disable_force();
+  /// disable_force(), or stop() if another program drives the arm.
+  void switch_force_off();
+
+  /// Sends a command and returns its token, which comes back in PoseReport::command_token. Whether the board accepts it
+  /// is not known yet.
   std::uint8_t send(protocol::Command command);
   /// Sends a heartbeat unless a command went out in the last 10 ms of wall time and, as far as the poses read
   /// tell, of board time (a virtual board may run faster than the clock); none while board time stands still.

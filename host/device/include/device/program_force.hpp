@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 
 #include <protocol/reports.hpp>
@@ -13,6 +14,8 @@ struct ForceRequest {
   std::array<float, 3> force_N{};  ///< on the hand, workspace axes
   protocol::ForceMode mode = protocol::ForceMode::beside_walls;
   int interval_ms = 1;  ///< until the program sends the next one, 1 to protocol::force_interval_maximum_ms
+  /// Of the pose that it answers; the newest one if none is given.
+  std::optional<std::uint32_t> pose_sequence{};
 };
 
 /// How a shape feels; ranges as in protocol::SurfaceEntry.
@@ -21,7 +24,8 @@ struct Surface {
   float damping_Ns_per_m = 2.0f;
   float static_friction = 0.0f;   ///< bound of the tangential force while it sticks, as a part of the normal force
   float dynamic_friction = 0.0f;  ///< the same while it slides
-  float life_s = 1.0f;            ///< then the board forgets the shape, unless it is placed anew
+  /// Then the board forgets the shape, unless it is placed again. By default it lasts as long as the program drives.
+  float life_s = std::numeric_limits<float>::infinity();
 };
 
 /// A wall for the probe, which is a point to it.

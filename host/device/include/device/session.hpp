@@ -40,6 +40,10 @@ struct SessionStatus {
   bool is_storing = false;          ///< a request to store or to forget is on its way
   /// Why the newest request to store or to forget came to nothing; none once another was made.
   std::optional<std::string> store_problem;
+  /// The program that drives the arm, as of the newest second or change; none if no program does.
+  std::optional<Driver> driver;
+  /// Why the newest command had no effect; none once another was carried out.
+  std::optional<std::string> command_problem;
   double pose_rate_Hz = 0;
   std::uint64_t poses_received = 0;
   std::uint64_t poses_lost = 0;
@@ -65,9 +69,13 @@ class Session {
   SessionStatus status() const;
   std::optional<protocol::PoseReport> newest_pose() const;
 
-  /// Queues a command; it is sent within a millisecond.
+  /// Queues a command; it is sent within a millisecond. Whatever may move the arm first claims it for this session, which
+  /// releases it once the force is off. A disable_force is a stop while another program drives the arm.
   void send(protocol::Command command);
   void send(protocol::Command command, const protocol::TestPulse& pulse);
+
+  /// Queues a takeover of the arm from the program that drives it.
+  void take_over();
 
   /// The parameters as the device holds them; `parameters_revision` rises when they were read anew.
   std::optional<protocol::ParameterSet> parameters() const;

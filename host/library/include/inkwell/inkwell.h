@@ -225,13 +225,34 @@ INKWELL_API const char* inkwell_fault_name(int fault);
 
 /* ---- force -------------------------------------------------------------------------------------------------- */
 
+/* One program drives an arm at a time, and the board decides which one. A program claims the arm by its first call of
+ * inkwell_enable_force(), inkwell_set_force(), inkwell_start_servo() or inkwell_place_*(), and holds it until
+ * inkwell_close(). If it ends without that, the board ends its claim after a second. While a program drives, these
+ * calls, inkwell_disable_force(), inkwell_clear_fault() and changes of parameters are INKWELL_IN_USE in every other
+ * program, and the sentence names the driver. Any program may read, record and call inkwell_stop(). */
+
 /* Switches the force on: this is where the program says that a hand may feel it. Waits until the device is active. In
  * a fault or before the stylus was in the inkwell it is INKWELL_REFUSED. */
 INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout_s);
-/* Lets the force fall to nothing within the parameter soft_landing_s. */
+/* Lets the force fall to nothing within the parameter soft_landing_s, and returns once it is off. */
 INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
-/* Takes the force away at once. */
+/* Takes the force away at once, whichever program drives the arm, and returns once it is off. */
 INKWELL_API inkwell_result inkwell_stop(inkwell_arm* arm);
+
+/* Takes the arm over from the program that drives it. That program's force fades and its shapes end. */
+INKWELL_API inkwell_result inkwell_take_over(inkwell_arm* arm);
+
+/* The program that drives the arm. */
+typedef struct inkwell_driver {
+  int is_driven;       /* 0: no program drives the arm, and the rest is 0 */
+  int is_this_arm;     /* it is driven through this arm object */
+  uint32_t process_id; /* on the driver's computer */
+  char program[32];    /* printable ASCII */
+  double driven_s;     /* board time since it claimed the arm */
+} inkwell_driver;
+
+/* Asks the device. */
+INKWELL_API inkwell_result inkwell_get_driver(inkwell_arm* arm, inkwell_driver* driver);
 /* Clears a fault whose cause is gone, and waits for a fifth of a second whether it stays away; if the board tests
  * itself anew, until that is over. If the cause is still there it is INKWELL_REFUSED, and the sentence names the fault
  * that is there again with its remedy. Without a fault there is nothing to wait for. */
@@ -274,7 +295,9 @@ typedef struct inkwell_surface {
   double damping_Ns_per_m;
   double static_friction;  /* bound of the tangential force while it sticks, as a part of the normal force */
   double dynamic_friction; /* the same while it slides; at most the static one */
-  double life_s;           /* then the board forgets the shape, unless it is placed anew; at most 10 s */
+  /* The board forgets the shape after this time, at most 10 s, unless it is placed again. INFINITY: as long as the
+   * program drives the arm. */
+  double life_s;
 } inkwell_surface;
 
 /* Keeps the probe on one side. */

@@ -95,6 +95,12 @@ class Arm {
   void enable_force(double timeout_s = 5.0) { require(inkwell_enable_force(get(), timeout_s)); }
   void disable_force() { require(inkwell_disable_force(get())); }
   void stop() { require(inkwell_stop(get())); }
+  void take_over() { require(inkwell_take_over(get())); }
+  inkwell_driver driver() {
+    inkwell_driver driver{};
+    require(inkwell_get_driver(get(), &driver));
+    return driver;
+  }
   /// Throws Error with INKWELL_REFUSED if the fault is there again.
   void clear_fault() { require(inkwell_clear_fault(get())); }
   void set_force_mode(inkwell_force_mode mode) { require(inkwell_set_force_mode(get(), mode)); }

@@ -1,0 +1,40 @@
+// The board's answers to commands, for transports that tests make.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <span>
+
+#include <protocol/driver.hpp>
+
+namespace inkwell::tests {
+
+/// Every command is carried out as soon as it is written.
+class AnsweredCommands {
+ public:
+  void note(std::span<const std::byte> written) { put(written, protocol::CommandResult::carried_out); }
+  /// The same for a command of a program that does not drive the arm.
+  void refuse(std::span<const std::byte> written) { put(written, protocol::CommandResult::not_the_driver); }
+
+  /// Writes the CommandResultsReport, if that is asked for.
+  std::size_t answer(std::span<std::byte> asked) const {
+    if (asked[0] != static_cast<std::byte>(protocol::ReportId::command_results)) return 0;
+    std::memcpy(asked.data(), &report, std::min(asked.size(), sizeof report));
+    return sizeof report;
+  }
+
+  protocol::CommandResultsReport report{.state = protocol::State::ready};
+
+ private:
+  void put(std::span<const std::byte> written, protocol::CommandResult result) {
+    protocol::CommandReport command{};
+    std::memcpy(&command, written.data(), std::min(written.size(), sizeof command));
+    if (command.report_id != protocol::ReportId::command || command.ticket == 0) return;
+    report.entries[next_++ % std::size(report.entries)] = {command.ticket, command.command, result, 0};
+  }
+
+  std::size_t next_ = 0;
+};
+
+}  // namespace inkwell::tests
