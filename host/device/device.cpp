@@ -511,6 +511,10 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
   return token;
 }
 
+bool Device::wait_until_written(std::chrono::milliseconds timeout) {
+  return implementation_->transport->wait_until_written(timeout);
+}
+
 void Device::send_force(const ForceRequest& request) {
   protocol::ForceReport report = force_report(request);
   const std::lock_guard lock(implementation_->output_mutex);

@@ -26,6 +26,7 @@ constexpr std::size_t writes_under_way = 16;
 // long a busy computer makes that; or silence, of the clock on the wall.
 constexpr unsigned reports_without_a_taken_write = 1000;
 constexpr auto silence = 3s;
+constexpr char takes_no_commands[] = "The device takes no commands, although it sends its pose. Reset the board.";
 
 class UsbipTransport : public Transport {
  public:
@@ -59,6 +60,14 @@ class UsbipTransport : public Transport {
       writes_changed_.notify_one();
       if (completion.status != 0) lost_ = true;
     });
+  }
+
+  bool wait_until_written(std::chrono::milliseconds timeout) override {
+    std::unique_lock lock(writes_mutex_);
+    writes_changed_.wait_for(lock, timeout, [&] { return writes_ == 0 || lost_ || takes_none(); });
+    if (lost_) throw Disconnected(unplugged);
+    if (takes_none()) throw Error(takes_no_commands);
+    return writes_ == 0;
   }
 
   std::size_t get_feature(std::span<std::byte> report) override {
@@ -140,16 +149,18 @@ class UsbipTransport : public Transport {
     connection_.control_out(setup::set_configuration(layout_.configuration), {});
   }
 
+  /// Called with writes_mutex_ held.
+  bool takes_none() const { return writes_ > 0 && reports_since_taken_ >= reports_without_a_taken_write; }
+
   void wait_for_room(std::unique_lock<std::mutex>& lock) {
     const auto has_room = [&] { return writes_ < writes_under_way; };
-    const auto takes_none = [&] { return reports_since_taken_ >= reports_without_a_taken_write; };
     for (std::uint64_t known = reports_come_; !has_room() && !lost_ && !takes_none(); known = reports_come_) {
       const bool changed = writes_changed_.wait_for(lock, silence, [&] { return has_room() || lost_ || takes_none(); });
       if (!changed && reports_come_ == known)
         throw Error("The device takes no commands and is silent. Reset the board, or let a paused virtual board run.");
     }
     if (lost_) throw Disconnected(unplugged);
-    if (!has_room()) throw Error("The device takes no commands, although it sends its pose. Reset the board.");
+    if (!has_room()) throw Error(takes_no_commands);
   }
 
   void count_report() {

@@ -58,11 +58,11 @@ void Connection::read_poses(std::promise<void>& opened, bool& is_open) {
   const auto give_up_at = in(first_pose_limit_s);
   PoseReader reader;
   while (!ends_) {
-    if (const auto report = arm_.device->read_pose(read_timeout)) {
-      const auto pose = reader.read(*report, geometry());
-      poses_.publish(pose, report->is_referenced);
+    if (const auto newest = reader.read_newest(*arm_.device, read_timeout, geometry())) {
+      const auto& [pose, is_referenced] = *newest;
+      poses_.publish(pose, is_referenced);
       // A board of its own has its stylus in the inkwell until the program moves the hand.
-      if (!is_open && (!arm_.board || (report->is_referenced != 0 && pose.state != INKWELL_STARTING))) {
+      if (!is_open && (!arm_.board || (is_referenced && pose.state != INKWELL_STARTING))) {
         is_open = true;
         opened.set_value();
       }

@@ -9,6 +9,9 @@
 namespace inkwell::library {
 namespace {
 
+/// How soon stop() is noticed while the device does not accept a force.
+constexpr auto attention = std::chrono::milliseconds(20);
+
 /// Milliseconds from one force of the program to the next, as it sends them.
 class Interval {
  public:
@@ -73,21 +76,29 @@ void ForceOutput::let_go() {
 
 void ForceOutput::run() {
   Interval interval;
-  for (;;) {
-    device::ForceRequest request;
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [&] { return stops_ || next_; });
-      if (stops_) return;
-      request = *std::exchange(next_, std::nullopt);
-    }
-    request.interval_ms = interval.next();
-    try {
+  try {
+    while (wait_for_force()) {
+      // The bus takes one report in a frame, so a queue of them would never drain. While one is under way, newer
+      // forces replace each other in `next_`.
+      if (!device_.wait_until_written(attention)) continue;
+      device::ForceRequest request = take_force();
+      request.interval_ms = interval.next();
       device_.send_force(request);
-    } catch (const Error& error) {
-      return poses_.end(error.what());
     }
+  } catch (const Error& error) {
+    poses_.end(error.what());
   }
+}
+
+bool ForceOutput::wait_for_force() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return stops_ || next_; });
+  return !stops_;
+}
+
+device::ForceRequest ForceOutput::take_force() {
+  const std::lock_guard lock(mutex_);
+  return *std::exchange(next_, std::nullopt);
 }
 
 }  // namespace inkwell::library

@@ -12,7 +12,8 @@
 
 namespace inkwell::library {
 
-/// Sends the newest force, at most one in a millisecond: the USB takes no more, and an old one is worth nothing.
+/// Sends the newest force when the device has the one before. The USB takes one in a millisecond, and an old one is
+/// worth nothing.
 class ForceOutput {
  public:
   /// Ends `poses` if the device is gone.
@@ -29,6 +30,9 @@ class ForceOutput {
 
  private:
   void run();
+  /// False after stop().
+  bool wait_for_force();
+  device::ForceRequest take_force();
 
   device::Device& device_;
   PoseFeed& poses_;

@@ -49,4 +49,12 @@ inkwell_pose PoseReader::read(const protocol::PoseReport& report, const control:
   return pose;
 }
 
+std::optional<ReadPose> PoseReader::read_newest(device::Device& device, std::chrono::milliseconds timeout,
+                                                const control::Arm& geometry) {
+  std::optional<ReadPose> newest;
+  while (const auto report = device.read_pose(newest ? std::chrono::milliseconds(0) : timeout))
+    newest = ReadPose{read(*report, geometry), report->is_referenced != 0};
+  return newest;
+}
+
 }  // namespace inkwell::library

@@ -158,6 +158,30 @@ TEST_CASE("a device that takes no more commands is told, and not sent ever more 
   CHECK(server.commands().size() == under_way);
 }
 
+TEST_CASE("what was written is waited for until the device has all of it, or takes none for a second of its time") {
+  FakeUsbipServer server;
+  server.holds_outputs = true;
+  const auto arm = device::Device::open(server.endpoint());
+  CHECK(arm->wait_until_written(0ms));
+  for (int i = 0; i < 2; ++i) arm->send(protocol::Command::heartbeat);
+  server.answer_output();
+  arm->information();  // answers come in order
+  CHECK_FALSE(arm->wait_until_written(0ms));
+  SUBCASE("it accepts the rest") {
+    server.answer_output();
+    CHECK(arm->wait_until_written(60s));
+  }
+  SUBCASE("it accepts nothing") {
+    for (int i = 0; i < 1000; ++i) server.send(1, Bytes(sizeof(protocol::PoseReport), std::byte{2}));
+    const auto message = message_of<device::Error>([&] { arm->wait_until_written(60s); });
+    CHECK(contains(message, "takes no commands, although it sends its pose"));
+  }
+  SUBCASE("it is gone") {
+    server.hang_up();
+    CHECK_THROWS_AS(arm->wait_until_written(60s), device::Disconnected);
+  }
+}
+
 TEST_CASE("how long a device takes no command counts from the one that it took last") {
   FakeUsbipServer server;
   server.holds_outputs = true;

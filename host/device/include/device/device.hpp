@@ -120,6 +120,9 @@ class Device {
   /// None stops the scope, and another program may have it. Throws InUse if another program has it.
   std::uint8_t select_signals(std::span<const protocol::Signal> signals);
 
+  /// Waits until the board has every command and force that was sent; false on time-out. A force that is sent then
+  /// arrives in the next frame of the bus, and not behind others.
+  bool wait_until_written(std::chrono::milliseconds timeout);
   /// The force from now on, until the next one or its expiry. A sign of life. Throws Error for one that the board would
   /// refuse.
   void send_force(const ForceRequest& request);

@@ -37,7 +37,11 @@ class Transport {
   virtual ~Transport() = default;
   /// Waits for an input report. Returns its length with the report id in front, 0 on time-out.
   virtual std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds timeout) = 0;
+  /// Returns before the device has the report, unless many are under way.
   virtual void write_report(std::span<const std::byte> report) = 0;
+  /// Waits until the device has every report that was written; false on time-out. The next report then does not queue
+  /// behind others. The default is for a transport whose write_report() waits for this itself.
+  virtual bool wait_until_written([[maybe_unused]] std::chrono::milliseconds timeout) { return true; }
   /// `report[0]` holds the report id. Returns the length received.
   virtual std::size_t get_feature(std::span<std::byte> report) = 0;
   virtual void set_feature(std::span<const std::byte> report) = 0;

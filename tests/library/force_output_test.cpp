@@ -1,0 +1,58 @@
+// How a program's forces reach the device, and how its poses reach the program, without a queue that adds delay.
+#include <doctest/doctest.h>
+
+#include <memory>
+
+#include <control/settings.hpp>
+#include <device/device.hpp>
+#include <protocol/parameters.hpp>
+
+#include "library/force_output.hpp"
+#include "library/pose_reader.hpp"
+#include "queued_transport.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+TEST_CASE("while the device does not accept a force or a command, only the newest force waits") {
+  QueuedReports reports;
+  device::Device device(std::make_unique<QueuedTransport>(reports));
+  library::PoseFeed poses;
+  library::ForceOutput output(device, poses);
+  output.send({1, 0, 0});
+  reports.wait_for_forces(1);
+  device.send(protocol::Command::heartbeat);
+  for (int i = 2; i <= 100; ++i) output.send({static_cast<double>(i), 0, 0});
+  reports.accept_one();  // the command is still under way
+  output.send({101, 0, 0});
+  reports.accept_one();
+  reports.wait_for_forces(2);
+  CHECK(reports.forces.size() == 2);
+  CHECK(reports.forces.back().force_N[0] == 101.0f);
+  CHECK(reports.forces.back().sequence == 1);  // no force counts as lost
+}
+
+TEST_CASE("a reader that was late passes on the newest pose, with the velocity of the whole path") {
+  QueuedReports reports;
+  device::Device device(std::make_unique<QueuedTransport>(reports));
+  const control::Arm geometry = control::prepare(protocol::default_parameters()).arm;
+  library::PoseReader reader;
+  CHECK_FALSE(reader.read_newest(device, std::chrono::milliseconds(0), geometry));
+  constexpr std::uint32_t count = 20;
+  for (std::uint32_t i = 1; i <= count; ++i) {
+    protocol::PoseReport pose{};
+    pose.sequence = i;
+    pose.time_periods = i * (protocol::servo_rate_Hz / 1000);
+    pose.is_referenced = 1;
+    pose.position_m[0] = 0.0001f * static_cast<float>(i);
+    reports.poses.push_back(pose);
+  }
+  const auto newest = reader.read_newest(device, std::chrono::milliseconds(0), geometry);
+  REQUIRE(newest);
+  CHECK(newest->is_referenced);
+  CHECK(newest->pose.sequence == count);
+  CHECK(newest->pose.velocity_m_s[0] == doctest::Approx(0.1).epsilon(0.01));
+}
+
+}  // namespace
+}  // namespace inkwell::tests

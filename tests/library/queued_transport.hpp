@@ -1,0 +1,73 @@
+// A device of a test's own: the test decides which reports came and when the device accepts one.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstring>
+#include <deque>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include <device/transport.hpp>
+#include <protocol/reports.hpp>
+
+namespace inkwell::tests {
+
+/// What a QueuedTransport has exchanged. It outlives the transport, which its device owns.
+struct QueuedReports {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<protocol::PoseReport> poses;     ///< that the device has sent
+  std::vector<protocol::ForceReport> forces;  ///< that were written
+  int under_way = 0;                          ///< written, and not accepted yet
+
+  void accept_one() {
+    const std::lock_guard lock(mutex);
+    --under_way;
+    changed.notify_all();
+  }
+  /// Waits until this many forces were written.
+  void wait_for_forces(std::size_t count) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return forces.size() >= count; });
+  }
+};
+
+class QueuedTransport final : public device::Transport {
+ public:
+  explicit QueuedTransport(QueuedReports& reports) : reports_(reports) {}
+
+  std::size_t read_report(std::span<std::byte> report, std::chrono::milliseconds) override {
+    const std::lock_guard lock(reports_.mutex);
+    if (reports_.poses.empty()) return 0;
+    std::memcpy(report.data(), &reports_.poses.front(), sizeof(protocol::PoseReport));
+    reports_.poses.pop_front();
+    return sizeof(protocol::PoseReport);
+  }
+  void write_report(std::span<const std::byte> report) override {
+    const std::lock_guard lock(reports_.mutex);
+    ++reports_.under_way;
+    if (report.size() == sizeof(protocol::ForceReport))
+      std::memcpy(&reports_.forces.emplace_back(), report.data(), sizeof(protocol::ForceReport));
+    reports_.changed.notify_all();
+  }
+  bool wait_until_written(std::chrono::milliseconds timeout) override {
+    std::unique_lock lock(reports_.mutex);
+    return reports_.changed.wait_for(lock, timeout, [&] { return reports_.under_way == 0; });
+  }
+  std::size_t get_feature(std::span<std::byte>) override { return 0; }
+  void set_feature(std::span<const std::byte>) override {}
+  void claim_scope() override {}
+  void release_scope() override {}
+  std::size_t read_bulk(std::span<std::byte>, std::chrono::milliseconds) override { return 0; }
+  const device::Endpoint& endpoint() const override { return endpoint_; }
+
+ private:
+  QueuedReports& reports_;
+  device::Endpoint endpoint_{};
+};
+
+}  // namespace inkwell::tests
