@@ -44,7 +44,8 @@ Arm::Arm(const std::string& address)
       force_(connection_.device(), poses_),
       scope_(connection_.device(), poses_),
       servo_(
-          poses_, [this](const double (&force_N)[3]) { set_force(force_N); }, [this] { force_.let_go(); }) {}
+          poses_, [this](const auto& force_N, std::uint32_t pose_sequence) { drive(force_N, pose_sequence); },
+          [this] { force_.let_go(); }) {}
 
 Arm::~Arm() {
   servo_.ask_to_end();
@@ -128,10 +129,12 @@ void Arm::take_over() {
   device().take_over();
 }
 
-void Arm::set_force(const double (&force_N)[3]) {
+void Arm::set_force(const double (&force_N)[3]) { drive(force_N, pose().sequence); }
+
+void Arm::drive(const double (&force_N)[3], std::uint32_t pose_sequence) {
   claim();
   poses_.require_open();
-  force_.send(force_N);
+  force_.send(force_N, pose_sequence);
 }
 
 void Arm::place_shapes(const device::Shapes& shapes) {

@@ -70,6 +70,7 @@ class Arm {
 
  private:
   void claim();
+  void drive(const double (&force_N)[3], std::uint32_t pose_sequence);
   void bid_farewell();
 
   PoseFeed poses_;

@@ -12,23 +12,6 @@ namespace {
 /// How soon stop() is noticed while the device does not accept a force.
 constexpr auto attention = std::chrono::milliseconds(20);
 
-/// Milliseconds from one force of the program to the next, as it sends them.
-class Interval {
- public:
-  int next() {
-    const auto now = Clock::now();
-    const double passed_ms = std::chrono::duration<double, std::milli>(now - before_).count();
-    before_ = now;
-    // A pause is not the program's pace; a single late one is not either.
-    if (passed_ms < protocol::force_interval_maximum_ms) smoothed_ms_ += 0.2 * (passed_ms - smoothed_ms_);
-    return std::clamp(static_cast<int>(std::lround(smoothed_ms_)), 1, int{protocol::force_interval_maximum_ms});
-  }
-
- private:
-  Clock::time_point before_{};
-  double smoothed_ms_ = 1.0;
-};
-
 }  // namespace
 
 ForceOutput::ForceOutput(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
@@ -51,8 +34,9 @@ void ForceOutput::set_mode(protocol::ForceMode mode) {
   mode_ = mode;
 }
 
-void ForceOutput::send(const double (&force_N)[3]) {
+void ForceOutput::send(const double (&force_N)[3], std::uint32_t pose_sequence) {
   device::ForceRequest request;
+  request.pose_sequence = pose_sequence;
   for (std::size_t i = 0; i < 3; ++i) {
     // What float can not hold is as huge as the largest that it can: the board bounds it.
     constexpr double largest_N = 1e30;
@@ -63,6 +47,7 @@ void ForceOutput::send(const double (&force_N)[3]) {
   {
     const std::lock_guard lock(mutex_);
     request.mode = mode_;
+    pose_sequence_ = pose_sequence;
     next_ = request;
   }
   changed_.notify_one();  // with the lock, the thread would wake to wait for it, and the caller would wake it again
@@ -70,19 +55,19 @@ void ForceOutput::send(const double (&force_N)[3]) {
 
 void ForceOutput::let_go() {
   const std::lock_guard lock(mutex_);
-  next_ = device::ForceRequest{.mode = protocol::ForceMode::none};
+  next_ = device::ForceRequest{.mode = protocol::ForceMode::none, .pose_sequence = pose_sequence_};
   changed_.notify_one();
 }
 
 void ForceOutput::run() {
-  Interval interval;
+  ForceInterval interval;
   try {
     while (wait_for_force()) {
       // The bus takes one report in a frame, so a queue of them would never drain. While one is under way, newer
       // forces replace each other in `next_`.
       if (!device_.wait_until_written(attention)) continue;
       device::ForceRequest request = take_force();
-      request.interval_ms = interval.next();
+      request.interval_ms = interval.next(request.pose_sequence);
       device_.send_force(request);
     }
   } catch (const Error& error) {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 #include <device/device.hpp>
 
+#include "force_interval.hpp"
 #include "pose_feed.hpp"
 
 namespace inkwell::library {
@@ -21,8 +23,9 @@ class ForceOutput {
   ~ForceOutput();
 
   void set_mode(protocol::ForceMode mode);
-  /// Throws BadArgument for what is no finite number.
-  void send(const double (&force_N)[3]);
+  /// `pose_sequence` is that of the newest pose that the program had seen when it computed the force. Throws
+  /// BadArgument for what is no finite number.
+  void send(const double (&force_N)[3], std::uint32_t pose_sequence);
   /// The force is over, and fades.
   void let_go();
   /// Nothing is sent once this returns.
@@ -39,6 +42,7 @@ class ForceOutput {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<device::ForceRequest> next_;
+  std::uint32_t pose_sequence_ = 0;  ///< of the newest force
   protocol::ForceMode mode_ = protocol::ForceMode::instead_of_walls;
   bool stops_ = false;
   std::thread thread_;

@@ -87,7 +87,7 @@ void Servo::call(const Function& function) {
     // A force that is no finite number is none; refused, it would let the one before expire.
     for (double& value : force_N)
       if (!std::isfinite(value)) value = 0.0;
-    output_(force_N);
+    output_(force_N, seen);
   }
 }
 

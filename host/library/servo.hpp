@@ -16,8 +16,8 @@ class Servo {
  public:
   /// Writes the force on the hand, which is 0 before. False ends the servo, and so does what it throws.
   using Function = std::function<bool(const inkwell_pose& pose, double (&force_N)[3])>;
-  /// Where its forces go. What it throws ends the servo.
-  using Output = std::function<void(const double (&force_N)[3])>;
+  /// Where its forces go, with the sequence of the pose that each one answers. What it throws ends the servo.
+  using Output = std::function<void(const double (&force_N)[3], std::uint32_t pose_sequence)>;
 
   /// `let_go` is called when a servo has ended.
   Servo(const PoseFeed& poses, Output output, std::function<void()> let_go);

@@ -19,12 +19,12 @@ TEST_CASE("while the device does not accept a force or a command, only the newes
   device::Device device(std::make_unique<QueuedTransport>(reports));
   library::PoseFeed poses;
   library::ForceOutput output(device, poses);
-  output.send({1, 0, 0});
+  output.send({1, 0, 0}, 1);
   reports.wait_for_forces(1);
   device.send(protocol::Command::heartbeat);
-  for (int i = 2; i <= 100; ++i) output.send({static_cast<double>(i), 0, 0});
+  for (int i = 2; i <= 100; ++i) output.send({static_cast<double>(i), 0, 0}, 1);
   reports.accept_one();  // the command is still under way
-  output.send({101, 0, 0});
+  output.send({101, 0, 0}, 3);
   reports.accept_one();
   reports.wait_for_forces(2);
   CHECK(reports.forces.size() == 2);
