@@ -90,7 +90,6 @@ std::string refusal_sentence(const protocol::TransactionReport& report) {
 Refused::Refused(const protocol::TransactionReport& refusal) : Error(refusal_sentence(refusal)), report(refusal) {}
 
 struct Device::Implementation {
-  std::unique_ptr<Transport> transport;
   std::shared_ptr<const ForceLaw> force_law;  ///< set before the device is used
   const int object = next_object();
   const std::uint32_t own_claim = random_number();
@@ -108,17 +107,25 @@ struct Device::Implementation {
   std::uint16_t transaction_ticket = static_cast<std::uint16_t>(random_number());  ///< guarded by feature_mutex
   mutable std::mutex scope_mutex;  ///< the selection comes from one thread, the frames are read by another
   ScopeDecoder decoder;
+  mutable std::mutex link_mutex;  ///< guards the next one; taken last
+  std::shared_ptr<Transport> link;
+
+  /// The link as it is now. A call that uses it keeps it alive.
+  std::shared_ptr<Transport> transport() const {
+    const std::lock_guard lock(link_mutex);
+    return link;
+  }
 
   ForceLaw read_force_law() {
     std::vector<std::byte> report(protocol::force_law_report_maximum);
     report[0] = static_cast<std::byte>(ReportId::force_law);
-    report.resize(transport->get_feature(report));
+    report.resize(transport()->get_feature(report));
     return parse_force_law(report);
   }
 
   template <class Report>
   void get(Report& report, const char* what) {
-    const std::size_t length = transport->get_feature(writable_bytes(report));
+    const std::size_t length = transport()->get_feature(writable_bytes(report));
     if (length < sizeof report) throw too_short(what, length, sizeof report);
   }
 
@@ -127,7 +134,7 @@ struct Device::Implementation {
     constexpr int tries = 100;
     const protocol::BlackBoxRequest request{.first_row = static_cast<std::uint16_t>(first_row)};
     for (int i = 0; i < tries; ++i) {
-      transport->set_feature(std::as_bytes(std::span(&request, 1)));
+      transport()->set_feature(std::as_bytes(std::span(&request, 1)));
       protocol::BlackBoxRowsReport report{};
       get(report, "black box");
       if (report.first_row == request.first_row) return report;
@@ -155,7 +162,7 @@ struct Device::Implementation {
   /// Any output report is a sign of life. Called with output_mutex held.
   template <class Report>
   void write(const Report& report) {
-    transport->write_report(std::as_bytes(std::span(&report, 1)));
+    transport()->write_report(std::as_bytes(std::span(&report, 1)));
     last_output_at = Clock::now();
     last_output_period = newest_period;
   }
@@ -177,7 +184,7 @@ struct Device::Implementation {
     report.process_id = static_cast<std::uint32_t>(getpid());
     own_program_name().copy(report.program, protocol::program_name_maximum);
     const std::lock_guard lock(feature_mutex);
-    transport->set_feature(std::as_bytes(std::span(&report, 1)));
+    transport()->set_feature(std::as_bytes(std::span(&report, 1)));
   }
 
   bool is_own(const protocol::DriverReport& report) const {
@@ -273,7 +280,7 @@ struct Device::Implementation {
     const std::lock_guard lock(feature_mutex);
     protocol::ParametersReport report{};
     report.report_id = id;
-    const std::size_t length = transport->get_feature(writable_bytes(report));
+    const std::size_t length = transport()->get_feature(writable_bytes(report));
     const std::size_t count = protocol::parameter_count + (force_law ? force_law->parameters.size() : 0);
     const bool is_whole = length >= protocol::parameters_report_size(count) &&
                           report.version == protocol::protocol_version && report.count == count;
@@ -306,7 +313,7 @@ struct Device::Implementation {
       report.ticket = ++transaction_ticket;
       std::optional<Stalled> stalled;
       try {
-        transport->set_feature(bytes);
+        transport()->set_feature(bytes);
       } catch (const Stalled& error) {
         stalled = error;  // a device may refuse by a stall; the report below says why
       }
@@ -360,7 +367,7 @@ std::unique_ptr<Device> Device::open(const Endpoint& endpoint) {
 }
 
 Device::Device(std::unique_ptr<Transport> transport) : implementation_(std::make_unique<Implementation>()) {
-  implementation_->transport = std::move(transport);
+  implementation_->link = std::move(transport);
 }
 
 Device::~Device() {
@@ -434,6 +441,24 @@ void Device::switch_force_off() {
   }
 }
 
+void Device::take_link_of(Device& opened) {
+  auto& self = *implementation_;
+  auto& other = *opened.implementation_;
+  if (self.force_law && other.force_law && *self.force_law->report != *other.force_law->report)
+    throw Error(fmt::format("The board came back with the force law {} instead of {}. Open the arm again.",
+                            other.force_law->name, self.force_law->name));
+  std::shared_ptr<Transport> before;  // ends after the locks: that may take a while
+  const std::scoped_lock lock(self.feature_mutex, self.output_mutex, self.scope_mutex);
+  self.decoder = other.decoder;
+  self.lose_claim();  // the board has forgotten it
+  self.newest_period = other.newest_period.load();
+  self.newest_sequence = other.newest_sequence.load();
+  self.last_output_period = self.newest_period;
+  self.last_output_at = {};
+  const std::lock_guard link_lock(self.link_mutex);
+  before = std::exchange(self.link, std::move(other.link));
+}
+
 protocol::FrameReport Device::frame() {
   const std::lock_guard lock(implementation_->feature_mutex);
   protocol::FrameReport report{};
@@ -445,12 +470,12 @@ protocol::FrameReport Device::frame() {
 Information Device::information() {
   const std::lock_guard lock(implementation_->feature_mutex);
   Information information{};
-  information.report = read_information(*implementation_->transport);
+  information.report = read_information(*implementation_->transport());
   const auto& version = information.report.firmware_version;
   information.firmware_version = fmt::format("{}.{}.{}", version[0], version[1], version[2]);
   information.protocol_version = information.report.version;
   information.board_name = protocol::board_name(information.report.board);
-  information.serial_number = implementation_->transport->endpoint().serial_number;
+  information.serial_number = implementation_->transport()->endpoint().serial_number;
   information.force_law = implementation_->force_law;
   return information;
 }
@@ -460,7 +485,7 @@ std::optional<protocol::PoseReport> Device::read_pose(std::chrono::milliseconds 
   const auto give_up_at = Clock::now() + timeout;
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(give_up_at - Clock::now());
-    const std::size_t length = implementation_->transport->read_report(writable_bytes(pose), std::max(left, 0ms));
+    const std::size_t length = implementation_->transport()->read_report(writable_bytes(pose), std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     if (length != sizeof pose || pose.report_id != ReportId::pose) continue;
     implementation_->newest_period = pose.time_periods;
@@ -498,7 +523,7 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
   if (signals.size() > protocol::scope_signals_maximum)
     throw Error(fmt::format("{} signals are more than the scope carries. Choose at most {}.", signals.size(),
                             protocol::scope_signals_maximum));
-  if (!signals.empty()) implementation_->transport->claim_scope();
+  if (!signals.empty()) implementation_->transport()->claim_scope();
   protocol::CommandReport report{};
   report.command = Command::select_signals;
   report.selection.count = static_cast<std::uint8_t>(signals.size());
@@ -507,7 +532,7 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
     const std::lock_guard lock(implementation_->scope_mutex);
     implementation_->decoder.expect(report.token, {signals.begin(), signals.end()});
   });
-  if (signals.empty()) implementation_->transport->release_scope();
+  if (signals.empty()) implementation_->transport()->release_scope();
   return token;
 }
 
@@ -532,7 +557,7 @@ void Device::place_shapes(const Shapes& shapes) {
   const auto give_up_at = Clock::now() + busy_timeout;
   for (;;) {
     try {
-      return implementation_->transport->set_feature(bytes);
+      return implementation_->transport()->set_feature(bytes);
     } catch (const Stalled&) {  // the interrupt has not taken the shapes before, or another program drives
       lock.unlock();
       if (!implementation_->is_own(implementation_->driver_report())) {
@@ -633,7 +658,7 @@ std::optional<ScopeSamples> Device::read_scope(std::chrono::milliseconds timeout
   const auto give_up_at = Clock::now() + timeout;
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(give_up_at - Clock::now());
-    const std::size_t length = implementation_->transport->read_bulk(frame, std::max(left, 0ms));
+    const std::size_t length = implementation_->transport()->read_bulk(frame, std::max(left, 0ms));
     if (length == 0) return std::nullopt;
     const std::lock_guard lock(implementation_->scope_mutex);
     if (auto samples = implementation_->decoder.decode(std::span(frame).first(length))) return samples;

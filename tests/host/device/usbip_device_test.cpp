@@ -552,6 +552,31 @@ TEST_CASE("a connection that breaks is told as Disconnected, in every call") {
   CHECK_THROWS_AS(arm->send(protocol::Command::heartbeat), device::Disconnected);
 }
 
+TEST_CASE("a device continues on another link, and calls that wait on the old one end") {
+  FakeUsbipServer before, after;
+  after.parameters[Parameter::wall_stiffness_N_per_m] = 321.0f;
+  const auto arm = device::Device::open(before.endpoint());
+  arm->select_signals(std::vector{protocol::Signal::force_N});
+  before.holds_requests = true;
+  auto waits = std::async(std::launch::async, [&] { return message_of<device::Disconnected>([&] { arm->frame(); }); });
+  before.hang_up();
+  CHECK(waits.get() != "");
+  arm->take_link_of(*device::Device::open(after.endpoint()));
+  after.send(1, bytes_of(pose_number(7)));
+  const auto pose = arm->read_pose(60s);
+  REQUIRE(pose);
+  CHECK(pose->sequence == 7);
+  CHECK(arm->parameters()[Parameter::wall_stiffness_N_per_m] == 321.0f);
+  arm->keep_alive();
+  arm->send_force({.force_N = {1.0f, 0.0f, 0.0f}});
+  CHECK(eventually([&] { return after.commands().size() == 1 && after.forces().size() == 1; }));
+  const auto token = arm->select_signals(std::vector{protocol::Signal::force_N});
+  after.send(2, scope_frame(token, 3, 0.5f));
+  const auto samples = arm->read_scope(60s);
+  REQUIRE(samples);
+  CHECK(samples->lost_before == 0);
+}
+
 TEST_CASE("a device that is in use, or is none of ours, is refused") {
   FakeUsbipServer server;
   SUBCASE("in use") {

@@ -77,6 +77,11 @@ class Device {
   explicit Device(std::unique_ptr<Transport> transport);
   ~Device();
 
+  /// Continues on the link of `opened`, which was opened for the same board and is not used afterwards. References to
+  /// this device stay valid. Calls that wait on the old link fail when that link fails. Throws Error if the board has
+  /// another force law.
+  void take_link_of(Device& opened);
+
   /// Of a device of another version only what comes before the tables' hashes; the rest is 0.
   Information information();
   /// When the newest frame of the bus began. Throws Stalled while the bus is silent.
