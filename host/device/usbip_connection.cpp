@@ -35,7 +35,11 @@ std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16
 
 UsbipConnection::UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id,
                                  std::chrono::milliseconds timeout)
-    : timeout_(timeout), socket_(host, port) {
+    : timeout_(timeout),
+      gone_(fmt::format("The arm at {}:{} is gone: its board has ended or restarted, or its cable was unplugged. Start "
+                        "the board, or plug the cable in.",
+                        host, port)),
+      socket_(host, port) {
   socket_.send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));
   socket_.wait_at_most(reply_timeout);
   const auto device = receive_import(from(socket_));
@@ -159,15 +163,24 @@ void UsbipConnection::receive_answers() {
   for (const auto& transfer : abandoned) transfer.on_completion({-ENODEV, 0, {}});
 }
 
+/// The server ends the connection when the device goes away, and when it ends itself.
+void UsbipConnection::receive(std::span<std::byte> bytes) {
+  try {
+    socket_.receive(bytes);
+  } catch (const Disconnected&) {
+    throw Disconnected(gone_);
+  }
+}
+
 void UsbipConnection::receive_answer() {
-  const auto answer = receive_message<usbip::ReturnSubmit>(from(socket_));
+  const auto answer = receive_message<usbip::ReturnSubmit>([this](std::span<std::byte> bytes) { receive(bytes); });
   // The transfer stays open until all of its answer is there: one that breaks off leaves nobody waiting.
   std::vector<std::byte> data;
   {
     const std::lock_guard lock(mutex_);
     data.resize(open_.data_length_of(answer));
   }
-  socket_.receive(data);
+  receive(data);
   std::optional<OpenTransfers::Ended> ended;
   {
     const std::lock_guard lock(mutex_);

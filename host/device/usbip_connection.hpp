@@ -59,8 +59,10 @@ class UsbipConnection {
   Completion control(usbip::Direction direction, const Setup& setup, std::span<const std::byte> data);
   void receive_answers();
   void receive_answer();
+  void receive(std::span<std::byte> bytes);
 
   std::chrono::milliseconds timeout_;  ///< of a control transfer
+  std::string gone_;                   ///< the sentence for a device that goes away
   Socket socket_;
   std::uint32_t device_ = 0;
   std::mutex mutex_;  ///< guards sending, the sequence and what is open

@@ -260,7 +260,7 @@ TEST_CASE("a server that breaks the rules of USB/IP is left with a sentence") {
   }
   SUBCASE("an end") {
     server.hang_up();
-    words = "127.0.0.1:" + std::to_string(server.port());
+    words = "The arm at 127.0.0.1:" + std::to_string(server.port()) + " is gone";
   }
   CHECK(contains(message_of<device::Disconnected>([&] { arm->read_pose(60s); }), words));
 }
