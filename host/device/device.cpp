@@ -537,7 +537,7 @@ std::uint8_t Device::select_signals(std::span<const protocol::Signal> signals) {
 }
 
 bool Device::wait_until_written(std::chrono::milliseconds timeout) {
-  return implementation_->transport->wait_until_written(timeout);
+  return implementation_->transport()->wait_until_written(timeout);
 }
 
 void Device::send_force(const ForceRequest& request) {

@@ -158,9 +158,10 @@ void Device::end_frame() {
   now_.command.force_N = answer.force_N;
   if (!wants_force()) return;
   const auto result = inkwell_set_force(arm(), answer.force_N.data());
-  // A lost link has been told by the frame's beginning; who asks for the force is to see that there is none.
-  if (result == INKWELL_DISCONNECTED) now_.command.force_N = Vector{};
-  if (result != INKWELL_OK && result != INKWELL_DISCONNECTED) raise(force_error, inkwell_error_text(), result);
+  // The beginning of the frame has told a lost link or a fault; the program is to see that there is no force.
+  const bool is_told = result == INKWELL_DISCONNECTED || result == INKWELL_FORCE_LOST;
+  if (is_told) now_.command.force_N = Vector{};
+  if (result != INKWELL_OK && !is_told) raise(force_error, inkwell_error_text(), result);
 }
 
 Calibration Device::calibration() {

@@ -50,11 +50,12 @@ Arm::Arm(const std::string& address)
 Arm::~Arm() {
   servo_.ask_to_end();
   force_.stop();  // what a servo that is still being called returns is sent no more
-  if (connection_.device().drives() && !poses_.end_reason()) bid_farewell();
+  if (connection_.device().drives() && poses_.loss() != Loss::link) bid_farewell();
 }
 
 void Arm::bid_farewell() {
   auto& device = connection_.device();
+  poses_.expect_force_off();
   try {
     device.send_force({.mode = protocol::ForceMode::none});
     device.place_shapes({});
@@ -66,18 +67,31 @@ void Arm::bid_farewell() {
 }
 
 device::Device& Arm::device() {
-  poses_.require_open();
+  poses_.require_poses();
+  return connection_.device();
+}
+
+device::Device& Arm::linked_device() {
+  poses_.require_link();
   return connection_.device();
 }
 
 // ---- pose --------------------------------------------------------------------------------------------------
 
+inkwell_pose Arm::pose() const {
+  inkwell_pose pose;
+  read([&](const PoseFeed::Seen& last) { pose = last.pose; });
+  return pose;
+}
+
 inkwell_pose Arm::wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence) const {
   const auto give_up_at = in(timeout_s);
-  const std::uint32_t seen = after_sequence.value_or(pose().sequence);
-  const auto next = poses_.wait([&](const auto& newest) { return newest.sequence != seen; }, give_up_at);
-  if (next.sequence == seen)
-    throw TimedOut("No pose came in time. Reset the board, or let a paused virtual board run.");
+  const std::uint32_t seen = after_sequence.value_or(last().pose.sequence);
+  bool is_new = false;
+  const auto next =
+      poses_.wait([&](const auto& newest, Loss loss) { return is_new = loss == Loss::none && newest.sequence != seen; },
+                  give_up_at);
+  if (!is_new) throw TimedOut("No pose came in time. Reset the board, or let a paused virtual board run.");
   return next;
 }
 
@@ -89,14 +103,17 @@ control::Pose Arm::forward_kinematics(const control::Triple& joint_rad) const {
 
 void Arm::enable_force(double timeout_s) {
   const auto give_up_at = in(timeout_s);
+  clear_inherited_fault();
   refuse_in_fault(pose());
   claim();
+  poses_.use_force();
+  poses_.forget_lost_force();
   for (;;) {
     // A device that does not know yet where it is forgets that it was asked.
     device().carry_out(Command::enable_force);
-    const auto now =
-        poses_.wait([](const auto& newest) { return newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT; },
-                    std::min(give_up_at, Clock::now() + ask_again));
+    const auto now = poses_.wait(
+        [](const auto& newest, Loss) { return newest.state == INKWELL_ACTIVE || newest.state == INKWELL_FAULT; },
+        std::min(give_up_at, Clock::now() + ask_again));
     if (now.state == INKWELL_ACTIVE) return;
     refuse_in_fault(now);
     if (Clock::now() < give_up_at) continue;
@@ -106,11 +123,24 @@ void Arm::enable_force(double timeout_s) {
   }
 }
 
-void Arm::disable_force() { device().disable_force(); }
+// During a silence too: the board may hear what it does not answer.
+void Arm::disable_force() {
+  expecting_force_off([this] { linked_device().disable_force(); });
+}
 
-void Arm::stop() { device().stop(); }
+void Arm::stop() {
+  expecting_force_off([this] { linked_device().stop(); });
+}
+
+/// A fault by which the board ended the force of a program that was there before this one, or before the link was lost.
+void Arm::clear_inherited_fault() {
+  const auto now = pose();
+  const bool is_of_a_host = now.fault == INKWELL_FAULT_USB_GONE || now.fault == INKWELL_FAULT_HOST_SILENT;
+  if (now.state == INKWELL_FAULT && is_of_a_host && !poses_.had_force()) clear_fault();
+}
 
 void Arm::clear_fault() {
+  poses_.forget_lost_force();
   inkwell_pose seen = pose();
   device::clear_fault(device(), shown_fault(seen), [&] {
     seen = wait_for_pose(silence_s, seen.sequence);
@@ -132,8 +162,10 @@ void Arm::take_over() {
 void Arm::set_force(const double (&force_N)[3]) { drive(force_N, pose().sequence); }
 
 void Arm::drive(const double (&force_N)[3], std::uint32_t pose_sequence) {
+  poses_.require_poses();
+  poses_.require_force();
   claim();
-  poses_.require_open();
+  poses_.use_force();
   force_.send(force_N, pose_sequence);
 }
 
@@ -144,7 +176,9 @@ void Arm::place_shapes(const device::Shapes& shapes) {
 
 void Arm::start_servo(Servo::Function function) {
   claim();
-  poses_.require_open();
+  poses_.require_poses();
+  poses_.use_force();
+  poses_.forget_lost_force();
   servo_.start(std::move(function));
 }
 

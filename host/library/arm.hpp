@@ -1,8 +1,9 @@
 // An open arm, put together from parts that each own their data. Any thread may call any of them:
 //
 //   part         its thread                      what it owns
-//   PoseFeed     -                               the newest pose, and why there are no more
-//   Connection   opens the arm, reads poses      the device, the board that was started for it, the arm's geometry
+//   PoseFeed     -                               the newest pose, and what was lost: poses, link, force
+//   Connection   opens the arm, reads poses,     the device, the board that was started for it, the arm's geometry
+//                opens it again after a loss
 //   ForceOutput  sends forces                    the newest force, and how it goes with the walls
 //   ScopeStream  reads samples                   which signals, samples that are not read yet, the recording
 //   Servo        calls the program's function    the function, and whether it is being called
@@ -32,14 +33,19 @@ class Arm {
   Arm(const Arm&) = delete;
   Arm& operator=(const Arm&) = delete;
 
-  device::Device& device();  ///< throws Disconnected once it is gone
+  device::Device& device();  ///< throws Disconnected while no poses come
   const device::Endpoint& endpoint() const { return connection_.endpoint(); }
   Servo& servo() { return servo_; }
   ScopeStream& scope() { return scope_; }
 
-  inkwell_pose pose() const { return poses_.newest(); }
-  bool is_referenced() const { return poses_.is_referenced(); }
-  /// The first pose after the one with `sequence`.
+  /// The last pose that came.
+  PoseFeed::Seen last() const { return poses_.last(); }
+  /// Hands it to `take`, then throws Disconnected if no poses come.
+  template <class Take>
+  void read(Take take) const {
+    poses_.read(take);
+  }
+  /// The first pose after the one with `sequence`. Throws Disconnected if the link is lost, and TimedOut.
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
@@ -69,6 +75,20 @@ class Arm {
   }
 
  private:
+  inkwell_pose pose() const;
+  device::Device& linked_device();  ///< throws Disconnected while the link is lost
+  void clear_inherited_fault();
+  /// The force goes off because this program asks for it, unless the board refuses that.
+  template <class Action>
+  void expecting_force_off(Action action) {
+    poses_.expect_force_off();
+    try {
+      action();
+    } catch (...) {
+      poses_.forget_lost_force();
+      throw;
+    }
+  }
   void claim();
   void drive(const double (&force_N)[3], std::uint32_t pose_sequence);
   void bid_farewell();

@@ -48,6 +48,8 @@ inkwell_result result_of_exception() noexcept {
     return fail(INKWELL_INCOMPATIBLE, error.what());
   } catch (const device::Disconnected& error) {
     return fail(INKWELL_DISCONNECTED, error.what());
+  } catch (const ForceLost& error) {
+    return fail(INKWELL_FORCE_LOST, error.what());
   } catch (const device::InUse& error) {
     return fail(INKWELL_IN_USE, error.what());
   } catch (const std::exception& error) {

@@ -105,19 +105,26 @@ inkwell_result inkwell_get_board_name(inkwell_arm* arm, char name[INKWELL_BOARD_
 // ---- pose --------------------------------------------------------------------------------------------------
 
 inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose) {
-  return guarded([&] { *required(pose, "The place for the pose") = arm_of(arm).pose(); });
+  return guarded([&] {
+    required(pose, "The place for the pose");
+    arm_of(arm).read([&](const PoseFeed::Seen& last) { *pose = last.pose; });
+  });
 }
 
 inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose) {
   return guarded([&] {
     required(pose, "The place for the pose");
+    *pose = arm_of(arm).last().pose;  // what stays if none comes
     *pose = arm_of(arm).wait_for_pose(timeout_s, arm->seen.newest());
     arm->seen.note(pose->sequence);
   });
 }
 
 inkwell_result inkwell_is_referenced(inkwell_arm* arm, int* is_referenced) {
-  return guarded([&] { *required(is_referenced, "The place for the answer") = arm_of(arm).is_referenced() ? 1 : 0; });
+  return guarded([&] {
+    required(is_referenced, "The place for the answer");
+    arm_of(arm).read([&](const PoseFeed::Seen& last) { *is_referenced = last.is_referenced ? 1 : 0; });
+  });
 }
 
 inkwell_result inkwell_forward_kinematics(inkwell_arm* arm, const double joint_rad[3], double position_m[3],
@@ -220,6 +227,10 @@ int inkwell_servo_is_running(inkwell_arm* arm) {
   bool runs = false;
   guarded([&] { runs = arm_of(arm).servo().is_running(); });
   return runs ? 1 : 0;
+}
+
+inkwell_result inkwell_servo_result(inkwell_arm* arm) {
+  return guarded([&] { arm_of(arm).servo().throw_what_ended_it(); });
 }
 
 // ---- shapes ------------------------------------------------------------------------------------------------

@@ -1,6 +1,9 @@
 #include "connection.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <control/settings.hpp>
 
@@ -15,6 +18,18 @@ using namespace std::chrono_literals;
 
 constexpr double first_pose_limit_s = 60.0;
 constexpr auto read_timeout = 2ms;
+constexpr auto search_interval = 200ms;
+constexpr auto silence_limit = 2s;
+/// A process that was stopped and goes on has not listened meanwhile: a longer wait counts as this one.
+constexpr auto longest_wait = 50ms;
+
+constexpr char silent[] = "No pose has come for 2 s. Reset the board, or let a paused virtual board run.";
+
+/// The board is there again, but this arm cannot go on with it.
+class CannotReturn : public Error {
+ public:
+  using Error::Error;
+};
 
 }  // namespace
 
@@ -25,57 +40,144 @@ Connection::Connection(const std::string& address, PoseFeed& poses) : poses_(pos
   try {
     is_open.get();
   } catch (...) {
-    ends_ = true;
-    ends_.notify_all();
-    thread_.join();
+    end();
     throw;
   }
 }
 
-Connection::~Connection() {
-  ends_ = true;
-  ends_.notify_all();
+Connection::~Connection() { end(); }
+
+void Connection::end() {
+  {
+    const std::lock_guard lock(end_mutex_);
+    ends_ = true;
+    end_changed_.notify_all();
+  }
   thread_.join();
 }
 
+bool Connection::ends() const {
+  const std::lock_guard lock(end_mutex_);
+  return ends_;
+}
+
 void Connection::run(const std::string& address, std::promise<void> opened) {
-  bool is_open = false;
   try {
     arm_ = open_arm(address);
     set_geometry(arm_.device->parameters());
-    read_poses(opened, is_open);
+    read_poses([&](const ReadPose& first) {
+      // A board of its own has its stylus in the inkwell until the program moves the hand.
+      if (is_open_ || (arm_.board && (!first.is_referenced || first.pose.state == INKWELL_STARTING))) return;
+      is_open_ = true;
+      opened.set_value();
+    });
   } catch (const std::exception& error) {
-    if (is_open)
-      poses_.end(error.what());
+    if (is_open_)
+      poses_.lose(Loss::link, error.what());
     else
       opened.set_exception(std::current_exception());
   }
-  ends_.wait(false);  // a board of its own ends with the thread that made it, and others may still ask the device
+  while (is_open_ && reopen()) {
+    try {
+      read_poses([this, is_first = true](const ReadPose& read) mutable {
+        // The program has to learn of the loss before it switches the force on again.
+        if (std::exchange(is_first, false) && read.pose.state == INKWELL_ACTIVE && poses_.uses_force())
+          arm_.device->send(protocol::Command::disable_force);
+      });
+    } catch (const std::exception& error) {
+      poses_.lose(Loss::link, error.what());
+    }
+  }
+  {
+    // A board of its own ends with the thread that made it, and others may still ask the device.
+    std::unique_lock lock(end_mutex_);
+    end_changed_.wait(lock, [this] { return ends_; });
+  }
   const device::OpenArm let_go = std::move(arm_);  // the device before its board
 }
 
-void Connection::read_poses(std::promise<void>& opened, bool& is_open) {
+void Connection::read_poses(const OnPose& on_pose) {
   const auto give_up_at = in(first_pose_limit_s);
-  PoseReader reader;
-  while (!ends_) {
-    if (const auto newest = reader.read_newest(*arm_.device, read_timeout, geometry())) {
-      const auto& [pose, is_referenced] = *newest;
-      poses_.publish(pose, is_referenced);
-      // A board of its own has its stylus in the inkwell until the program moves the hand.
-      if (!is_open && (!arm_.board || (is_referenced && pose.state != INKWELL_STARTING))) {
-        is_open = true;
-        opened.set_value();
-      }
+  PoseReader reader;  // the board may have restarted
+  Clock::duration silence{};
+  auto before = Clock::now();
+  bool drove = false;
+  while (!ends()) {
+    const auto newest = reader.read_newest(*arm_.device, read_timeout, geometry());
+    const auto now = Clock::now();
+    silence = newest ? Clock::duration() : silence + std::min<Clock::duration>(now - before, longest_wait);
+    before = now;
+    if (std::exchange(drove, arm_.device->drives()) && !drove) tell_lost_claim();
+    if (newest) {
+      poses_.publish(newest->pose, newest->is_referenced);
+      on_pose(*newest);
+    } else if (is_open_ && silence > silence_limit && poses_.loss() == Loss::none) {
+      poses_.lose(Loss::silence, silent);
     }
     arm_.device->keep_alive();
-    if (!is_open && Clock::now() > give_up_at)
+    if (!is_open_ && now > give_up_at)
       throw TimedOut("The device sends no poses. Reset the board, or let a paused virtual board run.");
   }
 }
 
+void Connection::tell_lost_claim() {
+  const auto driver = arm_.device->driver();
+  // A release by this program itself is no loss.
+  if (driver && !driver->is_this_device)
+    poses_.lose_claim(fmt::format("The arm was taken over by {}. Its force is the other program's now.",
+                                  device::driver_text(*driver)));
+  else if (!driver)
+    poses_.lose_claim("This program fell silent, so the board ended its claim to the arm. Switch the force on again.");
+}
+
+// ---- after a loss ------------------------------------------------------------------------------------------
+
+bool Connection::reopen() {
+  for (;;) {
+    {
+      std::unique_lock lock(end_mutex_);
+      if (end_changed_.wait_for(lock, search_interval, [this] { return ends_; })) return false;
+    }
+    try {
+      if (try_to_reopen()) return true;
+    } catch (const device::Incompatible& error) {
+      poses_.lose(Loss::link, error.what());
+    } catch (const CannotReturn& error) {
+      poses_.lose(Loss::link, error.what());
+    } catch (const std::exception&) {  // it is not back yet; why the link was lost says more
+    }
+  }
+}
+
+bool Connection::try_to_reopen() {
+  const auto endpoint = find_again();
+  if (!endpoint) return false;
+  const auto opened = device::Device::open(*endpoint);
+  const auto serial_number = opened->information().serial_number;
+  if (serial_number != arm_.endpoint.serial_number)
+    throw CannotReturn(fmt::format(
+        "Another arm, {}, is now at the address of the arm {}. Connect that one again, or open the new arm.",
+        serial_number, arm_.endpoint.serial_number));
+  set_geometry(opened->parameters());
+  arm_.device->take_link_of(*opened);
+  return true;
+}
+
+std::optional<device::Endpoint> Connection::find_again() const {
+  if (arm_.board && !arm_.board->is_running())
+    throw CannotReturn("The virtual board of this arm has ended. Open the arm again.");
+  if (arm_.board) return arm_.board->find();
+  const auto found = device::find_arms(device::parse_address(device::address_of(arm_.endpoint)));
+  // A server may have several. The board may have another place there since it was unplugged.
+  const auto same =
+      std::find_if(found.begin(), found.end(), [this](const auto& each) { return each.path == arm_.endpoint.path; });
+  if (same != found.end()) return *same;
+  return found.empty() ? std::nullopt : std::optional(found.front());
+}
+
 device::ControlClient& Connection::own_board() {
   if (!arm_.control) throw NotNow("Only an arm that was opened as \"virtual\" has a simulated hand.");
-  poses_.require_open();
+  poses_.require_link();
   return *arm_.control;
 }
 

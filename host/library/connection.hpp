@@ -1,9 +1,11 @@
-// The thread that opens the arm and reads its poses.
+// The thread that opens the arm, reads its poses, and opens it again after its link was lost.
 #pragma once
 
-#include <atomic>
+#include <condition_variable>
+#include <functional>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -11,6 +13,7 @@
 #include <device/open_arm.hpp>
 
 #include "pose_feed.hpp"
+#include "pose_reader.hpp"
 
 namespace inkwell::library {
 
@@ -22,7 +25,7 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Stays when the link is lost, so that who is calling it meanwhile hears so from it.
+  /// Stays the same object when the link is lost and made again.
   device::Device& device() const { return *arm_.device; }
   const device::Endpoint& endpoint() const { return arm_.endpoint; }
 
@@ -38,7 +41,17 @@ class Connection {
 
  private:
   void run(const std::string& address, std::promise<void> opened);
-  void read_poses(std::promise<void>& opened, bool& is_open);
+  using OnPose = std::function<void(const ReadPose&)>;
+  /// Until the arm is to be closed. Throws when the link is lost.
+  void read_poses(const OnPose& on_pose);
+  /// Another program drives the arm now, or none does.
+  void tell_lost_claim();
+  /// Waits until the arm is there again, and opens it. False if it is to be closed before.
+  bool reopen();
+  bool try_to_reopen();
+  std::optional<device::Endpoint> find_again() const;
+  bool ends() const;
+  void end();
   device::ControlClient& own_board();
 
   PoseFeed& poses_;
@@ -47,7 +60,10 @@ class Connection {
   std::mutex control_mutex_;
   mutable std::mutex geometry_mutex_;
   control::Arm geometry_{};
-  std::atomic<bool> ends_ = false;
+  mutable std::mutex end_mutex_;
+  std::condition_variable end_changed_;
+  bool ends_ = false;
+  bool is_open_ = false;  ///< of the thread
   std::thread thread_;
 };
 

@@ -17,6 +17,11 @@ class BadArgument : public Error {
  public:
   using Error::Error;
 };
+/// The force went off, and this program did not switch it off.
+class ForceLost : public Error {
+ public:
+  using Error::Error;
+};
 /// The device does not take it, or not now.
 class NotNow : public Error {
  public:

@@ -47,7 +47,6 @@ void ForceOutput::send(const double (&force_N)[3], std::uint32_t pose_sequence) 
   {
     const std::lock_guard lock(mutex_);
     request.mode = mode_;
-    pose_sequence_ = pose_sequence;
     next_ = request;
   }
   changed_.notify_one();  // with the lock, the thread would wake to wait for it, and the caller would wake it again
@@ -55,23 +54,23 @@ void ForceOutput::send(const double (&force_N)[3], std::uint32_t pose_sequence) 
 
 void ForceOutput::let_go() {
   const std::lock_guard lock(mutex_);
-  next_ = device::ForceRequest{.mode = protocol::ForceMode::none, .pose_sequence = pose_sequence_};
+  next_ = device::ForceRequest{.mode = protocol::ForceMode::none};
   changed_.notify_one();
 }
 
 void ForceOutput::run() {
   ForceInterval interval;
-  try {
-    while (wait_for_force()) {
+  while (wait_for_force()) {
+    try {
       // The bus takes one report in a frame, so a queue of them would never drain. While one is under way, newer
       // forces replace each other in `next_`.
       if (!device_.wait_until_written(attention)) continue;
       device::ForceRequest request = take_force();
-      request.interval_ms = interval.next(request.pose_sequence);
-      device_.send_force(request);
+      if (request.pose_sequence) request.interval_ms = interval.next(*request.pose_sequence);
+      if (poses_.loss() == Loss::none) device_.send_force(request);  // else it was computed from an older pose
+    } catch (const Error&) {  // the connection's thread meets the same error, and reports it
+      drop_force();
     }
-  } catch (const Error& error) {
-    poses_.end(error.what());
   }
 }
 
@@ -84,6 +83,11 @@ bool ForceOutput::wait_for_force() {
 device::ForceRequest ForceOutput::take_force() {
   const std::lock_guard lock(mutex_);
   return *std::exchange(next_, std::nullopt);
+}
+
+void ForceOutput::drop_force() {
+  const std::lock_guard lock(mutex_);
+  next_.reset();
 }
 
 }  // namespace inkwell::library

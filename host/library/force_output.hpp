@@ -18,7 +18,7 @@ namespace inkwell::library {
 /// worth nothing.
 class ForceOutput {
  public:
-  /// Ends `poses` if the device is gone.
+  /// Sends none while `poses` are lost.
   ForceOutput(device::Device& device, PoseFeed& poses);
   ~ForceOutput();
 
@@ -36,13 +36,13 @@ class ForceOutput {
   /// False after stop().
   bool wait_for_force();
   device::ForceRequest take_force();
+  void drop_force();
 
   device::Device& device_;
   PoseFeed& poses_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<device::ForceRequest> next_;
-  std::uint32_t pose_sequence_ = 0;  ///< of the newest force
   protocol::ForceMode mode_ = protocol::ForceMode::instead_of_walls;
   bool stops_ = false;
   std::thread thread_;

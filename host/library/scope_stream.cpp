@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "errors.hpp"
 
 namespace inkwell::library {
@@ -16,7 +18,7 @@ constexpr auto read_timeout = 20ms;
 
 }  // namespace
 
-ScopeStream::ScopeStream(device::Device& device, PoseFeed& poses) : device_(device), poses_(poses) {
+ScopeStream::ScopeStream(device::Device& device, const PoseFeed& poses) : device_(device), poses_(poses) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -32,30 +34,49 @@ ScopeStream::~ScopeStream() {
 void ScopeStream::select(const std::vector<protocol::Signal>& signals) {
   const std::lock_guard user(user_mutex_);
   if (recorder_) throw NotNow("A recording runs. Stop it before other signals are selected.");
-  poses_.require_open();
+  if (signals.empty() && !is_selected()) return;
+  poses_.require_poses();
   device_.select_signals(signals);
   const std::lock_guard lock(mutex_);
+  ++selection_;
   signals_ = signals;
   samples_.clear();
   rows_kept_ = 0;
+  ended_by_.clear();
   changed_.notify_all();
 }
 
+bool ScopeStream::is_selected() {
+  const std::lock_guard lock(mutex_);
+  if (signals_.empty()) ended_by_.clear();
+  return !signals_.empty();
+}
+
 void ScopeStream::run() {
-  while (!poses_.end_reason()) {
+  for (;;) {
+    std::uint64_t selection = 0;
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [&] { return stops_ || !signals_.empty(); });
       if (stops_) return;
+      selection = selection_;
     }
     try {
       if (auto samples = device_.read_scope(read_timeout)) keep(std::move(*samples));
     } catch (const Error& error) {
-      poses_.end(error.what());
+      end(selection, error.what());
     }
   }
+}
+
+/// The board knows nothing of the selection on its next link.
+void ScopeStream::end(std::uint64_t selection, const std::string& cause) {
   const std::lock_guard lock(mutex_);
-  stops_ = true;
+  if (selection != selection_) return;
+  signals_.clear();
+  samples_.clear();
+  rows_kept_ = 0;
+  ended_by_ = cause;
   changed_.notify_all();
 }
 
@@ -74,15 +95,15 @@ void ScopeStream::keep(device::ScopeSamples samples) {
 }
 
 std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::size_t capacity) {
-  poses_.require_open();
+  poses_.require_link();
   std::unique_lock lock(mutex_);
+  if (signals_.empty() && !ended_by_.empty())
+    throw device::Disconnected(fmt::format("{} Then select the signals again.", ended_by_));
   if (signals_.empty()) throw NotNow("No signals are selected. Select some first.");
-  changed_.wait_until(lock, in(timeout_s), [&] { return stops_ || !samples_.empty(); });
-  if (samples_.empty() || capacity == 0) {
-    lock.unlock();
-    poses_.require_open();
-    return std::nullopt;
-  }
+  const auto selection = selection_;
+  changed_.wait_until(lock, in(timeout_s), [&] { return stops_ || signals_.empty() || !samples_.empty(); });
+  if (signals_.empty() && selection == selection_) throw device::Disconnected(ended_by_);
+  if (samples_.empty() || capacity == 0) return std::nullopt;
   device::ScopeSamples& oldest = samples_.front();
   device::ScopeSamples taken;
   if (oldest.count <= capacity) {
@@ -104,11 +125,16 @@ std::optional<device::ScopeSamples> ScopeStream::read(double timeout_s, std::siz
 
 void ScopeStream::start_recording(const std::string& path, bool is_simulation) {
   const std::lock_guard user(user_mutex_);
-  if (signals_.empty()) throw NotNow("No signals are selected. Select those to be recorded first.");
+  std::vector<protocol::Signal> signals;
+  {
+    const std::lock_guard lock(mutex_);
+    signals = signals_;
+  }
+  poses_.require_poses();
+  if (signals.empty()) throw NotNow("No signals are selected. Select those to be recorded first.");
   if (recorder_) throw NotNow("A recording runs already. Stop it first.");
-  poses_.require_open();
   auto recorder = std::make_unique<recording::Recorder>(
-      path, recording::describe(device_.information(), device_.parameters(), signals_, "", is_simulation));
+      path, recording::describe(device_.information(), device_.parameters(), signals, "", is_simulation));
   const std::lock_guard lock(mutex_);
   recorder_ = std::move(recorder);
 }

@@ -20,13 +20,13 @@ namespace inkwell::library {
 
 class ScopeStream {
  public:
-  /// Ends `poses` if the device is gone, and ends with them.
-  ScopeStream(device::Device& device, PoseFeed& poses);
+  ScopeStream(device::Device& device, const PoseFeed& poses);
   ~ScopeStream();
 
   /// Throws NotNow during a recording.
   void select(const std::vector<protocol::Signal>& signals);
-  /// At most `capacity` samples of those that came; none on time-out. Throws NotNow if no signals are selected.
+  /// At most `capacity` samples of those that came; none on time-out. Throws NotNow if no signals are selected, and
+  /// Disconnected once a loss of the link has ended the selection.
   std::optional<device::ScopeSamples> read(double timeout_s, std::size_t capacity);
 
   /// Throws NotNow if no signals are selected or a recording runs.
@@ -37,15 +37,20 @@ class ScopeStream {
  private:
   void run();
   void keep(device::ScopeSamples samples);
+  void end(std::uint64_t selection, const std::string& cause);
+  /// With no selection the reason why the last one is over is forgotten.
+  bool is_selected();
 
   device::Device& device_;
-  PoseFeed& poses_;
+  const PoseFeed& poses_;
 
   std::mutex user_mutex_;  ///< one at a time selects, starts and stops; taken before `mutex_`
 
   std::mutex mutex_;  ///< guards the following; never held while the device or a file is waited for
   std::condition_variable changed_;
+  std::uint64_t selection_ = 0;  ///< so many have been made
   std::vector<protocol::Signal> signals_;
+  std::string ended_by_;                      ///< why the selection is over, empty if the program ended it
   std::deque<device::ScopeSamples> samples_;  ///< not read yet
   std::size_t rows_kept_ = 0;
   std::unique_ptr<recording::Recorder> recorder_;  ///< changed by who has `user_mutex_` as well

@@ -28,6 +28,8 @@ void Servo::start(Function function) {
   runs_ = true;
   ++started_;
   is_to_end_ = false;
+  ended_by_ = nullptr;
+  known_interruptions_ = poses_.interruptions();
   function_ = std::move(function);
   changed_.notify_all();
 }
@@ -56,30 +58,45 @@ bool Servo::is_running() const {
   return runs_;
 }
 
+void Servo::throw_what_ended_it() const {
+  std::exception_ptr ended_by;
+  {
+    const std::lock_guard lock(mutex_);
+    ended_by = ended_by_;
+  }
+  if (ended_by) std::rethrow_exception(ended_by);
+}
+
 void Servo::run() {
   for (;;) {
     Function function;
+    std::uint64_t known_interruptions = 0;
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [&] { return closes_ || function_; });
       if (closes_) return;
       function = std::exchange(function_, nullptr);
+      known_interruptions = known_interruptions_;
     }
+    std::exception_ptr ended_by;
     try {
-      call(function);
-    } catch (...) {  // the link is lost, or the program threw: nothing is to be called any more
+      call(function, known_interruptions);
+    } catch (...) {  // poses or force are lost, another program drives, or the program threw
+      ended_by = std::current_exception();
     }
     let_go_();
     const std::lock_guard lock(mutex_);
     runs_ = false;
+    ended_by_ = ended_by;
     changed_.notify_all();
   }
 }
 
-void Servo::call(const Function& function) {
-  std::uint32_t seen = poses_.newest().sequence;
+void Servo::call(const Function& function, std::uint64_t known_interruptions) {
+  std::uint32_t seen = poses_.last().pose.sequence;
   for (bool goes_on = true; goes_on;) {
-    const auto pose = poses_.wait([&](const auto& newest) { return is_to_end_ || newest.sequence != seen; });
+    const auto pose = poses_.wait_uninterrupted(
+        known_interruptions, [&](const auto& newest) { return is_to_end_ || newest.sequence != seen; });
     if (is_to_end_) return;
     seen = pose.sequence;
     double force_N[3]{};

@@ -117,13 +117,7 @@ Answers information(const Arguments& arguments) {
   return {all};
 }
 
-Answers pose(const Arguments& arguments) {
-  inkwell_pose pose;
-  // Asked of the pose before and of one that is as new or newer: true if it holds for the one between.
-  int was_referenced, is_referenced;
-  require(inkwell_is_referenced(find(arguments)->second, &was_referenced));
-  require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));
-  require(inkwell_is_referenced(find(arguments)->second, &is_referenced));
+mxArray* struct_of(const inkwell_pose& pose, bool is_referenced) {
   static const char* const states[] = {"starting", "unreferenced", "ready", "active", "fault"};
   const char* names[] = {"time_s",
                          "state",
@@ -151,7 +145,7 @@ Answers pose(const Arguments& arguments) {
   mxArray* values[] = {mxCreateDoubleScalar(pose.time_s),
                        mxCreateString(pose.state >= 0 && pose.state < 5 ? states[pose.state] : "unknown"),
                        mxCreateString(inkwell_fault_text(pose.fault)),
-                       mxCreateLogicalScalar(was_referenced != 0 && is_referenced != 0),
+                       mxCreateLogicalScalar(is_referenced),
                        column(pose.position_m, 3),
                        column(pose.velocity_m_s, 3),
                        rotation,
@@ -168,7 +162,26 @@ Answers pose(const Arguments& arguments) {
                        mxCreateLogicalScalar(pose.button_2 != 0),
                        mxCreateLogicalScalar(pose.in_inkwell != 0)};
   for (std::size_t i = 0; i < std::size(names); ++i) mxSetField(told, 0, names[i], values[i]);
-  return {told};
+  return told;
+}
+
+Answers pose(const Arguments& arguments) {
+  inkwell_pose pose;
+  // Asked of the pose before and of one that is as new or newer: true if it holds for the one between.
+  int was_referenced, is_referenced;
+  require(inkwell_is_referenced(find(arguments)->second, &was_referenced));
+  require(inkwell_wait_for_pose(find(arguments)->second, 10.0, &pose));
+  require(inkwell_is_referenced(find(arguments)->second, &is_referenced));
+  return {struct_of(pose, was_referenced != 0 && is_referenced != 0)};
+}
+
+/// Without an error while no poses come.
+Answers last_pose(const Arguments& arguments) {
+  inkwell_pose pose{};
+  int is_referenced = 0;
+  inkwell_get_pose(find(arguments)->second, &pose);
+  inkwell_is_referenced(find(arguments)->second, &is_referenced);
+  return {struct_of(pose, is_referenced != 0)};
 }
 
 Answers enable(const Arguments& arguments) {
@@ -343,6 +356,7 @@ const std::map<std::string, Answers (*)(const Arguments&)> commands{
     {"open", open},
     {"close", close},
     {"pose", pose},
+    {"last_pose", last_pose},
     {"enable", enable},
     {"stop", stop},
     {"take_over", take_over},
@@ -370,18 +384,31 @@ Answers run(const Arguments& arguments) {
   return command->second(Arguments(arguments.begin() + 1, arguments.end()));
 }
 
+/// By which a program can tell errors apart.
+const char* identifier_of(inkwell_result result) {
+  switch (result) {
+    case INKWELL_DISCONNECTED: return "inkwell:disconnected";
+    case INKWELL_FORCE_LOST: return "inkwell:force_lost";
+    default: return "inkwell:refused";
+  }
+}
+
 }  // namespace
 
 void mexFunction(int answer_count, mxArray* answers[], int argument_count, const mxArray* arguments[]) {
   static char sentence[1024];  // mexErrMsgIdAndTxt() does not come back, so nothing may be left to be destroyed
   sentence[0] = '\0';
+  const char* identifier = identifier_of(INKWELL_FAILED);
   mexAtExit(close_all);
   try {
     const Answers told = run(Arguments(arguments, arguments + argument_count));
     for (std::size_t i = 0; i < told.size() && (i == 0 || i < static_cast<std::size_t>(answer_count)); ++i)
       answers[i] = told[i];
+  } catch (const inkwell::Failure& error) {
+    std::snprintf(sentence, sizeof sentence, "%s", error.what());
+    identifier = identifier_of(error.result);
   } catch (const std::exception& error) {
     std::snprintf(sentence, sizeof sentence, "%s", error.what());
   }
-  if (sentence[0] != '\0') mexErrMsgIdAndTxt("inkwell:refused", "%s", sentence);
+  if (sentence[0] != '\0') mexErrMsgIdAndTxt(identifier, "%s", sentence);
 }

@@ -15,5 +15,8 @@ function pose = inkwell_pose(arm)
 %   pose.limited_by_heat      true while a hot motor gives all the current that it still may; all give way together
 %   pose.limited_by_speed     true while the probe is nearly as fast as it may be: what drives the motion gives way
 %   pose.button_1, pose.button_2, pose.in_inkwell    true or false
+%
+% While no poses come (unplugged cable, restarted or silent board) it is an error with the identifier
+% 'inkwell:disconnected', and inkwell_last_pose returns the last known pose. The arm is back by itself.
   pose = inkwell_mex('pose', arm);
 end

@@ -29,10 +29,12 @@ Vector force_of(const py::object& answer) {
 
 }  // namespace
 
-void raise(inkwell_result result, const std::string& sentence) {
+void raise(inkwell_result result, const std::string& sentence, const Pose* last_pose) {
   const py::object classes = py::module_::import("inkwell.errors").attr("BY_RESULT");
   const py::object type = classes[py::int_(static_cast<int>(result))];
-  PyErr_SetObject(type.ptr(), py::str(sentence).ptr());
+  const py::object error = type(sentence);
+  if (last_pose != nullptr) error.attr("last_pose") = *last_pose;
+  PyErr_SetObject(type.ptr(), error.ptr());
   throw py::error_already_set();
 }
 
@@ -73,9 +75,11 @@ bool Arm::is_closed() const {
 void Arm::close() {
   if (is_closed()) return;
   if (in_servo) raise(INKWELL_REFUSED, "A servo can not close its arm. Stop it, and close the arm elsewhere.");
+  Ending ending;
   {
     const Use arm(*this);
     call([&] { return inkwell_stop_servo(arm); });
+    ending = take_ending();
   }
   {
     const py::gil_scoped_release unlocked;
@@ -86,7 +90,7 @@ void Arm::close() {
     lock.unlock();
     inkwell_close(arm_);
   }
-  raise_what_the_servo_raised();
+  ending.raise_it();
 }
 
 // ---- pose --------------------------------------------------------------------------------------------------
@@ -99,6 +103,7 @@ Pose Arm::pose() {
 }
 
 Pose Arm::wait_for_pose(double timeout_s) {
+  check_servo();
   Pose pose;
   call_patiently(timeout_s, [&](inkwell_arm* arm, double time_s) { return inkwell_wait_for_pose(arm, time_s, &pose); });
   return pose;
@@ -196,7 +201,7 @@ int Arm::call_servo(inkwell_arm*, const inkwell_pose* pose, double force_N[3], v
 
 void Arm::start_servo(py::function servo) {
   const Use arm(*this);
-  if (!servo_is_running()) raise_what_the_servo_raised();
+  if (!servo_is_running()) take_ending().raise_it();
   auto next = std::make_unique<Servo>(Servo{std::move(servo), nullptr});
   call([&] { return inkwell_start_servo(arm, &Arm::call_servo, next.get()); });
   servo_ = std::move(next);
@@ -205,7 +210,7 @@ void Arm::start_servo(py::function servo) {
 void Arm::stop_servo() {
   const Use arm(*this);
   call([&] { return inkwell_stop_servo(arm); });
-  if (!in_servo) raise_what_the_servo_raised();
+  if (!in_servo) take_ending().raise_it();
 }
 
 bool Arm::servo_is_running() {
@@ -214,10 +219,27 @@ bool Arm::servo_is_running() {
   return inkwell_servo_is_running(arm) != 0;
 }
 
-void Arm::raise_what_the_servo_raised() {
-  if (!servo_) return;
-  const std::exception_ptr raised = std::exchange(servo_->raised, nullptr);
+void Arm::check_servo() {
+  const Use arm(*this);
+  if (servo_ && !servo_->raised && !servo_is_running()) take_ending().raise_it();
+}
+
+Arm::Ending Arm::take_ending() {
+  Ending ending;
+  if (!servo_) return ending;
+  ending.raised = std::exchange(servo_->raised, nullptr);
+  if (ending.raised || std::exchange(servo_->is_told, true)) return ending;
+  const py::gil_scoped_release unlocked;
+  ending.result = inkwell_servo_result(arm_);
+  if (ending.result == INKWELL_OK) return ending;
+  ending.sentence = inkwell_error_text();
+  inkwell_get_pose(arm_, &ending.last_pose);
+  return ending;
+}
+
+void Arm::Ending::raise_it() const {
   if (raised) std::rethrow_exception(raised);
+  if (result != INKWELL_OK) raise(result, sentence, result == INKWELL_DISCONNECTED ? &last_pose : nullptr);
 }
 
 // ---- parameters --------------------------------------------------------------------------------------------

@@ -43,9 +43,11 @@ class Arm {
   void place_shapes(const std::vector<Plane>& planes, const Sphere* sphere);
 
   void start_servo(py::function servo);
-  /// Raises what the servo raised.
+  /// Raises what the servo raised, or what else has ended it.
   void stop_servo();
   bool servo_is_running();
+  /// Raises what has ended the servo, once, if neither the program nor its function did.
+  void check_servo();
 
   double parameter(const std::string& name);
   void set_parameters(const std::vector<std::pair<std::string, double>>& changes);
@@ -87,10 +89,23 @@ class Arm {
   struct Servo {
     py::function function;
     std::exception_ptr raised;
+    bool is_told = false;  ///< what else has ended it
+  };
+  /// Why a servo has ended.
+  struct Ending {
+    std::exception_ptr raised;
+    inkwell_result result = INKWELL_OK;
+    std::string sentence;
+    Pose last_pose{};
+    void raise_it() const;
   };
 
   static int call_servo(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user) noexcept;
-  void raise_what_the_servo_raised();
+  /// Of a servo that is not called any more; each is taken once.
+  Ending take_ending();
+  /// Calls the library without the interpreter's lock; what it refuses is raised.
+  template <class Call>
+  void call(Call library_call);
   /// Tries `attempt(arm, time)` for short times until it does not ask to go on, so that Ctrl-C and close() are heard.
   template <class Attempt, class GoesOn>
   void call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on);
@@ -110,6 +125,20 @@ class Arm {
   std::size_t signal_count_ = 0;
 };
 
+template <class Call>
+void Arm::call(Call library_call) {
+  inkwell_result result;
+  std::string sentence;
+  Pose last_pose{};
+  {
+    const py::gil_scoped_release unlocked;
+    result = library_call();
+    if (result != INKWELL_OK) sentence = inkwell_error_text();
+    if (result == INKWELL_DISCONNECTED && arm_ != nullptr) inkwell_get_pose(arm_, &last_pose);
+  }
+  if (result != INKWELL_OK) raise(result, sentence, result == INKWELL_DISCONNECTED ? &last_pose : nullptr);
+}
+
 template <class Attempt, class GoesOn>
 void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
   using Clock = std::chrono::steady_clock;
@@ -122,15 +151,17 @@ void Arm::call_patiently(double timeout_s, Attempt attempt, GoesOn goes_on) {
     const bool is_last = left_s <= attempt_s;
     inkwell_result result;
     std::string sentence;
+    Pose last_pose{};
     {
       const Use arm(*this);
       const py::gil_scoped_release unlocked;
       result = attempt(static_cast<inkwell_arm*>(arm), is_last ? (left_s > 0 ? left_s : 0.0) : attempt_s);
       if (result != INKWELL_OK) sentence = inkwell_error_text();
+      if (result == INKWELL_DISCONNECTED) inkwell_get_pose(arm, &last_pose);
     }
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (result == INKWELL_OK) return;
-    if (is_last || !goes_on(result)) raise(result, sentence);
+    if (is_last || !goes_on(result)) raise(result, sentence, result == INKWELL_DISCONNECTED ? &last_pose : nullptr);
   }
 }
 

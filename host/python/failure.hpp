@@ -10,8 +10,9 @@ namespace inkwell::python {
 
 namespace py = pybind11;
 
-/// Raises the class of inkwell.errors for `result`. The interpreter's lock is held.
-[[noreturn]] void raise(inkwell_result result, const std::string& sentence);
+/// Raises the class of inkwell.errors for `result`, which carries the pose if there is one. The interpreter's lock is
+/// held.
+[[noreturn]] void raise(inkwell_result result, const std::string& sentence, const Pose* last_pose = nullptr);
 
 /// Calls the library without the interpreter's lock; what it refuses is raised.
 template <class Call>

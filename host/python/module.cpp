@@ -267,6 +267,7 @@ void define_arm(py::module_& module) {
       .def("start_servo", &Arm::start_servo)
       .def("stop_servo", &Arm::stop_servo)
       .def("servo_is_running", &Arm::servo_is_running)
+      .def("check_servo", &Arm::check_servo)
       .def("parameter", &Arm::parameter)
       .def("set_parameters", &Arm::set_parameters)
       .def("stored_parameter", &Arm::stored_parameter)

@@ -17,8 +17,8 @@ Lengths are in metres, forces in newtons, angles in radians, times in seconds. W
 from ._native import Device, Driver, ForceMode, Information, Pose, State, Store, Stored, Test, TestItem, devices
 from ._native import version as _version
 from .arm import Arm, Recording, VirtualHand, open
-from .errors import (BadArgument, Disconnected, Error, Failed, Incompatible, InUse, NoDevice, NoPermission, Refused,
-                     TimedOut)
+from .errors import (BadArgument, Disconnected, Error, Failed, ForceLost, Incompatible, InUse, NoDevice, NoPermission,
+                     Refused, TimedOut)
 from .faults import Fault
 from .parameters import Parameter, Parameters
 from .parameters import TABLE as _parameters
@@ -28,7 +28,7 @@ from .shapes import Plane, Sphere, Surface
 
 __version__ = _version()
 __all__ = [
-    "Arm", "BadArgument", "Device", "Disconnected", "Driver", "Error", "Failed", "Fault", "ForceMode", "InUse",
+    "Arm", "BadArgument", "Device", "Disconnected", "Driver", "Error", "Failed", "Fault", "ForceLost", "ForceMode", "InUse",
     "Incompatible", "Information", "NoDevice", "NoPermission", "Parameter", "Parameters", "Plane", "Pose", "Recording",
     "Refused", "Samples", "Signal", "Sphere", "State", "Store", "Stored", "Surface", "Test", "TestItem", "TimedOut",
     "VirtualHand", "devices", "open", "parameters_table", "signals",

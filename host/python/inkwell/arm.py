@@ -98,7 +98,8 @@ class Arm:
         _open.add(self)
 
     def close(self) -> None:
-        """Ends the servo, lets this program's force fade and forgets the arm. Raises what the servo raised."""
+        """Ends the servo, lets this program's force fade and forgets the arm. Raises what the servo raised, or what else
+        has ended it."""
         try:
             self._native.close()
         finally:
@@ -116,7 +117,8 @@ class Arm:
         except Exception as error:
             if raised is None:
                 raise
-            raised.add_note(f"The servo had ended with {type(error).__name__}: {error}")
+            if str(error) != str(raised):
+                raised.add_note(f"The servo had ended with {type(error).__name__}: {error}")
 
     @property
     def information(self) -> Information:
@@ -144,11 +146,12 @@ class Arm:
 
     @property
     def pose(self) -> Pose:
-        """The newest pose, at once."""
+        """The newest pose, without waiting. Raises Disconnected, which has the last known one, while no poses come."""
         return self._native.pose()
 
     def wait_for_pose(self, timeout_s: float = 10.0) -> Pose:
-        """The next pose that this thread has not seen. Raises TimedOut."""
+        """The next pose that this thread has not seen. Raises TimedOut; Disconnected while the link is lost; and once
+        what has ended the servo, if neither the program nor the servo itself did."""
         return _call(self._native.wait_for_pose, timeout_s, wants=_SECONDS)
 
     def poses(self, duration_s: float = float("inf")) -> Iterator[Pose]:
@@ -162,7 +165,8 @@ class Arm:
 
     def enable_force(self, timeout_s: float = 5.0) -> None:
         """Switches the force on: here the program says that a hand may feel it. Waits for the device, which has to know
-        where it is. Raises Refused with the remedy, and InUse while another program drives the arm."""
+        where it is. Raises Refused with the remedy, and InUse while another program drives the arm. The faults USB_GONE and
+        HOST_SILENT of a program that drove before this one, or before a lost link, are cleared first."""
         _call(self._native.enable_force, timeout_s, wants=_SECONDS)
 
     def disable_force(self) -> None:
@@ -194,7 +198,8 @@ class Arm:
 
     def set_force(self, force_N: Vector) -> None:
         """The force on the hand (N; shape (3,)) until the next call. Without another call it fades after
-        program_force_expiry_s. Raises InUse if another program drives the arm. In a servo, return the force instead."""
+        program_force_expiry_s. Raises InUse if another program drives the arm, and ForceLost once a fault, another
+        program or a lost link has switched the force off, until it is on again. In a servo, return the force instead."""
         _call(self._native.set_force, force_N, wants=_FORCE)
 
     def servo(self, function: Servo) -> Servo:
@@ -205,8 +210,10 @@ class Arm:
             def spring(pose):
                 return -100 * (pose.position_m - [0, 0, -0.03])
 
-        It is called in a thread of its own until stop_servo() or the end of `with`, which raise what it raised. It
-        shares the interpreter with the other threads, so let it be short.
+        It is called in a thread of its own until stop_servo() or the end of `with`, which raise what it raised. It also
+        ends with a lost force or lost poses: ForceLost, Disconnected or InUse comes once out of the next call of
+        wait_for_pose(), poses(), wait_for_servo(), stop_servo(), servo(), or out of the end of `with`. It shares the
+        interpreter with the other threads, so let it be short.
         """
         if not callable(function):
             raise TypeError(f"{function!r} can not be called. Give a function that takes a pose and returns a force.")
@@ -215,7 +222,8 @@ class Arm:
         return function
 
     def stop_servo(self) -> None:
-        """Waits until the servo is not called any more; in a servo, ends it after this call. Raises what it raised."""
+        """Waits until the servo is not called any more; in a servo, ends it after this call. Raises what it raised, or
+        what else has ended it."""
         try:
             self._native.stop_servo()
         finally:
@@ -228,7 +236,8 @@ class Arm:
         return self._native.servo_is_running()
 
     def wait_for_servo(self, timeout_s: float = float("inf")) -> bool:
-        """Waits until the servo ends by itself, and tells whether it did. Raises what it raised."""
+        """Waits until the servo ends by itself, and returns whether it did. Raises what it raised, or what else has ended
+        it."""
         give_up_at = time.monotonic() + timeout_s
         while self.servo_is_running:
             if time.monotonic() > give_up_at:
@@ -294,6 +303,8 @@ class Arm:
             with arm.record("push.h5", "position_x_m", "force_x_N") as recording:
                 time.sleep(5)
             print(recording.samples, recording.lost)
+
+        Raises at its end what has ended the servo meanwhile, if neither the program nor the servo itself did.
         """
         recording = Recording(os.fspath(path))
         self.select_signals(*names)
@@ -305,6 +316,7 @@ class Arm:
                 recording.samples, recording.lost = self._native.stop_recording()
         finally:
             self.select_signals()
+        self._native.check_servo()
 
 
 def open(address: str | None = None) -> Arm:

@@ -1,5 +1,12 @@
 """What can go wrong, a class for each result of the library. The message says what is wrong and what to do."""
 
+from __future__ import annotations
+
+import typing
+
+if typing.TYPE_CHECKING:
+    from ._native import Pose
+
 
 class Error(Exception):
     """Anything that the library or the arm refuses; the classes below say more."""
@@ -26,9 +33,12 @@ class Incompatible(Error):
 
 
 class Disconnected(Error, ConnectionError):
-    """The arm was there and is gone."""
+    """No poses come: the link to the arm is lost, or the arm is silent. The library looks for the same arm until it is
+    back, and then goes on with it. After a lost link the force is off; enable_force() switches it on again."""
 
     result = 4
+    last_pose: Pose | None = None
+    """The last known pose."""
 
 
 class InUse(Error):
@@ -59,6 +69,12 @@ class Failed(Error):
     """Anything else; the message says what."""
 
     result = 9
+
+
+class ForceLost(Error):
+    """The force went off, and this program did not switch it off: a fault, another program, or a lost link."""
+
+    result = 10
 
 
 BY_RESULT = {each.result: each for each in Error.__subclasses__()}

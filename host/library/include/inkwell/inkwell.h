@@ -37,13 +37,23 @@ typedef enum inkwell_result INKWELL_AS_INT {
   INKWELL_NO_DEVICE = 1,     /* no arm there, or more than one and none was named */
   INKWELL_NO_PERMISSION = 2, /* the user may not use the device */
   INKWELL_INCOMPATIBLE = 3,  /* its firmware belongs to another version of this library */
-  INKWELL_DISCONNECTED = 4,  /* it was there and is gone */
+  INKWELL_DISCONNECTED = 4,  /* no poses come: the link is lost, or the device is silent; see below */
   INKWELL_IN_USE = 5,        /* another program has what only one can have */
   INKWELL_BAD_ARGUMENT = 6,  /* a value that the function can not take */
   INKWELL_REFUSED = 7,       /* the device does not take it, or not now */
   INKWELL_TIMED_OUT = 8,     /* what was waited for did not come */
-  INKWELL_FAILED = 9         /* anything else; the sentence says what */
+  INKWELL_FAILED = 9,        /* anything else; the sentence says what */
+  INKWELL_FORCE_LOST = 10    /* the force went off, and this program did not switch it off */
 } inkwell_result;
+
+/* INKWELL_DISCONNECTED ends by itself. After an unplugged cable or a restart of the board the library looks for the
+ * same arm five times a second, and opens it again; a device that has been silent for 2 s is back with its next pose.
+ * Until then no force is sent, and functions that return a pose write the last known one. Afterwards:
+ *   - the force is off until inkwell_enable_force() is called again, except after a silence;
+ *   - a servo has ended, and inkwell_servo_result() returns the cause;
+ *   - selected signals have to be selected again, except after a silence;
+ *   - a board that has restarted has its stored parameters.
+ * A virtual board that inkwell_open() has started does not come back once it has ended. */
 
 /* "0.3.0": of the library. */
 INKWELL_API const char* inkwell_version(void);
@@ -167,7 +177,7 @@ typedef enum inkwell_fault INKWELL_AS_INT {
   INKWELL_FAULT_USB_GONE = 29
 } inkwell_fault;
 
-/* Whose force the hand feels: bits of inkwell_pose::force_sources. */
+/* Whose force the hand feels: bits of inkwell_pose::force_sources. None of them is set while the force is off. */
 enum inkwell_force_source {
   INKWELL_WALLS = 1,  /* the walls of the board's own box are felt */
   INKWELL_SHAPES = 2, /* planes or a sphere that a program placed */
@@ -203,10 +213,11 @@ typedef struct inkwell_pose {
   double supply_V;
 } inkwell_pose;
 
-/* The newest pose; at once. */
+/* The newest pose, without waiting. With INKWELL_DISCONNECTED it is the last known one. */
 INKWELL_API inkwell_result inkwell_get_pose(inkwell_arm* arm, inkwell_pose* pose);
 
-/* Waits for the next pose that this thread has not seen. */
+/* Waits for the next pose that this thread has not seen. With INKWELL_TIMED_OUT and INKWELL_DISCONNECTED `pose` is the
+ * last known one. A lost link is INKWELL_DISCONNECTED without waiting; a silent device is waited for. */
 INKWELL_API inkwell_result inkwell_wait_for_pose(inkwell_arm* arm, double timeout_s, inkwell_pose* pose);
 
 /* 1 while the arm knows where it is: since the stylus rested in the inkwell, and until counts may have been lost. With
@@ -232,7 +243,8 @@ INKWELL_API const char* inkwell_fault_name(int fault);
  * program, and the sentence names the driver. Any program may read, record and call inkwell_stop(). */
 
 /* Switches the force on: this is where the program says that a hand may feel it. Waits until the device is active. In
- * a fault or before the stylus was in the inkwell it is INKWELL_REFUSED. */
+ * a fault or before the stylus was in the inkwell it is INKWELL_REFUSED. The faults "usb_gone" and "host_silent" of a
+ * program that drove before this one, or before a lost link, are cleared first. */
 INKWELL_API inkwell_result inkwell_enable_force(inkwell_arm* arm, double timeout_s);
 /* Lets the force fall to nothing within the parameter soft_landing_s, and returns once it is off. */
 INKWELL_API inkwell_result inkwell_disable_force(inkwell_arm* arm);
@@ -270,12 +282,14 @@ INKWELL_API inkwell_result inkwell_set_force_mode(inkwell_arm* arm, inkwell_forc
 /* The force on the hand until the next call. It goes out within a millisecond, at most one in each. The board moves to
  * it in a line, no further than its limit; without another call it fades after program_force_expiry_s. A value that is
  * infinite or no number is INKWELL_BAD_ARGUMENT, and the force before stays. Another program that drives the arm makes
- * it INKWELL_IN_USE. In the servo, return the force instead. */
+ * it INKWELL_IN_USE. If the force went off by a fault, by another program or with the link, it is INKWELL_FORCE_LOST
+ * until the force is on again or this program calls one of the functions that switch it. In the servo, return the force
+ * instead. */
 INKWELL_API inkwell_result inkwell_set_force(inkwell_arm* arm, const double force_N[3]);
 
 /* Called at each pose, a thousand times a second, in a thread of the library. Writes the force on the hand, which is
- * 0 before and where it is infinite or no number. Returns 0 to go on, anything else to end the servo. Another program
- * that drives the arm ends it. */
+ * 0 before and where it is infinite or no number. Returns 0 to go on, anything else to end the servo. See
+ * inkwell_servo_result() for what else ends it. */
 typedef int (*inkwell_servo)(inkwell_arm* arm, const inkwell_pose* pose, double force_N[3], void* user);
 /* Has `servo` called from now on, with `user` as it was given. */
 INKWELL_API inkwell_result inkwell_start_servo(inkwell_arm* arm, inkwell_servo servo, void* user);
@@ -283,6 +297,10 @@ INKWELL_API inkwell_result inkwell_start_servo(inkwell_arm* arm, inkwell_servo s
 INKWELL_API inkwell_result inkwell_stop_servo(inkwell_arm* arm);
 /* 1 while the servo is being called. */
 INKWELL_API int inkwell_servo_is_running(inkwell_arm* arm);
+/* Why the last servo has ended, with the sentence. INKWELL_FORCE_LOST: a fault or another program switched the force
+ * off. INKWELL_DISCONNECTED: the link was lost, or the device was silent. INKWELL_IN_USE: another program drives the
+ * arm. INKWELL_OK: the program has ended it, it runs, or there was none. */
+INKWELL_API inkwell_result inkwell_servo_result(inkwell_arm* arm);
 
 /* ---- shapes ------------------------------------------------------------------------------------------------- */
 

@@ -34,6 +34,13 @@ class Failure : public std::runtime_error {
   inkwell_result result;
 };
 
+/// No poses come: the link to the arm is lost, or the arm is silent. Both may end; see INKWELL_DISCONNECTED.
+class Disconnected : public Failure {
+ public:
+  Disconnected() : Failure(INKWELL_DISCONNECTED) {}
+  Pose last_pose{};  ///< the last known one
+};
+
 /// Throws Failure unless it is INKWELL_OK.
 inline void require(inkwell_result result) {
   if (result != INKWELL_OK) throw Failure(result);
@@ -50,10 +57,12 @@ inline std::vector<inkwell_device> devices() {
 }
 
 /// An open arm, which ends with this object. Each function does what the one of the C interface does that is named like
-/// it, and throws Failure where that does not end with INKWELL_OK. Not to be destroyed by its own servo.
+/// it, and throws Failure where that does not end with INKWELL_OK, as Disconnected while no poses come. Not to be
+/// destroyed by its own servo.
 class Arm {
  public:
-  /// Returns the force on the hand. What it throws ends the servo, and comes out of stop_servo().
+  /// Returns the force on the hand. What it throws ends the servo, and comes out of stop_servo(). What else has ended a
+  /// servo (see inkwell_servo_result()) is thrown once, by stop_servo(), start_servo() or wait_for_pose().
   using Servo = std::function<Vector(const Pose&)>;
 
   /// Addresses as inkwell_open() takes them.
@@ -72,6 +81,7 @@ class Arm {
     return pose;
   }
   Pose wait_for_pose(double timeout_s = 2.0) const {
+    throw_what_ended_servo();
     Pose pose;
     require(inkwell_wait_for_pose(get(), timeout_s, &pose));
     return pose;
@@ -101,7 +111,7 @@ class Arm {
     require(inkwell_get_driver(get(), &driver));
     return driver;
   }
-  /// Throws Error with INKWELL_REFUSED if the fault is there again.
+  /// Throws Failure with INKWELL_REFUSED if the fault is there again.
   void clear_fault() { require(inkwell_clear_fault(get())); }
   void set_force_mode(inkwell_force_mode mode) { require(inkwell_set_force_mode(get(), mode)); }
   void set_force(const Vector& force_N) { require(inkwell_set_force(get(), force_N.data())); }
@@ -110,16 +120,18 @@ class Arm {
   }
 
   void start_servo(Servo servo) {
+    throw_what_ended_servo();
     auto next = std::make_unique<ServoState>(ServoState{std::move(servo), nullptr});
     require(inkwell_start_servo(get(), &Arm::call_servo, next.get()));
     servo_ = std::move(next);
   }
-  /// Throws what the servo threw.
+  /// Throws what the servo threw, or what else has ended it.
   void stop_servo() {
     require(inkwell_stop_servo(get()));
     if (!servo_) return;
     const std::exception_ptr thrown = std::exchange(servo_->thrown, nullptr);
     if (thrown) std::rethrow_exception(thrown);
+    throw_what_ended_servo();
   }
   bool servo_is_running() const { return inkwell_servo_is_running(get()) != 0; }
 
@@ -159,7 +171,21 @@ class Arm {
   struct ServoState {
     Servo servo;
     std::exception_ptr thrown;
+    bool is_told = false;  ///< what ended it, other than the program
   };
+  /// Throws Disconnected, or Failure for any other result that is not INKWELL_OK.
+  void require(inkwell_result result) const {
+    if (result != INKWELL_DISCONNECTED) return inkwell::require(result);
+    Disconnected lost;
+    inkwell_get_pose(get(), &lost.last_pose);
+    throw lost;
+  }
+  void throw_what_ended_servo() const {
+    if (!servo_ || servo_->is_told || servo_is_running()) return;
+    const auto result = inkwell_servo_result(get());
+    servo_->is_told = result != INKWELL_OK;
+    require(result);
+  }
   static int call_servo(inkwell_arm*, const inkwell_pose* pose, double force_N[3], void* user) noexcept {
     auto& state = *static_cast<ServoState*>(user);
     try {
