@@ -47,6 +47,7 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->check(not_empty())
       ->excludes(is_virtual_flag)
       ->excludes(server);
+  app.add_flag("--take-over", take_over, "Take the arm over from the program that drives it; its force fades");
   app.add_flag("--json", json, "Write JSON for programs instead of text for people");
 }
 
@@ -77,7 +78,9 @@ device::Address DeviceOptions::address() const {
 }
 
 device::OpenArm connect(const DeviceOptions& options, BoardPace pace, device::SimulationMode default_mode) {
-  return device::open_arm(options.address(), options.virtual_board(default_mode, pace));
+  auto arm = device::open_arm(options.address(), options.virtual_board(default_mode, pace));
+  if (options.take_over) arm.device->take_over();
+  return arm;
 }
 
 std::string arm_name(const DeviceOptions& options) {

@@ -39,6 +39,7 @@ struct DeviceOptions {
   bool real_time = false;
   std::string usbip;  ///< HOST:PORT
   std::string serial_number;
+  bool take_over = false;
   bool json = false;
   bool is_strict = false;  ///< a virtual board ends when the firmware does what silicon would not bear
 
@@ -48,7 +49,7 @@ struct DeviceOptions {
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;
 };
 
-/// Opens the device that the options name. With --arm, a virtual board's firmware gets that arm's parameters.
+/// Opens the device that the options name, and takes it over if they say so. With --arm, a virtual board's firmware gets that arm's parameters.
 device::OpenArm connect(const DeviceOptions& options, BoardPace pace = BoardPace::as_it_can,
                         device::SimulationMode default_mode = device::SimulationMode::fast);
 

@@ -30,7 +30,7 @@ std::string board_text(const std::string& name) {
 }
 
 ordered_json to_json(const device::Information& information, const protocol::StoreReport& store,
-                     const std::optional<protocol::PoseReport>& pose) {
+                     const std::optional<protocol::PoseReport>& pose, const std::optional<device::Driver>& driver) {
   const auto& report = information.report;
   ordered_json json{{"serial_number", information.serial_number},
                     {"board", information.board_name},
@@ -59,11 +59,14 @@ ordered_json to_json(const device::Information& information, const protocol::Sto
     json["referenced"] = pose->is_referenced != 0;
     json["supply_V"] = pose->supply_dV / 10.0;
   }
+  if (driver)
+    json["driver"] = {
+        {"program", driver->program}, {"process_id", driver->process_id}, {"driven_s", driver->driven_s}};
   return json;
 }
 
 void print(const device::Information& information, const protocol::StoreReport& store,
-           const std::optional<protocol::PoseReport>& pose) {
+           const std::optional<protocol::PoseReport>& pose, const std::optional<device::Driver>& driver) {
   const auto& report = information.report;
   const double cycles_per_period = static_cast<double>(report.processor_clock_Hz) / std::max(1u, report.servo_rate_Hz);
   fmt::print("serial number       {}\n", information.serial_number);
@@ -86,6 +89,7 @@ void print(const device::Information& information, const protocol::StoreReport& 
              100.0 * report.motor_heat[0], 100.0 * report.motor_heat[1], 100.0 * report.motor_heat[2]);
   fmt::print("stored parameters   {}{}\n", info(store.contents).meaning,
              store.differing == 0 ? "" : fmt::format(" {} held values are others.", store.differing));
+  fmt::print("driven by           {}\n", driver ? device::driver_text(*driver) : "no program");
   if (!pose) {
     fmt::print("state               unknown: the device sends no pose\n");
     return;
@@ -109,10 +113,11 @@ void add_info_command(const Place& place) {
       const auto pose = connection.device->read_pose(500ms);
       const auto information = connection.device->information();
       const auto store = connection.device->store_report();
+      const auto driver = connection.device->driver();
       if (options.json)
-        fmt::print("{}\n", to_json(information, store, pose).dump(2));
+        fmt::print("{}\n", to_json(information, store, pose, driver).dump(2));
       else
-        print(information, store, pose);
+        print(information, store, pose, driver);
       return 0;
     };
   });

@@ -378,10 +378,10 @@ Device::~Device() {
 }
 
 std::string driver_text(const Driver& driver) {
-  const auto program = driver.object ? fmt::format("this program itself, through the arm that it opened as number {},",
+  const auto program = driver.object ? fmt::format("this program itself, through the arm that it opened as number {}",
                                                    *driver.object)
-                                     : fmt::format("{} (process {}),", driver.program, driver.process_id);
-  return fmt::format("{} since {:.0f} s ago", program, driver.driven_s);
+                                     : fmt::format("{} (process {})", driver.program, driver.process_id);
+  return fmt::format("{}, which claimed it {:.0f} s ago", program, driver.driven_s);
 }
 
 std::optional<Driver> Device::driver() {

@@ -70,6 +70,7 @@ struct Session::Implementation {
       refused = error.what();
     } catch (const InUse& error) {
       refused = error.what();
+      show_problem(error);
     }
     const auto held = with.parameters();
     const std::lock_guard lock(mutex);

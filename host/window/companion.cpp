@@ -154,8 +154,9 @@ StatusBarOutcome Companion::draw_bars(const WindowLayout& layout, const std::opt
       status_bar_.draw(layout.status.place, layout.status.size, style_, desk_,
                        {.scope_is_shown = settings_.scope_is_shown, .is_replay = replay_bar_.is_open()});
   if (!banner || !draw_banner(layout.banner.place, layout.banner.size, style_, *banner)) return outcome;
-  outcome.clear_fault = banner->is_fault;
-  if (!banner->is_fault) update_firmware();
+  outcome.clear_fault = banner->action == BannerAction::clear_fault;
+  if (banner->action == BannerAction::update_firmware) update_firmware();
+  if (banner->action == BannerAction::take_over) desk_.session().take_over();
   return outcome;
 }
 

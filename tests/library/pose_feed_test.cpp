@@ -138,7 +138,7 @@ TEST_CASE("a servo ends with the force and with the poses, and tells why; a new 
   board.is(INKWELL_ACTIVE);
   std::atomic<int> let_go = 0;
   Servo servo(
-      board.poses, [](const double(&)[3]) {}, [&] { ++let_go; });
+      board.poses, [](const double(&)[3], std::uint32_t) {}, [&] { ++let_go; });
   const auto ends = [&] {
     for (int i = 0; i < 100'000 && servo.is_running(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     CHECK_FALSE(servo.is_running());

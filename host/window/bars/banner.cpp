@@ -17,7 +17,7 @@ constexpr float button_points = 118.0f;
 
 float banner_text_width(float width, const Style& style, const Banner& banner) {
   return width -
-         style.points(44 + (!banner.button.empty() ? button_points + 2 * banner_margin_points : banner_margin_points));
+         style.points(44 + (banner.action != BannerAction::none ? button_points + 2 * banner_margin_points : banner_margin_points));
 }
 
 /// Both can talk to each other; an update may wait.
@@ -28,7 +28,7 @@ std::optional<Banner> firmware_banner(const DeviceView& view, const FirmwareUpda
     return std::nullopt;
   return Banner{fmt::format("The board has firmware {}, this companion brings {}.", version, firmware.version),
                 "Both speak the same protocol, so the board may stay as it is. Stored parameters stay in either case.",
-                false, "Update"};
+                BannerAction::update_firmware, "Update"};
 }
 
 }  // namespace
@@ -38,19 +38,22 @@ std::optional<Banner> banner_of(const DeviceView& view, bool is_replay, const Fi
     const auto& test = view.status.self_test;
     const auto [cause, remedy] =
         test ? device::fault_text(view.pose->fault, *test) : device::fault_text(view.pose->fault);
-    return Banner{cause, remedy, true, "Clear fault"};
+    return Banner{cause, remedy, BannerAction::clear_fault, "Clear fault"};
   }
   if (!view.connected() || !view.status.information) return std::nullopt;
   if (is_replay && protocol::force_is_on(view.state()))
     return Banner{
         "The arm's force is on, and what you see is a recording.",
         "Something else has switched it on, such as a program. STOP switches it off; close the replay to see the arm.",
-        false};
+        BannerAction::none};
+  if (view.status.command_problem)
+    return Banner{*view.status.command_problem, "STOP switches the force off, whichever program drives the arm.",
+                  BannerAction::take_over, "Take over"};
   const MotorHeatView heat = motor_heat_view(view.status.information->report);
   if (heat.level == HeatLevel::cool) return firmware_banner(view, firmware);
   return Banner{fmt::format("Motor {} is {}: {:.0f} %.", heat.motor, heat.level == HeatLevel::hot ? "hot" : "warm",
                             100.0f * heat.hottest),
-                heat_advice(heat), false};
+                heat_advice(heat), BannerAction::none};
 }
 
 float banner_height(float width, const Style& style, const Banner& banner) {
@@ -63,7 +66,7 @@ float banner_height(float width, const Style& style, const Banner& banner) {
 
 bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& banner) {
   const Palette& palette = *style.palette;
-  const Colour colour = banner.is_fault ? palette.danger : palette.caution;
+  const Colour colour = banner.is_fault() ? palette.danger : palette.caution;
   begin_top_pane("banner", place, size, ImGuiWindowFlags_NoFocusOnAppearing);  // may lie over the scene
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
@@ -79,9 +82,9 @@ bool draw_banner(ImVec2 place, ImVec2 size, const Style& style, const Banner& ba
   ImGui::PopTextWrapPos();
   ImGui::EndGroup();
   bool pressed = false;
-  if (!banner.button.empty()) {
+  if (banner.action != BannerAction::none) {
     ImGui::SetCursorPos({size.x - style.points(button_points + banner_margin_points), style.points(14)});
-    pressed = coloured_button(banner.button.c_str(), colour, banner.is_fault ? palette.on_danger : palette.on_caution,
+    pressed = coloured_button(banner.button.c_str(), colour, banner.is_fault() ? palette.on_danger : palette.on_caution,
                               {style.points(button_points), style.points(34)});
   }
   end_pane();

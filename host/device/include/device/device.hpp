@@ -63,7 +63,7 @@ struct Driver {
   bool is_this_device;  ///< that object is this one
 };
 
-/// "python3 (process 123), which has driven this arm for 12 s" or "this program itself, ...".
+/// "python3 (process 123), which claimed it 12 s ago" or "this program itself, ...".
 std::string driver_text(const Driver& driver);
 
 using ParameterChange = std::pair<protocol::Parameter, float>;

@@ -1,0 +1,141 @@
+// Every command of every interface, followed at once by every end of its program: what has returned has happened.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <inkwell/inkwell.hpp>
+#include <system/program.hpp>
+
+#include "virtual_arm.hpp"
+
+namespace inkwell::tests {
+namespace {
+
+struct Interface {
+  std::string name;
+  std::vector<std::string> words;
+};
+
+std::vector<Interface> interfaces() {
+  const std::string programs = INKWELL_SOURCE_DIRECTORY "/tests/library/programs/";
+  return {{"C", {build_directory() + "/library-ending", "c"}},
+          {"C++", {build_directory() + "/library-ending", "cpp"}},
+          {"Python", {INKWELL_PYTHON, programs + "ending.py"}}};
+}
+
+/// A board out of its inkwell, and an arm that looks on.
+struct Watched : Board {
+  VirtualArm watcher{address};
+  std::optional<VirtualArm> driver;  ///< whose force is stopped
+
+  Watched() {
+    watcher.be_patient();
+    watcher.wait_until([](const auto& pose) { return pose.state == INKWELL_READY; });
+    hold();
+    watcher.wait_until([](const auto& pose) { return pose.in_inkwell == 0; });
+  }
+
+  /// The next pose that comes, also after a pulled cable was put back.
+  inkwell_pose newest() {
+    inkwell_pose pose;
+    for (int i = 0; i < 6'000; ++i) {
+      if (inkwell_wait_for_pose(watcher.arm, 10, &pose) == INKWELL_OK) return pose;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    FAIL("the board does not come back");
+    return {};
+  }
+  /// Returns once the watcher knows.
+  void pull_cable() {
+    control.usb(false);
+    inkwell_pose pose;
+    while (inkwell_get_pose(watcher.arm, &pose) == INKWELL_OK) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  double stiffness_N_per_m() {
+    double value = 0;
+    REQUIRE(inkwell_get_parameter(watcher.arm, "wall_stiffness_N_per_m", &value) == INKWELL_OK);
+    return value;
+  }
+
+  void prepare(const std::string& command) {
+    if (command == "clear") {
+      control.inject({"bridge_fault"});
+      watcher.wait_until([](const auto& pose) { return pose.state == INKWELL_FAULT; });
+      control.heal("bridge_fault");
+    } else if (command == "stop") {
+      driver.emplace(address);
+      REQUIRE_MESSAGE(inkwell_enable_force(driver->arm, 30) == INKWELL_OK, std::string(inkwell_error_text()));
+    } else if (command == "set") {
+      const char* const name = "wall_stiffness_N_per_m";
+      const double value = 500;
+      REQUIRE(inkwell_set_parameters(watcher.arm, &name, &value, 1) == INKWELL_OK);
+    } else if (command == "store") {
+      REQUIRE(inkwell_factory_reset(watcher.arm) == INKWELL_OK);
+      watcher.be_patient();
+    }
+  }
+  /// What the command was for is so, and nothing else of the program is left.
+  void check(const std::string& command) {
+    CHECK(newest().state == INKWELL_READY);
+    driver.reset();
+    if (command == "set") CHECK(stiffness_N_per_m() == 777);
+    if (command == "store") {
+      inkwell_store store{};
+      REQUIRE(inkwell_get_store(watcher.arm, &store) == INKWELL_OK);
+      CHECK(store.contents == INKWELL_STORED_PARAMETERS);
+    }
+    inkwell_driver left{.is_driven = 1};
+    for (int i = 0; i < 6'000 && left.is_driven != 0; ++i) {
+      REQUIRE(inkwell_get_driver(watcher.arm, &left) == INKWELL_OK);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    CHECK(left.is_driven == 0);
+  }
+};
+
+void play(Watched& board, const Interface& interface, const std::string& command, const std::string& ending) {
+  CAPTURE(interface.name);
+  CAPTURE(command);
+  CAPTURE(ending);
+  board.prepare(command);
+  const bool unplugs = ending == "unplug";
+  auto words = interface.words;
+  words.push_back(command);
+  words.push_back(unplugs ? "wait" : ending);
+  RunningProgram program(words, {"PYTHONPATH=" INKWELL_BUILD_DIRECTORY "/python"});
+  CHECK(program.read_line() == "returned");
+  if (unplugs) {
+    board.pull_cable();
+    board.control.usb(true);
+  } else {
+    program.wait();
+  }
+  board.check(command);
+}
+
+constexpr const char* commands[]{"stop", "disable", "clear", "set", "store", "shapes"};
+constexpr const char* endings[]{"close", "exit", "kill", "unplug"};
+
+TEST_CASE("a command that has returned has happened, however its program ends") {
+  Watched board;
+  for (const auto& interface : interfaces())
+    for (const char* const command : commands)
+      for (const char* const ending : endings) play(board, interface, command, ending);
+}
+
+TEST_CASE("a command that the board can not confirm any more is an error") {
+  Watched board;
+  board.pull_cable();
+  for (auto* const command : {inkwell_stop, inkwell_disable_force, inkwell_clear_fault, inkwell_store_parameters,
+                              inkwell_factory_reset, inkwell_take_over}) {
+    CHECK(command(board.watcher.arm) == INKWELL_DISCONNECTED);
+    CHECK_FALSE(std::string(inkwell_error_text()).empty());
+  }
+}
+
+}  // namespace
+}  // namespace inkwell::tests
