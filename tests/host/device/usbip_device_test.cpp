@@ -164,8 +164,9 @@ TEST_CASE("what was written is waited for until the device has all of it, or tak
   const auto arm = device::Device::open(server.endpoint());
   CHECK(arm->wait_until_written(0ms));
   for (int i = 0; i < 2; ++i) arm->send(protocol::Command::heartbeat);
+  arm->information();  // requests and answers come in order
   server.answer_output();
-  arm->information();  // answers come in order
+  arm->information();
   CHECK_FALSE(arm->wait_until_written(0ms));
   SUBCASE("it accepts the rest") {
     server.answer_output();
