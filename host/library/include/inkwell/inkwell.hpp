@@ -13,6 +13,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -56,24 +57,23 @@ inline std::vector<inkwell_device> devices() {
   return list;
 }
 
-/// An open arm, which ends with this object. Each function does what the one of the C interface does that is named like
-/// it, and throws Failure where that does not end with INKWELL_OK, as Disconnected while no poses come. Not to be
-/// destroyed by its own servo.
+/// An open arm, which is closed with this object. Each function calls the C function of the same name, and throws
+/// Failure if that does not return INKWELL_OK, as Disconnected while no poses come. A running servo moves with its arm.
+/// All functions of a moved-from arm throw Failure with INKWELL_BAD_ARGUMENT. Destroy no arm in its own servo: the
+/// library cannot close it there, and it stays open.
 class Arm {
  public:
-  /// Returns the force on the hand. What it throws ends the servo, and comes out of stop_servo(). What else has ended a
-  /// servo (see inkwell_servo_result()) is thrown once, by stop_servo(), start_servo() or wait_for_pose().
+  /// Returns the force on the hand. An exception ends the servo, and stop_servo() throws it. Any other cause that has
+  /// ended a servo (see inkwell_servo_result()) is thrown once, by stop_servo(), start_servo() or wait_for_pose().
   using Servo = std::function<Vector(const Pose&)>;
 
-  /// Addresses as inkwell_open() takes them.
-  explicit Arm(const std::string& address = "") {
-    inkwell_arm* opened = nullptr;
-    require(inkwell_open(address.c_str(), &opened));
-    arm_.reset(opened);
+  /// Accepts the addresses of inkwell_open().
+  explicit Arm(const std::string& address = "") : opened_(new Opened) {
+    require(inkwell_open(address.c_str(), &opened_->arm));
   }
 
-  /// For the C interface; stays this object's.
-  inkwell_arm* get() const { return arm_.get(); }
+  /// For the C interface, which must not close it. Null in a moved-from arm.
+  inkwell_arm* get() const { return opened_ ? opened_->arm : nullptr; }
 
   Pose pose() const {
     Pose pose;
@@ -121,15 +121,21 @@ class Arm {
 
   void start_servo(Servo servo) {
     throw_what_ended_servo();
-    auto next = std::make_unique<ServoState>(ServoState{std::move(servo), nullptr});
-    require(inkwell_start_servo(get(), &Arm::call_servo, next.get()));
-    servo_ = std::move(next);
+    if (!opened_) return require(inkwell_start_servo(nullptr, &Arm::call_servo, nullptr));
+    std::unique_ptr<ServoState> state(new ServoState(std::move(servo)));
+    // Until its state is stored here, the new servo must not find the previous one's.
+    const std::lock_guard<std::mutex> lock(opened_->mutex);
+    require(inkwell_start_servo(get(), &Arm::call_servo, state.get()));
+    opened_->servo.swap(state);
   }
-  /// Throws what the servo threw, or what else has ended it.
+  /// Throws the exception or any other cause that ended the servo.
   void stop_servo() {
     require(inkwell_stop_servo(get()));
-    if (!servo_) return;
-    const std::exception_ptr thrown = std::exchange(servo_->thrown, nullptr);
+    std::exception_ptr thrown;
+    {
+      const std::lock_guard<std::mutex> lock(opened_->mutex);
+      if (opened_->servo) thrown = opened_->servo->take_thrown();
+    }
     if (thrown) std::rethrow_exception(thrown);
     throw_what_ended_servo();
   }
@@ -168,11 +174,6 @@ class Arm {
   }
 
  private:
-  struct ServoState {
-    Servo servo;
-    std::exception_ptr thrown;
-    bool is_told = false;  ///< what ended it, other than the program
-  };
   /// Throws Disconnected, or Failure for any other result that is not INKWELL_OK.
   void require(inkwell_result result) const {
     if (result != INKWELL_DISCONNECTED) return inkwell::require(result);
@@ -181,28 +182,64 @@ class Arm {
     throw lost;
   }
   void throw_what_ended_servo() const {
-    if (!servo_ || servo_->is_told || servo_is_running()) return;
+    if (!opened_ || servo_is_running()) return;
     const auto result = inkwell_servo_result(get());
-    servo_->is_told = result != INKWELL_OK;
+    {
+      const std::lock_guard<std::mutex> lock(opened_->mutex);
+      if (!opened_->servo || opened_->servo->is_reported) return;
+      opened_->servo->is_reported = result != INKWELL_OK;
+    }
     require(result);
   }
-  static int call_servo(inkwell_arm*, const inkwell_pose* pose, double force_N[3], void* user) noexcept {
-    auto& state = *static_cast<ServoState*>(user);
-    try {
-      const Vector wanted_N = state.servo(*pose);
-      for (std::size_t i = 0; i < 3; ++i) force_N[i] = wanted_N[i];
-      return 0;
-    } catch (...) {
-      state.thrown = std::current_exception();
-      return 1;
+  class ServoState {
+   public:
+    explicit ServoState(Servo servo) : servo_(std::move(servo)) {}
+
+    /// False once it has thrown.
+    bool call(const Pose& pose, double force_N[3]) noexcept {
+      try {
+        const Vector wanted_N = servo_(pose);
+        std::copy(wanted_N.begin(), wanted_N.end(), force_N);
+        return true;
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        thrown_ = std::current_exception();
+        return false;
+      }
     }
-  }
-  struct Close {
-    void operator()(inkwell_arm* arm) const { inkwell_close(arm); }
+    std::exception_ptr take_thrown() {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      return std::exchange(thrown_, nullptr);
+    }
+
+    bool is_reported = false;  ///< a cause that ended it, other than the program; guarded by the mutex of Opened
+
+   private:
+    const Servo servo_;
+    std::mutex mutex_;
+    std::exception_ptr thrown_;
   };
 
-  std::unique_ptr<ServoState> servo_;
-  std::unique_ptr<inkwell_arm, Close> arm_;  ///< after the servo's state, so that the servo ends first
+  /// The arm, and the state that its servo uses until the arm is closed. Its address does not change when Arm moves.
+  struct Opened {
+    Opened() = default;
+    Opened(const Opened&) = delete;
+    Opened& operator=(const Opened&) = delete;
+    ~Opened() {
+      // A servo that destroys its own arm goes on, so its state has to stay.
+      if (inkwell_close(arm) != INKWELL_OK) static_cast<void>(servo.release());
+    }
+
+    inkwell_arm* arm = nullptr;
+    std::mutex mutex;  ///< for `servo`
+    std::unique_ptr<ServoState> servo;
+  };
+
+  static int call_servo(inkwell_arm*, const inkwell_pose* pose, double force_N[3], void* user) noexcept {
+    return static_cast<ServoState*>(user)->call(*pose, force_N) ? 0 : 1;
+  }
+
+  std::unique_ptr<Opened> opened_;
 };
 
 }  // namespace inkwell
