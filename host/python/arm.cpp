@@ -203,8 +203,13 @@ void Arm::start_servo(py::function servo) {
   const Use arm(*this);
   if (!servo_is_running()) take_ending().raise_it();
   auto next = std::make_unique<Servo>(Servo{std::move(servo), nullptr});
-  call([&] { return inkwell_start_servo(arm, &Arm::call_servo, next.get()); });
-  servo_ = std::move(next);
+  call([&] {
+    // Two threads that start servos must store them in the order in which the library started them.
+    const std::lock_guard lock(servo_mutex_);
+    const auto result = inkwell_start_servo(arm, &Arm::call_servo, next.get());
+    if (result == INKWELL_OK) servo_.swap(next);  // the previous one is destroyed with the interpreter's lock
+    return result;
+  });
 }
 
 void Arm::stop_servo() {
@@ -221,14 +226,22 @@ bool Arm::servo_is_running() {
 
 void Arm::check_servo() {
   const Use arm(*this);
-  if (servo_ && !servo_->raised && !servo_is_running()) take_ending().raise_it();
+  bool has_raised = true;
+  {
+    const std::lock_guard lock(servo_mutex_);
+    if (servo_) has_raised = servo_->raised != nullptr;
+  }
+  if (!has_raised && !servo_is_running()) take_ending().raise_it();
 }
 
 Arm::Ending Arm::take_ending() {
   Ending ending;
-  if (!servo_) return ending;
-  ending.raised = std::exchange(servo_->raised, nullptr);
-  if (ending.raised || std::exchange(servo_->is_told, true)) return ending;
+  {
+    const std::lock_guard lock(servo_mutex_);
+    if (!servo_) return ending;
+    ending.raised = std::exchange(servo_->raised, nullptr);
+    if (ending.raised || std::exchange(servo_->is_told, true)) return ending;
+  }
   const py::gil_scoped_release unlocked;
   ending.result = inkwell_servo_result(arm_);
   if (ending.result == INKWELL_OK) return ending;

@@ -119,7 +119,8 @@ class Arm {
   std::condition_variable unused_;
   int uses_ = 0;
   bool closed_ = false;
-  std::unique_ptr<Servo> servo_;  ///< guarded by the interpreter's lock
+  std::mutex servo_mutex_;
+  std::unique_ptr<Servo> servo_;  ///< guarded by servo_mutex_; its content by the interpreter's lock
 
   std::mutex scope_mutex_;  ///< so that the signals stay the same while samples of them are read
   std::size_t signal_count_ = 0;
