@@ -28,9 +28,14 @@ struct FlashOptions {
   std::filesystem::path image;
   std::string board;
   firmware_update::ImageFor image_for = firmware_update::always_the_given;
-  bool by_usb = false, by_probe = false, says_yes = false;
+  bool by_usb = false, by_probe = false, says_yes = false, allows_downgrade = false;
   std::filesystem::path flash_file;
   std::string interface = "stlink";
+
+  firmware_update::Consent consent() const {
+    using firmware_update::Consent;
+    return says_yes ? Consent::to_everything : allows_downgrade ? Consent::to_downgrade : Consent::none;
+  }
 };
 
 std::string before_text(const std::optional<protocol::ImageIdentity>& before) {
@@ -51,7 +56,7 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
   firmware_update::UpdateResult result;
   try {
     result = firmware_update::update(options.address(), image,
-                                     {.says_yes = given.says_yes,
+                                     {.consent = given.consent(),
                                       .image_for = given.image_for,
                                       .on_progress = [&](std::string_view step, double done) { progress(step, done); },
                                       .is_cancelled = [&] { return interrupt.was_asked_to_end(); }});
@@ -83,7 +88,7 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
 
 int flash_file(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
   const auto [before, written] =
-      firmware_update::write_flash_file(given.flash_file, image, given.says_yes, given.image_for);
+      firmware_update::write_flash_file(given.flash_file, image, given.consent(), given.image_for);
   if (options.json)
     fmt::print("{}\n", to_json(written, before).dump(2));
   else
@@ -96,7 +101,7 @@ int flash_file(const DeviceOptions& options, const FlashOptions& given, const Ne
 int write(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
   if (!given.flash_file.empty()) return flash_file(options, given, image);
   if (!given.by_probe) return flash_by_usb(options, given, image);
-  firmware_update::update_by_probe(image, given.interface, given.says_yes);
+  firmware_update::update_by_probe(image, given.interface, given.consent());
   fmt::print("{}\n", options.json ? to_json(image, std::nullopt).dump(2)
                                   : std::string("The firmware was written and read back, and has been started."));
   return 0;
@@ -122,6 +127,8 @@ int flash(const DeviceOptions& options, FlashOptions given) {
   const NewImage image = firmware_update::read_image(given.image);
   try {
     return write(options, given, image);
+  } catch (const firmware_update::Downgrade& downgrade) {
+    throw device::Error(fmt::format("{} To write it, add --allow-downgrade.", downgrade.what()));
   } catch (const firmware_update::Objected& objection) {
     throw device::Error(fmt::format("{} If you know better, add --yes.", objection.what()));
   }
@@ -161,8 +168,10 @@ void add_flash_command(const Place& place) {
       ->type_name("NAME")
       ->capture_default_str()
       ->needs(by_probe);
+  command->add_flag("--allow-downgrade", given->allows_downgrade,
+                    "Write the image even if its firmware is older than the one that it replaces");
   command->add_flag("--yes", given->says_yes,
-                    "Write it even if it is for another board, speaks another protocol, or is damaged");
+                    "Write it even if it is for another board, speaks another protocol, is damaged, or is older");
   add_examples(
       *command,
       "inkwell flash\ninkwell flash build/board/inkwell.elf\ninkwell flash --swd --board omni_driver\n"

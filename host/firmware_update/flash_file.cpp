@@ -50,12 +50,12 @@ void replace(const std::filesystem::path& file, std::span<const std::byte> conte
 
 }  // namespace
 
-FlashFileWritten write_flash_file(const std::filesystem::path& file, const Image& given, bool says_yes,
+FlashFileWritten write_flash_file(const std::filesystem::path& file, const Image& given, Consent consent,
                                   const ImageFor& image_for) {
   auto flash = read_flash(file);
   const auto before = identity_in(flash);
   Image image = (before ? image_for(before->board_name()) : std::nullopt).value_or(given);
-  insist(image, before, says_yes);
+  insist(image, before, consent);
   const auto offset = [](std::uint32_t address) {
     return static_cast<std::ptrdiff_t>(address - protocol::image_begin);
   };

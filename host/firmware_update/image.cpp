@@ -21,8 +21,7 @@ constexpr std::uint32_t polynomial = 0x04C1'1DB7;
 constexpr std::size_t file_maximum = 64u << 20;  // with all its debug information it has a fiftieth of that
 
 std::string version_of(const protocol::ImageIdentity& identity) {
-  return fmt::format("{}.{}.{}", identity.firmware_version[0], identity.firmware_version[1],
-                     identity.firmware_version[2]);
+  return fmt::format("{}", fmt::join(identity.version(), "."));
 }
 
 /// The build puts the checksum of all before it behind the image (tools/seal_image.py).
@@ -128,9 +127,24 @@ std::vector<std::string> objections(const Image& image, const std::optional<prot
   return sentences;
 }
 
-void insist(const Image& image, const std::optional<protocol::ImageIdentity>& there, bool says_yes) {
-  const auto reasons = objections(image, there);
-  if (!reasons.empty() && !says_yes) throw Objected(fmt::format("{} Nothing was changed.", fmt::join(reasons, " ")));
+std::optional<std::string> downgrade_warning(const Image& image, const std::optional<protocol::ImageIdentity>& there) {
+  if (!image.identity || !there || image.identity->version() >= there->version()) return {};
+  return fmt::format(
+      "{} has firmware {}, which is older than the firmware {} that it would replace. Faults that were corrected "
+      "since then would come back.",
+      image.file.string(), version_of(*image.identity), version_of(*there));
+}
+
+void insist(const Image& image, const std::optional<protocol::ImageIdentity>& there, Consent consent) {
+  if (consent == Consent::to_everything) return;
+  auto reasons = objections(image, there);
+  const bool is_otherwise_fine = reasons.empty();
+  if (consent == Consent::none)
+    if (auto warning = downgrade_warning(image, there)) reasons.push_back(std::move(*warning));
+  if (reasons.empty()) return;
+  const auto text = fmt::format("{} Nothing was changed.", fmt::join(reasons, " "));
+  if (is_otherwise_fine) throw Downgrade(text);
+  throw Objected(text);
 }
 
 }  // namespace inkwell::firmware_update

@@ -41,8 +41,8 @@ std::vector<std::string> openocd_arguments(const std::filesystem::path& image, c
           "-c", "reset run; shutdown"};
 }
 
-void update_by_probe(const Image& image, const std::string& interface, bool says_yes) {
-  insist(image, {}, says_yes);
+void update_by_probe(const Image& image, const std::string& interface, Consent consent) {
+  insist(image, {}, consent);
   auto arguments = openocd_arguments(image.file, interface);
   std::vector<char*> words{const_cast<char*>("openocd")};
   for (auto& each : arguments) words.push_back(each.data());

@@ -108,10 +108,14 @@ Endpoint detach(const Endpoint& arm, const Address& address) {
 /// What its firmware says of the board is enough to refuse an image before the firmware is left. Where it cannot be
 /// asked, its flash is looked at afterwards.
 void insist_for(const Endpoint& arm, const Image& image, const UpdateOptions& options) {
-  const auto board = if_it_answers(
-      [&] { return std::optional(device::Device(device::open_transport(arm)).information().board_name); });
-  if (!board || board->empty()) return;
-  insist(options.image_for(*board).value_or(image), protocol::image_identity(*board, 0, 0, 0), options.says_yes);
+  const auto board = if_it_answers([&] {
+    const auto report = device::Device(device::open_transport(arm)).information().report;
+    const auto& version = report.firmware_version;
+    return std::optional(
+        protocol::image_identity(protocol::board_name(report.board), version[0], version[1], version[2]));
+  });
+  if (!board || !board->is_there()) return;
+  insist(options.image_for(board->board_name()).value_or(image), board, options.consent);
 }
 
 /// The boot loader of the board that is meant, and the arms beside it.
@@ -240,7 +244,7 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
       written.image = options.image_for(written.before->board_name()).value_or(image);
     else
       written.image = image;
-    insist(written.image, written.before, options.says_yes);
+    insist(written.image, written.before, options.consent);
   } catch (const device::Error&) {
     if (written.before) loader.leave();  // to what it says it is
     throw;
@@ -269,7 +273,7 @@ Written write_image(BootLoader& loader, const Image& image, const UpdateOptions&
 
 UpdateResult update(const Address& address, const Image& image, const UpdateOptions& options) {
   // What no board could have is refused before the board leaves its firmware.
-  insist(image, {}, options.says_yes);
+  insist(image, {}, options.consent);
   UpdateResult result;
   const Found found = find_loader(address, image, options);
   {

@@ -82,7 +82,7 @@ std::string write_elf(const TemporaryDirectory& directory, const std::vector<fir
 
 }  // namespace
 
-TEST_CASE("a newer protocol goes into a board that runs after a word of yes, and the old one again without") {
+TEST_CASE("a newer protocol needs --yes, and the older firmware after it --allow-downgrade") {
   const FreeBoard board({"--elf", image("inkwell.elf"), "--serial", "1"});
   board.wait_until(&FreeBoard::runs);
   auto result = board.flash({image("next-protocol.elf")});
@@ -103,7 +103,14 @@ TEST_CASE("a newer protocol goes into a board that runs after a word of yes, and
     CHECK(says(result, step));
 
   // Without a name it is the image that belongs to the program, and it finds the board although it cannot talk to it.
-  result = board.flash({"--dfu"});
+  result = board.flash({});
+  CHECK(result.exit_code == 1);
+  CHECK(says(result, "which is older than the firmware"));
+  CHECK(says(result, "--allow-downgrade"));
+  CHECK_FALSE(says(result, "--yes"));
+  CHECK_FALSE(says(result, "asking the board to leave"));
+  CHECK(board.runs());
+  result = board.flash({"--dfu", "--allow-downgrade"});
   INFO(result.err);
   REQUIRE(result.exit_code == 0);
   CHECK(says(result, "The board held firmware"));

@@ -17,6 +17,11 @@ TEST_CASE("a board that speaks another version of the protocol is updated from t
   CHECK(sight.says("for " + board));
   CHECK(sight.says("Stored parameters stay"));
   window.click("connection/Update the board");
+  sight = window.look_until("it asks, because the board's firmware is newer",
+                            [](const Sight& now) { return now.can_click("connection/Write the older firmware"); });
+  CHECK(sight.says("The board has a newer firmware"));
+  CHECK(sight.says("Faults that were corrected since then would come back"));
+  window.click("connection/Write the older firmware");
   sight = window.look_until("it is under way", [](const Sight& now) { return now.says("erasing"); });
   CHECK(sight.says("Updating the firmware"));
   CHECK(sight.says("Leave its cable and its power"));

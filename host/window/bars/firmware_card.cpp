@@ -41,6 +41,13 @@ FirmwareCardOutcome draw_firmware_part(const Style& style, const FirmwareUpdater
       text(style.fonts.strong, palette.text, "Updating the firmware");
       draw_progress(style, sight);
       break;
+    case Phase::asks:
+      text(style.fonts.strong, palette.caution, "The board has a newer firmware");
+      wrapped_text(palette.text_quiet, sight.message);
+      outcome.update = update_button("Write the older firmware", style);
+      ImGui::SameLine();
+      outcome.dismiss = quiet_button("Leave it", style);
+      break;
     case Phase::failed:
       text(style.fonts.strong, palette.caution, "The update did not succeed");
       wrapped_text(palette.text_quiet, sight.message);

@@ -37,6 +37,7 @@ void FirmwareUpdater::begin(const std::string& serial_number) {
   const std::scoped_lock lock(mutex_);
   if (sight_.phase == Phase::runs) return;
   begun_ = serial_number;
+  allows_downgrade_ = sight_.phase == Phase::asks;
   sight_.phase = Phase::runs;
   sight_.message = "beginning";
   sight_.done = 0;
@@ -57,17 +58,18 @@ void FirmwareUpdater::work(const std::stop_token& stop) {
   using namespace std::chrono_literals;
   while (!stop.stop_requested()) {
     std::optional<std::string> board;
-    bool looks = false, reads = false;
+    bool looks = false, reads = false, allows_downgrade = false;
     {
       std::unique_lock lock(mutex_);
       changed_.wait_for(lock, stop, 1s, [this] { return begun_.has_value() || !is_offer_read_; });
       board = std::exchange(begun_, std::nullopt);
+      allows_downgrade = allows_downgrade_;
       looks = looks_;
       reads = !is_offer_read_;
     }
     if (reads) read_offer();
     if (board)
-      update(*board);
+      update(*board, allows_downgrade);
     else if (looks)
       look();
   }
@@ -119,13 +121,15 @@ void FirmwareUpdater::set(Phase phase, const std::string& message, double done) 
   sight_.done = done;
 }
 
-void FirmwareUpdater::update(const std::string& serial_number) {
+void FirmwareUpdater::update(const std::string& serial_number, bool allows_downgrade) {
+  using firmware_update::Consent;
   try {
     auto address = address_;
     if (address.kind == device::Address::Kind::usb) address.serial_number = serial_number;
     const auto result = firmware_update::update(
         address, image_for(sight().board),
-        {.image_for = firmware_update::own_image_for,
+        {.consent = allows_downgrade ? Consent::to_downgrade : Consent::none,
+         .image_for = firmware_update::own_image_for,
          .on_progress = [this](std::string_view step, double done) { set(Phase::runs, std::string(step), done); }});
     if (result.firmware_version.empty())
       set(Phase::failed,
@@ -133,6 +137,8 @@ void FirmwareUpdater::update(const std::string& serial_number) {
           1);
     else
       set(Phase::done, fmt::format("The board has firmware {} now.", result.firmware_version), 1);
+  } catch (const firmware_update::Downgrade& question) {
+    set(Phase::asks, question.what(), 0);
   } catch (const std::exception& error) {
     set(Phase::failed, error.what(), 0);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -41,6 +42,9 @@ struct ImageIdentity {
   std::uint8_t reserved;
   char board[board_name_maximum + 1];  ///< the board that it is for, zeros behind it
 
+  constexpr std::array<std::uint8_t, 3> version() const {
+    return {firmware_version[0], firmware_version[1], firmware_version[2]};
+  }
   constexpr bool is_there() const { return std::ranges::equal(mark, right_mark) && !board_name().empty(); }
   constexpr std::string_view board_name() const { return protocol::board_name(board); }
 };

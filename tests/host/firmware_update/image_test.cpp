@@ -31,6 +31,10 @@ std::string board_in(const std::string& flash) {
   return identity ? std::string(identity->board_name()) : std::string();
 }
 
+std::array<std::uint8_t, 3> version_in(const std::string& flash) {
+  return identity_in(std::as_bytes(std::span(flash))).value().version();
+}
+
 std::string refusal_of(const std::vector<Segment>& segments) {
   return message_of<NoImage>([&] { image_of(segments); });
 }
@@ -79,8 +83,9 @@ TEST_CASE("an image is objected to for another board, another protocol, damage, 
   const auto only_objection = [&](const Image& image) {
     const auto all = objections(image, there);
     REQUIRE(all.size() == 1);
-    CHECK_NOTHROW(insist(image, there, true));
-    const auto said = message_of<Objected>([&] { insist(image, there, false); });
+    CHECK_NOTHROW(insist(image, there, Consent::to_everything));
+    CHECK_THROWS_AS(insist(image, there, Consent::to_downgrade), Objected);
+    const auto said = message_of<Objected>([&] { insist(image, there, Consent::none); });
     CHECK(contains(said, all[0]));
     CHECK(contains(said, "Nothing was changed"));
     return all[0];
@@ -94,6 +99,28 @@ TEST_CASE("an image is objected to for another board, another protocol, damage, 
   auto nameless = made_segments(identity_of("omni_driver"));
   nameless[0].bytes[protocol::image_identity_offset] = std::byte{0};
   CHECK(contains(only_objection(image_of(nameless)), "which board"));
+}
+
+TEST_CASE("an image that is older than the firmware that is there needs consent to a downgrade") {
+  const auto image_with = [](std::uint8_t major, std::uint8_t minor, std::uint8_t patch) {
+    return image_of(made_segments(protocol::image_identity("omni_driver", major, minor, patch)));
+  };
+  const auto there = protocol::image_identity("omni_driver", 1, 2, 3);
+  for (const auto& newer : {image_with(1, 2, 3), image_with(1, 2, 4), image_with(1, 10, 0), image_with(2, 0, 0)})
+    CHECK_NOTHROW(insist(newer, there, Consent::none));
+  for (const auto& older : {image_with(1, 2, 2), image_with(1, 1, 9), image_with(0, 255, 255)}) {
+    CHECK(
+        contains(message_of<Downgrade>([&] { insist(older, there, Consent::none); }), "older than the firmware 1.2.3"));
+    CHECK_NOTHROW(insist(older, there, Consent::to_downgrade));
+    CHECK_NOTHROW(insist(older, there, Consent::to_everything));
+    CHECK_NOTHROW(insist(older, {}, Consent::none));
+  }
+  // Consent to a downgrade is none to an image that is wrong.
+  const auto wrong = image_of(made_segments(protocol::image_identity("other_board", 1, 0, 0)));
+  CHECK_THROWS_AS(insist(wrong, there, Consent::to_downgrade), Objected);
+  const auto said = message_of<Objected>([&] { insist(wrong, there, Consent::none); });
+  CHECK(contains(said, "other_board"));
+  CHECK(contains(said, "older"));
 }
 
 TEST_CASE("memory layouts are read as ST writes them") {
@@ -146,7 +173,7 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   const tests::TemporaryDirectory directory;
   const std::filesystem::path file = directory.file("board.flash");
   const auto image = image_of(made_segments(identity_of("omni_driver")));
-  CHECK_FALSE(write_flash_file(file, image, false).before.has_value());
+  CHECK_FALSE(write_flash_file(file, image, Consent::none).before.has_value());
   REQUIRE(std::filesystem::file_size(file) == 1024 * 1024);
   const auto content = [&] {
     std::ifstream stream(file, std::ios::binary);
@@ -160,36 +187,43 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   flash[parameters] = 'p';
   flash[unused] = 'u';
   std::ofstream(file, std::ios::binary) << flash;
-  const auto before = write_flash_file(file, image, false).before;
+  const auto before = write_flash_file(file, image, Consent::none).before;
   REQUIRE(before.has_value());
   CHECK(before->board_name() == "omni_driver");
   CHECK(content()[parameters] == 'p');
   CHECK(content()[unused] == '\xFF');  // it shares a sector with the image
 
   const auto other = image_of(made_segments(identity_of("other_board")));
-  CHECK_THROWS_AS(write_flash_file(file, other, false), Objected);
+  CHECK_THROWS_AS(write_flash_file(file, other, Consent::none), Objected);
   CHECK(board_in(content()) == "omni_driver");
-  CHECK_NOTHROW(write_flash_file(file, other, true));
+  CHECK_NOTHROW(write_flash_file(file, other, Consent::to_everything));
   CHECK(board_in(content()) == "other_board");
-  write_flash_file(file, image, false, [&](const auto& there) {
+  write_flash_file(file, image, Consent::none, [&](const auto& there) {
     CHECK(there == "other_board");
     return other;
   });
   CHECK(board_in(content()) == "other_board");
 
+  const auto older = image_of(made_segments(protocol::image_identity("other_board", 0, 9, 0)));
+  CHECK_THROWS_AS(write_flash_file(file, older, Consent::none), Downgrade);
+  CHECK(version_in(content()) == std::array<std::uint8_t, 3>{1, 2, 3});
+  CHECK_NOTHROW(write_flash_file(file, older, Consent::to_downgrade));
+  CHECK(version_in(content()) == std::array<std::uint8_t, 3>{0, 9, 0});
+
   std::ofstream(file, std::ios::binary) << "a text";
-  CHECK(
-      contains(message_of<device::Error>([&] { write_flash_file(file, image, true); }), "no flash of a virtual board"));
-  CHECK(content() == "a text");
-  CHECK_THROWS_AS(write_flash_file("/nowhere/board.flash", image, true), device::Error);
-  CHECK(contains(message_of<device::Error>([&] { write_flash_file(directory.file(""), image, true); }),
+  CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }),
                  "no flash of a virtual board"));
+  CHECK(content() == "a text");
+  CHECK_THROWS_AS(write_flash_file("/nowhere/board.flash", image, Consent::to_everything), device::Error);
+  CHECK(
+      contains(message_of<device::Error>([&] { write_flash_file(directory.file(""), image, Consent::to_everything); }),
+               "no flash of a virtual board"));
 
   // As large as a flash, but somebody's pictures.
   const std::string pictures(protocol::flash_bytes, 'P');
   std::ofstream(file, std::ios::binary) << pictures;
-  CHECK(
-      contains(message_of<device::Error>([&] { write_flash_file(file, image, true); }), "no flash of a virtual board"));
+  CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }),
+                 "no flash of a virtual board"));
   CHECK(content() == pictures);
 }
 

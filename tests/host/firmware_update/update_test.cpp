@@ -208,6 +208,15 @@ TEST_CASE("before the first erase an update ends with the board as it was") {
     CHECK(fake.did == std::vector<std::string>{"leave"});  // back to its firmware
     return;
   }
+  SUBCASE("an older image") {
+    write_image(loader, good_image(), {});
+    fake.did.clear();
+    const auto older = read_image(made_elf(made_segments(protocol::image_identity("omni_driver", 1, 2, 2))), "old.elf");
+    CHECK_THROWS_AS(write_image(loader, older, {}), Downgrade);
+    CHECK(fake.did == std::vector<std::string>{"leave"});
+    CHECK_NOTHROW(write_image(loader, older, {.consent = Consent::to_downgrade}));
+    return;
+  }
   SUBCASE("a chip that is protected") {
     fake.options[1] = std::byte{0x00};
     CHECK(contains(message_of<device::Error>([&] { write_image(loader, good_image(), {}); }), "protected"));

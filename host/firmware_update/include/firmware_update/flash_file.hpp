@@ -13,7 +13,7 @@ struct FlashFileWritten {
   std::optional<protocol::ImageIdentity> before;  ///< none: the file held no image that says what it is
   Image image;
 };
-FlashFileWritten write_flash_file(const std::filesystem::path& file, const Image& image, bool says_yes,
+FlashFileWritten write_flash_file(const std::filesystem::path& file, const Image& image, Consent consent,
                                   const ImageFor& image_for = always_the_given);
 
 }  // namespace inkwell::firmware_update

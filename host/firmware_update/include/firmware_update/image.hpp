@@ -22,10 +22,19 @@ class NoImage : public device::Error {
   using Error::Error;
 };
 
-/// The image is not for this board, and no word of yes was given. `what()` holds the reasons.
+/// What the user has agreed to.
+enum class Consent : std::uint8_t { none, to_downgrade, to_everything };
+
+/// The image should not go into this board, and the user has not agreed to it. `what()` holds the reasons.
 class Objected : public device::Error {
  public:
   using Error::Error;
+};
+
+/// The only reason is that the image is older than the board's firmware.
+class Downgrade : public Objected {
+ public:
+  using Objected::Objected;
 };
 
 struct Segment {
@@ -68,9 +77,11 @@ std::string describe(const protocol::ImageIdentity& identity);
 /// Why this image should not go into a board, a sentence each; none if it should. `there` is the identity of the image
 /// that the board has, if it has one.
 std::vector<std::string> objections(const Image& image, const std::optional<protocol::ImageIdentity>& there);
+/// A sentence if the image is older than the firmware that the board has. It is no objection: the image may be fine.
+std::optional<std::string> downgrade_warning(const Image& image, const std::optional<protocol::ImageIdentity>& there);
 
-/// Throws Objected with them unless there are none or `says_yes`.
-void insist(const Image& image, const std::optional<protocol::ImageIdentity>& there, bool says_yes);
+/// Throws Objected with the objections, or Downgrade with the warning, unless the user has agreed to them.
+void insist(const Image& image, const std::optional<protocol::ImageIdentity>& there, Consent consent);
 
 /// The CRC-32 that the chip counts (RM0090, chapter CRC), of little-endian words; what is left of a word is not
 /// counted.

@@ -15,6 +15,6 @@ std::vector<std::string> openocd_arguments(const std::filesystem::path& image, c
 
 /// Runs openocd, which says what it does. Throws Objected as `update` does, and device::Error if there is no openocd or
 /// it does not succeed.
-void update_by_probe(const Image& image, const std::string& interface, bool says_yes);
+void update_by_probe(const Image& image, const std::string& interface, Consent consent);
 
 }  // namespace inkwell::firmware_update

@@ -27,7 +27,7 @@ class Interrupted : public device::Error {
 };
 
 struct UpdateOptions {
-  bool says_yes = false;  ///< objections do not count
+  Consent consent = Consent::none;
   ImageFor image_for = always_the_given;
   /// Called with each step, and how much of all is done, from 0 to 1.
   std::function<void(std::string_view step, double done)> on_progress = [](std::string_view, double) {};

@@ -18,11 +18,12 @@ namespace inkwell::window {
 
 class FirmwareUpdater {
  public:
-  enum class Phase : std::uint8_t { idle, runs, failed, done };
+  /// `asks`: the board's firmware is newer, and beginning again is the consent to replace it.
+  enum class Phase : std::uint8_t { idle, runs, asks, failed, done };
   /// One frame's view of it.
   struct Sight {
     Phase phase = Phase::idle;
-    std::string message{};  ///< the step, why it failed, or what the board has now
+    std::string message{};  ///< the step, the question, why it failed, or what the board has now
     double done = 0;        ///< from 0 to 1
     bool sees_boot_loader = false;
     std::string board{};    ///< that the image is for; empty: nobody knows yet which one it is
@@ -49,7 +50,7 @@ class FirmwareUpdater {
 
  private:
   void work(const std::stop_token& stop);
-  void update(const std::string& serial_number);
+  void update(const std::string& serial_number, bool allows_downgrade);
   void look();
   /// What is brought for the board that was met.
   void read_offer();
@@ -65,6 +66,7 @@ class FirmwareUpdater {
   std::string met_;
   bool is_offer_read_ = false;        ///< for the board that was met
   std::optional<std::string> begun_;  ///< for the board with this number
+  bool allows_downgrade_ = false;     ///< that update
 
   std::jthread worker_;
 };
