@@ -18,9 +18,9 @@ CPACK, VERSION = sys.argv[3:]
 PACKAGES = WORK / "packages"
 
 
-def run(*command) -> str:
+def run(*command, **how) -> str:
     result = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                            check=False)
+                            check=False, **how)
     if result.returncode != 0:
         raise AssertionError(f"{' '.join(map(str, command))} failed:\n{result.stdout}")
     return result.stdout
@@ -87,6 +87,17 @@ class Packages(unittest.TestCase):
         stanzas = (folder / "usr/share/doc/inkwell/copyright").read_text().split("\n\n")
         [stanza] = [stanza for stanza in stanzas if stanza.startswith("Files: usr/bin/virtual-board\n")]
         self.assertIn("\nLicense: GPL-2\n", stanza)
+
+    def test_checksums_of_packages_and_firmware_images(self):
+        names = [line.split("  ")[1] for line in (PACKAGES / "SHA256SUMS").read_text().splitlines()]
+        made = [path.name for path in PACKAGES.iterdir() if path.is_file() and path.name != "SHA256SUMS"]
+        self.assertEqual(sorted(made), sorted(names))
+        self.assertLessEqual({package("inkwell").name, package("inkwell-dev").name, "inkwell.elf", "inkwell.bin"}, set(names))
+        run("sha256sum", "--check", "--strict", "SHA256SUMS", cwd=PACKAGES)
+        damaged = PACKAGES / "inkwell.bin"
+        damaged.write_bytes(damaged.read_bytes()[:-1])
+        with self.assertRaisesRegex(AssertionError, "inkwell.bin: FAILED"):
+            run("sha256sum", "--check", "--strict", "SHA256SUMS", cwd=PACKAGES)
 
     def test_changelog_begins_with_this_version(self):
         for name in KINDS:

@@ -1,0 +1,17 @@
+# Runs when the packages are made (CPACK_POST_BUILD_SCRIPTS): puts the firmware images next to them, and the checksums
+# of both into one file, which `sha256sum --check SHA256SUMS` reads.
+set(sums "")
+set(images "")
+foreach(image ${CPACK_INKWELL_IMAGES})
+  if(EXISTS ${image})
+    file(COPY ${image} DESTINATION ${CPACK_PACKAGE_DIRECTORY})
+    list(APPEND images ${image})
+  endif()
+endforeach()
+foreach(file ${CPACK_PACKAGE_FILES} ${images})
+  file(SHA256 ${file} sum)
+  cmake_path(GET file FILENAME name)
+  list(APPEND sums "${sum}  ${name}\n")
+endforeach()
+string(JOIN "" sums ${sums})
+file(WRITE ${CPACK_PACKAGE_DIRECTORY}/SHA256SUMS "${sums}")
