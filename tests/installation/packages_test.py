@@ -11,6 +11,7 @@ import subprocess
 import sys
 import unittest
 
+from binaries import host_binaries, unsafe_folders
 from kinds import DEBIAN, KINDS, differences
 
 BUILD, WORK = (pathlib.Path(argument) for argument in sys.argv[1:3])
@@ -77,6 +78,11 @@ class Packages(unittest.TestCase):
     def test_programs_and_libraries_are_stripped(self):
         for path in [*content("inkwell").glob("usr/bin/*"), *content("inkwell").glob("usr/lib/**/*.so*")]:
             self.assertIn("no symbols", run("objdump", "-t", path))
+
+    def test_binaries_load_no_library_from_the_current_folder(self):
+        paths = list(host_binaries(content("inkwell")))
+        self.assertEqual(5, len(paths))
+        self.assertEqual([], [problem for path in paths for problem in unsafe_folders(path)])
 
     def test_only_the_virtual_board_is_linked_to_unicorn_and_its_licence_is_told(self):
         folder = content("inkwell")
