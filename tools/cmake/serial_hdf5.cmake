@@ -1,0 +1,17 @@
+# PkgConfig::hdf5, the serial HDF5. A parallel one would load MPI into every program that reads a recording, also into
+# those that only link to libinkwell. Where both are installed, the serial one has a name of its own for pkg-config.
+find_package(PkgConfig REQUIRED)
+# From 1.10.7 on, HDF5's own lock on a file can be left off.
+pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET GLOBAL hdf5-serial>=1.10.7 hdf5>=1.10.7)
+pkg_get_variable(hdf5_includedir ${hdf5_MODULE_NAME} includedir)
+# A distribution for two word sizes has a file for each, such as H5pubconf-64.h.
+set(hdf5_configuration ${hdf5_INCLUDE_DIRS} ${hdf5_includedir})
+list(TRANSFORM hdf5_configuration APPEND "/H5pubconf*.h")
+file(GLOB hdf5_configuration ${hdf5_configuration})
+foreach(header ${hdf5_configuration})
+  file(STRINGS ${header} is_parallel REGEX "^#define H5_HAVE_PARALLEL")
+  if(is_parallel)
+    message(FATAL_ERROR "The HDF5 library of ${header} is a parallel build, which would load MPI into every program. "
+                        "Install the serial build (Debian: the package libhdf5-dev) and configure again.")
+  endif()
+endforeach()
