@@ -1,9 +1,11 @@
 // The two formats behind recording::create and recording::read.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <iosfwd>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -25,6 +27,8 @@ std::uint32_t step_periods_of(double written);
 std::unique_ptr<Writer> create_hdf5(const std::filesystem::path& file, const Information& information,
                                     const std::string& name);
 Recording read_hdf5(const std::filesystem::path& file);
+/// The same of a file's content. `name`: of the file in sentences.
+Recording read_hdf5(std::span<const std::byte> content, const std::string& name);
 
 std::unique_ptr<Writer> create_csv(const std::filesystem::path& file, const Information& information,
                                    const std::string& name);

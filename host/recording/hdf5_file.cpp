@@ -57,21 +57,4 @@ void write_attribute(hid_t object, const char* name, std::int64_t number) {
   write_attribute(object, name, H5T_NATIVE_INT64, &number);
 }
 
-std::string read_text_attribute(hid_t object, const char* name) {
-  if (H5Aexists(object, name) <= 0) return {};
-  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
-  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) > 0) return {};
-  std::string text(H5Tget_size(type.id()), '\0');
-  if (H5Aread(attribute.id(), type.id(), text.data()) < 0) return {};
-  return text.substr(0, text.find('\0'));
-}
-
-std::int64_t read_number_attribute(hid_t object, const char* name) {
-  if (H5Aexists(object, name) <= 0) return 0;
-  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  std::int64_t number = 0;
-  return H5Aread(attribute.id(), H5T_NATIVE_INT64, &number) < 0 ? 0 : number;
-}
-
 }  // namespace inkwell::recording

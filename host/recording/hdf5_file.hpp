@@ -61,8 +61,5 @@ Handle byte_text_type(std::size_t bytes);
 
 void write_attribute(hid_t object, const char* name, const std::string& text);
 void write_attribute(hid_t object, const char* name, std::int64_t number);
-/// Empty, or 0, if there is no such attribute.
-std::string read_text_attribute(hid_t object, const char* name);
-std::int64_t read_number_attribute(hid_t object, const char* name);
 
 }  // namespace inkwell::recording

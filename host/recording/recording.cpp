@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -136,7 +137,14 @@ std::string log_text(const Recording& recording) {
 }
 
 Recording read(const std::filesystem::path& file) {
-  Recording recording = read_either(file);
+  Recording recording;
+  try {
+    recording = read_either(file);
+  } catch (const std::bad_alloc&) {
+    throw device::Error(fmt::format(
+        "{} needs more memory than this computer has free. Close other programs, or read it on another computer.",
+        file.string()));
+  }
   // What a device did is told a moment after what the user notes.
   if (!recording.periods.empty())
     std::ranges::stable_sort(recording.marks, {},

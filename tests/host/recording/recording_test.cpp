@@ -469,6 +469,15 @@ TEST_CASE("numbers of a CSV that do not fit are left out and named, or as if the
   CHECK(recording.periods == std::vector<std::uint32_t>{5000, 4294967295});
 }
 
+TEST_CASE("marks of a recording without samples have no time") {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a.csv") << "# inkwell recording = 1\n# mark 5025 = knock\ntime_s,force_N\n";
+  const Recording recording = read(directory / "a.csv");
+  REQUIRE(recording.marks.size() == 1);
+  CHECK(recording.elapsed_s_at(recording.marks[0].period) == 0.0);
+  CHECK(log_text(recording).find("knock") != std::string::npos);
+}
+
 TEST_CASE("what a newer version wrote is read as far as it is known, and the rest is named") {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.csv") << "# inkwell recording = 99\n# parameter wobble_m = 3\n"

@@ -38,9 +38,10 @@ struct Recording {
   std::size_t size() const { return periods.size(); }
   /// Board time since the first sample.
   double elapsed_s(std::size_t sample) const { return elapsed_s_at(periods[sample]); }
+  /// 0 in a recording without samples.
   double elapsed_s_at(std::uint32_t period) const {
     // Unsigned, so that it is right across the wrap of the board's counter.
-    return static_cast<double>(period - periods.front()) / protocol::servo_rate_Hz;
+    return periods.empty() ? 0.0 : static_cast<double>(period - periods.front()) / protocol::servo_rate_Hz;
   }
   /// From the first sample to the last; 0 without samples.
   double duration_s() const { return periods.empty() ? 0.0 : elapsed_s(size() - 1); }
