@@ -49,7 +49,8 @@ struct DeviceOptions {
   device::VirtualBoardOptions virtual_board(device::SimulationMode default_mode, BoardPace pace) const;
 };
 
-/// Opens the device that the options name, and takes it over if they say so. With --arm, a virtual board's firmware gets that arm's parameters.
+/// Opens the device that the options name, and takes it over if they say so. With --arm, a virtual board's firmware
+/// gets that arm's parameters.
 device::OpenArm connect(const DeviceOptions& options, BoardPace pace = BoardPace::as_it_can,
                         device::SimulationMode default_mode = device::SimulationMode::fast);
 

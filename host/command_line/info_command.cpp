@@ -60,8 +60,7 @@ ordered_json to_json(const device::Information& information, const protocol::Sto
     json["supply_V"] = pose->supply_dV / 10.0;
   }
   if (driver)
-    json["driver"] = {
-        {"program", driver->program}, {"process_id", driver->process_id}, {"driven_s", driver->driven_s}};
+    json["driver"] = {{"program", driver->program}, {"process_id", driver->process_id}, {"driven_s", driver->driven_s}};
   return json;
 }
 

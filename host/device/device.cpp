@@ -206,9 +206,9 @@ struct Device::Implementation {
     if (report.is_driven == 0 || is_own(report))
       return InUse("This program does not drive the arm any more. Try again.");
     const Driver driver = driver_in(report);
-    return InUse(fmt::format("The arm is driven by {}. {}", driver_text(driver),
-                             driver.object ? "Use that object, or close it first."
-                                           : "End that program, or take the arm over from it."));
+    return InUse(fmt::format(
+        "The arm is driven by {}. {}", driver_text(driver),
+        driver.object ? "Use that object, or close it first." : "End that program, or take the arm over from it."));
   }
 
   void become_driver(protocol::ClaimOperation operation) {
@@ -378,9 +378,9 @@ Device::~Device() {
 }
 
 std::string driver_text(const Driver& driver) {
-  const auto program = driver.object ? fmt::format("this program itself, through the arm that it opened as number {}",
-                                                   *driver.object)
-                                     : fmt::format("{} (process {})", driver.program, driver.process_id);
+  const auto program =
+      driver.object ? fmt::format("this program itself, through the arm that it opened as number {}", *driver.object)
+                    : fmt::format("{} (process {})", driver.program, driver.process_id);
   return fmt::format("{}, which claimed it {:.0f} s ago", program, driver.driven_s);
 }
 

@@ -108,7 +108,7 @@ struct Session::Implementation {
   std::optional<protocol::ParameterSet> parameter_set;
   std::uint64_t revision = 0;
   std::uint32_t claimed_at_periods = 0;  ///< when this session last needed the arm
-  std::string served_serial_number;    ///< of the device that is connected, or was last
+  std::string served_serial_number;      ///< of the device that is connected, or was last
   std::optional<Reconnection> newest_reconnection;
   std::uint64_t reconnections = 0;
   std::optional<std::string> newest_refusal;

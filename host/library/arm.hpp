@@ -49,8 +49,8 @@ class Arm {
   inkwell_pose wait_for_pose(double timeout_s, std::optional<std::uint32_t> after_sequence) const;
   control::Pose forward_kinematics(const control::Triple& joint_rad) const;
 
-  /// Drives the arm from now on, as set_force(), place_shapes() and start_servo() do. Throws InUse, naming the driver, if
-  /// another program or another arm object of this one drives it.
+  /// Drives the arm from now on, as set_force(), place_shapes() and start_servo() do. Throws InUse, naming the driver,
+  /// if another program or another arm object of this one drives it.
   void enable_force(double timeout_s);
   /// Takes the arm over from whoever drives it.
   void take_over();
@@ -98,7 +98,7 @@ class Arm {
   ForceOutput force_;
   ScopeStream scope_;
 
-  std::mutex claim_mutex_;  ///< one thread at a time claims the arm
+  std::mutex claim_mutex_;       ///< one thread at a time claims the arm
   std::mutex parameters_mutex_;  ///< one transaction at a time, with what follows from it
 
   Servo servo_;  ///< the last one: its function uses all the others

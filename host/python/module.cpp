@@ -239,9 +239,9 @@ void define_driver(py::module_& module) {
       .def_readonly("process_id", &Driver::process_id, "on the driver's computer")
       .def_readonly("driven_s", &Driver::driven_s, "board time since it claimed the arm, s")
       .def("__repr__", [](const Driver& driver) {
-        return driver.is_driven != 0 ? "<Driver " + std::string(driver.program) + " (process " +
-                                           std::to_string(driver.process_id) + ")>"
-                                     : std::string("<Driver none>");
+        return driver.is_driven != 0
+                   ? "<Driver " + std::string(driver.program) + " (process " + std::to_string(driver.process_id) + ")>"
+                   : std::string("<Driver none>");
       });
 }
 

@@ -53,7 +53,8 @@ struct Watched : Board {
   void pull_cable() {
     control.usb(false);
     inkwell_pose pose;
-    while (inkwell_get_pose(watcher.arm, &pose) == INKWELL_OK) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (inkwell_get_pose(watcher.arm, &pose) == INKWELL_OK)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   double stiffness_N_per_m() {
     double value = 0;

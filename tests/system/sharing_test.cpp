@@ -100,7 +100,8 @@ TEST_CASE("a recording that may not have the scope leaves no file in the way of 
   CHECK_FALSE(std::filesystem::exists(file));
 }
 
-TEST_CASE("of two programs one drives: the second is refused with its name, and may stop the force or take the arm over") {
+TEST_CASE(
+    "of two programs one drives: the second is refused with its name, and may stop the force or take the arm over") {
   BoardRig rig;
   rig.take_to(free_point_m);
   rig.make_active();

@@ -16,8 +16,8 @@ constexpr float banner_margin_points = 12.0f;
 constexpr float button_points = 118.0f;
 
 float banner_text_width(float width, const Style& style, const Banner& banner) {
-  return width -
-         style.points(44 + (banner.action != BannerAction::none ? button_points + 2 * banner_margin_points : banner_margin_points));
+  return width - style.points(44 + (banner.action != BannerAction::none ? button_points + 2 * banner_margin_points
+                                                                        : banner_margin_points));
 }
 
 /// Both can talk to each other; an update may wait.

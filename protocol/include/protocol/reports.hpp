@@ -48,22 +48,22 @@ inline constexpr float servo_period_s = 1.0f / servo_rate_Hz;
 inline constexpr std::uint32_t pose_rate_Hz = 1'000;
 
 enum class ReportId : std::uint8_t {
-  pose = 0x01,            ///< input
-  command = 0x02,         ///< output
-  force = 0x03,           ///< output
-  information = 0x10,     ///< feature, get
-  parameters = 0x11,      ///< feature, get and set
-  transaction = 0x12,     ///< feature, get
-  frame = 0x13,           ///< feature, get
-  shapes = 0x14,          ///< feature, set
-  force_law = 0x15,       ///< feature, get
-  black_box = 0x16,       ///< feature, get: protocol/black_box.hpp
-  black_box_rows = 0x17,  ///< feature, get and set
-  self_test = 0x18,       ///< feature, get: protocol/self_test.hpp
-  store = 0x19,           ///< feature, get: protocol/store.hpp
-  stored = 0x1A,          ///< feature, get: a ParametersReport
-  driver = 0x1B,          ///< feature, get and set: protocol/driver.hpp
-  command_results = 0x1C, ///< feature, get: protocol/driver.hpp
+  pose = 0x01,             ///< input
+  command = 0x02,          ///< output
+  force = 0x03,            ///< output
+  information = 0x10,      ///< feature, get
+  parameters = 0x11,       ///< feature, get and set
+  transaction = 0x12,      ///< feature, get
+  frame = 0x13,            ///< feature, get
+  shapes = 0x14,           ///< feature, set
+  force_law = 0x15,        ///< feature, get
+  black_box = 0x16,        ///< feature, get: protocol/black_box.hpp
+  black_box_rows = 0x17,   ///< feature, get and set
+  self_test = 0x18,        ///< feature, get: protocol/self_test.hpp
+  store = 0x19,            ///< feature, get: protocol/store.hpp
+  stored = 0x1A,           ///< feature, get: a ParametersReport
+  driver = 0x1B,           ///< feature, get and set: protocol/driver.hpp
+  command_results = 0x1C,  ///< feature, get: protocol/driver.hpp
 };
 
 /// Bits of PoseReport::switches.
@@ -380,14 +380,14 @@ inline constexpr float friction_maximum = 3.0f;
 
 /// Feature report, set: the shapes from now on, each in a place of its own. They take the place of all that were there
 /// at the start of one control period, without a jump of the force. Only the used part is sent:
-/// shapes_report_size(plane_count) bytes. One that is not sound, or of a program that does not drive the arm, is refused
-/// whole, by a stall. All shapes end with the claim.
+/// shapes_report_size(plane_count) bytes. One that is not sound, or of a program that does not drive the arm, is
+/// refused whole, by a stall. All shapes end with the claim.
 struct ShapesReport {
   ReportId report_id = ReportId::shapes;
   std::uint8_t version = protocol_version;
   std::uint8_t plane_count;  ///< 0..shape_planes_maximum
   std::uint8_t reserved = 0;
-  std::uint32_t claim;       ///< of the program that drives the arm
+  std::uint32_t claim;  ///< of the program that drives the arm
   SphereEntry sphere;
   PlaneEntry planes[shape_planes_maximum];
 };

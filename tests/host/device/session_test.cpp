@@ -215,7 +215,8 @@ TEST_CASE("a session that ends while it drives the arm lets the force fall, and 
   }
 }
 
-TEST_CASE("a session is refused while another program drives: it says so, stops the force all the same, and may take over") {
+TEST_CASE(
+    "a session is refused while another program drives: it says so, stops the force all the same, and may take over") {
   FakeUsbipServer server;
   protocol::ClaimReport other{.operation = protocol::ClaimOperation::claim, .claim = 77, .process_id = 4711};
   std::strcpy(other.program, "a\x1b[31mprogram");

@@ -29,8 +29,8 @@ class ProgramRequests {
  public:
   // ---- main loop ----
 
-  /// Accepts a ForceReport. False, and counted as refused, if it is not valid, if its program does not drive the arm, or
-  /// if it answers a pose that is older than force_pose_age_maximum_ms. `pose_sequence`: of the newest pose report.
+  /// Accepts a ForceReport. False, and counted as refused, if it is not valid, if its program does not drive the arm,
+  /// or if it answers a pose that is older than force_pose_age_maximum_ms. `pose_sequence`: of the newest pose report.
   bool accept_force(std::span<const std::byte> report, bool is_of_driver, std::uint32_t pose_sequence);
 
   /// Takes a ShapesReport; false if it is not sound, or if the interrupt has not taken the one before.

@@ -92,8 +92,8 @@ class Device {
 
   /// The program that drives the arm; none if no program does.
   std::optional<Driver> driver();
-  /// This object drives the arm from now on, until release() or its end, or until the board has heard nothing from it for
-  /// protocol::claim_expiry_s. Throws InUse, naming the driver, if another object or program drives the arm.
+  /// This object drives the arm from now on, until release() or its end, or until the board has heard nothing from it
+  /// for protocol::claim_expiry_s. Throws InUse, naming the driver, if another object or program drives the arm.
   void claim();
   /// The same, from whoever drives the arm now. The force of that program fades.
   void take_over();
@@ -103,8 +103,8 @@ class Device {
   bool drives() const;
 
   /// Sends a command, and returns once the control interrupt has carried it out. That says nothing of its effect: a
-  /// command that does not fit the state has none. Throws InUse if another program drives the arm, and Error if the board
-  /// does not carry it out in time.
+  /// command that does not fit the state has none. Throws InUse if another program drives the arm, and Error if the
+  /// board does not carry it out in time.
   void carry_out(protocol::Command command);
   void carry_out(protocol::Command command, const protocol::TestPulse& pulse);
   /// Switches the force off, and returns once it is off. stop() does so at once, whichever program drives the arm;

@@ -69,8 +69,8 @@ class Session {
   SessionStatus status() const;
   std::optional<protocol::PoseReport> newest_pose() const;
 
-  /// Queues a command; it is sent within a millisecond. Whatever may move the arm first claims it for this session, which
-  /// releases it once the force is off. A disable_force is a stop while another program drives the arm.
+  /// Queues a command; it is sent within a millisecond. Whatever may move the arm first claims it for this session,
+  /// which releases it once the force is off. A disable_force is a stop while another program drives the arm.
   void send(protocol::Command command);
   void send(protocol::Command command, const protocol::TestPulse& pulse);
 

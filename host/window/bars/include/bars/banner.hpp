@@ -12,7 +12,8 @@
 namespace inkwell::window {
 
 /// What has to be said over the whole width: a fault with its cause and remedy, an arm with force that is out of sight
-/// behind a replay, another program that drives the arm, a motor that is hot, or another firmware than this companion's.
+/// behind a replay, another program that drives the arm, a motor that is hot, or another firmware than this
+/// companion's.
 enum class BannerAction : std::uint8_t { none, clear_fault, update_firmware, take_over };
 
 struct Banner {
