@@ -217,8 +217,10 @@ std::uint64_t Hdf5Input::length_of(const std::string& path) const {
 void Hdf5Input::check_content(const Dataset& column, std::uint64_t count) {
   const auto declared =
       static_cast<std::uint64_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(column.space.id())));
-  if (count > declared || count > samples_maximum)
+  if (count > declared)
     fail(fmt::format("is damaged: {} has {} elements where {} are expected", column.path, declared, count));
+  if (count > samples_maximum)
+    fail(fmt::format("is damaged: {} declares {} elements, more than {}", column.path, count, samples_maximum));
   const std::uint64_t stored = H5Dget_storage_size(column.itself.id());
   const std::uint64_t unpacked = stored * (column.is_compressed ? deflate_ratio_maximum : 1) + harmless_bytes;
   if (stored > bytes_left_ || count * H5Tget_size(column.type.id()) > unpacked)

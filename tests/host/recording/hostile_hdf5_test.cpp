@@ -247,7 +247,7 @@ TEST_CASE("a column must have one dimension, its class, and content in the file 
          many(f);
          for (const char* path : {"/period", "/signals/force_x_N", "/signals/force_y_N"}) extend(f, path);
        },
-       "/period has 274877906944 elements"},
+       "/period declares 274877906944 elements, more than 4294967296"},
       {"2^30 samples, none of them stored",
        [&](hid_t f) {
          many(f);
