@@ -165,8 +165,8 @@ Description parse(std::string_view text, const std::string& source) {
   constexpr std::string_view arm_keys[] = {"name", "description"};
   arm.refuse_unknown(arm_keys);
   return Description{
-      .name = arm.text("name"),
-      .description = arm.text("description"),
+      .name = protocol::plain_text(arm.text("name")),
+      .description = protocol::plain_lines(arm.text("description")),
       .parameters = read_parameters(Section(file, "parameters", source)),
       .motor = read_motor(Section(file, "motor", source)),
       .simulation = read_simulation(Section(file, "simulation", source)),

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <device/error.hpp>
+#include <device/plain_json.hpp>
 #include <recording/write_text.hpp>
 
 /// A number, or null for none.
@@ -72,7 +73,7 @@ std::string text_of(const Result& result) { return nlohmann::json(result).dump(2
 
 Result parse_result(const std::string& text) {
   try {
-    const auto result = nlohmann::json::parse(text);
+    const auto result = device::parse_plain_json(text);
     require_counts(result);
     return result.get<Result>();
   } catch (const nlohmann::json::exception& error) {

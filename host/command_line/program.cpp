@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <device/address.hpp>
+#include <protocol/plain_text.hpp>
 
 #include "commands.hpp"
 #include "help.hpp"
@@ -18,7 +19,7 @@ namespace {
 constexpr int success = 0, failure = 1, wrong_usage = 2;
 
 int complain(const std::exception& error, int exit_code) {
-  fmt::print(stderr, "inkwell: {}\n", error.what());
+  fmt::print(stderr, "inkwell: {}\n", protocol::plain_lines(error.what()));
   return exit_code;
 }
 

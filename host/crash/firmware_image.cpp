@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <device/error.hpp>
+#include <protocol/plain_text.hpp>
 
 namespace inkwell::crash {
 namespace {
@@ -85,12 +86,13 @@ std::string FirmwareImage::place(std::uint32_t address) const {
   GElf_Sym symbol;
   const char* name = dwfl_module_addrinfo(reader_->module, address, &offset, &symbol, nullptr, nullptr, nullptr);
   if (name == nullptr || GELF_ST_TYPE(symbol.st_info) != STT_FUNC || offset >= symbol.st_size) return "";
-  const std::string function = readable(name);
+  const std::string function = protocol::plain_text(readable(name));
   Dwfl_Line* line = dwfl_module_getsrc(reader_->module, address);
   int number = 0;
   const char* source = line == nullptr ? nullptr : dwfl_lineinfo(line, nullptr, &number, nullptr, nullptr, nullptr);
   if (source == nullptr) return function;
-  return fmt::format("{} ({}:{})", function, std::filesystem::path(source).filename().string(), number);
+  return fmt::format("{} ({}:{})", function, protocol::plain_text(std::filesystem::path(source).filename().string()),
+                     number);
 }
 
 }  // namespace inkwell::crash

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <device/plain_json.hpp>
+
 namespace inkwell::device {
 namespace {
 
@@ -46,7 +48,7 @@ PutInFault put_in_fault(const json& told, const char* time_key, const char* sent
 json parse_answer(std::string_view line, std::string_view command) {
   return read_or_fail("What answers at the control port is not a virtual board. Give the control port that it printed.",
                       [&] {
-                        json answer = json::parse(line);
+                        json answer = parse_plain_json(line);
                         if (answer.at("ok").get<bool>()) return answer;
                         throw CommandRefused(fmt::format("The virtual board refused \"{}\": {}", command,
                                                          answer.value("error", std::string("it gave no reason."))));

@@ -10,6 +10,7 @@
 
 #include <device/fault_text.hpp>
 #include <device/parameter_file.hpp>
+#include <protocol/plain_text.hpp>
 
 namespace inkwell::device {
 namespace {
@@ -35,7 +36,7 @@ std::string clock_utc_now() {
 }
 
 Event event_now(EventKind kind, std::string text, std::optional<std::uint32_t> at_periods) {
-  return {kind, std::move(text), clock_utc_now(), at_periods};
+  return {kind, protocol::plain_text(text), clock_utc_now(), at_periods};
 }
 
 std::string log_line(std::string_view clock_utc, std::optional<double> time_s, EventKind kind, std::string_view text) {

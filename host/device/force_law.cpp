@@ -1,11 +1,13 @@
 #include <device/force_law.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <list>
 #include <mutex>
 #include <string_view>
 
 #include <device/error.hpp>
+#include <protocol/plain_text.hpp>
 
 namespace inkwell::device {
 namespace {
@@ -17,36 +19,46 @@ Error damaged() {
 /// Takes a report apart from its begin on.
 class RowReader {
  public:
-  explicit RowReader(std::span<const std::byte> left) : left_(left) {}
+  explicit RowReader(std::span<std::byte> left) : left_(left) {}
 
   float number() {
     float value = 0;
     std::memcpy(&value, take(sizeof value).data(), sizeof value);
     return value;
   }
-  /// With a zero behind its end.
+  /// With a zero behind its end. What is not printable is replaced in the report itself.
   std::string_view text() {
-    const auto* begin = reinterpret_cast<const char*>(left_.data());
+    auto* begin = reinterpret_cast<char*>(left_.data());
     const std::size_t length = strnlen(begin, left_.size());
     take(length + 1);
+    std::ranges::copy(protocol::plain_text({begin, length}), begin);
     return {begin, length};
+  }
+  /// The firmware does not compile with any other name. It is a key of files, and a column of scripts for figures.
+  std::string_view name() {
+    const auto name = text();
+    const auto is_allowed = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    };
+    if (name.empty() || !std::ranges::all_of(name, is_allowed)) throw damaged();
+    return name;
   }
   template <class Row>
   void texts_of(Row& row) {
-    row.name = text();
+    row.name = name();
     row.unit = text();
     row.help = text();
   }
 
  private:
-  std::span<const std::byte> take(std::size_t size) {
+  std::span<std::byte> take(std::size_t size) {
     if (size > left_.size()) throw damaged();
     const auto taken = left_.first(size);
     left_ = left_.subspan(size);
     return taken;
   }
 
-  std::span<const std::byte> left_;
+  std::span<std::byte> left_;
 };
 
 /// What other threads may read at any time, and so stays until the program ends.
@@ -75,7 +87,7 @@ ForceLaw parse_force_law(std::span<const std::byte> report) {
       head.parameter_count > protocol::force_law_parameters_maximum ||
       head.signal_count > protocol::force_law_signals_maximum)
     throw damaged();
-  const auto bytes = std::make_shared<const std::vector<std::byte>>(report.begin(), report.begin() + head.size);
+  const auto bytes = std::make_shared<std::vector<std::byte>>(report.begin(), report.begin() + head.size);
   RowReader reader{std::span(*bytes).subspan(sizeof head)};
   ForceLaw law{.report = bytes, .name = reader.text(), .help = reader.text(), .parameters = {}, .signals = {}};
   for (std::size_t i = 0; i < head.parameter_count; ++i) {

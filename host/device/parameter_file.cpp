@@ -11,6 +11,7 @@
 #include <toml++/toml.h>
 
 #include <device/nearest_name.hpp>
+#include <protocol/plain_text.hpp>
 
 namespace inkwell::device {
 namespace {
@@ -95,7 +96,7 @@ ParameterFile parse_parameters(std::string_view toml_text, const std::string& fi
   for (const auto& [key, node] : *section) {
     const auto parameter = protocol::find_parameter(key.str());
     if (!parameter) {
-      file.unknown.emplace_back(key.str());
+      file.unknown.push_back(protocol::plain_text(key.str()));
       continue;
     }
     const auto number = node.is_number() ? node.value<double>() : std::nullopt;

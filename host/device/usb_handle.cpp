@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include <protocol/plain_text.hpp>
+
 #include "transports.hpp"
 
 namespace inkwell::device {
@@ -31,8 +33,9 @@ int open_each(libusb_context* context, std::uint16_t vendor_id, std::uint16_t pr
     std::array<unsigned char, 128> serial{};
     const int length =
         libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, serial.data(), serial.size());
-    const std::string found(reinterpret_cast<const char*>(serial.data()),
-                            static_cast<std::size_t>(std::max(length, 0)));
+    // As hidapi's is made plain, so that the two can be compared.
+    const std::string found = protocol::plain_text(
+        {reinterpret_cast<const char*>(serial.data()), static_cast<std::size_t>(std::max(length, 0))});
     if (!take(found, handle)) libusb_close(handle);
   }
   if (list != nullptr) libusb_free_device_list(list, 1);

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <protocol/plain_text.hpp>
 #include <protocol/usb_identity.hpp>
 
 #include "transfer_queue.hpp"
@@ -29,7 +30,7 @@ constexpr unsigned short vendor_usage_page = 0xFF00;
 std::string narrow(const wchar_t* text) {
   std::string result;
   for (; text != nullptr && *text != 0; ++text) result += *text < 0x7F ? static_cast<char>(*text) : '?';
-  return result;
+  return protocol::plain_text(result);
 }
 
 /// The bulk interface through libusb. The kernel keeps the HID interface, which hidapi uses.

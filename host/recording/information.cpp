@@ -5,6 +5,8 @@
 
 #include <fmt/chrono.h>
 
+#include <protocol/plain_text.hpp>
+
 namespace inkwell::recording {
 
 namespace {
@@ -27,7 +29,7 @@ Information describe(const device::Information& device, const protocol::Paramete
           .firmware_version = device.firmware_version,
           .protocol_version = device.protocol_version,
           .serial_number = device.serial_number,
-          .arm = arm.empty() && is_default_arm(parameters) ? arm_defaults::name : arm,
+          .arm = arm.empty() && is_default_arm(parameters) ? arm_defaults::name : protocol::plain_text(arm),
           .simulation = simulation,
           .force_law = device.force_law ? device.force_law->report : nullptr,
           .parameters = parameters,

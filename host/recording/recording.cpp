@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <protocol/plain_text.hpp>
+
 #include "formats.hpp"
 
 namespace inkwell::recording {
@@ -125,6 +127,18 @@ Recording read_either(const std::filesystem::path& file) {
                                   file.string(), format_name));
 }
 
+/// Every text of the file may be printed, drawn and copied into another file.
+void make_plain(Recording& recording) {
+  auto& about = recording.information;
+  for (std::string* text : {&about.created_utc, &about.firmware_version, &about.serial_number, &about.arm})
+    *text = protocol::plain_text(*text);
+  for (Mark& mark : recording.marks) {
+    mark.text = protocol::plain_text(mark.text);
+    mark.clock_utc = protocol::plain_text(mark.clock_utc);
+  }
+  for (std::string& remark : recording.remarks) remark = protocol::plain_text(remark);
+}
+
 }  // namespace
 
 std::string log_text(const Recording& recording) {
@@ -145,11 +159,12 @@ Recording read(const std::filesystem::path& file) {
         "{} needs more memory than this computer has free. Close other programs, or read it on another computer.",
         file.string()));
   }
+  make_plain(recording);
   // What a device did is told a moment after what the user notes.
   if (!recording.periods.empty())
     std::ranges::stable_sort(recording.marks, {},
                              [&](const Mark& mark) { return recording.elapsed_s_at(mark.period); });
-  recording.name = file.stem().string();
+  recording.name = protocol::plain_text(file.stem().string());
   return recording;
 }
 

@@ -4,12 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <protocol/plain_text.hpp>
+
 namespace inkwell::virtual_board {
 
-void log_line(const std::string& text) { fmt::print(stderr, "virtual-board: {}\n", text); }
+void log_line(const std::string& text) { fmt::print(stderr, "virtual-board: {}\n", protocol::plain_lines(text)); }
 
 void log_line(Ticks now, const std::string& text) {
-  fmt::print(stderr, "virtual-board: {:.6f} s: {}\n", seconds(now), text);
+  fmt::print(stderr, "virtual-board: {:.6f} s: {}\n", seconds(now), protocol::plain_lines(text));
 }
 
 }  // namespace inkwell::virtual_board

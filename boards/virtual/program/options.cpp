@@ -1,7 +1,6 @@
 #include "options.hpp"
 
 #include <fstream>
-#include <iostream>
 #include <iterator>
 #include <map>
 #include <string>
@@ -12,6 +11,8 @@
 #include <installation/places.hpp>
 #include <program/requests.hpp>
 #include <protocol/image_identity.hpp>
+
+#include "log.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
@@ -215,11 +216,9 @@ bool take_board(Given& given) {
   if (name.empty()) return true;
   given.options.board = board::find_board(name);
   if (given.options.board != nullptr) return true;
-  std::cerr << "virtual-board: "
-            << (given.board.empty()
-                    ? (runs_flash ? given.options.flash : given.options.elf).string() + " is for the board "
-                    : "--board: ")
-            << name << ", which is not known here; known are " << board::names_of_boards() << ".\n";
+  log_line((given.board.empty() ? (runs_flash ? given.options.flash : given.options.elf).string() + " is for the board "
+                                : "--board: ") +
+           name + ", which is not known here; known are " + board::names_of_boards() + ".");
   return false;
 }
 
@@ -233,7 +232,7 @@ bool take_serial_number(Given& given) {
                         : options.usbip_port != 0    ? unique_id_of_port(options.usbip_port)
                                                      : unique_id_of_process();
   } catch (const std::invalid_argument& error) {
-    std::cerr << "virtual-board: --serial: " << error.what() << "\n";
+    log_line("--serial: " + std::string(error.what()));
     return false;
   }
   return true;
@@ -243,14 +242,13 @@ bool take_serial_number(Given& given) {
 bool take_over(Given& given) {
   if (*given.gdb_option || *given.profile_option) {
     if (*given.mode_option && given.mode != "exact") {
-      std::cerr << "virtual-board: --gdb and --profile look at every instruction; leave --mode fast out.\n";
+      log_line("--gdb and --profile look at every instruction; leave --mode fast out.");
       return false;
     }
     given.mode = "exact";
   }
   if (given.options.elf.empty() && given.options.flash.empty()) {
-    std::cerr << "virtual-board: there is nothing to run. Give a firmware with --elf, or a flash that holds one with "
-                 "--flash.\n";
+    log_line("there is nothing to run. Give a firmware with --elf, or a flash that holds one with --flash.");
     return false;
   }
   if (!take_board(given) || !take_serial_number(given)) return false;
@@ -259,20 +257,20 @@ bool take_over(Given& given) {
   try {
     for (const std::string& name : given.pins) given.options.waveform_pins.push_back(PinName::of(name));
   } catch (const std::invalid_argument& error) {
-    std::cerr << "virtual-board: --vcd-pins: " << error.what() << "\n";
+    log_line("--vcd-pins: " + std::string(error.what()));
     return false;
   }
   try {
     for (const std::string& text : given.uarts) given.options.uarts.push_back(UartOption::of(text));
   } catch (const std::invalid_argument& error) {
-    std::cerr << "virtual-board: --uart: " << error.what() << "\n";
+    log_line("--uart: " + std::string(error.what()));
     return false;
   }
   try {
     for (const std::string& text : given.injections)
       given.options.injections.push_back(parse_injection(text, *given.options.board));
   } catch (const InvalidInjection& error) {
-    std::cerr << "virtual-board: --inject: " << error.what() << "\n";
+    log_line("--inject: " + std::string(error.what()));
     return false;
   }
   try {
@@ -281,7 +279,7 @@ bool take_over(Given& given) {
     for (Injection& injection : parse_injections(text, *given.options.board))
       given.options.injections.push_back(std::move(injection));
   } catch (const InvalidInjection& error) {
-    std::cerr << "virtual-board: --inject-from " << given.injection_script << ", " << error.what() << "\n";
+    log_line("--inject-from " + given.injection_script + ", " + error.what());
     return false;
   }
   given.options.mode = given.mode == "exact" ? Mode::exact : Mode::fast;

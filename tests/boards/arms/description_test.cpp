@@ -156,3 +156,9 @@ TEST_CASE("bounds in the wrong order are refused") {
   CHECK_SAYS(complaint(omni_with("joint_2_minimum_rad = 0.0", "joint_2_minimum_rad = 1.9")),
              "joint_2_minimum_rad must be below joint_2_maximum_rad");
 }
+
+TEST_CASE("texts of a description are safe to print") {
+  CHECK(arms::parse(omni_with("name = \"PHANTOM Omni\"", "name = \"Omni\\u001B[2J\\n\""), "some.toml").name ==
+        "Omni?[2J ");
+  CHECK_SAYS(complaint(omni_with("inductance_H", "\"inductance\\u001B[2J\"")), "[motor] has no key inductance?[2J: ");
+}

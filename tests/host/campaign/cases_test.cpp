@@ -164,6 +164,7 @@ TEST_CASE("a fault of the second of three is had at each of them, one of what th
 TEST_CASE("a result whose counts are no counts is refused with their name") {
   const std::string text = text_of({.number = 7, .phase = 2, .restarts = 1});
   CHECK(parse_result(text).number == 7);
+  CHECK(parse_result(text_of({.number = 7, .fault = "motor_open\x1B[2J:2"})).fault == "motor_open?[2J:2");
   for (const auto& [sound, damaged] : {std::pair{"\"number\": 7", "\"number\": 5e29"},
                                        {"\"number\": 7", "\"number\": 4294967296"},
                                        {"\"phase\": 2", "\"phase\": -2"},

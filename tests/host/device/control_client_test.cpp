@@ -28,14 +28,15 @@ std::string failure_at(const std::string& line) {
 }  // namespace
 
 TEST_CASE("a board's status is taken from its answer, and what it leaves out is nothing") {
-  std::string line = R"({"ok": true, "board_time_s": 1.5, "mode": "exact", "paused": true, "unmodelled": ["x"]})";
+  std::string line =
+      R"({"ok": true, "board_time_s": 1.5, "mode": "exact", "paused": true, "unmodelled": ["x\u001b[1m"]})";
   FakeControlServer server([&](const json&) { return line + "\n"; });
   auto client = client_of(server);
   const auto status = client.status();
   CHECK(status.board_time_s == 1.5);
   CHECK(status.mode == "exact");
   CHECK(status.paused);
-  CHECK(status.unmodelled == std::vector<std::string>{"x"});
+  CHECK(status.unmodelled == std::vector<std::string>{"x?[1m"});
   CHECK_NOTHROW(status.insist_on_running());
   line = R"({"ok": true})";
   CHECK(client.status().board_time_s == 0.0);
@@ -46,6 +47,7 @@ TEST_CASE("a refusal tells the command and the board's reason") {
   CHECK(contains(message, "refused \"trace\""));
   CHECK(contains(message, "No trace runs."));
   CHECK(contains(failure_at(R"({"ok": false})"), "it gave no reason"));
+  CHECK(contains(failure_at(R"({"ok": false, "error": "\u001b[2Jred"})"), ": ?[2Jred"));
 }
 
 TEST_CASE("a refusal leaves the connection as it was; no answer in time is another error") {

@@ -80,3 +80,7 @@ TEST_CASE("a line of the log has clock, time, kind and text; kinds come back by 
     CHECK(find_event_kind(name_of(static_cast<EventKind>(i))) == static_cast<EventKind>(i));
   CHECK_FALSE(find_event_kind("dance"));
 }
+
+TEST_CASE("an event has one line of printable text") {
+  CHECK(event_now(EventKind::mark, "two\nlines\x1B[2J", {}).text == "two lines?[2J");
+}

@@ -49,6 +49,12 @@ TEST_CASE("names that this version does not know are returned, not refused") {
   CHECK(file.unknown[0] == "magic_N");
 }
 
+TEST_CASE("what a file of parameters names is safe to print") {
+  const auto file = device::parse_parameters("[parameters]\n\"wobble\\u001B[2J\" = 3\n", "a.toml");
+  CHECK(file.unknown == std::vector<std::string>{"wobble?[2J"});
+  CHECK(std::string(device::Error("one\n\ttwo\x1B[2J\x07").what()) == "one\n\ttwo?[2J?");
+}
+
 TEST_CASE("a bad file is refused with its line and the remedy") {
   const auto refusal = [](const char* text) {
     return message_of<device::Error>([&] { device::parse_parameters(text, "bad.toml"); });

@@ -42,6 +42,16 @@ TEST_CASE("arms on USB are told from others by identifiers and product name") {
   CHECK(usb.open_things == 0);
 }
 
+TEST_CASE("a serial number with control characters is shown without them, and still leads to its arm") {
+  FakeUsb usb;
+  usb.add_arm("A\x1B[2J\n\x7F");
+  const auto found = device::find_usb_devices();
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].serial_number == "A?[2J ?");
+  const auto transport = device::open_transport(found[0]);
+  CHECK_NOTHROW(transport->claim_scope());
+}
+
 TEST_CASE("the scope is read from the arm with this serial number, where its descriptors say") {
   FakeUsb usb;
   usb.add_arm("other");

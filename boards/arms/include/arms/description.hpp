@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <protocol/parameters.hpp>
+#include <protocol/plain_text.hpp>
 
 namespace inkwell::arms {
 
@@ -43,10 +44,10 @@ struct Description {
   Simulation simulation;
 };
 
-/// A sentence that names the file, the line where there is one, what is wrong and what to do.
+/// A sentence that names the file, the line where there is one, what is wrong and what to do. It is safe to print.
 class DescriptionError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit DescriptionError(const std::string& sentence) : std::runtime_error(protocol::plain_lines(sentence)) {}
 };
 
 /// Reads an arm description.

@@ -2,13 +2,17 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
+
+#include <protocol/plain_text.hpp>
 
 namespace inkwell::device {
 
-/// Every failure of this library: `what()` is a sentence that says what is wrong and what to do.
+/// Every failure of this library: `what()` is a sentence that says what is wrong and what to do. It may quote a file, a
+/// device or another program, and is safe to print.
 class Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Error(const std::string& sentence) : std::runtime_error(protocol::plain_lines(sentence)) {}
 };
 
 /// The device went away (unplugged, board stopped). A Session reconnects by itself.

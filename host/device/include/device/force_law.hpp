@@ -13,8 +13,9 @@
 namespace inkwell::device {
 
 struct ForceLaw {
-  std::shared_ptr<const std::vector<std::byte>> report;  ///< as the device sent it: the texts of all rows lie in it
-  std::string_view name;                                 ///< of its file and struct
+  /// As the device sent it, with its texts made plain. The texts of all rows lie in it.
+  std::shared_ptr<const std::vector<std::byte>> report;
+  std::string_view name;  ///< of its file and struct
   std::string_view help;
   std::vector<protocol::ParameterInfo> parameters;
   std::vector<protocol::SignalInfo> signals;
