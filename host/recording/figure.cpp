@@ -1,7 +1,5 @@
 #include <recording/figure.hpp>
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include <device/error.hpp>
+#include <device/child_program.hpp>
 #include <recording/gnuplot.hpp>
 #include <recording/write_text.hpp>
 
@@ -35,27 +33,6 @@ constexpr std::array colours = {"blue", "vermilion", "green", "purple", "orange"
 /// Samples from `begin` up to `end`.
 struct Range {
   std::size_t begin, end;
-};
-
-/// A directory for script and data that goes away with this object.
-class WorkDirectory {
- public:
-  WorkDirectory() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "inkwell-figure-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw device::Error("No temporary directory can be made. Check the space left in " + pattern + ".");
-    path_ = pattern;
-  }
-  ~WorkDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  WorkDirectory(const WorkDirectory&) = delete;
-  WorkDirectory& operator=(const WorkDirectory&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// Samples that are far apart need not be so evenly: each is drawn at its own time.
@@ -327,7 +304,7 @@ void draw_figure(const Recording& recording, const FigureOptions& options, const
     throw device::Error(fmt::format("There are no samples from {} s to {} s. The recording takes {:.3f} s.",
                                     options.from_s, options.to_s.value_or(end_s), end_s));
 
-  const WorkDirectory work;
+  const device::PrivateFolder work;
   FigureData data = data_of(recording, quantities, shown, from_s, to_s);
   if (options.over != nullptr) add_over(data, *options.over, quantities);
   data.write(work.path() / "data.csv");

@@ -1,14 +1,11 @@
 #include <recording/gnuplot.hpp>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <iterator>
 
 #include <fmt/format.h>
 
-#include <device/error.hpp>
+#include <device/child_program.hpp>
+#include <protocol/plain_text.hpp>
 #include <recording/write_text.hpp>
 
 namespace inkwell::recording {
@@ -25,10 +22,12 @@ set xlabel 'time  /  s' textcolor rgb ink
 set style fill transparent solid 0.22 noborder
 )";
 
-std::string shell_quoted(const std::string& text) {
-  std::string result = "'";
-  for (char character : text) result += character == '\'' ? std::string("'\\''") : std::string(1, character);
-  return result + "'";
+/// Characters that mean nothing to gnuplot within double quotes, nor to its macros and formats.
+bool is_harmless(char c) {
+  constexpr std::string_view marks = " _.,:;()/+-=<>";
+  const bool is_utf8 = (static_cast<unsigned char>(c) & 0x80u) != 0;
+  return is_utf8 || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+         marks.find(c) != marks.npos;
 }
 
 }  // namespace
@@ -64,35 +63,36 @@ std::string figure_titles(std::string_view title, std::string_view subtitle, int
 std::string plot_command(const std::vector<Curve>& curves) {
   std::vector<std::string> parts;
   for (const auto& curve : curves)
-    parts.push_back(
-        fmt::format("data using 'time_s':'{0}_minimum':'{0}_maximum' with filledcurves fillcolor rgb {1} notitle",
-                    curve.name, curve.style.substr(0, curve.style.find(' '))));
+    parts.push_back(fmt::format("data using 'time_s':{}:{} with filledcurves fillcolor rgb {} notitle",
+                                gnuplot_text(curve.name + "_minimum"), gnuplot_text(curve.name + "_maximum"),
+                                curve.style.substr(0, curve.style.find(' '))));
   for (const auto& curve : curves)
-    parts.push_back(fmt::format("data using 'time_s':'{0}_mean' with lines linewidth 2 linecolor rgb {1} {2}",
-                                curve.name, curve.style,
+    parts.push_back(fmt::format("data using 'time_s':{} with lines linewidth 2 linecolor rgb {} {}",
+                                gnuplot_text(curve.name + "_mean"), curve.style,
                                 curve.title.empty() ? "notitle" : "title " + gnuplot_text(curve.title)));
   return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
 }
 
 std::string gnuplot_text(std::string_view text) {
-  std::string result = "'";
-  for (char character : text) result += character == '\'' ? "''" : character == '\n' ? " " : std::string(1, character);
-  return result + "'";
+  std::string quoted = "\"";
+  for (const char c : protocol::plain_text(text)) {
+    if (is_harmless(c))
+      quoted += c;
+    else
+      // gnuplot reads four digits after a zero, and three after any other digit.
+      quoted += fmt::format("\\{:0{}o}", static_cast<unsigned>(c), c < 0100 ? 4 : 3);
+  }
+  return quoted + "\"";
 }
 
 void run_gnuplot(const std::filesystem::path& script) {
-  const auto directory = std::filesystem::absolute(script).parent_path();
-  const std::string command = fmt::format("cd {} && gnuplot {} 2>&1", shell_quoted(directory.string()),
-                                          shell_quoted("./" + script.filename().string()));
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) throw device::Error("gnuplot cannot be started: the system allows no more processes.");
-  std::string said;
-  std::array<char, 512> chunk;
-  while (const std::size_t length = std::fread(chunk.data(), 1, chunk.size(), pipe)) said.append(chunk.data(), length);
-  const int status = pclose(pipe);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw device::Error(
-        fmt::format("The figure was not drawn. Install gnuplot-nox if it is missing. The shell said: {}", said));
+  std::string printed;
+  const int exit_code =
+      device::run_child_program({.words = {"gnuplot", "--default-settings", "./" + script.filename().string()},
+                                 .folder = std::filesystem::absolute(script).parent_path(),
+                                 .advice = "Install it (Debian: the package gnuplot-nox)."},
+                                [&](std::string_view piece) { printed += piece; });
+  if (exit_code != 0) throw device::Error(fmt::format("The figure was not drawn. gnuplot printed: {}", printed));
 }
 
 }  // namespace inkwell::recording

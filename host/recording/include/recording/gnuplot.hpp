@@ -55,10 +55,10 @@ std::string figure_head(const std::string& data_file, int width, int height);
 std::string figure_titles(std::string_view title, std::string_view subtitle, int height);
 /// Lines and bands against time_s.
 std::string plot_command(const std::vector<Curve>& curves);
-/// A string for gnuplot, quotes included.
+/// A string for gnuplot, quotes included: it prints this text, made plain, whatever is in it.
 std::string gnuplot_text(std::string_view text);
 
-/// Runs a script in its directory. Throws device::Error with gnuplot's words if it fails.
+/// Runs a script in its folder, without settings of the user. Throws device::Error with gnuplot's words if it fails.
 void run_gnuplot(const std::filesystem::path& script);
 
 }  // namespace inkwell::recording

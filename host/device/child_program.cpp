@@ -1,0 +1,105 @@
+#include <device/child_program.hpp>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace inkwell::device {
+namespace {
+
+constexpr int killed_by = 128;  // as shells report it
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+  void close() {
+    if (number_ >= 0) ::close(std::exchange(number_, -1));
+  }
+
+ private:
+  int number_;
+};
+
+/// What the child does before its program starts.
+class SpawnActions {
+ public:
+  SpawnActions() { posix_spawn_file_actions_init(&actions_); }
+  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
+  SpawnActions(const SpawnActions&) = delete;
+  SpawnActions& operator=(const SpawnActions&) = delete;
+  posix_spawn_file_actions_t* get() { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
+pid_t spawn(const ChildProgram& program, int output) {
+  std::vector<std::string> words = program.words;
+  std::vector<char*> pointers;
+  for (auto& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  SpawnActions actions;
+  posix_spawn_file_actions_addopen(actions.get(), STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(actions.get(), output, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(actions.get(), output, STDERR_FILENO);
+  posix_spawn_file_actions_addchdir_np(actions.get(), program.folder.c_str());
+  pid_t child = 0;
+  const int code = posix_spawnp(&child, pointers[0], actions.get(), nullptr, pointers.data(), environ);
+  if (code != 0)
+    throw Error(fmt::format("{} cannot be started: {}. {}", program.words[0], std::strerror(code), program.advice));
+  return child;
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFSIGNALED(status) ? killed_by + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+}  // namespace
+
+PrivateFolder::PrivateFolder() {
+  std::error_code code;
+  std::string pattern = (std::filesystem::temp_directory_path(code) / "inkwell-XXXXXX").string();
+  if (code || mkdtemp(pattern.data()) == nullptr)
+    throw Error(fmt::format("No temporary folder {} can be made. Check TMPDIR and the space left.", pattern));
+  path_ = pattern;
+}
+
+PrivateFolder::~PrivateFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+int run_child_program(const ChildProgram& program, const std::function<void(std::string_view)>& on_output) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw Error("No pipe can be made: too many files are open. Close some programs.");
+  const Descriptor from_child(ends[0]);
+  Descriptor to_parent(ends[1]);
+  const pid_t child = spawn(program, to_parent.number());
+  to_parent.close();
+  std::array<char, 4096> chunk;
+  for (;;) {
+    const ssize_t length = read(from_child.number(), chunk.data(), chunk.size());
+    if (length < 0 && errno == EINTR) continue;
+    if (length <= 0) break;
+    on_output({chunk.data(), static_cast<std::size_t>(length)});
+  }
+  return wait_for(child);
+}
+
+}  // namespace inkwell::device
