@@ -87,8 +87,9 @@ int flash_by_usb(const DeviceOptions& options, const FlashOptions& given, const 
 }
 
 int flash_file(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
-  const auto [before, written] =
+  const auto [before, written, warning] =
       firmware_update::write_flash_file(given.flash_file, image, given.consent(), given.image_for);
+  if (!warning.empty()) fmt::print(stderr, "inkwell: {}\n", warning);
   if (options.json)
     fmt::print("{}\n", to_json(written, before).dump(2));
   else

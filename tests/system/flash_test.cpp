@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <device/control_channel.hpp>
@@ -50,6 +51,7 @@ class FreeBoard {
     kill(program_.process(), SIGTERM);
     program_.wait();
   }
+  int process() const { return program_.process(); }
   ProgramResult flash(std::vector<std::string> words) const {
     words.insert(words.begin(), {"flash", "--usbip", port});
     return run_program("inkwell", words);
@@ -216,6 +218,14 @@ TEST_CASE("a board whose power went in the middle does nothing until BOOT0 is he
   }
   {
     FreeBoard board({"--flash", flash_file});
+    const std::string owner = fmt::format("virtual-board (process {})", board.process());
+    for (const auto& second : {run_program("virtual-board", {"--flash", flash_file}),
+                               run_program("inkwell", {"info", "--virtual", "--flash", flash_file}),
+                               run_program("inkwell", {"flash", "--virtual", flash_file, "--yes"})}) {
+      INFO(second.err);
+      CHECK(second.exit_code == 1);
+      CHECK(says(second, flash_file + " is in use by " + owner));
+    }
     std::this_thread::sleep_for(500ms);
     CHECK_FALSE(board.runs());
     CHECK_FALSE(board.is_in_boot_loader());

@@ -1,9 +1,8 @@
 #include "flash_file.hpp"
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -12,23 +11,26 @@
 #include <chip/memory_map.hpp>
 #include <protocol/image_identity.hpp>
 
+#include "log.hpp"
+
 namespace inkwell::virtual_board {
 
 static_assert(flash_bytes == protocol::flash_bytes && flash_base == protocol::image_begin);
 FlashFile::FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash) : path_(std::move(path)) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path_, ignored)) {
-    save(flash);
-    return;
+  try {
+    file_.emplace(path_);
+  } catch (const local::FileInUse& error) {
+    throw std::runtime_error(fmt::format("--flash: {}", error.what()));
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("--flash: {} cannot be opened: {}. Give a file of your own, or one that does "
+                    "not exist yet.",
+                    path_.string(), error.code().message()));
   }
-  std::ifstream stream(path_, std::ios::binary);
-  if (!stream.is_open() || !std::filesystem::is_regular_file(path_, ignored))
-    throw std::runtime_error(fmt::format(
-        "--flash: {} cannot be read. Give a file of your own, or one that is not there yet.", path_.string()));
-  std::vector<char> content;
-  if (std::filesystem::file_size(path_, ignored) == flash.size())
-    content.assign(std::istreambuf_iterator<char>(stream), {});
-  if (!protocol::may_be_flash(std::as_bytes(std::span(content))))
+  if (const std::string warning = file_->warning(); !warning.empty()) log_line("--flash: " + warning);
+  if (!file_->exists()) return;
+  const std::vector<std::byte> content = file_->content(flash.size());
+  if (!protocol::may_be_flash(content))
     throw std::runtime_error(fmt::format(
         "--flash: {} is no flash of an STM32F405: that is {} bytes and begins with a firmware's vectors, or erased. "
         "It stays as it is; give another file, or one that is not there yet.",
@@ -36,18 +38,17 @@ FlashFile::FlashFile(std::filesystem::path path, std::span<std::uint8_t> flash) 
   std::memcpy(flash.data(), content.data(), content.size());
 }
 
-void FlashFile::save(std::span<const std::uint8_t> flash) const {
-  const std::filesystem::path fresh = path_.string() + ".new";
-  std::ofstream stream(fresh, std::ios::binary | std::ios::trunc);
-  stream.write(reinterpret_cast<const char*>(flash.data()), static_cast<std::streamsize>(flash.size()));
-  stream.close();
-  std::error_code error;
-  if (stream) std::filesystem::rename(fresh, path_, error);
-  if (stream && !error) return;
-  std::error_code ignored;
-  std::filesystem::remove(fresh, ignored);
-  throw std::runtime_error(
-      fmt::format("--flash: {} cannot be written. Look for room and rights in its folder.", path_.string()));
+void FlashFile::save(std::span<const std::uint8_t> flash) {
+  try {
+    file_->replace(std::as_bytes(flash));
+  } catch (const local::FileInUse& error) {
+    throw std::runtime_error(fmt::format("--flash: {}", error.what()));
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("--flash: {} cannot be written: {}. Check the free space and the rights of "
+                    "its folder.",
+                    path_.string(), error.code().message()));
+  }
 }
 
 }  // namespace inkwell::virtual_board

@@ -11,6 +11,7 @@
 #include <firmware_update/image.hpp>
 #include <firmware_update/probe.hpp>
 #include <firmware_update/update.hpp>
+#include <local/owned_file.hpp>
 #include <temporary_directory.hpp>
 
 #include "made_elf.hpp"
@@ -218,6 +219,11 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
   CHECK(
       contains(message_of<device::Error>([&] { write_flash_file(directory.file(""), image, Consent::to_everything); }),
                "no flash of a virtual board"));
+
+  {
+    const local::OwnedFile owned(file);  // as a board's
+    CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, true); }), "is in use by"));
+  }
 
   // As large as a flash, but somebody's pictures.
   const std::string pictures(protocol::flash_bytes, 'P');
