@@ -136,6 +136,7 @@ std::string be_silent(Bench& bench) {
 
 std::string kill_program(Bench& bench) {
   be_in_use(bench, true);
+  if (!bench.board.device().drives()) bench.board.device().claim();
   if (bench.random.chance(0.5)) bench.board.device().send_force({.force_N = {2.0f, 0.0f, -1.0f}, .interval_ms = 20});
   bench.device_may_go = true;
   bench.oracle.give_up_force(host_timeout_s(bench));

@@ -91,7 +91,11 @@ device::Shapes random_shapes(Bench& bench) {
 /// A program for a while: a spring to a point, a push, or a buzz, with a rate of its own.
 class Program {
  public:
-  explicit Program(Bench& bench) : bench_(bench) { choose(); }
+  explicit Program(Bench& bench) : bench_(bench) {
+    choose();
+    // A silence of more than a second has ended the claim.
+    if (!bench.board.device().drives()) bench.board.device().claim();
+  }
 
   /// One force and its interval.
   void step() {

@@ -222,7 +222,8 @@ TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the 
 
   {
     const local::OwnedFile owned(file);  // as a board's
-    CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }), "is in use by"));
+    CHECK(contains(message_of<device::Error>([&] { write_flash_file(file, image, Consent::to_everything); }),
+                   "is in use by"));
   }
 
   // As large as a flash, but somebody's pictures.
