@@ -63,6 +63,7 @@ void BoardRun::let_go_of_device() {
 }
 
 void BoardRun::drop_device() {
+  if (device_) device_->abandon();
   let_go_of_device();
   // Board time stands still meanwhile, so that it does not matter how soon the board's program hears of it.
   constexpr int tries = 5000;

@@ -400,6 +400,8 @@ void Device::release() {
   implementation_->request(protocol::ClaimOperation::release);
 }
 
+void Device::abandon() { implementation_->lose_claim(); }
+
 bool Device::drives() const { return implementation_->drives; }
 
 void Device::carry_out(Command command) {

@@ -247,7 +247,8 @@ class Programs(unittest.TestCase):
                 first.virtual_hand.release()
             first.set_force((0, 0, 0))
             said = run(program, board.address)
-            self.assertRegex(said.stdout, rf"^True\n\w+ \(process {os.getpid()}\) drives this arm already. End it first.\n$")
+            self.assertRegex(said.stdout, rf"^True\nThe arm is driven by \w+ \(process {os.getpid()}\), which claimed it \d+ s ago\. "
+                                          "End that program, or take the arm over from it\\.\n$")
             with inkwell.open(board.address) as second, self.assertRaises(inkwell.InUse):
                 second.set_force((0, 0, 0))
 

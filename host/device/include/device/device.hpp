@@ -99,6 +99,8 @@ class Device {
   void take_over();
   /// Ends the claim, and with it shapes and force. Without effect if this object does not drive.
   void release();
+  /// Forgets the claim without a word to the board, as a program that is killed.
+  void abandon();
   /// Whether this object drives the arm. read_pose() notices when the claim has been lost.
   bool drives() const;
 
