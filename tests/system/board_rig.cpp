@@ -90,6 +90,12 @@ void BoardRig::command(protocol::Command command) {
   since_sign_of_life_s_ = 0;
 }
 
+void BoardRig::push(const device::ForceRequest& force) {
+  while (const auto pose = device->read_pose(0ms)) poses_.push_back(*pose);
+  device->send_force(force);
+  control.run(0.001);
+}
+
 void BoardRig::run_until(const std::function<bool(const protocol::PoseReport&)>& condition, double limit_s) {
   for (double passed_s = 0; passed_s < limit_s; passed_s += slice_s) {
     if (!poses_.empty() && condition(pose())) return;

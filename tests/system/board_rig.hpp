@@ -33,6 +33,9 @@ class BoardRig {
   void set(std::initializer_list<device::ParameterChange> changes);
   /// Sends a command; the device gets it when board time passes next.
   void command(protocol::Command command);
+  /// Sends a program's force for the newest pose and lets a millisecond pass. The board refuses a force that answers an
+  /// old pose.
+  void push(const device::ForceRequest& force);
   /// Waits until the board shows a device, for a second of board time at most, and opens it.
   void connect();
   /// Runs until the newest pose fulfils the condition; fails the test after `limit_s` of board time.

@@ -60,8 +60,7 @@ TEST_CASE("two arms: force, parameters, scope and fault of one are not those of 
   arms.first.make_active();
   arms.first.set({{Parameter::wall_stiffness_N_per_m, 444.0f}});
   for (int millisecond = 0; millisecond < 300; ++millisecond) {
-    arms.first.device->send_force({.force_N = {0.5f, 0.0f, 0.0f}});
-    arms.first.control.run(0.001);
+    arms.first.push({.force_N = {0.5f, 0.0f, 0.0f}});
     arms.second.control.run(0.001);
   }
   CHECK(newest(*arms.first.device) == doctest::Approx(0.5).epsilon(1e-3));

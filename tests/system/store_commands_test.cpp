@@ -142,12 +142,16 @@ TEST_CASE("a factory reset wants a word of yes, forgets what is stored and gives
 TEST_CASE("while the force is on nothing is stored or forgotten, and the board says why") {
   RememberingBoard board;
   board.done({"parameters", "set", "wall_stiffness_N_per_m=600", "host_timeout_s=2"});
-  RunningProgram on({build_directory() + "/inkwell", "force", "on", "--usbip",
-                     fmt::format("127.0.0.1:{}", board.board.usbip_port())});
-  REQUIRE(on.read_line() == "The force is on.");
   const auto& reason = info(protocol::StoreResult::force_is_on);
-  for (const auto& words :
-       std::vector<std::vector<std::string>>{{"parameters", "store"}, {"parameters", "factory", "--yes"}}) {
+  for (auto words : std::vector<std::vector<std::string>>{{"parameters", "store"}, {"parameters", "factory", "--yes"}}) {
+    RunningProgram on({build_directory() + "/inkwell", "force", "on", "--usbip",
+                       fmt::format("127.0.0.1:{}", board.board.usbip_port())});
+    REQUIRE(on.read_line() == "The force is on.");
+    const auto beside_the_driver = board.run(words);
+    CHECK(beside_the_driver.exit_code == 1);
+    CHECK(beside_the_driver.err.find("The arm is driven by inkwell") != std::string::npos);
+
+    words.push_back("--take-over");
     const auto refused = board.run(words);
     CHECK(refused.exit_code == 1);
     CHECK(refused.err.find(reason.meaning) != std::string::npos);

@@ -31,9 +31,8 @@ void pull(BoardRig& rig, const std::array<float, 3>& along) {
   for (int millisecond = 0; millisecond < 1'000; ++millisecond) {
     const float part = std::fmod(0.0015f * static_cast<float>(millisecond), 1.0f);  // of up and down
     const float force_N = 12.0f * std::min(part, 1.0f - part);
-    rig.device->send_force(
+    rig.push(
         {.force_N = {force_N * along[0], force_N * along[1], force_N * along[2]}, .mode = ForceMode::beside_walls});
-    rig.control.run(0.001);
   }
 }
 

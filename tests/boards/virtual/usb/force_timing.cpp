@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include <protocol/driver.hpp>
 #include <protocol/scope.hpp>
 
 #include "firmware_on_bus.hpp"
@@ -18,6 +19,20 @@ using protocol::Signal;
 /// The force rises from one of these to the other over the whole measurement, so that it tells the time of its pose.
 constexpr float first_N = -3.0f, last_N = 3.0f;
 
+constexpr std::uint32_t claim_number = 7;
+
+/// Only the program that has claimed the arm may send forces.
+void claim_arm(FirmwareOnBus& bus) {
+  const protocol::ClaimReport claim{.operation = protocol::ClaimOperation::claim,
+                                    .claim = claim_number,
+                                    .process_id = 1,
+                                    .program = "forces"};
+  const auto bytes = std::as_bytes(std::span(&claim, 1));
+  const auto answer = bus.control(0x21, 9, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::driver), 0,
+                                  sizeof claim, {bytes.begin(), bytes.end()});
+  if (answer.status != 0) throw std::runtime_error("the claim is refused");
+}
+
 struct Program {
   Program(FirmwareOnBus& the_bus, double host_clock_ppm, double time_s)
       : bus(the_bus),
@@ -29,6 +44,8 @@ struct Program {
     protocol::ForceReport report{};
     report.mode = protocol::ForceMode::beside_walls;
     report.interval_ms = 1;
+    report.claim = claim_number;
+    report.pose_sequence = pose.sequence;
     report.sequence = static_cast<std::uint32_t>(timing.sent++);
     report.force_N[0] = static_cast<float>(first_N + N_per_period * (pose.time_periods - *begin_periods));
     bus.send_report(report);
@@ -81,6 +98,7 @@ ForceTiming measure_forces(const std::filesystem::path& image, double host_clock
   bus.connect();
   bus.stream_scope(std::array{Signal::program_force_x_N});
   bus.keep_asking_for_poses();
+  claim_arm(bus);
   bus.run_for(0.1);
   bus.on_scope_frame = [&](std::span<const std::byte> frame) { program.look_at(frame); };
   bus.on_report_sent = [&] { program.sent(); };
