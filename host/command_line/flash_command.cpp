@@ -102,7 +102,8 @@ int flash_file(const DeviceOptions& options, const FlashOptions& given, const Ne
 int write(const DeviceOptions& options, const FlashOptions& given, const NewImage& image) {
   if (!given.flash_file.empty()) return flash_file(options, given, image);
   if (!given.by_probe) return flash_by_usb(options, given, image);
-  firmware_update::update_by_probe(image, given.interface, given.consent());
+  firmware_update::update_by_probe(image, given.interface, given.consent(),
+                                   [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   fmt::print("{}\n", options.json ? to_json(image, std::nullopt).dump(2)
                                   : std::string("The firmware was written and read back, and has been started."));
   return 0;
@@ -165,8 +166,14 @@ void add_flash_command(const Place& place) {
           ->check(not_empty());
   by_usb->excludes(by_probe)->excludes(file);
   by_probe->excludes(file);
+  const CLI::Validator is_interface_name(
+      [](const std::string& name) {
+        return firmware_update::is_interface_name(name) ? std::string() : firmware_update::no_interface_name(name);
+      },
+      "");
   command->add_option("--interface", given->interface, "Of --swd: the probe, by the name of openocd's file for it")
       ->type_name("NAME")
+      ->check(is_interface_name)
       ->capture_default_str()
       ->needs(by_probe);
   command->add_flag("--allow-downgrade", given->allows_downgrade,

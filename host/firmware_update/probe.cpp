@@ -1,62 +1,141 @@
 #include <firmware_update/probe.hpp>
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include <fmt/format.h>
+
+#include <device/child_program.hpp>
+#include <protocol/plain_text.hpp>
 
 namespace inkwell::firmware_update {
 namespace {
 
-/// As a word of Tcl, whatever is in it.
-std::string tcl_word(const std::string& text) {
-  std::string word = "\"";
-  for (const char each : text) {
-    if (std::strchr("\"\\$[]{};", each) != nullptr) word += '\\';
-    word += each;
-  }
-  return word + "\"";
-}
-
 constexpr char cannot_use[] =
     "openocd could not write the firmware: see above. Is the probe connected to SWDIO, SWCLK, NRST and ground, and the "
     "board's power on?";
+constexpr char not_verified[] =
+    "openocd ended without a report that the firmware was verified, so it is not known what the flash holds. Check "
+    "openocd's installation and its settings, then try again.";
+
+enum class HexRecord : std::uint8_t { data = 0, end = 1, upper_address = 4 };
+
+void append_record(std::string& text, HexRecord kind, std::uint16_t address, std::span<const std::byte> bytes) {
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, ":{:02X}{:04X}{:02X}", bytes.size(), address, static_cast<unsigned>(kind));
+  unsigned sum = static_cast<unsigned>(bytes.size()) + (address >> 8) + (address & 0xFFu) + static_cast<unsigned>(kind);
+  for (const std::byte byte : bytes) {
+    fmt::format_to(out, "{:02X}", std::to_integer<unsigned>(byte));
+    sum += std::to_integer<unsigned>(byte);
+  }
+  fmt::format_to(out, "{:02X}\n", (0x100u - (sum & 0xFFu)) & 0xFFu);
+}
+
+void write_image_file(const Image& image, const std::filesystem::path& file) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << intel_hex(image);
+  stream.close();
+  if (!stream) throw device::Error(fmt::format("{} cannot be written. Free some space and try again.", file.string()));
+}
+
+/// Takes pieces of an output apart into lines.
+class Lines {
+ public:
+  explicit Lines(const std::function<void(const std::string&)>& on_line) : on_line_(on_line) {}
+  void add(std::string_view piece) {
+    for (const char c : piece) {
+      if (c == '\n')
+        end();
+      else
+        line_ += c;
+    }
+  }
+  void end() {
+    if (line_.empty()) return;
+    while (line_.ends_with('\r')) line_.pop_back();
+    on_line_(protocol::plain_text(line_));
+    line_.clear();
+  }
+
+ private:
+  const std::function<void(const std::string&)>& on_line_;
+  std::string line_;
+};
 
 }  // namespace
 
-std::vector<std::string> openocd_arguments(const std::filesystem::path& image, const std::string& interface) {
-  const std::string file = tcl_word(std::filesystem::absolute(image).string());
+bool is_interface_name(std::string_view name) {
+  return !name.empty() && std::ranges::all_of(name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+}
+
+std::string no_interface_name(std::string_view name) {
+  return fmt::format(
+      "`{}` is not a name of an openocd interface. Use lower-case letters, digits, _ and -, as in stlink or cmsis-dap.",
+      name);
+}
+
+std::string intel_hex(const Image& image) {
+  constexpr std::size_t record_bytes = 16;
+  std::string text;
+  std::uint32_t upper = 0;
+  for (const Segment& segment : image.segments) {
+    for (std::size_t i = 0; i < segment.bytes.size();) {
+      const std::uint32_t address = segment.address + static_cast<std::uint32_t>(i);
+      if (address >> 16 != upper) {
+        upper = address >> 16;
+        append_record(text, HexRecord::upper_address, 0,
+                      std::array{std::byte(upper >> 8 & 0xFF), std::byte(upper & 0xFF)});
+      }
+      // No record goes beyond the next multiple of its size, and so none beyond 64 KiB.
+      const std::size_t count =
+          std::min(segment.bytes.size() - i, record_bytes - static_cast<std::size_t>(address) % record_bytes);
+      append_record(text, HexRecord::data, static_cast<std::uint16_t>(address),
+                    std::span(segment.bytes).subspan(i, count));
+      i += count;
+    }
+  }
+  append_record(text, HexRecord::end, 0, {});
+  return text;
+}
+
+std::vector<std::string> openocd_arguments(const std::string& interface) {
   // FLASH_OPTCR: BOR_LEV is 0 for level 3; the other bits of the user's byte stay (RM0090, "Option bytes").
   const std::string set_brown_out =
       "set optcr [lindex [read_memory 0x40023c14 32 1] 0]; "
       "if {($optcr & 0x0c) != 0} { stm32f2x options_write 0 [expr {$optcr & 0xe0}] }";
   return {"-f", fmt::format("interface/{}.cfg", interface),
           "-f", "target/stm32f4x.cfg",
-          "-c", fmt::format("init; reset halt; flash write_image erase {0}; verify_image {0}", file),
+          "-c", fmt::format("init; reset halt; flash write_image erase {0}; verify_image {0}", image_file),
+          "-c", fmt::format("echo {{{}}}", verified_line),
           "-c", set_brown_out,
           "-c", "reset run; shutdown"};
 }
 
-void update_by_probe(const Image& image, const std::string& interface, Consent consent) {
+void update_by_probe(const Image& image, const std::string& interface, Consent consent,
+                     const std::function<void(const std::string&)>& on_line) {
+  if (!is_interface_name(interface)) throw device::Error(no_interface_name(interface));
   insist(image, {}, consent);
-  auto arguments = openocd_arguments(image.file, interface);
-  std::vector<char*> words{const_cast<char*>("openocd")};
-  for (auto& each : arguments) words.push_back(each.data());
-  words.push_back(nullptr);
-  pid_t child = 0;
-  if (const int result = posix_spawnp(&child, "openocd", nullptr, nullptr, words.data(), environ); result != 0)
-    throw device::Error(
-        fmt::format("openocd cannot be started: {}. Install it (Debian: the package openocd), or flash over "
-                    "USB: inkwell flash.",
-                    std::strerror(result)));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw device::Error(cannot_use);
+  const device::PrivateFolder folder;
+  write_image_file(image, folder.path() / image_file);
+  bool is_verified = false;
+  const std::function<void(const std::string&)> watch = [&](const std::string& line) {
+    is_verified |= line == verified_line;
+    on_line(line);
+  };
+  Lines lines(watch);
+  std::vector<std::string> words{"openocd"};
+  std::ranges::copy(openocd_arguments(interface), std::back_inserter(words));
+  const int exit_code = device::run_child_program(
+      {.words = words,
+       .folder = folder.path(),
+       .advice = "Install it (Debian: the package openocd), or flash over USB: inkwell flash."},
+      [&](std::string_view piece) { lines.add(piece); });
+  lines.end();
+  if (exit_code != 0) throw device::Error(cannot_use);
+  if (!is_verified) throw device::Error(not_verified);
 }
 
 }  // namespace inkwell::firmware_update

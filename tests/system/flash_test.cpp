@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <device/control_channel.hpp>
+#include <failure.hpp>
 #include <host/firmware_update/made_elf.hpp>
 
 #include "board_rig.hpp"
@@ -263,35 +264,39 @@ TEST_CASE("without a board, and without openocd, flashing says what to do") {
   CHECK(says(no_probe, "Install it"));
 }
 
-TEST_CASE("a probe's openocd is called with the image, and its failure is told") {
+TEST_CASE("an update by a probe writes the named board's image, and its failure is reported") {
   const TemporaryDirectory directory;
   const auto called = directory.file("called");
   const auto fake = directory.file("openocd");
-  std::ofstream(fake) << "#!/bin/sh\nfor word in \"$@\"; do echo \"$word\"; done >" << called
-                      << "\nexit ${FAKE_RESULT:-0}\n";
+  // It reports that the image is verified, in the words that it is told.
+  std::ofstream(fake) << "#!/bin/sh\nfor word in \"$@\"; do echo \"$word\"; done >" << called << "\ncat image.hex >>"
+                      << called << "\nsed -n 's/^echo {\\(.*\\)}$/\\1/p' " << called << "\nexit ${FAKE_RESULT:-0}\n";
   std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
   const std::string path = "PATH=" + directory.path() + ":/usr/bin:/bin", companion = build_directory() + "/inkwell";
+  const auto told = [&] {
+    std::ifstream file(called);
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+  };
   const auto done =
       run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--interface", "jlink", image("inkwell.elf")});
   CHECK(done.exit_code == 0);
-  std::ifstream file(called);
-  const std::string words{std::istreambuf_iterator<char>(file), {}};
-  CHECK(words.find("interface/jlink.cfg") != std::string::npos);
-  CHECK(words.find("inkwell.elf") != std::string::npos);
-  CHECK(words.find("options_write") != std::string::npos);
+  CHECK(contains(told(), "interface/jlink.cfg"));
+  CHECK(contains(told(), "6E695F647269766572"));  // ni_driver
   const auto failed =
       run_program("/usr/bin/env", {path, "FAKE_RESULT=1", companion, "flash", "--swd", "--board", "omni_driver"});
   CHECK(failed.exit_code == 1);
   CHECK(says(failed, "Is the probe connected"));
 
   // Of the board that is named it is the image beside the program; of none, none is guessed and openocd not called.
+  CHECK(run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--board", "bench_modules"}).exit_code == 0);
+  CHECK(contains(told(), "6E63685F6D6F64756C6573"));  // nch_modules
   std::filesystem::remove(called);
   const auto nameless = run_program("/usr/bin/env", {path, companion, "flash", "--swd"});
   CHECK(nameless.exit_code == 2);
   CHECK(says(nameless, "--board, which is one of these: bench_modules, omni_driver"));
+  const auto path_as_interface =
+      run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--interface", "../x", "--board", "omni_driver"});
+  CHECK(path_as_interface.exit_code == 2);
+  CHECK(says(path_as_interface, "--interface"));
   CHECK_FALSE(std::filesystem::exists(called));
-  CHECK(run_program("/usr/bin/env", {path, companion, "flash", "--swd", "--board", "bench_modules"}).exit_code == 0);
-  std::ifstream again(called);
-  const std::string of_named{std::istreambuf_iterator<char>(again), {}};
-  CHECK(of_named.find("inkwell-bench_modules.elf") != std::string::npos);
 }

@@ -9,7 +9,6 @@
 #include <firmware_update/boot_loader.hpp>
 #include <firmware_update/flash_file.hpp>
 #include <firmware_update/image.hpp>
-#include <firmware_update/probe.hpp>
 #include <firmware_update/update.hpp>
 #include <local/owned_file.hpp>
 #include <temporary_directory.hpp>
@@ -157,17 +156,6 @@ TEST_CASE("of the option bytes only the brown-out level changes") {
     options[1] = std::byte(protection);
     CHECK_THROWS_AS(with_brown_out_level_3(options), device::Error);
   }
-}
-
-TEST_CASE("openocd is called with the image as one word of Tcl") {
-  const auto words = openocd_arguments("/tmp/an [exit] \"image\" $x.elf", "cmsis-dap");
-  REQUIRE(words.size() == 10);
-  CHECK(words[1] == "interface/cmsis-dap.cfg");
-  CHECK(words[3] == "target/stm32f4x.cfg");
-  CHECK(contains(words[5],
-                 "flash write_image erase \"/tmp/an \\[exit\\] \\\"image\\\" \\$x.elf\"; verify_image \"/tmp/an "));
-  CHECK(contains(words[7], "($optcr & 0x0c) != 0"));
-  CHECK(contains(words[9], "reset run"));
 }
 
 TEST_CASE("a virtual board's flash file gets the image's sectors, and keeps the others") {

@@ -1,20 +1,33 @@
 // A new firmware by a debug probe at the board's SWD connector, through openocd.
 #pragma once
 
-#include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <firmware_update/image.hpp>
 
 namespace inkwell::firmware_update {
 
-/// What openocd is to be called with: it writes the image's own sectors, reads them back, sets the brown-out level if
-/// it differs, and starts the firmware. `interface` is the name of one of openocd's interface files, such as stlink.
-std::vector<std::string> openocd_arguments(const std::filesystem::path& image, const std::string& interface);
+/// Whether it can be the name of one of openocd's interface files, such as "stlink": lower-case letters, digits, '_'
+/// and '-' only, so that it cannot lead into another folder.
+bool is_interface_name(std::string_view name);
+/// The sentence for a user who gave another name.
+std::string no_interface_name(std::string_view name);
 
-/// Runs openocd, which says what it does. Throws Objected as `update` does, and device::Error if there is no openocd or
-/// it does not succeed.
-void update_by_probe(const Image& image, const std::string& interface, Consent consent);
+/// Bytes of the image as Intel HEX, which openocd reads in place of the user's file: nothing else is written.
+std::string intel_hex(const Image& image);
+
+/// Arguments of openocd, which writes the sectors of the image, reads them back, prints `verified_line`, sets the
+/// brown-out level if it differs, and starts the firmware.
+std::vector<std::string> openocd_arguments(const std::string& interface);
+inline constexpr char image_file[] = "image.hex", verified_line[] = "inkwell: the image is verified";
+
+/// Runs openocd in a folder that holds nothing but the image, because openocd looks for its scripts in its current
+/// folder first. `on_line` gets each line that it prints. Throws Objected as `update` does, and device::Error if there
+/// is no openocd, it fails, or it does not report that the image is verified.
+void update_by_probe(const Image& image, const std::string& interface, Consent consent,
+                     const std::function<void(const std::string&)>& on_line);
 
 }  // namespace inkwell::firmware_update
