@@ -1,17 +1,94 @@
-"""Host binaries, and where they look for libraries."""
+"""How host binaries are protected against memory errors, as readelf shows it, and where they look for libraries."""
 
+import dataclasses
 import os
 import pathlib
 import re
 import subprocess
 from collections.abc import Iterator
 
+from kinds import LIBRARY
+
 ET_EXEC, ET_DYN = 2, 3
 EM_ARM = 40
+FUNCTION_BEGIN = b"\xf3\x0f\x1e\xfa"  # endbr64: an indirect call may lead here
+PROBES = (b"\x48\x83\x0c\x24\x00", b"\x48\xc7\x04\x24\x00\x00\x00\x00")  # of the stack: GCC's and Clang's
+# The objects that the C library adds to each binary begin a few functions in this way whatever the flags are.
+FUNCTIONS_LEAST = 10
+
+# Each property of each binary, and the flag without which it is missing.
+EVERYWHERE = {
+    "position independent": "-fPIC, -pie",
+    "read-only relocations": "-Wl,-z,relro",
+    "immediate binding": "-Wl,-z,now",
+    "stack protector": "-fstack-protector-strong",
+    "marked functions": "-fcf-protection",
+}
+CHECKED_CALLS = "checked library calls"
+ASSERTIONS = "library assertions"
+STACK_PROBES = "stack probes"
+# Properties that show only where a binary has the code that they protect.
+IN_SOME = {
+    CHECKED_CALLS: "-D_FORTIFY_SOURCE=3",
+    ASSERTIONS: "-D_GLIBCXX_ASSERTIONS",
+    STACK_PROBES: "-fstack-clash-protection",
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Binary:
+    file: str  # below the folder of the build, with * for what depends on the computer
+    kind: str | None  # below the prefix, one of kinds.KINDS; None: it is not installed
+    also: frozenset[str]  # of IN_SOME
+    is_optional: bool = False
+
+    def expected(self) -> dict[str, str]:
+        return EVERYWHERE | {name: flag for name, flag in IN_SOME.items() if name in self.also}
+
+
+def binary(file: str, kind: str | None, *also: str, is_optional: bool = False) -> Binary:
+    return Binary(file, kind, frozenset(also), is_optional)
+
+
+BINARIES = [
+    binary("inkwell", r"bin/inkwell", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
+    binary("virtual-board", r"bin/virtual-board", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
+    binary("libinkwell.so", LIBRARY + r"libinkwell\.so\.\d+\.\d+\.\d+", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
+    binary("dropins/libHD.so", r"lib/inkwell/dropins/libHD\.so\.3\.4", CHECKED_CALLS, ASSERTIONS),
+    binary("dropins/libhdPhantom.so", r"lib/inkwell/dropins/libhdPhantom\.so"),
+    binary("python/inkwell/_native.*.so", None, CHECKED_CALLS, ASSERTIONS),
+    binary("octave/inkwell_mex.mex", None, CHECKED_CALLS, ASSERTIONS, is_optional=True),  # where there is Octave
+]
 
 
 def readelf(option: str, path: pathlib.Path) -> str:
     return subprocess.run(["readelf", "-W", option, path], check=True, capture_output=True, text=True).stdout
+
+
+def properties(path: pathlib.Path) -> set[str]:
+    """Of EVERYWHERE and IN_SOME, those that the file shows."""
+    header, segments, dynamic = (readelf(option, path) for option in ("-h", "-l", "-d"))
+    imported = re.findall(r" UND ([\w.]+)", readelf("--dyn-syms", path))
+    content = path.read_bytes()
+    shown = {
+        "position independent": re.search(r"Type: +DYN ", header),
+        "read-only relocations": "GNU_RELRO" in segments,
+        "immediate binding": re.search(r"\(FLAGS_1\) .*\bNOW\b", dynamic),
+        "stack protector": "__stack_chk_fail" in imported,
+        CHECKED_CALLS: any(re.fullmatch(r"__\w+_chk", name) for name in imported),
+        ASSERTIONS: any("glibcxx_assert_fail" in name for name in imported),
+    }
+    if "X86-64" in header:
+        shown["marked functions"] = content.count(FUNCTION_BEGIN) >= FUNCTIONS_LEAST
+        shown[STACK_PROBES] = any(probe in content for probe in PROBES)
+    else:  # these two are instructions that only this processor has
+        shown["marked functions"] = shown[STACK_PROBES] = True
+    return {name for name, is_shown in shown.items() if is_shown}
+
+
+def missing(path: pathlib.Path, binary: Binary) -> list[str]:
+    shown = properties(path)
+    return [f"{path} has no {name}: {flag}" for name, flag in binary.expected().items() if name not in shown]
 
 
 def host_binaries(folder: pathlib.Path) -> Iterator[pathlib.Path]:

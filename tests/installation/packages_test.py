@@ -11,7 +11,7 @@ import subprocess
 import sys
 import unittest
 
-from binaries import host_binaries, unsafe_folders
+from binaries import BINARIES, host_binaries, missing, unsafe_folders
 from kinds import DEBIAN, KINDS, differences
 
 BUILD, WORK = (pathlib.Path(argument) for argument in sys.argv[1:3])
@@ -81,10 +81,13 @@ class Packages(unittest.TestCase):
         for path in [*content("inkwell").glob("usr/bin/*"), *content("inkwell").glob("usr/lib/**/*.so*")]:
             self.assertIn("no symbols", run("objdump", "-t", path))
 
-    def test_binaries_load_no_library_from_the_current_folder(self):
-        paths = list(host_binaries(content("inkwell")))
-        self.assertEqual(5, len(paths))
-        self.assertEqual([], [problem for path in paths for problem in unsafe_folders(path)])
+    def test_binaries_are_protected_and_load_no_library_from_the_current_folder(self):
+        folder = content("inkwell")
+        for path in host_binaries(folder):
+            installed = str(path.relative_to(folder / "usr"))
+            with self.subTest(installed):
+                [row] = [binary for binary in BINARIES if binary.kind and re.fullmatch(binary.kind, installed)]
+                self.assertEqual([], missing(path, row) + unsafe_folders(path))
 
     def test_only_the_virtual_board_is_linked_to_unicorn_and_its_licence_is_told(self):
         folder = content("inkwell")
