@@ -187,6 +187,10 @@ bool Chip::usart_listens(unsigned number) const {
   return number >= 1 && number <= parts_->usarts.size() && parts_->usarts[number - 1].listens();
 }
 
+std::size_t Chip::usart_waiting(unsigned number) const {
+  return number >= 1 && number <= parts_->usarts.size() ? parts_->usarts[number - 1].waiting() : 0;
+}
+
 Ticks Chip::now() const { return parts_->machine.timeline.now(); }
 Mode Chip::mode() const { return parts_->machine.options.mode; }
 Clocks Chip::clocks() const { return parts_->machine.clocks.frequencies; }

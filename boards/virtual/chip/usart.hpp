@@ -48,6 +48,7 @@ class Usart final : public RegisterBlock, public TimedPart {
   void step(Ticks now) override;
   void receive(std::uint8_t byte);
   bool listens() const;
+  std::size_t waiting() const { return line_.size(); }
   /// A DMA stream has been enabled: requests that wait can be served.
   void serve_dma();
   std::function<void(unsigned number, std::uint8_t byte)> on_sent;

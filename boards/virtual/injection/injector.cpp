@@ -54,6 +54,9 @@ void flip_bit(Chip& chip, const Injection& injection) {
 }  // namespace
 
 unsigned Injector::add(const Injection& injection) {
+  if (active_.size() + planned_.size() >= faults_maximum)
+    throw InvalidInjection(
+        fmt::format("{} faults are put in or still to come, which is the limit; heal some first", faults_maximum));
   if (injection.address) {
     const bool flash = is_within(*injection.address, flash_base, flash_bytes);
     const bool ram =

@@ -28,7 +28,8 @@ std::string_view name_of(ResetCause cause) {
 
 }  // namespace
 
-Board::Board(const Options& options, std::function<void()> on_usb_request, std::function<bool()> is_ending)
+Board::Board(const Options& options, const local::SocketAddress& usbip, std::function<void()> on_usb_request,
+             std::function<bool()> is_ending)
     : elf_(options.elf),
       facts_(*options.board),
       plant_(arms::read(options.arm), facts_, {.seed = options.seed}),
@@ -51,12 +52,7 @@ Board::Board(const Options& options, std::function<void()> on_usb_request, std::
     symbols_ = Symbols(elf_);
   }
   if (flash_file_) flash_file_->save(chip_.flash());
-  try {
-    usb_.emplace(chip_.connections(), options.usbip_port, options.host_clock_ppm, std::move(on_usb_request),
-                 std::move(is_ending));
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{} (--usbip gives it)", error.what()));
-  }
+  usb_.emplace(chip_.connections(), usbip, options.host_clock_ppm, std::move(on_usb_request), std::move(is_ending));
   if (options.real_time) usb_->limit_waiting();
   chip_.add_peripheral(OtgFsDevice::base, OtgFsDevice::size, "OTG_FS", usb_->connector());
   chip_.on_boot_loader = [this] { return usb_->connector().boot_loader_order(chip_.debug_port()); };

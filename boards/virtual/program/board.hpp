@@ -21,9 +21,10 @@ namespace inkwell::virtual_board {
 class Board {
  public:
   /// Reads the arm, programs the flash and switches the power on.
-  /// @throws std::runtime_error with a sentence if the arm, the ELF or the USB/IP port is refused.
-  /// `on_usb_request` and `is_ending`: see VirtualUsb.
-  Board(const Options& options, std::function<void()> on_usb_request, std::function<bool()> is_ending);
+  /// @throws std::runtime_error with a sentence if the arm, the ELF or the address of USB/IP is refused.
+  /// `usbip`, `on_usb_request` and `is_ending`: see VirtualUsb.
+  Board(const Options& options, const local::SocketAddress& usbip, std::function<void()> on_usb_request,
+        std::function<bool()> is_ending);
   ~Board();
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;

@@ -1,4 +1,4 @@
-#include "control_server.hpp"
+#include <program/control_server.hpp>
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -7,19 +7,30 @@
 
 #include <array>
 #include <cerrno>
+#include <string>
 #include <string_view>
 #include <utility>
-
-#include "loopback.hpp"
 
 namespace inkwell::virtual_board {
 namespace {
 
 constexpr std::size_t line_maximum = 1 << 20;
 
+bool refuse(int socket, std::string_view reason) {
+  local::send_all(socket, nlohmann::json{{"ok", false}, {"error", reason}}.dump() + '\n');
+  return false;
+}
+
+/// A line that begins in another way is of another protocol, such as a browser's request, and its later lines are not
+/// to be carried out.
+bool may_be_command(std::string_view line) {
+  const auto first = line.find_first_not_of(" \t\r");
+  return first == std::string_view::npos || line[first] == '{';
+}
+
 }  // namespace
 
-ControlServer::ControlServer(std::uint16_t port) : listener_(listen_on_loopback(port, "--control")), port_(port) {
+ControlServer::ControlServer(const local::SocketAddress& where) : listener_(where, "--control") {
   acceptor_ = std::thread([this] { accept_clients(); });
 }
 
@@ -28,76 +39,78 @@ ControlServer::~ControlServer() {
     const std::lock_guard lock(mutex_);
     closing_ = true;
     requests_.clear();  // breaks their promises, which their clients are told
-    for (Client& client : clients_) ::shutdown(client.socket, SHUT_RD);
+    for (Client& client : clients_)
+      if (client.socket.is_open()) ::shutdown(client.socket.number(), SHUT_RD);
   }
-  ::shutdown(listener_, SHUT_RDWR);
+  ::shutdown(listener_.descriptor(), SHUT_RDWR);
   acceptor_.join();
-  for (Client& client : clients_) {
-    client.thread.join();
-    ::close(client.socket);
-  }
-  ::close(listener_);
+  for (Client& client : clients_) client.thread.join();
 }
 
 void ControlServer::accept_clients() {
   for (;;) {
-    const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (socket < 0) {
-      if (errno == EINTR || errno == ECONNABORTED) continue;
+    local::Descriptor socket(::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC));
+    const bool has_failed = !socket.is_open() && errno != EINTR && errno != ECONNABORTED;
+    {
       const std::lock_guard lock(mutex_);
       if (closing_) return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));  // out of descriptors: clients may leave
-      continue;
     }
-    const int on = 1;
-    ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    const timeval patience{2, 0};  // a client that does not read must not keep the program from ending
-    ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-    const std::lock_guard lock(mutex_);
-    for (auto client = clients_.begin(); client != clients_.end();) {
-      if (client->gone) {
-        client->thread.join();
-        ::close(client->socket);
-        client = clients_.erase(client);
-      } else {
-        ++client;
-      }
-    }
-    if (closing_) {
-      ::close(socket);
-      return;
-    }
-    Client& client = clients_.emplace_back(Client{socket, {}});
-    client.thread = std::thread([this, &client] { serve(client); });
+    if (has_failed) std::this_thread::sleep_for(local::accept_rest);
+    if (socket.is_open()) accept(std::move(socket));
   }
+}
+
+void ControlServer::accept(local::Descriptor socket) {
+  const int on = 1;
+  ::setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  const timeval patience{2, 0};  // a client that does not read must not keep the program from ending
+  ::setsockopt(socket.number(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+  const std::lock_guard lock(mutex_);
+  if (closing_) return;
+  clients_.remove_if([](Client& client) {
+    if (client.gone) client.thread.join();
+    return client.gone;
+  });
+  if (clients_.size() >= clients_maximum) {
+    refuse(socket.number(), "the control socket serves " + std::to_string(clients_maximum) +
+                                " clients, which is its limit; close one of them");
+    return;
+  }
+  Client& client = clients_.emplace_back(Client{std::move(socket), {}});
+  client.thread = std::thread([this, &client] { serve(client); });
 }
 
 void ControlServer::serve(Client& client) {
   std::array<char, 4096> chunk;
-  std::string pending;
-  bool open = true;
-  while (open) {
-    const ssize_t received = ::recv(client.socket, chunk.data(), chunk.size(), 0);
-    if (received < 0 && errno == EINTR) continue;
-    if (received <= 0) break;
-    pending.append(chunk.data(), static_cast<std::size_t>(received));
-    std::size_t begin = 0;
-    for (std::size_t end; open && (end = pending.find('\n', begin)) != std::string::npos; begin = end + 1) {
-      const auto reply = ask(pending.substr(begin, end - begin));
-      // An error may quote bytes of the client that are no UTF-8.
-      constexpr auto replace = nlohmann::json::error_handler_t::replace;
-      open = reply && send_all(client.socket, reply->dump(-1, ' ', false, replace) + '\n');
-    }
-    pending.erase(0, begin);
-    if (pending.size() > line_maximum) {
-      send_all(client.socket, R"({"ok":false,"error":"the line is too long; a command ends with a newline"})"
-                              "\n");
-      break;
-    }
+  std::string received;
+  for (;;) {
+    const ssize_t count = ::recv(client.socket.number(), chunk.data(), chunk.size(), 0);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    received.append(chunk.data(), static_cast<std::size_t>(count));
+    if (!serve_lines(client.socket.number(), received)) break;
   }
-  ::shutdown(client.socket, SHUT_RDWR);
+  ::shutdown(client.socket.number(), SHUT_RDWR);
   const std::lock_guard lock(mutex_);
+  client.socket = local::Descriptor();  // now, and not when another client comes: it counts for the system's limit
   client.gone = true;
+}
+
+bool ControlServer::serve_lines(int socket, std::string& received) {
+  std::size_t begin = 0;
+  for (std::size_t end; (end = received.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string line = received.substr(begin, end - begin);
+    if (!may_be_command(line)) break;
+    const auto reply = ask(line);
+    // An error may quote bytes of the client that are no UTF-8.
+    constexpr auto replace = nlohmann::json::error_handler_t::replace;
+    if (!reply || !local::send_all(socket, reply->dump(-1, ' ', false, replace) + '\n')) return false;
+  }
+  received.erase(0, begin);
+  if (!may_be_command(received))
+    return refuse(socket, "a command is one JSON object in one line, such as {\"command\":\"status\"}");
+  if (received.size() > line_maximum) return refuse(socket, "the line is too long; a command ends with a newline");
+  return true;
 }
 
 std::optional<nlohmann::json> ControlServer::ask(std::string line) {

@@ -8,12 +8,13 @@
 
 #include <fmt/format.h>
 
+#include <program/control_server.hpp>
+#include <program/stream_server.hpp>
+
 #include "board.hpp"
-#include "control_server.hpp"
 #include "log.hpp"
 #include "options.hpp"
 #include "simulation.hpp"
-#include "stream_server.hpp"
 
 namespace {
 
@@ -34,16 +35,22 @@ int main(int argc, char** argv) {
   action.sa_handler = request_end;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction of_hang_up {};
+  sigaction(SIGHUP, nullptr, &of_hang_up);
+  if (of_hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup has it ignored
 
   try {
-    ControlServer server(options.control_port);
+    PrivateSockets sockets;
+    ControlServer server(sockets.address_of(options.control, "control"));
     Board board(
-        options, [&server] { server.wake(); }, [] { return end_requested.load(); });
+        options, sockets.address_of(options.usbip, "usbip"), [&server] { server.wake(); },
+        [] { return end_requested.load(); });
     std::optional<StreamServer> gdb;
-    if (options.gdb_port) gdb.emplace(*options.gdb_port, "--gdb", [&server] { server.wake(); });
-    UartLinks uarts(options.uarts, board.chip(), [&server] { server.wake(); });
-    fmt::print("ready usbip={} control={}", board.usb().port(), server.port());
-    if (gdb) fmt::print(" gdb={}", gdb->port());
+    if (options.gdb)
+      gdb.emplace(sockets.address_of(*options.gdb, "gdb"), "--gdb", &may_be_gdb, [&server] { server.wake(); });
+    UartLinks uarts(options.uarts, board.chip(), sockets, [&server] { server.wake(); });
+    fmt::print("ready usbip={} control={}", announced(board.usb().address()), announced(server.address()));
+    if (gdb) fmt::print(" gdb={}", announced(gdb->address()));
     fmt::print("{}\n", uarts.announcement());
     std::fflush(stdout);
     const int exit_code = Simulation(options, board, server, gdb ? &*gdb : nullptr, uarts).run(end_requested);

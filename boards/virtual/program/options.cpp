@@ -20,7 +20,7 @@ namespace {
 /// As it was written, until all of it is read.
 struct Given {
   Options options;
-  std::uint16_t gdb_port = 0;
+  std::string usbip = "0", control = "0", gdb;
   std::string board, serial_number, mode = "fast", pricing = "likely", flash_times = "typical";
   double seconds = 0.0;
   std::vector<std::string> uarts, pins, injections;
@@ -33,7 +33,9 @@ constexpr const char* description =
     "Runs the ELF of an STM32F405 on a board made of software: the chip, bridges, motors and sensors, an arm and a\n"
     "hand. Its USB device is exported by the USB/IP protocol; a control "
     "socket moves the hand, presses buttons, runs\n"
-    "and stops the time, and tells what no real board could. Both listen on 127.0.0.1 only.\n"
+    "and stops the time, and tells what no real board could.\n"
+    "A PORT is a TCP port of 127.0.0.1, which every user of this computer can use (0: any free one), or unix:PATH, a\n"
+    "Unix socket of mode 0600. `unix:` alone is a socket in a new private folder, which is removed at the end.\n"
     "When it is ready it prints one line: ready usbip=PORT control=PORT, and gdb=PORT and uartN=PORT if asked for.\n"
     "Its log goes to stderr.";
 
@@ -55,18 +57,14 @@ void add_files_and_ports(CLI::App& app, Given& given) {
                  "serial number, up to 24 hexadecimal digits. Unless given, one that --seed makes; without that one\n"
                  "for the file of --flash, else for the port of --usbip, else for this run")
       ->type_name("NUMBER");
-  const auto port = CLI::Range(0, 65535).description("");
-  app.add_option("--usbip", given.options.usbip_port, "TCP port of the USB/IP server; 0 is any free one")
-      ->check(port)
-      ->type_name("PORT");
-  app.add_option("--control", given.options.control_port, "TCP port of the control socket; 0 is any free one")
-      ->check(port)
-      ->type_name("PORT");
-  given.gdb_option = app.add_option("--gdb", given.gdb_port,
-                                    "TCP port where GDB may connect (target remote :PORT), 0 is any free one; "
-                                    "--mode is exact")
-                         ->check(port)
-                         ->type_name("PORT");
+  app.add_option("--usbip", given.usbip, "where the USB/IP server listens")->type_name("PORT")->capture_default_str();
+  app.add_option("--control", given.control, "where the control socket listens")
+      ->type_name("PORT")
+      ->capture_default_str();
+  given.gdb_option =
+      app.add_option("--gdb", given.gdb,
+                     "where GDB may connect (target remote :PORT, or target remote PATH); --mode is exact")
+          ->type_name("PORT");
 }
 
 void add_chip(CLI::App& app, Given& given) {
@@ -138,7 +136,7 @@ void add_time_and_seed(CLI::App& app, Given& given) {
 void add_instruments(CLI::App& app, Given& given) {
   app.add_option("--uart", given.uarts,
                  "where a UART leads, both ways: usart1=stdio is this terminal, "
-                 "usart1=PORT a TCP port (0 is any free one),\n"
+                 "usart1=PORT a TCP port or Unix socket,\n"
                  "usart1=PATH a terminal of its own under that name; usart1 to usart3, uart4, uart5, usart6")
       ->type_name("UART=PLACE")
       ->allow_extra_args(false);
@@ -223,14 +221,30 @@ bool take_board(Given& given) {
 }
 
 /// False after a sentence on stderr.
+bool take_ports(Given& given) {
+  const auto read = [](const char* option, const std::string& text, PortOption& port) {
+    try {
+      port = PortOption::of(text);
+    } catch (const std::invalid_argument& error) {
+      std::cerr << "virtual-board: " << option << ": " << error.what() << "\n";
+      return false;
+    }
+    return true;
+  };
+  return read("--usbip", given.usbip, given.options.usbip) && read("--control", given.control, given.options.control) &&
+         (!*given.gdb_option || read("--gdb", given.gdb, given.options.gdb.emplace()));
+}
+
+/// False after a sentence on stderr.
 bool take_serial_number(Given& given) {
   Options& options = given.options;
   try {
-    options.unique_id = !given.serial_number.empty() ? unique_id_of(given.serial_number)
-                        : *given.seed_option         ? unique_id_of_seed(options.seed)
-                        : !options.flash.empty()     ? unique_id_of_flash(options.flash)
-                        : options.usbip_port != 0    ? unique_id_of_port(options.usbip_port)
-                                                     : unique_id_of_process();
+    options.unique_id = !given.serial_number.empty()      ? unique_id_of(given.serial_number)
+                        : *given.seed_option              ? unique_id_of_seed(options.seed)
+                        : !options.flash.empty()          ? unique_id_of_flash(options.flash)
+                        : options.usbip.address.is_unix() ? unique_id_of_socket(options.usbip.address.path)
+                        : options.usbip.address.port != 0 ? unique_id_of_port(options.usbip.address.port)
+                                                          : unique_id_of_process();
   } catch (const std::invalid_argument& error) {
     log_line("--serial: " + std::string(error.what()));
     return false;
@@ -251,8 +265,7 @@ bool take_over(Given& given) {
     log_line("there is nothing to run. Give a firmware with --elf, or a flash that holds one with --flash.");
     return false;
   }
-  if (!take_board(given) || !take_serial_number(given)) return false;
-  if (*given.gdb_option) given.options.gdb_port = given.gdb_port;
+  if (!take_board(given) || !take_ports(given) || !take_serial_number(given)) return false;
   if (*given.profile_option) given.options.profile = given.profile;
   try {
     for (const std::string& name : given.pins) given.options.waveform_pins.push_back(PinName::of(name));

@@ -11,6 +11,7 @@
 #include <injection/injection.hpp>
 #include <known/boards.hpp>
 
+#include "port_option.hpp"
 #include "serial_number.hpp"
 #include "uart_links.hpp"
 
@@ -20,10 +21,10 @@ struct Options {
   std::filesystem::path elf;
   const board::Facts* board = &board::default_board;
   std::filesystem::path arm;
-  std::filesystem::path flash;   ///< empty: the flash is forgotten at the end
-  std::uint16_t usbip_port = 0;  ///< 0 is any free port
-  std::uint16_t control_port = 0;
-  std::optional<std::uint16_t> gdb_port;
+  std::filesystem::path flash;  ///< empty: the flash is forgotten at the end
+  PortOption usbip;
+  PortOption control;
+  std::optional<PortOption> gdb;
   std::vector<UartOption> uarts;
   std::filesystem::path waveform;      ///< empty: none is written
   std::vector<PinName> waveform_pins;  ///< empty: all

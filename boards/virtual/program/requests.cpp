@@ -12,6 +12,8 @@ using nlohmann::json;
 
 namespace {
 
+/// Of a trace; the rest waits for the next answer. A line of all rows would fill the memory.
+constexpr std::size_t rows_of_answer_maximum = 100'000;
 constexpr double reach_m = 2.0;  // farther away than any arm of the descriptions' ranges
 
 const json& at(const json& request, const char* key, const char* what) {
@@ -180,7 +182,8 @@ TraceAction trace_action(const json& request) {
 }
 
 std::size_t trace_rows(const json& request) {
-  return static_cast<std::size_t>(number_or(request, "maximum", 10'000, 0, Trace::rows_maximum));
+  const double asked = number_or(request, "maximum", 10'000, 0, Trace::rows_maximum);
+  return std::min(static_cast<std::size_t>(asked), rows_of_answer_maximum);
 }
 
 HandRequest hand_request(const json& request) {

@@ -16,8 +16,18 @@ enum Lot : std::uint32_t {
   of_seed = 0x3932'3539,
   of_flash = 0x3932'3546,
   of_port = 0x3932'3550,
+  of_socket = 0x3932'3555,
   of_process = 0x3932'3558
 };
+
+UniqueId unique_id_of_path(const std::filesystem::path& file, Lot lot) {
+  std::error_code code;
+  const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(file, code), code);
+  std::uint64_t hash = 0xCBF2'9CE4'8422'2325;  // FNV-1a
+  for (const char letter : (code ? file : real).string())
+    hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100'0000'01B3;
+  return {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32), lot};
+}
 
 }  // namespace
 
@@ -40,14 +50,9 @@ UniqueId unique_id_of_seed(std::uint64_t seed) {
   return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), of_seed};
 }
 
-UniqueId unique_id_of_flash(const std::filesystem::path& file) {
-  std::error_code code;
-  const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(file, code), code);
-  std::uint64_t hash = 0xCBF2'9CE4'8422'2325;  // FNV-1a
-  for (const char letter : (code ? file : real).string())
-    hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100'0000'01B3;
-  return {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32), of_flash};
-}
+UniqueId unique_id_of_flash(const std::filesystem::path& file) { return unique_id_of_path(file, of_flash); }
+
+UniqueId unique_id_of_socket(const std::filesystem::path& file) { return unique_id_of_path(file, of_socket); }
 
 UniqueId unique_id_of_port(std::uint16_t usbip_port) { return {usbip_port, 0, of_port}; }
 

@@ -17,6 +17,7 @@ UniqueId unique_id_of(std::string_view serial_number);
 UniqueId unique_id_of_seed(std::uint64_t seed);
 /// The same for every way to write the file's name.
 UniqueId unique_id_of_flash(const std::filesystem::path& file);
+UniqueId unique_id_of_socket(const std::filesystem::path& file);
 UniqueId unique_id_of_port(std::uint16_t usbip_port);
 /// For want of anything that lasts longer.
 UniqueId unique_id_of_process();

@@ -14,11 +14,11 @@
 #include <string>
 
 #include <debugger/gdb_session.hpp>
+#include <program/control_server.hpp>
+#include <program/stream_server.hpp>
 
 #include "board.hpp"
-#include "control_server.hpp"
 #include "options.hpp"
-#include "stream_server.hpp"
 #include "uart_links.hpp"
 
 namespace inkwell::virtual_board {

@@ -1,21 +1,40 @@
-#include "stream_server.hpp"
+#include <program/stream_server.hpp>
 
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <iterator>
 #include <utility>
 
-#include "loopback.hpp"
-
 namespace inkwell::virtual_board {
+namespace {
 
-StreamServer::StreamServer(std::uint16_t port, std::string_view option, std::function<void()> on_arrival)
-    : port_(port), listener_(listen_on_loopback(port_, option)), on_arrival_(std::move(on_arrival)) {
+using namespace std::chrono_literals;
+
+constexpr auto look_again = 100ms;  // whether a client with bytes that nobody takes is gone
+
+}  // namespace
+
+bool may_be_gdb(std::string_view bytes) {
+  constexpr std::string_view begins{"+-$\x03"};
+  return bytes.empty() || begins.find(bytes.front()) != std::string_view::npos;
+}
+
+bool may_be_terminal(std::string_view bytes) {
+  constexpr std::string_view begins[] = {"GET ",     "POST ",  "HEAD ",  "PUT ", "DELETE ", "OPTIONS ",
+                                         "CONNECT ", "TRACE ", "PATCH ", "PRI ", "\x16\x03"};
+  return std::ranges::none_of(begins, [&](std::string_view begin) { return bytes.starts_with(begin); });
+}
+
+StreamServer::StreamServer(const local::SocketAddress& where, std::string_view option, FirstBytes welcome,
+                           std::function<void()> on_arrival)
+    : listener_(where, option), welcome_(welcome), on_arrival_(std::move(on_arrival)) {
   thread_ = std::thread([this] { serve(); });
 }
 
@@ -23,64 +42,87 @@ StreamServer::~StreamServer() {
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
-    if (client_ >= 0) ::shutdown(client_, SHUT_RDWR);
+    if (client_.is_open()) ::shutdown(client_.number(), SHUT_RDWR);
   }
-  ::shutdown(listener_, SHUT_RDWR);
+  room_.notify_one();
+  ::shutdown(listener_.descriptor(), SHUT_RDWR);
   thread_.join();
-  ::close(listener_);
 }
 
 void StreamServer::serve() {
   for (;;) {
-    const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    local::Descriptor socket(::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC));
+    const bool has_failed = !socket.is_open() && errno != EINTR && errno != ECONNABORTED;
+    const int client = socket.number();
     {
       const std::lock_guard lock(mutex_);
-      if (closing_) {
-        if (socket >= 0) ::close(socket);
-        return;
-      }
-      if (socket >= 0) {
-        client_ = socket;
-        arrived_ = {true, false, {}};
-      }
+      if (closing_) return;
+      client_ = std::move(socket);
+      if (client >= 0) arrived_.bytes.clear();  // of another client
     }
-    if (socket < 0) {
-      if (errno != EINTR && errno != ECONNABORTED) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      continue;
-    }
+    if (has_failed) std::this_thread::sleep_for(local::accept_rest);
+    if (client < 0) continue;
     const int on = 1;
-    ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    ::setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     const timeval patience{2, 0};  // a client that does not read must not hold up the board
-    ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-    on_arrival_();
-    std::array<char, 4096> chunk;
-    for (;;) {
-      const ssize_t received = ::recv(socket, chunk.data(), chunk.size(), 0);
-      if (received < 0 && errno == EINTR) continue;
-      if (received <= 0) break;
-      {
-        const std::lock_guard lock(mutex_);
-        arrived_.bytes.append(chunk.data(), static_cast<std::size_t>(received));
-      }
-      on_arrival_();
-    }
+    ::setsockopt(client, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    receive_from(client);
+  }
+}
+
+void StreamServer::receive_from(int client) {
+  std::array<char, 4096> chunk;
+  bool is_welcome = false;
+  while (wait_for_room(client)) {
+    const ssize_t count = ::recv(client, chunk.data(), chunk.size(), 0);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    const std::string_view bytes(chunk.data(), static_cast<std::size_t>(count));
+    // A browser sends the begin of its request in one piece.
+    if (!is_welcome && !welcome_(bytes)) break;
     {
       const std::lock_guard lock(mutex_);
-      ::close(std::exchange(client_, -1));
-      arrived_.gone = true;
+      if (!std::exchange(is_welcome, true)) arrived_ = {true, false, {}};
+      arrived_.bytes += bytes;
     }
     on_arrival_();
   }
+  {
+    const std::lock_guard lock(mutex_);
+    client_ = local::Descriptor();
+    if (!is_welcome) return;
+    arrived_.gone = true;
+  }
+  on_arrival_();
+}
+
+/// False if the server ends, or if another client is to take the place of one that is gone.
+bool StreamServer::wait_for_room(int client) {
+  std::unique_lock lock(mutex_);
+  while (!closing_ && arrived_.bytes.size() >= unread_maximum) {
+    if (room_.wait_for(lock, look_again) == std::cv_status::no_timeout) continue;
+    pollfd connection{client, POLLRDHUP, 0};
+    const bool is_gone = ::poll(&connection, 1, 0) > 0;
+    if (is_gone && others_wait()) return false;
+  }
+  return !closing_;
+}
+
+bool StreamServer::others_wait() const {
+  pollfd connection{listener_.descriptor(), POLLIN, 0};
+  return ::poll(&connection, 1, 0) > 0;
 }
 
 StreamServer::Arrived StreamServer::take() {
   const std::lock_guard lock(mutex_);
+  room_.notify_one();
   return std::exchange(arrived_, {});
 }
 
 void StreamServer::send(std::string_view bytes) {
   const std::lock_guard lock(mutex_);
-  if (client_ >= 0 && !bytes.empty() && !send_all(client_, bytes)) ::shutdown(client_, SHUT_RDWR);
+  if (client_.is_open() && !bytes.empty() && !local::send_all(client_.number(), bytes))
+    ::shutdown(client_.number(), SHUT_RDWR);
 }
 
 }  // namespace inkwell::virtual_board

@@ -17,6 +17,11 @@
 #include <fmt/format.h>
 
 namespace inkwell::virtual_board {
+namespace {
+
+constexpr int look_again_ms = 10;  // whether there is room again
+
+}  // namespace
 
 TerminalStream::TerminalStream(std::function<void()> on_arrival)
     : on_arrival_(std::move(on_arrival)), input_(STDIN_FILENO), output_(STDOUT_FILENO) {
@@ -67,9 +72,11 @@ TerminalStream::~TerminalStream() {
 void TerminalStream::read() {
   std::array<char, 4096> chunk;
   for (;;) {
-    std::array<pollfd, 2> descriptors{{{input_, POLLIN, 0}, {ending_, POLLIN, 0}}};
-    if (::poll(descriptors.data(), descriptors.size(), -1) < 0) continue;
+    const bool is_full = has_no_room();
+    std::array<pollfd, 2> descriptors{{{is_full ? -1 : input_, POLLIN, 0}, {ending_, POLLIN, 0}}};
+    if (::poll(descriptors.data(), descriptors.size(), is_full ? look_again_ms : -1) < 0) continue;
     if (descriptors[1].revents != 0) return;
+    if (is_full) continue;
     const ssize_t count = ::read(input_, chunk.data(), chunk.size());
     if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (count <= 0) return;  // the end of the input
@@ -79,6 +86,11 @@ void TerminalStream::read() {
     }
     on_arrival_();
   }
+}
+
+bool TerminalStream::has_no_room() {
+  const std::lock_guard lock(mutex_);
+  return arrived_.size() >= unread_maximum;
 }
 
 ByteStream::Arrived TerminalStream::take() {

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "byte_stream.hpp"
+#include <program/byte_stream.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -28,6 +28,7 @@ class TerminalStream final : public ByteStream {
  private:
   void start();
   void read();
+  bool has_no_room();
 
   std::function<void()> on_arrival_;
   std::filesystem::path link_;  ///< empty: standard input and output

@@ -1,22 +1,32 @@
 #include "uart_links.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "stream_server.hpp"
+#include <program/stream_server.hpp>
+
 #include "terminal_stream.hpp"
 
 namespace inkwell::virtual_board {
+namespace {
+
+/// Bytes that wait for a receiver which the firmware has not switched on.
+constexpr std::size_t kept_maximum = 4096;
+/// Bytes on their way over the wire: more than the fastest UART receives between two calls of serve().
+constexpr std::size_t line_maximum = 4096;
+
+bool may_be_anything(std::string_view) { return true; }
+
+}  // namespace
 
 UartOption UartOption::of(const std::string& text) {
   const auto wrong = [&] {
     return std::invalid_argument(
-        fmt::format("\"{}\" is no UART and its place; write usart1=stdio, usart1=PORT or usart1=PATH, with usart1 to "
-                    "usart3, uart4, uart5 or usart6.",
+        fmt::format("\"{}\" is no UART and its place; write usart1=stdio, usart1=PORT, usart1=unix:PATH or "
+                    "usart1=PATH, with usart1 to usart3, uart4, uart5 or usart6.",
                     text));
   };
   const auto equals = text.find('=');
@@ -28,15 +38,23 @@ UartOption UartOption::of(const std::string& text) {
   UartOption option;
   option.number = static_cast<unsigned>(found - std::begin(names)) + 1;
   if (place == "stdio") return option;
-  const auto* end = place.data() + place.size();
-  const auto number = std::from_chars(place.data(), end, option.port);
-  option.kind = number.ptr == end ? Kind::port : Kind::path;
-  if (option.kind == Kind::port && number.ec != std::errc{}) throw wrong();
-  option.path = place;
+  const bool is_number = place.find_first_not_of("0123456789") == std::string::npos;
+  if (!is_number && !place.starts_with(local::unix_scheme)) {
+    option.kind = Kind::path;
+    option.path = place;
+    return option;
+  }
+  option.kind = Kind::socket;
+  try {
+    option.socket = PortOption::of(place);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", text, error.what()));
+  }
   return option;
 }
 
-UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, const std::function<void()>& on_arrival)
+UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, PrivateSockets& sockets,
+                     const std::function<void()>& on_arrival)
     : chip_(chip) {
   for (const UartOption& option : options) {
     UartLink link{option.number, nullptr, {}, {}};
@@ -45,8 +63,12 @@ UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, const s
     } else if (option.kind == UartOption::Kind::path) {
       link.stream = std::make_unique<TerminalStream>(option.path, on_arrival);
     } else {
-      auto server = std::make_unique<StreamServer>(option.port, "--uart", on_arrival);
-      announcement_ += fmt::format(" uart{}={}", option.number, server->port());
+      const std::string name = fmt::format("uart{}", option.number);
+      const local::SocketAddress where = sockets.address_of(option.socket, name);
+      // No browser can connect to a Unix socket.
+      const FirstBytes welcome = where.is_unix() ? &may_be_anything : &may_be_terminal;
+      auto server = std::make_unique<StreamServer>(where, "--uart", welcome, on_arrival);
+      announcement_ += fmt::format(" {}={}", name, announced(server->address()));
       link.stream = std::move(server);
     }
     links_.push_back(std::move(link));
@@ -60,11 +82,15 @@ UartLinks::UartLinks(const std::vector<UartOption>& options, Chip& chip, const s
 
 void UartLinks::serve() {
   for (UartLink& link : links_) {
-    link.arrived += link.stream->take().bytes;
+    if (link.arrived.size() < kept_maximum) link.arrived += link.stream->take().bytes;
     // A program on the other end cannot know when the firmware has switched its receiver on, so it need not.
-    if (chip_.usart_listens(link.number))
-      for (const char byte : std::exchange(link.arrived, {}))
+    if (chip_.usart_listens(link.number)) {
+      const std::size_t room = line_maximum - std::min(chip_.usart_waiting(link.number), line_maximum);
+      const std::size_t count = std::min(link.arrived.size(), room);
+      for (const char byte : link.arrived.substr(0, count))
         chip_.usart_receive(link.number, static_cast<std::uint8_t>(byte));
+      link.arrived.erase(0, count);
+    }
     if (!link.to_send.empty()) link.stream->send(std::exchange(link.to_send, {}));
   }
 }

@@ -10,25 +10,29 @@
 
 #include <chip/chip.hpp>
 
-#include "byte_stream.hpp"
+#include <program/byte_stream.hpp>
+
+#include "port_option.hpp"
 
 namespace inkwell::virtual_board {
 
 /// Where a UART leads.
 struct UartOption {
   unsigned number = 0;  ///< 1 to 6
-  enum class Kind : std::uint8_t { terminal, port, path } kind = Kind::terminal;
-  std::uint16_t port = 0;
+  enum class Kind : std::uint8_t { terminal, socket, path } kind = Kind::terminal;
+  PortOption socket;
   std::filesystem::path path;
-  /// Of a text such as usart1=stdio, uart4=5000, usart3=PATH. Throws std::invalid_argument with a sentence.
+  /// Of a text such as usart1=stdio, uart4=5000, uart5=unix:PATH, usart3=PATH. Throws std::invalid_argument with a
+  /// sentence.
   static UartOption of(const std::string& text);
 };
 
 class UartLinks {
  public:
   /// Throws std::runtime_error with a sentence if one cannot be had. `on_arrival` as for StreamServer.
-  UartLinks(const std::vector<UartOption>& options, Chip& chip, const std::function<void()>& on_arrival);
-  /// What the program says of them when it is ready: " uart1=PORT" for each that listens.
+  UartLinks(const std::vector<UartOption>& options, Chip& chip, PrivateSockets& sockets,
+            const std::function<void()>& on_arrival);
+  /// What the program says of them when it is ready: " uart1=PORT" or " uart1=unix:PATH" for each that listens.
   const std::string& announcement() const { return announcement_; }
   /// Between two slices of board time: hands over what came, and sends what the chip has sent.
   void serve();

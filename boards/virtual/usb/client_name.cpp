@@ -1,10 +1,16 @@
-#include "client_name.hpp"
+#include <virtual_usb/client_name.hpp>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <system_error>
+
+#include <local/process_name.hpp>
 
 namespace inkwell::virtual_board {
 
@@ -40,18 +46,28 @@ bool has_open(const fs::path& process, const std::string& link) {
 
 }  // namespace
 
-std::string client_name(std::uint16_t port) {
-  const std::string link = link_of_socket(port);
+Peer peer_of(int socket) {
+  ucred credentials{};
+  socklen_t length = sizeof credentials;
+  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &credentials, &length) == 0 && credentials.pid > 0)
+    return {.process = credentials.pid};
+  sockaddr_in address{};
+  length = sizeof address;
+  ::getpeername(socket, reinterpret_cast<sockaddr*>(&address), &length);
+  return {.port = ntohs(address.sin_port)};
+}
+
+std::string client_name(Peer peer) {
+  if (peer.process > 0) return local::name_of_process(peer.process);
+  const std::string link = link_of_socket(peer.port);
   std::error_code error;
   for (fs::directory_iterator process("/proc", error), end; !link.empty() && !error && process != end;
        process.increment(error)) {
     const std::string number = process->path().filename();
-    if (number.find_first_not_of("0123456789") != std::string::npos || !has_open(process->path(), link)) continue;
-    std::string name;
-    std::getline(std::ifstream(process->path() / "comm"), name);
-    return name + " (process " + number + ")";
+    if (number.find_first_not_of("0123456789") == std::string::npos && has_open(process->path(), link))
+      return local::name_of_process(static_cast<pid_t>(std::stol(number)));
   }
-  return "the client with port " + std::to_string(port);
+  return "the client with port " + std::to_string(peer.port);
 }
 
 }  // namespace inkwell::virtual_board

@@ -30,6 +30,12 @@ class UsbIpImport {
     bytes_ -= found->second;
     lengths_.erase(found);
   }
+  /// Throws std::runtime_error if requests to take transfers back wait, more than there can be transfers.
+  void add_unlink() {
+    if (++unlinks_ > transfers_maximum)
+      throw std::runtime_error("it takes back more transfers at a time than the server holds");
+  }
+  void forget_unlink() { --unlinks_; }
 
  private:
   static constexpr std::size_t transfers_maximum = 4096;
@@ -38,6 +44,7 @@ class UsbIpImport {
   std::uint32_t session_;
   std::unordered_map<std::uint32_t, std::uint32_t> lengths_;  ///< of transfers without an answer, by sequence
   std::uint64_t bytes_ = 0;
+  std::size_t unlinks_ = 0;  ///< not answered yet
 };
 
 }  // namespace inkwell::virtual_board

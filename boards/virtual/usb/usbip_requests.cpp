@@ -1,5 +1,6 @@
 #include <virtual_usb/usbip_requests.hpp>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -52,11 +53,19 @@ void UsbIpRequests::feed(std::span<const std::byte> bytes) {
   received_.insert(received_.end(), bytes.begin(), bytes.end());
 }
 
+/// Of the first bytes already: a browser may send fewer than a header at a time.
+void UsbIpRequests::check_version() const {
+  const usbip::Big16 expected = usbip::protocol_version;
+  const auto version = usbip::bytes_of(expected);
+  const auto begin = rest().first(std::min(rest().size(), version.size()));
+  if (!std::equal(begin.begin(), begin.end(), version.begin()))
+    throw std::runtime_error("it does not speak USB/IP 1.1.1");
+}
+
 std::optional<UsbIpRequests::Operation> UsbIpRequests::take_operation() {
+  check_version();
   if (rest().size() < sizeof(usbip::OperationHeader)) return std::nullopt;
   const auto header = usbip::read<usbip::OperationHeader>(rest());
-  if (header.version != usbip::protocol_version)
-    throw std::runtime_error("it speaks another version of USB/IP than 1.1.1");
   if (header.operation == usbip::Operation::request_device_list) {
     consumed_ += sizeof header;
     return ListDevices{};

@@ -1,6 +1,6 @@
 #include "usbip_server.hpp"
 
-#include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -30,41 +30,12 @@ constexpr std::size_t receive_bytes = 256 * 1024;
 /// A client that lets more than this wait is not reading; it is disconnected.
 constexpr std::size_t unsent_maximum = 64u << 20;
 
-std::runtime_error cannot_listen(std::uint16_t port) {
-  const std::string where = "port " + std::to_string(port) + " of 127.0.0.1";
-  if (errno == EADDRINUSE)
-    return std::runtime_error("The USB/IP server cannot use " + where +
-                              ": another program listens there. Give another port, or 0 for any free one.");
-  return std::runtime_error("The USB/IP server cannot listen on " + where + ": " + std::strerror(errno) + ".");
-}
 }  // namespace
 
-UsbIpServer::Descriptor::Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-UsbIpServer::Descriptor& UsbIpServer::Descriptor::operator=(Descriptor&& other) noexcept {
-  std::swap(number_, other.number_);
-  return *this;
-}
-UsbIpServer::Descriptor::~Descriptor() {
-  if (number_ >= 0) ::close(number_);
-}
-
-UsbIpServer::UsbIpServer(std::uint16_t port, std::function<void()> on_order)
-    : on_order_(std::move(on_order)),
-      listener_(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)),
-      wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-  if (listener_.number() < 0 || wake_.number() < 0) throw cannot_listen(port);
-  const int yes = 1;
-  ::setsockopt(listener_.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::bind(listener_.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      ::listen(listener_.number(), connections_maximum) != 0)
-    throw cannot_listen(port);
-  socklen_t length = sizeof address;
-  ::getsockname(listener_.number(), reinterpret_cast<sockaddr*>(&address), &length);
-  port_ = ntohs(address.sin_port);
+UsbIpServer::UsbIpServer(const local::SocketAddress& where, std::function<void()> on_order)
+    : on_order_(std::move(on_order)), listener_(where, "--usbip"), wake_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (!wake_.is_open()) throw std::runtime_error(std::string("--usbip: no event descriptor: ") + std::strerror(errno));
+  ::fcntl(listener_.descriptor(), F_SETFL, O_NONBLOCK);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -152,14 +123,17 @@ void UsbIpServer::run() {
   while (true) {
     descriptors.clear();
     descriptors.push_back({wake_.number(), POLLIN, 0});
-    descriptors.push_back({listener_.number(), POLLIN, 0});
+    // A client that cannot be accepted keeps the listener readable, and nothing would ever be left to receive.
+    const bool accepts = accepts_now();
+    descriptors.push_back({accepts ? listener_.descriptor() : -1, POLLIN, 0});
     for (const Connection& connection : connections_) {
       const bool unsent = connection.sent < connection.to_send.size();
       descriptors.push_back({connection.socket.number(), static_cast<short>(POLLIN | (unsent ? POLLOUT : 0)), 0});
     }
     const bool is_exchanging = exchange != 0;
-    const int ready = ::poll(descriptors.data(), descriptors.size(), is_exchanging ? 0 : -1);
-    if (ready < 0) continue;
+    const int wait_ms = is_exchanging ? 0 : accepts ? -1 : static_cast<int>(local::accept_rest.count());
+    const int ready = ::poll(descriptors.data(), descriptors.size(), wait_ms);
+    if (ready < 0 || (ready == 0 && !is_exchanging)) continue;
     if (ready == 0) {  // nothing is left to receive
       const std::lock_guard lock(mutex_);
       exchanges_done_ = std::exchange(exchange, 0);
@@ -187,8 +161,12 @@ void UsbIpServer::run() {
 
 void UsbIpServer::accept_connections() {
   while (true) {
-    Descriptor socket(::accept4(listener_.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    if (socket.number() < 0) return;
+    local::Descriptor socket(::accept4(listener_.descriptor(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (!socket.is_open()) {
+      if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM)
+        accept_again_at_ = std::chrono::steady_clock::now() + local::accept_rest;
+      return;
+    }
     if (connections_.size() >= connections_maximum) make_room();
     const int yes = 1;
     ::setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
@@ -280,14 +258,7 @@ void UsbIpServer::handle_import(Connection& connection, std::string_view bus_id)
   }
   append_imported(connection.to_send, *device);
   connection.import.emplace(++sessions_);
-  give({.kind = Order::Kind::import, .session = sessions_, .urb = {}, .client_port = port_of(connection)});
-}
-
-std::uint16_t UsbIpServer::port_of(const Connection& connection) {
-  sockaddr_in address{};
-  socklen_t length = sizeof address;
-  ::getpeername(connection.socket.number(), reinterpret_cast<sockaddr*>(&address), &length);
-  return ntohs(address.sin_port);
+  give({.kind = Order::Kind::import, .session = sessions_, .urb = {}, .client = peer_of(connection.socket.number())});
 }
 
 bool UsbIpServer::handle_transfer(Connection& connection) {
@@ -297,6 +268,7 @@ bool UsbIpServer::handle_transfer(Connection& connection) {
   if (const auto* const unlink = std::get_if<UsbIpRequests::Unlink>(&*transfer)) {
     Urb urb;
     urb.sequence = unlink->sequence;
+    connection.import->add_unlink();
     give({Order::Kind::unlink, session, std::move(urb), unlink->unlinked_sequence});
     return true;
   }
@@ -323,6 +295,7 @@ void UsbIpServer::deliver_results() {
       importer->import->forget(result.urb.sequence);
       append_submitted(importer->to_send, result.urb, result.status);
     } else {
+      importer->import->forget_unlink();
       if (result.status == transfer_status::unlinked) importer->import->forget(result.unlink_sequence);
       append_unlinked(importer->to_send, result.urb.sequence, result.status);
     }

@@ -1,4 +1,4 @@
-// Exports the one device by USB/IP on a loopback TCP port.
+// Exports the one device by USB/IP, on a TCP port of this computer or on a Unix socket.
 //
 // The server's own thread does all that can wait. The simulation's thread exchanges orders and results with
 // it through two queues and never waits for a socket.
@@ -16,6 +16,9 @@
 #include <thread>
 #include <vector>
 
+#include <local/descriptor.hpp>
+#include <local/listener.hpp>
+#include <virtual_usb/client_name.hpp>
 #include <virtual_usb/descriptors.hpp>
 #include <virtual_usb/urb.hpp>
 #include <virtual_usb/usbip_requests.hpp>
@@ -33,7 +36,7 @@ class UsbIpServer {
     std::uint32_t session;
     Urb urb;  ///< of a submit; its `sequence` is also that of an unlink
     std::uint32_t unlink_sequence = 0;
-    std::uint16_t client_port = 0;  ///< of an import
+    Peer client{};  ///< of an import
   };
   struct Result {
     enum class Kind : std::uint8_t { submitted, unlinked };
@@ -44,14 +47,14 @@ class UsbIpServer {
     std::uint32_t unlink_sequence = 0;
   };
 
-  /// Listens on 127.0.0.1:`port` (0: any free one). Throws std::runtime_error with a sentence if it can not.
+  /// Throws std::runtime_error with a sentence that names --usbip if it cannot listen there.
   /// `on_order` is called from the server's thread when there is something to take.
-  UsbIpServer(std::uint16_t port, std::function<void()> on_order);
+  UsbIpServer(const local::SocketAddress& where, std::function<void()> on_order);
   ~UsbIpServer();
   UsbIpServer(const UsbIpServer&) = delete;
   UsbIpServer& operator=(const UsbIpServer&) = delete;
 
-  std::uint16_t port() const { return port_; }
+  const local::SocketAddress& address() const { return listener_.address(); }
 
   // For the simulation's thread.
   /// Appends the orders that came in to `orders`; costs next to nothing if there are none.
@@ -68,19 +71,8 @@ class UsbIpServer {
   void withdraw();
 
  private:
-  class Descriptor {
-   public:
-    explicit Descriptor(int number = -1) : number_(number) {}
-    Descriptor(Descriptor&& other) noexcept;
-    Descriptor& operator=(Descriptor&& other) noexcept;
-    ~Descriptor();
-    int number() const { return number_; }
-
-   private:
-    int number_;
-  };
   struct Connection {
-    Descriptor socket;
+    local::Descriptor socket;
     UsbIpRequests requests;
     std::vector<std::byte> to_send;
     std::size_t sent = 0;
@@ -90,6 +82,7 @@ class UsbIpServer {
   };
 
   void run();
+  bool accepts_now() const { return std::chrono::steady_clock::now() >= accept_again_at_; }
   void accept_connections();
   void make_room();
   void end(Connection& connection);
@@ -99,16 +92,14 @@ class UsbIpServer {
   bool handle_operation(Connection& connection);
   bool handle_transfer(Connection& connection);
   void handle_import(Connection& connection, std::string_view bus_id);
-  static std::uint16_t port_of(const Connection& connection);
   void deliver_results();
   std::optional<DeviceDescription> offered();
   void give(Order&& order);
   void wake();
 
   std::function<void()> on_order_;
-  Descriptor listener_;
-  Descriptor wake_;  // eventfd
-  std::uint16_t port_ = 0;
+  local::Listener listener_;
+  local::Descriptor wake_;  // eventfd
 
   std::mutex mutex_;  // guards the next seven
   std::vector<Order> orders_;
@@ -123,6 +114,7 @@ class UsbIpServer {
   // Only for the server's thread.
   std::list<Connection> connections_;
   std::uint32_t sessions_ = 0;
+  std::chrono::steady_clock::time_point accept_again_at_{};
 
   std::thread thread_;
 };

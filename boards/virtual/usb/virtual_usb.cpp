@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include <virtual_usb/client_name.hpp>
 #include <virtual_usb/host_pace.hpp>
 
-#include "client_name.hpp"
 #include "shared_port.hpp"
 #include "usbip_server.hpp"
 
@@ -23,12 +23,12 @@ constexpr std::chrono::milliseconds attention{50};  // how soon a board that wai
 }  // namespace
 
 struct VirtualUsb::Implementation final : SharedPort::Client {
-  Implementation(const ChipConnections& chip, std::uint16_t tcp_port, double host_clock_ppm,
+  Implementation(const ChipConnections& chip, const local::SocketAddress& where, double host_clock_ppm,
                  std::function<void()> on_request, std::function<bool()> ends)
       : connector(chip),
         port(chip.scheduler, connector, *this, host_clock_ppm),
         is_ending(std::move(ends)),
-        server(tcp_port, std::move(on_request)) {}
+        server(where, std::move(on_request)) {}
 
   void between_transactions() override { wait_while(&HostPace::is_starved, go_on_while_late); }
 
@@ -48,7 +48,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   std::vector<std::string> names(Condition condition) const {
     std::vector<std::string> names;
     for (const auto& [session, pace] : paces)
-      if ((pace.*condition)()) names.push_back(client_name(client_ports.at(session)));
+      if ((pace.*condition)()) names.push_back(client_name(clients.at(session)));
     return names;
   }
 
@@ -89,12 +89,12 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
     switch (order.kind) {
       case Kind::import:
         paces[order.session] = {};
-        client_ports[order.session] = order.client_port;
+        clients[order.session] = order.client;
         port.import(order.session);
         break;
       case Kind::release:
         paces.erase(order.session);
-        client_ports.erase(order.session);
+        clients.erase(order.session);
         port.release(order.session);
         break;
       case Kind::submit:
@@ -127,7 +127,7 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   Connector connector;
   SharedPort port;
   std::map<std::uint32_t, HostPace> paces;  ///< of each program that has imported the device
-  std::map<std::uint32_t, std::uint16_t> client_ports;
+  std::map<std::uint32_t, Peer> clients;
   bool has_limit = false;         ///< every program is waited for no longer than a while
   std::vector<std::string> late;  ///< programs that are waited for without a limit, and have been for a while
   std::function<bool()> go_on_while_late = [] { return true; };
@@ -136,16 +136,17 @@ struct VirtualUsb::Implementation final : SharedPort::Client {
   UsbIpServer server;
 };
 
-VirtualUsb::VirtualUsb(const ChipConnections& chip, std::uint16_t port, double host_clock_ppm,
+VirtualUsb::VirtualUsb(const ChipConnections& chip, const local::SocketAddress& where, double host_clock_ppm,
                        std::function<void()> on_request, std::function<bool()> is_ending)
     : implementation_(
-          std::make_unique<Implementation>(chip, port, host_clock_ppm, std::move(on_request), std::move(is_ending))) {
+          std::make_unique<Implementation>(chip, where, host_clock_ppm, std::move(on_request), std::move(is_ending))) {
   connect();
 }
 VirtualUsb::~VirtualUsb() = default;
 
 Connector& VirtualUsb::connector() { return implementation_->connector; }
-std::uint16_t VirtualUsb::port() const { return implementation_->server.port(); }
+const local::SocketAddress& VirtualUsb::address() const { return implementation_->server.address(); }
+std::uint16_t VirtualUsb::port() const { return address().port; }
 void VirtualUsb::serve() { implementation_->serve(); }
 void VirtualUsb::settle() {
   implementation_->server.exchange_all();

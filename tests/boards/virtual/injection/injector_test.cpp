@@ -237,6 +237,15 @@ TEST_CASE("encoders, shunts and motors by their numbers") {
   CHECK(turn() > sound + 3500);
 }
 
+TEST_CASE("more faults than a board holds are refused, until some are healed") {
+  Rig rig;
+  for (std::size_t i = 0; i < Injector::faults_maximum; ++i) rig.inject("supply_sag=9@1000");
+  CHECK_THROWS_AS(rig.inject("supply_sag=9@1000"), InvalidInjection);
+  CHECK_THROWS_AS(rig.inject("motor_open:1"), InvalidInjection);
+  rig.injector.heal_all();
+  CHECK_NOTHROW(rig.inject("motor_open:1"));
+}
+
 TEST_CASE("legs of bridges by motor and terminal") {
   Rig rig("converters");  // which leaves the bridges alone
   const auto drive = [&](board::Pin pin, bool high) {

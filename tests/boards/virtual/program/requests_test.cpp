@@ -62,7 +62,7 @@ TEST_CASE("what is beyond its bounds is refused, and what is missing") {
         }) == "\"action\" must be \"start\" or \"read\"");
   CHECK(trace_action(json{{"action", "stop"}}) == TraceAction::stop);
   CHECK(trace_rows(json::object()) == 10'000);
-  CHECK(trace_rows(json{{"maximum", Trace::rows_maximum}}) == Trace::rows_maximum);
+  CHECK(trace_rows(json{{"maximum", Trace::rows_maximum}}) == 100'000);  // the rest waits for the next answer
 }
 
 TEST_CASE("a name that is no text is not written out, however deep its lists are") {

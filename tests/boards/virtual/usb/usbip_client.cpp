@@ -13,9 +13,9 @@
 
 namespace inkwell::virtual_usb_test {
 
-LiveBoard::LiveBoard()
+LiveBoard::LiveBoard(const local::SocketAddress& where)
     : usb(
-          {scheduler, interrupts, log, log, state, triggers}, 0, 0.0, [] {}, [this] { return is_ending.load(); }),
+          {scheduler, interrupts, log, log, state, triggers}, where, 0.0, [] {}, [this] { return is_ending.load(); }),
       firmware(usb.connector().core(), scheduler) {
   firmware.start();
   thread_ = std::thread([this] { run(); });

@@ -20,7 +20,7 @@ namespace inkwell::virtual_usb_test {
 /// The board's thread runs board time as fast as it can unless it is paused.
 class LiveBoard {
  public:
-  LiveBoard();
+  explicit LiveBoard(const local::SocketAddress& where = {});  ///< any free port
   ~LiveBoard();
 
   /// Runs `action` between two milliseconds of board time, on the board's thread.

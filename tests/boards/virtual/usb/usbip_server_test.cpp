@@ -1,5 +1,10 @@
 // The device as programs of this computer see it: USB/IP over a loopback socket.
+#include <arpa/inet.h>
 #include <doctest/doctest.h>
+#include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstring>
@@ -11,6 +16,9 @@
 #include <vector>
 
 #include <failure.hpp>
+#include <plain_client.hpp>
+#include <temporary_directory.hpp>
+#include <virtual_usb/client_name.hpp>
 
 #include "usbip_client.hpp"
 
@@ -380,6 +388,82 @@ TEST_CASE("clients that do nothing lock nobody out, and do not cost the importer
   configure(importer);
 }
 
+TEST_CASE("a client of another protocol is disconnected at its first byte") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  for (const char* begin : {"G", "\x16", "\x01G"}) {
+    CAPTURE(begin);
+    tests::PlainClient client(board.usb.address());
+    client.send(begin);
+    CHECK(client.is_closed());
+  }
+}
+
+TEST_CASE("over a Unix socket the device is imported likewise, and the board knows the process that it waits for") {
+  const tests::TemporaryDirectory directory;
+  LiveBoard board({.path = directory / "usbip"});
+  REQUIRE(board.wait_until_enumerated());
+  tests::PlainClient client(board.usb.address());
+  const auto send = [&](const auto& message) {
+    const auto bytes = usbip::bytes_of(message);
+    CHECK(client.send({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+  };
+  send(usbip::ImportRequest{.bus_id = {"1-1"}});
+  std::array<std::byte, sizeof(usbip::OperationHeader) + sizeof(usbip::Device)> reply{};
+  REQUIRE(::recv(client.descriptor(), reply.data(), reply.size(), MSG_WAITALL) == reply.size());
+  CHECK(usbip::read<usbip::OperationHeader>(reply).status == OperationStatus::success);
+  CHECK(virtual_board::client_name(virtual_board::peer_of(client.descriptor()))
+            .ends_with("(process " + std::to_string(getpid()) + ")"));
+}
+
+TEST_CASE("a client that takes back more transfers than there can be is disconnected") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  UsbIpClient client(board.usb.port());
+  REQUIRE(client.import() == OperationStatus::success);
+  board.call([&] {  // nothing is answered meanwhile
+    for (std::uint32_t sequence = 1; sequence <= 5000; ++sequence) client.unlink(sequence, 0);
+    CHECK(client.closed());
+  });
+  CHECK(board.wait_until_enumerated());
+}
+
+/// No further file can be opened while this lives.
+class NoMoreFiles {
+ public:
+  NoMoreFiles() {
+    ::getrlimit(RLIMIT_NOFILE, &limit_);
+    const rlimit lowest{3, limit_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &lowest);
+  }
+  ~NoMoreFiles() { ::setrlimit(RLIMIT_NOFILE, &limit_); }
+  NoMoreFiles(const NoMoreFiles&) = delete;
+  NoMoreFiles& operator=(const NoMoreFiles&) = delete;
+
+ private:
+  rlimit limit_{};
+};
+
+TEST_CASE("a client that cannot be accepted for want of files does not hold up the board, and is served later") {
+  LiveBoard board;
+  REQUIRE(board.wait_until_enumerated());
+  tests::PlainClient first(board.usb.address());
+  local::Descriptor next(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(board.usb.port());
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  {
+    const NoMoreFiles no_more;
+    REQUIRE(::connect(next.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+    for (int i = 0; i < 3; ++i) board.call([&] { board.usb.settle(); });
+  }
+  const auto request = usbip::bytes_of(usbip::OperationHeader{.operation = usbip::Operation::request_device_list});
+  REQUIRE(::send(next.number(), request.data(), request.size(), MSG_NOSIGNAL) == request.size());
+  std::array<std::byte, sizeof(usbip::DeviceListReply)> reply{};
+  CHECK(::recv(next.number(), reply.data(), reply.size(), MSG_WAITALL) == reply.size());
+}
+
 TEST_CASE("a busy port is reported in a sentence") {
   LiveBoard board;
   FakeScheduler scheduler;
@@ -389,7 +473,7 @@ TEST_CASE("a busy port is reported in a sentence") {
   FakeTriggers triggers;
   const std::string message = tests::message_of<std::runtime_error>([&] {
     virtual_board::VirtualUsb second(
-        {scheduler, interrupts, log, log, state, triggers}, board.usb.port(), 0.0, [] {}, [] { return false; });
+        {scheduler, interrupts, log, log, state, triggers}, board.usb.address(), 0.0, [] {}, [] { return false; });
   });
   CHECK(tests::contains(message, std::to_string(board.usb.port())));
   CHECK(tests::contains(message, "another program listens"));

@@ -207,6 +207,8 @@ class Chip {
   void usart_receive(unsigned number, std::uint8_t byte);
   /// Its receiver is on; what arrives before is lost.
   bool usart_listens(unsigned number) const;
+  /// Bytes of usart_receive() that it has not received yet.
+  std::size_t usart_waiting(unsigned number) const;
 
   Ticks now() const;
   Mode mode() const;

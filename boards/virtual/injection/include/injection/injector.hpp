@@ -40,11 +40,14 @@ class Injector {
     Ticks at;
   };
 
+  /// In and still to come.
+  static constexpr std::size_t faults_maximum = 10'000;
+
   Injector(Victims victims, std::uint64_t seed) : victims_(std::move(victims)), random_(seed) {}
 
   /// At once, or when its time has come: see next(). Takes the place of one of its kind at the same place. Throws
-  /// InvalidInjection if there is nothing at its address. Not from inside Chip::run_until(). Returns a number by which
-  /// it is told from all others, also of the same name and place.
+  /// InvalidInjection if there is nothing at its address, or if it would be one too many. Not from inside
+  /// Chip::run_until(). Returns a number by which it is told from all others, also of the same name and place.
   unsigned add(const Injection& injection);
   /// When something is to be done, at the earliest. The board runs as far, then calls carry_out().
   Ticks next() const;

@@ -44,6 +44,7 @@ class UsbIpRequests {
   std::optional<Transfer> take_transfer();
 
  private:
+  void check_version() const;
   std::span<const std::byte> rest() const { return std::span(received_).subspan(consumed_); }
 
   std::vector<std::byte> received_;

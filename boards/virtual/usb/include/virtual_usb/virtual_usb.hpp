@@ -9,24 +9,25 @@
 #include <vector>
 
 #include <chip/violations.hpp>
+#include <local/socket_address.hpp>
 #include <virtual_usb/connector.hpp>
 
 namespace inkwell::virtual_board {
 
 class VirtualUsb {
  public:
-  /// Listens on 127.0.0.1:`port` (0: any free port); throws std::runtime_error with a sentence if it is
-  /// taken. The cable is plugged in. What `chip` refers to must outlive this object. `on_request` is called from
-  /// another thread when there is something to `serve`. Board time waits for no host once `is_ending` says so.
-  /// `host_clock_ppm`: see HostController.
-  VirtualUsb(const ChipConnections& chip, std::uint16_t port, double host_clock_ppm, std::function<void()> on_request,
-             std::function<bool()> is_ending);
+  /// Listens at `where` (local::Listener); throws std::runtime_error with a sentence if it cannot. The cable is plugged
+  /// in. What `chip` refers to must outlive this object. `on_request` is called from another thread when there is
+  /// something to `serve`. Board time waits for no host once `is_ending` says so. `host_clock_ppm`: see HostController.
+  VirtualUsb(const ChipConnections& chip, const local::SocketAddress& where, double host_clock_ppm,
+             std::function<void()> on_request, std::function<bool()> is_ending);
   ~VirtualUsb();
 
   /// The peripheral to map at OtgFsDevice::base, and the boot loader's place.
   Connector& connector();
 
-  /// The port on which the USB/IP server listens.
+  /// Where the USB/IP server listens.
+  const local::SocketAddress& address() const;
   std::uint16_t port() const;
 
   /// Takes up what the host asked for. It then takes effect in board time, which stands still meanwhile.
@@ -46,7 +47,7 @@ class VirtualUsb {
   /// A control transfer is under way: the host waits for its answer.
   bool is_asked() const;
 
-  /// Plugs the cable in or out. To be called on the simulation's thread, as everything here but `port`.
+  /// Plugs the cable in or out. To be called on the simulation's thread, as everything here but `address` and `port`.
   void connect();
   void disconnect();
   bool connected() const;

@@ -1,6 +1,7 @@
 // Bytes both ways between the board and a program of this computer; what comes in waits for the simulation's thread.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,9 @@ namespace inkwell::virtual_board {
 
 class ByteStream {
  public:
+  /// So many bytes wait for `take`; the other end waits with the rest.
+  static constexpr std::size_t unread_maximum = 64 * 1024;
+
   struct Arrived {
     bool connected = false, gone = false;  ///< since the last call; who came and went is both
     std::string bytes;

@@ -1,4 +1,4 @@
-// The control socket: lines of JSON from any number of clients, handed to the simulation's thread one by one.
+// The control socket: lines of JSON from several clients, handed to the simulation's thread one by one.
 #pragma once
 
 #include <chrono>
@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include <local/listener.hpp>
 #include <nlohmann/json.hpp>
 
 namespace inkwell::virtual_board {
@@ -24,15 +25,17 @@ struct ControlRequest {
 
 class ControlServer {
  public:
-  /// Listens on 127.0.0.1; port 0 is any free one.
-  /// @throws std::runtime_error with a sentence if the port cannot be had.
-  explicit ControlServer(std::uint16_t port);
+  /// One more is refused with a sentence.
+  static constexpr std::size_t clients_maximum = 32;
+
+  /// @throws std::runtime_error with a sentence that names --control if it cannot listen there.
+  explicit ControlServer(const local::SocketAddress& where);
   /// Answers what was asked, hangs up on all clients and joins their threads.
   ~ControlServer();
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;
 
-  std::uint16_t port() const { return port_; }
+  const local::SocketAddress& address() const { return listener_.address(); }
   /// The oldest request, waiting for one at most until `give_up` or until `wake` was called.
   std::optional<ControlRequest> take(std::chrono::steady_clock::time_point give_up);
   /// Ends a `take` that waits, or the next one. From any thread.
@@ -40,16 +43,18 @@ class ControlServer {
 
  private:
   struct Client {
-    int socket;
+    local::Descriptor socket;
     std::thread thread;
     bool gone = false;  ///< its thread has ended and can be joined
   };
   void accept_clients();
+  void accept(local::Descriptor socket);
   void serve(Client& client);
+  /// False if the client is to be disconnected.
+  bool serve_lines(int socket, std::string& received);
   std::optional<nlohmann::json> ask(std::string line);
 
-  int listener_;
-  std::uint16_t port_;
+  local::Listener listener_;
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<ControlRequest> requests_;

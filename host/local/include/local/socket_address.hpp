@@ -1,0 +1,41 @@
+// Where a server listens, as people and programs write it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <local/descriptor.hpp>
+
+namespace inkwell::local {
+
+/// A text that names no socket. `what()` is a sentence.
+class BadSocketAddress : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A TCP port, or a Unix socket if there is a path.
+struct SocketAddress {
+  std::string host{};  ///< of a TCP port
+  std::uint16_t port = 0;
+  std::filesystem::path path{};
+
+  bool is_unix() const { return !path.empty(); }
+  /// "HOST:PORT" or "unix:PATH".
+  std::string text() const;
+  bool operator==(const SocketAddress&) const = default;
+};
+
+inline constexpr std::string_view unix_scheme = "unix:";
+
+/// Of "unix:PATH". @throws BadSocketAddress if the system cannot use the path, or if it has a blank: a line of
+/// addresses could not be read then.
+SocketAddress unix_socket(std::string_view text);
+
+/// Connects to a Unix socket. A descriptor that is not open, and errno, if nothing answers there.
+Descriptor connect_to(const std::filesystem::path& path);
+
+}  // namespace inkwell::local

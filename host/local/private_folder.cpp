@@ -1,0 +1,57 @@
+#include <local/private_folder.hpp>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <local/socket_address.hpp>
+
+#include "folder_rights.hpp"
+#include "unix_name.hpp"
+
+namespace inkwell::local {
+namespace {
+
+constexpr char pattern[] = "/inkwell-XXXXXX";
+constexpr std::size_t longest_name = 16;  ///< of a socket in the folder, with the slash
+
+/// Sockets must be able to lie there, and other users must not be able to exchange the new folder for theirs.
+bool is_suitable(const char* folder) {
+  if (folder == nullptr || folder[0] != '/' || !only_owner_changes(folder)) return false;
+  try {
+    unix_socket(std::string(unix_scheme) + folder);
+  } catch (const BadSocketAddress&) {
+    return false;
+  }
+  return std::strlen(folder) + sizeof pattern + longest_name <= UnixName::longest_path;
+}
+
+}  // namespace
+
+PrivateFolder::PrivateFolder() {
+  int reason = 0;
+  const std::array<const char*, 3> parents{std::getenv("XDG_RUNTIME_DIR"), std::getenv("TMPDIR"), "/tmp"};
+  for (const char* parent : parents) {
+    if (!is_suitable(parent)) continue;
+    std::string path = std::string(parent) + pattern;
+    if (::mkdtemp(path.data()) != nullptr) {  // with mode 0700
+      path_ = path;
+      return;
+    }
+    reason = errno;
+  }
+  throw std::runtime_error(fmt::format("No private folder can be made in /tmp: {}. Set TMPDIR to a folder of yours.",
+                                       std::strerror(reason)));
+}
+
+PrivateFolder::~PrivateFolder() { ::rmdir(path_.c_str()); }
+
+}  // namespace inkwell::local
