@@ -3,6 +3,8 @@
 #include <cerrno>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace inkwell::device {
 namespace {
 
@@ -19,6 +21,11 @@ usbip::OperationHeader receive_reply(const ReceiveBytes& receive, usbip::Operati
 std::vector<UsbipDevice> receive_device_list(const ReceiveBytes& receive) {
   receive_reply(receive, usbip::Operation::reply_device_list);
   const std::uint32_t count = receive_message<usbip::Big32>(receive);
+  if (count > listed_devices_maximum)
+    throw Error(
+        fmt::format("The USB/IP server lists {} devices, more than {}. Give the USB/IP port that virtual-board "
+                    "printed.",
+                    count, listed_devices_maximum));
   std::vector<UsbipDevice> devices;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto device = receive_message<usbip::Device>(receive);

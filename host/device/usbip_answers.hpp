@@ -32,6 +32,8 @@ struct UsbipDevice {
   std::uint16_t product_id = 0;
 };
 
+/// A server that lists more is refused, so that it cannot make this program receive for ever.
+inline constexpr std::uint32_t listed_devices_maximum = 256;
 /// The answer to a request for the list. Throws Error if it is of something else than a USB/IP server.
 std::vector<UsbipDevice> receive_device_list(const ReceiveBytes& receive);
 
