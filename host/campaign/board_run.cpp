@@ -126,7 +126,7 @@ void BoardRun::ask_for_boot_loader() {
 }
 
 std::vector<device::Endpoint> BoardRun::boot_loaders() const {
-  return device::find_boot_loaders(device::parse_server(std::to_string(board_.usbip_port())));
+  return device::find_boot_loaders({.kind = device::Address::Kind::usbip, .server = board_.usbip()});
 }
 
 bool BoardRun::is_in_boot_loader() const { return !boot_loaders().empty(); }

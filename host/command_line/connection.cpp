@@ -37,11 +37,12 @@ void DeviceOptions::add_to(CLI::App& app) {
       ->needs(is_virtual_flag)
       ->group(group);
   app.add_flag("--real-time", real_time, "Pace it to the clock on the wall")->needs(is_virtual_flag)->group(group);
-  auto* server = app.add_option("--usbip", usbip,
-                                "HOST:PORT of a USB/IP server, such as a running virtual board; not with --virtual")
-                     ->type_name("ADDRESS")
-                     ->check(not_empty())
-                     ->excludes(is_virtual_flag);
+  auto* server =
+      app.add_option("--usbip", usbip,
+                     "HOST:PORT or unix:PATH of a USB/IP server, such as a running virtual board; not with\n--virtual")
+          ->type_name("ADDRESS")
+          ->check(not_empty())
+          ->excludes(is_virtual_flag);
   app.add_option("--serial", serial_number, "Use the arm on USB with this serial number; not with --virtual or --usbip")
       ->type_name("NUMBER")
       ->check(not_empty())

@@ -37,7 +37,7 @@ struct DeviceOptions {
   std::string mode;  ///< empty: the command's own choice
   std::uint64_t seed = 1;
   bool real_time = false;
-  std::string usbip;  ///< HOST:PORT
+  std::string usbip;  ///< HOST:PORT or unix:PATH
   std::string serial_number;
   bool take_over = false;
   bool json = false;

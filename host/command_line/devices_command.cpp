@@ -26,8 +26,7 @@ std::vector<Endpoint> found(const DeviceOptions& options) {
 }
 
 std::string place_of(const Endpoint& endpoint) {
-  return endpoint.kind == Endpoint::Kind::usb ? std::string("USB")
-                                              : fmt::format("usbip {}:{}", endpoint.host, endpoint.port);
+  return endpoint.kind == Endpoint::Kind::usb ? std::string("USB") : fmt::format("usbip {}", endpoint.server.text());
 }
 
 struct Listed {

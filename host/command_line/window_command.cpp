@@ -1,6 +1,8 @@
 #include "commands.hpp"
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,22 +29,32 @@ std::string layout_choices() {
   return fmt::format("{{{}}}", fmt::join(names, ","));
 }
 
-int open_window(const DeviceOptions& options, window::WindowOptions window_options, std::uint16_t control_port,
+/// Throws UsageError.
+std::optional<device::SocketAddress> control_socket(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  try {
+    return device::parse_socket(text);
+  } catch (const device::BadAddress& error) {
+    throw UsageError(fmt::format("--control: {}", error.what()));
+  }
+}
+
+int open_window(const DeviceOptions& options, window::WindowOptions window_options, const std::string& control,
                 const std::string& theme) {
   std::unique_ptr<device::VirtualBoard> board;
   if (!theme.empty()) window_options.theme = theme == "light" ? window::Theme::light : window::Theme::dark;
   window_options.serial_number = options.serial_number;
   window_options.firmware = installation::firmware();
   window_options.board = options.address();
-  window_options.virtual_board_control_port = control_port;
+  window_options.virtual_board_control = control_socket(control);
   window_options.list_devices = [&options] { return device::find_arms(options.address()); };
   const auto start_virtual_board = [&options, &board](window::WindowOptions& of_window) {
     // The mouse is the hand, so board time must be the user's time.
     board = std::make_unique<device::VirtualBoard>(
         options.virtual_board(device::SimulationMode::fast, BoardPace::real_time));
     of_window.serial_number.clear();
-    of_window.virtual_board_control_port = board->control_port();
-    of_window.board = device::parse_server(std::to_string(board->usbip_port()));
+    of_window.virtual_board_control = board->control_socket();
+    of_window.board = {.kind = device::Address::Kind::usbip, .server = board->usbip()};
     if (of_window.parameters_file.empty()) of_window.parameters_file = options.arm;
     of_window.simulated_arm = protocol::default_parameters();
     if (!options.arm.empty())
@@ -66,7 +78,7 @@ int open_window(const DeviceOptions& options, window::WindowOptions window_optio
 OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, Action& action) {
   struct Settings {
     window::WindowOptions window;
-    std::uint16_t control_port = 0;
+    std::string control;
     std::string theme;
     bool forget = false;
   };
@@ -113,14 +125,15 @@ OpenWindow add_window_options(CLI::App& program, const DeviceOptions& options, A
   program.add_flag("--flat-colours", window.flat_colours, "Draw the scene without lighting")->group(group);
   program.add_flag("--forget-settings", settings->forget, "Neither read nor write the window's settings")->group(group);
   program
-      .add_option("--control", settings->control_port,
-                  "Control port of the virtual board at --usbip, for the mouse and for faults")
-      ->type_name("PORT")
+      .add_option(
+          "--control", settings->control,
+          "Control socket of the virtual board at --usbip, HOST:PORT or unix:PATH, for the mouse and for faults")
+      ->type_name("ADDRESS")
       ->group(group);
   const OpenWindow open = [&options, settings](const window::ReplayRequest& replay) {
     settings->window.replay = replay;
     settings->window.persist_settings = !settings->forget;
-    return open_window(options, settings->window, settings->control_port, settings->theme);
+    return open_window(options, settings->window, settings->control, settings->theme);
   };
   action = [open] { return open({}); };
   return open;

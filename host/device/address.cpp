@@ -27,8 +27,8 @@ std::string serial_numbers(const std::vector<Endpoint>& endpoints) {
 std::string nobody(const Address& address) {
   if (address.kind == Address::Kind::usbip)
     return fmt::format(
-        "The USB/IP server at {}:{} exports no arm. Check that its board runs Inkwell's firmware and its cable is in.",
-        address.host, address.port);
+        "The USB/IP server at {} exports no arm. Check that its board runs Inkwell's firmware and its cable is in.",
+        address.server.text());
   if (address.serial_number.empty()) return "No arm was found on USB. Plug one in, or use a virtual one.";
   const auto others = find_arms({});
   return fmt::format("No arm with the serial number {} is plugged in. {}", address.serial_number,
@@ -37,7 +37,14 @@ std::string nobody(const Address& address) {
 
 }  // namespace
 
-Address parse_server(std::string_view text) {
+SocketAddress parse_socket(std::string_view text) {
+  if (text.starts_with(local::unix_scheme)) {
+    try {
+      return local::unix_socket(text);
+    } catch (const local::BadSocketAddress& error) {
+      throw BadAddress(error.what());
+    }
+  }
   const auto colon = text.rfind(':');
   const bool names_host = colon != std::string_view::npos;
   const std::string_view host = names_host && colon > 0 ? text.substr(0, colon) : this_computer;
@@ -45,10 +52,12 @@ Address parse_server(std::string_view text) {
   std::uint16_t port = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
   if (code != std::errc{} || end != digits.data() + digits.size() || port == 0)
-    throw BadAddress(
-        fmt::format("`{}` is no address of a USB/IP server. Give HOST:PORT, for example 127.0.0.1:3240.", text));
-  return {.kind = Address::Kind::usbip, .host = std::string(host), .port = port};
+    throw BadAddress(fmt::format(
+        "`{}` is not the address of a server. Give HOST:PORT, for example 127.0.0.1:3240, or unix:PATH.", text));
+  return {.host = std::string(host), .port = port};
 }
+
+Address parse_server(std::string_view text) { return {.kind = Address::Kind::usbip, .server = parse_socket(text)}; }
 
 Address parse_address(std::string_view text) {
   if (text.starts_with(usbip_scheme)) return parse_server(text.substr(usbip_scheme.size()));
@@ -60,13 +69,13 @@ Address parse_address(std::string_view text) {
 
 std::string address_of(const Endpoint& endpoint) {
   return endpoint.kind == Endpoint::Kind::usb ? endpoint.serial_number
-                                              : fmt::format("{}{}:{}", usbip_scheme, endpoint.host, endpoint.port);
+                                              : fmt::format("{}{}", usbip_scheme, endpoint.server.text());
 }
 
 std::vector<Endpoint> find_arms(const Address& address) {
   switch (address.kind) {
     case Address::Kind::own_board: return {};
-    case Address::Kind::usbip: return find_usbip_devices(address.host, address.port);
+    case Address::Kind::usbip: return find_usbip_devices(address.server);
     case Address::Kind::usb: break;
   }
   auto endpoints = find_usb_devices();

@@ -88,8 +88,7 @@ class UsbChannel final : public Channel {
 class UsbipChannel final : public Channel {
  public:
   UsbipChannel(const Endpoint& endpoint, std::uint8_t interface_number)
-      : Channel(interface_number),
-        connection_(endpoint.host, endpoint.port, endpoint.path, std::chrono::milliseconds(timeout_ms)) {
+      : Channel(interface_number), connection_(endpoint.server, endpoint.path, std::chrono::milliseconds(timeout_ms)) {
     connection_.start([](const std::string&) {});
     const auto descriptor =
         connection_.control_in(setup::get_descriptor(setup::DescriptorType::configuration, 0, 1024));
@@ -123,13 +122,12 @@ class UsbipChannel final : public Channel {
 std::vector<Endpoint> find_boot_loaders(const Address& address) {
   std::vector<Endpoint> endpoints;
   if (address.kind == Address::Kind::usbip) {
-    for (const auto& device : list_usbip_devices(address.host, address.port))
+    for (const auto& device : list_usbip_devices(address.server))
       if (device.vendor_id == identity::boot_loader_vendor_id && device.product_id == identity::boot_loader_product_id)
-        endpoints.push_back(
-            {Endpoint::Kind::usbip, "", identity::boot_loader_product, device.bus_id, address.host, address.port});
+        endpoints.push_back({Endpoint::Kind::usbip, "", identity::boot_loader_product, device.bus_id, address.server});
   } else if (address.kind == Address::Kind::usb) {
     for (const auto& number : usb_serial_numbers(identity::boot_loader_vendor_id, identity::boot_loader_product_id))
-      endpoints.push_back({Endpoint::Kind::usb, number, identity::boot_loader_product, "", "", 0});
+      endpoints.push_back({Endpoint::Kind::usb, number, identity::boot_loader_product, "", {}});
   }
   return endpoints;
 }

@@ -13,6 +13,11 @@ namespace inkwell::device {
 
 using nlohmann::json;
 
+namespace {
+/// The longest answer is a trace: 100,000 rows of 30 numbers with up to 25 characters each.
+constexpr std::size_t line_maximum = 128u << 20;
+}  // namespace
+
 struct ControlClient::Implementation {
   Socket socket;
   std::string received;  ///< what came after the last line
@@ -27,6 +32,10 @@ struct ControlClient::Implementation {
         received.erase(0, end + 1);
         return line;
       }
+      if (received.size() > line_maximum)
+        throw Error(
+            "What answers at the control socket sends a line without an end. Give the address that virtual-board "
+            "printed.");
       searched = received.size();
       const std::size_t length = socket.receive_some(chunk);
       received.append(reinterpret_cast<const char*>(chunk.data()), length);
@@ -34,8 +43,7 @@ struct ControlClient::Implementation {
   }
 };
 
-ControlClient::ControlClient(const std::string& host, std::uint16_t port)
-    : implementation_(new Implementation{Socket(host, port), {}}) {}
+ControlClient::ControlClient(const SocketAddress& server) : implementation_(new Implementation{Socket(server), {}}) {}
 ControlClient::~ControlClient() = default;
 ControlClient::ControlClient(ControlClient&&) noexcept = default;
 ControlClient& ControlClient::operator=(ControlClient&&) noexcept = default;

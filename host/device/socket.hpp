@@ -1,4 +1,4 @@
-// A TCP connection of a client, closed with the object.
+// A connection of a client, over TCP or a Unix socket, closed with the object.
 #pragma once
 
 #include <chrono>
@@ -8,15 +8,14 @@
 #include <span>
 #include <string>
 
+#include <local/socket_address.hpp>
+
 namespace inkwell::device {
 
 class Socket {
  public:
   /// Throws Error if nobody answers.
-  Socket(const std::string& host, std::uint16_t port);
-  ~Socket();
-  Socket(Socket&& other) noexcept;
-  Socket& operator=(Socket&& other) noexcept;
+  explicit Socket(const SocketAddress& server);
 
   /// How long a receive waits for more bytes before it throws Error; without a limit it waits for ever, as at first.
   void wait_at_most(std::optional<std::chrono::milliseconds> limit);
@@ -30,7 +29,7 @@ class Socket {
   void shut_down();
 
  private:
-  int descriptor_ = -1;
+  local::Descriptor descriptor_;
   std::string peer_;
 };
 

@@ -26,28 +26,28 @@ ReceiveBytes from(Socket& socket) {
 
 }  // namespace
 
-std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16_t port) {
-  Socket socket(host, port);
+std::vector<UsbipDevice> list_usbip_devices(const SocketAddress& server) {
+  Socket socket(server);
   socket.send(usbip::bytes_of(usbip::OperationHeader{.operation = usbip::Operation::request_device_list}));
   socket.wait_at_most(reply_timeout);
   return receive_device_list(from(socket));
 }
 
-UsbipConnection::UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id,
+UsbipConnection::UsbipConnection(const SocketAddress& server, const std::string& bus_id,
                                  std::chrono::milliseconds timeout)
     : timeout_(timeout),
-      gone_(fmt::format("The arm at {}:{} is gone: its board has ended or restarted, or its cable was unplugged. Start "
-                        "the board, or plug the cable in.",
-                        host, port)),
-      socket_(host, port) {
+      gone_(fmt::format("The arm at {} is gone: its board has ended or restarted, or its cable was unplugged. Start the "
+                        "board, or plug the cable in.",
+                        server.text())),
+      socket_(server) {
   socket_.send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));
   socket_.wait_at_most(reply_timeout);
   const auto device = receive_import(from(socket_));
   if (!device)
     throw Error(
-        fmt::format("The device {} at {}:{} cannot be taken: another program uses it, or its cable is out. "
+        fmt::format("The device {} at {} cannot be taken: another program uses it, or its cable is out. "
                     "Close the other program.",
-                    bus_id, host, port));
+                    bus_id, server.text()));
   device_ = *device;
   socket_.wait_at_most(std::nullopt);  // from here on silence is a device with nothing to say
 }

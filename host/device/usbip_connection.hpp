@@ -20,7 +20,7 @@
 namespace inkwell::device {
 
 /// What a USB/IP server exports. Throws Error if nobody or something else answers, or nothing for 3 s.
-std::vector<UsbipDevice> list_usbip_devices(const std::string& host, std::uint16_t port);
+std::vector<UsbipDevice> list_usbip_devices(const SocketAddress& server);
 
 class UsbipConnection {
  public:
@@ -32,7 +32,7 @@ class UsbipConnection {
 
   /// Imports the device. Throws Error if it is in use or gone, or as list_usbip_devices does. Call `start` before the
   /// first transfer. A control transfer is taken back after `timeout`.
-  UsbipConnection(const std::string& host, std::uint16_t port, const std::string& bus_id,
+  UsbipConnection(const SocketAddress& server, const std::string& bus_id,
                   std::chrono::milliseconds timeout = control_timeout);
   ~UsbipConnection();
 

@@ -30,8 +30,7 @@ constexpr char takes_no_commands[] = "The device takes no commands, although it 
 
 class UsbipTransport : public Transport {
  public:
-  explicit UsbipTransport(const Endpoint& endpoint)
-      : endpoint_(endpoint), connection_(endpoint.host, endpoint.port, endpoint.path) {
+  explicit UsbipTransport(const Endpoint& endpoint) : endpoint_(endpoint), connection_(endpoint.server, endpoint.path) {
     connection_.start([this](const std::string& reason) { lose(reason); });
     try {
       configure();
@@ -273,12 +272,12 @@ std::unique_ptr<Transport> open_usbip_transport(const Endpoint& endpoint) {
 // What the virtual board's USB/IP server calls the platform that its device is on.
 constexpr char virtual_board_path[] = "/inkwell_virtual_board/";
 
-std::vector<Endpoint> find_usbip_devices(const std::string& host, std::uint16_t port) {
+std::vector<Endpoint> find_usbip_devices(const SocketAddress& server) {
   std::vector<Endpoint> endpoints;
-  for (const auto& device : list_usbip_devices(host, port)) {
+  for (const auto& device : list_usbip_devices(server)) {
     if (device.vendor_id != identity::vendor_id || device.product_id != identity::product_id) continue;
     const bool is_virtual = device.path.find(virtual_board_path) != std::string::npos;
-    endpoints.push_back({Endpoint::Kind::usbip, "", identity::product, device.bus_id, host, port, is_virtual});
+    endpoints.push_back({Endpoint::Kind::usbip, "", identity::product, device.bus_id, server, is_virtual});
   }
   return endpoints;
 }

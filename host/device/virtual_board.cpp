@@ -4,23 +4,26 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <mutex>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <device/address.hpp>
 #include <installation/places.hpp>
 #include <known/boards.hpp>
 #include <protocol/image_identity.hpp>
@@ -33,7 +36,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto start_timeout = 30s;
 constexpr auto stop_timeout = 5s;
-constexpr std::size_t log_kept = 4096;
+constexpr std::size_t log_kept = 4096, longest_ready_line = 4096;
 
 struct Pipe {
   int read_end = -1, write_end = -1;
@@ -60,6 +63,10 @@ std::vector<std::string> arguments_of(const VirtualBoardOptions& options, const 
   std::vector<std::string> arguments{program.string(),
                                      "--elf",
                                      elf.string(),
+                                     "--usbip",
+                                     "unix:",
+                                     "--control",
+                                     "unix:",
                                      "--mode",
                                      options.mode == SimulationMode::exact ? "exact" : "fast",
                                      "--pricing",
@@ -100,12 +107,28 @@ std::filesystem::path firmware_for(const std::string& name) {
   return installation::firmware(board::image_name(*facts));
 }
 
+/// Of the line that the program prints when it is ready; false if it is another one.
+bool read_addresses(const std::string& line, SocketAddress& usbip, SocketAddress& control) {
+  std::istringstream words(line);
+  std::string ready, usbip_word, control_word;
+  words >> ready >> usbip_word >> control_word;
+  constexpr std::string_view usbip_key = "usbip=", control_key = "control=";
+  if (ready != "ready" || !usbip_word.starts_with(usbip_key) || !control_word.starts_with(control_key)) return false;
+  try {
+    usbip = parse_socket(std::string_view(usbip_word).substr(usbip_key.size()));
+    control = parse_socket(std::string_view(control_word).substr(control_key.size()));
+  } catch (const BadAddress&) {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 struct VirtualBoard::Implementation {
   Pipe output, log;
   pid_t process = -1;
-  std::uint16_t usbip_port = 0, control_port = 0;
+  SocketAddress usbip, control;
   std::thread drain;
   mutable std::mutex mutex;
   std::string newest_log;  ///< the last few kilobytes, for error messages
@@ -150,7 +173,7 @@ struct VirtualBoard::Implementation {
   std::string read_ready_line() {
     std::string line;
     const auto give_up_at = Clock::now() + start_timeout;
-    while (Clock::now() < give_up_at) {
+    while (Clock::now() < give_up_at && line.size() < longest_ready_line) {
       pollfd descriptor{output.read_end, POLLIN, 0};
       if (poll(&descriptor, 1, 100) <= 0) continue;
       char character;
@@ -176,6 +199,17 @@ struct VirtualBoard::Implementation {
       while (!has_exited(WNOHANG)) std::this_thread::sleep_for(5ms);
     }
     if (drain.joinable()) drain.join();
+    remove_left_behind();
+  }
+
+  /// What a board leaves behind that was killed: its sockets and their folder.
+  void remove_left_behind() {
+    for (const auto& socket : {usbip, control}) {
+      struct stat status {};
+      if (!socket.is_unix() || lstat(socket.path.c_str(), &status) != 0 || !S_ISSOCK(status.st_mode)) continue;
+      unlink(socket.path.c_str());
+      rmdir(socket.path.parent_path().c_str());
+    }
   }
 
   ~Implementation() { stop(); }
@@ -196,28 +230,25 @@ VirtualBoard::VirtualBoard(const VirtualBoardOptions& options) : implementation_
   auto& self = *implementation_;
   self.start(arguments_of(options, program, elf));
   const std::string line = self.read_ready_line();
-  unsigned usbip = 0, control = 0;
-  if (std::sscanf(line.c_str(), "ready usbip=%u control=%u", &usbip, &control) != 2) {
+  if (!read_addresses(line, self.usbip, self.control)) {
     self.stop();
     const auto end = self.newest_log.find_last_not_of('\n');
     const std::string said = end == std::string::npos ? "It said nothing." : self.newest_log.substr(0, end + 1);
     throw Error(fmt::format("The virtual board did not start. {}", said));
   }
-  self.usbip_port = static_cast<std::uint16_t>(usbip);
-  self.control_port = static_cast<std::uint16_t>(control);
 }
 
 VirtualBoard::~VirtualBoard() = default;
 
-std::uint16_t VirtualBoard::usbip_port() const { return implementation_->usbip_port; }
-std::uint16_t VirtualBoard::control_port() const { return implementation_->control_port; }
+const SocketAddress& VirtualBoard::usbip() const { return implementation_->usbip; }
+const SocketAddress& VirtualBoard::control_socket() const { return implementation_->control; }
 
 std::optional<Endpoint> VirtualBoard::find() const {
-  const auto endpoints = find_usbip_devices("127.0.0.1", usbip_port());
+  const auto endpoints = find_usbip_devices(usbip());
   return endpoints.empty() ? std::nullopt : std::optional(endpoints.front());
 }
 
-ControlClient VirtualBoard::control() const { return {"127.0.0.1", control_port()}; }
+ControlClient VirtualBoard::control() const { return ControlClient(control_socket()); }
 
 bool VirtualBoard::is_running() const { return !implementation_->has_exited(WNOHANG); }
 

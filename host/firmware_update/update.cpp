@@ -28,13 +28,10 @@ std::string how_to_go_on(const Image& image, bool is_chosen) {
                 : "");
 }
 
-Address without_number(const Address& address) {
-  return {.kind = address.kind, .host = address.host, .port = address.port};
-}
+Address without_number(const Address& address) { return {.kind = address.kind, .server = address.server}; }
 
 std::vector<Endpoint> arms_at(const Address& address) {
-  return address.kind == Address::Kind::usbip ? device::find_usbip_devices(address.host, address.port)
-                                              : device::find_arms(address);
+  return address.kind == Address::Kind::usbip ? device::find_usbip_devices(address.server) : device::find_arms(address);
 }
 
 /// Those of the address, and of the serial number if it says one.

@@ -2,7 +2,7 @@ function arm = inkwell_open(address)
 % inkwell_open  Opens a haptic arm; its force is off.
 %
 %   arm = inkwell_open()           what the environment's INKWELL_DEVICE says, else the only arm on USB
-%   arm = inkwell_open(address)    a serial number, 'usbip:HOST:PORT', or 'virtual' for a simulated one
+%   arm = inkwell_open(address)    a serial number, 'usbip:HOST:PORT', 'usbip:unix:PATH', or 'virtual' for a simulated one
 %
 % Lengths are in m, forces in N, angles in rad, times in s of the board; positions and forces are in the arm's
 % workspace, on the Omni x to the right, y up, z to the user. Whatever goes wrong is an error that says what to do.

@@ -27,13 +27,13 @@ Companion::Companion(const WindowOptions& options, const WindowSettings& setting
       column_({.desk = desk_,
                .parameters_file = settings_.parameters_file,
                .parameters_to_send = options.parameters_file,
-               .control_port = options.virtual_board_control_port,
+               .control = options.virtual_board_control,
                .simulated_arm = options.simulated_arm,
                .replay = [this](const std::filesystem::path& recording) { replay_bar_.open(recording); },
                .starts_with_replay = !options.replay.recording.empty(),
                .replayed = [this] { return replay_bar_.recording(); },
                .seek = [this](double position_s) { replay_bar_.seek(position_s); }}) {
-  if (options.virtual_board_control_port != 0) hand_.emplace(options.virtual_board_control_port);
+  if (options.virtual_board_control) hand_.emplace(*options.virtual_board_control);
   use_theme(settings.theme);
   if (!options.replay.recording.empty()) replay_bar_.open(options.replay.recording);
   if (!options.replay.over.empty()) replay_bar_.lay_over(options.replay.over, options.replay.align);

@@ -20,7 +20,7 @@ inline const device::VirtualBoardOptions next_protocol{.elf = INKWELL_BUILD_DIRE
 struct Board {
   device::VirtualBoard board;
   device::ControlClient control = board.control();
-  std::string address = "usbip:127.0.0.1:" + std::to_string(board.usbip_port());
+  std::string address = "usbip:" + board.usbip().text();
 
   device::Vector3 rest_m = held_point_m;
 

@@ -121,7 +121,7 @@ TEST_CASE("a processor fault leaves the rows before it and the place of the cras
   rig.device.reset();
   rig.control.resume();
   const TemporaryDirectory directory;
-  const auto address = "127.0.0.1:" + std::to_string(rig.board.usbip_port());
+  const auto address = rig.board.usbip().text();
   const auto shown = run_program("inkwell", {"fault", "--usbip", address});
   CHECK(shown.exit_code == 0);
   CHECK(shown.out.find("every signal around processor_fault") != std::string::npos);
@@ -173,7 +173,7 @@ TEST_CASE("a crash while the black box of another fault is kept is told beside i
   press_into_wall(rig);
   rig.control.inject({.fault = "bridge_fault", .for_s = 0.01});
   rig.run(0.2);
-  const auto address = "127.0.0.1:" + std::to_string(rig.board.usbip_port());
+  const auto address = rig.board.usbip().text();
   const auto image = (std::filesystem::path(build_directory()) / ".." / "board" / "inkwell.elf").string();
   const auto told = [&](std::vector<std::string> more) {
     rig.device.reset();
@@ -225,8 +225,7 @@ TEST_CASE("a main loop that hangs leaves the rows before, and where it is") {
   rig.device.reset();
   rig.control.resume();
   const auto image = (std::filesystem::path(build_directory()) / ".." / "board" / "inkwell.elf").string();
-  const auto shown = run_program(
-      "inkwell", {"fault", "--usbip", "127.0.0.1:" + std::to_string(rig.board.usbip_port()), "--elf", image});
+  const auto shown = run_program("inkwell", {"fault", "--usbip", rig.board.usbip().text(), "--elf", image});
   INFO(shown.out, shown.err);
   CHECK(shown.exit_code == 0);
   CHECK(shown.out.find("The main loop did not come round, and the watchdog bit.\n  at   0x") != std::string::npos);

@@ -34,7 +34,7 @@ struct BoardAndCompanion {
   device::ControlClient control = board.control();
 
   std::vector<std::string> words(std::vector<std::string> command) const {
-    command.insert(command.end(), {"--usbip", fmt::format("127.0.0.1:{}", board.usbip_port())});
+    command.insert(command.end(), {"--usbip", board.usbip().text()});
     return command;
   }
   ProgramResult run(const std::vector<std::string>& command) { return run_program("inkwell", words(command)); }

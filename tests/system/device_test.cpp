@@ -243,8 +243,8 @@ TEST_CASE(
   options.real_time = false;
   device::VirtualBoard board(options);
   while (!board.find()) std::this_thread::sleep_for(5ms);
-  RunningProgram program({build_directory() + "/inkwell", "record", "--usbip",
-                          "127.0.0.1:" + std::to_string(board.usbip_port()), file, "--seconds", "2", "--json"});
+  RunningProgram program(
+      {build_directory() + "/inkwell", "record", "--usbip", board.usbip().text(), file, "--seconds", "2", "--json"});
   std::error_code error;
   while (std::filesystem::file_size(file, error) < 100'000 || error) {
     REQUIRE(kill(program.process(), 0) == 0);

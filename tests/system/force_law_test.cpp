@@ -43,7 +43,7 @@ control::Vector3 magnet_force_N(const protocol::ParameterSet& held, const contro
 /// Runs `inkwell` while board time passes.
 int run_beside(BoardRig& rig, std::vector<std::string> words) {
   words.insert(words.begin(), build_directory() + "/inkwell");
-  words.insert(words.end(), {"--usbip", "127.0.0.1:" + std::to_string(rig.board.usbip_port())});
+  words.insert(words.end(), {"--usbip", rig.board.usbip().text()});
   RunningProgram program(words);
   for (int slices = 0; slices < 100'000; ++slices) {
     rig.run(0.01);

@@ -133,8 +133,7 @@ TEST_CASE("a device that is unplugged in the middle of a guide ends it with a se
   while (!board.find()) std::this_thread::sleep_for(10ms);
   std::optional<ProgramResult> result;
   std::thread guide([&] {
-    result = run_program("inkwell", {"tune", "current-loop", "--yes", "--json", "--usbip",
-                                     "127.0.0.1:" + std::to_string(board.usbip_port())});
+    result = run_program("inkwell", {"tune", "current-loop", "--yes", "--json", "--usbip", board.usbip().text()});
   });
   // Until a motor has current, which is in the first pulses. Each of them takes several of these steps.
   constexpr double step_s = 0.002, limit_s = 60;

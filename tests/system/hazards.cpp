@@ -49,8 +49,7 @@ void press_into_wall(BoardRig& rig) {
 
 std::string told_by_info(BoardRig& rig) {
   rig.device.reset();
-  const auto result =
-      run_program("inkwell", {"info", "--usbip", "127.0.0.1:" + std::to_string(rig.board.usbip_port())});
+  const auto result = run_program("inkwell", {"info", "--usbip", rig.board.usbip().text()});
   CHECK(result.exit_code == 0);
   return result.out;
 }

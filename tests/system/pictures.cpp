@@ -66,8 +66,8 @@ TEST_CASE("pictures: a program for an Omni drives" * doctest::skip()) {
   WindowRig rig({"--layout", "contact"});
   const auto sphere = rig.look().item("scene/sphere").centre();
   rig.drag(sphere, {sphere.x + 30, sphere.y - 50}, 12);
-  RunningProgram program({build_directory() + "/inkwell", "run", "--usbip",
-                          "127.0.0.1:" + std::to_string(rig.board.usbip_port()), build_directory() + "/drop-in-well"});
+  RunningProgram program({build_directory() + "/inkwell", "run", "--usbip", rig.board.usbip().text(),
+                          build_directory() + "/drop-in-well"});
   program.read_line();
   rig.look_until("the program drives", [](const Sight& now) { return now.state() == "active"; });
   // Slower and slower, so that the hand rests at last.

@@ -45,7 +45,7 @@ TEST_CASE("the companion refuses firmware with another version of the protocol, 
   control.trace_start();
 
   const TemporaryDirectory directory;
-  const std::string address = "127.0.0.1:" + std::to_string(board.usbip_port());
+  const std::string address = board.usbip().text();
   for (const std::vector<std::string>& command :
        std::vector<std::vector<std::string>>{{"info"},
                                              {"watch", "--seconds", "1"},

@@ -111,7 +111,7 @@ TEST_CASE("a recording on a board that has run on since another one holds nothin
     std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));  // board time passes at least as fast
     const std::string file = directory.file(std::to_string(pause_s) + ".h5");
     const auto run = run_program("inkwell", {"record", file, "--seconds", std::to_string(recorded_s), "--json",
-                                             "--usbip", "127.0.0.1:" + std::to_string(board.usbip_port())});
+                                             "--usbip", board.usbip().text()});
     INFO("standard error: ", run.err);
     REQUIRE(run.exit_code == 0);
     const auto status = json::parse(run.out);

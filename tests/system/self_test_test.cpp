@@ -313,7 +313,7 @@ TEST_CASE("the command shows each item with its figure, and fails with the remed
   rig.run_until([](const auto& pose) { return pose.state == State::ready; });
   rig.device.reset();
   rig.control.resume();
-  const std::string port = "127.0.0.1:" + std::to_string(rig.board.usbip_port());
+  const std::string port = rig.board.usbip().text();
   const auto run = [&](std::vector<std::string> more) {
     std::vector<std::string> arguments{"self-test", "--usbip", port};
     arguments.insert(arguments.end(), more.begin(), more.end());

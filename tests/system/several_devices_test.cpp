@@ -92,7 +92,7 @@ TEST_CASE("two arms: commands list, record and switch the force of the one that 
       device::VirtualBoard{{.board = "bench_modules", .seed = 2}},
   };
   const auto words = [&](unsigned i, std::vector<std::string> command) {
-    command.insert(command.end(), {"--usbip", fmt::format("127.0.0.1:{}", boards[i].usbip_port())});
+    command.insert(command.end(), {"--usbip", boards[i].usbip().text()});
     return command;
   };
   std::string numbers[2];

@@ -92,8 +92,7 @@ TEST_CASE("a recording that may not have the scope leaves no file in the way of 
   while (!board.find()) std::this_thread::sleep_for(10ms);
   const auto other = device::Device::open(*board.find());
   other->select_signals(scope_signals);
-  const auto result =
-      run_program("inkwell", {"record", file, "--seconds", "0.1", "--usbip", std::to_string(board.usbip_port())});
+  const auto result = run_program("inkwell", {"record", file, "--seconds", "0.1", "--usbip", board.usbip().text()});
   INFO(result.out, result.err);
   CHECK(result.exit_code == 1);
   CHECK(result.err.find("scope is in use") != std::string::npos);

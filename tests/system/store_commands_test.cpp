@@ -39,7 +39,7 @@ struct RememberingBoard {
     wait_for_device();
   }
   ProgramResult run(std::vector<std::string> words) {
-    words.insert(words.end(), {"--usbip", fmt::format("127.0.0.1:{}", board.usbip_port())});
+    words.insert(words.end(), {"--usbip", board.usbip().text()});
     return run_program("inkwell", words);
   }
   nlohmann::json json(std::vector<std::string> words) {
@@ -144,8 +144,7 @@ TEST_CASE("while the force is on nothing is stored or forgotten, and the board s
   board.done({"parameters", "set", "wall_stiffness_N_per_m=600", "host_timeout_s=2"});
   const auto& reason = info(protocol::StoreResult::force_is_on);
   for (auto words : std::vector<std::vector<std::string>>{{"parameters", "store"}, {"parameters", "factory", "--yes"}}) {
-    RunningProgram on({build_directory() + "/inkwell", "force", "on", "--usbip",
-                       fmt::format("127.0.0.1:{}", board.board.usbip_port())});
+    RunningProgram on({build_directory() + "/inkwell", "force", "on", "--usbip", board.board.usbip().text()});
     REQUIRE(on.read_line() == "The force is on.");
     const auto beside_the_driver = board.run(words);
     CHECK(beside_the_driver.exit_code == 1);

@@ -29,12 +29,12 @@ std::vector<std::string> window_words(const device::VirtualBoard& board, const s
   device::save_parameters(parameters_file, WindowRig::parameters_at_start());
   std::vector<std::string> words{build_directory() + "/inkwell",
                                  "--usbip",
-                                 fmt::format("127.0.0.1:{}", board.usbip_port()),
+                                 board.usbip().text(),
                                  "--parameters",
                                  parameters_file,
                                  "--forget-settings",
                                  "--inspect"};
-  if (tells_control_port) words.insert(words.end(), {"--control", std::to_string(board.control_port())});
+  if (tells_control_port) words.insert(words.end(), {"--control", board.control_socket().text()});
   words.insert(words.end(), options.begin(), options.end());
   return words;
 }

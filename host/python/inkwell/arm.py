@@ -324,7 +324,8 @@ def open(address: str | None = None) -> Arm:
 
     address: None           what the environment's INKWELL_DEVICE says, else the only arm on USB
              serial number  the arm on USB that has it
-             "usbip:HOST:PORT"  that of a USB/IP server, such as a virtual board that runs already
+             "usbip:HOST:PORT"  that of a USB/IP server, such as a virtual board that runs already;
+                            "usbip:unix:PATH" at a Unix socket
              "virtual"      a virtual board of its own, which ends with the arm; "virtual:FILE" with the arm that FILE
                             describes
     """

@@ -86,7 +86,7 @@ void StatusBar::draw_device_list(const Style& style, DeviceDesk& desk) {
         view.connected() && view.status.information && view.status.information->serial_number == endpoint.serial_number;
     const std::string place = endpoint.kind == device::Endpoint::Kind::usb
                                   ? std::string("USB")
-                                  : fmt::format("virtual, port {}", endpoint.port);
+                                  : fmt::format("virtual, {}", endpoint.server.text());
     if (ImGui::Selectable(fmt::format("{}   {}   {}", endpoint.product, endpoint.serial_number, place).c_str(),
                           present))
       if (!present) desk.choose(endpoint.serial_number);

@@ -16,8 +16,8 @@ constexpr auto answer_limit = 2s;  // of a board that a debugger has stopped; cl
 
 }  // namespace
 
-BoardFaults::BoardFaults(std::uint16_t control_port)
-    : port_(control_port), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+BoardFaults::BoardFaults(device::SocketAddress control)
+    : control_(std::move(control)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 BoardFaults::~BoardFaults() = default;  // std::jthread asks its thread to stop and waits
 
@@ -84,7 +84,7 @@ void BoardFaults::run(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     try {
       if (!board) {
-        board.emplace("127.0.0.1", port_);
+        board.emplace(control_);
         board->wait_at_most(answer_limit);
       }
       for (const Request& request : requests) carry_out(request, *board);

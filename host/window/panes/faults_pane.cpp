@@ -57,7 +57,7 @@ std::string when_text(const LoggedFault& fault) {
 class FaultsPane final : public Pane {
  public:
   explicit FaultsPane(const PaneSurroundings& around) : desk_(around.desk) {
-    if (around.control_port != 0) board_.emplace(around.control_port);
+    if (around.control) board_.emplace(*around.control);
   }
 
   std::string_view title() const override { return "Faults"; }

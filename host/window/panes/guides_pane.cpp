@@ -40,7 +40,7 @@ Colour outcome_colour(Phase phase, const Palette& palette) {
 class GuidesPane final : public Pane {
  public:
   explicit GuidesPane(const PaneSurroundings& around)
-      : desk_(around.desk), control_port_(around.control_port), simulated_arm_(around.simulated_arm) {}
+      : desk_(around.desk), control_(around.control), simulated_arm_(around.simulated_arm) {}
   /// Closing the window in the middle of a guide leaves neither force nor parameters on trial on the device.
   ~GuidesPane() override { GuidesPane::cancel(); }
 
@@ -70,7 +70,7 @@ class GuidesPane final : public Pane {
   void run_simulated_user();
 
   DeviceDesk& desk_;
-  std::uint16_t control_port_;
+  std::optional<device::SocketAddress> control_;
   std::optional<protocol::ParameterSet> simulated_arm_;
   bool hand_helps_ = true;
   ValueFields fields_;
@@ -91,10 +91,10 @@ void GuidesPane::start(guides::Guide guide) {
   user_.reset();
   user_problem_.clear();
   signals_.clear();
-  if (control_port_ == 0 || !hand_helps_) return;
+  if (!control_ || !hand_helps_) return;
   try {
     const auto& held = desk_.view().parameters;
-    user_.emplace(device::ControlClient("127.0.0.1", control_port_),
+    user_.emplace(device::ControlClient(*control_),
                   simulated_arm_ ? *simulated_arm_ : held.value_or(protocol::default_parameters()));
   } catch (const device::Error& error) {
     user_problem_ = error.what();
@@ -169,7 +169,7 @@ void GuidesPane::draw_offers(const Style& style) {
   }
   ImGui::EndDisabled();
   draw_bandwidth(style);
-  if (control_port_ == 0) return;
+  if (!control_) return;
   ImGui::Dummy({0, style.points(4)});
   ImGui::Checkbox("The simulated hand does my part", &hand_helps_);
   note_item("hand helps");

@@ -1,6 +1,7 @@
 #include <scene/mouse_hand.hpp>
 
 #include <chrono>
+#include <utility>
 
 #include <device/control_client.hpp>
 
@@ -13,8 +14,8 @@ glm::vec3 within_reach(glm::vec3 probe_m, glm::vec3 wanted_m) {
   return distance_m <= reach_m ? wanted_m : probe_m + away * (reach_m / distance_m);
 }
 
-MouseHand::MouseHand(std::uint16_t control_port)
-    : port_(control_port), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+MouseHand::MouseHand(device::SocketAddress control)
+    : control_(std::move(control)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 MouseHand::~MouseHand() = default;  // std::jthread asks its thread to stop and waits
 
@@ -82,7 +83,7 @@ void MouseHand::run(const std::stop_token& stop) {
     }
     if (stop.stop_requested()) return;
     try {
-      if (!client) client.emplace("127.0.0.1", port_);
+      if (!client) client.emplace(control_);
       if (wish.docked != done.docked) client->dock(wish.docked);
       if (wish.target_m != done.target_m) {
         device::Hand hand{.holds = wish.target_m.has_value(),

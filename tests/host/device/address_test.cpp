@@ -7,7 +7,9 @@
 #include <span>
 
 #include <device/address.hpp>
+#include <device/device.hpp>
 #include <failure.hpp>
+#include <temporary_directory.hpp>
 
 #include "fake_usb.hpp"
 #include "fake_usbip_server.hpp"
@@ -32,11 +34,16 @@ TEST_CASE("an address is a serial number, a USB/IP server or a virtual board") {
   CHECK(parse_address("virtually").kind == Address::Kind::usb);
   const auto server = parse_address("usbip:host.example:3240");
   CHECK(server.kind == Address::Kind::usbip);
-  CHECK(server.host == "host.example");
-  CHECK(server.port == 3240);
+  CHECK(server.server.host == "host.example");
+  CHECK(server.server.port == 3240);
   for (const auto here : {"3240", ":3240", "127.0.0.1:3240"}) {
-    CHECK(device::parse_server(here).host == "127.0.0.1");
-    CHECK(device::parse_server(here).port == 3240);
+    CHECK(device::parse_server(here).server.host == "127.0.0.1");
+    CHECK(device::parse_server(here).server.port == 3240);
+  }
+  for (const auto at_socket : {parse_address("usbip:unix:/run/board"), device::parse_server("unix:/run/board")}) {
+    CHECK(at_socket.kind == Address::Kind::usbip);
+    CHECK(at_socket.server.path == "/run/board");
+    CHECK(at_socket.server.text() == "unix:/run/board");
   }
   CHECK(parse_address("virtual").kind == Address::Kind::own_board);
   CHECK(parse_address("virtual").arm.empty());
@@ -50,6 +57,17 @@ TEST_CASE("what is no address is told with one that is") {
     CAPTURE(wrong);
     CHECK(contains(message_of<device::BadAddress>([&] { parse_address(wrong); }), "127.0.0.1:3240"));
   }
+}
+
+TEST_CASE("the path of a socket that cannot be used is told with the reason") {
+  for (const auto& wrong :
+       {std::string("usbip:unix:"), std::string("usbip:unix:/a b"), "usbip:unix:/" + std::string(200, 'x')}) {
+    CAPTURE(wrong);
+    CHECK_THROWS_AS(parse_address(wrong), device::BadAddress);
+  }
+  const std::string nobody =
+      message_of<device::Error>([] { device::find_arm(parse_address("usbip:unix:/nowhere/x")); });
+  CHECK(contains(nobody, "Nothing answers at unix:/nowhere/x"));
 }
 
 TEST_CASE("one arm is meant, or the sentence says which there are") {
@@ -74,10 +92,20 @@ TEST_CASE("a server's arm is found, and found again by the address of what was f
   FakeUsbipServer server;
   const auto address = device::address_of(server.endpoint());
   const auto found = device::find_arm(parse_address(address));
-  CHECK(found.port == server.port());
+  CHECK(found.server.port == server.port());
   CHECK(device::address_of(found) == address);
   server.product_id = 0x0BAD;
   CHECK(contains(refusal(parse_address(address)), "exports no arm"));
+}
+
+TEST_CASE("a server at a Unix socket is found likewise, and found again by the address of what was found") {
+  const TemporaryDirectory directory;
+  FakeUsbipServer server(device::SocketAddress{.path = directory / "usbip"});
+  const auto address = device::address_of(server.endpoint());
+  CHECK(address == "usbip:unix:" + directory.file("usbip"));
+  const auto found = device::find_arm(parse_address(address));
+  CHECK(device::address_of(found) == address);
+  CHECK(device::Device::open(found)->information().serial_number == "0123456789ABCDEF01234567");
 }
 
 TEST_CASE("the arm of a board that is just starting is waited for, since the server answers before it shows itself") {
@@ -89,7 +117,7 @@ TEST_CASE("the arm of a board that is just starting is waited for, since the ser
     reply.resize(list_of_none);
     std::ranges::fill(std::span(reply).last(4), std::byte{0});
   };
-  CHECK(device::find_arm(parse_address(device::address_of(server.endpoint()))).port == server.port());
+  CHECK(device::find_arm(parse_address(device::address_of(server.endpoint()))).server.port == server.port());
   CHECK(lists == 4);
 }
 
@@ -99,7 +127,7 @@ TEST_CASE("looking for arms leaves no connection open, whether anybody answers o
   };
   FakeUsbipServer server;
   const auto open_before = open_files();
-  CHECK(device::find_usbip_devices("127.0.0.1", server.port()).size() == 1);
-  CHECK_THROWS_AS(device::find_usbip_devices("127.0.0.1", 1), device::Error);
+  CHECK(device::find_usbip_devices({"127.0.0.1", server.port()}).size() == 1);
+  CHECK_THROWS_AS(device::find_usbip_devices({"127.0.0.1", 1}), device::Error);
   CHECK(eventually([&] { return open_files() == open_before; }));
 }

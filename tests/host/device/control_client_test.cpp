@@ -16,7 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-ControlClient client_of(const FakeControlServer& server) { return {"127.0.0.1", server.port()}; }
+ControlClient client_of(const FakeControlServer& server) { return ControlClient({"127.0.0.1", server.port()}); }
 
 /// The message with which a call fails whose answer is this line.
 std::string failure_at(const std::string& line) {
@@ -137,6 +137,13 @@ TEST_CASE("an answer that comes together with the one before is kept for its own
   auto client = client_of(server);
   CHECK(client.status().mode == "fast");
   CHECK(client.status().mode == "exact");
+}
+
+TEST_CASE("a line without an end does not fill the memory") {
+  FakeControlServer server([](const json&) { return std::string(129u << 20, 'x'); });
+  auto client = client_of(server);
+  client.wait_at_most(60s);
+  CHECK(contains(message_of<device::Error>([&] { client.status(); }), "a line without an end"));
 }
 
 TEST_CASE("a hand that holds says how, one that lets go says nothing else") {

@@ -79,9 +79,10 @@ Bytes limited(const std::uint8_t (&setup)[8], Bytes reply) {
 
 }  // namespace
 
-FakeUsbipServer::FakeUsbipServer()
+FakeUsbipServer::FakeUsbipServer(const device::SocketAddress& where)
     : device_descriptor(bytes({18, 1, 0, 2, 0, 0, 0, 64, 0x09, 0x12, 1, 0, 0, 1, 1, 2, 3, 1})),
-      configuration(default_configuration()) {
+      configuration(default_configuration()),
+      server_([this](int client) { serve(client); }, where) {
   information.report_id = protocol::ReportId::information;
   information.version = protocol::protocol_version;
   information.parameter_table_hash = protocol::parameter_table_hash;
@@ -92,7 +93,7 @@ FakeUsbipServer::FakeUsbipServer()
 }
 
 device::Endpoint FakeUsbipServer::endpoint() const {
-  return {device::Endpoint::Kind::usbip, "", "", "1-1", "127.0.0.1", port()};
+  return {device::Endpoint::Kind::usbip, "", "", "1-1", server_.address()};
 }
 
 void FakeUsbipServer::serve(int client) {

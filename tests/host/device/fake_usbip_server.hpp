@@ -34,7 +34,7 @@ Bytes bytes_of(const Report& report) {
 
 class FakeUsbipServer {
  public:
-  FakeUsbipServer();
+  explicit FakeUsbipServer(const device::SocketAddress& where = {});
 
   std::uint16_t port() const { return server_.port(); }
   device::Endpoint endpoint() const;
@@ -135,7 +135,7 @@ class FakeUsbipServer {
   protocol::TransactionReport transaction_{};
   std::size_t taken_back_ = 0;
   std::size_t imports_ = 0;
-  LocalServer server_{[this](int client) { serve(client); }};
+  LocalServer server_;
 };
 
 /// A scope frame of one sample of one signal that is a float.

@@ -1,6 +1,5 @@
 #include "local_server.hpp"
 
-#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
@@ -10,16 +9,8 @@
 
 namespace inkwell::tests {
 
-LocalServer::LocalServer(std::function<void(int client)> serve) : serve_(std::move(serve)) {
-  listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  bind(listener_, reinterpret_cast<sockaddr*>(&address), size);
-  listen(listener_, 4);
-  getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
-  port_ = ntohs(address.sin_port);
+LocalServer::LocalServer(std::function<void(int client)> serve, const local::SocketAddress& where)
+    : serve_(std::move(serve)), listener_(where, "the test's server") {
   thread_ = std::thread([this] { accept_clients(); });
 }
 
@@ -29,9 +20,8 @@ LocalServer::~LocalServer() {
     stopping_ = true;
     if (client_ >= 0) shutdown(client_, SHUT_RDWR);
   }
-  shutdown(listener_, SHUT_RDWR);
+  shutdown(listener_.descriptor(), SHUT_RDWR);
   thread_.join();
-  close(listener_);
 }
 
 void LocalServer::hang_up() {
@@ -41,7 +31,7 @@ void LocalServer::hang_up() {
 
 void LocalServer::accept_clients() {
   for (;;) {
-    const int client = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    const int client = accept4(listener_.descriptor(), nullptr, nullptr, SOCK_CLOEXEC);
     if (client < 0) return;
     const int yes = 1;
     setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);  // a pose follows an answer at once

@@ -6,18 +6,21 @@
 #include <mutex>
 #include <thread>
 
+#include <local/listener.hpp>
+
 namespace inkwell::tests {
 
 /// Make it the last member of what it serves from: its thread ends with it.
 class LocalServer {
  public:
   /// `serve(client)` has the connected socket until it returns, in the server's thread.
-  explicit LocalServer(std::function<void(int client)> serve);
+  explicit LocalServer(std::function<void(int client)> serve, const local::SocketAddress& where = {});
   ~LocalServer();
   LocalServer(const LocalServer&) = delete;
   LocalServer& operator=(const LocalServer&) = delete;
 
-  std::uint16_t port() const { return port_; }
+  const local::SocketAddress& address() const { return listener_.address(); }
+  std::uint16_t port() const { return address().port; }
   /// Cuts the connection, as a board that was stopped would.
   void hang_up();
 
@@ -25,8 +28,7 @@ class LocalServer {
   void accept_clients();
 
   std::function<void(int)> serve_;
-  int listener_ = -1;
-  std::uint16_t port_ = 0;
+  local::Listener listener_;
   std::mutex mutex_;
   int client_ = -1;
   bool stopping_ = false;

@@ -53,7 +53,7 @@ TEST_CASE("an arm at a server is opened, and its endpoint has the serial number 
   FakeUsbipServer server;
   const auto opened = device::open_arm(device::parse_address("usbip:" + std::to_string(server.port())), {});
   CHECK(opened.endpoint.serial_number == "0123456789ABCDEF01234567");
-  CHECK(opened.endpoint.port == server.port());
+  CHECK(opened.endpoint.server.port == server.port());
   CHECK_FALSE(opened.board);
   CHECK(server.transactions() == 0);
 }

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 TEST_CASE("a request that is not answered in time is taken back, and the connection goes on") {
   FakeUsbipServer server;
-  device::UsbipConnection connection("127.0.0.1", server.port(), "1-1", 50ms);
+  device::UsbipConnection connection({"127.0.0.1", server.port()}, "1-1", 50ms);
   connection.start([](const std::string&) {});
   const auto device_descriptor = [&] {
     return connection.control_in(device::setup::get_descriptor(device::setup::DescriptorType::device, 0, 18));
@@ -54,7 +54,7 @@ TEST_CASE("a request whose answer breaks off is told that the device is gone, at
     send_all(std::array<std::byte, 4>{}, 4);
     shutdown(client, SHUT_RDWR);
   });
-  device::UsbipConnection connection("127.0.0.1", server.port(), "1-1");
+  device::UsbipConnection connection({"127.0.0.1", server.port()}, "1-1");
   connection.start([](const std::string&) {});
   CHECK_THROWS_AS(connection.control_in(device::setup::get_descriptor(device::setup::DescriptorType::device, 0, 18)),
                   device::Disconnected);

@@ -36,13 +36,13 @@ protocol::PoseReport pose_number(std::uint32_t sequence) {
 
 TEST_CASE("a USB/IP server is asked for arms, and other devices are passed over") {
   FakeUsbipServer server;
-  const auto found = device::find_usbip_devices("127.0.0.1", server.port());
+  const auto found = device::find_usbip_devices({"127.0.0.1", server.port()});
   REQUIRE(found.size() == 1);
   CHECK(found[0].path == "1-1");
   CHECK_FALSE(found[0].is_virtual);
   SUBCASE("another product") { server.product_id = 0x0BAD; }
   SUBCASE("another vendor") { server.vendor_id = 0x0BAD; }
-  CHECK(device::find_usbip_devices("127.0.0.1", server.port()).empty());
+  CHECK(device::find_usbip_devices({"127.0.0.1", server.port()}).empty());
 }
 
 TEST_CASE("a server may export several arms") {
@@ -53,7 +53,7 @@ TEST_CASE("a server may export several arms") {
     reply.insert(reply.end(), device.begin(), device.end());
     reply[count_at] = std::byte{2};
   };
-  const auto found = device::find_usbip_devices("127.0.0.1", server.port());
+  const auto found = device::find_usbip_devices({"127.0.0.1", server.port()});
   REQUIRE(found.size() == 2);
   CHECK(found[1].path == "1-1");
 }
@@ -61,7 +61,7 @@ TEST_CASE("a server may export several arms") {
 TEST_CASE("a server tells by its device's path that it is a virtual board") {
   FakeUsbipServer server;
   server.path = "/inkwell_virtual_board/usb1/1-1";
-  const auto found = device::find_usbip_devices("127.0.0.1", server.port());
+  const auto found = device::find_usbip_devices({"127.0.0.1", server.port()});
   REQUIRE(found.size() == 1);
   CHECK(found[0].is_virtual);
 }
@@ -272,9 +272,20 @@ TEST_CASE("what answers but does not speak USB/IP 1.1.1 is told so") {
   SUBCASE("another version") { at = 1; }
   SUBCASE("a reply to something else") { at = 3; }
   server.spoil_reply = [=](Bytes& reply) { reply[at] ^= std::byte{0x40}; };
-  const auto list = [&] { device::find_usbip_devices("127.0.0.1", server.port()); };
+  const auto list = [&] { device::find_usbip_devices({"127.0.0.1", server.port()}); };
   CHECK(contains(message_of<device::Error>(list), "does not speak USB/IP"));
   CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "does not speak USB/IP"));
+}
+
+TEST_CASE("a server that lists more devices than there can be is not listened to") {
+  FakeUsbipServer server;
+  server.spoil_reply = [](Bytes& reply) {
+    constexpr std::size_t count_at = 8;  // behind the header
+    for (std::size_t i = 0; i < 4; ++i) reply[count_at + i] = std::byte{0xFF};
+    reply.resize(count_at + 4);
+  };
+  const auto message = message_of<device::Error>([&] { device::find_usbip_devices(server.endpoint().server); });
+  CHECK(contains(message, "lists 4294967295 devices"));
 }
 
 TEST_CASE("one program works with one force law at a time, and says which is in its way") {
@@ -597,11 +608,13 @@ TEST_CASE("a device that is in use, or is none of ours, is refused") {
     CHECK(contains(message_of<device::Error>([&] { device::Device::open(server.endpoint()); }), "damaged"));
   }
   SUBCASE("nobody there") {
-    CHECK(contains(message_of<device::Error>([] { device::find_usbip_devices("127.0.0.1", 1); }), "Nothing answers"));
+    CHECK(contains(message_of<device::Error>([] { device::find_usbip_devices({"127.0.0.1", 1}); }), "Nothing answers"));
   }
   SUBCASE("a name that is none") {
-    CHECK(
-        contains(message_of<device::Error>([] { device::find_usbip_devices("not a name", 1); }), "not a name is not"));
+    CHECK(contains(message_of<device::Error>([] {
+                     device::find_usbip_devices({"not a name", 1});
+                   }),
+                   "not a name is not"));
   }
 }
 
@@ -610,7 +623,7 @@ TEST_CASE("a server that answers nothing is given up; a device that says nothing
   silent.silent = true;
   const auto arm = device::Device::open(quiet.endpoint());
   const auto address = std::to_string(silent.port());
-  const auto message = message_of<device::Error>([&] { device::find_usbip_devices("127.0.0.1", silent.port()); });
+  const auto message = message_of<device::Error>([&] { device::find_usbip_devices({"127.0.0.1", silent.port()}); });
   CHECK(contains(message, "gives no answer"));
   CHECK(contains(message, address.c_str()));
   CHECK_NOTHROW(arm->information());

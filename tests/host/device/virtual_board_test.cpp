@@ -11,6 +11,7 @@
 
 #include <device/virtual_board.hpp>
 #include <failure.hpp>
+#include <local/listener.hpp>
 
 #include "fake_usbip_server.hpp"
 #include "temporary_directory.hpp"
@@ -52,8 +53,8 @@ TEST_CASE("a virtual board is asked to end, so that it can put its things in ord
   const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_told);
   {
     device::VirtualBoard board(script.options());
-    CHECK(board.usbip_port() == 7);
-    CHECK(board.control_port() == 8);
+    CHECK(board.usbip() == device::SocketAddress{.host = "127.0.0.1", .port = 7});
+    CHECK(board.control_socket() == device::SocketAddress{.host = "127.0.0.1", .port = 8});
     CHECK(board.is_running());
     CHECK(script.file("end").empty());
   }
@@ -71,6 +72,21 @@ TEST_CASE("a virtual board that does not end when it is asked to is ended") {
   CHECK(kill(process, 0) != 0);
 }
 
+TEST_CASE("a virtual board that is killed leaves no sockets behind") {
+  const TemporaryDirectory parent;
+  std::filesystem::create_directory(parent / "private");
+  const local::Listener usbip({.path = parent / "private/usbip"}, "--usbip"),
+      control({.path = parent / "private/control"}, "--control");
+  const Script script("echo ready usbip=" + usbip.address().text() + " control=" + control.address().text() +
+                      "\nexec sleep 60\n");
+  {
+    const device::VirtualBoard board(script.options());
+    CHECK(board.usbip() == usbip.address());
+    CHECK(board.control_socket() == control.address());
+  }
+  CHECK(std::filesystem::is_empty(parent.path()));
+}
+
 TEST_CASE("a virtual board ends with the thread that made it") {
   const Script script(std::string("trap 'echo asked > end; exit 0' TERM\n") + run_until_told);
   std::unique_ptr<device::VirtualBoard> board;
@@ -83,6 +99,9 @@ TEST_CASE("a virtual board that does not start tells what it said") {
   CHECK(contains(failure_of(Script("echo the port is taken >&2\nexit 1\n").options()), "the port is taken"));
   CHECK(contains(failure_of(Script("exit 1\n").options()), "It said nothing"));
   CHECK(contains(failure_of(Script("echo hello\nexec sleep 60\n").options()), "did not start"));
+  CHECK(contains(failure_of(Script("echo ready usbip=x control=8\nexec sleep 60\n").options()), "did not start"));
+  CHECK(contains(failure_of(Script("echo ready usbip=7\nexec sleep 60\n").options()), "did not start"));
+  CHECK(contains(failure_of(Script("exec cat /dev/zero\n").options()), "did not start"));
   const Script script("");
   auto options = script.options();
   options.elf = "/nowhere.elf";
@@ -100,9 +119,9 @@ TEST_CASE("a virtual board gets its options") {
   options.seed = 42;
   options.paused = true;
   const device::VirtualBoard board(options);
-  CHECK(script.file("arguments") ==
-        "--elf " + options.elf.string() +
-            " --mode exact --pricing conservative --seed 42 --arm arm.toml --real-time --paused");
+  CHECK(script.file("arguments") == "--elf " + options.elf.string() +
+                                        " --usbip unix: --control unix: --mode exact --pricing conservative --seed 42 "
+                                        "--arm arm.toml --real-time --paused");
 }
 
 TEST_CASE("a virtual board gets the options that are seldom given, and no others") {
@@ -114,9 +133,10 @@ TEST_CASE("a virtual board gets the options that are seldom given, and no others
   options.strict = true;
   options.profile = "longest.txt";
   const device::VirtualBoard board(options);
-  CHECK(script.file("arguments") == "--elf " + options.elf.string() +
-                                        " --mode fast --pricing likely --seed 1 --host-clock-ppm -500.000000 "
-                                        "--brown-out 3 --strict --profile longest.txt");
+  CHECK(script.file("arguments") ==
+        "--elf " + options.elf.string() +
+            " --usbip unix: --control unix: --mode fast --pricing likely --seed 1 --host-clock-ppm -500.000000 "
+            "--brown-out 3 --strict --profile longest.txt");
 }
 
 TEST_CASE("of all that a virtual board said before it failed the end is told") {

@@ -34,20 +34,22 @@ class SeveralArms : public NoDevice {
 ///     (nothing)        the only arm on USB
 ///     NUMBER           the arm on USB that has this serial number
 ///     usbip:HOST:PORT  the arm of a USB/IP server, such as a virtual board that runs already
+///     usbip:unix:PATH  the same at a Unix socket
 ///     virtual          a virtual board that is started for it
 ///     virtual:FILE     the same, with the arm that FILE describes
 struct Address {
   enum class Kind : std::uint8_t { usb, usbip, own_board };
   Kind kind = Kind::usb;
   std::string serial_number{};  ///< for `usb`; empty for the only one
-  std::string host{};           ///< for `usbip`
-  std::uint16_t port = 0;       ///< for `usbip`
+  SocketAddress server{};       ///< for `usbip`
   std::filesystem::path arm{};  ///< for `own_board`; empty for the Omni
 };
 
 /// Throws BadAddress.
 Address parse_address(std::string_view text);
-/// Of a USB/IP server: HOST:PORT, or PORT alone on this computer. Throws BadAddress.
+/// Of a server: HOST:PORT, PORT alone on this computer, or unix:PATH. Throws BadAddress.
+SocketAddress parse_socket(std::string_view text);
+/// The arm of the USB/IP server at such an address. Throws BadAddress.
 Address parse_server(std::string_view text);
 /// Leads back to a device that was found, once it was opened.
 std::string address_of(const Endpoint& endpoint);

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <device/error.hpp>
+#include <device/socket_address.hpp>
 #include <protocol/injection_request.hpp>
 
 namespace inkwell::device {
@@ -104,7 +105,7 @@ class CommandRefused : public Error {
 /// refuses it, and Disconnected if the board is gone.
 class ControlClient {
  public:
-  ControlClient(const std::string& host, std::uint16_t port);
+  explicit ControlClient(const SocketAddress& server);
   ~ControlClient();
   ControlClient(ControlClient&&) noexcept;
   ControlClient& operator=(ControlClient&&) noexcept;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <device/error.hpp>
+#include <device/socket_address.hpp>
 
 namespace inkwell::device {
 
@@ -20,8 +21,7 @@ struct Endpoint {
   std::string serial_number;
   std::string product;
   std::string path;         ///< hidapi's path for `usb`, bus id for `usbip`
-  std::string host;         ///< for `usbip`
-  std::uint16_t port = 0;   ///< for `usbip`
+  SocketAddress server{};   ///< for `usbip`
   bool is_virtual = false;  ///< a virtual board, so what comes from it is a simulation
 };
 
@@ -29,7 +29,7 @@ struct Endpoint {
 std::vector<Endpoint> find_usb_devices();
 /// The arms exported by a USB/IP server such as a virtual board. Throws Error if it does not answer. Their
 /// serial numbers are known only after open_transport, because a USB/IP list of devices does not hold them.
-std::vector<Endpoint> find_usbip_devices(const std::string& host, std::uint16_t port);
+std::vector<Endpoint> find_usbip_devices(const SocketAddress& server);
 
 /// Raw reports and bulk data. Calls may come from two threads: one for reports, one for the bulk stream.
 class Transport {

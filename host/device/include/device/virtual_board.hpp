@@ -52,8 +52,9 @@ class VirtualBoard {
   VirtualBoard(const VirtualBoard&) = delete;
   VirtualBoard& operator=(const VirtualBoard&) = delete;
 
-  std::uint16_t usbip_port() const;
-  std::uint16_t control_port() const;
+  /// Unix sockets in a private folder: no other user can connect. They go with the board.
+  const SocketAddress& usbip() const;
+  const SocketAddress& control_socket() const;
 
   /// The device if the board shows one on its USB, none while it starts or its cable is out.
   std::optional<Endpoint> find() const;

@@ -82,7 +82,7 @@ typedef struct inkwell_arm inkwell_arm;
 /* What an address leads to. */
 typedef enum inkwell_address_kind INKWELL_AS_INT {
   INKWELL_ON_USB = 0,    /* any text that is none of the others: a serial number, if it is one */
-  INKWELL_AT_SERVER = 1, /* "usbip:HOST:PORT" */
+  INKWELL_AT_SERVER = 1, /* "usbip:HOST:PORT" or "usbip:unix:PATH" */
   INKWELL_OWN_BOARD = 2  /* "virtual" or "virtual:FILE": each opening makes a board of its own */
 } inkwell_address_kind;
 
@@ -92,7 +92,8 @@ INKWELL_API inkwell_result inkwell_kind_of_address(const char* address, inkwell_
 /* Opens an arm. `address`:
  *   NULL or ""         what the environment's INKWELL_DEVICE says, else the only arm on USB
  *   a serial number    the arm on USB that has it
- *   "usbip:HOST:PORT"  the arm of a USB/IP server, such as a virtual board that runs already
+ *   "usbip:HOST:PORT"  the arm of a USB/IP server, such as a virtual board that runs already; "usbip:unix:PATH" at a
+ *                      Unix socket
  *   "virtual"          a virtual board of its own, which is ready and ends with inkwell_close(); "virtual:FILE" with
  *                      the arm that FILE describes
  * The force is off. */

@@ -29,9 +29,9 @@ struct WindowOptions {
   std::function<std::vector<device::Endpoint>()> list_devices;
   /// Connect only to this arm; empty takes the first in the list.
   std::string serial_number;
-  /// Control port of a virtual board on this machine, through which the mouse moves the simulated hand and
-  /// the keyboard presses the stylus' buttons; 0: there is none.
-  std::uint16_t virtual_board_control_port = 0;
+  /// Control socket of a virtual board, through which the mouse moves the simulated hand and the keyboard presses the
+  /// stylus' buttons.
+  std::optional<device::SocketAddress> virtual_board_control;
 
   /// Starts a virtual board and changes these options to it; null if there is one, or none can be had. Called from the
   /// window's own thread; throws device::Error with a sentence.

@@ -48,7 +48,7 @@ TEST_CASE("the board is asked again and again, and told what to do") {
     return request.at("command") == "inject" ? R"({"ok": true, "number": 3, "at_s": 1.6})" + std::string("\n")
                                              : nothing_in + std::string("\n");
   });
-  BoardFaults faults(server.port());
+  BoardFaults faults({"127.0.0.1", server.port()});
   CHECK(wait_for<device::Injections>(faults).period == 7);
   CHECK(wait_for<device::Injections>(faults).board_time_s == 1.5);
   faults.inject({.fault = "motor_open", .of = "2", .for_s = 0.25});
@@ -68,7 +68,7 @@ TEST_CASE("a refusal is told, and what comes after it is done") {
     return request.at("command") == "inject" ? R"({"ok": false, "error": "there is no such motor"})" + std::string("\n")
                                              : nothing_in + std::string("\n");
   });
-  BoardFaults faults(server.port());
+  BoardFaults faults({"127.0.0.1", server.port()});
   faults.inject({.fault = "motor_open", .of = "9"});
   CHECK(wait_for<BoardFaults::Refusal>(faults).sentence.find("no such motor") != std::string::npos);
   CHECK(wait_for<device::Injections>(faults).period == 7);
@@ -77,7 +77,7 @@ TEST_CASE("a refusal is told, and what comes after it is done") {
 TEST_CASE("a board that goes away is told once, and is asked again when it is back; nothing of before is done then") {
   std::atomic<bool> answers = true;
   FakeControlServer server([&](const json&) { return answers ? nothing_in + std::string("\n") : std::string("no\n"); });
-  BoardFaults faults(server.port());
+  BoardFaults faults({"127.0.0.1", server.port()});
   wait_for<device::Injections>(faults);
   answers = false;
   CHECK_FALSE(wait_for<BoardFaults::Gone>(faults).sentence.empty());
@@ -101,7 +101,7 @@ TEST_CASE("an answer like the last one is no change") {
     if (has_fault) answer["injected"].push_back({{"number", 1}, {"fault", "supply_cut"}, {"since_s", 1.0}});
     return answer.dump() + "\n";
   });
-  BoardFaults faults(server.port());
+  BoardFaults faults({"127.0.0.1", server.port()});
   wait_for<device::Injections>(faults);
   const auto asked = server.requests().size();
   REQUIRE(eventually([&] { return server.requests().size() >= asked + 2; }));

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <device/control_client.hpp>
+#include <device/socket_address.hpp>
 
 namespace inkwell::window {
 
@@ -26,7 +27,7 @@ class BoardFaults {
   };
   using News = std::variant<device::Injections, device::PutInFault, Refusal, Gone>;
 
-  explicit BoardFaults(std::uint16_t control_port);
+  explicit BoardFaults(device::SocketAddress control);
   ~BoardFaults();
 
   void inject(const protocol::InjectionRequest& request);
@@ -46,7 +47,7 @@ class BoardFaults {
   void carry_out(const Request& request, device::ControlClient& board);
   void tell(News news);
 
-  std::uint16_t port_;
+  device::SocketAddress control_;
   mutable std::mutex mutex_;
   std::condition_variable_any asked_;
   std::vector<Request> requests_;

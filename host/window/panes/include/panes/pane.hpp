@@ -25,9 +25,9 @@ struct PaneSurroundings {
   /// The parameter file that was loaded or saved last; remembered from one time to the next.
   std::filesystem::path& parameters_file;
   std::filesystem::path parameters_to_send;  ///< once a device is connected; empty: none
-  /// Control port of the virtual board whose simulated hand can do the user's part, and which can be given faults; 0
-  /// for a real device.
-  std::uint16_t control_port = 0;
+  /// Control socket of the virtual board whose simulated hand can do the user's part, and which can be given faults;
+  /// none for a real device.
+  std::optional<device::SocketAddress> control;
   /// The arm of that board, if it is known otherwise than from the device.
   std::optional<protocol::ParameterSet> simulated_arm;
   /// Replays a recording in place of the device; throws device::Error with a sentence if it cannot be read.

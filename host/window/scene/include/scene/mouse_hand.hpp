@@ -11,6 +11,8 @@
 
 #include <glm/glm.hpp>
 
+#include <device/socket_address.hpp>
+
 namespace inkwell::window {
 
 /// A person's hand on the stylus is about this stiff, and does not press harder than a few newtons.
@@ -23,7 +25,7 @@ glm::vec3 within_reach(glm::vec3 probe_m, glm::vec3 wanted_m);
 
 class MouseHand {
  public:
-  explicit MouseHand(std::uint16_t control_port);
+  explicit MouseHand(device::SocketAddress control);
   ~MouseHand();
 
   /// Takes the stylus (out of the inkwell, if it is there) and pulls it to a place of the workspace.
@@ -49,7 +51,7 @@ class MouseHand {
   void run(const std::stop_token& stop);
   void change(const Wish& wish);
 
-  std::uint16_t port_;
+  device::SocketAddress control_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   Wish wish_;
