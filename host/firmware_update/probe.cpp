@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -15,6 +17,9 @@ namespace {
 constexpr char cannot_use[] =
     "openocd could not write the firmware: see above. Is the probe connected to SWDIO, SWCLK, NRST and ground, and the "
     "board's power on?";
+constexpr char cannot_read[] =
+    "openocd could not read the board's firmware: see above. Is the probe connected to SWDIO, SWCLK, NRST and ground, "
+    "and the board's power on? For a chip whose flash cannot be read, add --yes. Nothing was changed.";
 constexpr char not_verified[] =
     "openocd ended without a report that the firmware was verified, so it is not known what the flash holds. Check "
     "openocd's installation and its settings, then try again.";
@@ -101,40 +106,75 @@ std::string intel_hex(const Image& image) {
   return text;
 }
 
-std::vector<std::string> openocd_arguments(const std::string& interface) {
+namespace {
+
+std::vector<std::string> openocd_arguments(const std::string& interface, std::initializer_list<std::string> commands) {
+  std::vector<std::string> arguments{"-f", fmt::format("interface/{}.cfg", interface), "-f", "target/stm32f4x.cfg"};
+  for (const auto& command : commands) {
+    arguments.emplace_back("-c");
+    arguments.push_back(command);
+  }
+  return arguments;
+}
+
+/// Returns its exit code.
+int run_openocd(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                const std::function<void(const std::string&)>& on_line) {
+  Lines lines(on_line);
+  std::vector<std::string> words{"openocd"};
+  std::ranges::copy(arguments, std::back_inserter(words));
+  const int exit_code = device::run_child_program(
+      {.words = words,
+       .folder = folder,
+       .advice = "Install it (Debian: the package openocd), or flash over USB: inkwell flash."},
+      [&](std::string_view piece) { lines.add(piece); });
+  lines.end();
+  return exit_code;
+}
+
+std::optional<protocol::ImageIdentity> read_installed(const std::string& interface, const std::filesystem::path& folder,
+                                                      const std::function<void(const std::string&)>& on_line) {
+  if (run_openocd(openocd_arguments_for_reading(interface), folder, on_line) != 0) throw device::Error(cannot_read);
+  std::ifstream file(folder / installed_file, std::ios::binary);
+  std::vector<std::byte> begin_of_flash(identity_end);
+  if (!file.read(reinterpret_cast<char*>(begin_of_flash.data()), static_cast<std::streamsize>(begin_of_flash.size())))
+    throw device::Error(cannot_read);
+  return identity_in(begin_of_flash);
+}
+
+}  // namespace
+
+std::vector<std::string> openocd_arguments_for_reading(const std::string& interface) {
+  return openocd_arguments(
+      interface, {fmt::format("init; dump_image {} {:#x} {}", installed_file, protocol::image_begin, identity_end),
+                  "shutdown"});
+}
+
+std::vector<std::string> openocd_arguments_for_writing(const std::string& interface) {
   // FLASH_OPTCR: BOR_LEV is 0 for level 3; the other bits of the user's byte stay (RM0090, "Option bytes").
   const std::string set_brown_out =
       "set optcr [lindex [read_memory 0x40023c14 32 1] 0]; "
       "if {($optcr & 0x0c) != 0} { stm32f2x options_write 0 [expr {$optcr & 0xe0}] }";
-  return {"-f", fmt::format("interface/{}.cfg", interface),
-          "-f", "target/stm32f4x.cfg",
-          "-c", fmt::format("init; reset halt; flash write_image erase {0}; verify_image {0}", image_file),
-          "-c", fmt::format("echo {{{}}}", verified_line),
-          "-c", set_brown_out,
-          "-c", "reset run; shutdown"};
+  return openocd_arguments(
+      interface, {fmt::format("init; reset halt; flash write_image erase {0}; verify_image {0}", image_file),
+                  fmt::format("echo {{{}}}", verified_line), set_brown_out, "reset run; shutdown"});
 }
 
 void update_by_probe(const Image& image, const std::string& interface, Consent consent,
                      const std::function<void(const std::string&)>& on_line) {
   if (!is_interface_name(interface)) throw device::Error(no_interface_name(interface));
-  insist(image, {}, consent);
   const device::PrivateFolder folder;
+  std::optional<protocol::ImageIdentity> installed;
+  if (consent != Consent::to_everything) installed = read_installed(interface, folder.path(), on_line);
+  insist(image, installed, consent);
   write_image_file(image, folder.path() / image_file);
   bool is_verified = false;
-  const std::function<void(const std::string&)> watch = [&](const std::string& line) {
+  const auto watch = [&](const std::string& line) {
     is_verified |= line == verified_line;
     on_line(line);
   };
-  Lines lines(watch);
-  std::vector<std::string> words{"openocd"};
-  std::ranges::copy(openocd_arguments(interface), std::back_inserter(words));
-  const int exit_code = device::run_child_program(
-      {.words = words,
-       .folder = folder.path(),
-       .advice = "Install it (Debian: the package openocd), or flash over USB: inkwell flash."},
-      [&](std::string_view piece) { lines.add(piece); });
-  lines.end();
-  if (exit_code != 0) throw device::Error(cannot_use);
+  if (run_openocd(openocd_arguments_for_writing(interface), folder.path(), watch) != 0)
+    throw device::Error(cannot_use);
   if (!is_verified) throw device::Error(not_verified);
 }
 

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -72,13 +73,22 @@ std::map<std::uint32_t, std::byte> bytes_of_hex(const std::string& text) {
   return bytes;
 }
 
-/// An `openocd` that comes first on PATH: a script that notes its arguments, its folder and the files there.
+std::string begin_of_flash(const protocol::ImageIdentity& identity) {
+  std::string bytes(identity_end, '\xFF');
+  std::memcpy(bytes.data() + protocol::image_identity_offset, &identity, sizeof identity);
+  return bytes;
+}
+
+/// An `openocd` that comes first on PATH: a script that supplies the begin of the flash, or notes its arguments, its
+/// folder and the files there.
 class FakeOpenocd {
  public:
-  explicit FakeOpenocd(const std::string& end) {
+  explicit FakeOpenocd(const std::string& end, const std::string& flash = std::string(identity_end, '\xFF')) {
     const fs::path bin = directory_ / "bin", program = bin / "openocd";
     fs::create_directory(bin);
-    std::ofstream(program) << "#!/bin/sh\nfor word in \"$@\"; do echo \"$word\"; done >" << noted("words")
+    std::ofstream(noted("flash"), std::ios::binary) << flash;
+    std::ofstream(program) << "#!/bin/sh\ncase \"$*\" in *dump_image*) echo \"$*\" >" << noted("reading") << "; cat "
+                           << noted("flash") << " >installed.bin; exit;; esac\nfor word in \"$@\"; do echo \"$word\"; done >" << noted("words")
                            << "\npwd -P >" << noted("folder") << "\nls -R >" << noted("files") << "\ncat image.hex >"
                            << noted("image") << "\n"
                            << end << "\n";
@@ -106,8 +116,8 @@ class FakeOpenocd {
 
 const std::string reports_verified = "echo 'Info : flash'; echo '" + std::string(verified_line) + "' >&2";
 
-std::string failure(const std::string& interface = "stlink") {
-  return message_of<device::Error>([&] { update_by_probe(good_image(), interface, {}, [](const auto&) {}); });
+std::string failure(const std::string& interface = "stlink", Consent consent = Consent::none) {
+  return message_of<device::Error>([&] { update_by_probe(good_image(), interface, consent, [](const auto&) {}); });
 }
 
 }  // namespace
@@ -118,7 +128,7 @@ TEST_CASE("openocd runs in a private folder and gets the bytes that were checked
   const Image image = good_image();
   update_by_probe(image, "cmsis-dap", {}, [&](const std::string& line) { lines.push_back(line); });
   CHECK(lines == std::vector<std::string>{"Info : flash", verified_line});
-  CHECK(fake.text("files") == ".:\nimage.hex\n");
+  CHECK(fake.text("files") == ".:\nimage.hex\ninstalled.bin\n");
   CHECK(bytes_of_hex(fake.text("image")) == bytes_of(image));
   std::string folder = fake.text("folder");
   folder.pop_back();
@@ -143,6 +153,32 @@ TEST_CASE("an update by a probe counts as done only after openocd's report that 
   CHECK(contains(said_after("echo 'not so: " + std::string(verified_line) + "'"), "without a report"));
   CHECK(contains(said_after(reports_verified + "; exit 1"), "Is the probe connected"));
   CHECK(contains(said_after(reports_verified + "; kill -KILL $$"), "Is the probe connected"));
+}
+
+TEST_CASE("a probe replaces a newer firmware, or one that it cannot read, only with consent") {
+  const auto newer = begin_of_flash(protocol::image_identity("omni_driver", 2, 0, 0));
+  const auto said = [](const std::string& flash, Consent consent) {
+    const FakeOpenocd fake(reports_verified, flash);
+    auto sentence = failure("stlink", consent);
+    CHECK(fs::exists(fake.noted("words")) == sentence.empty());
+    return sentence;
+  };
+  CHECK(contains(said(newer, Consent::none), "older than the firmware 2.0.0 that it would replace"));
+  CHECK(said(newer, Consent::to_downgrade).empty());
+  CHECK(said(newer, Consent::to_everything).empty());
+  CHECK(said(begin_of_flash(protocol::image_identity("omni_driver", 1, 2, 3)), Consent::none).empty());
+  CHECK(contains(said(begin_of_flash(protocol::image_identity("bench_modules", 1, 2, 3)), Consent::to_downgrade),
+                 "is for the board omni_driver, and this one is bench_modules"));
+  CHECK(contains(said("cut off", Consent::none), "could not read the board's firmware"));
+  CHECK(said("cut off", Consent::to_everything).empty());
+}
+
+TEST_CASE("the installed firmware is read without a halt") {
+  const FakeOpenocd fake(reports_verified);
+  CHECK(failure().empty());
+  const std::string reading = fake.text("reading");
+  CHECK(contains(reading, "dump_image installed.bin 0x8000000 " + std::to_string(identity_end)));
+  CHECK_FALSE(contains(reading, "halt"));
 }
 
 TEST_CASE("what openocd prints of a probe is safe to print") {

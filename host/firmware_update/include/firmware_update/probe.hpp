@@ -19,14 +19,18 @@ std::string no_interface_name(std::string_view name);
 /// Bytes of the image as Intel HEX, which openocd reads in place of the user's file: nothing else is written.
 std::string intel_hex(const Image& image);
 
+/// Arguments of openocd, which copies the first bytes of the flash into `installed_file` while the firmware runs on.
+std::vector<std::string> openocd_arguments_for_reading(const std::string& interface);
 /// Arguments of openocd, which writes the sectors of the image, reads them back, prints `verified_line`, sets the
 /// brown-out level if it differs, and starts the firmware.
-std::vector<std::string> openocd_arguments(const std::string& interface);
-inline constexpr char image_file[] = "image.hex", verified_line[] = "inkwell: the image is verified";
+std::vector<std::string> openocd_arguments_for_writing(const std::string& interface);
+inline constexpr char installed_file[] = "installed.bin", image_file[] = "image.hex",
+                      verified_line[] = "inkwell: the image is verified";
 
-/// Runs openocd in a folder that holds nothing but the image, because openocd looks for its scripts in its current
-/// folder first. `on_line` gets each line that it prints. Throws Objected as `update` does, and device::Error if there
-/// is no openocd, it fails, or it does not report that the image is verified.
+/// Runs openocd in a folder of its own, because openocd looks for its scripts in its current folder first. Without
+/// consent to everything, a first run reads the identity of the installed firmware. `on_line` gets each line that
+/// openocd prints. Throws Objected and Downgrade as `update` does, and device::Error if there is no openocd, it fails,
+/// or it does not report that the image is verified.
 void update_by_probe(const Image& image, const std::string& interface, Consent consent,
                      const std::function<void(const std::string&)>& on_line);
 
