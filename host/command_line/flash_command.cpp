@@ -179,7 +179,7 @@ void add_flash_command(const Place& place) {
   command->add_flag("--allow-downgrade", given->allows_downgrade,
                     "Write the image even if its firmware is older than the one that it replaces");
   command->add_flag("--yes", given->says_yes,
-                    "Write it even if it is for another board, speaks another protocol, is damaged, or is older");
+                    "Write it even if it is for another board, of another protocol, damaged or older");
   add_examples(
       *command,
       "inkwell flash\ninkwell flash build/board/inkwell.elf\ninkwell flash --swd --board omni_driver\n"

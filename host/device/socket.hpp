@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include <local/socket_address.hpp>
+#include <device/socket_address.hpp>
 
 namespace inkwell::device {
 

@@ -40,7 +40,7 @@ TEST_CASE("an address is a serial number, a USB/IP server or a virtual board") {
     CHECK(device::parse_server(here).server.host == "127.0.0.1");
     CHECK(device::parse_server(here).server.port == 3240);
   }
-  for (const auto at_socket : {parse_address("usbip:unix:/run/board"), device::parse_server("unix:/run/board")}) {
+  for (const auto& at_socket : {parse_address("usbip:unix:/run/board"), device::parse_server("unix:/run/board")}) {
     CHECK(at_socket.kind == Address::Kind::usbip);
     CHECK(at_socket.server.path == "/run/board");
     CHECK(at_socket.server.text() == "unix:/run/board");

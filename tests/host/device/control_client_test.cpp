@@ -142,7 +142,7 @@ TEST_CASE("an answer that comes together with the one before is kept for its own
 TEST_CASE("a line without an end does not fill the memory") {
   FakeControlServer server([](const json&) { return std::string(129u << 20, 'x'); });
   auto client = client_of(server);
-  client.wait_at_most(60s);
+  client.wait_at_most(std::chrono::seconds(60));
   CHECK(contains(message_of<device::Error>([&] { client.status(); }), "a line without an end"));
 }
 
