@@ -36,9 +36,10 @@ std::vector<UsbipDevice> list_usbip_devices(const SocketAddress& server) {
 UsbipConnection::UsbipConnection(const SocketAddress& server, const std::string& bus_id,
                                  std::chrono::milliseconds timeout)
     : timeout_(timeout),
-      gone_(fmt::format("The arm at {} is gone: its board has ended or restarted, or its cable was unplugged. Start the "
-                        "board, or plug the cable in.",
-                        server.text())),
+      gone_(
+          fmt::format("The arm at {} is gone: its board has ended or restarted, or its cable was unplugged. Start the "
+                      "board, or plug the cable in.",
+                      server.text())),
       socket_(server) {
   socket_.send(usbip::bytes_of(usbip::ImportRequest{.bus_id = {bus_id}}));
   socket_.wait_at_most(reply_timeout);

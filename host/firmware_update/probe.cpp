@@ -146,8 +146,8 @@ std::optional<protocol::ImageIdentity> read_installed(const std::string& interfa
 
 std::vector<std::string> openocd_arguments_for_reading(const std::string& interface) {
   return openocd_arguments(
-      interface, {fmt::format("init; dump_image {} {:#x} {}", installed_file, protocol::image_begin, identity_end),
-                  "shutdown"});
+      interface,
+      {fmt::format("init; dump_image {} {:#x} {}", installed_file, protocol::image_begin, identity_end), "shutdown"});
 }
 
 std::vector<std::string> openocd_arguments_for_writing(const std::string& interface) {
@@ -155,9 +155,9 @@ std::vector<std::string> openocd_arguments_for_writing(const std::string& interf
   const std::string set_brown_out =
       "set optcr [lindex [read_memory 0x40023c14 32 1] 0]; "
       "if {($optcr & 0x0c) != 0} { stm32f2x options_write 0 [expr {$optcr & 0xe0}] }";
-  return openocd_arguments(
-      interface, {fmt::format("init; reset halt; flash write_image erase {0}; verify_image {0}", image_file),
-                  fmt::format("echo {{{}}}", verified_line), set_brown_out, "reset run; shutdown"});
+  return openocd_arguments(interface,
+                           {fmt::format("init; reset halt; flash write_image erase {0}; verify_image {0}", image_file),
+                            fmt::format("echo {{{}}}", verified_line), set_brown_out, "reset run; shutdown"});
 }
 
 void update_by_probe(const Image& image, const std::string& interface, Consent consent,
@@ -173,8 +173,7 @@ void update_by_probe(const Image& image, const std::string& interface, Consent c
     is_verified |= line == verified_line;
     on_line(line);
   };
-  if (run_openocd(openocd_arguments_for_writing(interface), folder.path(), watch) != 0)
-    throw device::Error(cannot_use);
+  if (run_openocd(openocd_arguments_for_writing(interface), folder.path(), watch) != 0) throw device::Error(cannot_use);
   if (!is_verified) throw device::Error(not_verified);
 }
 

@@ -54,10 +54,10 @@ BINARIES = [
     binary("inkwell", r"bin/inkwell", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
     binary("virtual-board", r"bin/virtual-board", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
     binary("libinkwell.so", LIBRARY + r"libinkwell\.so\.\d+\.\d+\.\d+", CHECKED_CALLS, ASSERTIONS, STACK_PROBES),
-    binary("dropins/libHD.so", r"lib/inkwell/dropins/libHD\.so\.3\.4", CHECKED_CALLS, ASSERTIONS),
+    binary("dropins/libHD.so", r"lib/inkwell/dropins/libHD\.so\.3\.4", ASSERTIONS),
     binary("dropins/libhdPhantom.so", r"lib/inkwell/dropins/libhdPhantom\.so"),
-    binary("python/inkwell/_native.*.so", None, CHECKED_CALLS, ASSERTIONS),
-    binary("octave/inkwell_mex.mex", None, CHECKED_CALLS, ASSERTIONS, is_optional=True),  # where there is Octave
+    binary("python/inkwell/_native.*.so", None, ASSERTIONS),
+    binary("octave/inkwell_mex.mex", None, ASSERTIONS, is_optional=True),  # where there is Octave
 ]
 
 

@@ -143,7 +143,8 @@ TEST_CASE("while the force is on nothing is stored or forgotten, and the board s
   RememberingBoard board;
   board.done({"parameters", "set", "wall_stiffness_N_per_m=600", "host_timeout_s=2"});
   const auto& reason = info(protocol::StoreResult::force_is_on);
-  for (auto words : std::vector<std::vector<std::string>>{{"parameters", "store"}, {"parameters", "factory", "--yes"}}) {
+  for (auto words :
+       std::vector<std::vector<std::string>>{{"parameters", "store"}, {"parameters", "factory", "--yes"}}) {
     RunningProgram on({build_directory() + "/inkwell", "force", "on", "--usbip", board.board.usbip().text()});
     REQUIRE(on.read_line() == "The force is on.");
     const auto beside_the_driver = board.run(words);

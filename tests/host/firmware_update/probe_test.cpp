@@ -88,9 +88,10 @@ class FakeOpenocd {
     fs::create_directory(bin);
     std::ofstream(noted("flash"), std::ios::binary) << flash;
     std::ofstream(program) << "#!/bin/sh\ncase \"$*\" in *dump_image*) echo \"$*\" >" << noted("reading") << "; cat "
-                           << noted("flash") << " >installed.bin; exit;; esac\nfor word in \"$@\"; do echo \"$word\"; done >" << noted("words")
-                           << "\npwd -P >" << noted("folder") << "\nls -R >" << noted("files") << "\ncat image.hex >"
-                           << noted("image") << "\n"
+                           << noted("flash")
+                           << " >installed.bin; exit;; esac\nfor word in \"$@\"; do echo \"$word\"; done >"
+                           << noted("words") << "\npwd -P >" << noted("folder") << "\nls -R >" << noted("files")
+                           << "\ncat image.hex >" << noted("image") << "\n"
                            << end << "\n";
     fs::permissions(program, fs::perms::owner_all);
     path_before_ = std::getenv("PATH");

@@ -23,10 +23,8 @@ constexpr std::uint32_t claim_number = 7;
 
 /// Only the program that has claimed the arm may send forces.
 void claim_arm(FirmwareOnBus& bus) {
-  const protocol::ClaimReport claim{.operation = protocol::ClaimOperation::claim,
-                                    .claim = claim_number,
-                                    .process_id = 1,
-                                    .program = "forces"};
+  const protocol::ClaimReport claim{
+      .operation = protocol::ClaimOperation::claim, .claim = claim_number, .process_id = 1, .program = "forces"};
   const auto bytes = std::as_bytes(std::span(&claim, 1));
   const auto answer = bus.control(0x21, 9, 0x0300 | static_cast<std::uint16_t>(protocol::ReportId::driver), 0,
                                   sizeof claim, {bytes.begin(), bytes.end()});
