@@ -44,9 +44,9 @@ protocol::Watches BackgroundWatch::found_of_encoders() {
 }
 
 bool BackgroundWatch::an_encoder_is_stuck() {
-  const std::uint32_t recorded = host_link.samples.recorded();
-  if (recorded == 0) return false;
-  const link::Sample& newest = host_link.samples[recorded - 1];
+  const link::Sample* const sample = host_link.samples.newest();
+  if (sample == nullptr) return false;
+  const link::Sample& newest = *sample;
   const bool in_inkwell = protocol::is_closed(newest.summary.switches, protocol::Switch::inkwell);
   const bool held = in_inkwell || !protocol::force_is_on(newest.summary.state);
   constexpr protocol::EachAxis<Signal> encoders_counts = Signal::encoder_1_counts, currents_A = Signal::current_1_A;

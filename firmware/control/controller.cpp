@@ -102,10 +102,10 @@ void Controller::replace_shapes(const Shapes& shapes) {
 }
 
 void Controller::condition_samples(const Samples& samples, const Settings& settings) {
-  if (periods_ == 0)
-    for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
   // The bridges are off until the offsets are known, so what the sensors read is their offset.
   if (!offsets_.measured()) {
+    if (offsets_.periods == 0)
+      for (std::size_t i = 0; i < 3; ++i) start(speeds_[i], samples.encoder_counts[i], periods_);
     measure_offsets(offsets_, samples.current_A);
     over_current_for_A_ = {};
   }

@@ -37,8 +37,15 @@ std::uint32_t check_of(const protocol::BlackBoxRow& row, std::uint32_t number) {
 
 bool is_sound(const BlackBoxPlace& place, std::uint32_t number) { return place.check == check_of(place.row, number); }
 
-/// Numbers of the rows from the fault on; no run lasts until those before it get there.
+/// Numbers of the rows from the fault on; those before it stay below.
 constexpr std::uint32_t first_number_from_fault = 0x8000'0000;
+
+/// The number after that of a row before the fault. After 24 days without a fault it falls, by whole rings, so that
+/// each row stays in its place. A reset within the next 100 ms costs the rows before that.
+std::uint32_t number_after(std::uint32_t number, std::size_t ring_size) {
+  const auto size = static_cast<std::uint32_t>(ring_size);
+  return number + 1 < first_number_from_fault - size ? number + 1 : size + (number + 1) % size;
+}
 
 /// What is written before is in memory before what is written behind, if a reset comes between them.
 void in_this_order() { std::atomic_signal_fence(std::memory_order_seq_cst); }
@@ -109,7 +116,7 @@ void BlackBox::take(const Sample& sample) {
         add_after_fault(sample);
       } else if (period % protocol::black_box_step_periods == 0) {
         write(before(notes_.rows_written), notes_.rows_written, sample);
-        ++notes_.rows_written;
+        notes_.rows_written = number_after(notes_.rows_written, ring_.size());
       }
       break;
     case Phase::fault_seen: add_after_fault(sample); break;

@@ -21,13 +21,8 @@ static_assert((known_limits() & ~limits_in_report) == 0, "PoseReport::limits has
 
 }  // namespace
 
-const Sample* PoseRecorder::newest() const {
-  const std::uint32_t recorded = samples_.recorded();
-  return recorded == 0 ? nullptr : &samples_[recorded - 1];
-}
-
 bool PoseRecorder::read(protocol::PoseReport& report) const {
-  const Sample* const sample = newest();
+  const Sample* const sample = samples_.newest();
   if (sample == nullptr) return false;
   const auto& [signals, summary] = *sample;
   report.report_id = protocol::ReportId::pose;
@@ -60,17 +55,17 @@ bool PoseRecorder::take(protocol::PoseReport& report) {
 }
 
 std::uint32_t PoseRecorder::newest_periods() const {
-  const Sample* const sample = newest();
+  const Sample* const sample = samples_.newest();
   return sample == nullptr ? 0 : sample->summary.periods;
 }
 
 std::optional<std::uint32_t> PoseRecorder::newest_cycles() const {
-  const Sample* const sample = newest();
+  const Sample* const sample = samples_.newest();
   return sample == nullptr ? std::nullopt : std::optional(sample->summary.begin_cycles);
 }
 
 std::optional<BoardTime> PoseRecorder::time_of(std::uint32_t cycles) const {
-  const Sample* const sample = newest();
+  const Sample* const sample = samples_.newest();
   if (sample == nullptr) return std::nullopt;
   const PeriodSummary& latest = sample->summary;
   const std::uint32_t since = cycles - latest.begin_cycles;

@@ -158,9 +158,10 @@ protocol::SelfTestReport SelfTest::report() const {
   report.tests_ended = tests_ended_;
   report.time_periods = samples_.recorded();
   for (std::size_t i = 0; i < entries_.size(); ++i) report.entries[i] = entries_[i];
-  if (report.time_periods == 0) return report;
+  const Sample* const newest = samples_.newest();
+  if (newest == nullptr) return report;
   // What is watched all the time tells more than a look did.
-  const protocol::Fault told = samples_[report.time_periods - 1].summary.fault;
+  const protocol::Fault told = newest->summary.fault;
   const auto fail = [&report](Item item) { report.entries[static_cast<std::size_t>(item)].result = Result::failed; };
   if (told == protocol::Fault::current_sensor) fail(Item::current_offsets);
   if (told == protocol::Fault::memory_damaged) fail(Item::flash);

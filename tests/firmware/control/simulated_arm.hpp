@@ -83,8 +83,9 @@ inline void move_to(control::Controller& controller, control::Samples& samples,
 
 /// Past the measurement of the offsets and a self-test that passes: state `unreferenced`.
 inline control::Controller started_controller(const control::Settings& settings,
-                                              const control::MeasuredMotors& measured = {}) {
-  control::Controller controller{board_limits};
+                                              const control::MeasuredMotors& measured = {},
+                                              std::uint32_t first_period = 0) {
+  control::Controller controller{board_limits, first_period};
   run(controller, samples_at_rest(), settings, control::CurrentOffsets::duration_periods);
   controller.pass_self_test(measured);
   run(controller, samples_at_rest(), settings, 1);
@@ -93,8 +94,9 @@ inline control::Controller started_controller(const control::Settings& settings,
 
 /// Referenced at counts of zero, stylus out of the inkwell: state `ready`.
 inline control::Controller ready_controller(const control::Settings& settings,
-                                            const control::MeasuredMotors& measured = {}) {
-  control::Controller controller = started_controller(settings, measured);
+                                            const control::MeasuredMotors& measured = {},
+                                            std::uint32_t first_period = 0) {
+  control::Controller controller = started_controller(settings, measured, first_period);
   control::Samples samples = samples_at_rest();
   samples.switches = static_cast<std::uint8_t>(protocol::Switch::inkwell);
   run(controller, samples, settings,
@@ -104,8 +106,9 @@ inline control::Controller ready_controller(const control::Settings& settings,
 }
 
 inline control::Controller active_controller(const control::Settings& settings,
-                                             const control::MeasuredMotors& measured = {}) {
-  control::Controller controller = ready_controller(settings, measured);
+                                             const control::MeasuredMotors& measured = {},
+                                             std::uint32_t first_period = 0) {
+  control::Controller controller = ready_controller(settings, measured, first_period);
   controller.carry_out(command(protocol::Command::enable_force));
   run(controller, samples_at_rest(), settings, 1);
   return controller;

@@ -411,4 +411,16 @@ TEST_CASE("the board's counter of periods may wrap in the midst of a black box")
   CHECK(board.periods() == Periods{0xFFFF'FFF0, 0, 20, 40, 60});
 }
 
+TEST_CASE("all rows before a fault are there, however many were written since the fault before it") {
+  constexpr std::uint32_t written = 51;  // by meet_fault()
+  for (const std::uint32_t end_of_numbers : {0u, 0x8000'0000u - std::uint32_t{rows_before}}) {
+    CAPTURE(end_of_numbers);
+    Board board;
+    board.memory.notes.rows_written = end_of_numbers - written + 2;
+    meet_fault(board);
+    CHECK(board.box->report().rows_before == rows_before);
+    CHECK(board.periods() == around_fault);
+  }
+}
+
 }  // namespace inkwell

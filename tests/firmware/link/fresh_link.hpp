@@ -12,12 +12,12 @@ namespace inkwell::test {
 inline constexpr std::uint32_t cycles_per_period = 8400;
 using SmallBlackBox = link::BlackBoxMemory<5, 4>;
 
-inline link::Link& fresh_link() {
+inline link::Link& fresh_link(std::uint32_t first_period = 0) {
   static link::ScopeFrames frames;
   static SmallBlackBox black_box;
   alignas(link::Link) static std::byte storage[sizeof(link::Link)];
   black_box = {};
-  auto* const fresh = new (storage) link::Link(cycles_per_period, frames, black_box);
+  auto* const fresh = new (storage) link::Link(cycles_per_period, frames, black_box, first_period);
   fresh->black_box.start(protocol::Fault::none, {});
   return *fresh;
 }

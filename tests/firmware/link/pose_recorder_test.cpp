@@ -117,4 +117,16 @@ TEST_CASE("a moment of the cycle counter has a board time") {
   }
 }
 
+TEST_CASE("the newest pose is there in each period, also where the count of samples wraps") {
+  link::Link& link = test::fresh_link(0xFFFF'FFFE);
+  PoseReport report;
+  CHECK_FALSE(link.poses.read(report));
+  for (std::uint32_t period = 0xFFFF'FFFE; period != 5; ++period) {
+    CAPTURE(period);
+    test::interrupt(link, some_signals(), {.state = protocol::State::active, .periods = period});
+    REQUIRE(link.poses.read(report));
+    CHECK(report.time_periods == period);
+  }
+}
+
 }  // namespace inkwell

@@ -29,7 +29,9 @@ namespace inkwell::control {
 /// raise, self-test, step, finish; before that interrupt runs, the constructor, raise and start_warm.
 class Controller {
  public:
-  explicit Controller(const BoardLimits& board) : board_(board) {}
+  /// `first_period` is the number of the first control period.
+  explicit Controller(const BoardLimits& board, std::uint32_t first_period = 0)
+      : board_(board), periods_(first_period) {}
 
   /// Before the control interrupt runs: the motors are as warm as that. Without it they are cold.
   void start_warm(const Warmth& warmth) {
@@ -108,7 +110,7 @@ class Controller {
   std::uint8_t limits() const { return limits_; }                           ///< bits of protocol::Limit
   bool is_referenced() const { return reference_.valid; }                   ///< it is known where the arm is
   std::uint32_t late_force_reports() const { return late_force_reports_; }  ///< since the start
-  std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start
+  std::uint32_t periods() const { return periods_; }            ///< control periods completed since the start; wraps
   std::uint32_t servo_cycles() const { return servo_cycles_; }  ///< of the last finished control interrupt
   const Triple& motor_heat() const { return heat_.heat; }       ///< 1 is what the continuous current leads to
   /// What start_warm() of the next run is to get.
@@ -146,7 +148,7 @@ class Controller {
   MeasuredMotors measured_;  ///< as pass_self_test() was told
 
   // Remembered from period to period.
-  std::uint32_t periods_ = 0;
+  std::uint32_t periods_;
   CurrentOffsets offsets_;
   SupplyFilter supply_;
   SwitchFilter switches_;

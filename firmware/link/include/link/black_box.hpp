@@ -24,7 +24,7 @@ struct BlackBoxNotes {
   };
   std::uint32_t tables_hash;   ///< of the tables that the rows are made by; another value: nothing in here counts
   Cause cause;                 ///< a black box is kept, if its check is right
-  std::uint32_t rows_written;  ///< before the fault, in all; only as many as have room are there
+  std::uint32_t rows_written;  ///< before the fault; only as many as have room are there. Falls before it wraps
   std::uint32_t rows_added;    ///< from the fault on
 };
 
@@ -47,7 +47,11 @@ class BlackBox {
   /// Looks at nothing in `memory` before start().
   template <std::size_t before, std::size_t from_fault>
   BlackBox(const SampleRing& samples, BlackBoxMemory<before, from_fault>& memory)
-      : samples_(samples), notes_(memory.notes), ring_(memory.ring), line_(memory.line) {}
+      : samples_(samples),
+        notes_(memory.notes),
+        ring_(memory.ring),
+        line_(memory.line),
+        followed_(samples.recorded()) {}
 
   /// Once, before the control interrupt runs: finds what the run before this one has left. `raised` is the fault that
   /// this start is going to raise because of how that run ended, or none; `crash` what the processor noted then.
@@ -78,7 +82,7 @@ class BlackBox {
   std::span<BlackBoxPlace> line_;  ///< from the fault on
   Phase phase_ = Phase::recording;
   std::uint32_t tables_hash_ = 0;
-  std::uint32_t followed_ = 0;  ///< samples of the ring
+  std::uint32_t followed_;  ///< samples of the ring
   // While a black box is kept: how many of its rows are sound.
   std::uint32_t rows_before_ = 0;
   std::uint32_t rows_from_fault_ = 0;

@@ -39,10 +39,15 @@
 namespace inkwell::link {
 
 struct Link {
-  /// `cycles_per_period`: processor cycles of one control period.
+  /// `cycles_per_period`: processor cycles of one control period. `first_period`: the number of the first one.
   template <std::size_t before, std::size_t after>
-  Link(std::uint32_t cycles_per_period, ScopeFrames& frames, BlackBoxMemory<before, after>& memory)
-      : poses(samples, cycles_per_period), scope(samples, frames), black_box(samples, memory), self_test(samples) {}
+  Link(std::uint32_t cycles_per_period, ScopeFrames& frames, BlackBoxMemory<before, after>& memory,
+       std::uint32_t first_period = 0)
+      : samples(first_period),
+        poses(samples, cycles_per_period),
+        scope(samples, frames),
+        black_box(samples, memory),
+        self_test(samples) {}
 
   ParameterStore parameters;
   StoredParameters stored;

@@ -60,9 +60,6 @@ class PoseRecorder {
   std::optional<BoardTime> time_of(std::uint32_t cycles) const;
 
  private:
-  /// Null before the first period. The interrupt comes back to its place 1.6 ms later.
-  const Sample* newest() const;
-
   const SampleRing& samples_;
   Shared<bool> longest_was_taken_{false};    ///< set by the main loop, cleared by the interrupt
   Shared<std::uint32_t> longest_cycles_{0};  ///< written by the interrupt

@@ -37,6 +37,9 @@ class SampleRing {
   /// Two places stay unread, for the samples that the interrupt may write while one is read.
   static constexpr std::uint32_t readable = capacity - 2;
 
+  /// `first` is the number of the first sample.
+  explicit SampleRing(std::uint32_t first = 0) : first_(first), recorded_(first) {}
+
   // ---- control interrupt ----
 
   /// Where this period goes; it counts once record() has been called.
@@ -47,15 +50,25 @@ class SampleRing {
 
   // ---- main loop ----
 
-  /// Samples recorded since the start; the newest has the number before.
+  /// The number of the next sample: samples recorded since the start. Wraps.
   std::uint32_t recorded() const { return recorded_.load(); }
+
+  /// Null before the first sample. The interrupt comes back to its place 1.6 ms later.
+  const Sample* newest() const {
+    const std::uint32_t recorded = recorded_.load();
+    // Once it is set it stays, because the count comes back to the first number when it wraps.
+    has_samples_ = has_samples_ || recorded != first_;
+    return has_samples_ ? &samples_[(recorded - 1) % capacity] : nullptr;
+  }
 
   /// One of the `readable` newest.
   const Sample& operator[](std::uint32_t number) const { return samples_[number % capacity]; }
 
  private:
   std::array<Sample, capacity> samples_{};
-  Shared<std::uint32_t> recorded_{0};  ///< written by the interrupt
+  std::uint32_t first_;
+  Shared<std::uint32_t> recorded_;    ///< written by the interrupt
+  mutable bool has_samples_ = false;  ///< known to the main loop
 };
 
 }  // namespace inkwell::link
