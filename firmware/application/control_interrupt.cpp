@@ -76,7 +76,7 @@ extern "C" INKWELL_INTERRUPT void control_interrupt() {
   const std::uint32_t missed_periods = period - came_round_at_periods;
   const bool main_loop_stalls = missed_periods > main_loop_stalled_periods;
   // Once, and not while the start takes its time.
-  if (missed_periods == main_loop_stalled_periods + 1 && came_round_at_periods != 0) [[unlikely]]
+  if (missed_periods == main_loop_stalled_periods + 1 && came_round_at_periods != first_period) [[unlikely]]
     drivers::CallBehindInterrupts::ask();  // hang_handler()
   controller.raise(host_link.found_in_main_loop.load() | watch(Fault::main_loop_stalled, main_loop_stalls) |
                    watch(Fault::heartbeat_missed, bridges_were_let_go));

@@ -29,10 +29,11 @@ static_assert(board::servo_rate_Hz == protocol::servo_rate_Hz, "board and protoc
 INKWELL_CORE_COUPLED Part<drivers::Bridges> bridges;
 INKWELL_CORE_COUPLED Part<drivers::Encoders> encoders;
 INKWELL_CORE_COUPLED Part<drivers::Switches> switches;
-INKWELL_CORE_COUPLED control::Controller controller{{board::supply_minimum_V, board::supply_maximum_V,
-                                                     board::duty_limit, board::facts.current_measurable_A(),
-                                                     board::facts.bridge_dead_time_part()}};
-INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames, black_box_memory};
+INKWELL_CORE_COUPLED control::Controller controller{
+    {board::supply_minimum_V, board::supply_maximum_V, board::duty_limit, board::facts.current_measurable_A(),
+     board::facts.bridge_dead_time_part()},
+    first_period};
+INKWELL_CORE_COUPLED link::Link host_link{board::servo_cycles, scope_frames, black_box_memory, first_period};
 
 // In main memory: one is written by the DMA controller, the others are large.
 Part<drivers::AnalogInputs> analog_inputs;
@@ -44,10 +45,10 @@ Part<drivers::StatusLed> status_led;
 Part<drivers::Console> console;
 Part<drivers::IndependentWatchdog> watchdog;
 Part<drivers::Checksum> checksum;
-Part<drivers::OtgFs> usb_port;
+Part<drivers::OtgFs> usb_port{INKWELL_FIRST_FRAME};
 Part<drivers::ParameterFlash> parameter_flash;
 
-link::Shared<std::uint32_t> completed_periods{0};
-link::Shared<std::uint32_t> main_loop_periods{0};
+link::Shared<std::uint32_t> completed_periods{first_period};
+link::Shared<std::uint32_t> main_loop_periods{first_period};
 
 }  // namespace inkwell::application

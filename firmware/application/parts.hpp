@@ -49,6 +49,14 @@ extern Part<drivers::ParameterFlash> parameter_flash;
 
 extern link::Link host_link;
 
+/// Control periods and bus frames that count as completed at the start. A test's image begins just before the counters
+/// wrap (tests/target/near_wrap).
+#ifndef INKWELL_FIRST_PERIOD
+#define INKWELL_FIRST_PERIOD 0
+#define INKWELL_FIRST_FRAME 0
+#endif
+inline constexpr std::uint32_t first_period = INKWELL_FIRST_PERIOD;
+
 /// Control periods completed, for the main loop.
 extern link::Shared<std::uint32_t> completed_periods;
 /// As many as there were when the main loop came round last, for the control interrupt.

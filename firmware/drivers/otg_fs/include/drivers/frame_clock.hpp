@@ -12,6 +12,9 @@ namespace inkwell::drivers {
 /// A part of OtgFs, which claims TIM2 and starts its clock.
 class FrameClock {
  public:
+  /// `frames` are counted already.
+  constexpr explicit FrameClock(std::uint32_t frames) : count_(frames) {}
+
   void start();
 
   /// The bus has fallen silent: no frame is known until the next one begins.
@@ -25,7 +28,7 @@ class FrameClock {
 
   bool is_known_ = false;
   std::uint16_t number_ = 0;
-  std::uint32_t count_ = 0;
+  std::uint32_t count_;         ///< of frames; wraps
   std::uint32_t captured_ = 0;  ///< TIM2's count at the start of frame
   std::uint32_t length_ = 0;    ///< of a frame in TIM2's counts, as measured last
 };

@@ -33,6 +33,9 @@ class OtgFs final : public usb::Port {
                                      pin(board::facts.usb_plus),
                                      pin(board::facts.usb_supply)};
 
+  /// `frames` of the bus are counted already.
+  constexpr explicit OtgFs(std::uint32_t frames = 0) : frame_clock_(frames) {}
+
   /// Sets pins, clock and core up; next_event() connects the pull-up of D+ while the cable brings VBUS. Takes 26 ms.
   /// The 48 MHz clock runs already (clocks.hpp). False if the core does not answer.
   [[nodiscard]] bool start();
